@@ -1,0 +1,97 @@
+// What a search for the relative pose of two local maps needs and gives (design, the search pool).
+//
+// A task says everything that its answer depends on, so the answer is the same wherever it is
+// worked on. Poses are T_reference_query: the robot at the query map's stop, in the frame of the
+// reference map's stop.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+/// How an individual is scored (spec A5).
+enum class FitnessForm : std::uint8_t {
+  kTopological = 0,  ///< equivalent nodes and branches, clearance, orientation, coverage
+  kCombined =
+      1,  ///< topological and scan points against a distance field, times the odometry prior
+};
+
+/// Parameters of the genetic algorithm (spec A4).
+struct GeneticParameters {
+  std::uint32_t individuals = 50;
+  std::uint32_t generations = 30;
+  double mutation_rate = 0.05;          ///< probability per bit, 0.01 to 0.2
+  double resolution_m = 0.15;           ///< of the x and y genes
+  double resolution_rad = 0.034906585;  ///< of the heading gene, 2 degrees
+  friend bool operator==(const GeneticParameters&, const GeneticParameters&) = default;
+};
+
+struct MatchTask {
+  std::uint64_t task_id = 0;  ///< unique within one run of one robot
+  std::uint32_t reference_map_id = 0;
+  std::uint32_t query_map_id = 0;
+  std::uint64_t reference_hash = 0;  ///< content_hash of the maps that are meant
+  std::uint64_t query_hash = 0;
+  geometry::Pose2 T_reference_query;  ///< predicted; centre of the search space
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Zero();  ///< of the prediction, (x, y, theta) in the reference frame
+  Eigen::Vector3d half_width = Eigen::Vector3d::Zero();  ///< of the search space: m, m, rad
+  GeneticParameters genetic;
+  FitnessForm fitness_form = FitnessForm::kCombined;
+  std::vector<geometry::Pose2>
+      initial_individuals;             ///< T_reference_query candidates beside the prediction
+  std::uint32_t solutions_wanted = 3;  ///< n best distinct solutions, 1 to 40
+  std::uint64_t seed = 0;
+};
+
+struct MatchSolution {
+  geometry::Pose2 T_reference_query;
+  double fitness = 0.0;  ///< in [0, 1]
+};
+
+enum class MatchStatus : std::uint8_t {
+  kSolved = 0,
+  kNothingInCommon = 1,  ///< no point of the query map falls into the view of the reference map
+};
+
+struct MatchResult {
+  std::uint64_t task_id = 0;
+  MatchStatus status = MatchStatus::kNothingInCommon;
+  std::vector<MatchSolution> solutions;  ///< best first, distinct, before refinement
+  geometry::Pose2
+      T_reference_query;  ///< best solution after point-to-line refinement with the prior
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< Hessian of the refinement's data term
+  double overlap = 0.0;  ///< share of the query's points inside the view of the reference, [0, 1]
+  double inliers = 0.0;  ///< of those, share within the inlier distance of a reference line, [0, 1]
+  double violations = 0.0;  ///< of those, share where the reference saw free space instead, [0, 1]
+  double residual_rms_m = 0.0;
+  double second_fitness = 0.0;  ///< of the second best distinct solution, 0 if none
+  std::uint32_t evaluations = 0;
+};
+
+/// Works on match tasks: in this process or on as many machines as there are.
+class MatchPool {
+ public:
+  MatchPool() = default;
+  MatchPool(const MatchPool&) = delete;
+  MatchPool& operator=(const MatchPool&) = delete;
+  virtual ~MatchPool() = default;
+
+  /// Makes a local map known, to be named in tasks from now on.
+  virtual void add_map(std::shared_ptr<const topomap::LocalMap> map) = 0;
+
+  /// Results in the order of the tasks, whatever the order in which they were worked on. Every map
+  /// that a task names must have been added before. Throws std::runtime_error when it cannot
+  /// answer.
+  virtual std::vector<MatchResult> match(std::span<const MatchTask> tasks) = 0;
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,25 @@
+// A laser scan with the odometry that belongs to it: what enters the system.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::scan {
+
+struct Scan {
+  std::uint64_t sequence = 0;  ///< counts the usable scans of one source from 0, without gaps
+  std::int64_t stamp_ns =
+      0;  ///< time of measurement, since the epoch of the source; strictly increasing
+  double angle_min_rad = 0.0;    ///< angle of the first beam in the laser frame (x forward, y left)
+  double angle_step_rad = 0.0;   ///< from one beam to the next, counter-clockwise, > 0
+  std::vector<float> ranges_m;   ///< one per beam; kNoReturn where the beam met nothing
+  geometry::Pose2 T_odom_robot;  ///< odometry pose at the time of the scan
+
+  /// Range of a beam without an echo. Readers of logs and devices put it for every reading at or
+  /// above the sensor's maximum and for every reading of zero or less.
+  static constexpr float kNoReturn = 0.0F;
+};
+
+}  // namespace topogeo::scan

@@ -1,0 +1,86 @@
+// The local topo-geometric map made at one stop of the robot (spec A2, thesis 5.2.3).
+//
+// Coordinates are in the robot frame at the stop (x forward, y left), metres. Everything is kept:
+// elements off the main graph serve matching, the main graph serves navigation (`in_main_graph`).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::topomap {
+
+enum class NodeKind : std::uint8_t {
+  kReal = 0,          ///< three or more generator groups equally near
+  kFictitious = 1,    ///< end of a branch at the border of what was seen
+  kVirtual = 2,       ///< of a virtual diagram; for navigation only
+  kDoor = 3,          ///< minimum of clearance up to door_half_width
+  kNarrowing = 4,     ///< any other minimum of clearance
+  kHallCorridor = 5,  ///< change from one plateau of clearance to another
+};
+
+struct LocalNode {
+  std::uint32_t id = 0;  ///< index in LocalMap::nodes
+  NodeKind kind = NodeKind::kReal;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  double clearance_m = 0.0;                ///< distance to the base groups
+  std::vector<std::uint16_t> base_groups;  ///< generator groups equally near, ascending
+  bool in_main_graph = true;
+};
+
+struct BranchPoint {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  double clearance_m = 0.0;
+};
+
+struct LocalBranch {
+  std::uint32_t id = 0;      ///< index in LocalMap::branches
+  std::uint32_t node_a = 0;  ///< node at points.front()
+  std::uint32_t node_b = 0;  ///< node at points.back()
+  std::array<std::uint16_t, 2> base_groups{};
+  bool is_virtual = false;
+  bool in_main_graph = true;
+  std::vector<BranchPoint> points;  ///< ordered from node_a to node_b, at least two
+};
+
+/// A scan point kept for matching.
+struct ScanPoint {
+  float x_m = 0.0F;
+  float y_m = 0.0F;
+};
+
+/// A scan taken after the previous stop and before this one, located against the previous stop.
+struct TrackedScan {
+  std::uint64_t sequence = 0;
+  std::int64_t stamp_ns = 0;
+  geometry::Pose2 T_odom_robot;
+  geometry::Pose2 T_stop_robot;  ///< in the frame of the previous stop
+  bool matched = false;          ///< false: T_stop_robot is odometry alone
+};
+
+struct LocalMap {
+  std::string robot_id;
+  std::uint32_t id = 0;        ///< counts the stops of a robot from 0
+  std::uint64_t sequence = 0;  ///< of the scan taken at the stop
+  std::int64_t stamp_ns = 0;
+  geometry::Pose2 T_odom_robot;      ///< odometry at the stop
+  geometry::Pose2 T_previous_robot;  ///< pose in the frame of the previous stop by scan tracking;
+                                     ///< identity at id 0
+  geometry::Pose2 T_robot_laser;     ///< mounting of the laser
+  std::vector<LocalNode> nodes;
+  std::vector<LocalBranch> branches;
+  std::vector<ScanPoint>
+      points;  ///< of the stop's scan, in beam order, nearer than the range limit
+  std::vector<TrackedScan> track;  ///< scans between the previous stop and this one, in time order
+};
+
+/// 64-bit FNV-1a hash of everything that a match can depend on (id, points, nodes, branches,
+/// mounting), so that a worker can tell that it holds the map that a task means.
+std::uint64_t content_hash(const LocalMap& map);
+
+}  // namespace topogeo::topomap

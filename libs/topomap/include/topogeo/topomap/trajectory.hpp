@@ -1,0 +1,52 @@
+// The corrected trajectory of a robot: one pose for each stop, and from that one for each scan.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::topomap {
+
+/// Pose of a stop in the map frame, whose origin is the first stop.
+struct StopPose {
+  std::uint32_t local_map_id = 0;
+  std::int64_t stamp_ns = 0;
+  geometry::Pose2 T_map_robot;
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the map frame, m and rad
+};
+
+struct Trajectory {
+  std::uint64_t version = 0;    ///< grows with every change
+  std::vector<StopPose> stops;  ///< index = local map id
+};
+
+/// A closed loop: two stops far apart on the way whose maps were matched.
+struct LoopClosure {
+  std::uint32_t earlier_id = 0;  ///< local map ids
+  std::uint32_t later_id = 0;
+  geometry::Pose2 T_earlier_later;
+};
+
+/// Pose of one scan, stop or not.
+struct StampedPose {
+  std::uint64_t sequence = 0;
+  std::int64_t stamp_ns = 0;
+  geometry::Pose2 pose;
+};
+
+/// One corrected pose (T_map_robot) for each scan in time order: stops as in `trajectory`, the
+/// scans between moved rigidly with the stop before them. `maps[i]` is the map of
+/// `trajectory.stops[i]`.
+std::vector<StampedPose> expand_trajectory(const Trajectory& trajectory,
+                                           std::span<const LocalMap> maps);
+
+/// The odometry poses (T_odom_robot) of the same scans, moved so that the first is the identity.
+std::vector<StampedPose> expand_odometry(std::span<const LocalMap> maps);
+
+}  // namespace topogeo::topomap
