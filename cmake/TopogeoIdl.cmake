@@ -1,0 +1,49 @@
+# Turns IDL into a static library with fastddsgen (package fastddsgen, needs a Java runtime).
+
+find_package(fastcdr REQUIRED)
+find_package(fastrtps REQUIRED)
+find_program(FASTDDSGEN fastddsgen REQUIRED)
+
+# topogeo_add_idl(NAME idl FILES a.idl ...): library topogeo_<name>, alias topogeo::<name>, headers
+# topogeo/msg/<file>.h.
+#
+# One call for all files, because the generator also writes the outputs of every included file and
+# takes most of its time to start. It writes into a staging folder and only what changed is copied,
+# so a changed file does not recompile the others.
+function(topogeo_add_idl)
+  cmake_parse_arguments(ARG "" "NAME" "FILES" ${ARGN})
+  set(staging ${CMAKE_CURRENT_BINARY_DIR}/staging)
+  set(include_dir ${CMAKE_CURRENT_BINARY_DIR}/include)
+  set(generated ${include_dir}/topogeo/msg)
+  file(MAKE_DIRECTORY ${staging} ${generated})  # the generator does not make its output folder
+
+  set(staged "")
+  set(outputs "")
+  foreach(file IN LISTS ARG_FILES)
+    cmake_path(GET file STEM stem)
+    foreach(name ${stem} ${stem}PubSubTypes ${stem}TypeObject)
+      list(APPEND staged ${staging}/${name}.h ${staging}/${name}.cxx)
+      list(APPEND outputs ${generated}/${name}.h ${generated}/${name}.cxx)
+    endforeach()
+  endforeach()
+  set(sources ${outputs})
+  list(FILTER sources INCLUDE REGEX "\\.cxx$")
+
+  add_custom_command(
+    OUTPUT ${outputs}
+    COMMAND ${FASTDDSGEN} -replace -typeobject -cs -d ${staging} ${ARG_FILES} > ${staging}/log.txt
+            || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
+    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${generated}
+    DEPENDS ${ARG_FILES}
+    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+    COMMENT "Generating message types from IDL"
+    VERBATIM)
+
+  set(target topogeo_${ARG_NAME})
+  add_library(${target} STATIC ${sources})
+  add_library(topogeo::${ARG_NAME} ALIAS ${target})
+  # SYSTEM: generated headers do not follow our warnings.
+  target_include_directories(${target} SYSTEM PUBLIC ${include_dir})
+  target_link_libraries(${target} PUBLIC fastcdr fastrtps)
+  target_compile_options(${target} PRIVATE -w)
+endfunction()
