@@ -1,0 +1,117 @@
+// Typed configuration: every parameter is declared once, with key, variable, range, unit and
+// reason.
+//
+// The declaration carries the check of a file, the listing of what is in force and the documented
+// example file. The default of a parameter is what its variable holds when it is declared.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace topogeo::support {
+
+/// One declared parameter.
+struct ConfigParameter {
+  std::string key;       ///< "section.name", any depth
+  std::string unit;      ///< "" where there is none
+  std::string why;       ///< what it does and why one would change it
+  std::string expected;  ///< "number between 0.1 and 5 m", for messages and the example file
+  std::string default_text;
+  bool is_text = false;  ///< strings: quoted in YAML
+
+  std::function<std::string()> text;  ///< current value; doubles in the shortest form that reads
+                                      ///< back to the same value
+  /// What stores the value that a text stands for; nothing if it stands for none or one out of
+  /// range.
+  std::function<std::optional<std::function<void()>>(const std::string&)> parse;
+};
+
+class ConfigSchema {
+ public:
+  // Each declares a parameter. `key` is of letters, digits, '_' and '.'; `value` must outlive the
+  // schema. They throw std::invalid_argument naming the key when it is malformed, declared twice
+  // or also a section, and when the default is out of range: mistakes in the program.
+  void add(std::string key, double* value, double min, double max, std::string unit,
+           std::string why);
+  void add(std::string key, std::int32_t* value, std::int32_t min, std::int32_t max,
+           std::string unit, std::string why);
+  void add(std::string key, std::uint32_t* value, std::uint32_t min, std::uint32_t max,
+           std::string unit, std::string why);
+  void add(std::string key, std::uint64_t* value, std::uint64_t min, std::uint64_t max,
+           std::string unit, std::string why);
+  void add(std::string key, bool* value, std::string why);
+  void add(std::string key, std::string* value, std::string why);
+
+  /// An enumeration by names: add("match.form", &form, {{"combined", Form::kCombined}, ...},
+  /// "...").
+  template <typename Enum>
+  void add(std::string key, Enum* value, std::vector<std::pair<std::string, Enum>> names,
+           std::string why);
+
+  /// In the order of declaration.
+  [[nodiscard]] const std::vector<ConfigParameter>& parameters() const { return parameters_; }
+
+  /// The parameter, or nullptr.
+  [[nodiscard]] const ConfigParameter* find(std::string_view key) const;
+
+  /// Whether a declared key starts with "path.".
+  [[nodiscard]] bool is_section(std::string_view path) const;
+
+ private:
+  void add_enumeration(std::string key, const std::vector<std::string>& names,
+                       std::function<std::size_t()> get, std::function<void(std::size_t)> set,
+                       std::string why);
+  template <typename Number>
+  void add_number(std::string key, Number* value, Number min, Number max, std::string unit,
+                  std::string why, std::string_view kind);
+  void insert(ConfigParameter parameter);
+
+  std::vector<ConfigParameter> parameters_;
+};
+
+/// Reads a YAML file of nested sections (or dotted keys) into the declared variables; keys that it
+/// does not name keep their value. Throws std::runtime_error "FILE:LINE: key 'x.y' = 'v': expected
+/// number between a and b m", or another cause (unknown or repeated key, wrong type, broken YAML,
+/// unreadable file); then no variable is changed.
+void load_yaml_file(const std::filesystem::path& path, const ConfigSchema& schema);
+
+/// The same for YAML text; `name` stands for the file in messages.
+void load_yaml_text(std::string_view text, const std::string& name, const ConfigSchema& schema);
+
+/// What is in force.
+struct EffectiveConfig {
+  std::vector<std::pair<std::string, std::string>> values;  ///< (key, value), order of declaration
+  std::uint64_t fingerprint = 0;  ///< 64-bit FNV-1a of the values; equal for equal configurations
+};
+EffectiveConfig effective(const ConfigSchema& schema);
+
+/// A documented YAML file with the current values that load_yaml_file reads back to the same
+/// values. Default, range, unit and reason of each key stand above it as comments.
+void write_yaml(const ConfigSchema& schema, std::ostream& out);
+
+template <typename Enum>
+void ConfigSchema::add(std::string key, Enum* value,
+                       std::vector<std::pair<std::string, Enum>> names, std::string why) {
+  std::vector<std::string> texts;
+  std::vector<Enum> values;
+  for (auto& [text, meaning] : names) {
+    texts.push_back(text);
+    values.push_back(meaning);
+  }
+  auto get = [value, values] {
+    std::size_t i = 0;
+    while (i < values.size() && values[i] != *value) ++i;
+    return i;
+  };
+  auto set = [value, values](std::size_t i) { *value = values[i]; };
+  add_enumeration(std::move(key), texts, std::move(get), std::move(set), std::move(why));
+}
+
+}  // namespace topogeo::support

@@ -1,0 +1,42 @@
+// One line that says how far a long job is, how fast it goes and how long it still takes.
+//
+// The caller passes the time, so the bar has no clock. On a terminal the line is redrawn in place;
+// elsewhere (a file, a pipe, a CI log) one line is printed about every tenth of the way.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+
+namespace topogeo::support {
+
+/// Whether standard error is a terminal.
+bool stderr_is_terminal();
+
+class ProgressBar {
+ public:
+  /// `label` stands first on the line, `unit` names what is counted ("scans"). `out` must outlive
+  /// the bar.
+  ProgressBar(std::ostream& out, bool is_terminal, std::string label, std::string unit);
+
+  /// `done` of `total` after `elapsed_s` seconds, total 0 while it is not known. Redraws a terminal
+  /// at most ten times a second of elapsed time.
+  void update(std::uint64_t done, std::uint64_t total, double elapsed_s);
+
+  /// Draws the last state and ends the line.
+  void finish(std::uint64_t done, std::uint64_t total, double elapsed_s);
+
+ private:
+  [[nodiscard]] std::string line(std::uint64_t done, std::uint64_t total, double elapsed_s) const;
+  void draw(const std::string& text);
+
+  std::ostream& out_;
+  bool is_terminal_;
+  std::string label_;
+  std::string unit_;
+  double next_draw_s_ = 0.0;
+  std::uint64_t tenths_printed_ = 0;
+  std::size_t drawn_length_ = 0;
+};
+
+}  // namespace topogeo::support

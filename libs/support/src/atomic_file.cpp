@@ -1,0 +1,117 @@
+#include "topogeo/support/atomic_file.hpp"
+
+#include <cerrno>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+namespace topogeo::support {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
+  throw std::runtime_error(path.string() + ": " + what + ": " +
+                           std::generic_category().message(error));
+}
+
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int fd) : fd_(fd) {}
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  ~FileDescriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  [[nodiscard]] int get() const { return fd_; }
+  /// Closes now; false with errno where the kernel reports a late write error.
+  bool close() { return ::close(std::exchange(fd_, -1)) == 0; }
+
+ private:
+  int fd_;
+};
+
+/// Removes the file at the end unless it was kept.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!kept_) ::unlink(path_.c_str());
+  }
+  void keep() { kept_ = true; }
+
+ private:
+  fs::path path_;
+  bool kept_ = false;
+};
+
+fs::path directory_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// Makes a file that did not exist before, with the permissions that the umask leaves. Returns its
+/// descriptor, or -1 with errno.
+int create_beside(const fs::path& path, fs::path& created) {
+  constexpr int kAttempts = 100;  // leftovers of killed processes with this process's id
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    created = directory_of(path) /
+              fmt::format(".{}.tmp-{}-{}", path.filename().string(), ::getpid(), attempt);
+    const int fd = ::open(created.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST) return fd;
+  }
+  return -1;
+}
+
+/// Zero, or the errno of what went wrong.
+int write_all(int fd, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(fd, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, std::string_view content) {
+  if (!path.has_filename()) fail(path, "cannot be written", EISDIR);
+  fs::path temporary_path;
+  FileDescriptor file(create_beside(path, temporary_path));
+  if (file.get() < 0) fail(path, "cannot be created", errno);
+  TemporaryFile temporary(temporary_path);
+
+  if (const int error = write_all(file.get(), content)) fail(path, "cannot be written", error);
+  if (::fsync(file.get()) != 0) fail(path, "cannot be forced to disk", errno);
+  if (!file.close()) fail(path, "cannot be written", errno);
+  if (::rename(temporary_path.c_str(), path.c_str()) != 0) fail(path, "cannot be replaced", errno);
+  temporary.keep();
+
+  // Without this the new name, not the content, could be lost in a power cut. Some file systems
+  // cannot do it; the file is written all the same.
+  const FileDescriptor directory(
+      ::open(directory_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory.get() >= 0) static_cast<void>(::fsync(directory.get()));
+}
+
+void check_writable_directory(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) fail(directory, "cannot be created", error.value());
+  if (!fs::is_directory(directory, error)) fail(directory, "is no directory", ENOTDIR);
+  fs::path probe_path;
+  FileDescriptor probe(create_beside(directory / "write-check", probe_path));
+  if (probe.get() < 0) fail(directory, "cannot be written", errno);
+  const TemporaryFile temporary(probe_path);
+  if (const int cause = write_all(probe.get(), "x")) fail(directory, "cannot be written", cause);
+  if (!probe.close()) fail(directory, "cannot be written", errno);
+}
+
+}  // namespace topogeo::support

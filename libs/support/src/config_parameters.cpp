@@ -1,0 +1,159 @@
+// The declarations: how each type is parsed, checked and printed.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <stdexcept>
+#include <system_error>
+#include <type_traits>
+
+#include "topogeo/support/config_schema.hpp"
+
+namespace topogeo::support {
+namespace {
+
+/// Doubles: the shortest text that reads back to the same value.
+template <typename Number>
+std::string number_text(Number value) {
+  std::array<char, 64> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+template <typename Number>
+std::optional<Number> parse_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') || text.empty()) return std::nullopt;
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+bool is_well_formed(std::string_view key) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.';
+  };
+  return !key.empty() && key.front() != '.' && key.back() != '.' &&
+         key.find("..") == std::string_view::npos && std::ranges::all_of(key, allowed);
+}
+
+}  // namespace
+
+const ConfigParameter* ConfigSchema::find(std::string_view key) const {
+  const auto found =
+      std::ranges::find_if(parameters_, [&](const ConfigParameter& p) { return p.key == key; });
+  return found == parameters_.end() ? nullptr : &*found;
+}
+
+bool ConfigSchema::is_section(std::string_view path) const {
+  const std::string prefix = std::string(path) + ".";
+  return std::ranges::any_of(parameters_,
+                             [&](const ConfigParameter& p) { return p.key.starts_with(prefix); });
+}
+
+void ConfigSchema::insert(ConfigParameter parameter) {
+  const std::string& key = parameter.key;
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument("configuration key '" + key + "': " + why);
+  };
+  if (!is_well_formed(key)) refuse("expected letters, digits, '_' and single '.' between");
+  if (find(key) != nullptr) refuse("declared twice");
+  if (is_section(key)) refuse("is already a section");
+  for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', dot + 1)) {
+    if (find(key.substr(0, dot)) != nullptr) refuse("its section is already a parameter");
+  }
+  parameter.default_text = parameter.text();
+  if (!parameter.parse(parameter.default_text)) {
+    refuse("default '" + parameter.default_text + "': expected " + parameter.expected);
+  }
+  parameters_.push_back(std::move(parameter));
+}
+
+template <typename Number>
+void ConfigSchema::add_number(std::string key, Number* value, Number min, Number max,
+                              std::string unit, std::string why, std::string_view kind) {
+  ConfigParameter p;
+  p.expected = std::string(kind) + " between " + number_text(min) + " and " + number_text(max) +
+               (unit.empty() ? "" : " " + unit);
+  p.key = std::move(key);
+  p.unit = std::move(unit);
+  p.why = std::move(why);
+  p.text = [value] { return number_text(*value); };
+  p.parse = [value, min, max](const std::string& text) -> std::optional<std::function<void()>> {
+    const auto parsed = parse_number<Number>(text);
+    // Written so that a NaN, which is neither above nor below, is refused.
+    if (!parsed || !(*parsed >= min && *parsed <= max)) return std::nullopt;
+    return [value, number = *parsed] { *value = number; };
+  };
+  insert(std::move(p));
+}
+
+void ConfigSchema::add(std::string key, double* value, double min, double max, std::string unit,
+                       std::string why) {
+  add_number(std::move(key), value, min, max, std::move(unit), std::move(why), "number");
+}
+
+void ConfigSchema::add(std::string key, std::int32_t* value, std::int32_t min, std::int32_t max,
+                       std::string unit, std::string why) {
+  add_number(std::move(key), value, min, max, std::move(unit), std::move(why), "whole number");
+}
+
+void ConfigSchema::add(std::string key, std::uint32_t* value, std::uint32_t min, std::uint32_t max,
+                       std::string unit, std::string why) {
+  add_number(std::move(key), value, min, max, std::move(unit), std::move(why), "whole number");
+}
+
+void ConfigSchema::add(std::string key, std::uint64_t* value, std::uint64_t min, std::uint64_t max,
+                       std::string unit, std::string why) {
+  add_number(std::move(key), value, min, max, std::move(unit), std::move(why), "whole number");
+}
+
+void ConfigSchema::add(std::string key, bool* value, std::string why) {
+  ConfigParameter p;
+  p.key = std::move(key);
+  p.why = std::move(why);
+  p.expected = "true or false";
+  p.text = [value] { return *value ? "true" : "false"; };
+  p.parse = [value](const std::string& text) -> std::optional<std::function<void()>> {
+    if (text != "true" && text != "false") return std::nullopt;
+    return [value, parsed = text == "true"] { *value = parsed; };
+  };
+  insert(std::move(p));
+}
+
+void ConfigSchema::add(std::string key, std::string* value, std::string why) {
+  ConfigParameter p;
+  p.key = std::move(key);
+  p.why = std::move(why);
+  p.expected = "text";
+  p.is_text = true;
+  p.text = [value] { return *value; };
+  p.parse = [value](const std::string& text) -> std::optional<std::function<void()>> {
+    return [value, text] { *value = text; };
+  };
+  insert(std::move(p));
+}
+
+void ConfigSchema::add_enumeration(std::string key, const std::vector<std::string>& names,
+                                   std::function<std::size_t()> get,
+                                   std::function<void(std::size_t)> set, std::string why) {
+  ConfigParameter p;
+  p.key = std::move(key);
+  p.why = std::move(why);
+  p.expected = "one of";
+  for (std::size_t i = 0; i < names.size(); ++i) p.expected += (i == 0 ? " " : ", ") + names[i];
+  p.text = [get = std::move(get), names] {
+    const std::size_t i = get();
+    return i < names.size() ? names[i] : std::string();
+  };
+  p.parse = [set = std::move(set),
+             names](const std::string& text) -> std::optional<std::function<void()>> {
+    const auto found = std::ranges::find(names, text);
+    if (found == names.end()) return std::nullopt;
+    return [set, index = static_cast<std::size_t>(found - names.begin())] { set(index); };
+  };
+  insert(std::move(p));
+}
+
+}  // namespace topogeo::support

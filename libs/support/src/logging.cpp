@@ -1,0 +1,42 @@
+#include "topogeo/support/logging.hpp"
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace topogeo::support {
+namespace {
+
+spdlog::level::level_enum parse_level(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, spdlog::level::level_enum>, 6> kLevels{
+      {{"trace", spdlog::level::trace},
+       {"debug", spdlog::level::debug},
+       {"info", spdlog::level::info},
+       {"warning", spdlog::level::warn},
+       {"error", spdlog::level::err},
+       {"off", spdlog::level::off}}};
+  for (const auto& [name, level] : kLevels) {
+    if (name == text) return level;
+  }
+  throw std::invalid_argument("log level '" + std::string(text) +
+                              "': expected trace, debug, info, warning, error or off");
+}
+
+}  // namespace
+
+void set_up_logging(std::string_view name, std::string_view level) {
+  const auto parsed_level = parse_level(level);
+  auto logger = std::make_shared<spdlog::logger>(
+      std::string(name), std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  logger->set_pattern("%H:%M:%S.%e %^%l%$ %n: %v");
+  logger->set_level(parsed_level);
+  logger->flush_on(spdlog::level::warn);
+  spdlog::set_default_logger(std::move(logger));
+}
+
+}  // namespace topogeo::support

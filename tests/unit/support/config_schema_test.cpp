@@ -1,0 +1,193 @@
+#include "topogeo/support/config_schema.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+namespace topogeo::support {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StrEq;
+
+enum class Form : std::uint8_t { kSimple, kCombined };
+
+struct Values {
+  double distance_m = 1.0;
+  double tiny = 0.1;
+  std::int32_t offset = -3;
+  std::uint32_t individuals = 50;
+  std::uint64_t seed = 1;
+  bool refine = true;
+  std::string frame = "map";
+  Form form = Form::kCombined;
+
+  friend bool operator==(const Values&, const Values&) = default;
+};
+
+ConfigSchema declare(Values& v) {
+  ConfigSchema schema;
+  schema.add("mapping.stop_distance_m", &v.distance_m, 0.1, 5.0, "m", "Way between two stops.");
+  schema.add("match.genetic.tiny", &v.tiny, 0.0, 1.0, "", "A number\nexplained on two lines.");
+  schema.add("match.genetic.offset", &v.offset, -10, 10, "", "Signed.");
+  schema.add("match.genetic.individuals", &v.individuals, 2, 1000, "", "Population.");
+  schema.add("seed", &v.seed, 0, std::numeric_limits<std::uint64_t>::max(), "", "Of the run.");
+  schema.add("match.refine", &v.refine, "Whether to refine.");
+  schema.add("mapping.frame", &v.frame, "Name of the frame.");
+  schema.add("match.form", &v.form, {{"simple", Form::kSimple}, {"combined", Form::kCombined}},
+             "How to score.");
+  return schema;
+}
+
+/// The message of the error that the text causes; "" if it is accepted.
+std::string error_of(const std::string& text) {
+  Values v;
+  const ConfigSchema schema = declare(v);
+  try {
+    load_yaml_text(text, "robot.yaml", schema);
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(v, Values{}) << "a refused file changed a value";
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ConfigSchema, ReadsNestedAndDottedKeysAndLeavesTheOthers) {
+  Values v;
+  const ConfigSchema schema = declare(v);
+  load_yaml_text(
+      "mapping:\n  stop_distance_m: 0.25\n  frame: \"floor: 1 # east\"\n"
+      "match: {genetic: {individuals: 80, offset: -7}, refine: false, form: simple}\n"
+      "match.genetic.tiny: 1e-3\n"
+      "seed: 18446744073709551615\n",
+      "robot.yaml", schema);
+  EXPECT_EQ(v.distance_m, 0.25);
+  EXPECT_EQ(v.frame, "floor: 1 # east");
+  EXPECT_EQ(v.individuals, 80U);
+  EXPECT_EQ(v.offset, -7);
+  EXPECT_EQ(v.tiny, 1e-3);
+  EXPECT_FALSE(v.refine);
+  EXPECT_EQ(v.form, Form::kSimple);
+  EXPECT_EQ(v.seed, std::numeric_limits<std::uint64_t>::max());
+}
+
+TEST(ConfigSchema, TakesEmptyTextAndEmptySectionsAsDefaults) {
+  EXPECT_EQ(error_of(""), "");
+  EXPECT_EQ(error_of("# nothing\n"), "");
+  EXPECT_EQ(error_of("mapping:\n  # stop_distance_m: 2\nseed: 1\n"), "");
+}
+
+TEST(ConfigSchema, NamesFileLineKeyValueAndRange) {
+  EXPECT_THAT(error_of("seed: 3\nmapping:\n  stop_distance_m: 7\n"),
+              StrEq("robot.yaml:3: key 'mapping.stop_distance_m' = '7': expected number between "
+                    "0.1 and 5 m"));
+}
+
+TEST(ConfigSchema, RefusesWrongValues) {
+  for (const char* value : {"nan", "inf", "0.09", "1,5", "five", "0x1", "1.0m", "\"1.0\"", "[1]",
+                            "{a: 1}", "", "~", "--1", "++1", "1e999"}) {
+    EXPECT_THAT(error_of("mapping:\n  stop_distance_m: " + std::string(value) + "\n"),
+                HasSubstr("robot.yaml:2: key 'mapping.stop_distance_m'"))
+        << value;
+  }
+  for (const char* value : {"1", "1001", "-5", "50.0", "4294967346", "1e2"}) {
+    EXPECT_THAT(error_of("match.genetic.individuals: " + std::string(value)),
+                HasSubstr("expected whole number between 2 and 1000"))
+        << value;
+  }
+  EXPECT_THAT(error_of("seed: 18446744073709551616"), HasSubstr("whole number"));
+  EXPECT_THAT(error_of("seed: -1"), HasSubstr("whole number"));
+  EXPECT_THAT(error_of("match.refine: yes"), HasSubstr("= 'yes': expected true or false"));
+  EXPECT_THAT(error_of("match.form: both"), HasSubstr("'both': expected one of simple, combined"));
+}
+
+TEST(ConfigSchema, RefusesUnknownAndRepeatedKeys) {
+  EXPECT_THAT(error_of("mapping:\n  stop_distance: 1\n"),
+              StrEq("robot.yaml:2: key 'mapping.stop_distance': unknown, expected one of "
+                    "stop_distance_m, frame"));
+  EXPECT_THAT(error_of("sed: 1\n"), HasSubstr("unknown, expected one of mapping, match, seed"));
+  EXPECT_THAT(error_of("seed: 1\nseed: 2\n"), StrEq("robot.yaml:2: key 'seed': given twice"));
+  EXPECT_THAT(error_of("mapping: {frame: a}\nmapping: {stop_distance_m: 1}\n"),
+              HasSubstr(":2: key 'mapping': given twice"));
+  EXPECT_THAT(error_of("mapping: {frame: a}\nmapping.frame: b\n"),
+              HasSubstr("key 'mapping.frame': given twice"));
+}
+
+TEST(ConfigSchema, RefusesWhatIsNoConfiguration) {
+  EXPECT_THAT(error_of("seed: 1\nmapping: [1, 2\n"), HasSubstr("not valid YAML"));
+  EXPECT_THAT(error_of("- a\n- b\n"), HasSubstr("robot.yaml:1: expected sections"));
+  EXPECT_THAT(error_of("mapping: 3\n"), HasSubstr("is a section"));
+  EXPECT_THAT(error_of("seed: 1\n---\nseed: 2\n"), HasSubstr("2 YAML documents"));
+  EXPECT_THAT(error_of("? [a]\n: 1\n"), HasSubstr("plain word"));
+  EXPECT_THAT(error_of("mapping: &m {mapping: *m}\n"), HasSubstr("robot.yaml"));
+  EXPECT_NE(error_of(std::string("\x7f\x45\x4c\x46\x00\x01", 6)), "");
+  EXPECT_THAT(error_of("seed: \"a\\nb\"\n"), Not(HasSubstr("\n")));
+}
+
+TEST(ConfigSchema, RefusesFilesThatCannotBeRead) {
+  Values v;
+  const ConfigSchema schema = declare(v);
+  EXPECT_THROW(load_yaml_file("/nonexistent/robot.yaml", schema), std::runtime_error);
+  EXPECT_THROW(load_yaml_file("/tmp", schema), std::runtime_error);
+  const auto path = std::filesystem::path(::testing::TempDir()) / "config_schema_test_big.yaml";
+  std::ofstream(path) << std::string((1U << 20U) + 1, '#');
+  EXPECT_THROW(load_yaml_file(path, schema), std::runtime_error);
+  std::ofstream(path) << "seed: 9\n";
+  load_yaml_file(path, schema);
+  EXPECT_EQ(v.seed, 9U);
+  std::filesystem::remove(path);
+}
+
+TEST(ConfigSchema, WritesAFileThatReadsBackToTheSameValues) {
+  Values v;
+  const ConfigSchema schema = declare(v);
+  v = {0.30000000000000004, 1.0 / 3.0,    10, 999, 1234567890123456789ULL, false,
+       "a \"b\"\\\n#",      Form::kSimple};
+  std::ostringstream out;
+  write_yaml(schema, out);
+  EXPECT_THAT(out.str(), HasSubstr("# number between 0.1 and 5 m; default 1 m\n"
+                                   "  stop_distance_m: 0.30000000000000004\n"));
+
+  Values read;
+  const ConfigSchema read_schema = declare(read);
+  load_yaml_text(out.str(), "written.yaml", read_schema);
+  EXPECT_EQ(read, v);
+  EXPECT_EQ(effective(read_schema).fingerprint, effective(schema).fingerprint);
+}
+
+TEST(ConfigSchema, ListsWhatIsInForceAndTellsConfigurationsApart) {
+  Values v;
+  const ConfigSchema schema = declare(v);
+  const EffectiveConfig before = effective(schema);
+  ASSERT_EQ(before.values.size(), 8U);
+  EXPECT_EQ(before.values[0],
+            (std::pair<std::string, std::string>("mapping.stop_distance_m", "1")));
+  EXPECT_EQ(before.values[1].second, "0.1");
+  EXPECT_EQ(before.values[7].second, "combined");
+  v.tiny = std::nextafter(v.tiny, 1.0);
+  EXPECT_NE(effective(schema).fingerprint, before.fingerprint);
+  v.tiny = 0.1;
+  EXPECT_EQ(effective(schema).fingerprint, before.fingerprint);
+}
+
+TEST(ConfigSchema, RefusesDeclarationsThatContradictEachOther) {
+  double x = 0.5;
+  ConfigSchema schema;
+  schema.add("a.b", &x, 0, 1, "", "");
+  EXPECT_THROW(schema.add("a.b", &x, 0, 1, "", ""), std::invalid_argument);
+  EXPECT_THROW(schema.add("a", &x, 0, 1, "", ""), std::invalid_argument);
+  EXPECT_THROW(schema.add("a.b.c", &x, 0, 1, "", ""), std::invalid_argument);
+  EXPECT_THROW(schema.add("c", &x, 0.6, 1, "", ""), std::invalid_argument);
+  for (const char* key : {"", ".a", "a.", "a..b", "a b", "a:"}) {
+    EXPECT_THROW(schema.add(key, &x, 0, 1, "", ""), std::invalid_argument) << key;
+  }
+  EXPECT_EQ(schema.parameters().size(), 1U);
+}
+
+}  // namespace
+}  // namespace topogeo::support
