@@ -1,0 +1,101 @@
+// Reads laser scans from a CARMEN text log, plain or gzip.
+//
+// The format, one message per line, fields separated by blanks, metres, radians, seconds:
+//   FLASER n r1..rn x y theta odom_x odom_y odom_theta ipc_stamp host logger_stamp
+//   ROBOTLASER1 laser_type start_angle field_of_view angular_resolution maximum_range accuracy
+//     remission_mode n r1..rn m i1..im laser_pose(3) robot_pose(3) tv rv forward_safety
+//     side_safety turn_axis ipc_stamp host logger_stamp
+// ODOM lines, comments (#) and lines of other kinds are counted and passed over. One bad line never
+// spoils the rest: it is skipped, counted by reason and explained with its number.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/scan/scan.hpp"
+
+namespace topogeo::scan {
+
+struct CarmenLogOptions {
+  double range_max_m = 49.9;  ///< readings at or above it become Scan::kNoReturn; > 0
+  /// A stamp further than this after its predecessor (or the very first one) must be confirmed by
+  /// the next scan; otherwise it, and not the rest of the log, is taken to be wrong. Seconds, > 0.
+  double jump_s = 60.0;
+};
+
+/// Why a line was left out.
+enum class SkipReason : std::uint8_t {
+  kFields,     ///< missing, surplus or non-numeric fields
+  kRange,      ///< a range that is negative, infinite or not a number
+  kPose,       ///< an odometry pose that is not finite or absurdly far away
+  kStamp,      ///< a time stamp that is no plain decimal number of seconds
+  kTime,       ///< the time does not increase
+  kGeometry,   ///< beam count or beam angles differ from the first scan's
+  kText,       ///< binary bytes, or a line longer than any scan
+  kTruncated,  ///< the compressed data ends early or is damaged; the rest is lost
+};
+constexpr std::size_t kSkipReasonCount = 8;
+
+/// A few words for people: "bad range".
+std::string_view describe(SkipReason reason);
+
+struct CarmenLogStatistics {
+  std::uint64_t lines = 0;        ///< all lines read so far
+  std::uint64_t laser_lines = 0;  ///< FLASER and ROBOTLASER1, usable or not
+  std::uint64_t scans = 0;        ///< scans handed out by next()
+  std::uint64_t comments = 0;     ///< comments and blank lines
+  std::uint64_t odometry_lines = 0;
+  std::uint64_t other_lines = 0;                          ///< other kinds of message
+  std::array<std::uint64_t, kSkipReasonCount> skipped{};  ///< by SkipReason
+  /// "FILE:LINE: expected ..., got ..." of the first kMaxMessages skipped lines.
+  std::vector<std::string> messages;
+  static constexpr std::size_t kMaxMessages = 10;
+
+  [[nodiscard]] std::uint64_t skipped_for(SkipReason reason) const {
+    return skipped[static_cast<std::size_t>(reason)];
+  }
+  [[nodiscard]] std::uint64_t skipped_total() const;
+  /// One line: "1220 scans; skipped 3: 1 bad range, 2 time not increasing".
+  [[nodiscard]] std::string summary() const;
+};
+
+class CarmenLogReader {
+ public:
+  static constexpr std::size_t kMaxBeams = 2048;  ///< a line with more is bad
+
+  /// Opens the log and reads up to its first usable scan. Throws std::runtime_error when the file
+  /// is missing, unreadable, empty, binary or has no usable laser line, std::invalid_argument when
+  /// an option is out of range.
+  explicit CarmenLogReader(const std::filesystem::path& path, const CarmenLogOptions& options = {});
+  ~CarmenLogReader();
+  CarmenLogReader(CarmenLogReader&&) noexcept;
+  CarmenLogReader& operator=(CarmenLogReader&&) noexcept;
+  CarmenLogReader(const CarmenLogReader&) = delete;
+  CarmenLogReader& operator=(const CarmenLogReader&) = delete;
+
+  /// The next usable scan; empty at the end of the log. Sequence numbers count from 0 without gaps,
+  /// stamps increase strictly, and every scan has the geometry of the first.
+  std::optional<Scan> next();
+
+  [[nodiscard]] const CarmenLogStatistics& statistics() const;
+
+  /// Share of the file read so far, in [0, 1], by its size on disk.
+  [[nodiscard]] double fraction_read() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Number of laser lines in a log: a quick total for a progress bar, never less than the number of
+/// usable scans. Throws std::runtime_error when the file cannot be opened.
+std::uint64_t count_scans(const std::filesystem::path& path);
+
+}  // namespace topogeo::scan

@@ -1,0 +1,48 @@
+// One line of a CARMEN log: which kind it is, and the scan in it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "topogeo/scan/carmen_log_reader.hpp"
+
+namespace topogeo::scan {
+
+enum class LineKind { kComment, kLaser, kOdometry, kOther };
+
+/// By the first field; a blank line is a comment.
+LineKind line_kind(std::string_view line);
+
+struct LineError {
+  SkipReason reason;
+  std::string text;  ///< "expected ..., got ..."
+};
+
+class CarmenLineParser {
+ public:
+  explicit CarmenLineParser(double range_max_m) : range_max_m_(range_max_m) {}
+
+  /// The scan of a laser line, its sequence still 0, or what is wrong with the line.
+  std::variant<Scan, LineError> parse(std::string_view line);
+
+ private:
+  void parse_flaser(Scan& scan);
+  void parse_robotlaser(Scan& scan);
+  std::size_t parse_count(std::size_t field, const char* what) const;
+  double parse_number(std::size_t field, SkipReason reason, const char* what) const;
+  void parse_ranges(std::size_t first, std::size_t count, double range_max_m, Scan& scan) const;
+  geometry::Pose2 parse_pose(std::size_t first) const;
+
+  double range_max_m_;
+  std::vector<std::string_view> fields_;  ///< kept to save its allocation
+};
+
+/// Nanoseconds from a decimal number of seconds such as "1134865040.234209", digit by digit, so
+/// that nothing is rounded; digits below a nanosecond are cut off. Empty for anything else:
+/// a sign, an exponent, no digit, more than nine billion seconds.
+std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
+
+}  // namespace topogeo::scan

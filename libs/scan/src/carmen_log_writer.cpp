@@ -1,0 +1,134 @@
+#include "topogeo/scan/carmen_log_writer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <zlib.h>
+
+namespace topogeo::scan {
+namespace {
+
+// The shortest text that reads back as the same number.
+template <typename T>
+void append(std::string& text, T value) {
+  std::array<char, 64> digits{};
+  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  text += ' ';
+  text.append(digits.data(), result.ptr);
+}
+
+void append_stamp(std::string& text, std::int64_t stamp_ns) {
+  const std::string nanoseconds = std::to_string(stamp_ns % 1'000'000'000);
+  append(text, stamp_ns / 1'000'000'000);
+  text += '.';
+  text.append(9 - nanoseconds.size(), '0');
+  text += nanoseconds;
+}
+
+void check(const Scan& scan) {
+  constexpr double kTolerance_rad = 1e-9;
+  if (scan.ranges_m.size() < 2) {
+    throw std::invalid_argument("ranges_m: expected 2 or more ranges, got " +
+                                std::to_string(scan.ranges_m.size()));
+  }
+  const double step_rad = flaser_angle_step_rad(scan.ranges_m.size());
+  if (std::fabs(scan.angle_min_rad + std::numbers::pi / 2.0) > kTolerance_rad ||
+      std::fabs(scan.angle_step_rad - step_rad) > kTolerance_rad) {
+    throw std::invalid_argument(
+        "angle_min_rad, angle_step_rad: expected the 180 degrees of a FLASER line (-1.570796, " +
+        std::to_string(step_rad) + "), got " + std::to_string(scan.angle_min_rad) + ", " +
+        std::to_string(scan.angle_step_rad));
+  }
+  if (scan.stamp_ns < 0) {
+    throw std::invalid_argument("stamp_ns: expected a number >= 0, got " +
+                                std::to_string(scan.stamp_ns));
+  }
+  const auto bad = std::find_if(scan.ranges_m.begin(), scan.ranges_m.end(),
+                                [](float r) { return !(std::isfinite(r) && r >= 0.0F); });
+  if (bad != scan.ranges_m.end()) {
+    throw std::invalid_argument("ranges_m[" + std::to_string(bad - scan.ranges_m.begin()) +
+                                "]: expected a finite range >= 0, got " + std::to_string(*bad));
+  }
+}
+
+}  // namespace
+
+double flaser_angle_step_rad(std::size_t beams) {
+  const std::size_t steps = beams % 2 == 1 ? beams - 1 : beams;
+  return std::numbers::pi / static_cast<double>(steps);
+}
+
+struct CarmenLogWriter::Impl {
+  Impl(std::string name, const char* mode) : path(std::move(name)) {
+    errno = 0;
+    file = gzopen(path.c_str(), mode);
+    if (file == nullptr) fail(errno != 0 ? std::strerror(errno) : "no memory");
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (file != nullptr) gzclose(file);
+  }
+  [[noreturn]] void fail(const std::string& why) const {
+    throw std::runtime_error(path + ": cannot write: " + why);
+  }
+  void put(const std::string& text) {
+    errno = 0;
+    if (file == nullptr) fail("already closed");
+    if (gzwrite(file, text.data(), static_cast<unsigned>(text.size())) !=
+        static_cast<int>(text.size())) {
+      fail(errno != 0 ? std::strerror(errno) : "compression failed");
+    }
+  }
+
+  std::string path;
+  gzFile file = nullptr;
+};
+
+CarmenLogWriter::CarmenLogWriter(const std::filesystem::path& path)
+    : impl_(std::make_unique<Impl>(path.string(), path.extension() == ".gz" ? "wb" : "wbT")) {
+  impl_->put(
+      "# FLASER num_readings [range_readings] x y theta odom_x odom_y odom_theta ipc_timestamp "
+      "ipc_hostname logger_timestamp\n");
+}
+
+CarmenLogWriter::~CarmenLogWriter() = default;
+CarmenLogWriter::CarmenLogWriter(CarmenLogWriter&&) noexcept = default;
+CarmenLogWriter& CarmenLogWriter::operator=(CarmenLogWriter&&) noexcept = default;
+
+void CarmenLogWriter::write(const Scan& scan) {
+  check(scan);
+  std::string line = "FLASER";
+  append(line, scan.ranges_m.size());
+  for (const float range_m : scan.ranges_m) {
+    append(line, range_m == Scan::kNoReturn ? kNoReturnWritten_m : range_m);
+  }
+  // The laser's pose, then the robot's: the laser sits at the robot's origin.
+  for (int i = 0; i < 2; ++i) {
+    append(line, scan.T_odom_robot.x_m);
+    append(line, scan.T_odom_robot.y_m);
+    append(line, scan.T_odom_robot.theta_rad);
+  }
+  append_stamp(line, scan.stamp_ns);
+  line += " topogeo";
+  append_stamp(line, scan.stamp_ns);
+  line += '\n';
+  impl_->put(line);
+}
+
+void CarmenLogWriter::close() {
+  if (impl_->file == nullptr) return;
+  errno = 0;
+  const int code = gzclose(impl_->file);
+  impl_->file = nullptr;
+  if (code != Z_OK) impl_->fail(errno != 0 ? std::strerror(errno) : "compression failed");
+}
+
+}  // namespace topogeo::scan

@@ -1,0 +1,36 @@
+// Dead reckoning that errs like the wheels of an RWI B21: the distance is off by a constant factor,
+// the heading creeps to one side and wanders with the path, and turns are measured inexactly.
+#pragma once
+
+#include <numbers>
+#include <optional>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/simulation/random.hpp"
+
+namespace topogeo::simulation {
+
+struct OdometryDrift {
+  double range_scale_error = 0.02;         ///< measured distance = (1 + this) * true distance
+  double range_sigma_m_per_sqrt_m = 0.01;  ///< random part, grows with the root of the path
+  double heading_drift_rad_per_m = 0.15 * std::numbers::pi / 180.0;      ///< systematic
+  double heading_sigma_rad_per_sqrt_m = 0.3 * std::numbers::pi / 180.0;  ///< random walk
+  double turn_sigma_rad_per_sqrt_rad = 0.5 * std::numbers::pi / 180.0;   ///< per root of turning
+};
+
+class OdometryModel {
+ public:
+  OdometryModel(const OdometryDrift& drift, Random random) : drift_(drift), random_(random) {}
+
+  /// Takes the robot to its next true pose; returns what its odometry says then. The first call
+  /// fixes the origin: it returns the identity.
+  geometry::Pose2 advance(const geometry::Pose2& T_world_robot);
+
+ private:
+  OdometryDrift drift_;
+  Random random_;
+  std::optional<geometry::Pose2> T_world_last_;
+  geometry::Pose2 T_odom_robot_;
+};
+
+}  // namespace topogeo::simulation
