@@ -1,0 +1,78 @@
+// Writers and readers without their type: what Writer<T> and Reader<T> are made of.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "topogeo/messaging/events.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/topics.hpp"
+
+namespace topogeo::messaging::detail {
+
+class LoopAccess;
+
+/// What writers and readers have in common: peers and events.
+class Endpoint {
+ public:
+  Endpoint();
+  Endpoint(const Endpoint&) = delete;
+  Endpoint& operator=(const Endpoint&) = delete;
+  virtual ~Endpoint();
+
+  [[nodiscard]] int matched() const;
+  bool wait_for_matched(int count, std::chrono::nanoseconds timeout) const;
+  /// Hands over the events since the last call, oldest first, in this thread.
+  virtual void take_events(const EventHandler& handler);
+  /// `wake` is called from threads of the middleware whenever an event comes in.
+  void set_wake(std::function<void()> wake);
+
+  struct Shared;
+
+ protected:
+  std::shared_ptr<Shared> shared_;
+};
+
+class WriterCore final : public Endpoint {
+ public:
+  WriterCore(const Participant& participant, const TopicInfo& topic, const std::string& role);
+  ~WriterCore() override;
+
+  bool write(const void* message);
+  void dispose(const void* message);
+  bool wait_for_acknowledgments(std::chrono::nanoseconds timeout);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Field filter on the topic's type in SQL form, for example "worker_id = %0" with {"'pc1'"}.
+struct Filter {
+  std::string expression;
+  std::vector<std::string> parameters;  ///< strings in single quotes
+};
+
+class ReaderCore final : public Endpoint {
+ public:
+  using Handler = std::function<void(const void* message, const SampleInfo&)>;
+
+  ReaderCore(const Participant& participant, const TopicInfo& topic, const std::string& role,
+             const Filter& filter);
+  ~ReaderCore() override;
+
+  std::size_t take(std::size_t limit, const Handler& handler);
+  bool wait_for_data(std::chrono::nanoseconds timeout);
+  void take_events(const EventHandler& handler) override;
+
+ private:
+  friend class LoopAccess;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace topogeo::messaging::detail

@@ -1,0 +1,78 @@
+// One thread that waits for samples, events and timers and calls handlers, one after the other.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "topogeo/messaging/events.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+
+namespace topogeo::messaging {
+
+/// All handlers run in the thread that calls run(); an exception of a handler leaves run(). Readers
+/// and writers that were added live at least as long as the loop. Add them before run() or from a
+/// handler.
+class EventLoop {
+ public:
+  using InstanceHandler = std::function<void(const SampleInfo&)>;
+
+  EventLoop();
+  EventLoop(const EventLoop&) = delete;
+  EventLoop& operator=(const EventLoop&) = delete;
+  ~EventLoop();
+
+  /// `on_message` gets the messages, `on_gone` the disposed instances and those that have lost
+  /// their writer.
+  template <class T>
+  void add(const Reader<T>& reader, std::function<void(const T&, const SampleInfo&)> on_message,
+           InstanceHandler on_gone = {}) {
+    add_reader(reader.core(), [on_message = std::move(on_message), on_gone = std::move(on_gone)](
+                                  const void* message, const SampleInfo& info) {
+      if (info.valid) {
+        on_message(*static_cast<const T*>(message), info);
+      } else if (on_gone) {
+        on_gone(info);
+      }
+    });
+  }
+
+  /// Lets the events of a writer come to the event handlers.
+  template <class T>
+  void add(const Writer<T>& writer) {
+    add_writer(writer.core());
+  }
+
+  /// Gets the events of every reader and writer of the loop. Several handlers are called in the
+  /// order in which they were set.
+  void on_event(EventHandler handler);
+
+  /// Calls `handler` every `period` (> 0), by the steady clock, first after one period. A tick that
+  /// comes late does not make more ticks. Returns a number for cancel_timer.
+  std::uint64_t add_timer(std::chrono::nanoseconds period, std::function<void()> handler);
+  /// Calls `handler` once after `delay` (>= 0).
+  std::uint64_t call_after(std::chrono::nanoseconds delay, std::function<void()> handler);
+  void cancel_timer(std::uint64_t timer);
+
+  /// Calls `handler` in the loop's thread. For other threads; not for signal handlers.
+  void post(std::function<void()> handler);
+
+  /// Works until stop() is called. Calls handlers for what is there already.
+  void run();
+  /// Works until stop() is called (then true) or `duration` has passed (then false).
+  bool run_for(std::chrono::nanoseconds duration);
+  /// Makes run() return after the handler that runs now; if none runs, the next run() returns at
+  /// once. For any thread; not for signal handlers (SignalStop is for these).
+  void stop();
+
+ private:
+  void add_reader(std::shared_ptr<detail::ReaderCore> reader, detail::ReaderCore::Handler handler);
+  void add_writer(std::shared_ptr<detail::WriterCore> writer);
+
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace topogeo::messaging

@@ -1,0 +1,57 @@
+// What comes with samples and what happens to writers and readers.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace topogeo::messaging {
+
+/// Names an instance of a keyed topic, a writer or a reader; usable as a key of ordered containers.
+struct Handle {
+  std::array<std::uint8_t, 16> bytes{};
+  friend auto operator<=>(const Handle&, const Handle&) = default;
+};
+
+enum class InstanceState : std::uint8_t {
+  kAlive = 0,
+  kDisposed = 1,   ///< the writer says that the instance is gone
+  kNoWriters = 2,  ///< the instance's last writer left, died or lost its liveliness
+};
+
+struct SampleInfo {
+  bool valid = false;  ///< false: no message, only news about the instance
+  InstanceState state = InstanceState::kAlive;
+  Handle instance;            ///< same for all samples of one key
+  Handle writer;              ///< who sent it; all zero for kNoWriters found by this library
+  std::int64_t stamp_ns = 0;  ///< wall clock of the writer's host when it wrote
+};
+
+enum class EventKind : std::uint8_t {
+  kMatched,
+  kUnmatched,         ///< a matched peer left or its process is gone
+  kIncompatibleQos,   ///< a peer of the topic exists but cannot be talked to
+  kLivelinessGained,  ///< a writer is alive (again)
+  kLivelinessLost,    ///< a writer has not shown life within its lease
+  kDeadlineMissed,
+  kSampleLost,      ///< samples that will never arrive
+  kSampleRejected,  ///< the reader's history was full; a reliable writer sends again
+  kInvalidSample,   ///< a message of another schema version or over a bound was dropped
+};
+
+/// Fixed short name, for example "incompatible_qos".
+const char* to_string(EventKind kind);
+
+struct Event {
+  EventKind kind{};
+  std::string topic;
+  Handle peer;         ///< writer or reader on the other side, where the event is about one
+  int count = 0;       ///< peers after kMatched..., total of the kind for the others
+  std::string detail;  ///< for people; names the policy for kIncompatibleQos
+};
+
+using EventHandler = std::function<void(const Event&)>;
+
+}  // namespace topogeo::messaging

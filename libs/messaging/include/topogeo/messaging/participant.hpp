@@ -1,0 +1,44 @@
+// Membership in a DDS domain; writers and readers are made with one.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace topogeo::messaging {
+
+/// Partition of runs that name none.
+inline constexpr const char* kDefaultPartition = "topogeo";
+/// Partition of a reader that wants to see every run on the domain.
+inline constexpr const char* kAnyPartition = "*";
+
+struct ParticipantOptions {
+  std::uint32_t domain = 0;                   ///< DDS domain, 0 to 232
+  std::string partition = kDefaultPartition;  ///< endpoints of different partitions never match
+  std::string name = "topogeo";               ///< shown by DDS tools
+  /// Participant profile; empty: TOPOGEO_DDS_PARTICIPANT of the environment, else "topogeo".
+  std::string profile;
+  /// File of QoS profiles; empty: TOPOGEO_DDS_PROFILES of the environment, else the built-in copy
+  /// of deploy/dds_profiles.xml. One process can use one file only.
+  std::filesystem::path profiles_file;
+};
+
+class ParticipantCore;
+
+class Participant {
+ public:
+  /// Joins the domain. Throws std::runtime_error when the profiles cannot be loaded, the profile is
+  /// unknown or the transport cannot be opened; std::invalid_argument for a domain over 232.
+  explicit Participant(const ParticipantOptions& options = {});
+
+  [[nodiscard]] const std::shared_ptr<ParticipantCore>& core() const { return core_; }
+
+ private:
+  std::shared_ptr<ParticipantCore> core_;  // lives until the last writer, reader and loop are gone
+};
+
+/// Text of the profiles that are compiled in.
+const std::string& built_in_profiles();
+
+}  // namespace topogeo::messaging

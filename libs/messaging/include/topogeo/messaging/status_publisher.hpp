@@ -1,0 +1,74 @@
+// Tells the others how a service is: state, counters, faults.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/status.h"
+
+namespace topogeo::messaging {
+
+struct ServiceIdentity {
+  std::string service;  ///< name of the executable, up to 32 bytes
+  std::string
+      instance;  ///< unique among running ones, up to 64 bytes; empty: "<host>-<process id>"
+  std::string robot_id;  ///< up to 32 bytes; empty for a service of every robot
+  std::string version;   ///< of the software, up to 48 bytes
+};
+
+/// Sends a ServiceStatus every half second and when the state changes. Lives in the thread of its
+/// loop; must not outlive the loop.
+class StatusPublisher {
+ public:
+  /// Throws like Writer, and std::invalid_argument when a part of the identity is too long.
+  StatusPublisher(const Participant& participant, EventLoop& loop, const ServiceIdentity& identity);
+  StatusPublisher(const StatusPublisher&) = delete;
+  StatusPublisher& operator=(const StatusPublisher&) = delete;
+  /// Sends kServiceStopped unless the state is kServiceFailed or kServiceFinished, and waits up to
+  /// 200 ms for readers to have it.
+  ~StatusPublisher();
+
+  /// Sent at once. `message` is for people and may be empty.
+  void set_state(msg::ServiceState state, std::string_view message = {});
+  [[nodiscard]] msg::ServiceState state() const { return status_.state(); }
+
+  /// Sent with the next period. Throws std::invalid_argument for a name over 48 bytes and
+  /// std::length_error for the 65th name.
+  void set_counter(const std::string& name, double value);
+  void add_to_counter(const std::string& name, double amount = 1.0);
+
+  /// Counts a fault and logs it, once per second for each reason at most. `reason` is a fixed short
+  /// text (up to 48 bytes, at most 32 of them; further ones count as "other"), `detail` says what
+  /// happened this time.
+  void fault(std::string_view reason, std::string_view detail);
+
+  /// Turns events that nobody should overlook into faults: incompatible QoS, lost samples, missed
+  /// deadlines, invalid messages. The publisher sets itself as event handler of its loop.
+  void on_event(const Event& event);
+
+  /// Sends the status now.
+  void publish();
+
+ private:
+  struct Fault {
+    std::uint64_t count = 0;
+    std::uint64_t not_logged = 0;  // since last_log
+    std::chrono::steady_clock::time_point last_log;
+  };
+
+  EventLoop& loop_;
+  Writer<msg::ServiceStatus> writer_;
+  msg::ServiceStatus status_;
+  std::map<std::string, double> counters_;
+  std::map<std::string, Fault, std::less<>> faults_;
+  std::chrono::steady_clock::time_point start_;
+  std::uint64_t timer_ = 0;
+};
+
+}  // namespace topogeo::messaging

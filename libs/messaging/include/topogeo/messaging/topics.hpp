@@ -1,0 +1,85 @@
+// The topics of topogeo: their names, types and roles. A role names the QoS profiles
+// (<role>_writer, <role>_reader) of deploy/dds_profiles.xml.
+//
+// Names carry the version of the wire contract (idl/): a change of a type is a new name, so that
+// peers of different versions do not see each other's messages.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace eprosima::fastdds::dds {
+class TopicDataType;
+}
+
+namespace topogeo::msg {
+class Scan;
+class Odometry;
+class Sonar;
+class BaseStatus;
+class StreamEnd;
+class LocalMap;
+class MatchTask;
+class MatchResult;
+class WorkerStatus;
+class ServiceStatus;
+class LivePose;
+class TrajectorySegment;
+class LoopClosures;
+class MapElement;
+class Goal;
+class Route;
+class MotionCommand;
+}  // namespace topogeo::msg
+
+namespace topogeo::messaging {
+
+inline constexpr std::string_view kScan = "topogeo/v1/scan";
+inline constexpr std::string_view kOdometry = "topogeo/v1/odometry";
+inline constexpr std::string_view kSonar = "topogeo/v1/sonar";
+inline constexpr std::string_view kBaseStatus = "topogeo/v1/base_status";
+inline constexpr std::string_view kStreamEnd = "topogeo/v1/stream_end";
+inline constexpr std::string_view kLocalMap = "topogeo/v1/local_map";
+inline constexpr std::string_view kMatchTask = "topogeo/v1/match_task";
+inline constexpr std::string_view kMatchResult = "topogeo/v1/match_result";
+inline constexpr std::string_view kWorkerStatus = "topogeo/v1/worker_status";
+inline constexpr std::string_view kServiceStatus = "topogeo/v1/service_status";
+inline constexpr std::string_view kLivePose = "topogeo/v1/pose";
+inline constexpr std::string_view kTrajectorySegment = "topogeo/v1/trajectory";
+inline constexpr std::string_view kLoopClosures = "topogeo/v1/loop_closures";
+inline constexpr std::string_view kMapElement = "topogeo/v1/map";
+inline constexpr std::string_view kGoal = "topogeo/v1/goal";
+inline constexpr std::string_view kRoute = "topogeo/v1/route";
+inline constexpr std::string_view kMotionCommand = "topogeo/v1/motion_command";
+
+/// Role of the sensor topics while a log is replayed: a slow reader slows the writer. Writer and
+/// readers of a run must agree on it.
+inline constexpr std::string_view kReplayRole = "sensor_replay";
+
+/// What the library has to know of a topic and its type.
+struct TopicInfo {
+  std::string_view name;
+  std::string_view role;         ///< profiles in normal operation
+  std::string_view replay_role;  ///< profiles while a log is replayed; empty: same as `role`
+
+  /// Makes the type support; the caller owns it.
+  eprosima::fastdds::dds::TopicDataType* (*make_type)();
+  /// Makes the type known by its fields, which a content filter needs.
+  void (*register_type_object)();
+  /// Why a message of this type must not travel: another schema version or a sequence over its
+  /// bound. The generated code checks neither.
+  std::optional<std::string> (*find_defect)(const void* message);
+};
+
+/// TopicTraits<T>::info() for each message type that has a topic.
+template <class T>
+struct TopicTraits {
+  static const TopicInfo& info();
+};
+
+/// All topics, ascending by name.
+std::span<const TopicInfo* const> all_topics();
+
+}  // namespace topogeo::messaging

@@ -1,0 +1,144 @@
+#include "bounds.hpp"
+
+#include <cstddef>
+
+namespace topogeo::messaging {
+
+namespace {
+
+/// The first defect that the checks of one message find.
+class Check {
+ public:
+  template <class Message>
+  explicit Check(const Message& message) {
+    if (message.schema_version() != msg::kSchemaVersion) {
+      defect_ = "schema_version " + std::to_string(message.schema_version()) + ", allowed is " +
+                std::to_string(msg::kSchemaVersion);
+    }
+  }
+
+  Check& size(const char* field, std::size_t size, std::size_t bound) {
+    if (!defect_ && size > bound) {
+      defect_ = std::string(field) + " has " + std::to_string(size) + " entries, allowed are " +
+                std::to_string(bound);
+    }
+    return *this;
+  }
+
+  /// An enumeration that a peer may have filled with any number.
+  Check& value(const char* field, std::uint32_t value, std::uint32_t last) {
+    if (!defect_ && value > last) {
+      defect_ = std::string(field) + " is " + std::to_string(value) + ", allowed is 0 to " +
+                std::to_string(last);
+    }
+    return *this;
+  }
+
+  [[nodiscard]] const Defect& defect() const { return defect_; }
+
+ private:
+  Defect defect_;
+};
+
+}  // namespace
+
+Defect find_defect(const msg::Scan& message) {
+  return Check(message).size("ranges_m", message.ranges_m().size(), msg::kMaxBeams).defect();
+}
+
+Defect find_defect(const msg::Odometry& message) {
+  return Check(message).defect();
+}
+
+Defect find_defect(const msg::Sonar& message) {
+  return Check(message).size("echoes", message.echoes().size(), msg::kMaxSonars).defect();
+}
+
+Defect find_defect(const msg::BaseStatus& message) {
+  return Check(message).defect();
+}
+
+Defect find_defect(const msg::StreamEnd& message) {
+  return Check(message).defect();
+}
+
+Defect find_defect(const msg::LocalMap& message) {
+  Check check(message);
+  check.size("nodes", message.nodes().size(), msg::kMaxLocalNodes)
+      .size("branches", message.branches().size(), msg::kMaxLocalBranches)
+      .size("points", message.points().size(), msg::kMaxScanPoints)
+      .size("track", message.track().size(), msg::kMaxTrackedScans);
+  for (const msg::LocalNode& node : message.nodes()) {
+    check.size("nodes.base_groups", node.base_groups().size(), msg::kMaxBaseGroups)
+        .value("nodes.kind", node.kind(), msg::kNodeHallCorridor);
+  }
+  for (const msg::LocalBranch& branch : message.branches()) {
+    check.size("branches.points", branch.points().size(), msg::kMaxBranchPoints);
+  }
+  return check.defect();
+}
+
+Defect find_defect(const msg::MatchTask& message) {
+  return Check(message)
+      .size("initial_individuals", message.initial_individuals().size(),
+            msg::kMaxInitialIndividuals)
+      .value("fitness_form", message.fitness_form(), msg::kFitnessCombined)
+      .defect();
+}
+
+Defect find_defect(const msg::MatchResult& message) {
+  return Check(message)
+      .size("solutions", message.solutions().size(), msg::kMaxSolutions)
+      .value("status", message.status(), msg::kMatchFailed)
+      .defect();
+}
+
+Defect find_defect(const msg::WorkerStatus& message) {
+  return Check(message).defect();
+}
+
+Defect find_defect(const msg::ServiceStatus& message) {
+  return Check(message)
+      .size("counters", message.counters().size(), msg::kMaxCounters)
+      .size("faults", message.faults().size(), msg::kMaxFaultKinds)
+      .value("state", message.state(), msg::kServiceStopped)
+      .defect();
+}
+
+Defect find_defect(const msg::LivePose& message) {
+  return Check(message).value("state", message.state(), msg::kPoseUncertain).defect();
+}
+
+Defect find_defect(const msg::TrajectorySegment& message) {
+  return Check(message).size("stops", message.stops().size(), msg::kSegmentStops).defect();
+}
+
+Defect find_defect(const msg::LoopClosures& message) {
+  return Check(message).size("closures", message.closures().size(), msg::kMaxLoopClosures).defect();
+}
+
+Defect find_defect(const msg::MapElement& message) {
+  return Check(message)
+      .size("points", message.points().size(), msg::kMaxBranchPoints)
+      .value("kind", message.kind(), msg::kElementSummary)
+      .value("node_kind", message.node_kind(), msg::kNodeHallCorridor)
+      .defect();
+}
+
+Defect find_defect(const msg::Goal& message) {
+  return Check(message).value("kind", message.kind(), msg::kGoalCancel).defect();
+}
+
+Defect find_defect(const msg::Route& message) {
+  return Check(message)
+      .size("node_ids", message.node_ids().size(), msg::kMaxRouteNodes)
+      .size("points", message.points().size(), msg::kMaxRoutePoints)
+      .value("status", message.status(), msg::kRouteCancelled)
+      .defect();
+}
+
+Defect find_defect(const msg::MotionCommand& message) {
+  return Check(message).defect();
+}
+
+}  // namespace topogeo::messaging

@@ -1,0 +1,40 @@
+// Peers and events of a writer or reader: filled by threads of the middleware, emptied by the
+// program's.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+
+#include <fastdds/dds/core/status/IncompatibleQosStatus.hpp>
+#include <fastdds/rtps/common/InstanceHandle.h>
+
+#include "topogeo/messaging/detail/endpoint.hpp"
+
+namespace topogeo::messaging::detail {
+
+struct Endpoint::Shared {
+  /// Events that nobody takes are dropped beyond this, oldest first.
+  static constexpr std::size_t kMaxEvents = 10'000;
+
+  explicit Shared(std::string_view topic_name) : topic(topic_name) {}
+
+  void push(Event event);
+  /// Counts peers and tells of the change.
+  void set_matched(int current, int change, const eprosima::fastrtps::rtps::InstanceHandle_t& peer);
+  void push_incompatible(const eprosima::fastdds::dds::IncompatibleQosStatus& status);
+
+  const std::string topic;
+  mutable std::mutex mutex;
+  mutable std::condition_variable matched_changed;
+  int matched = 0;
+  std::deque<Event> events;
+  std::function<void()> wake;
+};
+
+Handle to_handle(const eprosima::fastrtps::rtps::InstanceHandle_t& handle);
+
+/// The role's name: `role` if not empty, else that of the topic.
+std::string profile_name(const TopicInfo& topic, const std::string& role, const char* side);
+
+}  // namespace topogeo::messaging::detail

@@ -1,0 +1,140 @@
+#include "topogeo/messaging/participant.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <stdexcept>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <fastdds/dds/publisher/qos/PublisherQos.hpp>
+#include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
+
+#include "participant_core.hpp"
+
+namespace topogeo::messaging {
+
+namespace dds = eprosima::fastdds::dds;
+
+namespace {
+
+constexpr std::uint32_t kMaxDomain = 232;  // the highest whose ports exist
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// Loads the profiles once: the factory that holds them is one for the whole process.
+void load_profiles(const std::filesystem::path& requested) {
+  static std::mutex mutex;
+  static std::optional<std::filesystem::path> loaded;
+
+  const std::filesystem::path file =
+      requested.empty() ? std::filesystem::path(environment("TOPOGEO_DDS_PROFILES")) : requested;
+  const std::lock_guard lock(mutex);
+  if (loaded) {
+    if (*loaded != file) {
+      throw std::runtime_error("DDS profiles: '" + file.string() +
+                               "' asked for, but this process uses '" + loaded->string() + "'");
+    }
+    return;
+  }
+  std::string text = built_in_profiles();
+  if (!file.empty()) {
+    std::ifstream input(file, std::ios::binary);
+    text.assign(std::istreambuf_iterator<char>(input), {});
+    if (!input || text.empty()) {
+      throw std::runtime_error("DDS profiles: cannot read '" + file.string() + "'");
+    }
+  }
+  const auto result = dds::DomainParticipantFactory::get_instance()->load_XML_profiles_string(
+      text.data(), text.size());
+  if (result != ReturnCode_t::RETCODE_OK) {
+    throw std::runtime_error("DDS profiles: '" + (file.empty() ? "built-in" : file.string()) +
+                             "' is not a valid Fast DDS profiles file");
+  }
+  loaded = file;
+}
+
+template <class Entity>
+Entity* require(Entity* entity, const std::string& what) {
+  if (entity == nullptr) throw std::runtime_error("DDS: cannot create " + what);
+  return entity;
+}
+
+}  // namespace
+
+ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
+  if (options.domain > kMaxDomain) {
+    throw std::invalid_argument("DDS domain: " + std::to_string(options.domain) +
+                                ", allowed is 0 to 232");
+  }
+  load_profiles(options.profiles_file);
+  std::string profile = options.profile;
+  if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");
+  if (profile.empty()) profile = "topogeo";
+
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  dds::DomainParticipantQos qos;
+  if (factory->get_participant_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
+    throw std::runtime_error("DDS participant profile '" + profile +
+                             "' is not in the profiles file");
+  }
+  qos.name(options.name);
+  participant_ = require(factory->create_participant(options.domain, qos),
+                         "a participant in domain " + std::to_string(options.domain));
+  try {
+    dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
+    publisher_qos.partition().push_back(options.partition.c_str());
+    publisher_ = require(participant_->create_publisher(publisher_qos), "a publisher");
+    dds::SubscriberQos subscriber_qos = dds::SUBSCRIBER_QOS_DEFAULT;
+    subscriber_qos.partition().push_back(options.partition.c_str());
+    subscriber_ = require(participant_->create_subscriber(subscriber_qos), "a subscriber");
+  } catch (...) {
+    participant_->delete_contained_entities();
+    factory->delete_participant(participant_);
+    throw;
+  }
+}
+
+ParticipantCore::~ParticipantCore() {
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+dds::Topic& ParticipantCore::topic(const TopicInfo& info) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = topics_.find(info.name); found != topics_.end()) return *found->second;
+  const std::string name(info.name);
+  info.register_type_object();
+  const dds::TypeSupport type(info.make_type());
+  if (type.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
+    throw std::runtime_error("DDS: cannot register the type of topic " + name);
+  }
+  dds::Topic* topic =
+      require(participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT),
+              "topic " + name);
+  topics_.emplace(name, topic);
+  return *topic;
+}
+
+dds::ContentFilteredTopic& ParticipantCore::make_filtered(const TopicInfo& info,
+                                                          const detail::Filter& filter) {
+  dds::Topic& related = topic(info);
+  const std::lock_guard lock(mutex_);
+  const std::string name = std::string(info.name) + "/filter" + std::to_string(filters_made_++);
+  return *require(participant_->create_contentfilteredtopic(name, &related, filter.expression,
+                                                            filter.parameters),
+                  "filter '" + filter.expression + "' on topic " + std::string(info.name));
+}
+
+void ParticipantCore::remove_filtered(dds::ContentFilteredTopic& topic) {
+  participant_->delete_contentfilteredtopic(&topic);
+}
+
+Participant::Participant(const ParticipantOptions& options)
+    : core_(std::make_shared<ParticipantCore>(options)) {}
+
+}  // namespace topogeo::messaging

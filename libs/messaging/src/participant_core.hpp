@@ -1,0 +1,47 @@
+// The Fast DDS side of a Participant.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/ContentFilteredTopic.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "topogeo/messaging/detail/endpoint.hpp"
+#include "topogeo/messaging/participant.hpp"
+
+namespace topogeo::messaging {
+
+/// Owns the DDS participant with one publisher and one subscriber in the partition.
+class ParticipantCore {
+ public:
+  explicit ParticipantCore(const ParticipantOptions& options);
+  ParticipantCore(const ParticipantCore&) = delete;
+  ParticipantCore& operator=(const ParticipantCore&) = delete;
+  ~ParticipantCore();
+
+  [[nodiscard]] eprosima::fastdds::dds::Publisher& publisher() const { return *publisher_; }
+  [[nodiscard]] eprosima::fastdds::dds::Subscriber& subscriber() const { return *subscriber_; }
+
+  /// The topic, made on first use.
+  eprosima::fastdds::dds::Topic& topic(const TopicInfo& info);
+  eprosima::fastdds::dds::ContentFilteredTopic& make_filtered(const TopicInfo& info,
+                                                              const detail::Filter& filter);
+  void remove_filtered(eprosima::fastdds::dds::ContentFilteredTopic& topic);
+
+ private:
+  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+  std::mutex mutex_;
+  std::map<std::string, eprosima::fastdds::dds::Topic*, std::less<>> topics_;
+  std::uint64_t filters_made_ = 0;
+};
+
+}  // namespace topogeo::messaging

@@ -1,0 +1,153 @@
+#include "topogeo/messaging/status_publisher.hpp"
+
+#include <array>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "topogeo/messaging/message.hpp"
+
+namespace topogeo::messaging {
+
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod{500};
+constexpr std::chrono::seconds kLogPeriod{1};
+constexpr std::chrono::milliseconds kFarewell{200};
+constexpr std::string_view kOtherFaults = "other";
+constexpr std::size_t kMaxNameSize = 48;  // status.idl
+
+std::string host_name() {
+  std::array<char, 64> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) return "unknown";
+  return name.data();
+}
+
+std::int64_t wall_clock_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+StatusPublisher::StatusPublisher(const Participant& participant, EventLoop& loop,
+                                 const ServiceIdentity& identity)
+    : loop_(loop), writer_(participant), start_(std::chrono::steady_clock::now()) {
+  const std::string host = host_name();
+  const std::string instance = identity.instance.empty()
+                                   ? host.substr(0, 48) + "-" + std::to_string(::getpid())
+                                   : identity.instance;
+  set_header(status_, identity.robot_id, 0, 0);
+  set_text(status_.service(), identity.service, "service");
+  set_text(status_.instance(), instance, "instance");
+  set_text(status_.version(), identity.version, "version");
+  set_text(status_.host(), host, "host");
+  status_.process_id(static_cast<std::uint32_t>(::getpid()));
+  status_.state(msg::kServiceStarting);
+  loop_.add(writer_);
+  loop_.on_event([this](const Event& event) { on_event(event); });
+  timer_ = loop_.add_timer(kPeriod, [this] { publish(); });
+  publish();
+}
+
+StatusPublisher::~StatusPublisher() {
+  loop_.cancel_timer(timer_);
+  try {
+    if (state() != msg::kServiceFailed && state() != msg::kServiceFinished) {
+      status_.state(msg::kServiceStopped);
+    }
+    publish();
+    static_cast<void>(writer_.wait_for_acknowledgments(kFarewell));
+  } catch (const std::exception& error) {
+    spdlog::warn("last status not sent: {}", error.what());
+  }
+}
+
+void StatusPublisher::set_state(msg::ServiceState state, std::string_view message) {
+  status_.state(state);
+  set_text_cut(status_.message(), message);
+  publish();
+}
+
+void StatusPublisher::set_counter(const std::string& name, double value) {
+  if (name.size() > kMaxNameSize) {
+    throw std::invalid_argument("counter '" + name + "': longer than " +
+                                std::to_string(kMaxNameSize) + " bytes");
+  }
+  if (!counters_.contains(name) && counters_.size() == msg::kMaxCounters) {
+    throw std::length_error("counter '" + name + "': more than " +
+                            std::to_string(msg::kMaxCounters) + " counters");
+  }
+  counters_[name] = value;
+}
+
+void StatusPublisher::add_to_counter(const std::string& name, double amount) {
+  const auto found = counters_.find(name);
+  set_counter(name, (found == counters_.end() ? 0.0 : found->second) + amount);
+}
+
+void StatusPublisher::fault(std::string_view reason, std::string_view detail) {
+  const bool known = faults_.contains(reason);
+  const bool room = faults_.size() + 1 < msg::kMaxFaultKinds && reason.size() <= kMaxNameSize;
+  Fault& fault = faults_[std::string(known || room ? reason : kOtherFaults)];
+  const auto now = std::chrono::steady_clock::now();
+  ++fault.count;
+  status_.fault_count(status_.fault_count() + 1);
+  set_text_cut(status_.message(), std::string(reason) + ": " + std::string(detail));
+  if (fault.count > 1 && now - fault.last_log < kLogPeriod) {
+    ++fault.not_logged;
+    return;
+  }
+  if (fault.not_logged > 0) {
+    spdlog::warn("{}: {} ({} more since the last message)", reason, detail, fault.not_logged);
+  } else {
+    spdlog::warn("{}: {}", reason, detail);
+  }
+  fault.last_log = now;
+  fault.not_logged = 0;
+}
+
+void StatusPublisher::on_event(const Event& event) {
+  switch (event.kind) {
+    case EventKind::kIncompatibleQos:
+    case EventKind::kInvalidSample:
+    case EventKind::kDeadlineMissed:
+    case EventKind::kSampleLost:
+      fault(to_string(event.kind), event.topic + (event.detail.empty() ? "" : ": ") + event.detail);
+      return;
+    case EventKind::kMatched:
+    case EventKind::kUnmatched:
+    case EventKind::kLivelinessGained:
+    case EventKind::kLivelinessLost:
+    case EventKind::kSampleRejected:  // how a slow reader slows a replay
+      return;
+  }
+}
+
+void StatusPublisher::publish() {
+  status_.stamp_ns(wall_clock_ns());
+  status_.uptime_s(
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+  status_.counters().clear();
+  for (const auto& [name, value] : counters_) {
+    msg::Counter counter;
+    set_text(counter.name(), name, "counter");
+    counter.value(value);
+    status_.counters().push_back(counter);
+  }
+  status_.faults().clear();
+  for (const auto& [reason, fault] : faults_) {
+    msg::FaultCount count;
+    set_text(count.reason(), reason, "fault");
+    count.count(fault.count);
+    status_.faults().push_back(count);
+  }
+  // The next period sends again what could not be sent now.
+  if (writer_.write(status_)) status_.sequence_number(status_.sequence_number() + 1);
+}
+
+}  // namespace topogeo::messaging

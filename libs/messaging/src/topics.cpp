@@ -1,0 +1,90 @@
+#include "topogeo/messaging/topics.hpp"
+
+#include <array>
+
+#include "topogeo/msg/local_mapPubSubTypes.h"
+#include "topogeo/msg/local_mapTypeObject.h"
+#include "topogeo/msg/map_updatePubSubTypes.h"
+#include "topogeo/msg/map_updateTypeObject.h"
+#include "topogeo/msg/matchPubSubTypes.h"
+#include "topogeo/msg/matchTypeObject.h"
+#include "topogeo/msg/motionPubSubTypes.h"
+#include "topogeo/msg/motionTypeObject.h"
+#include "topogeo/msg/planningPubSubTypes.h"
+#include "topogeo/msg/planningTypeObject.h"
+#include "topogeo/msg/sensorPubSubTypes.h"
+#include "topogeo/msg/sensorTypeObject.h"
+#include "topogeo/msg/statusPubSubTypes.h"
+#include "topogeo/msg/statusTypeObject.h"
+#include "topogeo/msg/streamPubSubTypes.h"
+#include "topogeo/msg/streamTypeObject.h"
+#include "topogeo/msg/trajectoryPubSubTypes.h"
+#include "topogeo/msg/trajectoryTypeObject.h"
+
+#include "bounds.hpp"
+
+namespace topogeo::messaging {
+
+namespace {
+
+template <class TypeSupport>
+eprosima::fastdds::dds::TopicDataType* make_type() {
+  return new TypeSupport;  // NOLINT: the caller hands it to a dds::TypeSupport
+}
+
+template <class T>
+std::optional<std::string> find_defect_of(const void* message) {
+  return find_defect(*static_cast<const T*>(message));
+}
+
+template <class T, class TypeSupport>
+TopicInfo make_info(std::string_view name, std::string_view role, void (*register_type_object)(),
+                    std::string_view replay_role = {}) {
+  return {name, role, replay_role, make_type<TypeSupport>, register_type_object, find_defect_of<T>};
+}
+
+}  // namespace
+
+// One line for each topic: type, name, role, generated registration, role in replay.
+#define TOPOGEO_TOPIC(Type, name, ...)                                                             \
+  template <>                                                                                      \
+  const TopicInfo& TopicTraits<msg::Type>::info() {                                                \
+    static const TopicInfo topic = make_info<msg::Type, msg::Type##PubSubType>(name, __VA_ARGS__); \
+    return topic;                                                                                  \
+  }
+
+TOPOGEO_TOPIC(Scan, kScan, "sensor_live", registersensorTypes, kReplayRole)
+TOPOGEO_TOPIC(Odometry, kOdometry, "motion_live", registersensorTypes, kReplayRole)
+TOPOGEO_TOPIC(Sonar, kSonar, "sensor_live", registersensorTypes, kReplayRole)
+TOPOGEO_TOPIC(BaseStatus, kBaseStatus, "sensor_live", registersensorTypes, kReplayRole)
+TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state", registerstreamTypes)
+TOPOGEO_TOPIC(LocalMap, kLocalMap, "state", registerlocal_mapTypes)
+TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes)
+TOPOGEO_TOPIC(MatchResult, kMatchResult, "result", registermatchTypes)
+TOPOGEO_TOPIC(WorkerStatus, kWorkerStatus, "status", registerstatusTypes)
+TOPOGEO_TOPIC(ServiceStatus, kServiceStatus, "status", registerstatusTypes)
+TOPOGEO_TOPIC(LivePose, kLivePose, "motion_live", registertrajectoryTypes)
+TOPOGEO_TOPIC(TrajectorySegment, kTrajectorySegment, "state", registertrajectoryTypes)
+TOPOGEO_TOPIC(LoopClosures, kLoopClosures, "state", registertrajectoryTypes)
+TOPOGEO_TOPIC(MapElement, kMapElement, "state", registermap_updateTypes)
+TOPOGEO_TOPIC(Goal, kGoal, "state", registerplanningTypes)
+TOPOGEO_TOPIC(Route, kRoute, "state", registerplanningTypes)
+TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command", registermotionTypes)
+
+#undef TOPOGEO_TOPIC
+
+std::span<const TopicInfo* const> all_topics() {
+  static const std::array<const TopicInfo*, 17> topics = {
+      &TopicTraits<msg::BaseStatus>::info(),    &TopicTraits<msg::Goal>::info(),
+      &TopicTraits<msg::LocalMap>::info(),      &TopicTraits<msg::LoopClosures>::info(),
+      &TopicTraits<msg::MapElement>::info(),    &TopicTraits<msg::MatchResult>::info(),
+      &TopicTraits<msg::MatchTask>::info(),     &TopicTraits<msg::MotionCommand>::info(),
+      &TopicTraits<msg::Odometry>::info(),      &TopicTraits<msg::LivePose>::info(),
+      &TopicTraits<msg::Route>::info(),         &TopicTraits<msg::Scan>::info(),
+      &TopicTraits<msg::ServiceStatus>::info(), &TopicTraits<msg::Sonar>::info(),
+      &TopicTraits<msg::StreamEnd>::info(),     &TopicTraits<msg::TrajectorySegment>::info(),
+      &TopicTraits<msg::WorkerStatus>::info()};
+  return topics;
+}
+
+}  // namespace topogeo::messaging
