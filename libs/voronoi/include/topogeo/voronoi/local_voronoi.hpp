@@ -1,0 +1,62 @@
+// The local Voronoi diagram of one laser scan (spec A1, thesis chapter 4).
+//
+// A branch is the crack between visible neighbour cells whose nearest sites belong to different
+// groups; a node is a corner of cells where three groups meet. That gives ordered curves one cell
+// wide, where the source's rule (every cell whose two smallest group distances differ by less than
+// 2 E_max) gives bands, and whole wedges behind a gap between two groups: there the distances to
+// both groups grow almost alike, so the rule holds over an area. The crack through a wedge is the
+// line where they are equal. Every point is moved from the cell border to the place between the two
+// cell centres where both distances are equal, so positions are far better than a cell.
+//
+// A diagram of fewer than two groups is virtual (4.2.1): it serves navigation and is never offered
+// to matching. With one group a line of virtual points is put on the other side of the robot,
+// parallel to the motion; with none, two of them. A virtual diagram can be empty, where nothing is
+// free.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/scan/scan.hpp"
+#include "topogeo/voronoi/crack_graph.hpp"
+#include "topogeo/voronoi/generator_groups.hpp"
+#include "topogeo/voronoi/nearest_site_grid.hpp"
+#include "topogeo/voronoi/voronoi_config.hpp"
+
+namespace topogeo::voronoi {
+
+/// Makes diagrams of the scans of one laser. The object is a work space: its tables stay valid
+/// while the scan geometry stays the same, and what it gives depends on the scan alone.
+class LocalVoronoi {
+ public:
+  /// Throws std::invalid_argument if a field of the configuration is outside its range.
+  explicit LocalVoronoi(const VoronoiConfig& config);
+
+  /// The diagram of `scan` in the laser frame. Throws std::invalid_argument if the angles of the
+  /// scan are not finite, its step is not > 0, or it covers more than a turn.
+  LocalVoronoiDiagram compute(const scan::Scan& scan);
+  /// The same into `out`, which keeps its memory.
+  void compute(const scan::Scan& scan, LocalVoronoiDiagram& out);
+
+  [[nodiscard]] const VoronoiConfig& config() const { return config_; }
+  /// Of the last scan, for pictures and tests.
+  [[nodiscard]] const NearestSiteGrid& grid() const { return grid_; }
+  [[nodiscard]] std::span<const Site> sites() const { return sites_; }
+  /// How far each beam of the last scan is known to be free, metres.
+  [[nodiscard]] std::span<const double> free_range_m() const { return free_range_m_; }
+
+ private:
+  void measure_free_space(const scan::Scan& scan);
+
+  VoronoiConfig config_;
+  BeamDirections beams_;
+  NearestSiteGrid grid_;
+  CrackGraph cracks_;
+  std::vector<double> free_range_m_;
+  std::vector<Site> sites_;
+};
+
+}  // namespace topogeo::voronoi

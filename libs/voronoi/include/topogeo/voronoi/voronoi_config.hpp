@@ -1,0 +1,56 @@
+// Parameters of the local Voronoi diagram (spec A1, thesis 4.2).
+#pragma once
+
+namespace topogeo::voronoi {
+
+struct VoronoiConfig {
+  /// d_max of 4.1, metres, in [0.5, 100]. Readings beyond it make no group. 10: at 4 m (the
+  /// source's value) a third of the nodes of real floors is lost.
+  double range_limit_m = 10.0;
+  /// Side of a grid cell, metres, in [0.01, 1]. 0.05 is the source's value; points lie on the locus
+  /// between the cell centres, so a finer grid resolves narrower gaps rather than moving points.
+  double resolution_m = 0.05;
+  /// Direction of the robot's forward motion in the laser frame, radians. 0: the laser looks
+  /// forward. Decides what is left and right for hidden zones and for virtual groups.
+  double forward_rad = 0.0;
+  /// Readings missing over at most this angle between two valid beams are taken for drop-outs (dark
+  /// or shiny surfaces) and count as free up to the nearer neighbour, radians. 2 degrees.
+  double dropout_rad = 0.035;
+
+  /// 4.7: split where successive ranges differ by more than this, metres. Off: only a missing beam
+  /// splits.
+  bool split_discontinuities = true;
+  double discontinuity_m = 0.5;
+  /// 4.8: join successive groups that come nearer than this, metres. Just over the robot's width
+  /// (0.525 m), so a gap that the robot cannot pass makes no branch.
+  bool join_contiguous = true;
+  double contiguous_m = 0.55;
+  /// 4.9: join groups k and k+2 that come nearer than this, metres, and drop group k+1. The same
+  /// width for the same reason. Off: on real floors it takes a third of the nodes, those that stay
+  /// are found again no more often, and group k+1 can be a table that the robot must not run into.
+  bool join_alternate = false;
+  double alternate_m = 0.55;
+  /// 4.10: drop groups of this many points or fewer. The equation prints "fewer", the text "equal
+  /// or below"; the text is followed. 2: a single reading on an edge makes a false branch.
+  bool drop_small = true;
+  int min_group_points = 2;
+  /// 4.11, 4.12: join groups that a corner hides a zone between. Off: it costs half of the nodes on
+  /// real floors and makes those that stay less repeatable.
+  bool join_hidden_zones = false;
+
+  /// Two nodes joined by a branch no longer than this are one node, metres. 0.15 is three cells:
+  /// one crossing of four groups is seen as two crossings of three.
+  double node_merge_m = 0.15;
+  /// Branches with a loose end that are shorter than this are dropped, metres. Below it they are
+  /// crumbs at the border of what is visible.
+  double min_branch_m = 0.2;
+
+  /// Half the distance between the virtual groups of a virtual diagram, metres. Over half of the
+  /// robot's width, so that the robot can move between them.
+  double virtual_half_width_m = 0.6;
+};
+
+/// Throws std::invalid_argument that names the first field outside its range.
+void validate(const VoronoiConfig& config);
+
+}  // namespace topogeo::voronoi

@@ -1,0 +1,235 @@
+#include "topogeo/voronoi/generator_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::voronoi {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+struct Box {
+  Eigen::Array2d low{kFar, kFar};
+  Eigen::Array2d high{-kFar, -kFar};
+};
+
+Box box_of(const GeneratorGroups& groups, const PointRun& run) {
+  Box box;
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    box.low = box.low.min(groups.points[i].position_m.array());
+    box.high = box.high.max(groups.points[i].position_m.array());
+  }
+  return box;
+}
+
+/// Smallest distance between points of two groups (def. 4.2.6) if it is below `limit_m`, else
+/// infinity. Points farther than the limit from the other group's box are passed over, which leaves
+/// few pairs to try.
+double distance_below(const GeneratorGroups& groups, const PointRun& a, const PointRun& b,
+                      double limit_m) {
+  const Box box = box_of(groups, b);
+  const double limit_sq = limit_m * limit_m;
+  double best_sq = limit_sq;
+  for (std::uint32_t i = a.begin; i < a.end; ++i) {
+    const Eigen::Array2d p = groups.points[i].position_m.array();
+    const Eigen::Array2d outside = (box.low - p).max(p - box.high).max(0.0);
+    if (outside.square().sum() >= best_sq) continue;
+    for (std::uint32_t j = b.begin; j < b.end; ++j) {
+      const double sq = (groups.points[j].position_m.array() - p).square().sum();
+      best_sq = std::min(best_sq, sq);
+    }
+  }
+  return best_sq < limit_sq ? std::sqrt(best_sq) : kFar;
+}
+
+/// Joins group k with the one after it (cyclic if k is the last).
+void join_with_next(GeneratorGroups& groups, std::size_t k) {
+  if (k + 1 < groups.groups.size()) {
+    groups.groups[k].end = groups.groups[k + 1].end;
+    groups.groups.erase(groups.groups.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+    return;
+  }
+  // The last group comes before the first: turn the points until they are one run again.
+  const std::uint32_t moved = groups.groups.back().size();
+  const auto middle = groups.points.end() - static_cast<std::ptrdiff_t>(moved);
+  std::rotate(groups.points.begin(), middle, groups.points.end());
+  groups.groups.pop_back();
+  for (PointRun& run : groups.groups) {
+    run.begin += moved;
+    run.end += moved;
+  }
+  groups.groups.front().begin = 0;
+}
+
+void drop_group(GeneratorGroups& groups, std::size_t k) {
+  const PointRun gone = groups.groups[k];
+  groups.points.erase(groups.points.begin() + gone.begin, groups.points.begin() + gone.end);
+  groups.groups.erase(groups.groups.begin() + static_cast<std::ptrdiff_t>(k));
+  for (std::size_t i = k; i < groups.groups.size(); ++i) {
+    groups.groups[i].begin -= gone.size();
+    groups.groups[i].end -= gone.size();
+  }
+}
+
+/// Number of borders between successive groups.
+std::size_t border_count(const GeneratorGroups& groups) {
+  const std::size_t n = groups.groups.size();
+  if (n < 2) return 0;
+  return groups.closed && n > 2 ? n : n - 1;
+}
+
+}  // namespace
+
+bool BeamDirections::update(const scan::Scan& scan) {
+  if (!std::isfinite(scan.angle_min_rad) || std::abs(scan.angle_min_rad) > 100.0 ||
+      !std::isfinite(scan.angle_step_rad) || scan.angle_step_rad <= 0.0) {
+    throw std::invalid_argument("scan " + std::to_string(scan.sequence) + ": angle_min_rad " +
+                                std::to_string(scan.angle_min_rad) + ", angle_step_rad " +
+                                std::to_string(scan.angle_step_rad) +
+                                ": must be finite, the step > 0");
+  }
+  const double turn =
+      scan.angle_step_rad * static_cast<double>(std::max<std::size_t>(scan.ranges_m.size(), 1) - 1);
+  if (turn > 2.0 * std::numbers::pi + 1e-6 || scan.ranges_m.size() > 65000) {
+    throw std::invalid_argument(
+        "scan " + std::to_string(scan.sequence) + ": " + std::to_string(scan.ranges_m.size()) +
+        " beams over " + std::to_string(turn) + " rad: must be at most 65000 and at most one turn");
+  }
+  if (scan.angle_min_rad == angle_min_rad_ && scan.angle_step_rad == angle_step_rad_ &&
+      scan.ranges_m.size() == directions_.size()) {
+    return false;
+  }
+  angle_min_rad_ = scan.angle_min_rad;
+  angle_step_rad_ = scan.angle_step_rad;
+  directions_.resize(scan.ranges_m.size());
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const auto [sin, cos] =
+        geometry::sincos(angle_min_rad_ + static_cast<double>(i) * angle_step_rad_);
+    directions_[i] = {cos, sin};
+  }
+  return true;
+}
+
+bool BeamDirections::closed() const {
+  return static_cast<double>(directions_.size()) * angle_step_rad_ >
+         2.0 * std::numbers::pi - 0.5 * angle_step_rad_;
+}
+
+bool within_limit(float range_m, const VoronoiConfig& config) {
+  return range_m > 0.0F && static_cast<double>(range_m) <= config.range_limit_m;
+}
+
+void split_at_discontinuities(const scan::Scan& scan, const BeamDirections& beams,
+                              const VoronoiConfig& config, GeneratorGroups& out) {
+  out.points.clear();
+  out.groups.clear();
+  out.closed = beams.closed();
+  const auto continues = [&](float range_m, float previous_m) {
+    if (!within_limit(previous_m, config)) return false;
+    return !config.split_discontinuities ||
+           std::abs(static_cast<double>(range_m) - static_cast<double>(previous_m)) <=
+               config.discontinuity_m;
+  };
+  for (std::uint32_t i = 0; i < scan.ranges_m.size(); ++i) {
+    const float range_m = scan.ranges_m[i];
+    if (!within_limit(range_m, config)) continue;
+    const auto at = static_cast<std::uint32_t>(out.points.size());
+    if (i == 0 || !continues(range_m, scan.ranges_m[i - 1])) out.groups.push_back({at, at});
+    out.points.push_back({beams.directions()[i] * static_cast<double>(range_m), range_m, i});
+    out.groups.back().end = at + 1;
+  }
+  if (out.closed && out.groups.size() > 1 && within_limit(scan.ranges_m.front(), config) &&
+      continues(scan.ranges_m.front(), scan.ranges_m.back())) {
+    join_with_next(out, out.groups.size() - 1);
+  }
+}
+
+void join_contiguous_groups(const VoronoiConfig& config, GeneratorGroups& groups) {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (std::size_t k = 0; k < border_count(groups);) {
+      const PointRun& next = groups.groups[(k + 1) % groups.groups.size()];
+      if (distance_below(groups, groups.groups[k], next, config.contiguous_m) < kFar) {
+        join_with_next(groups, k);
+        changed = true;
+      } else {
+        ++k;
+      }
+    }
+  }
+}
+
+void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups) {
+  while (groups.groups.size() > 2) {
+    // Of three groups in a closed scan each is next to each other one: none are alternate.
+    if (groups.closed && groups.groups.size() == 3) return;
+    const std::size_t n = groups.groups.size();
+    const std::size_t pairs = groups.closed && n > 4 ? n : n - 2;
+    double best_m = config.alternate_m;
+    std::size_t best = n;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      const double m = distance_below(groups, groups.groups[k], groups.groups[(k + 2) % n], best_m);
+      if (m < best_m) {
+        best_m = m;
+        best = k;
+      }
+    }
+    if (best == n) return;
+    const std::size_t between = (best + 1) % n;
+    drop_group(groups, between);
+    join_with_next(groups, between < best ? best - 1 : best);
+  }
+}
+
+void drop_small_groups(const VoronoiConfig& config, GeneratorGroups& groups) {
+  std::uint32_t kept_points = 0;
+  std::size_t kept_groups = 0;
+  for (const PointRun run : groups.groups) {
+    if (static_cast<int>(run.size()) <= config.min_group_points) continue;
+    std::copy(groups.points.begin() + run.begin, groups.points.begin() + run.end,
+              groups.points.begin() + kept_points);
+    groups.groups[kept_groups++] = {kept_points, kept_points + run.size()};
+    kept_points += run.size();
+  }
+  groups.points.resize(kept_points);
+  groups.groups.resize(kept_groups);
+}
+
+void join_across_hidden_zones(const BeamDirections& beams, const VoronoiConfig& config,
+                              GeneratorGroups& groups) {
+  const auto beam_count = static_cast<std::uint32_t>(beams.directions().size());
+  for (std::size_t k = 0; k < border_count(groups);) {
+    const PointRun& next_run = groups.groups[(k + 1) % groups.groups.size()];
+    const GroupPoint& last = groups.points[groups.groups[k].end - 1];
+    const GroupPoint& next = groups.points[next_run.begin];
+    const bool successive = (last.beam + 1) % beam_count == next.beam;
+    const double angle_rad = geometry::wrap_angle(
+        beams.angle_min_rad() + (static_cast<double>(last.beam) + 0.5) * beams.angle_step_rad() -
+        config.forward_rad);
+    const bool hidden = angle_rad < 0.0 ? last.range_m < next.range_m : last.range_m > next.range_m;
+    if (successive && hidden) {
+      join_with_next(groups, k);
+    } else {
+      ++k;
+    }
+  }
+}
+
+void make_generator_groups(const scan::Scan& scan, const BeamDirections& beams,
+                           const VoronoiConfig& config, GeneratorGroups& out) {
+  split_at_discontinuities(scan, beams, config, out);
+  if (config.join_contiguous) join_contiguous_groups(config, out);
+  if (config.join_alternate) join_alternate_groups(config, out);
+  if (config.drop_small) drop_small_groups(config, out);
+  if (config.join_hidden_zones) join_across_hidden_zones(beams, config, out);
+}
+
+}  // namespace topogeo::voronoi

@@ -1,0 +1,70 @@
+#include "topogeo/voronoi/local_voronoi.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "virtual_sites.hpp"
+
+namespace topogeo::voronoi {
+namespace {
+
+/// True for a beam that met something, near or far.
+bool is_echo(float range_m) {
+  return range_m > 0.0F && std::isfinite(range_m);
+}
+
+}  // namespace
+
+LocalVoronoi::LocalVoronoi(const VoronoiConfig& config) : config_(config) {
+  validate(config_);
+}
+
+/// Space is free up to the reading or the range limit. A beam without an echo proves nothing,
+/// unless it is a short drop-out between two that met something.
+void LocalVoronoi::measure_free_space(const scan::Scan& scan) {
+  const std::size_t count = scan.ranges_m.size();
+  free_range_m_.assign(count, 0.0);
+  const auto most = static_cast<std::size_t>(config_.dropout_rad / scan.angle_step_rad + 1e-6);
+  std::size_t last = count;  // the last echo before i
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_echo(scan.ranges_m[i])) continue;
+    free_range_m_[i] = std::min(static_cast<double>(scan.ranges_m[i]), config_.range_limit_m);
+    if (last < count && i - last > 1 && i - last - 1 <= most) {
+      std::fill(free_range_m_.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                free_range_m_.begin() + static_cast<std::ptrdiff_t>(i),
+                std::min(free_range_m_[last], free_range_m_[i]));
+    }
+    last = i;
+  }
+}
+
+LocalVoronoiDiagram LocalVoronoi::compute(const scan::Scan& scan) {
+  LocalVoronoiDiagram diagram;
+  compute(scan, diagram);
+  return diagram;
+}
+
+void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
+  if (beams_.update(scan)) grid_.set_geometry(beams_, config_);
+  make_generator_groups(scan, beams_, config_, out.groups);
+  measure_free_space(scan);
+
+  out.is_virtual = out.groups.groups.size() < 2;
+  if (out.is_virtual && !scan.ranges_m.empty()) {
+    // For navigation, a beam that met nothing is free: otherwise a robot in the open has no way on.
+    std::replace(free_range_m_.begin(), free_range_m_.end(), 0.0, config_.range_limit_m);
+    add_virtual_groups(beams_, free_range_m_, config_, out.groups);
+  }
+
+  sites_.clear();
+  for (std::size_t group = 0; group < out.groups.groups.size(); ++group) {
+    const PointRun& run = out.groups.groups[group];
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      sites_.push_back({out.groups.points[i].position_m, static_cast<std::uint16_t>(group)});
+    }
+  }
+  grid_.compute(sites_, free_range_m_);
+  cracks_.trace(grid_, sites_, config_, out);
+}
+
+}  // namespace topogeo::voronoi

@@ -1,0 +1,304 @@
+#include "topogeo/voronoi/local_voronoi.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "test_world.hpp"
+
+namespace topogeo::voronoi {
+namespace {
+
+using geometry::Pose2;
+using test_world::Laser;
+using test_world::random_world;
+using test_world::scan_of;
+using test_world::World;
+
+LocalVoronoiDiagram diagram_of(const scan::Scan& scan, const VoronoiConfig& config = {}) {
+  return LocalVoronoi(config).compute(scan);
+}
+
+double distance_to_group(const LocalVoronoiDiagram& diagram, std::uint16_t group,
+                         const Eigen::Vector2d& at) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  const PointRun& run = diagram.groups.groups[group];
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    nearest_m = std::min(nearest_m, (diagram.groups.points[i].position_m - at).norm());
+  }
+  return nearest_m;
+}
+
+/// Everything of a diagram as bytes, so that equality is bit for bit.
+std::string bytes_of(const LocalVoronoiDiagram& diagram) {
+  std::string bytes;
+  const auto add = [&](const auto& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  for (const DiagramNode& node : diagram.nodes) {
+    add(node.position_m.x());
+    add(node.position_m.y());
+    add(node.clearance_m);
+    for (const std::uint16_t group : node.base_groups) add(group);
+  }
+  for (const DiagramBranch& branch : diagram.branches) {
+    add(branch.node_a);
+    add(branch.node_b);
+    add(branch.base_groups);
+    add(branch.points.begin);
+    add(branch.points.end);
+  }
+  for (const DiagramPoint& point : diagram.points) {
+    add(point.position_m.x());
+    add(point.position_m.y());
+    add(point.clearance_m);
+  }
+  return bytes;
+}
+
+// y = 1.2  ----------------------
+//          robot >
+// y = -0.8 ----------------------
+TEST(LocalVoronoi, ACorridorIsOneBranchOnItsAxis) {
+  const World corridor{{-3, 1.2, 30, 1.2}, {-3, -0.8, 30, -0.8}};
+  const LocalVoronoiDiagram diagram = diagram_of(scan_of(corridor));
+  EXPECT_FALSE(diagram.is_virtual);
+  EXPECT_EQ(diagram.groups.groups.size(), 2U);
+  EXPECT_TRUE(diagram.nodes.empty());
+  ASSERT_EQ(diagram.branches.size(), 1U);
+  EXPECT_EQ(diagram.branches[0].node_a, DiagramBranch::kLoose);
+  EXPECT_EQ(diagram.branches[0].node_b, DiagramBranch::kLoose);
+  const auto points = diagram.points_of(diagram.branches[0]);
+  ASSERT_GT(points.size(), 60U);
+  for (const DiagramPoint& point : points) {
+    if (point.position_m.x() > 4.0) continue;  // beyond, readings on the wall are far apart
+    EXPECT_NEAR(point.position_m.y(), 0.2, 0.02);
+    EXPECT_NEAR(point.clearance_m, 1.0, 0.02);
+  }
+}
+
+//         |
+//  -------+ | wall at x = 4
+//  robot >  |
+//  -------+ |
+//         |
+TEST(LocalVoronoi, ATJunctionIsOneNodeOfThreeBranches) {
+  const World junction{{-3, 1, 2, 1}, {2, 1, 2, 6}, {-3, -1, 2, -1}, {2, -1, 2, -6}, {4, -6, 4, 6}};
+  const LocalVoronoiDiagram diagram = diagram_of(scan_of(junction));
+  ASSERT_EQ(diagram.nodes.size(), 1U);
+  EXPECT_EQ(diagram.nodes[0].base_groups.size(), 3U);
+  // As far from the corners (2, +-1) as from the wall: (x - 2)^2 + 1 = (4 - x)^2.
+  EXPECT_NEAR(diagram.nodes[0].position_m.x(), 2.75, 0.05);
+  EXPECT_NEAR(diagram.nodes[0].position_m.y(), 0.0, 0.05);
+  EXPECT_NEAR(diagram.nodes[0].clearance_m, 1.25, 0.05);
+  ASSERT_EQ(diagram.branches.size(), 3U);
+  for (const DiagramBranch& branch : diagram.branches) {
+    EXPECT_NE(branch.node_a == DiagramBranch::kLoose, branch.node_b == DiagramBranch::kLoose);
+    const std::size_t end = branch.node_a == 0 ? branch.points.begin : branch.points.end - 1;
+    EXPECT_EQ(diagram.points[end].position_m, diagram.nodes[0].position_m);
+  }
+}
+
+TEST(LocalVoronoi, FourGroupsAtACrossingAreOneNode) {
+  const World crossing{{-3, 1, 2, 1},
+                       {-3, -1, 2, -1},
+                       {4, 1, 9, 1},
+                       {4, -1, 9, -1},
+                       {12, -3, 12, 3}};  // beyond the range limit, but it shows what is free
+  const LocalVoronoiDiagram diagram = diagram_of(scan_of(crossing));
+  ASSERT_EQ(diagram.nodes.size(), 1U);
+  EXPECT_EQ(diagram.nodes[0].base_groups.size(), 4U);
+  EXPECT_NEAR(diagram.nodes[0].position_m.x(), 3.0, 0.05);
+  EXPECT_NEAR(diagram.nodes[0].position_m.y(), 0.0, 0.02);
+}
+
+TEST(LocalVoronoi, OneWallGivesAVirtualDiagramBesideTheRobot) {
+  const LocalVoronoiDiagram diagram = diagram_of(scan_of({{-3, 1, 30, 1}}));
+  EXPECT_TRUE(diagram.is_virtual);
+  EXPECT_EQ(diagram.groups.groups.size(), 2U);
+  ASSERT_EQ(diagram.branches.size(), 1U);
+  for (const DiagramPoint& point : diagram.points_of(diagram.branches[0])) {
+    EXPECT_NEAR(point.position_m.y(), 0.0, 0.1);  // straight on, between the wall and its image
+  }
+}
+
+TEST(LocalVoronoi, NothingInSightGivesAVirtualDiagramStraightAhead) {
+  VoronoiConfig config;
+  config.forward_rad = 0.5;
+  scan::Scan scan = scan_of({});
+  const LocalVoronoiDiagram diagram = diagram_of(scan, config);
+  EXPECT_TRUE(diagram.is_virtual);
+  ASSERT_EQ(diagram.branches.size(), 1U);
+  const auto points = diagram.points_of(diagram.branches[0]);
+  EXPECT_GT((points.back().position_m - points.front().position_m).norm(), 8.0);
+  for (const DiagramPoint& point : points) {
+    EXPECT_NEAR(std::cos(0.5) * point.position_m.y() - std::sin(0.5) * point.position_m.x(), 0.0,
+                0.02);
+  }
+}
+
+TEST(LocalVoronoi, ScansOfAnyLengthAndContentGiveADiagram) {
+  const World world = random_world(7);
+  for (const std::size_t beams : {1U, 2U, 180U, 181U, 360U, 361U, 1081U}) {
+    for (const double view_deg : {60.0, 180.0, 270.0, 360.0}) {
+      const auto diagram =
+          diagram_of(scan_of(world, {}, {.beams = beams, .field_of_view_deg = view_deg}));
+      EXPECT_TRUE(diagram.is_virtual || diagram.groups.groups.size() >= 2);
+      EXPECT_TRUE(beams <= 2 || !diagram.branches.empty()) << beams << " over " << view_deg;
+    }
+  }
+  scan::Scan scan;
+  scan.angle_step_rad = 0.01;
+  EXPECT_TRUE(diagram_of(scan).branches.empty());  // not a single beam
+  scan.ranges_m.assign(300, 0.001F);               // on the sensor
+  EXPECT_TRUE(diagram_of(scan).nodes.empty());
+  scan.ranges_m.assign(300, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_TRUE(diagram_of(scan).is_virtual);
+  scan.angle_step_rad = -0.01;
+  EXPECT_THROW(diagram_of(scan), std::invalid_argument);
+}
+
+TEST(LocalVoronoi, AMissingBeamDoesNotCutABranch) {
+  const World corridor{{-3, 1.2, 6, 1.2}, {-3, -0.8, 6, -0.8}};
+  scan::Scan scan = scan_of(corridor);
+  scan.ranges_m[200] = scan.ranges_m[201] = scan::Scan::kNoReturn;
+  EXPECT_EQ(diagram_of(scan).branches.size(), 1U);
+}
+
+TEST(LocalVoronoi, BranchPointsAreEquallyFarFromTheirGroupsOnRandomScenes) {
+  double sum_m = 0.0;
+  int count = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    const Laser laser{.beams = seed % 2 == 0 ? 361U : 720U,
+                      .field_of_view_deg = seed % 2 == 0 ? 180.0 : 360.0};
+    const VoronoiConfig config;
+    const LocalVoronoiDiagram diagram = diagram_of(scan_of(random_world(seed), {}, laser), config);
+    for (const DiagramBranch& branch : diagram.branches) {
+      const auto points = diagram.points_of(branch);
+      for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        const Eigen::Vector2d& at = points[i].position_m;
+        const double a_m = distance_to_group(diagram, branch.base_groups[0], at);
+        const double b_m = distance_to_group(diagram, branch.base_groups[1], at);
+        // The nearest point of a group can change within a cell.
+        ASSERT_NEAR(a_m, b_m, config.resolution_m) << "seed " << seed << " at " << at.transpose();
+        ASSERT_NEAR(points[i].clearance_m, a_m, config.resolution_m);
+        sum_m += std::abs(a_m - b_m);
+        ++count;
+      }
+    }
+  }
+  ASSERT_GT(count, 3000);
+  EXPECT_LT(sum_m / count, 0.001);
+}
+
+// The source's rule (4.19-4.22) as it stands: groups within 2 E_max of the nearest one.
+TEST(LocalVoronoi, BranchesLieInsideTheSourcesEquidistantCells) {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    LocalVoronoi voronoi{VoronoiConfig{}};
+    const LocalVoronoiDiagram diagram = voronoi.compute(scan_of(random_world(seed)));
+    const double resolution_m = voronoi.config().resolution_m;
+    const double e_max_m = std::sqrt(2.0) * resolution_m / 2.0;
+    for (const DiagramBranch& branch : diagram.branches) {
+      const auto points = diagram.points_of(branch);
+      for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        const Eigen::Vector2d cell =
+            ((points[i].position_m / resolution_m).array().floor() + 0.5) * resolution_m;
+        double nearest_m = std::numeric_limits<double>::infinity();
+        for (std::uint16_t g = 0; g < diagram.groups.groups.size(); ++g) {
+          nearest_m = std::min(nearest_m, distance_to_group(diagram, g, cell));
+        }
+        for (const std::uint16_t group : branch.base_groups) {
+          ASSERT_LT(distance_to_group(diagram, group, cell) - nearest_m, 2.0 * e_max_m)
+              << "seed " << seed << " at " << points[i].position_m.transpose();
+        }
+      }
+    }
+  }
+}
+
+TEST(LocalVoronoi, DiagramsAreWellFormedOnRandomScenes) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    const VoronoiConfig config;
+    const LocalVoronoiDiagram diagram = diagram_of(
+        scan_of(random_world(seed), {}, {.beams = 541, .field_of_view_deg = 270.0}), config);
+    std::vector<int> degree(diagram.nodes.size(), 0);
+    for (const DiagramBranch& branch : diagram.branches) {
+      ASSERT_GE(branch.points.size(), 2U);
+      ASSERT_LT(branch.base_groups[0], branch.base_groups[1]);
+      for (const std::uint32_t node : {branch.node_a, branch.node_b}) {
+        if (node == DiagramBranch::kLoose) continue;
+        ++degree[node];
+        const auto& groups = diagram.nodes[node].base_groups;
+        EXPECT_TRUE(std::ranges::includes(groups, branch.base_groups)) << "seed " << seed;
+      }
+      const auto points = diagram.points_of(branch);
+      for (std::size_t i = 1; i < points.size(); ++i) {
+        EXPECT_LE((points[i].position_m - points[i - 1].position_m).norm(),
+                  2.0 * config.resolution_m + config.node_merge_m);
+      }
+    }
+    for (std::size_t i = 0; i < degree.size(); ++i) {
+      EXPECT_GE(degree[i], 1);
+      EXPECT_GE(diagram.nodes[i].base_groups.size(), 3U);
+      EXPECT_TRUE(std::ranges::is_sorted(diagram.nodes[i].base_groups));
+    }
+  }
+}
+
+TEST(LocalVoronoi, TurningTheLaserTurnsTheDiagram) {
+  // Junctions ahead and behind.
+  const World world{{-2, 1, 2, 1}, {2, 1, 2, 6},   {-2, -1, 2, -1},  {2, -1, 2, -6},
+                    {4, -6, 4, 6}, {-2, 1, -2, 6}, {-2, -1, -2, -6}, {-3.5, -6, -3.5, 6}};
+  const Laser laser{.beams = 720, .field_of_view_deg = 360.0};
+  const LocalVoronoiDiagram straight = diagram_of(scan_of(world, {}, laser));
+  ASSERT_GE(straight.nodes.size(), 2U);
+  for (const double turn_rad : {M_PI / 2.0, M_PI, 20.0 * M_PI / 180.0}) {
+    const Pose2 T_world_laser{0.0, 0.0, turn_rad};
+    const LocalVoronoiDiagram turned = diagram_of(scan_of(world, T_world_laser, laser));
+    ASSERT_EQ(turned.nodes.size(), straight.nodes.size());
+    for (const DiagramNode& node : turned.nodes) {
+      const Eigen::Vector2d at = T_world_laser * node.position_m;
+      const bool found = std::ranges::any_of(straight.nodes, [&](const DiagramNode& other) {
+        return (other.position_m - at).norm() < 0.05 &&
+               std::abs(other.clearance_m - node.clearance_m) < 0.02;
+      });
+      EXPECT_TRUE(found) << at.transpose();
+    }
+  }
+}
+
+TEST(LocalVoronoi, AScanGivesTheSameBytesWhateverCameBefore) {
+  const scan::Scan first = scan_of(random_world(1));
+  const scan::Scan other = scan_of(random_world(2), {}, {.beams = 720, .field_of_view_deg = 360.0});
+  const scan::Scan third = scan_of(random_world(3));
+  LocalVoronoi voronoi{VoronoiConfig{}};
+  const std::string bytes = bytes_of(voronoi.compute(first));
+  EXPECT_EQ(bytes_of(voronoi.compute(first)), bytes);
+  LocalVoronoiDiagram reused;
+  for (const scan::Scan* scan : {&other, &third, &first}) voronoi.compute(*scan, reused);
+  EXPECT_EQ(bytes_of(reused), bytes);
+  EXPECT_NE(bytes_of(voronoi.compute(third)), bytes);
+}
+
+TEST(VoronoiConfig, AFieldOutsideItsRangeIsNamed) {
+  VoronoiConfig config;
+  EXPECT_NO_THROW(validate(config));
+  config.resolution_m = 0.0;
+  EXPECT_THROW(
+      {
+        try {
+          LocalVoronoi{config};
+        } catch (const std::invalid_argument& error) {
+          EXPECT_NE(std::string(error.what()).find("resolution_m"), std::string::npos);
+          throw;
+        }
+      },
+      std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace topogeo::voronoi
