@@ -63,7 +63,7 @@ class YamlReader {
       if (parameter == nullptr && !is_section) fail(key_node, quoted + ": " + known_keys(path));
       if (!seen_.insert(key).second) fail(key_node, quoted + ": given twice");
       if (parameter != nullptr) {
-        read_value(value, *parameter);
+        read_value(key_node, value, *parameter);
       } else if (value.IsMap()) {
         read_section(value, key);
       } else if (!value.IsNull()) {  // a section whose keys are all comments is empty, not wrong
@@ -72,10 +72,12 @@ class YamlReader {
     }
   }
 
-  void read_value(const YAML::Node& value, const ConfigParameter& parameter) {
+  void read_value(const YAML::Node& key_node, const YAML::Node& value,
+                  const ConfigParameter& parameter) {
     const std::string quoted = "key '" + parameter.key + "'";
     const std::string expected = ": expected " + parameter.expected;
-    if (value.IsNull()) fail(value, quoted + " without a value" + expected);
+    // A missing value has the position of what follows it.
+    if (value.IsNull()) fail(key_node, quoted + " without a value" + expected);
     if (!value.IsScalar()) fail(value, quoted + " with a list or section" + expected);
     // yaml-cpp tags quoted scalars "!": "3" in quotes is a text, not a number.
     const bool is_quoted = value.Tag() == "!";

@@ -1,0 +1,23 @@
+// Everything that is known of one robot's map: what map.pb and the map database hold.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "topogeo/topomap/global_map.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::storage {
+
+struct MapDocument {
+  std::string robot_id;
+  std::uint64_t seed = 0;
+  std::vector<topomap::LocalMap> local_maps;  ///< index = local map id
+  topomap::Trajectory trajectory;             ///< at most as many stops as local maps
+  std::vector<topomap::LoopClosure> loop_closures;
+  topomap::GlobalMap global_map;
+};
+
+}  // namespace topogeo::storage

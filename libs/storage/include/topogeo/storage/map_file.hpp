@@ -1,0 +1,28 @@
+// The map file map.pb: Protobuf as in proto/map.proto, the same bytes for the same map everywhere.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "topogeo/storage/map_document.hpp"
+
+namespace topogeo::storage {
+
+inline constexpr std::uint32_t kMapFormatVersion = 1;
+
+/// Writes the file whole or not at all. Throws std::runtime_error naming the path when it cannot be
+/// written, std::invalid_argument when the map contradicts itself (as in read_map_file).
+void write_map_file(const std::filesystem::path& path, const MapDocument& document);
+
+/// Throws std::runtime_error naming the path and the cause: not a map file, a newer format, cut
+/// short or damaged, or a content that contradicts itself (a number that is not finite, an end of a
+/// branch or a stop that does not exist, ids out of order).
+MapDocument read_map_file(const std::filesystem::path& path);
+
+/// The bytes of the file, and back; `name` stands for the file in messages. They throw as above.
+std::string map_file_bytes(const MapDocument& document);
+MapDocument parse_map_file(std::string_view bytes, const std::string& name);
+
+}  // namespace topogeo::storage

@@ -1,0 +1,49 @@
+// The report of a run, report.json: what was done with what, how much and how long.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "topogeo/support/config_schema.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::storage {
+
+/// How often each reason occurred, in the order in which they are to be listed.
+using ReasonCounts = std::vector<std::pair<std::string, std::uint64_t>>;
+
+struct Report {
+  std::string command;  ///< "map" or "run"
+  std::string log;      ///< file name; of a path only the last part is written
+  std::string robot_id;
+  std::uint64_t seed = 0;
+  std::uint32_t workers = 0;
+  support::EffectiveConfig configuration;
+
+  std::uint64_t scans = 0;
+  ReasonCounts skipped_lines;
+  std::uint64_t stops = 0;
+  std::uint64_t nodes = 0;
+  std::uint64_t branches = 0;
+  std::uint64_t matches_tried = 0;
+  std::uint64_t matches_accepted = 0;
+  ReasonCounts matches_rejected;
+  std::vector<topomap::LoopClosure> loop_closures;
+  double distance_m = 0.0;  ///< along the corrected trajectory
+
+  double wall_s = 0.0;
+  double cpu_s = 0.0;  ///< of all processes
+  std::vector<support::StageTime> stages;
+};
+
+/// JSON text, keys always in the same order, with the version of the software.
+std::string report_json(const Report& report);
+
+/// Writes the file whole or not at all. Throws std::runtime_error naming the path.
+void write_report(const std::filesystem::path& path, const Report& report);
+
+}  // namespace topogeo::storage

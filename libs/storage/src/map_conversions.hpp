@@ -1,0 +1,42 @@
+// Between the project's types and the Protobuf messages of proto/map.proto.
+//
+// Reading checks everything that the types promise, so that a damaged blob cannot become an index
+// out of range later on: each from_proto throws std::runtime_error that says what is wrong.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "topogeo/storage/map_document.hpp"
+
+#include "proto/map.pb.h"
+
+namespace topogeo::storage {
+
+void to_proto(const topomap::LocalMap& map, proto::LocalMap* out);
+void to_proto(const topomap::StopPose& stop, proto::StopPose* out);
+void to_proto(const topomap::LoopClosure& closure, proto::LoopClosure* out);
+void to_proto(const topomap::MapNode& node, proto::MapNode* out);
+void to_proto(const topomap::MapBranch& branch, proto::MapBranch* out);
+
+topomap::LocalMap from_proto(const proto::LocalMap& in);
+topomap::StopPose from_proto(const proto::StopPose& in);
+topomap::LoopClosure from_proto(const proto::LoopClosure& in);
+topomap::MapNode from_proto(const proto::MapNode& in);
+topomap::MapBranch from_proto(const proto::MapBranch& in);
+
+/// Throws std::runtime_error unless ids, robot ids and references between the parts fit together.
+void check_document(const MapDocument& document);
+void check_global_map(const topomap::GlobalMap& map);
+
+/// The same bytes for the same message everywhere. Throws std::runtime_error above 2 GB.
+std::string deterministic_bytes(const google::protobuf::MessageLite& message);
+
+template <typename Message, typename Value>
+std::string to_blob(const Value& value) {
+  Message message;
+  to_proto(value, &message);
+  return deterministic_bytes(message);
+}
+
+}  // namespace topogeo::storage

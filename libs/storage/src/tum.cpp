@@ -1,0 +1,161 @@
+#include "topogeo/storage/tum.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/support/atomic_file.hpp"
+
+#include "file_content.hpp"
+
+namespace topogeo::storage {
+namespace {
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+
+/// Fixed decimals without the minus of a value that rounds to zero.
+std::string fixed(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find_first_not_of("-0.") == std::string::npos && text.starts_with('-')) text.erase(0, 1);
+  return text;
+}
+
+/// The next word, and the rest in `line`; empty at the end.
+std::string_view next_word(std::string_view& line) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t start = std::min(line.find_first_not_of(kBlanks), line.size());
+  line.remove_prefix(start);
+  const std::string_view word = line.substr(0, std::min(line.find_first_of(kBlanks), line.size()));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+bool all_digits(std::string_view text) {
+  return text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+std::optional<std::int64_t> parse_stamp(std::string_view word) {
+  const bool is_negative = word.starts_with('-');
+  if (is_negative) word.remove_prefix(1);
+  const std::size_t dot = std::min(word.find('.'), word.size());
+  const std::string_view whole = word.substr(0, dot);
+  std::string decimals(word.substr(std::min(dot + 1, word.size())));
+  if (whole.empty() || !all_digits(whole) || !all_digits(decimals)) return std::nullopt;
+  decimals.resize(9, '0');
+  std::int64_t seconds = 0;
+  std::int64_t ns = 0;
+  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
+  std::from_chars(decimals.data(), decimals.data() + decimals.size(), ns);
+  constexpr std::int64_t kMaxSeconds = std::numeric_limits<std::int64_t>::max() / kNsPerSecond - 1;
+  if (error != std::errc{} || seconds > kMaxSeconds) return std::nullopt;
+  const std::int64_t stamp_ns = seconds * kNsPerSecond + ns;
+  return is_negative ? -stamp_ns : stamp_ns;
+}
+
+std::optional<double> parse_number(std::string_view word) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+/// Heading of a rotation given by a quaternion of any length above zero.
+double heading_rad(double qx, double qy, double qz, double qw) {
+  return geometry::atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz);
+}
+
+topomap::StampedPose parse_line(std::string_view line, const std::string& where) {
+  static constexpr std::array<const char*, 7> kNames{"x", "y", "z", "qx", "qy", "qz", "qw"};
+  const std::string_view stamp_word = next_word(line);
+  const auto stamp_ns = parse_stamp(stamp_word);
+  if (!stamp_ns) {
+    throw std::runtime_error(
+        fmt::format("{}: stamp '{}': expected seconds such as 12.345678", where, stamp_word));
+  }
+  std::array<double, 7> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string_view word = next_word(line);
+    const auto value = parse_number(word);
+    if (!value) {
+      throw std::runtime_error(
+          fmt::format("{}: {} '{}': expected a number, 8 on a line", where, kNames.at(i), word));
+    }
+    values.at(i) = *value;
+  }
+  if (!next_word(line).empty()) {
+    throw std::runtime_error(where + ": more than the 8 numbers t x y z qx qy qz qw");
+  }
+  const auto [x, y, z, qx, qy, qz, qw] = values;
+  static_cast<void>(z);
+  const double norm = qx * qx + qy * qy + qz * qz + qw * qw;
+  if (!(norm > 0.5 && norm < 2.0)) {
+    throw std::runtime_error(
+        fmt::format("{}: quaternion of squared length {}: expected 1", where, norm));
+  }
+  return {0, *stamp_ns, {x, y, heading_rad(qx, qy, qz, qw)}};
+}
+
+}  // namespace
+
+std::string stamp_text(std::int64_t stamp_ns) {
+  // Unsigned, because the most negative stamp has no positive counterpart.
+  const std::uint64_t magnitude = stamp_ns < 0 ? 0 - static_cast<std::uint64_t>(stamp_ns)
+                                               : static_cast<std::uint64_t>(stamp_ns);
+  const std::uint64_t seconds = magnitude / static_cast<std::uint64_t>(kNsPerSecond);
+  const std::uint64_t ns = magnitude % static_cast<std::uint64_t>(kNsPerSecond);
+  const char* sign = stamp_ns < 0 ? "-" : "";
+  if (ns % 1000 == 0) return fmt::format("{}{}.{:06}", sign, seconds, ns / 1000);
+  return fmt::format("{}{}.{:09}", sign, seconds, ns);
+}
+
+std::string trajectory_tum(std::span<const topomap::StampedPose> poses) {
+  std::string text;
+  for (const topomap::StampedPose& p : poses) {
+    if (!std::isfinite(p.pose.x_m) || !std::isfinite(p.pose.y_m) ||
+        !std::isfinite(p.pose.theta_rad)) {
+      throw std::invalid_argument(
+          fmt::format("trajectory: pose of scan {} is not finite", p.sequence));
+    }
+    const auto half = geometry::sincos(0.5 * p.pose.theta_rad);
+    text += fmt::format("{} {} {} {} 0.000000000 0.000000000 {} {}\n", stamp_text(p.stamp_ns),
+                        fixed(p.pose.x_m, 6), fixed(p.pose.y_m, 6), "0.000000", fixed(half.sin, 9),
+                        fixed(half.cos, 9));
+  }
+  return text;
+}
+
+void write_trajectory_tum(const std::filesystem::path& path,
+                          std::span<const topomap::StampedPose> poses) {
+  support::write_file_atomically(path, trajectory_tum(poses));
+}
+
+std::vector<topomap::StampedPose> parse_trajectory_tum(std::string_view text,
+                                                       const std::string& name) {
+  std::vector<topomap::StampedPose> poses;
+  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.starts_with('#') || line.find_first_not_of(" \t\r") == std::string_view::npos) {
+      continue;
+    }
+    poses.push_back(parse_line(line, name + ":" + std::to_string(line_number)));
+    poses.back().sequence = poses.size() - 1;
+  }
+  return poses;
+}
+
+std::vector<topomap::StampedPose> read_trajectory_tum(const std::filesystem::path& path) {
+  return parse_trajectory_tum(file_content(path), path.string());
+}
+
+}  // namespace topogeo::storage

@@ -1,0 +1,223 @@
+#include "topogeo/storage/map_database.hpp"
+
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "topogeo/storage/map_file.hpp"
+
+#include "sample_map.hpp"
+
+namespace topogeo::storage {
+namespace {
+
+using ::testing::HasSubstr;
+
+class MapDatabaseFile : public ScratchDirectory {
+ protected:
+  [[nodiscard]] std::filesystem::path path() const { return directory_ / "map.db"; }
+  [[nodiscard]] MapDatabase open() const {
+    return MapDatabase::open_or_create(path(), "robot-1", kSeed);
+  }
+  [[nodiscard]] std::string opening_error() const {
+    return error_of([&] { static_cast<void>(open().load()); });
+  }
+  /// Writes a whole document and closes the database, which empties the write-ahead log.
+  void store(const MapDocument& document) const {
+    MapDatabase database = open();
+    for (const auto& map : document.local_maps) database.put_local_map(map);
+    database.put_trajectory(document.trajectory.version, document.trajectory.stops,
+                            document.loop_closures);
+    database.put_global_map(document.global_map);
+  }
+  void execute(const char* sql) const {
+    sqlite3* handle = nullptr;
+    ASSERT_EQ(sqlite3_open(path().c_str(), &handle), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(handle, sql, nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(handle);
+    sqlite3_close(handle);
+  }
+
+  static constexpr std::uint64_t kSeed = 0xfedcba9876543210ULL;
+};
+
+TEST_F(MapDatabaseFile, GivesBackTheSameMapFile) {
+  const MapDocument document = sample_document(5);
+  store(document);
+  EXPECT_EQ(map_file_bytes(open().load()), map_file_bytes(document));
+  EXPECT_EQ(map_file_bytes(MapDatabase::open_existing(path()).load()), map_file_bytes(document));
+}
+
+TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
+  MapDocument document = sample_document(3);
+  store(document);
+  MapDatabase database = open();
+  EXPECT_EQ(database.local_map_count(), 3U);
+  EXPECT_EQ(database.trajectory_version(), 9U);
+
+  document.local_maps.push_back(sample_local_map(3));
+  database.put_local_map(document.local_maps[3]);
+  database.put_local_map(document.local_maps[1]);  // again, the same
+  document.trajectory.stops[1] = sample_stop(1, 77.0);
+  document.trajectory.stops.push_back(sample_stop(3, 3.0));
+  document.loop_closures = {{0, 3, {1.0, 2.0, 3.0}}};
+  document.trajectory.version = 10;
+  const std::vector<topomap::StopPose> changed{document.trajectory.stops[3],
+                                               document.trajectory.stops[1]};
+  database.put_trajectory(10, changed, document.loop_closures);
+  document.global_map.nodes = {{3, topomap::NodeKind::kReal, {0.0, 0.0}, 1.0, 1},
+                               {7, topomap::NodeKind::kReal, {5.0, 6.5}, 0.7, 2}};
+  document.global_map.branches = {{5, 3, 7, true, 1, {{{0.0, 0.0}, 1.0}, {{5.0, 6.5}, 0.7}}}};
+  document.global_map.version = 10;
+  database.put_global_map(document.global_map);
+
+  EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(document));
+  EXPECT_EQ(map_file_bytes(open().load()), map_file_bytes(document));  // beside the open one
+}
+
+TEST_F(MapDatabaseFile, RefusesWhatDoesNotFitAndStaysAsItWas) {
+  const MapDocument document = sample_document(3);
+  store(document);
+  MapDatabase database = open();
+  topomap::LocalMap other = sample_local_map(1);
+  other.stamp_ns += 1;
+  EXPECT_THAT(error_of([&] { database.put_local_map(other); }),
+              HasSubstr("already holds another local map 1"));
+  EXPECT_THROW(database.put_local_map(sample_local_map(4)), std::invalid_argument);
+  other = sample_local_map(3);
+  other.robot_id = "robot-2";
+  EXPECT_THROW(database.put_local_map(other), std::invalid_argument);
+
+  const std::vector<topomap::StopPose> stops{sample_stop(0, 55.0), sample_stop(3, 0.0)};
+  EXPECT_THAT(error_of([&] { database.put_trajectory(10, stops, {}); }),
+              HasSubstr("stop 3 has no local map yet"));
+  EXPECT_THROW(database.put_trajectory(8, {}, {}), std::invalid_argument);
+  const std::vector<topomap::LoopClosure> closures{{1, 3, {}}};
+  EXPECT_THROW(database.put_trajectory(10, {}, closures), std::invalid_argument);
+  topomap::GlobalMap global = sample_global_map();
+  global.branches[0].node_a = 99;
+  EXPECT_THROW(database.put_global_map(global), std::invalid_argument);
+
+  EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(document));
+}
+
+TEST_F(MapDatabaseFile, RefusesAnotherRobotSeedVersionOrProgram) {
+  store(sample_document(1));
+  EXPECT_THAT(error_of([&] { MapDatabase::open_or_create(path(), "robot-2", kSeed); }),
+              HasSubstr("map.db: holds the map of robot 'robot-1'"));
+  EXPECT_THAT(error_of([&] { MapDatabase::open_or_create(path(), "robot-1", 3); }),
+              HasSubstr("expected 'robot-1' with seed 3"));
+  execute("PRAGMA user_version=2");
+  EXPECT_THAT(opening_error(), HasSubstr("map database version 2, this program reads 1"));
+  execute("PRAGMA user_version=1; PRAGMA application_id=5");
+  EXPECT_THAT(opening_error(), HasSubstr("no topogeo map database"));
+}
+
+TEST_F(MapDatabaseFile, RefusesFilesThatAreNone) {
+  EXPECT_THAT(error_of([&] { MapDatabase::open_existing(path()); }),
+              HasSubstr("map.db: cannot be opened"));
+  EXPECT_FALSE(std::filesystem::exists(path()));
+  write(path(), "");
+  EXPECT_THAT(error_of([&] { MapDatabase::open_existing(path()); }), HasSubstr("map.db: empty"));
+  for (const std::string& bytes : {std::string("x"), std::string(5000, '\x7f')}) {
+    write(path(), bytes);
+    EXPECT_THAT(opening_error(), HasSubstr("map.db: ")) << bytes.size();
+    EXPECT_TRUE(content(path()) == bytes) << "a foreign file was changed";
+  }
+  EXPECT_THAT(error_of([&] { MapDatabase::open_or_create(directory_, "robot-1", 1); }),
+              HasSubstr("cannot be opened"));
+}
+
+TEST_F(MapDatabaseFile, RefusesATruncatedFile) {
+  store(sample_document(60));
+  const std::string bytes = content(path());
+  ASSERT_GT(bytes.size(), 20000U);
+  for (std::size_t size = 1; size < bytes.size(); size += 1021) {
+    write(path(), bytes.substr(0, size));
+    EXPECT_THAT(opening_error(), HasSubstr("map.db: ")) << size;
+    std::filesystem::remove(directory_ / "map.db-wal");
+    std::filesystem::remove(directory_ / "map.db-shm");
+  }
+}
+
+TEST_F(MapDatabaseFile, RefusesDamagedContent) {
+  store(sample_document(3));
+  const std::string good = content(path());
+  for (const auto& [sql, message] : std::vector<std::pair<const char*, const char*>>{
+           {"UPDATE local_map SET blob = zeroblob(length(blob)) WHERE id = 1",
+            "local_map 1 is damaged (its hash is wrong)"},
+           {"DELETE FROM local_map WHERE id = 1", "damaged (local map 2 stands at place 1)"},
+           {"DELETE FROM map_node WHERE id = 7", "ends at node 7, which is not there"},
+           {"UPDATE map_node SET blob = 'text'", "column blob has the wrong type"},
+           {"UPDATE meta SET value = '12x' WHERE key = 'seed'", "seed is '12x'"},
+           {"DELETE FROM meta WHERE key = 'robot_id'", "no 'robot_id'"}}) {
+    write(path(), good);
+    std::filesystem::remove(directory_ / "map.db-wal");
+    std::filesystem::remove(directory_ / "map.db-shm");
+    execute(sql);
+    EXPECT_THAT(opening_error(), HasSubstr(message)) << sql;
+  }
+}
+
+/// Writes stop after stop for ever and reports each on `pipe` when it is stored.
+[[noreturn]] void write_until_killed(const std::filesystem::path& path, std::uint64_t seed,
+                                     int pipe) {
+  try {
+    MapDatabase database = MapDatabase::open_or_create(path, "robot-1", seed);
+    for (std::uint32_t id = 0;; ++id) {
+      database.put_local_map(sample_local_map(id));
+      std::vector<topomap::StopPose> stops;
+      for (std::uint32_t i = 0; i <= id; ++i) stops.push_back(sample_stop(i, i + 100.0 * id));
+      database.put_trajectory(id, stops, {});
+      topomap::GlobalMap map = sample_global_map();
+      map.version = id;
+      map.nodes[1].id = 10 + id;
+      map.branches[0].node_b = 10 + id;
+      database.put_global_map(map);
+      if (::write(pipe, "x", 1) != 1) ::_exit(1);
+    }
+  } catch (const std::exception&) {
+    ::_exit(2);
+  }
+}
+
+TEST_F(MapDatabaseFile, KeepsAConsistentPrefixWhenItsProcessIsKilled) {
+  for (const int acknowledged : {1, 2, 7, 30}) {
+    std::filesystem::remove_all(directory_);
+    std::filesystem::create_directory(directory_);
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) write_until_killed(path(), kSeed, ends[1]);
+    ::close(ends[1]);
+    char byte = 0;
+    for (int i = 0; i < acknowledged; ++i) ASSERT_EQ(::read(ends[0], &byte, 1), 1);
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ::close(ends[0]);
+    ASSERT_TRUE(WIFSIGNALED(status));
+
+    MapDatabase database = open();
+    const MapDocument document = database.load();  // checks ids, references and hashes
+    ASSERT_GE(document.local_maps.size(), static_cast<std::size_t>(acknowledged));
+    const std::uint64_t version = document.trajectory.version;
+    ASSERT_GE(version + 1, static_cast<std::uint64_t>(acknowledged));
+    // All poses are of one version, not some of it.
+    ASSERT_EQ(document.trajectory.stops.size(), version + 1);
+    for (std::size_t i = 0; i < document.trajectory.stops.size(); ++i) {
+      EXPECT_EQ(document.trajectory.stops[i].T_map_robot.x_m,
+                static_cast<double>(i) + 100.0 * static_cast<double>(version));
+    }
+    ASSERT_EQ(document.global_map.nodes.size(), 2U);
+    EXPECT_EQ(document.global_map.nodes[1].id, 10 + document.global_map.version);
+    database.put_local_map(sample_local_map(database.local_map_count()));  // and goes on
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::storage

@@ -1,0 +1,58 @@
+#include "topogeo/storage/report.hpp"
+
+#include <gmock/gmock.h>
+
+#include "topogeo/support/version.hpp"
+
+#include "sample_map.hpp"
+
+namespace topogeo::storage {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+using ReportFile = ScratchDirectory;
+
+TEST_F(ReportFile, SaysWhatWasDoneInAFixedOrder) {
+  Report report;
+  report.command = "map";
+  report.log = "/home/somebody/logs/csail.clf.gz";
+  report.robot_id = "robot-1";
+  report.seed = 18446744073709551615ULL;
+  report.workers = 2;
+  report.configuration.values = {{"mapping.stop_distance_m", "1"}, {"a.later", "x \"y\""}};
+  report.configuration.fingerprint = 0xabcULL;
+  report.scans = 1223;
+  report.skipped_lines = {{"NaN range", 2}, {"beam count", 0}};
+  report.loop_closures = {{3, 40, {0.5, -0.25, 1.5}}};
+  report.distance_m = 383.25;
+  report.stages = {{"tracking", 1.5, 1.25}};
+  const std::string json = report_json(report);
+
+  EXPECT_THAT(json, HasSubstr("\"version\": \"" + std::string(support::kVersion) + "\""));
+  EXPECT_THAT(json, HasSubstr("\"log\": \"csail.clf.gz\""));
+  EXPECT_THAT(json, Not(HasSubstr("somebody")));
+  EXPECT_THAT(json, HasSubstr("\"seed\": 18446744073709551615"));
+  EXPECT_THAT(json, HasSubstr("\"fingerprint\": \"0000000000000abc\""));
+  EXPECT_THAT(json, HasSubstr("\"a.later\": \"x \\\"y\\\"\""));
+  EXPECT_LT(json.find("mapping.stop_distance_m"), json.find("a.later"));
+  EXPECT_THAT(json, HasSubstr("\"NaN range\": 2"));
+  EXPECT_THAT(json, HasSubstr("\"earlier_stop\": 3"));
+  EXPECT_THAT(json, HasSubstr("\"distance_m\": 383.25"));
+  EXPECT_EQ(json.back(), '\n');
+
+  write_report(directory_ / "report.json", report);
+  EXPECT_EQ(content(directory_ / "report.json"), json);
+}
+
+TEST_F(ReportFile, TakesNamesThatAreNotUtf8AndRefusesAnImpossiblePath) {
+  Report report;
+  report.log = "caf\xe9.log";
+  EXPECT_THAT(report_json(report), HasSubstr("caf\xef\xbf\xbd.log"));
+  EXPECT_THAT(error_of([&] { write_report(directory_ / "no" / "report.json", report); }),
+              HasSubstr("report.json: cannot be created"));
+}
+
+}  // namespace
+}  // namespace topogeo::storage
