@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -90,9 +89,10 @@ class WorldParser {
   }
 
   double number(const YAML::Node& node, std::string_view key, double low, double high) const {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    if (node.IsDefined() && node.IsScalar()) YAML::convert<double>::decode(node, value);
-    if (!(value >= low && value <= high)) {
+    double value = 0.0;
+    const bool is_number =
+        node.IsDefined() && node.IsScalar() && YAML::convert<double>::decode(node, value);
+    if (!is_number || !(value >= low && value <= high)) {
       std::ostringstream range;
       range << "a number in [" << low << ", " << high << "] m";
       fail(node, key, range.str(), shown(node));

@@ -19,10 +19,10 @@ struct SimulationOptions {
   double scan_step_m = 0.25;  ///< a scan after this much path; [0.01, 10]
   double scan_step_rad = 8.0 * std::numbers::pi / 180.0;  ///< or this much turning; [0.01, pi]
   std::int64_t start_stamp_ns = 1'000'000'000;            ///< stamp of the first scan; >= 0
-  DriveOptions drive;
-  BeamPattern beams;
-  LaserNoise laser;
-  OdometryDrift odometry;
+  DriveOptions drive{};
+  BeamPattern beams{};
+  LaserNoise laser{};
+  OdometryDrift odometry{};
 };
 
 struct SimulatedLog {
