@@ -1,0 +1,228 @@
+#include "topogeo/topomap/local_map_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "../voronoi/test_world.hpp"
+
+namespace topogeo::topomap {
+namespace {
+
+using geometry::Pose2;
+using test_world::Laser;
+using test_world::scan_of;
+using test_world::World;
+
+LocalMap map_of(const scan::Scan& scan, const Pose2& T_robot_laser = {},
+                const LocalMapConfig& config = {}) {
+  voronoi::LocalVoronoi voronoi{voronoi::VoronoiConfig{}};
+  LocalMap map;
+  build_local_map(voronoi.compute(scan), scan, T_robot_laser, config, map);
+  return map;
+}
+
+std::vector<LocalNode> nodes_of(const LocalMap& map, NodeKind kind) {
+  std::vector<LocalNode> result;
+  std::ranges::copy_if(map.nodes, std::back_inserter(result),
+                       [&](const LocalNode& node) { return node.kind == kind; });
+  return result;
+}
+
+/// What must hold of every local map.
+void expect_well_formed(const LocalMap& map) {
+  for (std::size_t i = 0; i < map.nodes.size(); ++i) {
+    EXPECT_EQ(map.nodes[i].id, i);
+    EXPECT_GE(map.nodes[i].base_groups.size(), 2U);
+  }
+  for (std::size_t i = 0; i < map.branches.size(); ++i) {
+    const LocalBranch& branch = map.branches[i];
+    EXPECT_EQ(branch.id, i);
+    ASSERT_GE(branch.points.size(), 2U);
+    EXPECT_EQ(branch.points.front().position_m, map.nodes[branch.node_a].position_m);
+    EXPECT_EQ(branch.points.back().position_m, map.nodes[branch.node_b].position_m);
+    EXPECT_EQ(branch.in_main_graph, map.nodes[branch.node_a].in_main_graph);
+    EXPECT_EQ(branch.in_main_graph, map.nodes[branch.node_b].in_main_graph);
+    for (const std::uint32_t node : {branch.node_a, branch.node_b}) {
+      EXPECT_TRUE(std::ranges::includes(map.nodes[node].base_groups, branch.base_groups));
+    }
+  }
+}
+
+// A room, a door 0.9 m wide in the wall at x = 2, and a wall behind it at x = 4.
+const World kDoor{
+    {-1, 2, 2, 2}, {2, 2, 2, 0.45}, {-1, -2, 2, -2}, {2, -2, 2, -0.45}, {4, -3, 4, 3}};
+
+TEST(LocalMapBuilder, ADoorIsANodeWhereTheBranchIsNarrowest) {
+  const LocalMap map = map_of(scan_of(kDoor, {0.7, 0.05, 0.0}));
+  expect_well_formed(map);
+  const auto doors = nodes_of(map, NodeKind::kDoor);
+  ASSERT_EQ(doors.size(), 1U);
+  EXPECT_NEAR(doors[0].position_m.x(), 1.3, 0.05);
+  EXPECT_NEAR(doors[0].position_m.y(), -0.05, 0.03);
+  EXPECT_NEAR(doors[0].clearance_m, 0.45, 0.03);
+  EXPECT_TRUE(doors[0].in_main_graph);
+  // The node splits its branch in two.
+  EXPECT_EQ(std::ranges::count_if(map.branches,
+                                  [&](const LocalBranch& branch) {
+                                    return branch.node_a == doors[0].id ||
+                                           branch.node_b == doors[0].id;
+                                  }),
+            2);
+  // Behind it, as far from the door posts as from the wall: (x - 2)^2 + 0.45^2 = (4 - x)^2.
+  const auto real = nodes_of(map, NodeKind::kReal);
+  ASSERT_EQ(real.size(), 1U);
+  EXPECT_NEAR(real[0].position_m.x(), 2.949 - 0.7, 0.05);
+}
+
+TEST(LocalMapBuilder, AWiderMinimumIsANarrowingAndNoStateIsLookedForWhenSwitchedOff) {
+  World wide = kDoor;
+  wide[1].y1 = 0.8;
+  wide[3].y1 = -0.8;
+  const scan::Scan scan = scan_of(wide, {0.7, 0.0, 0.0});
+  EXPECT_TRUE(nodes_of(map_of(scan), NodeKind::kDoor).empty());
+  EXPECT_EQ(nodes_of(map_of(scan), NodeKind::kNarrowing).size(), 1U);
+  LocalMapConfig off;
+  off.find_states = false;
+  EXPECT_TRUE(nodes_of(map_of(scan, {}, off), NodeKind::kNarrowing).empty());
+  LocalMapConfig wide_doors;
+  wide_doors.door_half_width_m = 0.9;
+  EXPECT_EQ(nodes_of(map_of(scan, {}, wide_doors), NodeKind::kDoor).size(), 1U);
+}
+
+// A corridor 2 m wide that ends at x = 4 in a hall whose far wall is at x = 9.
+TEST(LocalMapBuilder, TheMouthOfACorridorIsAHallCorridorPassage) {
+  const World world{{-2, 1, 4, 1}, {4, 1, 4, 6}, {-2, -1, 4, -1}, {4, -1, 4, -6}, {9, -6, 9, 6}};
+  const LocalMap map = map_of(scan_of(world, {1.0, 0.0, 0.0}));
+  expect_well_formed(map);
+  const auto passages = nodes_of(map, NodeKind::kHallCorridor);
+  ASSERT_EQ(passages.size(), 1U);
+  EXPECT_NEAR(passages[0].position_m.x(), 3.1, 0.25);
+  EXPECT_NEAR(passages[0].clearance_m, 1.0, 0.05);
+  EXPECT_TRUE(nodes_of(map, NodeKind::kDoor).empty());
+  EXPECT_TRUE(nodes_of(map, NodeKind::kNarrowing).empty());
+}
+
+// The corridor widens to 3 m and narrows again: a maximum, and no end of a corridor 1.5 m long.
+TEST(LocalMapBuilder, AMaximumOfTheClearanceMakesNoNode) {
+  const World world{{-1, 1, 0.5, 1},      {0.5, 1, 1.5, 1.5}, {1.5, 1.5, 2.5, 1},
+                    {2.5, 1, 3.5, 1},     {-1, -1, 0.5, -1},  {0.5, -1, 1.5, -1.5},
+                    {1.5, -1.5, 2.5, -1}, {2.5, -1, 3.5, -1}, {20, -9, 20, 9}};
+  const LocalMap map = map_of(scan_of(world));
+  for (const LocalNode& node : map.nodes) {
+    EXPECT_FALSE(node.kind == NodeKind::kDoor || node.kind == NodeKind::kNarrowing) << node.id;
+    EXPECT_TRUE(node.kind != NodeKind::kHallCorridor || node.clearance_m < 1.2) << node.id;
+  }
+}
+
+// The far wall is beyond the range limit: it only shows that the corridor is free.
+TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodes) {
+  const World corridor{{-3, 1, 5, 1}, {-3, -1, 5, -1}, {20, -9, 20, 9}};
+  const LocalMap map = map_of(scan_of(corridor));
+  expect_well_formed(map);
+  ASSERT_EQ(map.branches.size(), 1U);
+  EXPECT_EQ(map.nodes.size(), 2U);
+  EXPECT_EQ(nodes_of(map, NodeKind::kFictitious).size(), 2U);
+  EXPECT_GT(map.branches[0].points.back().position_m.x(), 4.5);
+  // Without the wall the beams along the axis meet nothing, which proves nothing to be free.
+  EXPECT_TRUE(map_of(scan_of({corridor[0], corridor[1]})).branches.empty());
+}
+
+TEST(LocalMapBuilder, AVirtualDiagramMakesOnlyVirtualElements) {
+  for (const World& world : {World{}, World{{-3, 1, 30, 1}}}) {
+    const LocalMap map = map_of(scan_of(world));
+    expect_well_formed(map);
+    ASSERT_EQ(map.branches.size(), 1U);
+    EXPECT_TRUE(map.branches[0].is_virtual);
+    EXPECT_EQ(nodes_of(map, NodeKind::kVirtual).size(), map.nodes.size());
+  }
+}
+
+// A corridor, and another one seen through a slit in its wall that no branch leads through.
+TEST(LocalMapBuilder, WhatIsOffTheMainGraphIsKeptAndMarked) {
+  const World world{{-2, 1, 2.0, 1},     {2.5, 1, 8, 1},   {-2, -1, 8, -1},
+                    {-2, 2.5, 2.9, 2.5}, {5, 2.6, 9, 2.6}, {0, 6, 12, 6}};
+  const LocalMap map = map_of(scan_of(world, {1.0, 0.0, 0.0}));
+  expect_well_formed(map);
+  const auto off = std::ranges::count_if(
+      map.branches, [](const LocalBranch& branch) { return !branch.in_main_graph; });
+  EXPECT_GE(off, 1);
+  EXPECT_LT(off, static_cast<std::ptrdiff_t>(map.branches.size()));
+  // The graph nearest to the robot is the one that is marked.
+  double main_m = 1e9;
+  double other_m = 1e9;
+  for (const LocalBranch& branch : map.branches) {
+    for (const BranchPoint& point : branch.points) {
+      double& nearest_m = branch.in_main_graph ? main_m : other_m;
+      nearest_m = std::min(nearest_m, point.position_m.norm());
+    }
+  }
+  EXPECT_LT(main_m, other_m);
+}
+
+TEST(LocalMapBuilder, AnOuterBranchEndsBeforeTheFirstLongStep) {
+  voronoi::LocalVoronoiDiagram diagram;
+  for (const double x_m : {-2.0, -1.9, -0.1, 0.0, 0.1, 0.2, 1.0, 1.1}) {
+    diagram.points.push_back({{x_m, 0.0}, 1.0});
+  }
+  diagram.branches.push_back({.base_groups = {0, 1}, .points = {0, 8}});
+  LocalMap map;
+  build_local_map(diagram, scan::Scan{}, {}, {}, map);
+  ASSERT_EQ(map.branches.size(), 1U);
+  ASSERT_EQ(map.branches[0].points.size(), 4U);
+  EXPECT_EQ(map.branches[0].points.front().position_m.x(), -0.1);
+  EXPECT_EQ(map.branches[0].points.back().position_m.x(), 0.2);
+}
+
+TEST(LocalMapBuilder, CoordinatesAreOfTheRobotHoweverTheLaserIsMounted) {
+  const Laser laser{.beams = 720, .field_of_view_deg = 360.0};
+  const Pose2 T_world_robot{0.7, 0.05, 0.1};
+  const LocalMap straight = map_of(scan_of(kDoor, T_world_robot, laser));
+  for (const Pose2& T_robot_laser : {Pose2{0.1, 0.0, 0.0}, Pose2{0.05, -0.1, 0.7}}) {
+    const LocalMap map =
+        map_of(scan_of(kDoor, T_world_robot * T_robot_laser, laser), T_robot_laser);
+    expect_well_formed(map);
+    EXPECT_EQ(map.T_robot_laser, T_robot_laser);
+    for (const NodeKind kind : {NodeKind::kReal, NodeKind::kDoor}) {
+      ASSERT_EQ(nodes_of(map, kind).size(), 1U);
+      EXPECT_LT((nodes_of(map, kind)[0].position_m - nodes_of(straight, kind)[0].position_m).norm(),
+                0.05);
+    }
+    for (const ScanPoint& point : map.points) {
+      const Eigen::Vector2d at = T_world_robot * Eigen::Vector2d{point.x_m, point.y_m};
+      const bool on_a_wall = std::abs(std::abs(at.y()) - 2.0) < 1e-4 ||
+                             std::abs(at.x() - 2.0) < 1e-4 || std::abs(at.x() - 4.0) < 1e-4;
+      EXPECT_TRUE(on_a_wall) << at.transpose();
+    }
+  }
+}
+
+TEST(LocalMapBuilder, PointsAreTheReadingsUpToTheLimitInBeamOrder) {
+  scan::Scan scan;
+  scan.angle_min_rad = 0.0;
+  scan.angle_step_rad = M_PI / 2.0;
+  scan.ranges_m = {2.0F, scan::Scan::kNoReturn, 11.0F};
+  LocalMap map;
+  map.points.resize(5);
+  build_local_map({}, scan, {0.5, 0.0, 0.0}, {}, map);
+  ASSERT_EQ(map.points.size(), 1U);
+  EXPECT_FLOAT_EQ(map.points[0].x_m, 2.5F);
+  scan.ranges_m[2] = 9.0F;
+  build_local_map({}, scan, {}, {}, map);
+  ASSERT_EQ(map.points.size(), 2U);
+  EXPECT_FLOAT_EQ(map.points[1].x_m, -9.0F);
+}
+
+TEST(LocalMapBuilder, RandomScenesGiveWellFormedMapsAndTheSameHashTwice) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    const scan::Scan scan = scan_of(test_world::random_world(seed));
+    const LocalMap map = map_of(scan);
+    expect_well_formed(map);
+    EXPECT_EQ(content_hash(map), content_hash(map_of(scan)));
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::topomap
