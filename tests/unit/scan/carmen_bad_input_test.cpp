@@ -198,7 +198,8 @@ TEST_F(LogFiles, RandomDamageNeverGivesAnInvalidScan) {
     good += flaser(std::to_string(i) + ".25");
     good += "ODOM 1 2 3 0 0 0 1 h 1\n";
   }
-  const std::string alphabet = std::string(1, \'\0\') + "0123456789.-+eE nainf\n\t\r#FLASER\xff";
+  std::string alphabet = "0123456789.-+eE nainf\n\t\r#FLASER\xff";
+  alphabet.push_back(0);
   for (int round = 0; round < 3000; ++round) {
     std::string text = good;
     const auto damages = 1 + random() % 5;
