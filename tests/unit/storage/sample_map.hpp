@@ -33,7 +33,7 @@ inline topomap::LocalMap sample_local_map(std::uint32_t id) {
 }
 
 inline topomap::StopPose sample_stop(std::uint32_t id, double x_m) {
-  topomap::StopPose stop{id, 1'000'000'000LL * id + 7, {x_m, 2.0, -3.0}, {}};
+  topomap::StopPose stop{id, 1'000'000'000LL * id + 7, {x_m, 2.0, -3.0}, Eigen::Matrix3d::Zero()};
   stop.covariance << 1, 2, 3, 4, 5, 6, 7, 8, 9;
   return stop;
 }

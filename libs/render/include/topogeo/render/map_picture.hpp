@@ -1,0 +1,42 @@
+// Pictures of a map as PNG and SVG.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "topogeo/topomap/global_map.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::render {
+
+/// What is drawn, all in the map frame. Every part may be empty. What the spans view must live
+/// until the picture is drawn.
+struct MapPicture {
+  std::span<const topomap::LocalMap> local_maps;    ///< their laser points
+  std::span<const topomap::StopPose> stops;         ///< corrected; stops[i] is of local_maps[i]
+  std::span<const topomap::StampedPose> odometry;   ///< as of topomap::expand_odometry
+  std::span<const topomap::StampedPose> corrected;  ///< as of topomap::expand_trajectory
+  std::span<const topomap::LoopClosure> loop_closures;
+  const topomap::GlobalMap* global_map = nullptr;  ///< nullptr: none yet
+  std::string title;
+};
+
+struct PictureOptions {
+  std::uint32_t max_width_px = 1600;  ///< 400 to 16384
+};
+
+/// Writes the picture whole or not at all. Throws std::runtime_error naming the path, and
+/// std::invalid_argument for a width out of range or more stops than local maps.
+void draw_map_png(const std::filesystem::path& path, const MapPicture& picture,
+                  const PictureOptions& options = {});
+void draw_map_svg(const std::filesystem::path& path, const MapPicture& picture,
+                  const PictureOptions& options = {});
+
+/// The bytes of the files. The same picture gives the same SVG bytes.
+std::string map_png(const MapPicture& picture, const PictureOptions& options = {});
+std::string map_svg(const MapPicture& picture, const PictureOptions& options = {});
+
+}  // namespace topogeo::render

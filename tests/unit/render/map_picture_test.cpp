@@ -1,0 +1,163 @@
+#include "topogeo/render/map_picture.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+
+#include <cairo.h>
+#include <gmock/gmock.h>
+
+#include "canvas.hpp"
+#include "sample_floor.hpp"
+
+namespace topogeo::render {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// A PNG file's pixels, decoded by cairo.
+class Pixels {
+ public:
+  explicit Pixels(std::string png) : png_(std::move(png)) {
+    surface_.reset(cairo_image_surface_create_from_png_stream(read, this));
+    EXPECT_EQ(cairo_surface_status(surface_.get()), CAIRO_STATUS_SUCCESS);
+  }
+  [[nodiscard]] int width() const { return cairo_image_surface_get_width(surface_.get()); }
+  [[nodiscard]] int height() const { return cairo_image_surface_get_height(surface_.get()); }
+
+  /// Pixels of about this colour: smoothing mixes the edges of a line with what is below.
+  [[nodiscard]] int count(const Colour& colour) const {
+    constexpr double kTolerance = 0.12;
+    const auto is_near = [](std::uint32_t byte, double wanted) {
+      return std::abs(static_cast<double>(byte & 0xffU) / 255.0 - wanted) <= kTolerance;
+    };
+    int found = 0;
+    for (int y = 0; y < height(); ++y) {
+      for (int x = 0; x < width(); ++x) {
+        const std::uint32_t pixel = at(x, y);
+        found += is_near(pixel >> 16U, colour.red) && is_near(pixel >> 8U, colour.green) &&
+                         is_near(pixel, colour.blue)
+                     ? 1
+                     : 0;
+      }
+    }
+    return found;
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t at(int x, int y) const {
+    const unsigned char* data = cairo_image_surface_get_data(surface_.get());
+    const int stride = cairo_image_surface_get_stride(surface_.get());
+    std::uint32_t pixel = 0;
+    std::memcpy(&pixel, data + static_cast<std::ptrdiff_t>(y) * stride + 4L * x, 4);
+    return pixel & 0xffffffU;
+  }
+  static cairo_status_t read(void* self, unsigned char* data, unsigned int length) {
+    auto* pixels = static_cast<Pixels*>(self);
+    if (pixels->at_ + length > pixels->png_.size()) return CAIRO_STATUS_READ_ERROR;
+    std::memcpy(data, pixels->png_.data() + pixels->at_, length);
+    pixels->at_ += length;
+    return CAIRO_STATUS_SUCCESS;
+  }
+  struct Destroy {
+    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+  };
+  std::string png_;
+  std::size_t at_ = 0;
+  std::unique_ptr<cairo_surface_t, Destroy> surface_;
+};
+
+TEST(MapPicture, ShowsEveryPartInItsColour) {
+  const SampleFloor floor = sample_floor();
+  const Pixels pixels(map_png(floor.picture()));
+  EXPECT_EQ(pixels.width(), 1600);
+  EXPECT_GT(pixels.height(), 700);
+  EXPECT_LT(pixels.height(), 1400);
+  EXPECT_GT(pixels.count(kWhite), pixels.width() * pixels.height() / 2);
+  EXPECT_GT(pixels.count(kLaserPoints), 4000);
+  EXPECT_GT(pixels.count(kBranch), 200);
+  EXPECT_GT(pixels.count(kVirtualBranch), 100);
+  EXPECT_GT(pixels.count(kCorrected), 1000);
+  EXPECT_GT(pixels.count(kOdometry), 500);
+  EXPECT_GT(pixels.count(kDoor), 100);
+  EXPECT_GT(pixels.count(kInk), 100);
+}
+
+TEST(MapPicture, LeavesOutWhatIsNotThere) {
+  const SampleFloor floor = sample_floor();
+  MapPicture picture = floor.picture();
+  picture.odometry = {};
+  picture.global_map = nullptr;
+  picture.loop_closures = {};
+  const Pixels pixels(map_png(picture));
+  for (const Colour& colour : {kOdometry, kBranch, kVirtualBranch, kDoor, kLoopClosure}) {
+    EXPECT_EQ(pixels.count(colour), 0);
+  }
+  EXPECT_GT(pixels.count(kCorrected), 1000);
+}
+
+TEST(MapPicture, DrawsEmptyAndOneStopMaps) {
+  MapPicture empty;
+  empty.title = "Empty";
+  const Pixels nothing(map_png(empty));
+  EXPECT_EQ(nothing.count(kCorrected), 0);
+  EXPECT_GT(nothing.count(kInk), 0);
+  EXPECT_THAT(map_svg(empty), HasSubstr("</svg>"));
+
+  topomap::LocalMap map;
+  map.points = {{1.0F, 0.0F}, {1.0F, 0.1F}};
+  const std::vector<topomap::LocalMap> maps{map};
+  const std::vector<topomap::StopPose> stops(1);
+  const std::vector<topomap::StampedPose> path(1);
+  MapPicture one;
+  one.local_maps = maps;
+  one.stops = stops;
+  one.corrected = path;
+  one.odometry = path;
+  EXPECT_GT(Pixels(map_png(one)).count(kLaserPoints), 0);
+}
+
+TEST(MapPicture, IsTheSameBytesEachTimeAndSmall) {
+  const SampleFloor floor = sample_floor();
+  const std::string svg = map_svg(floor.picture());
+  EXPECT_THAT(svg.substr(0, 200), HasSubstr("<svg"));
+  EXPECT_THAT(svg.substr(0, 300), HasSubstr("width=\"1600px\""));
+  EXPECT_LT(svg.size(), 500000U);
+  EXPECT_TRUE(map_svg(floor.picture()) == svg);
+  EXPECT_TRUE(map_png(floor.picture()) == map_png(floor.picture()));
+}
+
+TEST(MapPicture, KeepsToTheWidthAndRefusesOddOnes) {
+  const SampleFloor floor = sample_floor();
+  EXPECT_EQ(Pixels(map_png(floor.picture(), {.max_width_px = 800})).width(), 800);
+  EXPECT_THROW(map_png(floor.picture(), {.max_width_px = 399}), std::invalid_argument);
+  EXPECT_THROW(map_svg(floor.picture(), {.max_width_px = 20000}), std::invalid_argument);
+  MapPicture picture = floor.picture();
+  picture.local_maps = picture.local_maps.first(3);
+  EXPECT_THROW(map_png(picture), std::invalid_argument);
+}
+
+TEST(MapPicture, WritesFiles) {
+  std::string name = std::string(::testing::TempDir()) + "/map_picture_XXXXXX";
+  ASSERT_NE(::mkdtemp(name.data()), nullptr);
+  const std::filesystem::path directory(name);
+  const SampleFloor floor = sample_floor();
+  draw_map_png(directory / "map.png", floor.picture());
+  draw_map_svg(directory / "map.svg", floor.picture());
+  const auto start = [](const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {}).substr(0, 8);
+  };
+  EXPECT_EQ(start(directory / "map.png"), "\x89PNG\r\n\x1a\n");
+  EXPECT_THAT(start(directory / "map.svg"), StartsWith("<?xml"));
+  EXPECT_THROW(draw_map_png(directory / "no" / "map.png", floor.picture()), std::runtime_error);
+  std::filesystem::remove_all(directory);
+}
+
+}  // namespace
+}  // namespace topogeo::render
