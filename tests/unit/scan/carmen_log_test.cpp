@@ -133,6 +133,11 @@ struct RealLog {
   std::size_t beams;
 };
 
+// Shown by the test runner instead of the bytes.
+std::ostream& operator<<(std::ostream& out, const RealLog& tested) {
+  return out << tested.file;
+}
+
 class RealLogs : public ::testing::TestWithParam<RealLog> {};
 
 TEST_P(RealLogs, EveryLineIsUsable) {

@@ -48,6 +48,11 @@ struct BadWorld {
   const char* message;
 };
 
+// Shown by the test runner instead of the bytes.
+std::ostream& operator<<(std::ostream& out, const BadWorld& tested) {
+  return out << tested.name;
+}
+
 class BadWorlds : public ::testing::TestWithParam<BadWorld> {};
 
 TEST_P(BadWorlds, AreErrorsThatNameFileAndLine) {
