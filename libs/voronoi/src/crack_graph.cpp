@@ -13,8 +13,6 @@ constexpr std::uint16_t kNone = NearestSiteGrid::kNone;
 constexpr std::uint32_t kLoose = DiagramBranch::kLoose;
 
 // Directions along the corners: +column, +row, -column, -row; the bit of direction d is 1 << d.
-constexpr std::array<int, 4> kRowStep{0, 1, 0, -1};
-constexpr std::array<int, 4> kColStep{1, 0, -1, 0};
 // Cells around corner (r, c), counted around it: (r-1,c-1), (r-1,c), (r,c), (r,c-1).
 constexpr std::array<int, 4> kCellRow{-1, -1, 0, 0};
 constexpr std::array<int, 4> kCellCol{-1, 0, 0, -1};

@@ -78,6 +78,14 @@ void drop_group(GeneratorGroups& groups, std::size_t k) {
   }
 }
 
+/// True if group `between` is seen through the gap between its neighbours.
+bool lies_behind(const GeneratorGroups& groups, std::size_t before, std::size_t between,
+                 std::size_t after) {
+  const auto& [points, runs, closed] = groups;
+  return points[runs[between].begin].range_m > points[runs[before].end - 1].range_m &&
+         points[runs[between].end - 1].range_m > points[runs[after].begin].range_m;
+}
+
 /// Number of borders between successive groups.
 std::size_t border_count(const GeneratorGroups& groups) {
   const std::size_t n = groups.groups.size();
@@ -176,6 +184,9 @@ void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups)
     double best_m = config.alternate_m;
     std::size_t best = n;
     for (std::size_t k = 0; k < pairs; ++k) {
+      if (config.alternate_behind_only && !lies_behind(groups, k, (k + 1) % n, (k + 2) % n)) {
+        continue;
+      }
       const double m = distance_below(groups, groups.groups[k], groups.groups[(k + 2) % n], best_m);
       if (m < best_m) {
         best_m = m;

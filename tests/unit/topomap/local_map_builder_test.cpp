@@ -1,7 +1,10 @@
 #include "topogeo/topomap/local_map_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -140,26 +143,28 @@ TEST(LocalMapBuilder, AVirtualDiagramMakesOnlyVirtualElements) {
   }
 }
 
-// A corridor, and another one seen through a slit in its wall that no branch leads through.
+// Three branches along one line with gaps of 0.4 m and 1 m between them, and one of other groups.
 TEST(LocalMapBuilder, WhatIsOffTheMainGraphIsKeptAndMarked) {
-  const World world{{-2, 1, 2.0, 1},     {2.5, 1, 8, 1},   {-2, -1, 8, -1},
-                    {-2, 2.5, 2.9, 2.5}, {5, 2.6, 9, 2.6}, {0, 6, 12, 6}};
-  const LocalMap map = map_of(scan_of(world, {1.0, 0.0, 0.0}));
-  expect_well_formed(map);
-  const auto off = std::ranges::count_if(
-      map.branches, [](const LocalBranch& branch) { return !branch.in_main_graph; });
-  EXPECT_GE(off, 1);
-  EXPECT_LT(off, static_cast<std::ptrdiff_t>(map.branches.size()));
-  // The graph nearest to the robot is the one that is marked.
-  double main_m = 1e9;
-  double other_m = 1e9;
-  for (const LocalBranch& branch : map.branches) {
-    for (const BranchPoint& point : branch.points) {
-      double& nearest_m = branch.in_main_graph ? main_m : other_m;
-      nearest_m = std::min(nearest_m, point.position_m.norm());
+  voronoi::LocalVoronoiDiagram diagram;
+  const auto add = [&](double x_m, double y_m, std::array<std::uint16_t, 2> groups) {
+    const auto begin = static_cast<std::uint32_t>(diagram.points.size());
+    for (const double step_m : {0.0, 0.3, 0.6}) {
+      diagram.points.push_back({{x_m + step_m, y_m}, 1.0});
     }
-  }
-  EXPECT_LT(main_m, other_m);
+    diagram.branches.push_back({.base_groups = groups, .points = {begin, begin + 3}});
+  };
+  add(2.6, 0.0, {0, 1});
+  add(0.0, 0.1, {0, 1});
+  add(1.0, 0.0, {0, 1});
+  add(0.0, 0.4, {1, 2});
+  LocalMap map;
+  build_local_map(diagram, scan::Scan{}, {}, {}, map);
+  expect_well_formed(map);
+  ASSERT_EQ(map.branches.size(), 4U);
+  EXPECT_FALSE(map.branches[0].in_main_graph);
+  EXPECT_TRUE(map.branches[1].in_main_graph);
+  EXPECT_TRUE(map.branches[2].in_main_graph);  // the same branch with a few beams missing
+  EXPECT_FALSE(map.branches[3].in_main_graph);
 }
 
 TEST(LocalMapBuilder, AnOuterBranchEndsBeforeTheFirstLongStep) {

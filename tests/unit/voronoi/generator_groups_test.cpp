@@ -1,7 +1,11 @@
 #include "topogeo/voronoi/generator_groups.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -10,7 +14,6 @@
 namespace topogeo::voronoi {
 namespace {
 
-using test_world::Laser;
 using test_world::scan_of;
 using test_world::World;
 
@@ -90,6 +93,16 @@ TEST(GeneratorGroups, AlternateGroupsJoinAndTheOneBetweenIsDropped) {
   EXPECT_EQ(groups_of(scan_of(world), config).groups.size(), 3U);
 }
 
+TEST(GeneratorGroups, WhatStandsInFrontOfAWallIsDroppedOnlyAsInTheSource) {
+  // A post 0.2 m wide hides a strip of 0.4 m of the wall.
+  const World world{{2, -2, 2, 2}, {1, -0.1, 1, 0.1}};
+  VoronoiConfig config = nothing_on();
+  config.join_alternate = true;
+  EXPECT_EQ(groups_of(scan_of(world), config).groups.size(), 3U);
+  config.alternate_behind_only = false;
+  EXPECT_EQ(groups_of(scan_of(world), config).groups.size(), 1U);
+}
+
 TEST(GeneratorGroups, SmallGroupsGoUpToAndIncludingTheThreshold) {
   const auto scan = scan_with({2, 4, 4, 6, 6, 6, 8, 8, 8, 8});
   VoronoiConfig config = nothing_on();
@@ -127,6 +140,7 @@ TEST(GeneratorGroups, TheMirrorImageOfAScanHasTheMirrorImageOfItsGroups) {
     scan::Scan scan = scan_of(test_world::random_world(seed));
     VoronoiConfig config;
     config.join_alternate = seed % 2 == 0;
+    config.alternate_behind_only = seed % 4 == 0;
     config.join_hidden_zones = seed % 3 == 0;
     Sizes forward = sizes(groups_of(scan, config));
     std::reverse(scan.ranges_m.begin(), scan.ranges_m.end());

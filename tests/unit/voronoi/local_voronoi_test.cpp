@@ -208,7 +208,8 @@ TEST(LocalVoronoi, BranchesLieInsideTheSourcesEquidistantCells) {
         const Eigen::Vector2d cell =
             ((points[i].position_m / resolution_m).array().floor() + 0.5) * resolution_m;
         double nearest_m = std::numeric_limits<double>::infinity();
-        for (std::uint16_t g = 0; g < diagram.groups.groups.size(); ++g) {
+        const auto groups = static_cast<std::uint16_t>(diagram.groups.groups.size());
+        for (std::uint16_t g = 0; g < groups; ++g) {
           nearest_m = std::min(nearest_m, distance_to_group(diagram, g, cell));
         }
         for (const std::uint16_t group : branch.base_groups) {

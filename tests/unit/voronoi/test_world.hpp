@@ -1,8 +1,10 @@
 // Small worlds of line segments and the scan that a laser in them makes.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <random>
