@@ -14,7 +14,7 @@ namespace {
 constexpr double kMargin_px = 24.0;
 constexpr double kTitleHeight_px = 44.0;
 constexpr double kMinWidth_px = 720.0;
-constexpr double kMaxScale_px_per_m = 120.0;
+constexpr double kLargestScale_px = 120.0;  // of one metre
 constexpr double kQuarterTurn_rad = std::numbers::pi / 2;
 
 struct Box {
@@ -147,7 +147,7 @@ Layout make_layout(const MapPicture& picture, const std::vector<ScanOutline>& ou
   const double width_px = options.max_width_px;
   const double inner_px = width_px - 2 * kMargin_px;
   layout.scale_px_per_m =
-      std::min({kMaxScale_px_per_m, inner_px / size_m.x(), inner_px / size_m.y()});
+      std::min({kLargestScale_px, inner_px / size_m.x(), inner_px / size_m.y()});
   layout.map_width_px = size_m.x() * layout.scale_px_per_m;
   layout.map_height_px = size_m.y() * layout.scale_px_per_m;
   const double page_px =

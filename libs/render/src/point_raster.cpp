@@ -18,8 +18,7 @@ std::vector<RasterRun> raster_runs(const std::vector<ScanOutline>& outlines, con
     }
   }
   std::ranges::sort(cells);
-  const auto repeated = std::ranges::unique(cells);
-  cells.erase(repeated.begin(), repeated.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 
   const auto left_edge_m = [&](std::int64_t row, std::int64_t column) {
     return Eigen::Vector2d(layout.min_m.x() + static_cast<double>(column) * cell_m,

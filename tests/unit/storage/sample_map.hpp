@@ -19,7 +19,7 @@ inline topomap::LocalMap sample_local_map(std::uint32_t id) {
   topomap::LocalMap map;
   map.robot_id = "robot-1";
   map.id = id;
-  map.sequence = 10U * id;
+  map.sequence = std::uint64_t{10} * id;
   map.stamp_ns = 1'000'000'000LL * id + 7;
   map.T_odom_robot = {d, -0.5 * d, 0.1};
   map.T_previous_robot = {1.0, 0.25, -0.2};
@@ -28,7 +28,7 @@ inline topomap::LocalMap sample_local_map(std::uint32_t id) {
                {1, topomap::NodeKind::kHallCorridor, {3.0, 1.0 / 3.0}, 1.1, {}, false}};
   map.branches = {{0, 0, 1, {2, 5}, true, false, {{{1.0, 2.0}, 0.8}, {{3.0, 4.0}, 1.1}}}};
   map.points = {{0.5F, 1.5F}, {-2.25F, 0.1F}, {0.0F, -0.0F}};
-  if (id > 0) map.track = {{10U * id - 1, 5, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, true}};
+  if (id > 0) map.track = {{std::uint64_t{10} * id - 1, 5, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, true}};
   return map;
 }
 

@@ -39,6 +39,7 @@ TEST_F(Tum, WritesOneLinePerPose) {
 
 TEST_F(Tum, ReadsBackWhatItWrote) {
   std::vector<topomap::StampedPose> poses;
+  poses.reserve(60);
   for (int i = 0; i < 60; ++i) {
     poses.push_back({static_cast<std::uint64_t>(i),
                      1'700'000'000'123'456'789 + i,

@@ -52,8 +52,8 @@ class ConfigSchema {
   /// An enumeration by names: add("match.form", &form, {{"combined", Form::kCombined}, ...},
   /// "...").
   template <typename Enum>
-  void add(std::string key, Enum* value, std::vector<std::pair<std::string, Enum>> names,
-           std::string why);
+  void add(const std::string& key, Enum* value,
+           const std::vector<std::pair<std::string, Enum>>& names, const std::string& why);
 
   /// In the order of declaration.
   [[nodiscard]] const std::vector<ConfigParameter>& parameters() const { return parameters_; }
@@ -97,11 +97,12 @@ EffectiveConfig effective(const ConfigSchema& schema);
 void write_yaml(const ConfigSchema& schema, std::ostream& out);
 
 template <typename Enum>
-void ConfigSchema::add(std::string key, Enum* value,
-                       std::vector<std::pair<std::string, Enum>> names, std::string why) {
+void ConfigSchema::add(const std::string& key, Enum* value,
+                       const std::vector<std::pair<std::string, Enum>>& names,
+                       const std::string& why) {
   std::vector<std::string> texts;
   std::vector<Enum> values;
-  for (auto& [text, meaning] : names) {
+  for (const auto& [text, meaning] : names) {
     texts.push_back(text);
     values.push_back(meaning);
   }
@@ -111,7 +112,7 @@ void ConfigSchema::add(std::string key, Enum* value,
     return i;
   };
   auto set = [value, values](std::size_t i) { *value = values[i]; };
-  add_enumeration(std::move(key), texts, std::move(get), std::move(set), std::move(why));
+  add_enumeration(key, texts, std::move(get), std::move(set), why);
 }
 
 }  // namespace topogeo::support
