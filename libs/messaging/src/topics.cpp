@@ -1,6 +1,8 @@
 #include "topogeo/messaging/topics.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "topogeo/msg/local_mapPubSubTypes.h"
 #include "topogeo/msg/local_mapTypeObject.h"
@@ -27,9 +29,23 @@ namespace topogeo::messaging {
 
 namespace {
 
-template <class TypeSupport>
+/// What the history allocates for a sample before it knows how large it is, bytes.
+constexpr std::uint32_t kInitialPayload = 1024;
+
+/// A generated type support whose histories start small and grow with the samples. The generated
+/// one makes histories allocate the maximum of a bounded type for each sample, which is 50 MB for a
+/// local map.
+template <class Generated>
+class GrowingTypeSupport final : public Generated {
+ public:
+  GrowingTypeSupport() { this->m_typeSize = std::min(this->m_typeSize, kInitialPayload); }
+  [[nodiscard]] bool is_bounded() const override { return false; }
+  [[nodiscard]] bool is_plain() const override { return false; }
+};
+
+template <class Generated>
 eprosima::fastdds::dds::TopicDataType* make_type() {
-  return new TypeSupport;  // NOLINT: the caller hands it to a dds::TypeSupport
+  return new GrowingTypeSupport<Generated>;  // NOLINT: the caller hands it to a dds::TypeSupport
 }
 
 template <class T>

@@ -1,0 +1,241 @@
+// What reaches whom: late readers, slow readers, disposals, filters, partitions.
+#include <map>
+#include <set>
+#include <vector>
+
+#include "fixture.hpp"
+
+namespace topogeo::messaging {
+namespace {
+
+using Delivery = TwoParticipants;
+
+msg::MapElement element(std::uint32_t id) {
+  auto result = message<msg::MapElement>();
+  result.kind(msg::kElementNode);
+  result.id(id);
+  return result;
+}
+
+TEST_F(Delivery, LateReaderGetsTheLastStateOfEachInstance) {
+  Writer<msg::TrajectorySegment> writer(sender_);
+  for (std::uint64_t version = 1; version <= 3; ++version) {
+    for (std::uint32_t segment = 0; segment < 2; ++segment) {
+      auto sample = message<msg::TrajectorySegment>();
+      sample.segment(segment);
+      sample.version(version);
+      ASSERT_TRUE(writer.write(sample));
+    }
+  }
+  Reader<msg::TrajectorySegment> reader(receiver_);
+  std::map<std::uint32_t, std::vector<std::uint64_t>> versions;
+  ASSERT_TRUE(eventually([&] {
+    reader.take([&](const msg::TrajectorySegment& got, const SampleInfo&) {
+      versions[got.segment()].push_back(got.version());
+    });
+    return versions.size() == 2;
+  }));
+  EXPECT_EQ(versions[0], std::vector<std::uint64_t>{3});
+  EXPECT_EQ(versions[1], std::vector<std::uint64_t>{3});
+}
+
+TEST_F(Delivery, ThousandsOfInstancesReachALateReader) {
+  constexpr std::uint32_t kInstances = 3'000;
+  Writer<msg::MapElement> writer(sender_);
+  for (std::uint32_t id = 0; id < kInstances; ++id) ASSERT_TRUE(writer.write(element(id)));
+  Reader<msg::MapElement> reader(receiver_);
+  std::set<std::uint32_t> ids;
+  std::set<Handle> handles;
+  EXPECT_TRUE(eventually([&] {
+    reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
+      ids.insert(got.id());
+      handles.insert(info.instance);
+    });
+    return ids.size() == kInstances;
+  }));
+  EXPECT_EQ(ids.size(), kInstances);
+  EXPECT_EQ(handles.size(), kInstances);
+}
+
+TEST_F(Delivery, ThousandsOfLocalMapsReachALateReader) {
+  constexpr std::uint32_t kMaps = 3'000;
+  Writer<msg::LocalMap> writer(sender_);
+  for (std::uint32_t id = 0; id < kMaps; ++id) {
+    auto map = message<msg::LocalMap>();
+    map.id(id);
+    map.points().resize(361);
+    ASSERT_TRUE(writer.write(map));
+  }
+  Reader<msg::LocalMap> reader(receiver_);
+  std::set<std::uint32_t> ids;
+  EXPECT_TRUE(eventually([&] {
+    reader.take([&](const msg::LocalMap& got, const SampleInfo&) { ids.insert(got.id()); });
+    return ids.size() == kMaps;
+  }));
+}
+
+TEST_F(Delivery, SlowReaderSlowsAReplayAndLosesNothing) {
+  constexpr std::uint64_t kScans = 500;
+  Writer<msg::Scan> writer(sender_, kReplayRole);
+  Reader<msg::Scan> reader(receiver_, {.role = std::string(kReplayRole), .filter = {}});
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(reader.wait_for_matched(1, kPatience));
+
+  std::uint64_t refused = 0;
+  std::thread replay([&] {
+    for (std::uint64_t i = 0; i < kScans; ++i) {
+      auto scan = message<msg::Scan>(i);
+      scan.ranges_m().assign(361, 1.0F);
+      while (!writer.write(scan)) ++refused;
+    }
+  });
+  // Longer than the writer's max_blocking_time: both histories are full by then.
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  std::vector<std::uint64_t> sequence_numbers;
+  EXPECT_TRUE(eventually([&] {
+    reader.take([&](const msg::Scan& got,
+                    const SampleInfo&) { sequence_numbers.push_back(got.sequence_number()); },
+                1);
+    return sequence_numbers.size() == kScans;
+  }));
+  replay.join();
+
+  EXPECT_GT(refused, 0U);  // the reader did hold the writer back
+  for (std::uint64_t i = 0; i < sequence_numbers.size(); ++i) EXPECT_EQ(sequence_numbers[i], i);
+}
+
+TEST_F(Delivery, DisposalNamesTheInstanceByItsHandle) {
+  Writer<msg::MapElement> writer(sender_);
+  Reader<msg::MapElement> reader(receiver_);
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  for (std::uint32_t id = 0; id < 3; ++id) ASSERT_TRUE(writer.write(element(id)));
+  std::map<Handle, std::uint32_t> id_of;
+  const auto take = [&](auto&& on_gone) {
+    reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
+      if (info.valid) {
+        id_of[info.instance] = got.id();
+      } else {
+        on_gone(got, info);
+      }
+    });
+  };
+  ASSERT_TRUE(eventually([&] {
+    take([](const auto&, const auto&) { ADD_FAILURE() << "nothing was disposed yet"; });
+    return id_of.size() == 3;
+  }));
+
+  writer.dispose(element(1));
+
+  std::vector<std::uint32_t> gone;
+  ASSERT_TRUE(eventually([&] {
+    take([&](const msg::MapElement& got, const SampleInfo& info) {
+      EXPECT_EQ(info.state, InstanceState::kDisposed);
+      EXPECT_EQ(got.schema_version(), 0U);  // no leftovers of an earlier sample
+      gone.push_back(id_of.at(info.instance));
+    });
+    return !gone.empty();
+  }));
+  EXPECT_EQ(gone, std::vector<std::uint32_t>{1});
+
+  Participant late(options_in(partition_));
+  Reader<msg::MapElement> late_reader(late);
+  std::set<std::uint32_t> ids;
+  EXPECT_TRUE(eventually([&] {
+    late_reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
+      if (info.valid) ids.insert(got.id());
+    });
+    return ids.size() == 2;
+  }));
+  EXPECT_EQ(ids, (std::set<std::uint32_t>{0, 2}));
+
+  ASSERT_TRUE(writer.write(element(1)));  // and it may come back
+  EXPECT_TRUE(eventually([&] {
+    bool back = false;
+    reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
+      back = back || (info.valid && got.id() == 1);
+    });
+    return back;
+  }));
+}
+
+TEST_F(Delivery, EverNewInstancesDoNotUseUpTheLimit) {
+  Writer<msg::MapElement> writer(sender_);
+  Reader<msg::MapElement> reader(receiver_);
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  constexpr std::uint32_t kMoreThanTheLimit = 40'000;  // max_instances of role state: 32,768
+  std::set<Handle> alive;
+  std::uint32_t arrived = 0;
+  const auto take = [&] {
+    reader.take([&](const msg::MapElement& got, const SampleInfo& info) {
+      if (info.valid) {
+        arrived = std::max(arrived, got.id());
+        alive.insert(info.instance);
+      } else {
+        alive.erase(info.instance);
+      }
+    });
+  };
+  for (std::uint32_t id = 0; id < kMoreThanTheLimit; ++id) {
+    ASSERT_TRUE(eventually([&] { return writer.write(element(id)); })) << id;
+    if (id > 0) writer.dispose(element(id - 1));
+    take();
+  }
+  EXPECT_TRUE(eventually([&] {
+    take();
+    return arrived == kMoreThanTheLimit - 1 && alive.size() == 1;
+  })) << arrived
+      << " " << alive.size();
+}
+
+TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
+  const auto options_of = [](const std::string& worker) {
+    return ReaderOptions{
+        .role = {}, .filter = {.expression = "worker_id = %0", .parameters = {"'" + worker + "'"}}};
+  };
+  Writer<msg::MatchTask> writer(sender_);
+  Reader<msg::MatchTask> one(receiver_, options_of("one"));
+  Reader<msg::MatchTask> two(receiver_, options_of("two"));
+  ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
+  for (std::uint64_t i = 0; i < 30; ++i) {
+    auto task = message<msg::MatchTask>(i);
+    task.task_id(i);
+    set_text(task.worker_id(), i % 3 == 0 ? "one" : "two", "worker_id");
+    ASSERT_TRUE(writer.write(task));
+  }
+  std::vector<std::uint64_t> ids_one;
+  std::vector<std::uint64_t> ids_two;
+  EXPECT_TRUE(eventually([&] {
+    one.take([&](const msg::MatchTask& t, const SampleInfo&) { ids_one.push_back(t.task_id()); });
+    two.take([&](const msg::MatchTask& t, const SampleInfo&) { ids_two.push_back(t.task_id()); });
+    return ids_one.size() >= 10 && ids_two.size() >= 20;
+  }));
+  EXPECT_EQ(ids_one, (std::vector<std::uint64_t>{0, 3, 6, 9, 12, 15, 18, 21, 24, 27}));
+  EXPECT_EQ(ids_two.size(), 20U);
+  EXPECT_TRUE(writer.wait_for_acknowledgments(kPatience));
+}
+
+TEST_F(Delivery, FilterThatDoesNotFitTheTypeIsAnError) {
+  EXPECT_THROW(
+      Reader<msg::MatchTask>(
+          receiver_, {.role = {}, .filter = {.expression = "nobody = %0", .parameters = {"'x'"}}}),
+      std::runtime_error);
+}
+
+TEST_F(Delivery, PartitionsDoNotSeeEachOtherButTheWildcardSeesAll) {
+  Participant stranger(options_in(random_partition()));
+  Participant observer(options_in(kAnyPartition));
+  Writer<msg::Goal> writer(sender_);
+  Reader<msg::Goal> same(receiver_);
+  Reader<msg::Goal> other(stranger);
+  Reader<msg::Goal> any(observer);
+  ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
+  ASSERT_TRUE(writer.write(message<msg::Goal>()));
+  ASSERT_TRUE(same.wait_for_data(kPatience));
+  ASSERT_TRUE(any.wait_for_data(kPatience));
+  EXPECT_EQ(writer.matched(), 2);
+  EXPECT_EQ(other.matched(), 0);
+  EXPECT_EQ(other.take([](const msg::Goal&, const SampleInfo&) {}), 0U);
+}
+
+}  // namespace
+}  // namespace topogeo::messaging

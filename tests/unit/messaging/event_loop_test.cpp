@@ -1,0 +1,160 @@
+// The loop calls handlers in its own thread, in order, and ends when told.
+#include <csignal>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "topogeo/messaging/signal_stop.hpp"
+
+#include "fixture.hpp"
+
+namespace topogeo::messaging {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(EventLoop, StopsFromAnotherThread) {
+  EventLoop loop;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(50ms);
+    loop.stop();
+  });
+  EXPECT_TRUE(loop.run_for(kPatience));
+  stopper.join();
+}
+
+TEST(EventLoop, StopBeforeRunIsNotLost) {
+  EventLoop loop;
+  loop.stop();
+  EXPECT_TRUE(loop.run_for(kPatience));
+  EXPECT_FALSE(loop.run_for(1ms));  // and counts once
+}
+
+TEST(EventLoop, StopsOnASignal) {
+  EventLoop loop;
+  {
+    const SignalStop signals([&](int) { loop.stop(); });
+    EXPECT_EQ(SignalStop::received(), 0);
+    EXPECT_THROW(SignalStop([](int) {}), std::logic_error);
+    loop.call_after(20ms, [] { ::raise(SIGTERM); });
+    EXPECT_TRUE(loop.run_for(kPatience));
+  }
+  EXPECT_EQ(SignalStop::received(), SIGTERM);
+}
+
+TEST(EventLoop, TimersRunInOrderOfTheirTimes) {
+  EventLoop loop;
+  std::vector<int> order;
+  loop.call_after(30ms, [&] {
+    order.push_back(3);
+    loop.stop();
+  });
+  loop.call_after(10ms, [&] { order.push_back(1); });
+  const auto cancelled = loop.call_after(15ms, [&] { order.push_back(99); });
+  loop.call_after(20ms, [&] { order.push_back(2); });
+  loop.cancel_timer(cancelled);
+  EXPECT_TRUE(loop.run_for(kPatience));
+  EXPECT_EQ(order, (std::vector<int>{1, 2, 3}));
+}
+
+TEST(EventLoop, PeriodicTimerMayCancelItself) {
+  EventLoop loop;
+  int ticks = 0;
+  std::uint64_t timer = 0;
+  timer = loop.add_timer(1ms, [&] {
+    if (++ticks == 3) {
+      loop.cancel_timer(timer);
+      loop.call_after(20ms, [&] { loop.stop(); });
+    }
+  });
+  EXPECT_TRUE(loop.run_for(kPatience));
+  EXPECT_EQ(ticks, 3);
+  EXPECT_THROW(loop.add_timer(0ms, [] {}), std::invalid_argument);
+}
+
+TEST(EventLoop, PostedHandlersRunInTheLoopsThread) {
+  EventLoop loop;
+  std::thread::id where;
+  std::thread poster([&] {
+    loop.post([&] {
+      where = std::this_thread::get_id();
+      loop.stop();
+    });
+  });
+  EXPECT_TRUE(loop.run_for(kPatience));
+  poster.join();
+  EXPECT_EQ(where, std::this_thread::get_id());
+}
+
+TEST(EventLoop, ExceptionOfAHandlerLeavesRun) {
+  EventLoop loop;
+  loop.post([] { throw std::runtime_error("handler"); });
+  EXPECT_THROW(loop.run(), std::runtime_error);
+}
+
+class LoopDelivery : public TwoParticipants {};
+
+TEST_F(LoopDelivery, HandlersGetSamplesAndDisposalsOfSeveralReaders) {
+  Writer<msg::Goal> goals(sender_);
+  Writer<msg::Route> routes(sender_);
+  const Reader<msg::Goal> goal_reader(receiver_);
+  const Reader<msg::Route> route_reader(receiver_);
+  EventLoop loop;
+  std::vector<std::string> seen;
+  loop.add<msg::Goal>(
+      goal_reader,
+      [&](const msg::Goal& goal, const SampleInfo&) {
+        seen.push_back("goal " + std::to_string(goal.goal_id()));
+        EXPECT_TRUE(routes.write(message<msg::Route>()));
+      },
+      [&](const SampleInfo&) {
+        seen.emplace_back("goal gone");
+        loop.stop();
+      });
+  loop.add<msg::Route>(route_reader, [&](const msg::Route&, const SampleInfo&) {
+    seen.emplace_back("route");
+    goals.dispose(message<msg::Goal>());
+  });
+  auto goal = message<msg::Goal>();
+  goal.goal_id(8);
+  ASSERT_TRUE(goals.write(goal));
+  EXPECT_TRUE(loop.run_for(kPatience));
+  EXPECT_EQ(seen, (std::vector<std::string>{"goal 8", "route", "goal gone"}));
+}
+
+TEST_F(LoopDelivery, NothingIsLostBetweenBatches) {
+  constexpr std::uint64_t kTasks = 100;  // several batches
+  Writer<msg::MatchTask> writer(sender_);
+  const Reader<msg::MatchTask> reader(receiver_);
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  for (std::uint64_t i = 0; i < kTasks; ++i) ASSERT_TRUE(writer.write(message<msg::MatchTask>(i)));
+  EventLoop loop;
+  std::uint64_t expected = 0;
+  loop.add<msg::MatchTask>(reader, [&](const msg::MatchTask& task, const SampleInfo&) {
+    EXPECT_EQ(task.sequence_number(), expected);
+    if (++expected == kTasks) loop.stop();
+  });
+  EXPECT_TRUE(loop.run_for(kPatience));
+  EXPECT_EQ(expected, kTasks);
+}
+
+TEST_F(LoopDelivery, StopInAHandlerLeavesTheRestForTheNextRun) {
+  Writer<msg::MatchTask> writer(sender_);
+  const Reader<msg::MatchTask> reader(receiver_);
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  for (std::uint64_t i = 0; i < 3; ++i) ASSERT_TRUE(writer.write(message<msg::MatchTask>(i)));
+  ASSERT_TRUE(writer.wait_for_acknowledgments(kPatience));
+  EventLoop loop;
+  int handled = 0;
+  loop.add<msg::MatchTask>(reader, [&](const msg::MatchTask&, const SampleInfo&) {
+    ++handled;
+    loop.stop();
+  });
+  for (int run = 1; run <= 3; ++run) {
+    EXPECT_TRUE(loop.run_for(kPatience));
+    EXPECT_EQ(handled, run);
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::messaging

@@ -1,0 +1,66 @@
+// The profiles file and the topics fit together.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "fixture.hpp"
+
+namespace topogeo::messaging {
+namespace {
+
+TEST(Profiles, WriterAndReaderOfEveryTopicMatch) {
+  const std::string partition = random_partition();
+  const Participant sender(options_in(partition));
+  const Participant receiver(options_in(partition));
+  std::set<std::string_view> names;
+  for (const TopicInfo* topic : all_topics()) {
+    EXPECT_TRUE(names.insert(topic->name).second) << topic->name;
+    for (const std::string_view role : {topic->role, topic->replay_role}) {
+      if (role.empty()) continue;
+      const detail::WriterCore writer(sender, *topic, std::string(role));
+      const detail::ReaderCore reader(receiver, *topic, std::string(role), {});
+      EXPECT_TRUE(writer.wait_for_matched(1, kPatience)) << topic->name << " " << role;
+      EXPECT_TRUE(reader.wait_for_matched(1, kPatience)) << topic->name << " " << role;
+    }
+  }
+  EXPECT_EQ(names.size(), 17U);
+}
+
+TEST(Profiles, BuiltInTextIsTheFileOfDeploy) {
+  std::ifstream file(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "deploy/dds_profiles.xml");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_FALSE(text.empty());
+  EXPECT_EQ(built_in_profiles(), text);
+}
+
+TEST(Profiles, UdpOnlyParticipantTalksToTheDefaultOne) {
+  const std::string partition = random_partition();
+  ParticipantOptions udp = options_in(partition);
+  udp.profile = "udp_only";
+  const Participant sender(udp);
+  const Participant receiver(options_in(partition));
+  Writer<msg::Goal> writer(sender);
+  Reader<msg::Goal> reader(receiver);
+  ASSERT_TRUE(writer.write(message<msg::Goal>()));
+  EXPECT_TRUE(reader.wait_for_data(kPatience));
+}
+
+TEST(Profiles, MistakesAreErrors) {
+  ParticipantOptions unknown;
+  unknown.profile = "carrier_pigeon";
+  EXPECT_THROW(Participant{unknown}, std::runtime_error);
+  ParticipantOptions far_domain;
+  far_domain.domain = 233;
+  EXPECT_THROW(Participant{far_domain}, std::invalid_argument);
+  ParticipantOptions no_file;
+  no_file.profiles_file = "/nonexistent/profiles.xml";
+  EXPECT_THROW(Participant{no_file}, std::runtime_error);
+  const Participant participant(options_in(random_partition()));
+  EXPECT_THROW(Writer<msg::Goal>(participant, "no_such_role"), std::runtime_error);
+  EXPECT_THROW(Reader<msg::Goal>(participant, {.role = "no_such_role", .filter = {}}),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace topogeo::messaging

@@ -1,0 +1,250 @@
+// Every type travels between two participants unchanged.
+#include "fixture.hpp"
+
+namespace topogeo::messaging {
+namespace {
+
+msg::Pose2 pose(double seed) {
+  msg::Pose2 result;
+  result.x_m(seed);
+  result.y_m(-2.0 * seed);
+  result.theta_rad(0.1 * seed);
+  return result;
+}
+
+msg::BranchPoint branch_point(double seed) {
+  msg::BranchPoint result;
+  result.x_m(seed);
+  result.y_m(seed + 1.0);
+  result.clearance_m(0.5);
+  return result;
+}
+
+msg::Matrix3 matrix() {
+  return {1.0, 0.1, 0.2, 0.1, 2.0, 0.3, 0.2, 0.3, 3.0};
+}
+
+void fill(msg::Scan& scan) {
+  scan.angle_min_rad(-1.5);
+  scan.angle_step_rad(0.0001);
+  for (std::uint32_t i = 0; i < msg::kMaxBeams; ++i) {
+    scan.ranges_m().push_back(static_cast<float>(i) * 0.01F);
+  }
+  scan.T_odom_robot(pose(3.0));
+}
+
+void fill(msg::Odometry& odometry) {
+  odometry.T_odom_robot(pose(2.0));
+  odometry.linear_mps(0.5);
+  odometry.angular_radps(-0.25);
+}
+
+void fill(msg::Sonar& sonar) {
+  msg::SonarEcho echo;
+  echo.T_robot_sonar(pose(0.1));
+  echo.range_m(1.5F);
+  sonar.echoes().assign(24, echo);
+}
+
+void fill(msg::BaseStatus& status) {
+  status.battery_v(47.5F);
+  status.emergency_stop(true);
+  set_text(status.message(), "bumper pressed", "message");
+}
+
+void fill(msg::StreamEnd& end) {
+  set_text(end.stage(), "local_mapper", "stage");
+  end.count(17);
+  end.last_id(16);
+  end.version(5);
+}
+
+/// As large as a crowded hall: several hundred kilobytes, so that it travels in fragments.
+void fill(msg::LocalMap& map) {
+  map.id(7);
+  map.content_hash(0xFEDCBA9876543210ULL);
+  map.T_previous_robot(pose(1.0));
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    msg::LocalNode node;
+    node.id(i);
+    node.kind(msg::kNodeDoor);
+    node.base_groups() = {1, 2, 65535};
+    map.nodes().push_back(node);
+    msg::LocalBranch branch;
+    branch.id(i);
+    branch.node_b(i + 1);
+    branch.is_virtual(i % 2 == 0);
+    branch.points().assign(100, branch_point(i));
+    map.branches().push_back(branch);
+    msg::TrackedScan tracked;
+    tracked.sequence_number(i);
+    tracked.T_stop_robot(pose(i));
+    tracked.matched(i % 3 == 0);
+    map.track().push_back(tracked);
+  }
+  map.points().assign(361, {});
+  map.points().back().y_m(-4.25F);
+}
+
+void fill(msg::MatchTask& task) {
+  set_text(task.worker_id(), "pc1-42", "worker_id");
+  set_text(task.client_id(), "localizer-1", "client_id");
+  task.task_id(99);
+  task.reference_map_id(3);
+  task.query_hash(~0ULL);
+  task.covariance(matrix());
+  task.genetic().individuals(50);
+  task.fitness_form(msg::kFitnessCombined);
+  task.initial_individuals().assign(3, pose(4.0));
+  task.seed(0x8000000000000001ULL);
+}
+
+void fill(msg::MatchResult& result) {
+  set_text(result.client_id(), "localizer-1", "client_id");
+  result.task_id(99);
+  result.status(msg::kMatchMapMissing);
+  msg::MatchSolution solution;
+  solution.T_reference_query(pose(1.0 / 3.0));
+  solution.fitness(0.1);
+  result.solutions().assign(msg::kMaxSolutions, solution);
+  result.information(matrix());
+  result.evaluations(1500);
+}
+
+void fill(msg::WorkerStatus& status) {
+  set_text(status.worker_id(), "pc1-42", "worker_id");
+  status.slots(4);
+  status.tasks_per_s(512.5);
+  status.config_fingerprint(0x123456789ABCDEF0ULL);
+}
+
+void fill(msg::ServiceStatus& status) {
+  set_text(status.service(), "localizer", "service");
+  set_text(status.instance(), "host-1", "instance");
+  status.state(msg::kServiceRunning);
+  msg::Counter counter;
+  set_text(counter.name(), "scans", "name");
+  counter.value(1223.0);
+  status.counters().assign(3, counter);
+  msg::FaultCount fault;
+  set_text(fault.reason(), "nan_range", "reason");
+  fault.count(2);
+  status.faults().assign(1, fault);
+}
+
+void fill(msg::LivePose& live) {
+  live.state(msg::kPoseTracking);
+  live.T_map_robot(pose(9.0));
+  live.covariance(matrix());
+  live.trajectory_version(12);
+}
+
+void fill(msg::TrajectorySegment& segment) {
+  segment.segment(1);
+  segment.version(12);
+  segment.total_stops(512);
+  for (std::uint32_t i = 0; i < msg::kSegmentStops; ++i) {
+    msg::StopPose stop;
+    stop.local_map_id(256 + i);
+    stop.T_map_robot(pose(i));
+    stop.covariance(matrix());
+    segment.stops().push_back(stop);
+  }
+}
+
+void fill(msg::LoopClosures& closures) {
+  msg::LoopClosure closure;
+  closure.earlier_id(1);
+  closure.later_id(200);
+  closure.T_earlier_later(pose(0.5));
+  closures.closures().assign(20, closure);
+}
+
+void fill(msg::MapElement& element) {
+  element.kind(msg::kElementBranch);
+  element.id(4);
+  element.map_version(12);
+  element.node_a(1);
+  element.node_b(2);
+  element.points().assign(msg::kMaxBranchPoints, branch_point(2.0));
+}
+
+void fill(msg::Goal& goal) {
+  goal.goal_id(5);
+  goal.kind(msg::kGoalPosition);
+  goal.target().x_m(12.5);
+}
+
+void fill(msg::Route& route) {
+  route.status(msg::kRouteFound);
+  route.length_m(20.0);
+  route.node_ids() = {1, 5, 9};
+  route.points().assign(5'000, branch_point(1.0));
+}
+
+void fill(msg::MotionCommand& command) {
+  command.linear_mps(0.3);
+  command.valid_for_s(0.2);
+}
+
+template <class T>
+class RoundTrip : public TwoParticipants {};
+
+using AllTypes =
+    ::testing::Types<msg::Scan, msg::Odometry, msg::Sonar, msg::BaseStatus, msg::StreamEnd,
+                     msg::LocalMap, msg::MatchTask, msg::MatchResult, msg::WorkerStatus,
+                     msg::ServiceStatus, msg::LivePose, msg::TrajectorySegment, msg::LoopClosures,
+                     msg::MapElement, msg::Goal, msg::Route, msg::MotionCommand>;
+TYPED_TEST_SUITE(RoundTrip, AllTypes);
+
+TYPED_TEST(RoundTrip, ArrivesUnchanged) {
+  Writer<TypeParam> writer(this->sender_);
+  Reader<TypeParam> reader(this->receiver_);
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(reader.wait_for_matched(1, kPatience));
+  auto sent = message<TypeParam>(123);
+  fill(sent);
+
+  ASSERT_TRUE(writer.write(sent));
+
+  ASSERT_TRUE(reader.wait_for_data(kPatience));
+  int received = 0;
+  reader.take([&](const TypeParam& got, const SampleInfo& info) {
+    ++received;
+    EXPECT_TRUE(info.valid);
+    EXPECT_TRUE(got == sent);
+    EXPECT_NE(info.writer, Handle{});
+    EXPECT_NE(info.instance, Handle{});
+  });
+  EXPECT_EQ(received, 1);
+}
+
+TEST_F(TwoParticipants, WriteRefusesWhatBreaksTheContract) {
+  Writer<msg::Scan> writer(sender_);
+  EXPECT_THROW(static_cast<void>(writer.write(msg::Scan{})), std::invalid_argument);  // no version
+  auto scan = message<msg::Scan>();
+  scan.ranges_m().resize(msg::kMaxBeams + 1);
+  EXPECT_THROW(static_cast<void>(writer.write(scan)), std::invalid_argument);
+  scan.ranges_m().resize(msg::kMaxBeams);
+  EXPECT_TRUE(writer.write(scan));
+
+  Writer<msg::LocalMap> maps(sender_);
+  auto map = message<msg::LocalMap>();
+  map.branches().resize(1);
+  map.branches().front().points().resize(msg::kMaxBranchPoints + 1);
+  EXPECT_THROW(static_cast<void>(maps.write(map)), std::invalid_argument);
+}
+
+TEST(Message, TextOverItsBoundIsAnErrorOrCutAtACharacter) {
+  msg::Scan scan;
+  EXPECT_NO_THROW(set_text(scan.robot_id(), std::string(32, 'a'), "robot_id"));
+  EXPECT_EQ(scan.robot_id().to_string(), std::string(32, 'a'));
+  EXPECT_THROW(set_text(scan.robot_id(), std::string(33, 'a'), "robot_id"), std::invalid_argument);
+  EXPECT_THROW(set_text(scan.robot_id(), std::string_view("a\0b", 3), "robot_id"),
+               std::invalid_argument);
+  set_text_cut(scan.robot_id(), std::string(31, 'a') + "\u00e4");  // two bytes: 31 + 2 > 32
+  EXPECT_EQ(scan.robot_id().to_string(), std::string(31, 'a'));
+}
+
+}  // namespace
+}  // namespace topogeo::messaging

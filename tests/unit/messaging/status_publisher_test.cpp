@@ -1,0 +1,84 @@
+// Others see what a service says of itself.
+#include "topogeo/messaging/status_publisher.hpp"
+
+#include <vector>
+
+#include "fixture.hpp"
+
+namespace topogeo::messaging {
+namespace {
+
+class Status : public TwoParticipants {
+ protected:
+  /// Runs the service's loop until `condition` holds of the newest status seen.
+  bool eventually_seen(const std::function<bool(const msg::ServiceStatus&)>& condition) {
+    return eventually([&] {
+      loop_.run_for(std::chrono::milliseconds(5));
+      reader_.take([&](const msg::ServiceStatus& status, const SampleInfo& info) {
+        if (info.valid) seen_ = status;
+      });
+      return condition(seen_);
+    });
+  }
+
+  EventLoop loop_;
+  Reader<msg::ServiceStatus> reader_{receiver_};
+  msg::ServiceStatus seen_;
+  ServiceIdentity identity_{.service = "mapper", .instance = "", .robot_id = "r1", .version = "1"};
+};
+
+TEST_F(Status, StateCountersAndFaultsArrive) {
+  StatusPublisher status(sender_, loop_, identity_);
+  status.set_state(msg::kServiceRunning, "at work");
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.state() == msg::kServiceRunning; }));
+  EXPECT_EQ(seen_.service().to_string(), "mapper");
+  EXPECT_EQ(seen_.message().to_string(), "at work");
+  EXPECT_EQ(seen_.process_id(), static_cast<std::uint32_t>(::getpid()));
+  EXPECT_EQ(seen_.fault_count(), 0U);
+
+  status.add_to_counter("scans");
+  status.add_to_counter("scans", 2.0);
+  status.fault("nan_range", "beam 7");
+  status.fault("nan_range", "beam 8");
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() == 2; }));
+  ASSERT_EQ(seen_.counters().size(), 1U);
+  EXPECT_EQ(seen_.counters()[0].name().to_string(), "scans");
+  EXPECT_EQ(seen_.counters()[0].value(), 3.0);
+  ASSERT_EQ(seen_.faults().size(), 1U);
+  EXPECT_EQ(seen_.faults()[0].reason().to_string(), "nan_range");
+  EXPECT_EQ(seen_.faults()[0].count(), 2U);
+}
+
+TEST_F(Status, LastWordIsStoppedUnlessTheStateIsFinal) {
+  {
+    StatusPublisher status(sender_, loop_, identity_);
+    ASSERT_TRUE(eventually_seen([](const auto& s) { return s.state() == msg::kServiceStarting; }));
+  }
+  EXPECT_TRUE(eventually_seen([](const auto& s) { return s.state() == msg::kServiceStopped; }));
+}
+
+TEST_F(Status, IncompatibleQosIsAFault) {
+  StatusPublisher status(sender_, loop_, identity_);
+  const Writer<msg::Goal> writer(sender_, "command");
+  loop_.add(writer);
+  const Reader<msg::Goal> reader(receiver_);
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() > 0; }));
+  EXPECT_EQ(seen_.faults()[0].reason().to_string(), "incompatible_qos");
+}
+
+TEST_F(Status, BoundsHold) {
+  StatusPublisher status(sender_, loop_, identity_);
+  for (int i = 0; i < 64; ++i) status.set_counter(std::to_string(i), i);
+  EXPECT_THROW(status.set_counter("one more", 0.0), std::length_error);
+  EXPECT_THROW(status.set_counter(std::string(49, 'c'), 0.0), std::invalid_argument);
+  for (int i = 0; i < 40; ++i) status.fault(std::to_string(i), std::string(300, 'x'));
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() == 40; }));
+  EXPECT_EQ(seen_.counters().size(), 64U);
+  EXPECT_EQ(seen_.faults().size(), 32U);
+  EXPECT_EQ(seen_.message().size(), 255U);
+  identity_.service = std::string(33, 's');
+  EXPECT_THROW(StatusPublisher(sender_, loop_, identity_), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace topogeo::messaging
