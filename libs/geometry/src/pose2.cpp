@@ -1,5 +1,6 @@
 #include "topogeo/geometry/pose2.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +12,9 @@ double wrap_angle(double angle_rad) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (angle_rad > -std::numbers::pi && angle_rad <= std::numbers::pi) return angle_rad;
   const double wrapped = angle_rad - kTurn * std::nearbyint(angle_rad / kTurn);
-  return wrapped <= -std::numbers::pi ? wrapped + kTurn : wrapped;
+  // After many turns the rounding of the product can leave either border by its last place.
+  return wrapped <= -std::numbers::pi ? std::min(wrapped + kTurn, std::numbers::pi)
+                                      : std::min(wrapped, std::numbers::pi);
 }
 
 Pose2 operator*(const Pose2& T_a_b, const Pose2& T_b_c) {
