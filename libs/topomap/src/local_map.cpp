@@ -32,18 +32,25 @@ std::uint64_t content_hash(const LocalMap& map) {
   hash.add(map.T_robot_laser.x_m);
   hash.add(map.T_robot_laser.y_m);
   hash.add(map.T_robot_laser.theta_rad);
+  hash.add(map.points.size());
   for (const ScanPoint& p : map.points) {
     hash.add(p.x_m);
     hash.add(p.y_m);
   }
+  hash.add(map.nodes.size());
   for (const LocalNode& n : map.nodes) {
     hash.add(static_cast<std::uint8_t>(n.kind));
     hash.add(n.position_m);
     hash.add(n.clearance_m);
+    hash.add(n.in_main_graph);
   }
+  hash.add(map.branches.size());
   for (const LocalBranch& b : map.branches) {
     hash.add(b.node_a);
     hash.add(b.node_b);
+    hash.add(b.is_virtual);
+    hash.add(b.in_main_graph);
+    hash.add(b.points.size());
     for (const BranchPoint& p : b.points) {
       hash.add(p.position_m);
       hash.add(p.clearance_m);

@@ -1,0 +1,75 @@
+// Fuses local maps into the global topo-geometric map (spec A8, thesis 7.3.2).
+//
+// The source joins branches pair by pair (7.27), which after dozens of overlapping views leaves a
+// bundle of almost parallel lines. Here each view votes instead, in a sparse grid over the map
+// frame: for the places that its branches pass, and against the branches of earlier views that lie
+// well inside its field of view and that it did not see. The map is the ridge of the votes, so a
+// branch is the mean of all views that saw it, a door seen open later adds its branch (fig. 8.9),
+// and a false branch is outvoted (fig. 8.8). Nodes are fused as the source does: equivalent ones
+// merge to the mean of position (7.25) and clearance (7.26), near-by ones collapse (fig. 8.10).
+// The trade-off: branches closer together than about twice `vote_radius_m` become one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/global_map.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::topomap {
+
+struct GlobalMapConfig {
+  double cell_m = 0.1;                 ///< side of a vote cell, [0.02, 0.5]
+  double vote_radius_m = 0.25;         ///< reach of a branch's vote, [1, 8] cells
+  double gap_m = 0.6;                  ///< neighbouring scan points further apart than this leave a
+                                       ///< passage, behind which nothing is known, (0, 5]
+  double node_merge_m = 0.5;           ///< nodes nearer than this can be equivalent, (0, 5]
+  double clearance_tolerance_m = 0.4;  ///< and if their clearances differ by less, (0, 5]
+  double uncertain_weight = 0.25;      ///< vote of a branch point that something unseen could still
+                                       ///< move, against 1 for a certain one, [0, 1]
+  double keep_share = 0.4;             ///< share of votes from which a place is on a branch, (0, 1]
+  double bridge_share = 0.12;          ///< share from which it can link two such places, (0, 1]
+  double memory_views = 20.0;          ///< older views fade beyond this many, >= 1
+  std::uint32_t min_observations = 1;  ///< views that must have seen an element, >= 1
+  double spur_m = 0.6;                 ///< branches with a free end that reach less than this
+                                       ///< beyond the clearance at their node are dropped, [0, 10]
+  double min_component_m = 1.0;  ///< total length below which a separate part is dropped, >= 0
+  double join_m = 1.0;           ///< longest gap closed between two ends whose free circles
+                                 ///< overlap, [0, 5]
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const GlobalMapConfig& config);
+
+/// The fused map. Its state is a function of the sequence of integrated maps and poses alone.
+class GlobalMapBuilder {
+ public:
+  /// Throws std::invalid_argument as `check` does.
+  explicit GlobalMapBuilder(const GlobalMapConfig& config = {});
+  GlobalMapBuilder(GlobalMapBuilder&&) noexcept;
+  GlobalMapBuilder& operator=(GlobalMapBuilder&&) noexcept;
+  ~GlobalMapBuilder();
+
+  /// Adds one local map seen from T_map_robot. Only real (not virtual) elements of its main graph
+  /// are fused. Throws std::invalid_argument when the pose is not finite or more than 5 km from the
+  /// origin, or a coordinate of the map not finite or more than 500 m from the robot; the state is
+  /// then unchanged.
+  void integrate(const LocalMap& map, const geometry::Pose2& T_map_robot);
+
+  /// The same state as a new builder after integrating maps[i] at poses[i].T_map_robot in order.
+  /// Throws std::invalid_argument when the numbers differ, or as `integrate` does.
+  void rebuild(std::span<const LocalMap> maps, std::span<const StopPose> poses);
+
+  /// The map as it stands, labelled `version`. Nodes and branches keep their ids from snapshot to
+  /// snapshot as long as they stay at their place. Fictitious nodes are free branch ends.
+  [[nodiscard]] GlobalMap snapshot(std::uint64_t version) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace topogeo::topomap

@@ -1,0 +1,38 @@
+// What one scan saw: the polygon of its points, and where that polygon is open.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::topomap {
+
+class FieldOfView {
+ public:
+  /// From the scan points of `map`, in beam order seen from the laser. Neighbouring points further
+  /// apart than gap_m leave an opening between them.
+  FieldOfView(const LocalMap& map, double gap_m);
+
+  /// True when the point (robot frame) was seen and nothing unseen lies within radius_m of it: the
+  /// diagram at that point is then the same as if everything were known.
+  [[nodiscard]] bool certain(const Eigen::Vector2d& point_m, double radius_m) const;
+
+ private:
+  struct Segment {
+    Eigen::Vector2d from_m;
+    Eigen::Vector2d along_m;
+    double length2_m2 = 0.0;
+  };
+
+  void add_opening(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
+  [[nodiscard]] bool seen(const Eigen::Vector2d& point_m) const;
+
+  Eigen::Vector2d origin_m_;
+  std::vector<Eigen::Vector2d> points_m_;
+  std::vector<double> angles_rad_;  // of the points seen from the laser, ascending
+  std::vector<Segment> openings_;
+};
+
+}  // namespace topogeo::topomap

@@ -1,0 +1,124 @@
+#include "topogeo/topomap/global_map_builder.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "branch_names.hpp"
+#include "field_of_view.hpp"
+#include "map_extraction.hpp"
+#include "node_fusion.hpp"
+#include "ridge_refinement.hpp"
+#include "vote_grid.hpp"
+
+namespace topogeo::topomap {
+namespace {
+
+constexpr double kLargestMap_m = 5000.0;
+constexpr double kLargestView_m = 500.0;
+
+std::string number(double value) {
+  std::string text = std::to_string(value);
+  while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
+    const bool point = text.back() == '.';
+    text.pop_back();
+    if (point) break;
+  }
+  return text;
+}
+
+void check_range(const char* field, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  throw std::invalid_argument(std::string("global map: ") + field + " is " + number(value) +
+                              ", allowed is " + number(low) + " to " + number(high));
+}
+
+bool within(const Eigen::Vector2d& point_m, double limit_m) {
+  // Written so that NaN is outside.
+  return std::fabs(point_m.x()) <= limit_m && std::fabs(point_m.y()) <= limit_m;
+}
+
+void check_coordinate(const LocalMap& map, const char* what, const Eigen::Vector2d& point_m,
+                      double clearance_m) {
+  if (within(point_m, kLargestView_m) && std::fabs(clearance_m) <= kLargestView_m) return;
+  throw std::invalid_argument("global map: local map " + std::to_string(map.id) + " has a " + what +
+                              " that is not finite or more than 500 m from the robot");
+}
+
+void check_input(const LocalMap& map, const geometry::Pose2& T_map_robot) {
+  if (!within(T_map_robot.position_m(), kLargestMap_m) ||
+      !(std::fabs(T_map_robot.theta_rad) <= 1e5)) {
+    throw std::invalid_argument("global map: pose of local map " + std::to_string(map.id) +
+                                " is not finite or more than 5 km from the origin");
+  }
+  for (const ScanPoint& p : map.points) check_coordinate(map, "scan point", {p.x_m, p.y_m}, 0.0);
+  for (const LocalNode& n : map.nodes) check_coordinate(map, "node", n.position_m, n.clearance_m);
+  for (const LocalBranch& b : map.branches) {
+    for (const BranchPoint& p : b.points) {
+      check_coordinate(map, "branch point", p.position_m, p.clearance_m);
+    }
+  }
+}
+
+}  // namespace
+
+void check(const GlobalMapConfig& config) {
+  check_range("cell_m", config.cell_m, 0.02, 0.5);
+  check_range("vote_radius_m", config.vote_radius_m, config.cell_m, 8.0 * config.cell_m);
+  check_range("gap_m", config.gap_m, 0.01, 5.0);
+  check_range("node_merge_m", config.node_merge_m, 0.01, 5.0);
+  check_range("clearance_tolerance_m", config.clearance_tolerance_m, 0.01, 5.0);
+  check_range("uncertain_weight", config.uncertain_weight, 0.0, 1.0);
+  check_range("keep_share", config.keep_share, 0.01, 1.0);
+  check_range("bridge_share", config.bridge_share, 0.01, config.keep_share);
+  check_range("memory_views", config.memory_views, 1.0, 1e6);
+  check_range("min_observations", config.min_observations, 1.0, 1e6);
+  check_range("spur_m", config.spur_m, 0.0, 10.0);
+  check_range("min_component_m", config.min_component_m, 0.0, 1e6);
+  check_range("join_m", config.join_m, 0.0, 5.0);
+}
+
+struct GlobalMapBuilder::State {
+  explicit State(const GlobalMapConfig& used) : config(used), grid(used), nodes(used) {}
+
+  GlobalMapConfig config;
+  VoteGrid grid;
+  NodeFusion nodes;
+  BranchNames names;
+};
+
+GlobalMapBuilder::GlobalMapBuilder(const GlobalMapConfig& config) {
+  check(config);
+  state_ = std::make_unique<State>(config);
+}
+
+GlobalMapBuilder::GlobalMapBuilder(GlobalMapBuilder&&) noexcept = default;
+GlobalMapBuilder& GlobalMapBuilder::operator=(GlobalMapBuilder&&) noexcept = default;
+GlobalMapBuilder::~GlobalMapBuilder() = default;
+
+void GlobalMapBuilder::integrate(const LocalMap& map, const geometry::Pose2& T_map_robot) {
+  check_input(map, T_map_robot);
+  const FieldOfView view(map, state_->config.gap_m);
+  state_->grid.add(map, T_map_robot, view);
+  state_->nodes.add(map, T_map_robot, view);
+  state_->names.add(map, T_map_robot);
+}
+
+void GlobalMapBuilder::rebuild(std::span<const LocalMap> maps, std::span<const StopPose> poses) {
+  if (maps.size() != poses.size()) {
+    throw std::invalid_argument("global map: " + std::to_string(maps.size()) + " local maps but " +
+                                std::to_string(poses.size()) + " poses");
+  }
+  for (std::size_t i = 0; i < maps.size(); ++i) check_input(maps[i], poses[i].T_map_robot);
+  state_ = std::make_unique<State>(state_->config);
+  for (std::size_t i = 0; i < maps.size(); ++i) integrate(maps[i], poses[i].T_map_robot);
+}
+
+GlobalMap GlobalMapBuilder::snapshot(std::uint64_t version) const {
+  const RidgeGraph ridge = refine_ridge(trace_ridge(state_->grid, state_->config), state_->config);
+  GlobalMap map = extract_map(ridge, state_->nodes, state_->names, state_->config);
+  map.version = version;
+  return map;
+}
+
+}  // namespace topogeo::topomap

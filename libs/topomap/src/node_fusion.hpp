@@ -1,0 +1,74 @@
+// Equivalent nodes of all views, merged (thesis 7.3.2.1).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <boost/geometry/algorithms/comparable_distance.hpp>
+#include <boost/geometry/algorithms/covered_by.hpp>
+#include <boost/geometry/algorithms/disjoint.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/index/rtree.hpp>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/global_map_builder.hpp"
+
+#include "field_of_view.hpp"
+
+namespace topogeo::topomap {
+
+/// A node as all views that saw it have it.
+struct FusedNode {
+  NodeKind kind = NodeKind::kReal;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< mean over the views, map frame (7.25)
+  double clearance_m = 0.0;                              ///< mean over the views (7.26)
+  std::uint32_t observations = 0;                        ///< views that saw it
+  double weight_for = 0.0;      ///< the same, fading beyond GlobalMapConfig::memory_views
+  double weight_against = 0.0;  ///< views that saw the place without it, fading alike
+  std::int64_t last_view = -1;  ///< view that touched it last
+};
+
+/// True for kinds that can stand for the same place seen differently.
+bool compatible(NodeKind a, NodeKind b);
+
+class NodeFusion {
+ public:
+  explicit NodeFusion(const GlobalMapConfig& config) : config_(config) {}
+
+  /// Merges the nodes of one view.
+  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const FieldOfView& view);
+
+  /// Index = the node's id for good.
+  [[nodiscard]] const std::vector<FusedNode>& nodes() const { return nodes_; }
+
+  /// Indices of the nodes within radius_m of a point, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> near(const Eigen::Vector2d& point_m,
+                                                double radius_m) const;
+
+ private:
+  using IndexPoint = boost::geometry::model::d2::point_xy<double>;
+  using Entry = std::pair<IndexPoint, std::uint32_t>;
+  struct SameEntry {
+    bool operator()(const Entry& a, const Entry& b) const {
+      return a.second == b.second && a.first.x() == b.first.x() && a.first.y() == b.first.y();
+    }
+  };
+  using Tree = boost::geometry::index::rtree<Entry, boost::geometry::index::quadratic<16>,
+                                             boost::geometry::index::indexable<Entry>, SameEntry>;
+
+  [[nodiscard]] std::optional<std::uint32_t> equivalent(const FusedNode& seen) const;
+  void merge(std::uint32_t id, const FusedNode& seen);
+  void vote_against(const geometry::Pose2& T_map_robot, const LocalMap& map,
+                    const FieldOfView& view);
+  void fade(FusedNode& node) const;
+
+  GlobalMapConfig config_;
+  std::vector<FusedNode> nodes_;
+  Tree tree_;
+  std::int64_t view_ = -1;
+};
+
+}  // namespace topogeo::topomap

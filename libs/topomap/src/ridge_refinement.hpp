@@ -1,0 +1,17 @@
+// Turns the raw ridge into a readable graph: drops what was outvoted, spurs and crumbs, collapses
+// near-by junctions, closes gaps.
+#pragma once
+
+#include "topogeo/topomap/global_map_builder.hpp"
+
+#include "ridge.hpp"
+
+namespace topogeo::topomap {
+
+/// Length of the edge from node to node, m.
+double length_m(const RidgeGraph& graph, const RidgeEdge& edge);
+
+/// The refined graph; every node has at least one edge.
+RidgeGraph refine_ridge(RidgeGraph graph, const GlobalMapConfig& config);
+
+}  // namespace topogeo::topomap

@@ -1,0 +1,80 @@
+#include "topogeo/topomap/trajectory.hpp"
+
+#include <numbers>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace topogeo::topomap {
+namespace {
+
+using geometry::Pose2;
+
+constexpr double kQuarter = std::numbers::pi / 2.0;
+
+// Stop 0, two scans on the way, stop 1, one scan, stop 2; odometry drifts.
+std::vector<LocalMap> three_stops() {
+  std::vector<LocalMap> maps(3);
+  for (std::uint32_t i = 0; i < 3; ++i) maps[i].id = i;
+  maps[0].sequence = 0;
+  maps[0].stamp_ns = 100;
+  maps[0].T_odom_robot = {5, 5, kQuarter};
+  maps[1].track = {{1, 200, {5, 5.5, kQuarter}, {0.4, 0, 0}, true},
+                   {2, 300, {5, 6, kQuarter}, {0.8, 0.1, 0}, true}};
+  maps[1].sequence = 3;
+  maps[1].stamp_ns = 400;
+  maps[1].T_odom_robot = {5, 6.5, kQuarter};
+  maps[2].track = {{4, 500, {5, 7, kQuarter}, {0.5, 0, 0.1}, false}};
+  maps[2].sequence = 5;
+  maps[2].stamp_ns = 600;
+  maps[2].T_odom_robot = {5, 7.5, kQuarter};
+  return maps;
+}
+
+void expect_pose(const Pose2& pose, double x, double y, double theta) {
+  EXPECT_NEAR(pose.x_m, x, 1e-12);
+  EXPECT_NEAR(pose.y_m, y, 1e-12);
+  EXPECT_NEAR(pose.theta_rad, theta, 1e-12);
+}
+
+TEST(ExpandTrajectory, MovesTheScansBetweenWithTheStopBeforeThem) {
+  Trajectory trajectory;
+  trajectory.stops.resize(3);
+  trajectory.stops[1].T_map_robot = {1, 0, kQuarter};
+  trajectory.stops[2].T_map_robot = {1, 2, kQuarter};
+  const std::vector<StampedPose> poses = expand_trajectory(trajectory, three_stops());
+  ASSERT_EQ(poses.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(poses[i].sequence, i);
+    EXPECT_EQ(poses[i].stamp_ns, static_cast<std::int64_t>(100 * (i + 1)));
+  }
+  expect_pose(poses[0].pose, 0, 0, 0);
+  expect_pose(poses[1].pose, 0.4, 0, 0);
+  expect_pose(poses[2].pose, 0.8, 0.1, 0);
+  expect_pose(poses[3].pose, 1, 0, kQuarter);
+  expect_pose(poses[4].pose, 1, 0.5, kQuarter + 0.1);
+  expect_pose(poses[5].pose, 1, 2, kQuarter);
+}
+
+TEST(ExpandTrajectory, NeedsOnePoseForEachMap) {
+  Trajectory trajectory;
+  trajectory.stops.resize(2);
+  EXPECT_THROW(expand_trajectory(trajectory, three_stops()), std::invalid_argument);
+}
+
+TEST(ExpandTrajectory, OfNothingIsNothing) {
+  EXPECT_TRUE(expand_trajectory({}, {}).empty());
+  EXPECT_TRUE(expand_odometry({}).empty());
+}
+
+TEST(ExpandOdometry, StartsAtTheIdentityAndKeepsTheDrift) {
+  const std::vector<StampedPose> poses = expand_odometry(three_stops());
+  ASSERT_EQ(poses.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(poses[i].sequence, i);
+    expect_pose(poses[i].pose, 0.5 * static_cast<double>(i), 0, 0);
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::topomap
