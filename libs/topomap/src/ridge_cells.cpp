@@ -190,17 +190,24 @@ void RidgeCells::thin() {
   static const std::array<bool, 256> kRemovable = removable_patterns();
   using Entry = std::pair<float, std::int32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    queue.emplace(cells_[i].votes.support, static_cast<std::int32_t>(i));
-  }
+  std::vector<char> queued(cells_.size(), 0);
+  const auto consider = [&](std::int32_t i) {
+    const Cell& cell = cells_[static_cast<std::size_t>(i)];
+    char& waiting = queued[static_cast<std::size_t>(i)];
+    if (waiting != 0 || !cell.kept || !kRemovable[pattern(cell)]) return;
+    waiting = 1;
+    queue.emplace(cell.votes.support, i);
+  };
+  for (std::size_t i = 0; i < cells_.size(); ++i) consider(static_cast<std::int32_t>(i));
   while (!queue.empty()) {
-    Cell& cell = cells_[static_cast<std::size_t>(queue.top().second)];
+    const std::int32_t lowest = queue.top().second;
     queue.pop();
-    if (!cell.kept || !kRemovable[pattern(cell)]) continue;
+    queued[static_cast<std::size_t>(lowest)] = 0;
+    Cell& cell = cells_[static_cast<std::size_t>(lowest)];
+    if (!kRemovable[pattern(cell)]) continue;
     cell.kept = false;
     for (const std::int32_t next : cell.neighbours) {
-      if (next == kNone || !cells_[static_cast<std::size_t>(next)].kept) continue;
-      queue.emplace(cells_[static_cast<std::size_t>(next)].votes.support, next);
+      if (next != kNone) consider(next);
     }
   }
 }
