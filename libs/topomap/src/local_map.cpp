@@ -1,33 +1,36 @@
 #include "topogeo/topomap/local_map.hpp"
 
-#include <cstring>
+#include <bit>
+#include <concepts>
+#include <cstdint>
+
+#include "topogeo/support/hash.hpp"
 
 namespace topogeo::topomap {
 namespace {
 
-class Fnv1a {
+class ContentHash {
  public:
-  template <typename T>
-  void add(const T& value) {
-    static_assert(std::is_arithmetic_v<T>);
-    unsigned char bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 0x100000001b3ULL;
+  template <std::integral T>
+  void add(T value) {
+    hash_.add(static_cast<std::uint64_t>(value));
   }
+  void add(double value) { hash_.add(std::bit_cast<std::uint64_t>(value)); }
+  void add(float value) { hash_.add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
   void add(const Eigen::Vector2d& v) {
     add(v.x());
     add(v.y());
   }
-  [[nodiscard]] std::uint64_t value() const { return hash_; }
+  [[nodiscard]] std::uint64_t value() const { return hash_.value(); }
 
  private:
-  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+  support::Fnv1a hash_;
 };
 
 }  // namespace
 
 std::uint64_t content_hash(const LocalMap& map) {
-  Fnv1a hash;
+  ContentHash hash;
   hash.add(map.id);
   hash.add(map.T_robot_laser.x_m);
   hash.add(map.T_robot_laser.y_m);
@@ -39,7 +42,7 @@ std::uint64_t content_hash(const LocalMap& map) {
   }
   hash.add(map.nodes.size());
   for (const LocalNode& n : map.nodes) {
-    hash.add(static_cast<std::uint8_t>(n.kind));
+    hash.add(static_cast<std::uint32_t>(n.kind));
     hash.add(n.position_m);
     hash.add(n.clearance_m);
     hash.add(n.in_main_graph);

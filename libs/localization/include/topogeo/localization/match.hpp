@@ -73,7 +73,9 @@ struct MatchResult {
   double inliers = 0.0;  ///< of those, share within the inlier distance of a reference line, [0, 1]
   double violations = 0.0;  ///< of those, share where the reference saw free space instead, [0, 1]
   double residual_rms_m = 0.0;
-  double second_fitness = 0.0;  ///< of the second best distinct solution, 0 if none
+  double scan_fitness = 0.0;         ///< of the refined pose, without the prior, [0, 1]
+  double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
+  double second_fitness = 0.0;       ///< of the second best distinct solution, 0 if none
   std::uint32_t evaluations = 0;
 };
 

@@ -1,0 +1,136 @@
+// Corrects the pose of every stop by matching its local map against earlier ones (spec A6), and
+// spreads closed loops over the way between by least squares.
+//
+// The source takes the single match with the largest fitness; here all matches that pass the gates
+// become edges of a pose graph, which real logs showed to be 3-10 times more accurate at no more
+// cost. Matches are handed to a MatchPool as independent tasks; all answers of one round are
+// awaited before any is used, so the result does not depend on who answered or when.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/match_features.hpp"
+#include "topogeo/localization/match_gate.hpp"
+#include "topogeo/localization/odometry_model.hpp"
+#include "topogeo/localization/pose_graph.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::localization {
+
+struct LocalizerConfig {
+  std::uint64_t seed = 1;
+  OdometryNoise odometry;
+  GeneticParameters genetic;
+  FitnessForm fitness_form = FitnessForm::kCombined;
+  std::uint32_t solutions_wanted = 3;
+  double search_probability = 0.95;  ///< of the error ellipse whose rectangle is searched (6.22)
+  double search_heading_sigmas = 3.0;
+  double largest_half_width_m =
+      3.0;  ///< of a search space; beyond it a match waits for a better prediction
+  double largest_half_width_rad = 1.0;
+  double recent_way_m = 6.0;  ///< stops up to this much way ago are recent, older ones revisited
+  std::uint32_t recent_matches = 3;         ///< tasks per step against recent stops
+  std::uint32_t revisit_matches = 3;        ///< tasks per step against older stops
+  double smallest_expected_overlap = 0.35;  ///< of two maps, before a task is spent on them
+  double unaided_correction_m =
+      0.6;  ///< a loop that moves the robot further needs a second one that agrees
+  double unaided_correction_rad = 0.1;
+  std::uint32_t final_passes = 3;  ///< rounds of revisit matching when the log has ended
+  GateConfig gate;
+};
+
+struct LocalizerCounts {
+  std::uint64_t tasks = 0;
+  std::uint64_t evaluations = 0;
+  std::array<std::uint64_t, kVerdicts> verdicts{};  ///< index: Verdict
+  std::uint64_t steps_in_doubt =
+      0;  ///< no recent match was accepted; a doubtful one or odometry stood in
+  std::uint64_t unconfirmed_loops = 0;  ///< large corrections that no second loop agreed with
+  std::uint64_t optimizations = 0;
+  std::uint64_t removed_loops = 0;  ///< outvoted by the rest after optimisation
+};
+
+class Localizer {
+ public:
+  /// The pool must outlive the localizer.
+  Localizer(LocalizerConfig config, MatchPool& pool);
+
+  /// One forward step. Maps must come in order of their ids, from 0, of one robot; throws
+  /// std::invalid_argument otherwise. True when earlier poses were moved too.
+  bool add(std::shared_ptr<const topomap::LocalMap> map);
+
+  /// After the last map: matches all places that lie near each other by now and were not compared
+  /// yet, and optimises, until nothing changes. Maps may follow all the same.
+  void finish();
+
+  [[nodiscard]] topomap::Trajectory trajectory() const;
+  [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const;
+  [[nodiscard]] const LocalizerCounts& counts() const { return counts_; }
+
+ private:
+  struct Stop {
+    std::shared_ptr<const topomap::LocalMap> map;
+    std::uint64_t hash = 0;
+    double way_m = 0.0;  // along the odometry from the first stop
+    RangeProfile profile;
+    std::vector<Eigen::Vector2d> outline_m;  // some of its points, to foresee overlap
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  };
+  struct Candidate {
+    std::uint32_t id = 0;
+    double overlap = 0.0;
+  };
+  /// What came of a task that found something: an edge, and whether the gate let it through or had
+  /// doubts.
+  struct Answer {
+    PoseGraphEdge edge;
+    bool accepted = false;
+  };
+  struct PendingLoop {
+    PoseGraphEdge edge;
+    geometry::Pose2 correction;  // T_map_corrected * inverse(T_map_robot) at that time
+  };
+
+  void append(std::shared_ptr<const topomap::LocalMap> map);
+  void match_recent(std::uint32_t stop, const std::vector<UncertainPose>& relative);
+  bool match_revisited(std::uint32_t stop, const std::vector<UncertainPose>& relative);
+  bool add_loop(const PoseGraphEdge& edge);
+  std::size_t match_all_revisits();
+  void optimize();
+
+  [[nodiscard]] std::vector<Candidate> candidates(std::uint32_t stop,
+                                                  std::span<const UncertainPose> relative,
+                                                  bool recent, std::uint32_t count) const;
+  [[nodiscard]] double expected_overlap(const Stop& reference, const Stop& query,
+                                        const UncertainPose& T_reference_query) const;
+  [[nodiscard]] bool worth_comparing(std::uint32_t earlier, std::uint32_t later,
+                                     const geometry::Pose2& T_later_earlier) const;
+  [[nodiscard]] bool searchable(const UncertainPose& T_reference_query) const;
+  MatchTask make_task(std::uint32_t reference, std::uint32_t query, const UncertainPose& prior);
+  std::vector<Answer> run(const std::vector<MatchTask>& tasks, EdgeKind kind);
+
+  LocalizerConfig config_;
+  MatchPool& pool_;
+  PoseGraph graph_;
+  std::vector<Stop> stops_;
+  std::vector<PendingLoop> pending_;
+  struct Comparison {
+    geometry::Pose2 T_later_earlier;  // as predicted then
+    bool accepted = false;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Comparison> compared_;  // (earlier, later)
+  std::uint64_t version_ = 0;
+  std::uint64_t next_task_ = 0;
+  std::uint32_t loops_since_optimization_ = 0;
+  LocalizerCounts counts_;
+};
+
+}  // namespace topogeo::localization

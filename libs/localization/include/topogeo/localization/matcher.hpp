@@ -1,0 +1,60 @@
+// Works on one match task at a time: genetic search, then refinement of the winners. What a
+// ga_worker runs, and what a localizer runs itself when it has no worker.
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "topogeo/localization/fitness.hpp"
+#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/match_features.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+class Matcher {
+ public:
+  /// Keeps the features of the map (some 20 kB) under its id; a later map of the same id replaces
+  /// it.
+  void add_map(const topomap::LocalMap& map);
+
+  /// True when a map of this id and content is known.
+  [[nodiscard]] bool has_map(std::uint32_t id, std::uint64_t hash) const;
+
+  /// Throws std::out_of_range when a map that the task names is not known or has another content,
+  /// std::invalid_argument when the task's covariance is not positive or the search space is empty.
+  MatchResult solve(const MatchTask& task);
+
+ private:
+  struct KnownMap {
+    std::uint64_t hash = 0;
+    MatchFeatures features;
+  };
+  struct CachedReference {
+    std::uint32_t id = 0;
+    std::uint64_t hash = 0;
+    Reference reference;
+  };
+
+  const KnownMap& known(std::uint32_t id, std::uint64_t hash) const;
+  const Reference& reference(std::uint32_t id, std::uint64_t hash);
+
+  std::map<std::uint32_t, KnownMap> maps_;
+  std::list<CachedReference>
+      references_;  // most recently used first; grids are large, so only a few
+};
+
+/// Solves all tasks here, one after the other.
+class InProcessPool : public MatchPool {
+ public:
+  void add_map(std::shared_ptr<const topomap::LocalMap> map) override { matcher_.add_map(*map); }
+  std::vector<MatchResult> match(std::span<const MatchTask> tasks) override;
+
+ private:
+  Matcher matcher_;
+};
+
+}  // namespace topogeo::localization

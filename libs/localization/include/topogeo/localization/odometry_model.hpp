@@ -1,0 +1,46 @@
+// Uncertainty of odometry and the search space that follows from it (spec A3, thesis 6.2.1).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+/// Variances that grow with the way travelled, as in 6.8, so that they do not depend on how the way
+/// is cut into steps. The source has no heading noise per metre; without it every straight corridor
+/// makes the covariance optimistic, which was the costliest mistake of all trials, so it is here.
+struct OdometryNoise {
+  double translation_m2_per_m = 0.004;    ///< along the motion
+  double translation_m2_per_rad = 0.004;  ///< in x and y, per turn: also an unknown laser offset
+  double lateral_m2_per_m = 0.001;        ///< across the motion
+  double heading_rad2_per_m = 0.04;
+  double heading_rad2_per_rad = 0.05;
+};
+
+/// A relative pose with its covariance of (x, y, theta) in the frame of its first index; m and rad.
+struct UncertainPose {
+  geometry::Pose2 T_a_b;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// Adds one step of odometry to a relative pose (6.4, 6.6, 6.7).
+UncertainPose advance(const UncertainPose& from, const geometry::Pose2& T_before_after,
+                      const OdometryNoise& noise);
+
+/// Odometry from the previous stop to the stop of `map`, through all scans between.
+/// `T_odom_previous` is the odometry at the previous stop.
+UncertainPose odometry_between_stops(const geometry::Pose2& T_odom_previous,
+                                     const topomap::LocalMap& map, const OdometryNoise& noise);
+
+/// Half-widths (m, m, rad) of the rectangle around the error ellipse of the given probability
+/// (6.22) and of `heading_sigmas` standard deviations of heading (6.23). 0 < probability < 1.
+Eigen::Vector3d search_half_width(const Eigen::Matrix3d& covariance, double probability,
+                                  double heading_sigmas);
+
+/// k^2 = -2 ln(1 - P) of 6.22: the squared Mahalanobis radius of the ellipse that holds probability
+/// P.
+double ellipse_k2(double probability);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,83 @@
+// Poses of all stops and the relative poses measured between them; least squares spreads a closed
+// loop over them, which a discrete search cannot.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/odometry_model.hpp"
+
+namespace topogeo::localization {
+
+enum class EdgeKind : std::uint8_t {
+  kOdometry = 0,
+  kSequential = 1,  ///< match with a stop shortly before
+  kRevisit = 2,     ///< match with a stop of an earlier visit: closes a loop
+};
+
+struct PoseGraphEdge {
+  std::uint32_t from = 0;  ///< stop ids; from < to
+  std::uint32_t to = 0;
+  EdgeKind kind = EdgeKind::kOdometry;
+  geometry::Pose2 T_from_to;
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Identity();  ///< of T_from_to, in the frame of `from`
+};
+
+struct OptimizationSummary {
+  bool converged = false;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  int iterations = 0;
+};
+
+class PoseGraph {
+ public:
+  /// Appends a stop; the first one stays where it is for ever.
+  std::uint32_t add_pose(const geometry::Pose2& T_map_robot);
+  void add_edge(const PoseGraphEdge& edge);
+
+  [[nodiscard]] const std::vector<geometry::Pose2>& poses() const { return poses_; }
+  [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const { return edges_; }
+
+  /// Squared Mahalanobis distance between an edge and the poses as they are.
+  [[nodiscard]] double disagreement(const PoseGraphEdge& edge) const;
+
+  /// Places the last pose alone by the edges that end at it, the others held.
+  void place_last_pose();
+
+  /// Least squares over all poses. Matches have a Cauchy loss, so that a wrong one that came
+  /// through the gates bends the map a little instead of folding it. Single-threaded, so that
+  /// results repeat.
+  OptimizationSummary optimize();
+
+  /// Removes edges of a kind whose disagreement exceeds the limit; returns how many.
+  std::size_t remove_edges(EdgeKind kind, double largest_disagreement);
+
+  /// Relative pose of every stop seen from `origin` with its covariance, each along the path on
+  /// which the variance grows least (spec A6). All edges between two stops count together: along a
+  /// bare corridor a match knows only the way across, odometry the way along.
+  [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const;
+
+ private:
+  /// All edges between one pair of stops taken together.
+  struct Link {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // of T_from_to, in the frame of `from`
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  };
+  void add_to_link(const PoseGraphEdge& edge);
+
+  std::vector<geometry::Pose2> poses_;
+  std::vector<PoseGraphEdge> edges_;
+  std::vector<Link> links_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> link_of_;  // index into links_
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,39 @@
+// Point-to-line least squares around a first guess: what turns the centimetres of the genetic
+// search into millimetres, and what tracks the scans between two stops.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/fitness.hpp"
+#include "topogeo/localization/match_features.hpp"
+
+namespace topogeo::localization {
+
+/// What is known of the pose before the scans are compared.
+struct PosePrior {
+  geometry::Pose2 T_reference_query;
+  Eigen::Matrix3d information =
+      Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the reference frame; zero: no prior
+};
+
+/// A refined pose and the evidence for it.
+struct Refinement {
+  geometry::Pose2 T_reference_query;
+  Eigen::Matrix3d information =
+      Eigen::Matrix3d::Zero();  ///< Hessian of the data term, 1/m^2, 1/m, 1/rad^2
+  double overlap = 0.0;         ///< share of the query's points in the view of the reference
+  double inliers = 0.0;         ///< of those, share that lie on a surface of the reference
+  double violations =
+      0.0;  ///< share of points in view where the other map saw free space; the worse direction
+  double residual_rms_m = 0.0;  ///< of the inliers
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Gauss-Newton with a Cauchy weight, at most `kMaxIterations`. With too few points for three
+/// unknowns the pose comes back as it was, not converged and with zero information.
+Refinement refine(const Reference& reference, const MatchFeatures& query,
+                  const geometry::Pose2& T_first_guess, const PosePrior& prior);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,128 @@
+// The part of Localizer that chooses what to compare and judges the answers.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "topogeo/localization/localizer.hpp"
+#include "topogeo/support/seed.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+std::vector<Localizer::Candidate> Localizer::candidates(std::uint32_t stop,
+                                                        std::span<const UncertainPose> relative,
+                                                        bool recent, std::uint32_t count) const {
+  std::vector<Candidate> found;
+  for (std::uint32_t i = 0; i < stop; ++i) {
+    const bool is_recent = stops_[stop].way_m - stops_[i].way_m <= config_.recent_way_m;
+    if (is_recent != recent || !worth_comparing(i, stop, relative[i].T_a_b) ||
+        !searchable(relative[i])) {
+      continue;
+    }
+    const double overlap = expected_overlap(stops_[stop], stops_[i], relative[i]);
+    const bool always =
+        recent && i + 1 == stop;  // the stop just before is worth a task in any case
+    if (always || overlap >= config_.smallest_expected_overlap) {
+      found.push_back({i, always ? 2.0 : overlap});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.overlap > b.overlap; });
+  // Older places next to each other say nearly the same: take the best, then some that lie apart.
+  std::vector<Candidate> chosen;
+  for (const Candidate& candidate : found) {
+    if (chosen.size() == count) break;
+    const bool neighbour =
+        !recent && std::any_of(chosen.begin(), chosen.end(), [&](const Candidate& c) {
+          return c.id + 1 == candidate.id || candidate.id + 1 == c.id;
+        });
+    if (!neighbour) chosen.push_back(candidate);
+  }
+  return chosen;
+}
+
+// A rejected pair gets another chance once an optimisation has changed what is expected of it.
+bool Localizer::worth_comparing(std::uint32_t earlier, std::uint32_t later,
+                                const Pose2& T_later_earlier) const {
+  const auto found = compared_.find({earlier, later});
+  if (found == compared_.end()) return true;
+  if (found->second.accepted) return false;
+  constexpr double kMoved_m = 0.3;
+  constexpr double kMoved_rad = 0.05;
+  const Pose2& before = found->second.T_later_earlier;
+  return (before.position_m() - T_later_earlier.position_m()).squaredNorm() > kMoved_m * kMoved_m ||
+         std::fabs(geometry::wrap_angle(before.theta_rad - T_later_earlier.theta_rad)) > kMoved_rad;
+}
+
+bool Localizer::searchable(const UncertainPose& T_reference_query) const {
+  const Eigen::Vector3d half = search_half_width(
+      T_reference_query.covariance, config_.search_probability, config_.search_heading_sigmas);
+  return half.x() <= config_.largest_half_width_m && half.y() <= config_.largest_half_width_m &&
+         half.z() <= config_.largest_half_width_rad;
+}
+
+double Localizer::expected_overlap(const Stop& reference, const Stop& query,
+                                   const UncertainPose& T_reference_query) const {
+  if (query.outline_m.empty()) return 0.0;
+  constexpr double kFarthest_m = 20.0;
+  if (T_reference_query.T_a_b.position_m().squaredNorm() > kFarthest_m * kFarthest_m) return 0.0;
+  const Eigen::Matrix3d& covariance = T_reference_query.covariance;
+  const double tolerance_m = 0.5 + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+  std::size_t seen = 0;
+  for (const Eigen::Vector2d& point : query.outline_m) {
+    const auto view = reference.profile.view(T_reference_query.T_a_b * point, tolerance_m);
+    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
+  }
+  return static_cast<double>(seen) / static_cast<double>(query.outline_m.size());
+}
+
+MatchTask Localizer::make_task(std::uint32_t reference, std::uint32_t query,
+                               const UncertainPose& prior) {
+  MatchTask task;
+  task.task_id = next_task_++;
+  task.reference_map_id = reference;
+  task.query_map_id = query;
+  task.reference_hash = stops_[reference].hash;
+  task.query_hash = stops_[query].hash;
+  task.T_reference_query = prior.T_a_b;
+  task.covariance = prior.covariance;
+  const Eigen::Vector3d half = search_half_width(prior.covariance, config_.search_probability,
+                                                 config_.search_heading_sigmas);
+  const Eigen::Vector3d smallest(config_.genetic.resolution_m, config_.genetic.resolution_m,
+                                 config_.genetic.resolution_rad);
+  task.half_width = half.cwiseMax(smallest);
+  task.half_width.z() = std::min(task.half_width.z(), config_.largest_half_width_rad);
+  task.genetic = config_.genetic;
+  task.fitness_form = config_.fitness_form;
+  task.solutions_wanted = config_.solutions_wanted;
+  task.seed = support::derive_seed(config_.seed, stops_[reference].map->robot_id,
+                                   {reference, query, task.task_id});
+  return task;
+}
+
+std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& tasks, EdgeKind kind) {
+  std::vector<Answer> answers;
+  if (tasks.empty()) return answers;
+  const std::vector<MatchResult> results = pool_.match(tasks);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const MatchTask& task = tasks[i];
+    const MatchResult& result = results[i];
+    const Verdict verdict = judge(task, result, config_.gate);
+    compared_[{task.query_map_id, task.reference_map_id}] = {task.T_reference_query,
+                                                             verdict == Verdict::kAccepted};
+    ++counts_.tasks;
+    counts_.evaluations += result.evaluations;
+    ++counts_.verdicts[static_cast<std::size_t>(verdict)];
+    if (verdict != Verdict::kAccepted && verdict != Verdict::kDoubtful) continue;
+    answers.push_back(
+        {{task.query_map_id, task.reference_map_id, kind,
+          geometry::inverse(result.T_reference_query),
+          geometry::inverse_covariance(result.T_reference_query, match_covariance(result))},
+         verdict == Verdict::kAccepted});
+  }
+  return answers;
+}
+
+}  // namespace topogeo::localization

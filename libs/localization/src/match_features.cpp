@@ -1,0 +1,181 @@
+#include "topogeo/localization/match_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using topomap::ScanPoint;
+
+constexpr double kNeighbourhood_m =
+    0.30;  // wide enough for a normal in spite of centimetres of range noise
+constexpr int kFewestNeighbours = 4;
+constexpr double kLargestThickness_m = 0.05;
+
+std::vector<Eigen::Vector2d> to_vectors(std::span<const ScanPoint> points) {
+  std::vector<Eigen::Vector2d> out;
+  out.reserve(points.size());
+  for (const ScanPoint& p : points) out.emplace_back(p.x_m, p.y_m);
+  return out;
+}
+
+// Successive beams on one surface: the gap that a wall seen at a flat angle leaves grows with
+// range.
+bool contiguous(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double range_m) {
+  const double gap_m = std::max(0.15, 0.07 * range_m);
+  return (a - b).squaredNorm() <= gap_m * gap_m;
+}
+
+// Line through the neighbours of point i by principal components, in closed form.
+SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t i,
+                         const Eigen::Vector2d& laser_m) {
+  const Eigen::Vector2d& centre = points[i];
+  const double range_m = std::sqrt((centre - laser_m).squaredNorm());
+  const double reach_m = std::max(kNeighbourhood_m, 0.07 * range_m * 2.0);
+  const auto close = [&](std::size_t k) {
+    return (points[k] - centre).squaredNorm() <= reach_m * reach_m;
+  };
+  std::size_t first = i;
+  while (first > 0 && close(first - 1) && contiguous(points[first - 1], points[first], range_m))
+    --first;
+  std::size_t last = i;
+  while (last + 1 < points.size() && close(last + 1) &&
+         contiguous(points[last + 1], points[last], range_m)) {
+    ++last;
+  }
+  const auto count = static_cast<double>(last - first + 1);
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (std::size_t k = first; k <= last; ++k) mean += points[k];
+  mean /= count;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double dx = points[k].x() - mean.x();
+    const double dy = points[k].y() - mean.y();
+    xx += dx * dx;
+    xy += dx * dy;
+    yy += dy * dy;
+  }
+  const double spread = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
+  const double smallest = std::max(0.0, 0.5 * (xx + yy) - spread);
+  const double largest = 0.5 * (xx + yy) + spread;
+  // Eigenvector of the smallest eigenvalue, from the row of (S - smallest I) that is better
+  // conditioned.
+  Eigen::Vector2d normal = xx - smallest > yy - smallest ? Eigen::Vector2d(-xy, xx - smallest)
+                                                         : Eigen::Vector2d(yy - smallest, -xy);
+  const double length = std::sqrt(normal.squaredNorm());
+  const bool on_line = count >= kFewestNeighbours && length > 0.0 && smallest < 0.1 * largest &&
+                       smallest <= count * kLargestThickness_m * kLargestThickness_m;
+  if (length > 0.0) normal /= length;
+  return {centre, normal, on_line};
+}
+
+void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSample>& out) {
+  const auto& points = branch.points;
+  double since_m = MatchFeatures::kBranchSpacing_m;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    since_m += std::sqrt((points[i].position_m - points[i - 1].position_m).squaredNorm());
+    if (since_m < MatchFeatures::kBranchSpacing_m) continue;
+    since_m = 0.0;
+    const std::size_t before = i >= 3 ? i - 3 : 0;
+    const std::size_t after = std::min(points.size() - 1, i + 3);
+    Eigen::Vector2d direction = points[after].position_m - points[before].position_m;
+    const double length = std::sqrt(direction.squaredNorm());
+    if (length <= 0.0) continue;
+    out.push_back({points[i].position_m, direction / length, points[i].clearance_m});
+  }
+}
+
+}  // namespace
+
+RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_robot_laser)
+    : T_laser_robot_(geometry::inverse(T_robot_laser)), near_m_(kBins, 0.0F), far_m_(kBins, 0.0F) {
+  std::vector<float> range_m(kBins, 0.0F);
+  const auto bin_of = [](const Eigen::Vector2d& p) {
+    const double turn = geometry::atan2(p.y(), p.x()) / (2.0 * std::numbers::pi);
+    return static_cast<int>((turn + 0.5) * kBins) % kBins;
+  };
+  const auto put = [&](int bin, double range) {
+    float& cell = range_m[static_cast<std::size_t>(bin)];
+    if (cell == 0.0F || range < cell) cell = static_cast<float>(range);
+  };
+  int last_bin = -1;
+  double last_range_m = 0.0;
+  for (const ScanPoint& point : points) {
+    const Eigen::Vector2d p = T_laser_robot_ * Eigen::Vector2d(point.x_m, point.y_m);
+    const double range = std::sqrt(p.squaredNorm());
+    const int bin = bin_of(p);
+    put(bin, range);
+    // A coarser laser leaves bins between two beams; up to two degrees they belong to the nearer
+    // reading.
+    if (last_bin >= 0 && bin > last_bin + 1 && bin <= last_bin + 4) {
+      for (int k = last_bin + 1; k < bin; ++k) put(k, std::min(range, last_range_m));
+    }
+    last_bin = bin;
+    last_range_m = range;
+  }
+  for (int k = 0; k < kBins; ++k) {
+    for (int d = -1; d <= 1; ++d) {
+      const float range = range_m[static_cast<std::size_t>((k + d + kBins) % kBins)];
+      if (range == 0.0F) continue;
+      float& near = near_m_[static_cast<std::size_t>(k)];
+      float& far = far_m_[static_cast<std::size_t>(k)];
+      near = near == 0.0F ? range : std::min(near, range);
+      far = std::max(far, range);
+    }
+  }
+}
+
+RangeProfile::View RangeProfile::view(const Eigen::Vector2d& point_robot_m,
+                                      double tolerance_m) const {
+  const Eigen::Vector2d p = T_laser_robot_ * point_robot_m;
+  const double turn = geometry::atan2(p.y(), p.x()) / (2.0 * std::numbers::pi);
+  const auto bin = static_cast<std::size_t>(static_cast<int>((turn + 0.5) * kBins) % kBins);
+  const auto near = static_cast<double>(near_m_[bin]);
+  if (near == 0.0) return View::kUnknown;
+  const double range = std::sqrt(p.squaredNorm());
+  if (range < near - tolerance_m) return View::kFree;
+  return range <= static_cast<double>(far_m_[bin]) + tolerance_m ? View::kSurface : View::kHidden;
+}
+
+MatchFeatures extract_scan_features(std::span<const ScanPoint> points, const Pose2& T_robot_laser) {
+  MatchFeatures features;
+  const std::vector<Eigen::Vector2d> all = to_vectors(points);
+  const Eigen::Vector2d laser_m = T_robot_laser.position_m();
+  const auto far_enough = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b, double spacing_m) {
+    return (a - b).squaredNorm() >= spacing_m * spacing_m;
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (features.surface.empty() ||
+        far_enough(features.surface.back().position_m, all[i], MatchFeatures::kFineSpacing_m)) {
+      features.surface.push_back(fit_surface(all, i, laser_m));
+    }
+    if (features.coarse_m.empty() ||
+        far_enough(features.coarse_m.back(), all[i], MatchFeatures::kCoarseSpacing_m)) {
+      features.coarse_m.push_back(all[i]);
+    }
+  }
+  features.profile = RangeProfile(points, T_robot_laser);
+  return features;
+}
+
+MatchFeatures extract_features(const topomap::LocalMap& map) {
+  MatchFeatures features = extract_scan_features(map.points, map.T_robot_laser);
+  for (const topomap::LocalNode& node : map.nodes) {
+    if (node.kind != topomap::NodeKind::kFictitious && node.kind != topomap::NodeKind::kVirtual) {
+      features.nodes.push_back(node);
+    }
+  }
+  for (const topomap::LocalBranch& branch : map.branches) {
+    if (!branch.is_virtual) add_branch_samples(branch, features.branches);
+  }
+  return features;
+}
+
+}  // namespace topogeo::localization

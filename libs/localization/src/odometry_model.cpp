@@ -1,0 +1,51 @@
+#include "topogeo/localization/odometry_model.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+UncertainPose advance(const UncertainPose& from, const Pose2& T_before_after,
+                      const OdometryNoise& noise) {
+  const double way_m =
+      std::sqrt(T_before_after.x_m * T_before_after.x_m + T_before_after.y_m * T_before_after.y_m);
+  const double turn_rad = std::fabs(T_before_after.theta_rad);
+  const double turn_m2 = noise.translation_m2_per_rad * turn_rad;
+  Eigen::Matrix3d step = Eigen::Matrix3d::Zero();
+  step(0, 0) = noise.translation_m2_per_m * way_m + turn_m2;
+  step(1, 1) = noise.lateral_m2_per_m * way_m + turn_m2;
+  step(2, 2) = noise.heading_rad2_per_m * way_m + noise.heading_rad2_per_rad * turn_rad;
+  return {from.T_a_b * T_before_after,
+          geometry::compose_covariance(from.T_a_b, from.covariance, T_before_after, step)};
+}
+
+UncertainPose odometry_between_stops(const Pose2& T_odom_previous, const topomap::LocalMap& map,
+                                     const OdometryNoise& noise) {
+  UncertainPose sum;
+  Pose2 T_odom_before = T_odom_previous;
+  for (const topomap::TrackedScan& scan : map.track) {
+    sum = advance(sum, geometry::between(T_odom_before, scan.T_odom_robot), noise);
+    T_odom_before = scan.T_odom_robot;
+  }
+  return advance(sum, geometry::between(T_odom_before, map.T_odom_robot), noise);
+}
+
+double ellipse_k2(double probability) {
+  if (!(probability > 0.0 && probability < 1.0)) {
+    throw std::invalid_argument("ellipse_k2: probability must lie between 0 and 1");
+  }
+  return -2.0 * geometry::log(1.0 - probability);
+}
+
+Eigen::Vector3d search_half_width(const Eigen::Matrix3d& covariance, double probability,
+                                  double heading_sigmas) {
+  const double k = std::sqrt(ellipse_k2(probability));
+  return {k * std::sqrt(covariance(0, 0)), k * std::sqrt(covariance(1, 1)),
+          heading_sigmas * std::sqrt(covariance(2, 2))};
+}
+
+}  // namespace topogeo::localization

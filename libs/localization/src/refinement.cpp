@@ -1,0 +1,180 @@
+#include "topogeo/localization/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+constexpr int kMaxIterations = 15;
+constexpr std::size_t kFewestPoints = 12;
+constexpr double kFirstGate_m = 0.50;  // shrinks to kLastGate_m while iterating
+constexpr double kLastGate_m = 0.20;
+constexpr double kCauchy_m = 0.05;
+// Deviation taken for one residual. More than the laser's noise, because the residuals of
+// neighbouring beams are not independent.
+constexpr double kResidualSigma_m = 0.08;
+constexpr double kInlier_m = 0.15;
+constexpr double kViewTolerance_m = 0.30;
+
+struct NormalEquations {
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  std::size_t points = 0;
+
+  // Written out, because the order of the sums must be the same on every machine.
+  void add(const double jacobian[3], double residual, double weight) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) hessian(i, j) += weight * jacobian[i] * jacobian[j];
+      gradient(i) += weight * jacobian[i] * residual;
+    }
+    ++points;
+  }
+};
+
+NormalEquations linearize(const Reference& reference, const MatchFeatures& query, const Pose2& T,
+                          double gate_m) {
+  NormalEquations equations;
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
+  constexpr double kPerSigma2 = 1.0 / (kResidualSigma_m * kResidualSigma_m);
+  for (const SurfacePoint& point : query.surface) {
+    const double dx = r.cos * point.position_m.x() - r.sin * point.position_m.y();
+    const double dy = r.sin * point.position_m.x() + r.cos * point.position_m.y();
+    const std::int32_t found = reference.surface_grid.find(T.x_m + dx, T.y_m + dy);
+    if (found == NearestPointGrid::kNone) continue;
+    const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+    const double ox = T.x_m + dx - other.position_m.x();
+    const double oy = T.y_m + dy - other.position_m.y();
+    if (ox * ox + oy * oy > gate_m * gate_m || !other.on_line) continue;
+    if (point.on_line) {  // two walls that stand across each other are not one surface
+      const double nx = r.cos * point.normal.x() - r.sin * point.normal.y();
+      const double ny = r.sin * point.normal.x() + r.cos * point.normal.y();
+      const double cosine = nx * other.normal.x() + ny * other.normal.y();
+      if (cosine * cosine < 0.5) continue;
+    }
+    const double residual = other.normal.x() * ox + other.normal.y() * oy;
+    const double u = residual / kCauchy_m;
+    const double jacobian[3] = {other.normal.x(), other.normal.y(),
+                                other.normal.y() * dx - other.normal.x() * dy};
+    equations.add(jacobian, residual, kPerSigma2 / (1.0 + u * u));
+  }
+  return equations;
+}
+
+// Adds what the prior says; both its error and the update are (x, y, theta) in the reference frame.
+void add_prior(NormalEquations& equations, const Pose2& T, const PosePrior& prior) {
+  const double error[3] = {T.x_m - prior.T_reference_query.x_m, T.y_m - prior.T_reference_query.y_m,
+                           geometry::wrap_angle(T.theta_rad - prior.T_reference_query.theta_rad)};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      equations.hessian(i, j) += prior.information(i, j);
+      equations.gradient(i) += prior.information(i, j) * error[j];
+    }
+  }
+}
+
+// Counts the reference's points that fall into what the query saw.
+struct ReverseView {
+  std::size_t in_view = 0;
+  std::size_t violations = 0;
+};
+
+ReverseView look_back(const Reference& reference, const MatchFeatures& query, const Pose2& T) {
+  ReverseView counts;
+  const Pose2 T_query_reference = geometry::inverse(T);
+  const geometry::SinCos r = geometry::sincos(T_query_reference.theta_rad);
+  for (const SurfacePoint& point : reference.features.surface) {
+    const double x = point.position_m.x();
+    const double y = point.position_m.y();
+    const RangeProfile::View view =
+        query.profile.view({T_query_reference.x_m + r.cos * x - r.sin * y,
+                            T_query_reference.y_m + r.sin * x + r.cos * y},
+                           kViewTolerance_m);
+    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++counts.in_view;
+    if (view == RangeProfile::View::kFree) ++counts.violations;
+  }
+  return counts;
+}
+
+void collect_evidence(const Reference& reference, const MatchFeatures& query, Refinement& result) {
+  const geometry::SinCos r = geometry::sincos(result.T_reference_query.theta_rad);
+  std::size_t in_view = 0;
+  std::size_t inliers = 0;
+  std::size_t violations = 0;
+  double squared = 0.0;
+  for (const SurfacePoint& point : query.surface) {
+    const Eigen::Vector2d p(
+        result.T_reference_query.x_m + r.cos * point.position_m.x() - r.sin * point.position_m.y(),
+        result.T_reference_query.y_m + r.sin * point.position_m.x() + r.cos * point.position_m.y());
+    const std::int32_t found = reference.surface_grid.find(p.x(), p.y());
+    if (found != NearestPointGrid::kNone) {
+      const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+      const Eigen::Vector2d o = p - other.position_m;
+      const double across =
+          other.on_line ? o.x() * other.normal.x() + o.y() * other.normal.y() : 0.0;
+      const double distance2 = other.on_line ? across * across : o.squaredNorm();
+      if (distance2 <= kInlier_m * kInlier_m && o.squaredNorm() <= 4.0 * kInlier_m * kInlier_m) {
+        ++in_view;
+        ++inliers;
+        squared += distance2;
+        continue;
+      }
+    }
+    const RangeProfile::View view = reference.features.profile.view(p, kViewTolerance_m);
+    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++in_view;
+    if (view == RangeProfile::View::kFree) ++violations;
+  }
+  if (query.surface.empty() || in_view == 0) return;
+  const auto seen = static_cast<double>(in_view);
+  result.overlap = seen / static_cast<double>(query.surface.size());
+  result.inliers = static_cast<double>(inliers) / seen;
+  result.violations = static_cast<double>(violations) / seen;
+  const ReverseView back = look_back(reference, query, result.T_reference_query);
+  if (back.in_view > 0) {
+    result.violations = std::max(result.violations, static_cast<double>(back.violations) /
+                                                        static_cast<double>(back.in_view));
+  }
+  if (inliers > 0) result.residual_rms_m = std::sqrt(squared / static_cast<double>(inliers));
+}
+
+}  // namespace
+
+Refinement refine(const Reference& reference, const MatchFeatures& query,
+                  const Pose2& T_first_guess, const PosePrior& prior) {
+  Refinement result;
+  result.T_reference_query = T_first_guess;
+  Pose2& T = result.T_reference_query;
+  for (int k = 0; k < kMaxIterations; ++k) {
+    const double gate_m = std::max(kLastGate_m, kFirstGate_m - 0.06 * k);
+    NormalEquations equations = linearize(reference, query, T, gate_m);
+    if (equations.points < kFewestPoints) {
+      result.T_reference_query = T_first_guess;
+      result.information.setZero();
+      result.converged = false;
+      break;
+    }
+    result.information = equations.hessian;
+    add_prior(equations, T, prior);
+    // A little damping keeps a direction that nothing fixes (along a bare corridor) where it was.
+    for (int i = 0; i < 3; ++i) equations.hessian(i, i) += 1e-3;
+    const Eigen::Vector3d step = equations.hessian.inverse() * equations.gradient;
+    T = {T.x_m - step.x(), T.y_m - step.y(), geometry::wrap_angle(T.theta_rad - step.z())};
+    result.iterations = k + 1;
+    const bool still =
+        std::fabs(step.x()) < 1e-4 && std::fabs(step.y()) < 1e-4 && std::fabs(step.z()) < 1e-5;
+    if (still && gate_m <= kLastGate_m) {
+      result.converged = true;
+      break;
+    }
+  }
+  collect_evidence(reference, query, result);
+  return result;
+}
+
+}  // namespace topogeo::localization

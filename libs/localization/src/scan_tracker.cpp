@@ -1,0 +1,44 @@
+#include "topogeo/localization/scan_tracker.hpp"
+
+#include <Eigen/LU>
+
+#include "topogeo/localization/refinement.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+using topomap::ScanPoint;
+
+void ScanTracker::start(std::span<const ScanPoint> points, const Pose2& T_robot_laser,
+                        const Pose2& T_odom_robot) {
+  T_robot_laser_ = T_robot_laser;
+  stop_ = make_reference(extract_scan_features(points, T_robot_laser));
+  last_ = {};
+  T_odom_last_ = T_odom_robot;
+}
+
+TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T_odom_robot) {
+  last_ = advance(last_, geometry::between(T_odom_last_, T_odom_robot), config_.odometry);
+  T_odom_last_ = T_odom_robot;
+  Eigen::Matrix3d covariance = last_.covariance;
+  covariance(0, 0) += 1e-4;  // a standing robot: nothing new from odometry, but invertible
+  covariance(1, 1) += 1e-4;
+  covariance(2, 2) += 1e-5;
+  const PosePrior prior{last_.T_a_b, covariance.inverse()};
+  const MatchFeatures features = extract_scan_features(points, T_robot_laser_);
+  const Refinement refined = refine(stop_, features, last_.T_a_b, prior);
+  const Pose2& T = refined.T_reference_query;
+  const Eigen::Vector3d error(T.x_m - last_.T_a_b.x_m, T.y_m - last_.T_a_b.y_m,
+                              geometry::wrap_angle(T.theta_rad - last_.T_a_b.theta_rad));
+  const bool matched = !refined.information.isZero() &&
+                       refined.overlap >= config_.smallest_overlap &&
+                       refined.inliers >= config_.smallest_inliers &&
+                       error.dot(prior.information * error) <= config_.largest_mahalanobis2;
+  if (matched) {
+    last_.T_a_b = T;
+    last_.covariance = (refined.information + prior.information).inverse();
+  }
+  return {last_.T_a_b, matched};
+}
+
+}  // namespace topogeo::localization

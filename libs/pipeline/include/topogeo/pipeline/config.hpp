@@ -1,0 +1,36 @@
+// Every setting of the system in one place: one YAML file, the same for all services and for the
+// single-process command.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "topogeo/localization/localizer.hpp"
+#include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/planning/route_planner.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/support/config_schema.hpp"
+#include "topogeo/topomap/global_map_builder.hpp"
+
+namespace topogeo::pipeline {
+
+struct Config {
+  scan::CarmenLogOptions log;
+  LocalMapperConfig local_mapper;
+  localization::LocalizerConfig localizer;
+  topomap::GlobalMapConfig global_map;
+  planning::PlanningConfig planning;
+};
+
+/// Declares every key of the file with its variable in `config`, its range, unit and reason.
+support::ConfigSchema describe(Config& config);
+
+/// The configuration of a file, or the defaults without one. `effective` of it goes into reports.
+/// Throws std::runtime_error naming file, line and key.
+struct LoadedConfig {
+  Config config;
+  support::EffectiveConfig effective;
+};
+LoadedConfig load_config(const std::optional<std::filesystem::path>& file);
+
+}  // namespace topogeo::pipeline

@@ -1,0 +1,55 @@
+// From scans to local maps: chooses the stops, follows the robot between them and makes the local
+// map of each stop (spec A1, A2; design, poses between stops).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/localization/scan_tracker.hpp"
+#include "topogeo/scan/scan.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/local_map_builder.hpp"
+#include "topogeo/voronoi/local_voronoi.hpp"
+
+namespace topogeo::pipeline {
+
+struct LocalMapperConfig {
+  double stop_distance_m = 1.0;       ///< a stop is made this far from the one before
+  double stop_turn_rad = 0.35;        ///< or after this much turn
+  std::uint32_t longest_track = 256;  ///< scans between two stops; also the bound on the wire
+  voronoi::VoronoiConfig voronoi;
+  topomap::LocalMapConfig local_map;
+  geometry::Pose2 T_robot_laser;  ///< mounting of the laser
+  localization::ScanTrackerConfig tracker;
+};
+
+class LocalMapper {
+ public:
+  /// Throws std::invalid_argument when a field of the configuration is outside its range.
+  LocalMapper(const LocalMapperConfig& config, std::string robot_id);
+
+  /// Takes the next scan, in time order; gives a local map when the robot is at a stop. The first
+  /// scan is one.
+  std::optional<topomap::LocalMap> add(const scan::Scan& scan);
+
+  /// At the end of a log: makes a stop of the last scan, if it was none, so that the scans since
+  /// the stop before are not lost.
+  std::optional<topomap::LocalMap> finish();
+
+ private:
+  topomap::LocalMap make_stop(const scan::Scan& scan, const geometry::Pose2& T_stop_robot);
+  [[nodiscard]] std::vector<topomap::ScanPoint> points_of(const scan::Scan& scan) const;
+
+  LocalMapperConfig config_;
+  std::string robot_id_;
+  localization::ScanTracker tracker_;
+  voronoi::LocalVoronoi diagram_maker_;
+  voronoi::LocalVoronoiDiagram diagram_;
+  std::uint32_t next_id_ = 0;
+  std::vector<topomap::TrackedScan> track_;  // since the last stop
+  std::optional<scan::Scan> last_;           // the last scan, if it was no stop
+};
+
+}  // namespace topogeo::pipeline

@@ -1,0 +1,51 @@
+// The whole way from scans to a map in one process: what the services do together, without DDS.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/matcher.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/scan/scan.hpp"
+#include "topogeo/storage/map_document.hpp"
+#include "topogeo/support/cpu_time.hpp"
+
+namespace topogeo::pipeline {
+
+class MappingRun {
+ public:
+  MappingRun(const Config& config, std::string robot_id);
+
+  /// Takes the next scan, in time order.
+  void add(const scan::Scan& scan);
+
+  /// Works off the end of the log and gives the map. Call it once, after the last scan.
+  storage::MapDocument finish();
+
+  [[nodiscard]] const localization::LocalizerCounts& match_counts() const {
+    return localizer_.counts();
+  }
+  /// "local_mapper", "localizer" and "map_store", as the services are called that do the same.
+  [[nodiscard]] const std::vector<support::StageTime>& stages() const { return times_.stages(); }
+
+ private:
+  void localize(topomap::LocalMap map);
+
+  Config config_;
+  std::string robot_id_;
+  localization::InProcessPool pool_;
+  LocalMapper local_mapper_;
+  localization::Localizer localizer_;
+  std::vector<topomap::LocalMap> local_maps_;
+  support::StageTimes times_;
+};
+
+/// The global map of local maps at their poses: what map_store keeps.
+topomap::GlobalMap fuse(const topomap::GlobalMapConfig& config,
+                        const std::vector<topomap::LocalMap>& local_maps,
+                        const topomap::Trajectory& trajectory);
+
+}  // namespace topogeo::pipeline

@@ -1,0 +1,63 @@
+#include "topogeo/pipeline/outputs.hpp"
+
+#include <cmath>
+
+#include "topogeo/render/map_picture.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/tum.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::pipeline {
+
+void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
+                       const std::string& title) {
+  const auto corrected = topomap::expand_trajectory(document.trajectory, document.local_maps);
+  const auto odometry = topomap::expand_odometry(document.local_maps);
+  storage::write_trajectory_tum(directory / "trajectory.tum", corrected);
+  storage::write_trajectory_tum(directory / "odometry.tum", odometry);
+  storage::write_map_file(directory / "map.pb", document);
+  const render::MapPicture picture{
+      document.local_maps,    document.trajectory.stops, odometry, corrected,
+      document.loop_closures, &document.global_map,      title};
+  render::draw_map_svg(directory / "map.svg", picture);
+  render::draw_map_png(directory / "map.png", picture);
+}
+
+void add_map(storage::Report& report, const storage::MapDocument& document) {
+  report.robot_id = document.robot_id;
+  report.seed = document.seed;
+  report.stops = document.local_maps.size();
+  report.nodes = document.global_map.nodes.size();
+  report.branches = document.global_map.branches.size();
+  report.loop_closures = document.loop_closures;
+  const auto poses = topomap::expand_trajectory(document.trajectory, document.local_maps);
+  report.scans = poses.size();
+  report.distance_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    report.distance_m +=
+        std::sqrt((poses[i].pose.position_m() - poses[i - 1].pose.position_m()).squaredNorm());
+  }
+}
+
+void add_matches(storage::Report& report, const localization::LocalizerCounts& counts) {
+  report.matches_tried = counts.tasks;
+  report.matches_accepted =
+      counts.verdicts[static_cast<std::size_t>(localization::Verdict::kAccepted)];
+  report.matches_rejected.clear();
+  for (std::size_t i = 1; i < localization::kVerdicts; ++i) {
+    report.matches_rejected.emplace_back(
+        localization::to_string(static_cast<localization::Verdict>(i)), counts.verdicts[i]);
+  }
+}
+
+void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics) {
+  report.skipped_lines.clear();
+  for (std::size_t i = 0; i < scan::kSkipReasonCount; ++i) {
+    const auto reason = static_cast<scan::SkipReason>(i);
+    if (statistics.skipped_for(reason) > 0) {
+      report.skipped_lines.emplace_back(scan::describe(reason), statistics.skipped_for(reason));
+    }
+  }
+}
+
+}  // namespace topogeo::pipeline
