@@ -12,7 +12,8 @@ find_program(FASTDDSGEN fastddsgen REQUIRED)
 # so a changed file does not recompile the others.
 #
 # The generated constructors register the type's description every time, which costs 20 us for each
-# point of a map; sed takes that out, and libs/messaging registers it once.
+# point of a map; sed takes that out, and libs/messaging registers it once. It also takes out
+# addresses in comments that differ from run to run.
 function(topogeo_add_idl)
   cmake_parse_arguments(ARG "" "NAME" "FILES" ${ARGN})
   set(staging ${CMAKE_CURRENT_BINARY_DIR}/staging)
@@ -38,7 +39,8 @@ function(topogeo_add_idl)
     OUTPUT ${outputs}
     COMMAND ${FASTDDSGEN} -replace -typeobject -cs -d ${staging} ${ARG_FILES} > ${staging}/log.txt
             || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
-    COMMAND sed -i -E "/^ +register[A-Za-z0-9_]+Types\\(\\)$<SEMICOLON>$/d" ${staged_types}
+    COMMAND sed -i -E -e "/^ +register[A-Za-z0-9_]+Types\\(\\)$<SEMICOLON>$/d"
+            -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
     COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${generated}
     DEPENDS ${ARG_FILES}
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
