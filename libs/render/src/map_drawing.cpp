@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "canvas.hpp"
 #include "legend.hpp"
@@ -74,11 +77,18 @@ void draw_branches(cairo_t* cr, const topomap::GlobalMap& map, const Layout& lay
   set_dashes(cr, false);
 }
 
+// One line for all closures between the same two stretches of the way: a corridor driven twice has
+// hundreds, and drawn all they would hide the map.
 void draw_loop_closures(cairo_t* cr, const MapPicture& picture, const Layout& layout) {
+  constexpr std::uint32_t kStretch_stops = 8;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> drawn;
   set_colour(cr, kLoopClosure);
-  cairo_set_line_width(cr, 1.0);
+  cairo_set_line_width(cr, 0.75);
   for (const topomap::LoopClosure& closure : picture.loop_closures) {
     if (std::max(closure.earlier_id, closure.later_id) >= picture.stops.size()) continue;
+    const auto stretches =
+        std::pair(closure.earlier_id / kStretch_stops, closure.later_id / kStretch_stops);
+    if (!drawn.insert(stretches).second) continue;
     move_to(cr, layout.to_px(picture.stops[closure.earlier_id].T_map_robot.position_m()));
     line_to(cr, layout.to_px(picture.stops[closure.later_id].T_map_robot.position_m()));
   }

@@ -74,7 +74,7 @@ std::vector<double> raycast(const World& world, const geometry::Pose2& T_world_l
 }
 
 std::vector<float> measure(const std::vector<double>& ranges_m, const LaserNoise& noise,
-                           Random& random) {
+                           support::Random& random) {
   std::vector<float> readings_m;
   readings_m.reserve(ranges_m.size());
   for (const double range_m : ranges_m) {

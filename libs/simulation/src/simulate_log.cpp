@@ -1,15 +1,14 @@
 #include "topogeo/simulation/simulate_log.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
+#include "topogeo/support/seed.hpp"
+
 namespace topogeo::simulation {
 namespace {
-
-// Separate streams: a change to the laser leaves the odometry as it was, and the other way round.
-constexpr std::uint64_t kLaserStream = 1;
-constexpr std::uint64_t kOdometryStream = 2;
 
 void check(bool ok, const std::string& name, const std::string& expected) {
   if (!ok) throw std::invalid_argument(name + ": expected " + expected);
@@ -38,8 +37,10 @@ void check(const SimulationOptions& o) {
 SimulatedLog simulate_log(const World& world, const SimulationOptions& options) {
   check(options);
   const std::vector<TimedPose> poses = drive(world.tour_m, options.drive);
-  Random laser_random(options.seed, kLaserStream);
-  OdometryModel odometry(options.odometry, Random(options.seed, kOdometryStream));
+  // Separate seeds: a change to the laser leaves the odometry as it was, and the other way round.
+  support::Random laser_random(support::derive_seed(options.seed, "laser", {}));
+  OdometryModel odometry(options.odometry,
+                         support::Random(support::derive_seed(options.seed, "odometry", {})));
   SimulatedLog log;
   double travelled_m = 0.0;
   double turned_rad = 0.0;

@@ -76,7 +76,7 @@ TEST(Raycast, TheNearestOfSeveralSurfacesCounts) {
 TEST(LaserNoise, HasTheStatisticsOfThePls) {
   constexpr std::size_t kCount = 100'000;
   const double range_m = 3.1234;
-  Random random(5);
+  support::Random random(5);
   const auto readings_m = measure(std::vector<double>(kCount, range_m), {}, random);
   double sum = 0.0;
   double sum2 = 0.0;
@@ -101,7 +101,7 @@ TEST(LaserNoise, HasTheStatisticsOfThePls) {
 }
 
 TEST(LaserNoise, CanBeSwitchedOff) {
-  Random random(5);
+  support::Random random(5);
   const LaserNoise none{
       .sigma_m = 0.0, .bound_m = 0.0, .resolution_m = 0.0, .dropout_probability = 0.0};
   const auto readings_m = measure({1.23456, kInfinity}, none, random);
@@ -109,45 +109,6 @@ TEST(LaserNoise, CanBeSwitchedOff) {
   EXPECT_EQ(readings_m[1], scan::Scan::kNoReturn);
   const LaserNoise all_lost{.dropout_probability = 1.0};
   EXPECT_EQ(measure({1.0}, all_lost, random)[0], scan::Scan::kNoReturn);
-}
-
-TEST(Random, IsXoshiro256PlusPlusAndKeepsStreamsApart) {
-  Random a(42);
-  Random same(42);
-  Random other_seed(43);
-  Random other_stream(42, 1);
-  int equal_seed = 0;
-  int equal_stream = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const auto value = a.bits();
-    ASSERT_EQ(value, same.bits());
-    equal_seed += value == other_seed.bits() ? 1 : 0;
-    equal_stream += value == other_stream.bits() ? 1 : 0;
-  }
-  EXPECT_EQ(equal_seed, 0);
-  EXPECT_EQ(equal_stream, 0);
-}
-
-TEST(Random, UniformAndNormalHaveTheirMoments) {
-  Random random(3);
-  constexpr int kCount = 200'000;
-  double u = 0.0;
-  double m1 = 0.0;
-  double m2 = 0.0;
-  double m4 = 0.0;
-  for (int i = 0; i < kCount; ++i) {
-    const double x = random.uniform();
-    ASSERT_TRUE(x >= 0.0 && x < 1.0);
-    u += x;
-    const double z = random.normal();
-    m1 += z;
-    m2 += z * z;
-    m4 += z * z * z * z;
-  }
-  EXPECT_NEAR(u / kCount, 0.5, 0.003);
-  EXPECT_NEAR(m1 / kCount, 0.0, 0.01);
-  EXPECT_NEAR(m2 / kCount, 1.0, 0.015);
-  EXPECT_NEAR(m4 / kCount, 3.0, 0.12);
 }
 
 }  // namespace

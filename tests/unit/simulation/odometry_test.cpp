@@ -14,7 +14,7 @@ constexpr OdometryDrift kPerfect{.range_scale_error = 0.0,
                                  .turn_sigma_rad_per_sqrt_rad = 0.0};
 
 TEST(Odometry, WithoutDriftItIsTheTruthSeenFromTheStart) {
-  OdometryModel model(kPerfect, Random(1));
+  OdometryModel model(kPerfect, support::Random(1));
   const geometry::Pose2 start{5.0, -3.0, 2.0};
   EXPECT_EQ(model.advance(start), geometry::Pose2());
   for (int i = 1; i < 200; ++i) {
@@ -31,13 +31,13 @@ TEST(Odometry, WithoutDriftItIsTheTruthSeenFromTheStart) {
 TEST(Odometry, SystematicErrorsFollowThePath) {
   OdometryDrift drift = kPerfect;
   drift.range_scale_error = 0.02;
-  OdometryModel scaled(drift, Random(1));
+  OdometryModel scaled(drift, support::Random(1));
   scaled.advance({});
   EXPECT_NEAR(scaled.advance({10.0, 0.0, 0.0}).x_m, 10.2, 1e-12);
 
   drift = kPerfect;
   drift.heading_drift_rad_per_m = 0.01;
-  OdometryModel bent(drift, Random(1));
+  OdometryModel bent(drift, support::Random(1));
   geometry::Pose2 odometry;
   for (int i = 0; i <= 100; ++i) odometry = bent.advance({0.1 * i, 0.0, 0.0});
   EXPECT_NEAR(odometry.theta_rad, 0.1, 1e-9);
@@ -53,7 +53,7 @@ TEST(Odometry, RandomHeadingGrowsWithTheRootOfThePath) {
     double sum2 = 0.0;
     constexpr int kRuns = 2000;
     for (int run = 0; run < kRuns; ++run) {
-      OdometryModel model(drift, Random(static_cast<std::uint64_t>(run)));
+      OdometryModel model(drift, support::Random(static_cast<std::uint64_t>(run)));
       geometry::Pose2 odometry = model.advance({});
       for (int i = 1; i <= steps; ++i) odometry = model.advance({16.0 * i / steps, 0.0, 0.0});
       sum2 += odometry.theta_rad * odometry.theta_rad;
@@ -65,7 +65,7 @@ TEST(Odometry, RandomHeadingGrowsWithTheRootOfThePath) {
 TEST(Odometry, TurningOnTheSpotErrsInHeadingOnly) {
   OdometryDrift drift = kPerfect;
   drift.turn_sigma_rad_per_sqrt_rad = 0.02;
-  OdometryModel model(drift, Random(9));
+  OdometryModel model(drift, support::Random(9));
   model.advance({});
   const geometry::Pose2 odometry = model.advance({0.0, 0.0, 1.0});
   EXPECT_EQ(odometry.x_m, 0.0);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/simulation/random.hpp"
 #include "topogeo/simulation/world.hpp"
+#include "topogeo/support/random.hpp"
 
 namespace topogeo::simulation {
 
@@ -34,6 +34,6 @@ struct LaserNoise {
 /// Readings for exact ranges: Scan::kNoReturn for infinity and for drop-outs. Uses the same count
 /// of drop-out draws for every scan, so that scans of different worlds stay comparable.
 std::vector<float> measure(const std::vector<double>& ranges_m, const LaserNoise& noise,
-                           Random& random);
+                           support::Random& random);
 
 }  // namespace topogeo::simulation

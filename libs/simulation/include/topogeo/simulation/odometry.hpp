@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/simulation/random.hpp"
+#include "topogeo/support/random.hpp"
 
 namespace topogeo::simulation {
 
@@ -20,7 +20,8 @@ struct OdometryDrift {
 
 class OdometryModel {
  public:
-  OdometryModel(const OdometryDrift& drift, Random random) : drift_(drift), random_(random) {}
+  OdometryModel(const OdometryDrift& drift, support::Random random)
+      : drift_(drift), random_(random) {}
 
   /// Takes the robot to its next true pose; returns what its odometry says then. The first call
   /// fixes the origin: it returns the identity.
@@ -28,7 +29,7 @@ class OdometryModel {
 
  private:
   OdometryDrift drift_;
-  Random random_;
+  support::Random random_;
   std::optional<geometry::Pose2> T_world_last_;
   geometry::Pose2 T_odom_robot_;
 };
