@@ -1,0 +1,110 @@
+// Messages to the types of the libraries and back, exact to the last bit.
+//
+// to_msg throws std::invalid_argument naming the field when a value does not fit its bound.
+// from_msg throws it when the message contradicts itself (a node that does not exist, a number
+// that is not finite), so that what it gives can be worked with. What the types of the libraries
+// do not have (robot, stamp, sequence number, addresses) is an argument of to_msg.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/match.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/map_update.h"
+#include "topogeo/msg/match.h"
+#include "topogeo/msg/planning.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/planning/route_planner.hpp"
+#include "topogeo/scan/scan.hpp"
+#include "topogeo/topomap/global_map.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::service {
+
+msg::Pose2 to_msg(const geometry::Pose2& pose);
+geometry::Pose2 from_msg(const msg::Pose2& pose);
+
+msg::Matrix3 to_msg(const Eigen::Matrix3d& matrix);
+Eigen::Matrix3d from_msg(const msg::Matrix3& matrix);
+
+msg::Scan to_msg(const scan::Scan& scan, std::string_view robot_id);
+/// Refuses ranges that are negative, infinite or no numbers and beams that do not ascend.
+scan::Scan from_msg(const msg::Scan& message);
+
+/// Fills content_hash.
+msg::LocalMap to_msg(const topomap::LocalMap& map);
+/// Checks content_hash, too.
+topomap::LocalMap from_msg(const msg::LocalMap& message);
+
+/// Who asks whom for a match, and what both must agree on.
+struct MatchAddress {
+  std::string robot_id;
+  std::int64_t stamp_ns = 0;  ///< of the query map's scan
+  std::uint64_t sequence_number = 0;
+  std::string worker_id;
+  std::string client_id;
+  std::string version;                   ///< of a task
+  std::uint64_t config_fingerprint = 0;  ///< of a task
+};
+
+msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& address);
+localization::MatchTask from_msg(const msg::MatchTask& message);
+
+msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddress& address);
+/// Throws for a refusal, too: look at status() first.
+localization::MatchResult from_msg(const msg::MatchResult& message);
+
+/// Number of segments that a trajectory of so many stops has.
+std::uint32_t segment_count(std::size_t stops);
+/// Segment `segment` < segment_count of the trajectory.
+msg::TrajectorySegment to_segment(const topomap::Trajectory& trajectory, std::uint32_t segment,
+                                  std::string_view robot_id, std::uint64_t sequence_number);
+/// All segments in order, numbered from `first_sequence_number`.
+std::vector<msg::TrajectorySegment> to_segments(const topomap::Trajectory& trajectory,
+                                                std::string_view robot_id,
+                                                std::uint64_t first_sequence_number);
+/// The stops of one segment, checked: consecutive ids from 256 * segment on.
+std::vector<topomap::StopPose> from_msg(const msg::TrajectorySegment& message);
+
+msg::LoopClosures to_msg(std::span<const topomap::LoopClosure> closures,
+                         std::uint64_t trajectory_version, std::string_view robot_id,
+                         std::int64_t stamp_ns, std::uint64_t sequence_number);
+std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message);
+
+/// Pose of the robot now, as in msg::LivePose.
+struct LivePose {
+  std::int64_t stamp_ns = 0;   ///< of the scan
+  std::uint64_t sequence = 0;  ///< of the scan
+  msg::PoseState state = msg::kPoseUnknown;
+  geometry::Pose2 T_map_robot;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
+  std::uint32_t local_map_id = 0;                        ///< last stop
+  std::uint64_t trajectory_version = 0;                  ///< that the pose belongs to
+};
+
+msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id);
+LivePose from_msg(const msg::LivePose& message);
+
+/// Nodes, branches and last the summary, each with map_version of the map and sequence number 0.
+std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::string_view robot_id,
+                                         std::int64_t stamp_ns);
+topomap::MapNode node_from_msg(const msg::MapElement& message);
+topomap::MapBranch branch_from_msg(const msg::MapElement& message);
+/// The map of elements in any order; the summary gives its version. MapMirror keeps a live one.
+topomap::GlobalMap from_elements(std::span<const msg::MapElement> elements);
+
+/// Only what the route itself says: points, nodes and length. The branches do not travel.
+msg::Route to_msg(const planning::Route& route);
+/// branch_ids is empty; min_clearance_m is the smallest of the points.
+planning::Route from_msg(const msg::Route& message);
+
+}  // namespace topogeo::service

@@ -1,0 +1,66 @@
+// Command line, configuration and exit code of a service.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/pipeline/config.hpp"
+
+namespace topogeo::service {
+
+/// What the process gives back.
+enum ExitCode : int {
+  kOk = 0,
+  kFailure = 1,   ///< something broke while it ran
+  kUsage = 2,     ///< a flag or the configuration is wrong
+  kBadInput = 3,  ///< a log, directory or database that it was given cannot be used
+};
+
+/// Ends the program with kUsage.
+class UsageError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Ends the program with kBadInput.
+class BadInputError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Flags that every service has.
+struct ServiceOptions {
+  std::uint32_t domain = 0;                              ///< DDS domain, 0 to 232
+  std::string partition = messaging::kDefaultPartition;  ///< runs of different ones never meet
+  std::string robot_id = "robot";                        ///< 1 to 32 bytes
+  std::optional<std::filesystem::path> config;           ///< YAML; none: the defaults
+  std::filesystem::path profiles_file;                   ///< QoS profiles; empty: built in
+  std::string log_level = "info";
+};
+
+/// Adds the flags of `options` to `app`; `options` must outlive it.
+void add_service_options(CLI::App& app, ServiceOptions& options);
+
+/// Joins the domain under the name "<robot>/<service>". Throws like messaging::Participant.
+messaging::Participant make_participant(const ServiceOptions& options, const std::string& service);
+
+/// What a service starts with.
+struct Setup {
+  std::string name;  ///< of the executable
+  ServiceOptions options;
+  pipeline::LoadedConfig config;
+};
+
+/// The main function of a service. Parses the command line (`add_options` adds the service's own
+/// flags), sets up logging, loads the configuration and calls `body`, which returns when the
+/// service is to end. What it throws becomes one line on stderr and an exit code.
+int run_service(int argc, const char* const* argv, const std::string& name,
+                const std::string& description, const std::function<void(CLI::App&)>& add_options,
+                const std::function<void(const Setup&)>& body);
+
+}  // namespace topogeo::service

@@ -1,0 +1,41 @@
+// A trajectory from the segments that it travels in, whatever their order.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::service {
+
+/// Keeps the newest of each segment of one robot.
+class TrajectoryAssembly {
+ public:
+  /// False when the segment is older than the one held; equal versions replace. Throws
+  /// std::invalid_argument like from_msg.
+  bool add(const msg::TrajectorySegment& message);
+
+  /// Newest version of any segment; 0 without one.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+
+  /// The newest pose of each stop up to the first segment that has not come. Segments of different
+  /// versions may stand side by side; `version` is the newest.
+  [[nodiscard]] topomap::Trajectory newest() const;
+
+  /// The trajectory of exactly this version, if every segment of it is here.
+  [[nodiscard]] std::optional<topomap::Trajectory> whole(std::uint64_t version) const;
+
+ private:
+  struct Segment {
+    std::uint64_t version = 0;
+    std::uint32_t total_stops = 0;
+    std::vector<topomap::StopPose> stops;
+  };
+  std::map<std::uint32_t, Segment> segments_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace topogeo::service

@@ -1,0 +1,84 @@
+// Checks and conversions that several conversions share.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/msg/common.h"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::service::detail {
+
+/// Throws std::invalid_argument unless `size` fits the bound of the field.
+inline void check_bound(std::string_view field, std::size_t size, std::size_t bound) {
+  if (size <= bound) return;
+  throw std::invalid_argument(std::string(field) + " has " + std::to_string(size) +
+                              " entries, allowed are " + std::to_string(bound));
+}
+
+/// Throws std::invalid_argument unless `condition`; `expected` says what it is.
+inline void check(bool condition, std::string_view field, std::string_view expected) {
+  if (!condition) {
+    throw std::invalid_argument(std::string(field) + ": expected " + std::string(expected));
+  }
+}
+
+inline double finite(double value, std::string_view field) {
+  if (!std::isfinite(value)) {
+    throw std::invalid_argument(std::string(field) + " is " + std::to_string(value) +
+                                ", expected a finite number");
+  }
+  return value;
+}
+
+inline msg::NodeKind to_msg(topomap::NodeKind kind) {
+  return static_cast<msg::NodeKind>(kind);  // same values, see common.idl
+}
+
+inline topomap::NodeKind from_msg(msg::NodeKind kind) {
+  check(static_cast<std::uint32_t>(kind) <= msg::kNodeHallCorridor, "node kind", "0 to 5");
+  return static_cast<topomap::NodeKind>(kind);
+}
+
+inline msg::BranchPoint to_branch_point(const Eigen::Vector2d& position_m, double clearance_m) {
+  msg::BranchPoint point;
+  point.x_m(position_m.x());
+  point.y_m(position_m.y());
+  point.clearance_m(clearance_m);
+  return point;
+}
+
+inline topomap::BranchPoint from_branch_point(const msg::BranchPoint& point,
+                                              std::string_view field) {
+  return {{finite(point.x_m(), field), finite(point.y_m(), field)},
+          finite(point.clearance_m(), field)};
+}
+
+inline std::vector<msg::BranchPoint> to_branch_points(
+    const std::vector<topomap::BranchPoint>& points, std::string_view field) {
+  check_bound(field, points.size(), msg::kMaxBranchPoints);
+  std::vector<msg::BranchPoint> out;
+  out.reserve(points.size());
+  for (const topomap::BranchPoint& point : points) {
+    out.push_back(to_branch_point(point.position_m, point.clearance_m));
+  }
+  return out;
+}
+
+inline std::vector<topomap::BranchPoint> from_branch_points(
+    const std::vector<msg::BranchPoint>& points, std::string_view field) {
+  check(points.size() >= 2, field, "at least 2 points");
+  std::vector<topomap::BranchPoint> out;
+  out.reserve(points.size());
+  for (const msg::BranchPoint& point : points) out.push_back(from_branch_point(point, field));
+  return out;
+}
+
+}  // namespace topogeo::service::detail

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <limits>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+#include "convert.hpp"
+
+namespace topogeo::service {
+
+using detail::check;
+using detail::check_bound;
+using detail::finite;
+
+namespace {
+
+msg::MapElement element(msg::MapElementKind kind, std::uint32_t id, std::uint64_t version,
+                        std::string_view robot_id, std::int64_t stamp_ns) {
+  msg::MapElement out;
+  messaging::set_header(out, robot_id, stamp_ns, 0);
+  out.kind(kind);
+  out.id(id);
+  out.map_version(version);
+  return out;
+}
+
+}  // namespace
+
+std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::string_view robot_id,
+                                         std::int64_t stamp_ns) {
+  std::vector<msg::MapElement> out;
+  out.reserve(map.nodes.size() + map.branches.size() + 1);
+  for (const topomap::MapNode& node : map.nodes) {
+    msg::MapElement& entry =
+        out.emplace_back(element(msg::kElementNode, node.id, map.version, robot_id, stamp_ns));
+    entry.observations(node.observations);
+    entry.node_kind(detail::to_msg(node.kind));
+    entry.node_position(detail::to_branch_point(node.position_m, node.clearance_m));
+  }
+  for (const topomap::MapBranch& branch : map.branches) {
+    msg::MapElement& entry =
+        out.emplace_back(element(msg::kElementBranch, branch.id, map.version, robot_id, stamp_ns));
+    entry.observations(branch.observations);
+    entry.node_a(branch.node_a);
+    entry.node_b(branch.node_b);
+    entry.is_virtual(branch.is_virtual);
+    entry.points(detail::to_branch_points(branch.points, "points"));
+  }
+  msg::MapElement& summary =
+      out.emplace_back(element(msg::kElementSummary, 0, map.version, robot_id, stamp_ns));
+  summary.nodes(static_cast<std::uint32_t>(map.nodes.size()));
+  summary.branches(static_cast<std::uint32_t>(map.branches.size()));
+  return out;
+}
+
+topomap::MapNode node_from_msg(const msg::MapElement& message) {
+  check(message.kind() == msg::kElementNode, "kind", "a node");
+  const topomap::BranchPoint at =
+      detail::from_branch_point(message.node_position(), "node_position");
+  return {message.id(), detail::from_msg(message.node_kind()), at.position_m, at.clearance_m,
+          message.observations()};
+}
+
+topomap::MapBranch branch_from_msg(const msg::MapElement& message) {
+  check(message.kind() == msg::kElementBranch, "kind", "a branch");
+  return {message.id(),           message.node_a(),
+          message.node_b(),       message.is_virtual(),
+          message.observations(), detail::from_branch_points(message.points(), "points")};
+}
+
+topomap::GlobalMap from_elements(std::span<const msg::MapElement> elements) {
+  topomap::GlobalMap map;
+  for (const msg::MapElement& entry : elements) {
+    switch (entry.kind()) {
+      case msg::kElementNode:
+        map.nodes.push_back(node_from_msg(entry));
+        break;
+      case msg::kElementBranch:
+        map.branches.push_back(branch_from_msg(entry));
+        break;
+      case msg::kElementSummary:
+        map.version = entry.map_version();
+        break;
+    }
+  }
+  const auto by_id = [](const auto& a, const auto& b) { return a.id < b.id; };
+  std::sort(map.nodes.begin(), map.nodes.end(), by_id);
+  std::sort(map.branches.begin(), map.branches.end(), by_id);
+  return map;
+}
+
+msg::Route to_msg(const planning::Route& route) {
+  check_bound("node_ids", route.node_ids.size(), msg::kMaxRouteNodes);
+  check_bound("points", route.points.size(), msg::kMaxRoutePoints);
+  msg::Route out;
+  out.length_m(route.length_m);
+  out.node_ids(route.node_ids);
+  for (const planning::WayPoint& point : route.points) {
+    out.points().push_back(detail::to_branch_point(point.position_m, point.clearance_m));
+  }
+  return out;
+}
+
+planning::Route from_msg(const msg::Route& message) {
+  planning::Route out;
+  out.length_m = finite(message.length_m(), "length_m");
+  out.node_ids = message.node_ids();
+  for (const msg::BranchPoint& point : message.points()) {
+    const topomap::BranchPoint p = detail::from_branch_point(point, "points");
+    out.min_clearance_m =
+        out.points.empty() ? p.clearance_m : std::min(out.min_clearance_m, p.clearance_m);
+    out.points.push_back({p.position_m, p.clearance_m});
+  }
+  return out;
+}
+
+}  // namespace topogeo::service

@@ -1,0 +1,135 @@
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+#include "convert.hpp"
+
+namespace topogeo::service {
+
+using detail::check;
+using detail::check_bound;
+using detail::finite;
+
+namespace {
+
+msg::GeneticParameters to_genetic(const localization::GeneticParameters& genetic) {
+  msg::GeneticParameters out;
+  out.individuals(genetic.individuals);
+  out.generations(genetic.generations);
+  out.mutation_rate(genetic.mutation_rate);
+  out.resolution_m(genetic.resolution_m);
+  out.resolution_rad(genetic.resolution_rad);
+  return out;
+}
+
+localization::GeneticParameters from_genetic(const msg::GeneticParameters& genetic) {
+  return {genetic.individuals(), genetic.generations(),
+          finite(genetic.mutation_rate(), "genetic.mutation_rate"),
+          finite(genetic.resolution_m(), "genetic.resolution_m"),
+          finite(genetic.resolution_rad(), "genetic.resolution_rad")};
+}
+
+}  // namespace
+
+msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& address) {
+  check_bound("initial_individuals", task.initial_individuals.size(), msg::kMaxInitialIndividuals);
+  msg::MatchTask out;
+  messaging::set_header(out, address.robot_id, address.stamp_ns, address.sequence_number);
+  messaging::set_text(out.worker_id(), address.worker_id, "worker_id");
+  messaging::set_text(out.client_id(), address.client_id, "client_id");
+  messaging::set_text(out.version(), address.version, "version");
+  out.config_fingerprint(address.config_fingerprint);
+  out.task_id(task.task_id);
+  out.reference_map_id(task.reference_map_id);
+  out.query_map_id(task.query_map_id);
+  out.reference_hash(task.reference_hash);
+  out.query_hash(task.query_hash);
+  out.T_reference_query(to_msg(task.T_reference_query));
+  out.covariance(to_msg(task.covariance));
+  out.half_width_x_m(task.half_width.x());
+  out.half_width_y_m(task.half_width.y());
+  out.half_width_rad(task.half_width.z());
+  out.genetic(to_genetic(task.genetic));
+  out.fitness_form(static_cast<msg::FitnessForm>(task.fitness_form));
+  for (const geometry::Pose2& pose : task.initial_individuals) {
+    out.initial_individuals().push_back(to_msg(pose));
+  }
+  out.solutions_wanted(task.solutions_wanted);
+  out.seed(task.seed);
+  return out;
+}
+
+localization::MatchTask from_msg(const msg::MatchTask& message) {
+  check(message.fitness_form() <= msg::kFitnessCombined, "fitness_form", "0 or 1");
+  check(message.solutions_wanted() >= 1 && message.solutions_wanted() <= msg::kMaxSolutions,
+        "solutions_wanted", "1 to 40");
+  localization::MatchTask out;
+  out.task_id = message.task_id();
+  out.reference_map_id = message.reference_map_id();
+  out.query_map_id = message.query_map_id();
+  out.reference_hash = message.reference_hash();
+  out.query_hash = message.query_hash();
+  out.T_reference_query = from_msg(message.T_reference_query());
+  out.covariance = from_msg(message.covariance());
+  out.half_width = {finite(message.half_width_x_m(), "half_width_x_m"),
+                    finite(message.half_width_y_m(), "half_width_y_m"),
+                    finite(message.half_width_rad(), "half_width_rad")};
+  out.genetic = from_genetic(message.genetic());
+  out.fitness_form = static_cast<localization::FitnessForm>(message.fitness_form());
+  for (const msg::Pose2& pose : message.initial_individuals()) {
+    out.initial_individuals.push_back(from_msg(pose));
+  }
+  out.solutions_wanted = message.solutions_wanted();
+  out.seed = message.seed();
+  return out;
+}
+
+msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddress& address) {
+  check_bound("solutions", result.solutions.size(), msg::kMaxSolutions);
+  msg::MatchResult out;
+  messaging::set_header(out, address.robot_id, address.stamp_ns, address.sequence_number);
+  messaging::set_text(out.client_id(), address.client_id, "client_id");
+  messaging::set_text(out.worker_id(), address.worker_id, "worker_id");
+  out.task_id(result.task_id);
+  out.status(static_cast<msg::MatchStatus>(result.status));
+  for (const localization::MatchSolution& solution : result.solutions) {
+    msg::MatchSolution entry;
+    entry.T_reference_query(to_msg(solution.T_reference_query));
+    entry.fitness(solution.fitness);
+    out.solutions().push_back(entry);
+  }
+  out.T_reference_query(to_msg(result.T_reference_query));
+  out.information(to_msg(result.information));
+  out.overlap(result.overlap);
+  out.inliers(result.inliers);
+  out.violations(result.violations);
+  out.residual_rms_m(result.residual_rms_m);
+  out.scan_fitness(result.scan_fitness);
+  out.topological_fitness(result.topological_fitness);
+  out.second_fitness(result.second_fitness);
+  out.evaluations(result.evaluations);
+  return out;
+}
+
+localization::MatchResult from_msg(const msg::MatchResult& message) {
+  check(message.status() <= msg::kMatchNothingInCommon, "status", "a result, no refusal");
+  localization::MatchResult out;
+  out.task_id = message.task_id();
+  out.status = static_cast<localization::MatchStatus>(message.status());
+  for (const msg::MatchSolution& solution : message.solutions()) {
+    out.solutions.push_back(
+        {from_msg(solution.T_reference_query()), finite(solution.fitness(), "solutions.fitness")});
+  }
+  out.T_reference_query = from_msg(message.T_reference_query());
+  out.information = from_msg(message.information());
+  out.overlap = finite(message.overlap(), "overlap");
+  out.inliers = finite(message.inliers(), "inliers");
+  out.violations = finite(message.violations(), "violations");
+  out.residual_rms_m = finite(message.residual_rms_m(), "residual_rms_m");
+  out.scan_fitness = finite(message.scan_fitness(), "scan_fitness");
+  out.topological_fitness = finite(message.topological_fitness(), "topological_fitness");
+  out.second_fitness = finite(message.second_fitness(), "second_fitness");
+  out.evaluations = message.evaluations();
+  return out;
+}
+
+}  // namespace topogeo::service

@@ -1,0 +1,114 @@
+#include <algorithm>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+#include "convert.hpp"
+
+namespace topogeo::service {
+
+using detail::check;
+using detail::check_bound;
+
+std::uint32_t segment_count(std::size_t stops) {
+  return static_cast<std::uint32_t>((stops + msg::kSegmentStops - 1) / msg::kSegmentStops);
+}
+
+msg::TrajectorySegment to_segment(const topomap::Trajectory& trajectory, std::uint32_t segment,
+                                  std::string_view robot_id, std::uint64_t sequence_number) {
+  const std::size_t begin = std::size_t{segment} * msg::kSegmentStops;
+  check(begin < trajectory.stops.size(), "segment", "less than the number of segments");
+  const std::size_t end =
+      std::min(begin + std::size_t{msg::kSegmentStops}, trajectory.stops.size());
+  msg::TrajectorySegment out;
+  messaging::set_header(out, robot_id, trajectory.stops.back().stamp_ns, sequence_number);
+  out.segment(segment);
+  out.version(trajectory.version);
+  out.total_stops(static_cast<std::uint32_t>(trajectory.stops.size()));
+  for (std::size_t i = begin; i < end; ++i) {
+    const topomap::StopPose& stop = trajectory.stops[i];
+    check(stop.local_map_id == i, "stops.local_map_id", "the index in the trajectory");
+    msg::StopPose pose;
+    pose.local_map_id(stop.local_map_id);
+    pose.stamp_ns(stop.stamp_ns);
+    pose.T_map_robot(to_msg(stop.T_map_robot));
+    pose.covariance(to_msg(stop.covariance));
+    out.stops().push_back(pose);
+  }
+  return out;
+}
+
+std::vector<msg::TrajectorySegment> to_segments(const topomap::Trajectory& trajectory,
+                                                std::string_view robot_id,
+                                                std::uint64_t first_sequence_number) {
+  std::vector<msg::TrajectorySegment> out;
+  for (std::uint32_t i = 0; i < segment_count(trajectory.stops.size()); ++i) {
+    out.push_back(to_segment(trajectory, i, robot_id, first_sequence_number + i));
+  }
+  return out;
+}
+
+std::vector<topomap::StopPose> from_msg(const msg::TrajectorySegment& message) {
+  const std::uint64_t begin = std::uint64_t{message.segment()} * msg::kSegmentStops;
+  check(message.total_stops() > begin, "total_stops", "more stops than before this segment");
+  const std::uint64_t size =
+      std::min<std::uint64_t>(msg::kSegmentStops, message.total_stops() - begin);
+  check(message.stops().size() == size, "stops", "every stop of the segment");
+  std::vector<topomap::StopPose> out;
+  for (const msg::StopPose& pose : message.stops()) {
+    check(pose.local_map_id() == begin + out.size(), "stops.local_map_id", "consecutive ids");
+    out.push_back({pose.local_map_id(), pose.stamp_ns(), from_msg(pose.T_map_robot()),
+                   from_msg(pose.covariance())});
+  }
+  return out;
+}
+
+msg::LoopClosures to_msg(std::span<const topomap::LoopClosure> closures,
+                         std::uint64_t trajectory_version, std::string_view robot_id,
+                         std::int64_t stamp_ns, std::uint64_t sequence_number) {
+  check_bound("closures", closures.size(), msg::kMaxLoopClosures);
+  msg::LoopClosures out;
+  messaging::set_header(out, robot_id, stamp_ns, sequence_number);
+  out.version(trajectory_version);
+  for (const topomap::LoopClosure& closure : closures) {
+    msg::LoopClosure entry;
+    entry.earlier_id(closure.earlier_id);
+    entry.later_id(closure.later_id);
+    entry.T_earlier_later(to_msg(closure.T_earlier_later));
+    out.closures().push_back(entry);
+  }
+  return out;
+}
+
+std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message) {
+  std::vector<topomap::LoopClosure> out;
+  for (const msg::LoopClosure& closure : message.closures()) {
+    check(closure.earlier_id() < closure.later_id(), "closures.earlier_id", "less than later_id");
+    out.push_back({closure.earlier_id(), closure.later_id(), from_msg(closure.T_earlier_later())});
+  }
+  return out;
+}
+
+msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id) {
+  msg::LivePose out;
+  messaging::set_header(out, robot_id, pose.stamp_ns, pose.sequence);
+  out.state(pose.state);
+  out.T_map_robot(to_msg(pose.T_map_robot));
+  out.covariance(to_msg(pose.covariance));
+  out.local_map_id(pose.local_map_id);
+  out.trajectory_version(pose.trajectory_version);
+  return out;
+}
+
+LivePose from_msg(const msg::LivePose& message) {
+  check(message.state() <= msg::kPoseUncertain, "state", "0 to 2");
+  return {message.stamp_ns(),
+          message.sequence_number(),
+          message.state(),
+          from_msg(message.T_map_robot()),
+          from_msg(message.covariance()),
+          message.local_map_id(),
+          message.trajectory_version()};
+}
+
+}  // namespace topogeo::service

@@ -1,0 +1,48 @@
+#include "topogeo/service/service.hpp"
+
+#include <chrono>
+#include <exception>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/version.hpp"
+
+namespace topogeo::service {
+
+namespace {
+
+/// Less than the period of the status, which is to be of now.
+constexpr std::chrono::milliseconds kCpuPeriod{200};
+
+}  // namespace
+
+Service::Service(const Setup& setup, bool any_robot)
+    : setup_(setup), participant_(make_participant(setup.options, setup.name)) {
+  // Signals first: one that comes while the rest starts must end the program cleanly, too.
+  signals_.emplace([this](int) { loop_.stop(); });
+  status_.emplace(participant_, loop_,
+                  messaging::ServiceIdentity{setup.name, "", any_robot ? "" : robot_id(),
+                                             std::string(support::kVersion)});
+  loop_.add_timer(kCpuPeriod, [this] { status_->set_counter("cpu_s", support::process_cpu_s()); });
+}
+
+Service::~Service() {
+  status_->set_counter("cpu_s", support::process_cpu_s());
+}
+
+void Service::run() {
+  try {
+    loop_.run();
+  } catch (const std::exception& error) {
+    status_->set_state(msg::kServiceFailed, error.what());
+    throw;
+  }
+  spdlog::debug("stopped");
+}
+
+void Service::tell_blocked(std::string_view what) {
+  status_->fault("send blocked", what);
+}
+
+}  // namespace topogeo::service

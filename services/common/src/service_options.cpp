@@ -1,0 +1,88 @@
+#include "topogeo/service/service_options.hpp"
+
+#include <exception>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/support/logging.hpp"
+#include "topogeo/support/version.hpp"
+
+namespace topogeo::service {
+
+namespace {
+
+constexpr std::uint32_t kLargestDomain = 232;
+constexpr std::size_t kLongestRobotId = 32;  // idl
+
+pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
+  try {
+    return pipeline::load_config(file);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
+}  // namespace
+
+void add_service_options(CLI::App& app, ServiceOptions& options) {
+  app.add_option("--domain", options.domain, "DDS domain")
+      ->check(CLI::Range(std::uint32_t{0}, kLargestDomain))
+      ->capture_default_str();
+  app.add_option("--partition", options.partition, "only services of one partition meet")
+      ->capture_default_str();
+  app.add_option("--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
+      ->check([](const std::string& id) {
+        return id.empty() || id.size() > kLongestRobotId ? "expected 1 to 32 bytes" : "";
+      })
+      ->capture_default_str();
+  app.add_option("--config", options.config, "configuration file (YAML)");
+  app.add_option("--profiles", options.profiles_file, "file of QoS profiles, instead of built in");
+  app.add_option("--log-level", options.log_level, "how much to tell on stderr")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+}
+
+messaging::Participant make_participant(const ServiceOptions& options, const std::string& service) {
+  messaging::ParticipantOptions participant;
+  participant.domain = options.domain;
+  participant.partition = options.partition;
+  participant.name = options.robot_id + "/" + service;
+  participant.profiles_file = options.profiles_file;
+  return messaging::Participant(participant);
+}
+
+int run_service(int argc, const char* const* argv, const std::string& name,
+                const std::string& description, const std::function<void(CLI::App&)>& add_options,
+                const std::function<void(const Setup&)>& body) {
+  try {
+    Setup setup;
+    setup.name = name;
+    CLI::App app(description, name);
+    app.set_version_flag("--version", name + " " + std::string(support::kVersion));
+    add_service_options(app, setup.options);
+    if (add_options) add_options(app);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::Success& success) {  // --help, --version
+      return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+      throw UsageError(std::string(error.what()) + " (see --help)");
+    }
+    support::set_up_logging(name, setup.options.log_level);
+    setup.config = load(setup.options.config);
+    body(setup);
+    return kOk;
+  } catch (const UsageError& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return kUsage;
+  } catch (const BadInputError& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return kBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return kFailure;
+  }
+}
+
+}  // namespace topogeo::service

@@ -1,0 +1,41 @@
+#include "topogeo/service/trajectory_assembly.hpp"
+
+#include <algorithm>
+
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::service {
+
+bool TrajectoryAssembly::add(const msg::TrajectorySegment& message) {
+  const auto held = segments_.find(message.segment());
+  if (held != segments_.end() && message.version() < held->second.version) return false;
+  segments_[message.segment()] = {message.version(), message.total_stops(), from_msg(message)};
+  version_ = std::max(version_, message.version());
+  return true;
+}
+
+topomap::Trajectory TrajectoryAssembly::newest() const {
+  topomap::Trajectory out;
+  out.version = version_;
+  for (const auto& [number, segment] : segments_) {
+    if (std::uint64_t{number} * msg::kSegmentStops != out.stops.size()) break;
+    out.stops.insert(out.stops.end(), segment.stops.begin(), segment.stops.end());
+  }
+  return out;
+}
+
+std::optional<topomap::Trajectory> TrajectoryAssembly::whole(std::uint64_t version) const {
+  topomap::Trajectory out;
+  out.version = version;
+  std::uint32_t total_stops = 0;
+  for (const auto& [number, segment] : segments_) {
+    if (segment.version != version) return std::nullopt;
+    if (std::uint64_t{number} * msg::kSegmentStops != out.stops.size()) return std::nullopt;
+    out.stops.insert(out.stops.end(), segment.stops.begin(), segment.stops.end());
+    total_stops = segment.total_stops;
+  }
+  if (segments_.empty() || out.stops.size() != total_stops) return std::nullopt;
+  return out;
+}
+
+}  // namespace topogeo::service
