@@ -6,6 +6,7 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/support/random.hpp"
+#include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -55,6 +56,41 @@ class Coding {
   Eigen::Vector3d half_width_;
   std::uint32_t bits_;
   std::uint32_t largest_;
+};
+
+// Fitness of the chromosomes met so far. A population that converges breeds the same ones again and
+// again, and their fitness is what a search spends its time on.
+class KnownFitness {
+ public:
+  explicit KnownFitness(const MatchTask& task) : bits_(gene_bits(task)) {
+    const std::uint64_t chromosomes = std::uint64_t{1} << std::min(3U * bits_, kLargestBits);
+    const std::uint64_t individuals =
+        std::uint64_t{task.genetic.individuals} * std::uint64_t{task.genetic.generations};
+    std::uint64_t slots = 64;
+    while (slots < std::min(chromosomes, 2 * individuals)) slots *= 2;
+    slots_.assign(slots, Slot{});
+  }
+
+  /// The fitness of the chromosome, from `evaluate` when it was not met lately.
+  template <typename Evaluate>
+  double operator()(const Chromosome& genes, const Evaluate& evaluate) {
+    if (3U * bits_ > 63U) return evaluate();
+    const std::uint64_t key = 1U + (std::uint64_t{genes[0]} | std::uint64_t{genes[1]} << bits_ |
+                                    std::uint64_t{genes[2]} << (2U * bits_));
+    // Each chromosome has one slot, in which a later one of the same slot replaces it.
+    Slot& slot = slots_[support::splitmix64(key) & (slots_.size() - 1)];
+    if (slot.key != key) slot = {key, evaluate()};
+    return slot.fitness;
+  }
+
+ private:
+  static constexpr std::uint32_t kLargestBits = 16;  // of the number of slots: 1 MB
+  struct Slot {
+    std::uint64_t key = 0;  // 0: empty
+    double fitness = 0.0;
+  };
+  std::uint32_t bits_;
+  std::vector<Slot> slots_;
 };
 
 // The best distinct solutions seen so far.
@@ -156,10 +192,11 @@ SearchOutcome genetic_search(const MatchTask& task, const Fitness& fitness) {
   const Coding coding(task);
   support::Random random(task.seed);
   Archive archive(task);
+  KnownFitness known(task);
   SearchOutcome outcome;
   const auto evaluate = [&](Individual& individual) {
     const Pose2 pose = coding.decode(individual.genes);
-    individual.fitness = fitness(pose);
+    individual.fitness = known(individual.genes, [&] { return fitness(pose); });
     archive.offer(pose, individual.fitness);
     ++outcome.evaluations;
   };
