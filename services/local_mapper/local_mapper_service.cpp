@@ -1,0 +1,120 @@
+#include "local_mapper_service.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::local_mapper {
+
+LocalMapperService::LocalMapperService(service::Service& service, bool replay)
+    : service_(service),
+      mapper_(service.setup().config.config.local_mapper, service.robot_id()),
+      scans_(service.participant(),
+             {replay ? std::string(messaging::kReplayRole) : std::string(), {}}),
+      ends_in_(service.participant()),
+      local_maps_(service.participant()),
+      ends_out_(service.participant()) {
+  messaging::EventLoop& loop = service_.loop();
+  loop.add<msg::Scan>(
+      scans_, [this](const msg::Scan& message, const messaging::SampleInfo&) { on_scan(message); });
+  loop.add<msg::StreamEnd>(ends_in_,
+                           [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
+                             on_stream_end(message);
+                           });
+  loop.add(local_maps_);
+  loop.add(ends_out_);
+  for (const char* counter : {"scans", "local_maps", "tracked_scans", "matched_scans"}) {
+    service_.status().set_counter(counter, 0.0);
+  }
+  service_.status().set_state(msg::kServiceWaiting, "for scans");
+}
+
+void LocalMapperService::on_scan(const msg::Scan& message) {
+  if (!service_.is_own(message)) return;
+  if (finished_) {
+    service_.status().fault("scan after the end", std::to_string(message.sequence_number()));
+    return;
+  }
+  if (const std::optional<scan::Scan> scan = accept(message)) {
+    if (service_.status().state() != msg::kServiceRunning) {
+      service_.status().set_state(msg::kServiceRunning);
+    }
+    service_.status().set_counter("scans", static_cast<double>(++scans_used_));
+    if (const std::optional<topomap::LocalMap> map = mapper_.add(*scan)) publish(*map);
+  }
+  finish_if_complete();
+}
+
+std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
+  messaging::StatusPublisher& status = service_.status();
+  const std::uint64_t sequence = message.sequence_number();
+  const std::string name = "scan " + std::to_string(sequence);
+  if (sequence < next_sequence_) {
+    status.fault("old scan", name + ", expected " + std::to_string(next_sequence_));
+    return std::nullopt;
+  }
+  if (sequence > next_sequence_) {
+    status.fault("scans missing", name + ", expected " + std::to_string(next_sequence_));
+  }
+  next_sequence_ = sequence + 1;
+  try {
+    scan::Scan scan = service::from_msg(message);
+    const Geometry geometry{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()};
+    if (geometry_ && geometry != *geometry_) {
+      status.fault("changed scan geometry",
+                   name + " has " + std::to_string(geometry.beams) + " beams from " +
+                       std::to_string(geometry.angle_min_rad) + " rad, the first had " +
+                       std::to_string(geometry_->beams) + " from " +
+                       std::to_string(geometry_->angle_min_rad) + " rad");
+      return std::nullopt;
+    }
+    if (scans_used_ > 0 && scan.stamp_ns <= last_stamp_ns_) {
+      status.fault("time not increasing", name);
+      return std::nullopt;
+    }
+    geometry_ = geometry;
+    last_stamp_ns_ = scan.stamp_ns;
+    return scan;
+  } catch (const std::invalid_argument& error) {
+    status.fault("invalid scan", name + ": " + error.what());
+    return std::nullopt;
+  }
+}
+
+void LocalMapperService::publish(const topomap::LocalMap& map) {
+  tracked_ += map.track.size();
+  matched_ += static_cast<std::uint64_t>(
+      std::count_if(map.track.begin(), map.track.end(),
+                    [](const topomap::TrackedScan& scan) { return scan.matched; }));
+  if (!service_.send(local_maps_, service::to_msg(map), "local map")) return;
+  service_.status().set_counter("local_maps", static_cast<double>(++maps_));
+  service_.status().set_counter("tracked_scans", static_cast<double>(tracked_));
+  service_.status().set_counter("matched_scans", static_cast<double>(matched_));
+}
+
+void LocalMapperService::on_stream_end(const msg::StreamEnd& message) {
+  if (message.stage() != "gateway" || !service_.is_own(message)) return;
+  scans_in_stream_ = message.count();
+  finish_if_complete();
+}
+
+void LocalMapperService::finish_if_complete() {
+  if (finished_ || !scans_in_stream_ || next_sequence_ < *scans_in_stream_) return;
+  finished_ = true;
+  if (const std::optional<topomap::LocalMap> map = mapper_.finish()) publish(*map);
+  msg::StreamEnd end;
+  messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
+  messaging::set_text(end.stage(), "local_mapper", "stage");
+  end.count(maps_);
+  end.last_id(maps_ == 0 ? 0 : maps_ - 1);
+  if (!service_.send(ends_out_, end, "stream end")) return;
+  spdlog::info("{} local maps of {} scans", maps_, scans_used_);
+  service_.status().set_state(msg::kServiceFinished);
+}
+
+}  // namespace topogeo::local_mapper

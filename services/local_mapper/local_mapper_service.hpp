@@ -1,0 +1,57 @@
+// Wires pipeline::LocalMapper to topics: scans in, local maps out.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/service/service.hpp"
+
+namespace topogeo::local_mapper {
+
+/// Lives in the loop of its service.
+class LocalMapperService {
+ public:
+  /// `replay`: the scans come from a log and none must be lost.
+  LocalMapperService(service::Service& service, bool replay);
+
+ private:
+  /// What all scans of a source have in common.
+  struct Geometry {
+    double angle_min_rad = 0.0;
+    double angle_step_rad = 0.0;
+    std::size_t beams = 0;
+    friend bool operator==(const Geometry&, const Geometry&) = default;
+  };
+
+  void on_scan(const msg::Scan& message);
+  /// The scan, if it continues those before; else a fault.
+  std::optional<scan::Scan> accept(const msg::Scan& message);
+  void on_stream_end(const msg::StreamEnd& message);
+  void publish(const topomap::LocalMap& map);
+  void finish_if_complete();
+
+  service::Service& service_;
+  pipeline::LocalMapper mapper_;
+  messaging::Reader<msg::Scan> scans_;
+  messaging::Reader<msg::StreamEnd> ends_in_;
+  messaging::Writer<msg::LocalMap> local_maps_;
+  messaging::Writer<msg::StreamEnd> ends_out_;
+
+  std::uint64_t next_sequence_ = 0;  // of the scan that is expected
+  std::uint64_t scans_used_ = 0;
+  std::int64_t last_stamp_ns_ = 0;
+  std::optional<Geometry> geometry_;
+  std::uint64_t maps_ = 0;
+  std::uint64_t tracked_ = 0;
+  std::uint64_t matched_ = 0;
+  std::optional<std::uint64_t> scans_in_stream_;
+  bool finished_ = false;
+};
+
+}  // namespace topogeo::local_mapper

@@ -1,0 +1,22 @@
+// Makes a local topo-geometric map at each stop of the robot.
+#include <CLI/CLI.hpp>
+
+#include "topogeo/service/service.hpp"
+#include "topogeo/service/service_options.hpp"
+
+#include "local_mapper_service.hpp"
+
+int main(int argc, char** argv) {
+  using namespace topogeo;  // NOLINT(google-build-using-namespace)
+  bool replay = false;
+  return service::run_service(
+      argc, argv, "local_mapper", "Makes local topo-geometric maps of laser scans.",
+      [&](CLI::App& app) {
+        app.add_flag("--replay", replay, "the scans come from a log: slow it down, lose none");
+      },
+      [&](const service::Setup& setup) {
+        service::Service service(setup);
+        const local_mapper::LocalMapperService mapper(service, replay);
+        service.run();
+      });
+}

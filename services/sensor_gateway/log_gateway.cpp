@@ -1,0 +1,158 @@
+#include "log_gateway.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::sensor_gateway {
+
+using std::chrono::milliseconds;
+
+namespace {
+
+/// Scans in a row before signals and timers get their turn.
+constexpr int kBatch = 16;
+constexpr milliseconds kPoll{20};
+/// Falling further behind than this moves the schedule instead of rushing after it.
+constexpr std::chrono::seconds kLargestDelay{1};
+
+/// Odometry at a scan, its speed from the one before.
+msg::Odometry odometry_of(const scan::Scan& scan, const std::string& robot_id,
+                          const msg::Odometry& last) {
+  msg::Odometry out;
+  messaging::set_header(out, robot_id, scan.stamp_ns, scan.sequence);
+  out.T_odom_robot(service::to_msg(scan.T_odom_robot));
+  if (scan.sequence > 0) {
+    const double step_s = static_cast<double>(scan.stamp_ns - last.stamp_ns()) * 1e-9;
+    const geometry::Pose2 step =
+        geometry::between(service::from_msg(last.T_odom_robot()), scan.T_odom_robot);
+    out.linear_mps(step.x_m / step_s);
+    out.angular_radps(step.theta_rad / step_s);
+  }
+  return out;
+}
+
+}  // namespace
+
+LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
+                       scan::CarmenLogReader reader, std::uint64_t scans_total)
+    : service_(service),
+      options_(options),
+      reader_(std::move(reader)),
+      pace_(options.rate),
+      scans_(service.participant(), messaging::kReplayRole),
+      odometry_(service.participant(), messaging::kReplayRole),
+      stream_end_(service.participant()) {
+  service_.loop().add(scans_);
+  service_.loop().add(odometry_);
+  service_.loop().add(stream_end_);
+  service_.status().set_counter("scans_sent", 0.0);
+  service_.status().set_counter("scans_total", static_cast<double>(scans_total));
+  service_.status().set_state(msg::kServiceWaiting,
+                              "for " + std::to_string(options_.readers) + " readers of scans");
+  wait_for_readers();
+}
+
+void LogGateway::wait_for_readers() {
+  if (scans_.matched() < options_.readers) {
+    service_.loop().call_after(kPoll, [this] { wait_for_readers(); });
+    return;
+  }
+  service_.status().set_state(msg::kServiceRunning);
+  start_ = Clock::now();
+  replay();
+}
+
+void LogGateway::replay() {
+  for (int i = 0; i < kBatch; ++i) {
+    if (!pending_scan_ && !pending_odometry_ && !read_next()) {
+      finish();
+      return;
+    }
+    const auto now = Clock::now();
+    if (now < due_) {
+      service_.loop().call_after(due_ - now, [this] { replay(); });
+      return;
+    }
+    if (!send_pending()) break;  // a reader is slow
+  }
+  service_.loop().call_after(milliseconds(0), [this] { replay(); });
+}
+
+bool LogGateway::read_next() {
+  const std::optional<scan::Scan> scan = reader_.next();
+  count();
+  if (!scan) return false;
+  const ReplayPace::Due due = pace_.next(scan->stamp_ns);
+  if (due.shortened_gap_s > 0.0) {
+    spdlog::info("scan {}: a gap of {:.0f} s in the log is replayed as {:.0f} s", scan->sequence,
+                 due.shortened_gap_s, ReplayPace::kShortened_s);
+  }
+  due_ = start_ +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(due.after_s));
+  if (options_.rate && Clock::now() - due_ > kLargestDelay) {
+    service_.status().add_to_counter("delayed_s");
+    start_ += kLargestDelay;
+  }
+  pending_scan_ = service::to_msg(*scan, service_.robot_id());
+  pending_odometry_ = odometry_of(*scan, service_.robot_id(), last_odometry_);
+  if (sent_ == 0) {
+    service_.status().set_counter("beams", static_cast<double>(scan->ranges_m.size()));
+  }
+  return true;
+}
+
+bool LogGateway::send_pending() {
+  if (pending_scan_) {
+    if (!scans_.write(*pending_scan_)) return false;
+    pending_scan_.reset();
+    ++sent_;
+  }
+  if (!odometry_.write(*pending_odometry_)) return false;
+  last_odometry_ = *std::exchange(pending_odometry_, std::nullopt);
+  return true;
+}
+
+void LogGateway::count() {
+  messaging::StatusPublisher& status = service_.status();
+  status.set_counter("scans_sent", static_cast<double>(sent_));
+  const scan::CarmenLogStatistics& log = reader_.statistics();
+  for (std::size_t i = 0; i < scan::kSkipReasonCount; ++i) {
+    if (log.skipped[i] == 0) continue;
+    const auto reason = static_cast<scan::SkipReason>(i);
+    status.set_counter("skipped: " + std::string(scan::describe(reason)),
+                       static_cast<double>(log.skipped[i]));
+  }
+}
+
+void LogGateway::finish() {
+  if (!scans_.wait_for_acknowledgments(kPoll) ||
+      (end_sent_ && !stream_end_.wait_for_acknowledgments(kPoll))) {
+    service_.loop().call_after(milliseconds(0), [this] { finish(); });
+    return;
+  }
+  if (!end_sent_) {
+    msg::StreamEnd end;
+    messaging::set_header(end, service_.robot_id(), last_odometry_.stamp_ns(), 0);
+    messaging::set_text(end.stage(), "gateway", "stage");
+    end.count(sent_);
+    end.last_id(sent_ == 0 ? 0 : sent_ - 1);
+    if (!service_.send(stream_end_, end, "stream end")) return;
+    end_sent_ = true;
+    service_.loop().call_after(milliseconds(0), [this] { finish(); });
+    return;
+  }
+  const scan::CarmenLogStatistics& log = reader_.statistics();
+  for (const std::string& message : log.messages) spdlog::warn("skipped {}", message);
+  spdlog::info("{}", log.summary());
+  service_.status().set_state(msg::kServiceFinished, log.summary());
+  if (options_.exit_at_end) service_.loop().stop();
+}
+
+}  // namespace topogeo::sensor_gateway

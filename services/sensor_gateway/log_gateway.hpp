@@ -1,0 +1,63 @@
+// Replays a log: scans and odometry as messages, at the wanted pace, and at the end says how many.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/service/service.hpp"
+
+#include "replay_pace.hpp"
+
+namespace topogeo::sensor_gateway {
+
+struct GatewayOptions {
+  std::filesystem::path log;
+  Rate rate;        ///< empty: lossless
+  int readers = 1;  ///< scan readers to wait for before the first scan, >= 0
+  bool exit_at_end = false;
+};
+
+/// Lives in the loop of its service. Every rate uses the replay QoS, so a slow reader slows the
+/// replay and no scan is lost.
+class LogGateway {
+ public:
+  /// `scans_total` is for people watching.
+  LogGateway(service::Service& service, const GatewayOptions& options, scan::CarmenLogReader reader,
+             std::uint64_t scans_total);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void wait_for_readers();
+  /// Sends what is due now and comes back when the next is.
+  void replay();
+  /// Makes the next scan of the log the one to send; false at the end.
+  bool read_next();
+  bool send_pending();
+  void count();
+  void finish();
+
+  service::Service& service_;
+  GatewayOptions options_;
+  scan::CarmenLogReader reader_;
+  ReplayPace pace_;
+  messaging::Writer<msg::Scan> scans_;
+  messaging::Writer<msg::Odometry> odometry_;
+  messaging::Writer<msg::StreamEnd> stream_end_;
+
+  Clock::time_point start_;
+  Clock::time_point due_;  // of the pending messages
+  std::optional<msg::Scan> pending_scan_;
+  std::optional<msg::Odometry> pending_odometry_;
+  msg::Odometry last_odometry_;
+  std::uint64_t sent_ = 0;
+  bool end_sent_ = false;
+};
+
+}  // namespace topogeo::sensor_gateway

@@ -1,0 +1,38 @@
+// When each scan of a replayed log is due.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace topogeo::sensor_gateway {
+
+/// Speed of a replay: log time over real time, > 0; empty: as fast as the readers take the scans.
+using Rate = std::optional<double>;
+
+/// "realtime", "lossless" or a factor from 0.01 to 1000. Throws std::invalid_argument otherwise.
+Rate parse_rate(const std::string& text);
+
+class ReplayPace {
+ public:
+  /// Gaps in the log longer than this are replayed as kShortened_s: nobody wants to wait for a
+  /// lunch break.
+  static constexpr double kLongestGap_s = 60.0;
+  static constexpr double kShortened_s = 1.0;
+
+  explicit ReplayPace(Rate rate) : rate_(rate) {}
+
+  struct Due {
+    double after_s = 0.0;        ///< real time from the first scan to this one
+    double shortened_gap_s = 0;  ///< length in the log of a gap that was shortened, else 0
+  };
+  /// Stamps must increase from call to call. The first scan is due at 0.
+  Due next(std::int64_t stamp_ns);
+
+ private:
+  Rate rate_;
+  std::optional<std::int64_t> last_stamp_ns_;
+  double after_s_ = 0.0;
+};
+
+}  // namespace topogeo::sensor_gateway
