@@ -1,6 +1,7 @@
 #include "topogeo/localization/fitness.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -22,9 +23,15 @@ constexpr double kTopologicalShare = 0.3;  // of the combined form
 // A prior that never vanishes: an optimistic odometry covariance must not veto the scans.
 constexpr double kPriorSoftness = 12.0;
 
-// 1 at 0, falling to 0 at `width`. Without a branch, which the CPU could not foresee.
+// Elements that are looked up before the arithmetic on what was found: mixed, the jumps of the
+// first hold up the second.
+constexpr std::size_t kBlock = 64;
+
+// 1 at 0, falling to 0 at `width`. The minimum, and not a test of the result, because compilers
+// make a jump of the latter, which the CPU cannot foresee.
 double kernel(double squared_m2, double width_m) {
-  const double u = std::max(0.0, 1.0 - squared_m2 / (width_m * width_m));
+  const double width2_m2 = width_m * width_m;
+  const double u = 1.0 - (squared_m2 < width2_m2 ? squared_m2 : width2_m2) / width2_m2;
   return u * u;
 }
 
@@ -50,6 +57,31 @@ double node_score(const topomap::LocalNode& node, const Eigen::Vector2d& positio
     best = std::max(best, near * kernel(difference * difference, 2.0 * kClearanceKernel_m));
   }
   return best;
+}
+
+// A sample of the query's branches where the pose puts it, and the nearest one of the reference.
+struct BranchPair {
+  double x_m;
+  double y_m;
+  std::uint32_t query;
+  std::int32_t reference;
+};
+
+double branch_score(const Rotated& pose, const BranchPair& pair, const BranchSample& sample,
+                    const BranchSample& other) {
+  const double x = pair.x_m - other.position_m.x();
+  const double y = pair.y_m - other.position_m.y();
+  // Distance to the branch, not to its sample: the part across the branch.
+  const double across = x * other.direction.y() - y * other.direction.x();
+  const double along2 = x * x + y * y - across * across;
+  const double half_m = 0.5 * MatchFeatures::kBranchSpacing_m;
+  const double beyond2 = along2 - half_m * half_m;
+  const double squared = across * across + (beyond2 > 0.0 ? beyond2 : 0.0);
+  const Eigen::Vector2d d = pose.direction(sample.direction);
+  const double alignment = d.x() * other.direction.x() + d.y() * other.direction.y();
+  const double difference = other.clearance_m - sample.clearance_m;
+  return kernel(squared, kReach_m) * kernel(difference * difference, kClearanceKernel_m) *
+         alignment * alignment;
 }
 
 }  // namespace
@@ -84,22 +116,21 @@ double Fitness::topological(const Pose2& T_reference_query) const {
   for (const topomap::LocalNode& node : query_.nodes) {
     sum += kNodeWeight * node_score(node, pose.point(node.position_m), reference_.features.nodes);
   }
-  for (const BranchSample& sample : query_.branches) {
-    const Eigen::Vector2d p = pose.point(sample.position_m);
-    const std::int32_t found = reference_.branch_grid.find(p.x(), p.y());
-    if (found == NearestPointGrid::kNone) continue;
-    const BranchSample& other = reference_.features.branches[static_cast<std::size_t>(found)];
-    const Eigen::Vector2d offset = p - other.position_m;
-    // Distance to the branch, not to its sample: the part across the branch.
-    const double across = offset.x() * other.direction.y() - offset.y() * other.direction.x();
-    const double along2 = offset.squaredNorm() - across * across;
-    const double half_m = 0.5 * MatchFeatures::kBranchSpacing_m;
-    const double squared = across * across + std::max(0.0, along2 - half_m * half_m);
-    const Eigen::Vector2d d = pose.direction(sample.direction);
-    const double alignment = d.x() * other.direction.x() + d.y() * other.direction.y();
-    const double difference = other.clearance_m - sample.clearance_m;
-    sum += kernel(squared, kReach_m) * kernel(difference * difference, kClearanceKernel_m) *
-           alignment * alignment;
+  std::array<BranchPair, kBlock> pairs;
+  for (std::size_t start = 0; start < query_.branches.size(); start += kBlock) {
+    const std::size_t end = std::min(start + kBlock, query_.branches.size());
+    std::size_t found = 0;
+    for (std::size_t i = start; i < end; ++i) {
+      const Eigen::Vector2d p = pose.point(query_.branches[i].position_m);
+      const std::int32_t nearest = reference_.branch_grid.find(p.x(), p.y());
+      pairs[found] = {p.x(), p.y(), static_cast<std::uint32_t>(i), nearest};
+      found += nearest != NearestPointGrid::kNone ? 1 : 0;
+    }
+    for (std::size_t k = 0; k < found; ++k) {
+      const BranchPair& pair = pairs[k];
+      sum += branch_score(pose, pair, query_.branches[pair.query],
+                          reference_.features.branches[static_cast<std::size_t>(pair.reference)]);
+    }
   }
   return sum / weight;
 }
@@ -108,12 +139,18 @@ double Fitness::scan(const Pose2& T_reference_query) const {
   if (query_.coarse_m.empty()) return 0.0;
   const Rotated pose(T_reference_query);
   double sum = 0.0;
-  for (const Eigen::Vector2d& point : query_.coarse_m) {
-    const Eigen::Vector2d p = pose.point(point);
-    const std::int32_t found = reference_.surface_grid.find(p.x(), p.y());
-    if (found == NearestPointGrid::kNone) continue;
-    const auto& other = reference_.features.surface[static_cast<std::size_t>(found)];
-    sum += kernel((other.position_m - p).squaredNorm(), kScanKernel_m);
+  std::array<double, kBlock> squared_m2;
+  for (std::size_t start = 0; start < query_.coarse_m.size(); start += kBlock) {
+    const std::size_t end = std::min(start + kBlock, query_.coarse_m.size());
+    std::size_t found = 0;
+    for (std::size_t i = start; i < end; ++i) {
+      const Eigen::Vector2d p = pose.point(query_.coarse_m[i]);
+      const std::int32_t nearest = reference_.surface_grid.find(p.x(), p.y());
+      if (nearest == NearestPointGrid::kNone) continue;
+      const auto& other = reference_.features.surface[static_cast<std::size_t>(nearest)];
+      squared_m2[found++] = (other.position_m - p).squaredNorm();
+    }
+    for (std::size_t k = 0; k < found; ++k) sum += kernel(squared_m2[k], kScanKernel_m);
   }
   return sum / static_cast<double>(query_.coarse_m.size());
 }
