@@ -1,0 +1,119 @@
+#include "topogeo/pipeline/local_mapper.hpp"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/simulation/laser.hpp"
+#include "topogeo/simulation/world.hpp"
+
+namespace topogeo::pipeline {
+namespace {
+
+using geometry::Pose2;
+
+/// Noise-free scans of a room of 8 x 6 m with a column, taken at poses of the world, whose odometry
+/// is the truth.
+class LocalMapperTest : public testing::Test {
+ protected:
+  scan::Scan scan_at(const Pose2& T_world_robot) {
+    const simulation::BeamPattern beams;
+    scan::Scan scan;
+    scan.sequence = next_++;
+    scan.stamp_ns = static_cast<std::int64_t>(scan.sequence) * 100'000'000;
+    scan.angle_min_rad = beams.angle_min_rad;
+    scan.angle_step_rad = beams.angle_step_rad;
+    for (const double range_m : raycast(world_, T_world_robot, beams)) {
+      scan.ranges_m.push_back(std::isfinite(range_m) ? static_cast<float>(range_m)
+                                                     : scan::Scan::kNoReturn);
+    }
+    scan.T_odom_robot = T_world_robot;
+    return scan;
+  }
+
+  /// Sequences of the scans that became stops.
+  std::vector<std::uint64_t> stops(LocalMapper& mapper, const std::vector<Pose2>& poses) {
+    std::vector<std::uint64_t> result;
+    for (const Pose2& pose : poses) {
+      if (const auto map = mapper.add(scan_at(pose))) result.push_back(map->sequence);
+    }
+    return result;
+  }
+
+  simulation::World world_ = simulation::parse_world(
+      "walls:\n"
+      "  - {from: [0, 0], to: [8, 0]}\n"
+      "  - {from: [8, 0], to: [8, 6]}\n"
+      "  - {from: [8, 6], to: [0, 6]}\n"
+      "  - {from: [0, 6], to: [0, 0]}\n"
+      "boxes: [{from: [6, 4], to: [7, 5]}, {from: [5, 0.5], to: [6, 1]}]\n",
+      "room");
+  std::uint64_t next_ = 0;
+};
+
+TEST_F(LocalMapperTest, StopsByDistance) {
+  LocalMapper mapper({}, "r");
+  // Steps of 0.25 m: the way and half a step more reach 1 m with the fourth.
+  std::vector<Pose2> poses;
+  for (int i = 0; i <= 8; ++i) poses.push_back({2.0 + 0.25 * i, 3.0, 0.0});
+  EXPECT_EQ(stops(mapper, poses), (std::vector<std::uint64_t>{0, 4, 8}));
+}
+
+TEST_F(LocalMapperTest, StopsByTurn) {
+  LocalMapper mapper({}, "r");
+  // Steps of 0.11 rad: 0.33 and half a step reach 0.35 with the third.
+  std::vector<Pose2> poses;
+  for (int i = 0; i <= 4; ++i) poses.push_back({3.0, 3.0, 0.11 * i});
+  EXPECT_EQ(stops(mapper, poses), (std::vector<std::uint64_t>{0, 3}));
+}
+
+TEST_F(LocalMapperTest, StopsWhenTheTrackIsFull) {
+  LocalMapperConfig config;
+  config.longest_track = 5;
+  LocalMapper mapper(config, "r");
+  const std::vector<Pose2> standing(12, Pose2{3.0, 3.0, 0.0});
+  EXPECT_EQ(stops(mapper, standing), (std::vector<std::uint64_t>{0, 5, 10}));
+}
+
+TEST_F(LocalMapperTest, MapCarriesTheScansSinceTheStopBefore) {
+  LocalMapper mapper({}, "robot7");
+  ASSERT_TRUE(mapper.add(scan_at({2.0, 3.0, 0.0})));
+  std::optional<topomap::LocalMap> map;
+  for (int i = 1; i <= 4 && !map; ++i) map = mapper.add(scan_at({2.0 + 0.25 * i, 3.0, 0.0}));
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->robot_id, "robot7");
+  EXPECT_EQ(map->id, 1U);
+  ASSERT_EQ(map->track.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const topomap::TrackedScan& tracked = map->track[i];
+    EXPECT_EQ(tracked.sequence, i + 1);
+    EXPECT_TRUE(tracked.matched);
+    EXPECT_NEAR(tracked.T_stop_robot.x_m, 0.25 * static_cast<double>(i + 1), 0.01);
+    EXPECT_NEAR(tracked.T_stop_robot.y_m, 0.0, 0.01);
+  }
+  EXPECT_NEAR(map->T_previous_robot.x_m, 1.0, 0.01);
+  EXPECT_FALSE(map->nodes.empty());
+  EXPECT_FALSE(map->points.empty());
+}
+
+TEST_F(LocalMapperTest, FinishMakesAStopOfTheLastScanOnce) {
+  LocalMapper mapper({}, "r");
+  EXPECT_FALSE(mapper.finish()) << "there was no scan";
+  ASSERT_TRUE(mapper.add(scan_at({2.0, 3.0, 0.0})));
+  EXPECT_FALSE(mapper.finish()) << "the last scan is a stop already";
+  ASSERT_FALSE(mapper.add(scan_at({2.2, 3.0, 0.0})));
+  ASSERT_FALSE(mapper.add(scan_at({2.4, 3.0, 0.0})));
+
+  const auto last = mapper.finish();
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->sequence, 2U);
+  ASSERT_EQ(last->track.size(), 1U) << "the stop itself is no part of its track";
+  EXPECT_EQ(last->track[0].sequence, 1U);
+  EXPECT_NEAR(last->T_previous_robot.x_m, 0.4, 0.01);
+  EXPECT_FALSE(mapper.finish());
+}
+
+}  // namespace
+}  // namespace topogeo::pipeline

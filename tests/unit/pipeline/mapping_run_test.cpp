@@ -1,0 +1,103 @@
+#include "topogeo/pipeline/mapping_run.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/pipeline/trajectory_error.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::pipeline {
+namespace {
+
+using topomap::StampedPose;
+
+simulation::SimulatedLog simulated(const std::string& world) {
+  return simulation::simulate_log(
+      simulation::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml")),
+      {});
+}
+
+storage::MapDocument mapped(const simulation::SimulatedLog& log) {
+  MappingRun run(load_config({}).config, "robot1");
+  for (const scan::Scan& scan : log.scans) run.add(scan);
+  return run.finish();
+}
+
+struct Errors {
+  TrajectoryError odometry;
+  TrajectoryError corrected;
+};
+
+Errors errors_of(const simulation::SimulatedLog& log, const storage::MapDocument& document) {
+  std::vector<StampedPose> truth;
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    truth.push_back({log.scans[i].sequence, log.scans[i].stamp_ns, log.T_world_robot[i]});
+  }
+  return {trajectory_error(topomap::expand_odometry(document.local_maps), truth),
+          trajectory_error(topomap::expand_trajectory(document.trajectory, document.local_maps),
+                           truth)};
+}
+
+TEST(MappingRunTest, CorrectsTheRoundThroughARoom) {
+  const simulation::SimulatedLog log = simulated("room");
+  const storage::MapDocument document = mapped(log);
+  const Errors errors = errors_of(log, document);
+  EXPECT_LT(errors.corrected.rms_m, 0.05);
+  EXPECT_LT(errors.corrected.rms_m, 0.5 * errors.odometry.rms_m);
+  EXPECT_FALSE(document.global_map.branches.empty());
+}
+
+TEST(MappingRunTest, ClosesTheLoopOfTheFloor) {
+  const simulation::SimulatedLog log = simulated("floor");
+  const storage::MapDocument document = mapped(log);
+  const Errors errors = errors_of(log, document);
+  EXPECT_GT(errors.odometry.rms_m, 1.0) << "the world is no test of the correction any more";
+  EXPECT_LT(errors.corrected.rms_m, 0.15);
+  EXPECT_LT(errors.corrected.largest_m, 0.5);
+  EXPECT_GE(document.loop_closures.size(), 5U);
+}
+
+TEST(MappingRunTest, TrajectoryHasOnePosePerScanInOrder) {
+  const simulation::SimulatedLog log = simulated("room");
+  const storage::MapDocument document = mapped(log);
+  const auto poses = topomap::expand_trajectory(document.trajectory, document.local_maps);
+  ASSERT_EQ(poses.size(), log.scans.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(poses[i].sequence, log.scans[i].sequence);
+    EXPECT_EQ(poses[i].stamp_ns, log.scans[i].stamp_ns);
+  }
+}
+
+TEST(MappingRunTest, GivesTheSameBytesTwice) {
+  const simulation::SimulatedLog log = simulated("room");
+  EXPECT_EQ(storage::map_file_bytes(mapped(log)), storage::map_file_bytes(mapped(log)));
+}
+
+TEST(MappingRunTest, AnotherSeedGivesAnotherMapFile) {
+  const simulation::SimulatedLog log = simulated("room");
+  Config config = load_config({}).config;
+  config.localizer.seed = 2;
+  MappingRun run(config, "robot1");
+  for (const scan::Scan& scan : log.scans) run.add(scan);
+  EXPECT_EQ(run.finish().seed, 2U);
+}
+
+TEST(MappingRunTest, StagesAreThoseOfTheServices) {
+  MappingRun run(load_config({}).config, "robot1");
+  for (const scan::Scan& scan : simulated("room").scans) run.add(scan);
+  (void)run.finish();
+  std::vector<std::string> names;
+  for (const support::StageTime& stage : run.stages()) names.push_back(stage.stage);
+  EXPECT_EQ(names, (std::vector<std::string>{"local_mapper", "localizer", "map_store"}));
+  EXPECT_GT(run.match_counts().tasks, 0U);
+}
+
+}  // namespace
+}  // namespace topogeo::pipeline
