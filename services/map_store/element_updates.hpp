@@ -1,0 +1,42 @@
+// What has to be sent so that readers of the map's elements have its newest state.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "topogeo/msg/map_update.h"
+#include "topogeo/topomap/global_map.hpp"
+
+namespace topogeo::map_store {
+
+/// Remembers what was sent of the map of one robot.
+class ElementUpdates {
+ public:
+  explicit ElementUpdates(std::string robot_id) : robot_id_(std::move(robot_id)) {}
+
+  struct Update {
+    std::vector<msg::MapElement> gone;     ///< to be disposed, first
+    std::vector<msg::MapElement> changed;  ///< to be written, the summary last
+  };
+  /// Elements that are as they were are not in it. `stamp_ns` is of the last stop in the map. Tell
+  /// what was sent with sent() and disposed().
+  [[nodiscard]] Update update_to(const topomap::GlobalMap& map, std::int64_t stamp_ns) const;
+
+  void sent(const msg::MapElement& element);
+  void disposed(const msg::MapElement& element);
+  /// Elements sent so far, the sequence number of the next.
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+ private:
+  using Key = std::pair<msg::MapElementKind, std::uint32_t>;
+  static Key key_of(const msg::MapElement& element) { return {element.kind(), element.id()}; }
+
+  std::string robot_id_;
+  std::map<Key, msg::MapElement> sent_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace topogeo::map_store

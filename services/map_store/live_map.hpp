@@ -1,0 +1,49 @@
+// The global map while the robot drives, in small steps: new local maps are added, and when earlier
+// poses have moved noticeably, all are fused again. What is stored in the end is not made of this,
+// but fused in one go, so that it does not depend on when what came.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/global_map_builder.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::map_store {
+
+class LiveMap {
+ public:
+  /// Smaller corrections of earlier poses are left to the next larger one.
+  static constexpr double kMoved_m = 0.05;
+  static constexpr double kTurned_rad = 0.0174532925;  // 1 degree
+
+  explicit LiveMap(const topomap::GlobalMapConfig& config);
+
+  /// Starts anew if a pose has moved since its map was fused. Not while a new start is under way:
+  /// it would never come to its end.
+  void look(std::span<const topomap::StopPose> stops);
+
+  /// Fuses the next of `maps`, whose pose is the next of `stops`. False when all are. Throws
+  /// std::invalid_argument when the map cannot be fused; it is then left out.
+  bool step(std::span<const topomap::LocalMap> maps, std::span<const topomap::StopPose> stops);
+
+  /// Maps fused so far.
+  [[nodiscard]] std::size_t size() const { return used_.size(); }
+  /// New starts so far.
+  [[nodiscard]] std::uint64_t rebuilds() const { return rebuilds_; }
+  [[nodiscard]] topomap::GlobalMap snapshot(std::uint64_t version) const {
+    return builder_.snapshot(version);
+  }
+
+ private:
+  topomap::GlobalMapConfig config_;
+  topomap::GlobalMapBuilder builder_;
+  std::vector<geometry::Pose2> used_;  // pose that each map was fused at
+  std::size_t rebuild_until_ = 0;      // size() at which the last new start is done
+  std::uint64_t rebuilds_ = 0;
+};
+
+}  // namespace topogeo::map_store

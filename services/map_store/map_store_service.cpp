@@ -1,0 +1,212 @@
+#include "map_store_service.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/service/conversions.hpp"
+
+#include "result_files.hpp"
+
+namespace topogeo::map_store {
+
+using std::chrono::milliseconds;
+
+namespace {
+
+// The live map shares the cores with the localizer: 50 ms of work every 250 ms, a fifth.
+constexpr milliseconds kLivePeriod{250};
+constexpr milliseconds kLiveSlice{50};
+constexpr int kLiveShare = 5;
+constexpr std::chrono::seconds kPublishPeriod{2};
+constexpr milliseconds kStorePeriod{500};
+constexpr std::chrono::seconds kRetryPeriod{5};
+
+}  // namespace
+
+MapStoreService::MapStoreService(service::Service& service, MapStoreOptions options,
+                                 storage::MapDatabase database)
+    : service_(service),
+      options_(std::move(options)),
+      database_(std::move(database)),
+      live_map_(service.setup().config.config.global_map),
+      updates_(service.robot_id()),
+      local_maps_(service.participant()),
+      segments_(service.participant()),
+      closures_(service.participant()),
+      ends_in_(service.participant()),
+      elements_(service.participant()),
+      ends_out_(service.participant()) {
+  listen(local_maps_, "local map", [this](const msg::LocalMap& message) { on_local_map(message); });
+  listen(segments_, "trajectory segment",
+         [this](const msg::TrajectorySegment& message) { input_.add(message); });
+  listen(closures_, "loop closures",
+         [this](const msg::LoopClosures& message) { input_.add(message); });
+  listen(ends_in_, "stream end", [this](const msg::StreamEnd& message) {
+    if (message.stage() == "localizer") input_.set_end(message);
+  });
+  service_.loop().add(elements_);
+  service_.loop().add(ends_out_);
+  service_.loop().add_timer(kStorePeriod, [this] {
+    if (!finished_) store();
+    finish_if_complete();
+    count();
+  });
+  service_.loop().add_timer(kLivePeriod, [this] { work_on_live_map(); });
+  count();
+  service_.status().set_state(msg::kServiceWaiting, "for local maps");
+}
+
+template <class T, class Handler>
+void MapStoreService::listen(const messaging::Reader<T>& reader, const char* what,
+                             Handler handler) {
+  service_.loop().add<T>(reader,
+                         [this, what, handler](const T& message, const messaging::SampleInfo&) {
+                           if (!service_.is_own(message) || finished_) return;
+                           try {
+                             handler(message);
+                           } catch (const std::invalid_argument& error) {
+                             service_.status().fault(std::string("invalid ") + what, error.what());
+                             return;
+                           }
+                           finish_if_complete();
+                         });
+}
+
+void MapStoreService::on_local_map(const msg::LocalMap& message) {
+  if (service_.status().state() == msg::kServiceWaiting) {
+    service_.status().set_state(msg::kServiceRunning);
+  }
+  switch (input_.add(service::from_msg(message))) {
+    case MapInput::Arrival::kNew:
+      return;
+    case MapInput::Arrival::kKnown:
+      return;
+    case MapInput::Arrival::kDifferent:
+      service_.status().fault("local map differs",
+                              "another map " + std::to_string(message.id()) + " came before");
+      return;
+  }
+}
+
+bool MapStoreService::store() {
+  try {
+    for (std::size_t i = database_.local_map_count(); i < input_.local_maps().size(); ++i) {
+      database_.put_local_map(input_.local_maps()[i]);
+    }
+    const topomap::Trajectory trajectory = input_.newest_trajectory();
+    if (trajectory.version != stored_version_ || trajectory.stops.size() != stored_stops_) {
+      database_.put_trajectory(trajectory.version, trajectory.stops, input_.usable_closures());
+      stored_version_ = trajectory.version;
+      stored_stops_ = trajectory.stops.size();
+    }
+    return true;
+  } catch (const std::exception& error) {
+    service_.status().fault("database", error.what());
+    return false;
+  }
+}
+
+void MapStoreService::work_on_live_map() {
+  if (finished_) return;
+  const topomap::Trajectory trajectory = input_.newest_trajectory();
+  live_map_.look(trajectory.stops);
+  const auto start = Clock::now();
+  bool more = true;
+  while (more && Clock::now() - start < kLiveSlice) {
+    try {
+      more = live_map_.step(input_.local_maps(), trajectory.stops);
+    } catch (const std::invalid_argument& error) {
+      service_.status().fault("local map not fused", error.what());
+    }
+  }
+  const bool news = live_map_.size() != published_maps_ || trajectory.version != published_version_;
+  if (more || !news || Clock::now() < next_publish_) return;
+  const auto publish_start = Clock::now();
+  publish(live_map_.snapshot(trajectory.version));
+  published_maps_ = live_map_.size();
+  published_version_ = trajectory.version;
+  const auto now = Clock::now();
+  next_publish_ =
+      now + std::max<Clock::duration>(kPublishPeriod, kLiveShare * (now - publish_start));
+}
+
+void MapStoreService::publish(const topomap::GlobalMap& map) {
+  if (input_.local_maps().empty()) return;
+  const ElementUpdates::Update update =
+      updates_.update_to(map, input_.local_maps().back().stamp_ns);
+  for (const msg::MapElement& element : update.gone) {
+    elements_.dispose(element);
+    updates_.disposed(element);
+  }
+  for (const msg::MapElement& element : update.changed) {
+    if (elements_.write(element)) {
+      updates_.sent(element);
+    } else {  // the next update has it again
+      service_.status().fault("map element not sent", std::to_string(element.id()));
+    }
+  }
+  messaging::StatusPublisher& status = service_.status();
+  status.add_to_counter("map_updates");
+  status.set_counter("map_elements_sent", static_cast<double>(updates_.count()));
+  status.set_counter("map_nodes", static_cast<double>(map.nodes.size()));
+  status.set_counter("map_branches", static_cast<double>(map.branches.size()));
+}
+
+void MapStoreService::finish_if_complete() {
+  if (finished_ || Clock::now() < next_attempt_) return;
+  const std::optional<topomap::Trajectory> trajectory = input_.final_trajectory();
+  if (!trajectory) return;
+  try {
+    finish(*trajectory);
+  } catch (const std::exception& error) {
+    // A full disk may be cleared: the map is still here, so this is tried again.
+    service_.status().fault("results not written", error.what());
+    service_.status().set_state(msg::kServiceFailed, error.what());
+    next_attempt_ = Clock::now() + kRetryPeriod;
+  }
+}
+
+void MapStoreService::finish(const topomap::Trajectory& trajectory) {
+  const pipeline::Config& config = service_.setup().config.config;
+  storage::MapDocument document;
+  document.robot_id = service_.robot_id();
+  document.seed = config.localizer.seed;
+  document.local_maps = input_.local_maps();
+  document.trajectory = trajectory;
+  document.loop_closures = input_.usable_closures();
+  document.global_map = pipeline::fuse(config.global_map, document.local_maps, trajectory);
+  publish(document.global_map);
+  if (!store()) throw std::runtime_error("the database could not be brought up to date");
+  database_.put_global_map(document.global_map);
+  write_results(options_.directory, document, options_.title);
+
+  msg::StreamEnd end;
+  messaging::set_header(end, service_.robot_id(), trajectory.stops.back().stamp_ns, 0);
+  messaging::set_text(end.stage(), "map_store", "stage");
+  end.count(document.global_map.nodes.size() + document.global_map.branches.size());
+  end.version(trajectory.version);
+  if (!service_.send(ends_out_, end, "stream end")) return;
+  finished_ = true;
+  count();
+  spdlog::info("{} local maps, {} nodes and {} branches in {}", document.local_maps.size(),
+               document.global_map.nodes.size(), document.global_map.branches.size(),
+               options_.directory.string());
+  service_.status().set_state(msg::kServiceFinished);
+}
+
+void MapStoreService::count() {
+  messaging::StatusPublisher& status = service_.status();
+  status.set_counter("local_maps", static_cast<double>(input_.local_maps().size()));
+  status.set_counter("local_maps_waiting", static_cast<double>(input_.waiting()));
+  status.set_counter("trajectory_version", static_cast<double>(input_.version()));
+  status.set_counter("loop_closures", static_cast<double>(input_.usable_closures().size()));
+  status.set_counter("stored_local_maps", static_cast<double>(database_.local_map_count()));
+  status.set_counter("map_rebuilds", static_cast<double>(live_map_.rebuilds()));
+}
+
+}  // namespace topogeo::map_store

@@ -1,0 +1,75 @@
+// Keeps the map of a robot: stores what comes, shows the live map, and writes the final one.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/map_update.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/service.hpp"
+#include "topogeo/storage/map_database.hpp"
+
+#include "element_updates.hpp"
+#include "live_map.hpp"
+#include "map_input.hpp"
+
+namespace topogeo::map_store {
+
+struct MapStoreOptions {
+  std::filesystem::path directory;
+  std::filesystem::path database;  ///< empty: map.sqlite in the directory
+  std::string title;               ///< of the pictures
+};
+
+/// Lives in the loop of its service.
+class MapStoreService {
+ public:
+  /// `database` is empty, `options.directory` exists.
+  MapStoreService(service::Service& service, MapStoreOptions options,
+                  storage::MapDatabase database);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  template <class T, class Handler>
+  void listen(const messaging::Reader<T>& reader, const char* what, Handler handler);
+  void on_local_map(const msg::LocalMap& message);
+
+  /// Puts what is new into the database; false, and a fault, when that fails.
+  bool store();
+  /// A slice of work on the live map.
+  void work_on_live_map();
+  void publish(const topomap::GlobalMap& map);
+  void finish_if_complete();
+  void finish(const topomap::Trajectory& trajectory);
+  void count();
+
+  service::Service& service_;
+  MapStoreOptions options_;
+  storage::MapDatabase database_;
+  MapInput input_;
+  LiveMap live_map_;
+  ElementUpdates updates_;
+
+  messaging::Reader<msg::LocalMap> local_maps_;
+  messaging::Reader<msg::TrajectorySegment> segments_;
+  messaging::Reader<msg::LoopClosures> closures_;
+  messaging::Reader<msg::StreamEnd> ends_in_;
+  messaging::Writer<msg::MapElement> elements_;
+  messaging::Writer<msg::StreamEnd> ends_out_;
+
+  std::uint64_t stored_version_ = 0;
+  std::size_t stored_stops_ = 0;
+  std::size_t published_maps_ = 0;
+  std::uint64_t published_version_ = 0;
+  Clock::time_point next_publish_;
+  Clock::time_point next_attempt_;  // to finish, after a failure
+  bool finished_ = false;
+};
+
+}  // namespace topogeo::map_store

@@ -1,0 +1,47 @@
+#include "result_files.hpp"
+
+#include <exception>
+#include <vector>
+
+#include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/service/service_options.hpp"
+
+namespace topogeo::map_store {
+
+namespace fs = std::filesystem;
+
+storage::MapDatabase fresh_database(const fs::path& path, const std::string& robot_id,
+                                    std::uint64_t seed) {
+  try {
+    if (fs::exists(path) && !fs::is_empty(path)) {
+      static_cast<void>(storage::MapDatabase::open_existing(path));
+    }
+  } catch (const std::exception& error) {
+    throw service::BadInputError(std::string(error.what()) +
+                                 "; move it away or name another file with --database");
+  }
+  try {
+    // The main file last: what is left of an interrupted removal is still taken for ours.
+    for (const char* suffix : {"-wal", "-shm", ""}) fs::remove(path.string() + suffix);
+    return storage::MapDatabase::open_or_create(path, robot_id, seed);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+void write_results(const fs::path& directory, const storage::MapDocument& document,
+                   const std::string& title) {
+  const fs::path unfinished = directory / ".unfinished";
+  fs::remove_all(unfinished);
+  fs::create_directory(unfinished);
+  pipeline::write_map_outputs(unfinished, document, title);
+  std::vector<fs::path> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(unfinished)) {
+    if (entry.path().filename() != "map.pb") names.push_back(entry.path().filename());
+  }
+  names.emplace_back("map.pb");
+  for (const fs::path& name : names) fs::rename(unfinished / name, directory / name);
+  fs::remove(unfinished);
+}
+
+}  // namespace topogeo::map_store
