@@ -1,0 +1,17 @@
+// The subcommands of topogeo. Each function adds one to the program; when the command line names
+// it, it does its work and sets `exit_code` (service::ExitCode, or 128 + signal when interrupted),
+// or throws service::UsageError, service::BadInputError or std::runtime_error.
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace topogeo::cli {
+
+void add_run_command(CLI::App& app, int& exit_code);
+void add_map_command(CLI::App& app, int& exit_code);
+void add_demo_command(CLI::App& app, int& exit_code);
+void add_status_command(CLI::App& app, int& exit_code);
+void add_plan_command(CLI::App& app, int& exit_code);
+void add_config_command(CLI::App& app, int& exit_code);
+
+}  // namespace topogeo::cli

@@ -1,0 +1,43 @@
+// topogeo config: every key of the configuration, documented, as a file to start from.
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/service/service_options.hpp"
+
+#include "commands.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+void print_config(const std::optional<std::filesystem::path>& file) {
+  pipeline::Config config;
+  const support::ConfigSchema schema = pipeline::describe(config);
+  try {
+    if (file) support::load_yaml_file(*file, schema);
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+  support::write_yaml(schema, std::cout);
+}
+
+}  // namespace
+
+void add_config_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("config", "Print the configuration with every key documented (YAML)");
+  auto file = std::make_shared<std::optional<std::filesystem::path>>();
+  command->add_option("--config", *file, "take the values of this file instead of the defaults")
+      ->type_name("FILE");
+  command->callback([file, &exit_code] {
+    print_config(*file);
+    exit_code = service::kOk;
+  });
+}
+
+}  // namespace topogeo::cli

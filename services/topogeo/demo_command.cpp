@@ -1,0 +1,89 @@
+// topogeo demo: maps a synthetic floor with all services and tells how far off the result is.
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/scan/carmen_log_writer.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/storage/tum.hpp"
+#include "topogeo/support/atomic_file.hpp"
+
+#include "commands.hpp"
+#include "demo_world.hpp"
+#include "run_log.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+struct DemoOptions {
+  RunOptions run;
+  std::optional<std::filesystem::path> world;
+};
+
+simulation::World read_world(const std::optional<std::filesystem::path>& file) {
+  try {
+    return file ? simulation::load_world(*file)
+                : simulation::parse_world(kDemoWorld, "built-in floor");
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+simulation::SimulatedLog simulate(const simulation::World& world) {
+  try {
+    return simulation::simulate_log(world, {});
+  } catch (const std::exception& error) {  // a world that cannot be driven through
+    throw service::BadInputError(world.name + ": " + error.what());
+  }
+}
+
+void write(const simulation::SimulatedLog& log, const std::filesystem::path& log_file,
+           const std::filesystem::path& truth_file) {
+  scan::CarmenLogWriter writer(log_file);
+  std::vector<topomap::StampedPose> truth;
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    writer.write(log.scans[i]);
+    truth.push_back({log.scans[i].sequence, log.scans[i].stamp_ns, log.T_world_robot[i]});
+  }
+  writer.close();
+  storage::write_trajectory_tum(truth_file, truth);
+}
+
+int show_demo(DemoOptions options) {
+  const simulation::World world = read_world(options.world);
+  support::check_writable_directory(options.run.job.out);
+  const simulation::SimulatedLog log = simulate(world);
+  options.run.job.log = options.run.job.out / "floor.clf.gz";
+  options.run.job.reference = options.run.job.out / "truth.tum";
+  write(log, options.run.job.log, *options.run.job.reference);
+  std::cerr << "simulated a drive through '" << world.name << "': " << log.scans.size()
+            << " scans in " << options.run.job.log.string() << ", the true poses in "
+            << options.run.job.reference->string() << '\n';
+  return run_log(options.run);
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "demo", "Map a synthetic floor and compare the result with the known truth");
+  auto options = std::make_shared<DemoOptions>();
+  command->add_option("--out", options->run.job.out, "directory for the results")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--world", options->world, "another floor (YAML), instead of the built-in one")
+      ->type_name("FILE");
+  add_common_options(*command, options->run.job);
+  add_run_options(*command, options->run);
+  command->callback([options, &exit_code] { exit_code = show_demo(*options); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,111 @@
+#include "job.hpp"
+
+#include <exception>
+#include <iostream>
+#include <numbers>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/tum.hpp"
+#include "topogeo/support/atomic_file.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+constexpr std::size_t kLongestRobotId = 32;  // bytes, idl
+
+pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
+  try {
+    return pipeline::load_config(file);
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
+Job read_inputs(const JobOptions& options) {
+  pipeline::LoadedConfig config = load(options.config);
+  try {
+    if (options.reference) (void)storage::read_trajectory_tum(*options.reference);
+    scan::CarmenLogReader reader(options.log, config.config.log);
+    const std::uint64_t laser_lines = scan::count_scans(options.log);
+    return {options, std::move(config), std::move(reader), laser_lines};
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+void print_error(std::ostream& out, const char* name, const pipeline::TrajectoryError& error) {
+  out << fmt::format("  {:<10} {:8.3f} m rms {:8.3f} m largest {:8.2f} deg heading\n", name,
+                     error.rms_m, error.largest_m, error.heading_rad * 180.0 / std::numbers::pi);
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& app, JobOptions& options) {
+  app.add_option("--config", options.config, "configuration (YAML); see `topogeo config`")
+      ->type_name("FILE");
+  app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
+      ->check([](const std::string& id) {
+        return id.empty() || id.size() > kLongestRobotId ? "expected 1 to 32 bytes" : "";
+      })
+      ->type_name("ID")
+      ->capture_default_str();
+}
+
+void add_log_options(CLI::App& app, JobOptions& options) {
+  app.add_option("--log", options.log, "CARMEN log, plain or gzip")->required()->type_name("FILE");
+  app.add_option("--out", options.out, "directory for the results; made if it does not exist")
+      ->required()
+      ->type_name("DIR");
+  add_common_options(app, options);
+  app.add_option("--reference", options.reference,
+                 "trajectory (TUM) to compare the result with at the end")
+      ->type_name("FILE");
+}
+
+Job prepare(const JobOptions& options) {
+  Job job = read_inputs(options);
+  support::check_writable_directory(options.out);
+  return job;
+}
+
+void tell_skipped(const scan::CarmenLogStatistics& statistics) {
+  if (statistics.skipped_total() == 0) return;
+  for (const std::string& message : statistics.messages) std::cerr << message << '\n';
+  if (statistics.skipped_total() > statistics.messages.size()) {
+    std::cerr << "... and " << statistics.skipped_total() - statistics.messages.size()
+              << " more lines like these\n";
+  }
+  std::cerr << statistics.summary() << '\n';
+}
+
+void print_summary(std::ostream& out, const storage::Report& report,
+                   const std::filesystem::path& directory) {
+  out << fmt::format("{}: {} scans, {} stops, {:.1f} m of way, {} loop closures\n",
+                     std::filesystem::path(report.log).filename().string(), report.scans,
+                     report.stops, report.distance_m, report.loop_closures.size())
+      << fmt::format("map: {} nodes, {} branches; {} of {} matches accepted\n", report.nodes,
+                     report.branches, report.matches_accepted, report.matches_tried)
+      << fmt::format("time: {:.1f} s, CPU {:.1f} s\n", report.wall_s, report.cpu_s) << "results in "
+      << directory.string() << ", picture " << (directory / "map.png").string() << '\n';
+}
+
+Comparison compare(const std::filesystem::path& directory, const std::filesystem::path& reference) {
+  const auto truth = storage::read_trajectory_tum(reference);
+  const auto odometry = storage::read_trajectory_tum(directory / "odometry.tum");
+  const auto corrected = storage::read_trajectory_tum(directory / "trajectory.tum");
+  return {pipeline::trajectory_error(odometry, truth),
+          pipeline::trajectory_error(corrected, truth)};
+}
+
+void print_comparison(std::ostream& out, const Comparison& comparison) {
+  out << "position error after the best rigid alignment, over " << comparison.corrected.pairs
+      << " poses, and mean heading error:\n";
+  print_error(out, "odometry", comparison.odometry);
+  print_error(out, "corrected", comparison.corrected);
+}
+
+}  // namespace topogeo::cli

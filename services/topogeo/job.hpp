@@ -1,0 +1,61 @@
+// What mapping a log needs and leaves behind, whether in one process or in many.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/trajectory_error.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/storage/report.hpp"
+
+namespace topogeo::cli {
+
+struct JobOptions {
+  std::filesystem::path log;
+  std::filesystem::path out;
+  std::optional<std::filesystem::path> config;
+  std::string robot_id = "robot";
+  std::optional<std::filesystem::path> reference;  ///< trajectory to compare with
+};
+
+/// Adds --config and --robot, which every mapping command has.
+void add_common_options(CLI::App& app, JobOptions& options);
+/// Adds --log, --out and --reference as well.
+void add_log_options(CLI::App& app, JobOptions& options);
+
+struct Job {
+  JobOptions options;
+  pipeline::LoadedConfig config;
+  scan::CarmenLogReader reader;   ///< before its first scan
+  std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
+};
+
+/// Finds out before the work starts whether it can be done: reads the configuration, opens the log
+/// and makes the output directory. Throws service::UsageError, service::BadInputError and
+/// std::runtime_error for these three.
+Job prepare(const JobOptions& options);
+
+/// Says on stderr what was left out of the log; nothing when that is nothing.
+void tell_skipped(const scan::CarmenLogStatistics& statistics);
+
+/// A few lines for people: how much was mapped, how long it took, where the results are.
+void print_summary(std::ostream& out, const storage::Report& report,
+                   const std::filesystem::path& directory);
+
+/// Compares odometry.tum and trajectory.tum of a directory with a reference trajectory.
+struct Comparison {
+  pipeline::TrajectoryError odometry;
+  pipeline::TrajectoryError corrected;
+};
+/// Throws std::runtime_error naming the file that cannot be read, std::invalid_argument when too
+/// few poses match in time.
+Comparison compare(const std::filesystem::path& directory, const std::filesystem::path& reference);
+void print_comparison(std::ostream& out, const Comparison& comparison);
+
+}  // namespace topogeo::cli

@@ -1,0 +1,59 @@
+// The command line: maps logs, shows services, plans routes.
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/logging.hpp"
+#include "topogeo/support/version.hpp"
+
+#include "commands.hpp"
+
+namespace {
+
+int run(int argc, const char* const* argv) {
+  using namespace topogeo;
+  int exit_code = service::kOk;
+  CLI::App app("Maps indoor places from laser scans and plans ways through them.", "topogeo");
+  app.set_version_flag("--version", "topogeo " + std::string(support::kVersion));
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 1 failed, 2 wrong flag or configuration, 3 unusable input,\n"
+      "130 stopped by Ctrl-C. `topogeo COMMAND --help` tells more.");
+  cli::add_run_command(app, exit_code);
+  cli::add_map_command(app, exit_code);
+  cli::add_demo_command(app, exit_code);
+  cli::add_status_command(app, exit_code);
+  cli::add_plan_command(app, exit_code);
+  cli::add_config_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    throw service::UsageError(std::string(error.what()) + " (see --help)");
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace topogeo;
+  int code = service::kFailure;
+  try {
+    support::set_up_logging("topogeo", "warning");
+    return run(argc, argv);
+  } catch (const service::UsageError& error) {
+    std::cerr << "topogeo: " << error.what() << '\n';
+    code = service::kUsage;
+  } catch (const service::BadInputError& error) {
+    std::cerr << "topogeo: " << error.what() << '\n';
+    code = service::kBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "topogeo: " << error.what() << '\n';
+  }
+  return code;
+}

@@ -1,0 +1,144 @@
+// topogeo map: the whole way from a log to a map in this process, without DDS.
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <mutex>
+#include <optional>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "topogeo/messaging/signal_stop.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/progress_bar.hpp"
+
+#include "commands.hpp"
+#include "job.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+constexpr int kSignalBase = 128;  // exit code of a program that a signal has ended, as in shells
+
+/// Ctrl-C: asks the work to end after the scan in hand; where the work cannot be asked, ends the
+/// program at once, which loses nothing because nothing has been written.
+class Interruption {
+ public:
+  Interruption() : signals_([this](int number) { on_signal(number); }) {}
+
+  /// While it lives a signal ends the program at once.
+  class Immediate {
+   public:
+    explicit Immediate(Interruption& owner) : owner_(owner) { owner_.set_immediate(true); }
+    Immediate(const Immediate&) = delete;
+    Immediate& operator=(const Immediate&) = delete;
+    ~Immediate() { owner_.set_immediate(false); }
+
+   private:
+    Interruption& owner_;
+  };
+
+  /// Number of the signal that came, 0 if none has.
+  [[nodiscard]] int received() const { return received_; }
+
+ private:
+  void set_immediate(bool immediate) {
+    const std::lock_guard lock(mutex_);
+    immediate_ = immediate;
+  }
+  void on_signal(int number) {
+    const std::lock_guard lock(mutex_);
+    received_ = number;
+    if (!immediate_) return;
+    constexpr std::string_view kText = "\ntopogeo: stopped, nothing was written\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText.data(), kText.size());
+    std::_Exit(kSignalBase + number);
+  }
+
+  std::mutex mutex_;
+  bool immediate_ = false;
+  std::atomic<int> received_ = 0;
+  messaging::SignalStop signals_;  // last: its thread uses the others
+};
+
+/// Takes all scans of the log; false when a signal came.
+bool add_scans(Job& job, pipeline::MappingRun& run, support::StageTimes& times,
+               const Interruption& interruption) {
+  support::ProgressBar bar(std::cerr, support::stderr_is_terminal(), "mapping", "scans");
+  const double start_s = support::monotonic_s();
+  std::uint64_t done = 0;
+  while (interruption.received() == 0) {
+    std::optional<scan::Scan> scan;
+    {
+      const auto scope = times.measure("reading");
+      scan = job.reader.next();
+    }
+    if (!scan) {
+      bar.finish(done, done, support::monotonic_s() - start_s);
+      return true;
+    }
+    run.add(*scan);
+    bar.update(++done, job.laser_lines, support::monotonic_s() - start_s);
+  }
+  bar.finish(done, job.laser_lines, support::monotonic_s() - start_s);
+  std::cerr << "topogeo: stopped, nothing was written\n";
+  return false;
+}
+
+storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
+                            const storage::MapDocument& document) {
+  storage::Report report;
+  report.command = "map";
+  report.log = job.options.log.filename().string();
+  report.configuration = job.config.effective;
+  pipeline::add_map(report, document);
+  pipeline::add_matches(report, run.match_counts());
+  pipeline::add_log(report, job.reader.statistics());
+  return report;
+}
+
+int map_log(const JobOptions& options) {
+  const double start_s = support::monotonic_s();
+  Interruption interruption;
+  Job job = prepare(options);
+  pipeline::MappingRun run(job.config.config, options.robot_id);
+  support::StageTimes times;
+  if (!add_scans(job, run, times, interruption)) return kSignalBase + interruption.received();
+  tell_skipped(job.reader.statistics());
+
+  std::cerr << "matching revisited places\n";
+  storage::MapDocument document;
+  {
+    const Interruption::Immediate immediate(interruption);
+    document = run.finish();
+  }
+  {
+    const auto scope = times.measure("writing");
+    pipeline::write_map_outputs(options.out, document, options.log.filename().string());
+  }
+
+  storage::Report report = make_report(job, run, document);
+  report.stages = times.stages();
+  report.stages.insert(report.stages.begin() + 1, run.stages().begin(), run.stages().end());
+  report.wall_s = support::monotonic_s() - start_s;
+  report.cpu_s = support::process_cpu_s();
+  storage::write_report(options.out / "report.json", report);
+  print_summary(std::cout, report, options.out);
+  if (options.reference) print_comparison(std::cout, compare(options.out, *options.reference));
+  return 0;
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("map", "Map a log in one process, without DDS");
+  auto options = std::make_shared<JobOptions>();
+  add_log_options(*command, *options);
+  command->callback([options, &exit_code] { exit_code = map_log(*options); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,134 @@
+// topogeo plan: the shortest way between two points of a map file.
+#include <charconv>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/planning/route_planner.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/map_file.hpp"
+
+#include "commands.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+struct PlanOptions {
+  std::filesystem::path map;
+  std::string from;
+  std::string to;
+  std::optional<std::filesystem::path> config;
+  bool json = false;
+};
+
+/// Throws service::UsageError naming the flag.
+Eigen::Vector2d parse_point(const char* flag, std::string_view text) {
+  const std::size_t comma = text.find(',');
+  Eigen::Vector2d point;
+  bool good = comma != std::string_view::npos;
+  const auto parse = [&](std::string_view number, double& value) {
+    const char* end = number.data() + number.size();
+    const auto [rest, error] = std::from_chars(number.data(), end, value);
+    good = good && error == std::errc() && rest == end && std::isfinite(value);
+  };
+  if (good) {
+    parse(text.substr(0, comma), point.x());
+    parse(text.substr(comma + 1), point.y());
+  }
+  if (!good) {
+    throw service::UsageError(
+        fmt::format("{} = '{}': expected X,Y in metres of the map frame, "
+                    "for example 1.5,-2",
+                    flag, text));
+  }
+  return point;
+}
+
+pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
+  try {
+    return pipeline::load_config(file);
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
+storage::MapDocument read_map(const std::filesystem::path& path) {
+  try {
+    return storage::read_map_file(path);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+void print_text(const planning::Route& route) {
+  std::cout << fmt::format(
+      "length {:.2f} m, smallest clearance {:.2f} m, {} nodes, {} way points\n", route.length_m,
+      route.min_clearance_m, route.node_ids.size(), route.points.size());
+  for (const planning::WayPoint& point : route.points) {
+    std::cout << fmt::format("{:9.3f} {:9.3f}  clearance {:.2f}\n", point.position_m.x(),
+                             point.position_m.y(), point.clearance_m);
+  }
+}
+
+void print_json(const planning::Route& route) {
+  nlohmann::ordered_json json = {{"length_m", route.length_m},
+                                 {"min_clearance_m", route.min_clearance_m},
+                                 {"nodes", route.node_ids},
+                                 {"branches", route.branch_ids},
+                                 {"points", nlohmann::ordered_json::array()}};
+  for (const planning::WayPoint& point : route.points) {
+    json["points"].push_back({{"x_m", point.position_m.x()},
+                              {"y_m", point.position_m.y()},
+                              {"clearance_m", point.clearance_m}});
+  }
+  std::cout << json.dump(2) << '\n';
+}
+
+int plan_route(const PlanOptions& options) {
+  const Eigen::Vector2d from_m = parse_point("--from", options.from);
+  const Eigen::Vector2d to_m = parse_point("--to", options.to);
+  const pipeline::LoadedConfig config = load(options.config);
+  const storage::MapDocument document = read_map(options.map);
+  const planning::PlanResult result =
+      planning::plan(document.global_map, from_m, to_m, config.config.planning);
+  if (!result.found()) {
+    std::cerr << "topogeo: no route: " << result.reason << '\n';
+    return service::kFailure;
+  }
+  if (options.json) {
+    print_json(result.route);
+  } else {
+    print_text(result.route);
+  }
+  return service::kOk;
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("plan", "Shortest route between two points of a map");
+  auto options = std::make_shared<PlanOptions>();
+  command->add_option("map", options->map, "map file (map.pb)")->required()->type_name("MAP");
+  command->add_option("--from", options->from, "start, metres in the map frame")
+      ->required()
+      ->type_name("X,Y");
+  command->add_option("--to", options->to, "goal, metres in the map frame")
+      ->required()
+      ->type_name("X,Y");
+  command->add_option("--config", options->config, "configuration (YAML), for its planning section")
+      ->type_name("FILE");
+  command->add_flag("--json", options->json, "print JSON");
+  command->callback([options, &exit_code] { exit_code = plan_route(*options); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,113 @@
+// topogeo run: maps a log with all services as processes on DDS.
+#include <charconv>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/localization/match_gate.hpp"
+#include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
+
+#include "commands.hpp"
+#include "run_log.hpp"
+#include "run_supervisor.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+constexpr int kSignalBase = 128;  // exit code of a program that a signal has ended, as in shells
+
+/// What the localizer counted; "accepted" and "rejected: <reason>" are its names.
+void add_matches(storage::Report& report, const ServiceTable& services) {
+  const msg::ServiceStatus* localizer = services.find("localizer");
+  const auto count = [&](const std::string& name) {
+    return static_cast<std::uint64_t>(counter(localizer, name));
+  };
+  report.matches_tried = count("tasks");
+  report.matches_accepted = count("accepted");
+  for (std::size_t i = 1; i < localization::kVerdicts; ++i) {
+    const std::string reason = localization::to_string(static_cast<localization::Verdict>(i));
+    report.matches_rejected.emplace_back(reason, count("rejected: " + reason));
+  }
+}
+
+storage::Report make_report(const RunOptions& options, Job& job, const RunResult& result) {
+  storage::Report report;
+  report.command = "run";
+  report.log = options.job.log.filename().string();
+  report.workers = options.workers;
+  report.configuration = job.config.effective;
+  pipeline::add_map(report, storage::read_map_file(options.job.out / "map.pb"));
+  add_matches(report, result.services);
+  while (job.reader.next()) {  // to learn what the gateway skipped
+  }
+  pipeline::add_log(report, job.reader.statistics());
+  report.stages = result.times;
+  for (const support::StageTime& time : result.times) report.cpu_s += time.cpu_s;
+  report.cpu_s += support::process_cpu_s();
+  return report;
+}
+
+std::string check_rate(const std::string& text) {
+  if (text == "lossless" || text == "realtime") return {};
+  double factor = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, factor);
+  if (error == std::errc() && rest == end && factor > 0.0 && factor <= 1e6) return {};
+  return "'" + text + "': expected lossless, realtime or a factor above 0";
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  app.add_option("--workers", options.workers,
+                 "search workers to start; 0: the localizer searches itself")
+      ->check(CLI::Range(0U, 256U))
+      ->capture_default_str();
+  app.add_option("--domain", options.domain, "DDS domain")
+      ->check(CLI::Range(0U, 232U))
+      ->capture_default_str();
+  app.add_option("--rate", options.rate,
+                 "lossless (as fast as it goes), realtime or a factor of real time")
+      ->check(check_rate)
+      ->type_name("RATE")
+      ->capture_default_str();
+  app.add_option("--profiles", options.profiles_file, "QoS profiles instead of the built-in ones")
+      ->type_name("FILE");
+}
+
+int run_log(const RunOptions& options) {
+  const double start_s = support::monotonic_s();
+  Job job = prepare(options.job);
+  const RunResult result = RunSupervisor(options, job.laser_lines).run();
+  if (result.signal_number != 0) {
+    std::cerr << "topogeo: stopped, no map was written\n";
+    return kSignalBase + result.signal_number;
+  }
+  if (!result.finished) throw std::runtime_error(result.failure);
+
+  storage::Report report = make_report(options, job, result);
+  report.wall_s = support::monotonic_s() - start_s;
+  storage::write_report(options.job.out / "report.json", report);
+  tell_skipped(job.reader.statistics());
+  print_summary(std::cout, report, options.job.out);
+  if (options.job.reference) {
+    print_comparison(std::cout, compare(options.job.out, *options.job.reference));
+  }
+  return service::kOk;
+}
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("run", "Map a log with all services as processes on DDS");
+  auto options = std::make_shared<RunOptions>();
+  add_log_options(*command, options->job);
+  add_run_options(*command, *options);
+  command->callback([options, &exit_code] { exit_code = run_log(*options); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,165 @@
+#include "run_supervisor.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <random>
+
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+namespace topogeo::cli {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick{50};
+constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
+
+messaging::Participant join(const RunOptions& options, const std::string& partition) {
+  messaging::ParticipantOptions participant;
+  participant.domain = options.domain;
+  participant.partition = partition;
+  participant.name = options.job.robot_id + "/topogeo";
+  participant.profiles_file = options.profiles_file;
+  return messaging::Participant(participant);
+}
+
+}  // namespace
+
+std::string own_partition() {
+  // The process id tells people whose it is, the random number keeps containers apart.
+  return fmt::format("run-{}-{:08x}", ::getpid(), std::random_device{}());
+}
+
+RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_lines)
+    : RunSupervisor(options, laser_lines, own_partition()) {}
+
+RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_lines,
+                             const std::string& partition)
+    : options_(options),
+      laser_lines_(laser_lines),
+      start_s_(support::monotonic_s()),
+      bar_(std::cerr, support::stderr_is_terminal(), "mapping", "scans"),
+      stall_(start_s_),
+      participant_(join(options, partition)),
+      status_reader_(participant_),
+      end_reader_(participant_),
+      signals_([this](int number) {
+        signal_ = number;
+        loop_.stop();
+      }),
+      services_(options, partition) {
+  loop_.add<msg::ServiceStatus>(
+      status_reader_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+        result_.services.update(status, info);
+      });
+  loop_.add<msg::StreamEnd>(
+      end_reader_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
+        if (end.stage() != "map_store" || end.robot_id() != options_.job.robot_id.c_str()) return;
+        result_.finished = true;
+        loop_.stop();
+      });
+  loop_.add_timer(kTick, [this] { tick(); });
+}
+
+RunResult RunSupervisor::run() {
+  loop_.run();
+  ended_ = true;
+  result_.signal_number = result_.finished ? 0 : signal_.load();
+  finish_bar();
+  stop_services();
+  result_.times = services_.wait();
+  return std::move(result_);
+}
+
+void RunSupervisor::tick() {
+  if (ended_) return;
+  check_deaths();
+  check_stall();
+  show_progress();
+}
+
+void RunSupervisor::check_deaths() {
+  while (const std::optional<ServiceGroup::Death> death = services_.next_death()) {
+    if (!death->is_worker) {
+      fail(death->what);
+      return;
+    }
+    say(death->what + "; going on without it");
+  }
+  for (const msg::ServiceStatus* service : result_.services.rows()) {
+    if (service->state() != msg::kServiceFailed) continue;
+    const std::string what =
+        fmt::format("{} has failed: {}", service->service().c_str(), service->message().c_str());
+    if (service->service() != "ga_worker") fail(what);
+  }
+}
+
+void RunSupervisor::check_stall() {
+  switch (stall_.look(result_.services.progress_mark(), support::monotonic_s())) {
+    case StallWatch::Verdict::kMoving:
+      return;
+    case StallWatch::Verdict::kTell:
+      say(fmt::format("no progress for {:.0f} s: {}", kStallTold_s,
+                      describe_states(result_.services)));
+      return;
+    case StallWatch::Verdict::kGiveUp:
+      fail(fmt::format("no progress for {:.0f} s: {}", kStallFailed_s,
+                       describe_states(result_.services)));
+  }
+}
+
+void RunSupervisor::show_progress() {
+  // The localizer is the last to see a scan, but it counts stops, so these are put in scans.
+  const msg::ServiceStatus* mapper = result_.services.find("local_mapper");
+  const msg::ServiceStatus* localizer = result_.services.find("localizer");
+  const double maps = counter(mapper, "local_maps");
+  const double localized = counter(localizer, "local_maps");
+  const double scans = counter(mapper, "scans");
+  const double share = maps > 0.0 ? std::min(1.0, localized / maps) : 0.0;
+  const auto done = static_cast<std::uint64_t>(scans * share);
+  const bool all_read = mapper != nullptr && mapper->state() == msg::kServiceFinished;
+  if (bar_done_) return;
+  const double elapsed_s = support::monotonic_s() - start_s_;
+  if (all_read && localized >= maps) {
+    bar_done_ = true;
+    bar_.finish(done, done, elapsed_s);
+    std::cerr << "matching revisited places\n";
+    return;
+  }
+  bar_.update(done, laser_lines_, elapsed_s);
+}
+
+void RunSupervisor::finish_bar() {
+  if (bar_done_) return;
+  bar_done_ = true;
+  if (support::stderr_is_terminal()) std::cerr << '\n';
+}
+
+void RunSupervisor::say(const std::string& text) {
+  if (support::stderr_is_terminal() && !bar_done_) std::cerr << '\n';
+  std::cerr << "topogeo: " << text << '\n';
+}
+
+void RunSupervisor::fail(const std::string& why) {
+  if (result_.failure.empty()) result_.failure = why;
+  loop_.stop();
+}
+
+void RunSupervisor::stop_services() {
+  services_.send_signal(SIGTERM);
+  const double start_s = support::monotonic_s();
+  // The loop goes on meanwhile: the services say their final counts when they stop.
+  while (!services_.running().empty() && support::monotonic_s() - start_s < kStopTime_s) {
+    loop_.run_for(milliseconds(20));
+  }
+  for (const std::string& name : services_.running()) {
+    say(fmt::format("{} did not stop within {:.0f} s and is killed", name, kStopTime_s));
+  }
+  services_.send_signal(SIGKILL);
+  loop_.run_for(milliseconds(20));
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,74 @@
+// One run of all services on a log: starts them, watches them to the end of the log, stops them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/signal_stop.hpp"
+#include "topogeo/msg/status.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/progress_bar.hpp"
+
+#include "service_group.hpp"
+#include "service_table.hpp"
+#include "stall_watch.hpp"
+
+namespace topogeo::cli {
+
+struct RunResult {
+  bool finished = false;                  ///< the map is written
+  int signal_number = 0;                  ///< that has stopped the run, else 0
+  std::string failure;                    ///< why it did not finish, when no signal did that
+  std::vector<support::StageTime> times;  ///< of each service
+  ServiceTable services;                  ///< what they said last
+};
+
+class RunSupervisor {
+ public:
+  /// Starts the services, in a partition of their own. `laser_lines` is how many scans there are to
+  /// come, at most. Throws like messaging::Participant and ServiceGroup.
+  RunSupervisor(const RunOptions& options, std::uint64_t laser_lines);
+
+  /// Comes back when no service runs any more. Call it once.
+  RunResult run();
+
+ private:
+  RunSupervisor(const RunOptions& options, std::uint64_t laser_lines, const std::string& partition);
+  void tick();
+  void check_deaths();
+  void check_stall();
+  void show_progress();
+  void finish_bar();
+  void say(const std::string& text);
+  void fail(const std::string& why);
+  void stop_services();
+
+  RunOptions options_;
+  std::uint64_t laser_lines_;
+  double start_s_;
+  RunResult result_;
+  bool ended_ = false;  // finished, failed or stopped by a signal
+  bool bar_done_ = false;
+  support::ProgressBar bar_;
+  StallWatch stall_;
+
+  messaging::Participant participant_;
+  messaging::Reader<msg::ServiceStatus> status_reader_;
+  messaging::Reader<msg::StreamEnd> end_reader_;
+  messaging::EventLoop loop_;
+  std::atomic<int> signal_ = 0;
+  messaging::SignalStop signals_;
+  ServiceGroup services_;  // after the readers: they must not miss what the services say
+};
+
+/// A partition that no other run has.
+std::string own_partition();
+
+}  // namespace topogeo::cli

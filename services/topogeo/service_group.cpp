@@ -1,0 +1,108 @@
+#include "service_group.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace topogeo::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr std::string_view kWorker = "ga_worker";
+
+/// Flags that all services have.
+Words common_arguments(const RunOptions& options, const std::string& partition) {
+  Words words = {"--domain",    std::to_string(options.domain),
+                 "--partition", partition,
+                 "--robot-id",  options.job.robot_id};
+  if (options.job.config) words.insert(words.end(), {"--config", options.job.config->string()});
+  if (!options.profiles_file.empty()) {
+    words.insert(words.end(), {"--profiles", options.profiles_file.string()});
+  }
+  return words;
+}
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+bool is_worker(const std::string& name) {
+  return name.starts_with(kWorker);
+}
+
+}  // namespace
+
+ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partition)
+    : programs_(std::filesystem::read_symlink("/proc/self/exe").parent_path()),
+      logs_(options.job.out / "logs") {
+  std::filesystem::create_directories(logs_);
+  const Words common = common_arguments(options, partition);
+  const std::string out = options.job.out.string();
+  const std::string log = options.job.log.string();
+  start("map_store", "map_store",
+        common + Words{"--out", out, "--title", options.job.log.filename().string()});
+  start("planner", "planner", common);
+  start("localizer", "localizer",
+        common + Words{"--wait-workers", std::to_string(options.workers)});
+  start("local_mapper", "local_mapper", common + Words{"--replay"});
+  for (std::uint32_t i = 1; i <= options.workers; ++i) {
+    const std::string name = std::string(kWorker) + "_" + std::to_string(i);
+    start(name, std::string(kWorker), common + Words{"--worker-id", name, "--slots", "1"});
+  }
+  start("sensor_gateway", "sensor_gateway", common + Words{"--log", log, "--rate", options.rate});
+  told_.assign(children_.size(), false);
+}
+
+void ServiceGroup::start(const std::string& name, const std::string& program,
+                         const std::vector<std::string>& arguments) {
+  children_.emplace_back(name, programs_ / program, arguments, logs_ / (name + ".log"));
+}
+
+std::optional<ServiceGroup::Death> ServiceGroup::next_death() {
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    if (told_[i]) continue;
+    const std::optional<ChildExit>& exit = children_[i].poll();
+    if (!exit) continue;
+    told_[i] = true;
+    std::string what = children_[i].name() + " " + describe(*exit);
+    const std::string last = children_[i].last_line();
+    what += last.empty() ? ", it had logged nothing" : "; last line of its log: " + last;
+    return Death{children_[i].name(), what, is_worker(children_[i].name())};
+  }
+  return std::nullopt;
+}
+
+void ServiceGroup::send_signal(int signal_number) {
+  for (ChildProcess& child : children_) child.send_signal(signal_number);
+}
+
+std::vector<std::string> ServiceGroup::running() {
+  std::vector<std::string> names;
+  for (ChildProcess& child : children_) {
+    if (!child.poll()) names.push_back(child.name());
+  }
+  return names;
+}
+
+std::vector<support::StageTime> ServiceGroup::wait() {
+  std::vector<support::StageTime> times;
+  for (ChildProcess& child : children_) {
+    child.wait();
+    if (const auto& exit = child.poll()) {
+      times.push_back({child.name(), exit->wall_s, exit->cpu_s});
+    }
+  }
+  constexpr std::array<std::string_view, 6> kOrder = {"sensor_gateway", "local_mapper", "localizer",
+                                                      kWorker,          "map_store",    "planner"};
+  const auto place = [&](const support::StageTime& time) {
+    return std::find_if(kOrder.begin(), kOrder.end(),
+                        [&](std::string_view name) { return time.stage.starts_with(name); });
+  };
+  std::stable_sort(times.begin(), times.end(),
+                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  return times;
+}
+
+}  // namespace topogeo::cli

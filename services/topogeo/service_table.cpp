@@ -1,0 +1,114 @@
+#include "service_table.hpp"
+
+#include <algorithm>
+
+#include <spdlog/fmt/fmt.h>
+
+namespace topogeo::cli {
+namespace {
+
+/// Counters that grow while nothing is done end in "_s".
+bool is_time(std::string_view name) {
+  return name.ends_with("_s");
+}
+
+std::string text(const auto& bounded) {
+  return bounded.c_str();
+}
+
+}  // namespace
+
+void ServiceTable::update(const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+  by_instance_[info.instance] = status;
+}
+
+void ServiceTable::remove(const messaging::SampleInfo& info) {
+  by_instance_.erase(info.instance);
+}
+
+std::vector<const msg::ServiceStatus*> ServiceTable::rows() const {
+  std::vector<const msg::ServiceStatus*> rows;
+  for (const auto& [instance, status] : by_instance_) rows.push_back(&status);
+  std::sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
+    return std::pair(text(a->service()), text(a->instance())) <
+           std::pair(text(b->service()), text(b->instance()));
+  });
+  return rows;
+}
+
+const msg::ServiceStatus* ServiceTable::find(std::string_view service) const {
+  for (const msg::ServiceStatus* row : rows()) {
+    if (service == row->service().c_str()) return row;
+  }
+  return nullptr;
+}
+
+std::string ServiceTable::progress_mark() const {
+  std::string mark;
+  for (const msg::ServiceStatus* row : rows()) {
+    mark += fmt::format("{}={}", row->instance().c_str(), static_cast<int>(row->state()));
+    for (const msg::Counter& c : row->counters()) {
+      if (!is_time(c.name().c_str())) mark += fmt::format(",{}={}", c.name().c_str(), c.value());
+    }
+    mark += ';';
+  }
+  return mark;
+}
+
+double counter(const msg::ServiceStatus* status, std::string_view name) {
+  if (status == nullptr) return 0.0;
+  for (const msg::Counter& c : status->counters()) {
+    if (name == c.name().c_str()) return c.value();
+  }
+  return 0.0;
+}
+
+std::string_view to_string(msg::ServiceState state) {
+  switch (state) {
+    case msg::kServiceStarting:
+      return "starting";
+    case msg::kServiceWaiting:
+      return "waiting";
+    case msg::kServiceRunning:
+      return "running";
+    case msg::kServiceFinished:
+      return "finished";
+    case msg::kServiceFailed:
+      return "failed";
+    case msg::kServiceStopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
+std::string describe_states(const ServiceTable& table) {
+  std::string states;
+  for (const msg::ServiceStatus* row : table.rows()) {
+    if (!states.empty()) states += "; ";
+    states += fmt::format("{} {}", row->service().c_str(), to_string(row->state()));
+    if (const std::string message = text(row->message()); !message.empty()) {
+      states += ": " + message;
+    }
+  }
+  return states.empty() ? "no service has said anything" : states;
+}
+
+std::string status_line(const msg::ServiceStatus& status) {
+  std::string line = fmt::format("{:<14} {:<28} {:<12} {:<8} {:>7.1f} s", status.service().c_str(),
+                                 status.instance().c_str(), status.host().c_str(),
+                                 to_string(status.state()), status.uptime_s());
+  if (const std::string message = text(status.message()); !message.empty()) line += "  " + message;
+  line += " ";
+  for (const msg::Counter& c : status.counters()) {
+    line += fmt::format(" {}={:.10g}", c.name().c_str(), c.value());
+  }
+  if (status.fault_count() > 0) {
+    line += fmt::format("  FAULTS {}:", status.fault_count());
+    for (const msg::FaultCount& f : status.faults()) {
+      line += fmt::format(" {}={}", f.reason().c_str(), f.count());
+    }
+  }
+  return line;
+}
+
+}  // namespace topogeo::cli
