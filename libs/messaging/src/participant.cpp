@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 
@@ -58,6 +59,15 @@ void load_profiles(const std::filesystem::path& requested) {
   loaded = file;
 }
 
+/// Content filters look the fields of a type up in a registry of the process, which is not safe
+/// against the threads of a participant: it is filled before there is one.
+void register_type_objects() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    for (const TopicInfo* topic : all_topics()) topic->register_type_object();
+  });
+}
+
 template <class Entity>
 Entity* require(Entity* entity, const std::string& what) {
   if (entity == nullptr) throw std::runtime_error("DDS: cannot create " + what);
@@ -76,6 +86,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");
   if (profile.empty()) profile = "topogeo";
 
+  register_type_objects();
   auto* factory = dds::DomainParticipantFactory::get_instance();
   dds::DomainParticipantQos qos;
   if (factory->get_participant_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
@@ -108,8 +119,11 @@ dds::Topic& ParticipantCore::topic(const TopicInfo& info) {
   const std::lock_guard lock(mutex_);
   if (const auto found = topics_.find(info.name); found != topics_.end()) return *found->second;
   const std::string name(info.name);
-  info.register_type_object();
   const dds::TypeSupport type(info.make_type());
+  // Types are matched by name, which carries the version. Announced descriptions would be parsed by
+  // the discovery thread of every peer, into a registry that is not safe against its other threads.
+  type->auto_fill_type_object(false);
+  type->auto_fill_type_information(false);
   if (type.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
     throw std::runtime_error("DDS: cannot register the type of topic " + name);
   }
