@@ -50,7 +50,10 @@ TaskBoard::TaskBoard(const BoardOptions& options)
 void TaskBoard::worker_up(const std::string& worker_id, std::uint32_t slots,
                           std::uint64_t incarnation) {
   Worker& worker = workers_[worker_id];
-  if (worker.present && worker.incarnation != incarnation) lose(worker_id, worker);
+  if (worker.incarnation != incarnation) {
+    if (worker.present) lose(worker_id, worker);
+    worker.excluded = false;
+  }
   worker.present = true;
   worker.incarnation = incarnation;
   worker.slots = slots;
@@ -98,7 +101,8 @@ bool TaskBoard::in_service(const Worker& worker, BoardTime now) const {
 }
 
 bool TaskBoard::has_room(const Worker& worker) const {
-  return worker.in_hand.size() < std::size_t{worker.slots} * options_.tasks_per_slot;
+  return worker.in_hand.size() < std::min(std::size_t{worker.slots} * options_.tasks_per_slot,
+                                          std::size_t{options_.tasks_per_worker});
 }
 
 // --- batches

@@ -26,6 +26,8 @@ struct BoardOptions {
   /// Tasks given to a worker for each of its slots, at most: one to work on, the rest so that it
   /// does not stand still while an answer travels.
   std::uint32_t tasks_per_slot = 2;
+  /// Tasks given to one worker at most; the task history of a worker on the wire holds 128.
+  std::uint32_t tasks_per_worker = 100;
   /// A task without an answer for so long is also given to somebody else ...
   BoardTime straggler_floor = std::chrono::seconds(1);
   /// ... or for so many times the median time of recent answers, if that is longer.
@@ -72,7 +74,7 @@ class TaskBoard {
   void worker_up(const std::string& worker_id, std::uint32_t slots, std::uint64_t incarnation);
   /// A worker is not there any more: its tasks go to others.
   void worker_gone(const std::string& worker_id);
-  /// A worker must not be used, now or when it comes back. True if that is news.
+  /// A worker must not be used until it comes back in a new incarnation. True if that is news.
   bool exclude(const std::string& worker_id);
   /// A worker can be given tasks, or not yet: its reader is not connected. Workers start without.
   void set_reachable(const std::string& worker_id, bool reachable);

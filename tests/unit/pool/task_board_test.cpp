@@ -292,9 +292,11 @@ TEST_F(TaskBoardTest, AWorkerOfAnotherVersionIsNotUsedAgain) {
   EXPECT_EQ(board_.workers(), 1U);
   EXPECT_THAT(send_all(milliseconds(1)), ElementsAre(std::pair{0U, "b"}));
   board_.worker_gone("a");
-  up("a", 1, 2);
+  up("a", 1, 1);
   EXPECT_EQ(board_.workers(), 1U) << "not even when it comes back";
   EXPECT_EQ(answer("a", 1, milliseconds(2)), Reception::kUnknown);
+  up("a", 1, 2);
+  EXPECT_EQ(board_.workers(), 2U) << "it was started anew, perhaps as the right version";
 }
 
 TEST_F(TaskBoardTest, ATaskWhoseMapIsMissingGoesElsewhereAndTheWorkerRests) {

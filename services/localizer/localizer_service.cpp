@@ -1,0 +1,276 @@
+#include "localizer_service.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "topogeo/localization/match_gate.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/support/version.hpp"
+
+namespace topogeo::localizer {
+
+namespace {
+
+constexpr std::chrono::milliseconds kCountPeriod{250};
+
+/// Different for every process that ever ran, as far as workers can remember.
+std::string unique_client_id() {
+  std::array<char, 33> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) host = {"unknown"};
+  std::string name(host.data());
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '\'' || c == '"' || c == '%'; }, '-');
+  const auto start = std::chrono::system_clock::now().time_since_epoch();
+  return name + "-" + std::to_string(::getpid()) + "-" +
+         std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(start).count());
+}
+
+RemotePoolOptions pool_options(const service::Service& service) {
+  RemotePoolOptions options;
+  options.robot_id = service.robot_id();
+  options.client_id = unique_client_id();
+  options.version = support::kVersion;
+  options.config_fingerprint = service.setup().config.effective.fingerprint;
+  options.stopping = [] { return service::Service::stopping(); };
+  return options;
+}
+
+bool same(const std::vector<topomap::LoopClosure>& a, const std::vector<topomap::LoopClosure>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.earlier_id == y.earlier_id && x.later_id == y.later_id &&
+           x.T_earlier_later == y.T_earlier_later;
+  });
+}
+
+}  // namespace
+
+LocalizerService::LocalizerService(service::Service& service, const LocalizerOptions& options)
+    : service_(service),
+      options_(options),
+      pool_(service.participant(), service.loop(), pool_options(service),
+            [&service](std::string_view reason, std::string_view detail) {
+              service.status().fault(reason, detail);
+            }),
+      localizer_(service.setup().config.config.localizer, pool_),
+      maps_in_(service.participant()),
+      odometry_(service.participant()),
+      ends_in_(service.participant()),
+      segments_(service.participant()),
+      closures_(service.participant()),
+      poses_(service.participant()),
+      ends_out_(service.participant()) {
+  messaging::EventLoop& loop = service_.loop();
+  loop.add<msg::LocalMap>(maps_in_, [this](const msg::LocalMap& message,
+                                           const messaging::SampleInfo&) { on_map(message); });
+  loop.add<msg::Odometry>(
+      odometry_,
+      [this](const msg::Odometry& message, const messaging::SampleInfo&) { on_odometry(message); });
+  loop.add<msg::StreamEnd>(ends_in_,
+                           [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
+                             on_stream_end(message);
+                           });
+  loop.add(segments_);
+  loop.add(closures_);
+  loop.add(poses_);
+  loop.add(ends_out_);
+  loop.add_timer(kCountPeriod, [this] { count_pool(); });
+  count();
+  service_.status().set_state(msg::kServiceWaiting, "for local maps");
+  schedule();
+}
+
+void LocalizerService::on_map(const msg::LocalMap& message) {
+  if (!service_.is_own(message)) return;
+  const std::string name = "local map " + std::to_string(message.id());
+  if (message.id() < hashes_.size()) {
+    // A reader gets a map again when its writer comes back; another map of that id is from
+    // another run.
+    if (message.content_hash() != hashes_[message.id()]) {
+      service_.status().fault("local map of another run", name);
+    }
+    return;
+  }
+  if (finished_) {
+    service_.status().fault("local map after the end", name);
+    return;
+  }
+  try {
+    queue_[message.id()] = std::make_shared<const topomap::LocalMap>(service::from_msg(message));
+    schedule();
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("invalid local map", name + ": " + error.what());
+  }
+}
+
+void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
+  if (message.stage() != "local_mapper" || !service_.is_own(message)) return;
+  maps_in_stream_ = message.count();
+  schedule();
+}
+
+// The pose between stops: the corrected pose of the last stop and the odometry since.
+void LocalizerService::on_odometry(const msg::Odometry& message) {
+  if (!service_.is_own(message) || !last_map_) return;
+  const geometry::Pose2 T_stop_robot =
+      geometry::between(last_map_->T_odom_robot, service::from_msg(message.T_odom_robot()));
+  const localization::UncertainPose pose =
+      localization::advance({last_stop_.T_map_robot, last_stop_.covariance}, T_stop_robot,
+                            service_.setup().config.config.localizer.odometry);
+  service::LivePose live;
+  live.stamp_ns = message.stamp_ns();
+  live.sequence = message.sequence_number();
+  live.state = last_step_in_doubt_ ? msg::kPoseUncertain : msg::kPoseTracking;
+  live.T_map_robot = pose.T_a_b;
+  live.covariance = pose.covariance;
+  live.local_map_id = last_stop_.local_map_id;
+  live.trajectory_version = version_;
+  // One that cannot be sent now is old by the time it could.
+  if (!poses_.write(service::to_msg(live, service_.robot_id()))) {
+    service_.status().add_to_counter("poses_not_sent");
+  }
+}
+
+// --- the work
+
+void LocalizerService::schedule() {
+  if (scheduled_) return;
+  scheduled_ = true;  // until work() has ended: handlers run while it waits for results
+  service_.loop().post([this] { work(); });
+}
+
+void LocalizerService::work() {
+  try {
+    if (!waited_) wait_for_workers();
+    while (!queue_.empty() && queue_.begin()->first == hashes_.size()) {
+      if (service::Service::stopping()) throw Stopped();
+      const MapPointer map = queue_.begin()->second;
+      queue_.erase(queue_.begin());
+      step(map);
+    }
+    if (!finished_ && maps_in_stream_ && hashes_.size() >= *maps_in_stream_) finish();
+  } catch (const Stopped& stopped) {
+    spdlog::debug("{}", stopped.what());
+    service_.loop().stop();
+  }
+  scheduled_ = false;
+}
+
+void LocalizerService::wait_for_workers() {
+  waited_ = true;
+  if (options_.wait_workers == 0) return;
+  service_.status().set_state(msg::kServiceWaiting,
+                              "for " + std::to_string(options_.wait_workers) + " workers");
+  const std::size_t workers = pool_.wait_for_workers(
+      options_.wait_workers, std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                 std::chrono::duration<double>(options_.wait_s)));
+  if (workers < options_.wait_workers) {
+    spdlog::warn("{} of {} workers came within {} s, going on with them", workers,
+                 options_.wait_workers, options_.wait_s);
+  }
+  service_.status().set_state(msg::kServiceWaiting, "for local maps");
+}
+
+void LocalizerService::step(const MapPointer& map) {
+  if (service_.status().state() != msg::kServiceRunning) {
+    service_.status().set_state(msg::kServiceRunning);
+  }
+  const std::uint64_t in_doubt = localizer_.counts().steps_in_doubt;
+  hashes_.push_back(topomap::content_hash(*map));
+  localizer_.add(map);
+  last_step_in_doubt_ = localizer_.counts().steps_in_doubt > in_doubt;
+  last_map_ = map;
+  publish(false);
+  count();
+}
+
+void LocalizerService::finish() {
+  service_.status().set_state(msg::kServiceRunning, "matching revisited places");
+  localizer_.finish();
+  finished_ = true;
+  publish(true);
+  count();
+  msg::StreamEnd end;
+  messaging::set_header(end, service_.robot_id(), last_stop_.stamp_ns, 0);
+  messaging::set_text(end.stage(), "localizer", "stage");
+  end.count(hashes_.size());
+  end.last_id(hashes_.empty() ? 0 : hashes_.size() - 1);
+  end.version(version_);
+  if (!service_.send(ends_out_, end, "stream end")) return;
+  const localization::LocalizerCounts& counts = localizer_.counts();
+  spdlog::info("{} stops, {} match tasks, {} loop closures", hashes_.size(), counts.tasks,
+               sent_closures_.size());
+  service_.status().set_state(msg::kServiceFinished);
+}
+
+// Sends what has changed, or all of it, so that a reader has it whole in one version.
+void LocalizerService::publish(bool whole) {
+  const topomap::Trajectory trajectory = localizer_.trajectory();
+  version_ = trajectory.version;
+  if (!trajectory.stops.empty()) last_stop_ = trajectory.stops.back();
+  std::vector<std::uint32_t> numbers = updates_.update(trajectory);
+  if (whole) {
+    numbers.resize(service::segment_count(trajectory.stops.size()));
+    for (std::uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
+  }
+  for (const std::uint32_t number : numbers) {
+    const msg::TrajectorySegment segment =
+        service::to_segment(trajectory, number, service_.robot_id(), segments_sent_++);
+    if (!service_.send(segments_, segment, "trajectory")) throw Stopped();
+  }
+  std::vector<topomap::LoopClosure> closures = localizer_.loop_closures();
+  if (!whole && same(closures, sent_closures_)) return;
+  sent_closures_ = std::move(closures);
+  const msg::LoopClosures message = service::to_msg(sent_closures_, version_, service_.robot_id(),
+                                                    last_stop_.stamp_ns, closures_sent_++);
+  if (!service_.send(closures_, message, "loop closures")) throw Stopped();
+}
+
+// --- counters
+
+void LocalizerService::count() {
+  messaging::StatusPublisher& status = service_.status();
+  const localization::LocalizerCounts& counts = localizer_.counts();
+  const auto set = [&status](const std::string& name, std::uint64_t value) {
+    status.set_counter(name, static_cast<double>(value));
+  };
+  set("local_maps", hashes_.size());
+  set("stops", hashes_.size());
+  set("tasks", counts.tasks);
+  set("evaluations", counts.evaluations);
+  for (std::size_t i = 0; i < localization::kVerdicts; ++i) {
+    const auto verdict = static_cast<localization::Verdict>(i);
+    const std::string name = localization::to_string(verdict);
+    set(verdict == localization::Verdict::kAccepted ? name : "rejected: " + name,
+        counts.verdicts[i]);
+  }
+  set("loop_closures", sent_closures_.size());
+  set("optimizations", counts.optimizations);
+  set("unconfirmed_loops", counts.unconfirmed_loops);
+  set("removed_loops", counts.removed_loops);
+  set("steps_in_doubt", counts.steps_in_doubt);
+  count_pool();
+}
+
+void LocalizerService::count_pool() {
+  messaging::StatusPublisher& status = service_.status();
+  const BoardCounts& counts = pool_.counts();
+  const auto set = [&status](const std::string& name, std::uint64_t value) {
+    status.set_counter(name, static_cast<double>(value));
+  };
+  set("workers", pool_.workers());
+  set("workers_lost", counts.workers_lost);
+  set("tasks_sent", counts.sent);
+  set("tasks_resent", counts.resent);
+  set("tasks_in_process", counts.in_process);
+  set("tasks_failed", counts.failed);
+  set("maps_missing", counts.map_missing);
+  set("duplicates", counts.duplicates);
+  set("duplicate_differences", counts.duplicate_differences);
+}
+
+}  // namespace topogeo::localizer

@@ -1,0 +1,82 @@
+// Wires localization::Localizer to topics: local maps in, the corrected trajectory, closed loops
+// and the live pose out, with the matching done by RemotePool.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/localization/localizer.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/service.hpp"
+
+#include "remote_pool.hpp"
+#include "trajectory_updates.hpp"
+
+namespace topogeo::localizer {
+
+struct LocalizerOptions {
+  std::uint32_t wait_workers = 0;  ///< workers to wait for before the first step
+  double wait_s = 5.0;             ///< at most so long, > 0
+};
+
+/// Lives in the loop of its service.
+class LocalizerService {
+ public:
+  LocalizerService(service::Service& service, const LocalizerOptions& options);
+
+ private:
+  using MapPointer = std::shared_ptr<const topomap::LocalMap>;
+
+  void on_map(const msg::LocalMap& message);
+  void on_odometry(const msg::Odometry& message);
+  void on_stream_end(const msg::StreamEnd& message);
+  /// Has the work done outside of message handlers, which the pool needs.
+  void schedule();
+  void work();
+  void wait_for_workers();
+  void step(const MapPointer& map);
+  void finish();
+  void publish(bool whole);
+  void count();
+  void count_pool();
+
+  service::Service& service_;
+  LocalizerOptions options_;
+  RemotePool pool_;
+  localization::Localizer localizer_;
+  messaging::Reader<msg::LocalMap> maps_in_;
+  messaging::Reader<msg::Odometry> odometry_;
+  messaging::Reader<msg::StreamEnd> ends_in_;
+  messaging::Writer<msg::TrajectorySegment> segments_;
+  messaging::Writer<msg::LoopClosures> closures_;
+  messaging::Writer<msg::LivePose> poses_;
+  messaging::Writer<msg::StreamEnd> ends_out_;
+
+  std::map<std::uint32_t, MapPointer> queue_;  // not yet worked on, by id
+  std::vector<std::uint64_t> hashes_;          // of those worked on; index: id
+  MapPointer last_map_;
+  topomap::StopPose last_stop_;
+  bool last_step_in_doubt_ = false;
+  TrajectoryUpdates updates_;
+  std::vector<topomap::LoopClosure> sent_closures_;
+  std::uint64_t version_ = 0;
+  std::uint64_t segments_sent_ = 0;
+  std::uint64_t closures_sent_ = 0;
+  std::optional<std::uint64_t> maps_in_stream_;
+  bool scheduled_ = false;
+  bool waited_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace topogeo::localizer

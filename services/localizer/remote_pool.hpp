@@ -1,0 +1,107 @@
+// Lets search workers on the network work on match tasks, and does it itself where there are none
+// (design, the search pool). TaskBoard decides who gets what; this carries it over DDS.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/matcher.hpp"
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/match.h"
+#include "topogeo/msg/status.h"
+#include "topogeo/service/participant_id.hpp"
+
+#include "task_board.hpp"
+
+namespace topogeo::localizer {
+
+/// The program is to end; thrown out of RemotePool while it waits.
+class Stopped : public std::runtime_error {
+ public:
+  Stopped() : std::runtime_error("stopped while waiting for match results") {}
+};
+
+struct RemotePoolOptions {
+  std::string robot_id;                  ///< 1 to 32 bytes
+  std::string client_id;                 ///< 1 to 64 bytes without quotes, unique on the domain
+  std::string version;                   ///< workers of another one are not used
+  std::uint64_t config_fingerprint = 0;  ///< told to the workers
+  BoardOptions board;
+  /// Asked after every wait: true when the program is to end. Empty: never.
+  std::function<bool()> stopping;
+};
+
+/// Everything happens in the thread that calls it. match() runs the event loop while it waits, so
+/// it must not be called from a message handler, only from a posted or timed one or outside.
+class RemotePool : public localization::MatchPool {
+ public:
+  using FaultHandler = std::function<void(std::string_view reason, std::string_view detail)>;
+
+  /// `loop` must outlive the pool and must not run any more once the pool has gone. Throws like
+  /// Reader and Writer.
+  RemotePool(const messaging::Participant& participant, messaging::EventLoop& loop,
+             RemotePoolOptions options, FaultHandler on_fault);
+
+  void add_map(std::shared_ptr<const topomap::LocalMap> map) override;
+  /// Throws Stopped, and what Matcher::solve throws for a task that cannot be solved.
+  std::vector<localization::MatchResult> match(
+      std::span<const localization::MatchTask> tasks) override;
+
+  /// Returns how many workers there are once they are `count` or `patience` is over. Throws
+  /// Stopped.
+  std::size_t wait_for_workers(std::size_t count, std::chrono::nanoseconds patience);
+
+  [[nodiscard]] std::size_t workers() const { return board_.workers(); }
+  [[nodiscard]] const BoardCounts& counts() const { return board_.counts(); }
+
+ private:
+  struct KnownWorker {
+    std::string worker_id;
+    service::ParticipantId participant;
+  };
+
+  void on_status(const msg::WorkerStatus& status, const messaging::SampleInfo& info);
+  void on_worker_gone(const messaging::SampleInfo& info);
+  void on_result(const msg::MatchResult& message);
+  void on_event(const messaging::Event& event);
+  void exclude(const std::string& worker_id, const std::string& why);
+  /// Gives workers what they have room for, then ends the wait if it has come true.
+  void go_on();
+  void send_waiting();
+  bool send(const TaskBoard::Assignment& assignment);
+  void report(Reception reception, const std::string& worker_id, std::uint64_t task_id);
+  localization::MatchResult solve(const localization::MatchTask& task);
+  /// Runs the loop until `until` holds, for `duration` at most.
+  void run_loop(std::chrono::nanoseconds duration, const std::function<bool()>& until);
+
+  messaging::EventLoop& loop_;
+  RemotePoolOptions options_;
+  FaultHandler on_fault_;
+  TaskBoard board_;
+  messaging::Reader<msg::WorkerStatus> statuses_;
+  messaging::Reader<msg::MatchResult> results_;
+  messaging::Writer<msg::MatchTask> task_writer_;
+  std::map<messaging::Handle, KnownWorker> known_;  // by instance of WorkerStatus
+  std::set<service::ParticipantId> task_readers_;   // connected
+  std::map<std::uint32_t, std::shared_ptr<const topomap::LocalMap>> maps_;
+  localization::Matcher matcher_;  // holds the maps that it was needed for
+  std::span<const localization::MatchTask> batch_;
+  std::uint64_t sequence_ = 0;
+  std::function<bool()> until_;
+  bool woken_ = false;
+};
+
+}  // namespace topogeo::localizer
