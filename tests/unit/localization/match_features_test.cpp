@@ -1,0 +1,173 @@
+#include "topogeo/localization/match_features.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hand_scenes.hpp"
+#include "simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::kDegree;
+using View = RangeProfile::View;
+
+TEST(MatchFeaturesTest, PointsAreThinnedToTheirSpacing) {
+  const auto points = test::exact_points(test::l_room(), {});
+  const MatchFeatures features = extract_scan_features(points, {});
+  ASSERT_GT(features.surface.size(), 100U);
+  ASSERT_GT(features.coarse_m.size(), 50U);
+  for (std::size_t i = 1; i < features.surface.size(); ++i) {
+    EXPECT_GE((features.surface[i].position_m - features.surface[i - 1].position_m).norm(),
+              MatchFeatures::kFineSpacing_m - 1e-9);
+  }
+  for (std::size_t i = 1; i < features.coarse_m.size(); ++i) {
+    EXPECT_GE((features.coarse_m[i] - features.coarse_m[i - 1]).norm(),
+              MatchFeatures::kCoarseSpacing_m - 1e-9);
+  }
+  // No point was dropped further from a kept one than the spacing.
+  for (const auto& p : points) {
+    double nearest_m = 1e9;
+    for (const Eigen::Vector2d& kept : features.coarse_m) {
+      nearest_m = std::min(nearest_m, (kept - Eigen::Vector2d(p.x_m, p.y_m)).norm());
+    }
+    EXPECT_LT(nearest_m, MatchFeatures::kCoarseSpacing_m);
+  }
+}
+
+TEST(MatchFeaturesTest, NormalsStandOnTheWalls) {
+  // The l-shaped room again: away from its corners every wall is along x or along y.
+  const MatchFeatures features = test::features_at(test::l_room(), {});
+  const std::vector<Eigen::Vector2d> corners{{-2, -2}, {2, -2}, {2, 0}, {4, 0}, {4, 3}, {-2, 3}};
+  int checked = 0;
+  for (const SurfacePoint& point : features.surface) {
+    double corner_m = 1e9;
+    for (const auto& corner : corners) {
+      corner_m = std::min(corner_m, (corner - point.position_m).norm());
+    }
+    if (corner_m < 0.8) continue;
+    const Eigen::Vector2d& p = point.position_m;
+    const bool along_x = std::min({std::fabs(p.y() + 2), std::fabs(p.y() - 3),
+                                   p.x() > 2 ? std::fabs(p.y()) : 9.0}) < 0.01;
+    EXPECT_TRUE(point.on_line) << p.transpose();
+    EXPECT_NEAR(point.normal.norm(), 1.0, 1e-9);
+    EXPECT_GT(std::fabs(along_x ? point.normal.y() : point.normal.x()), 0.999) << p.transpose();
+    ++checked;
+  }
+  EXPECT_GT(checked, 50);
+}
+
+TEST(MatchFeaturesTest, NormalsOfASlantingWall) {
+  const simulation::World wall = test::lines({{{2, -4}, {6, 4}}});
+  const MatchFeatures features = test::features_at(wall, {});
+  ASSERT_GT(features.surface.size(), 20U);
+  const Eigen::Vector2d along = Eigen::Vector2d(4, 8).normalized();
+  for (const SurfacePoint& point : features.surface) {
+    EXPECT_TRUE(point.on_line);
+    EXPECT_NEAR(point.normal.dot(along), 0.0, 1e-3);
+  }
+}
+
+TEST(MatchFeaturesTest, LonelyPointsAreOnNoLine) {
+  const std::vector<topomap::ScanPoint> points{{2, -2}, {2, 0}, {2, 0.05F}, {2, 2}};
+  const MatchFeatures features = extract_scan_features(points, {});
+  ASSERT_EQ(features.surface.size(), 4U);
+  for (const SurfacePoint& point : features.surface) EXPECT_FALSE(point.on_line);
+}
+
+TEST(MatchFeaturesTest, NothingComesOfNothing) {
+  const MatchFeatures features = extract_scan_features({}, {});
+  EXPECT_TRUE(features.surface.empty());
+  EXPECT_TRUE(features.coarse_m.empty());
+  EXPECT_EQ(features.profile.view({1.0, 0.0}, 0.3), View::kUnknown);
+  EXPECT_EQ(RangeProfile().view({1.0, 0.0}, 0.3), View::kUnknown);
+}
+
+// The front half of a square room: walls at x = 2, y = 2 and y = -2.
+TEST(RangeProfileTest, TellsFreeSpaceFromSurfacesAndWhatIsBehind) {
+  const simulation::World room =
+      test::lines({{{-2, 2}, {2, 2}}, {{2, 2}, {2, -2}}, {{2, -2}, {-2, -2}}});
+  const test::Sweep front{-90.0, 90.0, 0.5, 8.0};
+  const RangeProfile profile(test::exact_points(room, {}, front), {});
+  EXPECT_EQ(profile.view({1.0, 0.3}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({1.85, 0.3}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({1.95, 0.3}, 0.1), View::kSurface);
+  EXPECT_EQ(profile.view({2.05, 0.3}, 0.1), View::kSurface);
+  EXPECT_EQ(profile.view({2.2, 0.3}, 0.1), View::kHidden);
+  EXPECT_EQ(profile.view({2.2, 0.3}, 0.3), View::kSurface);
+  EXPECT_EQ(profile.view({0.5, -1.0}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({0.5, 3.0}, 0.1), View::kHidden);
+  EXPECT_EQ(profile.view({-1.0, 0.3}, 0.1), View::kUnknown);
+}
+
+TEST(RangeProfileTest, SmallGapsBetweenBeamsBelongToTheNearerReading) {
+  const simulation::World wall = test::lines({{{2, -4}, {2, 4}}});
+  const RangeProfile coarse(test::exact_points(wall, {}, {-45, 45, 1.5, 8}), {});
+  for (double angle = -44.0; angle <= 44.0; angle += 0.25) {
+    const Eigen::Vector2d toward(std::cos(angle * kDegree), std::sin(angle * kDegree));
+    EXPECT_EQ(coarse.view(toward, 0.1), View::kFree) << angle;
+  }
+  // Twenty degrees without reading are no gap between beams.
+  auto points = test::exact_points(wall, {}, {-45, -10, 0.5, 8});
+  for (const auto& p : test::exact_points(wall, {}, {10, 45, 0.5, 8})) points.push_back(p);
+  EXPECT_EQ(RangeProfile(points, {}).view({1.0, 0.0}, 0.1), View::kUnknown);
+}
+
+TEST(RangeProfileTest, LooksFromWhereTheLaserIsMounted) {
+  // The laser sits 1 m ahead of the robot's origin and looks left; it sees a wall 2 m before it.
+  const Pose2 T_robot_laser{1.0, 0.0, 90.0 * kDegree};
+  std::vector<topomap::ScanPoint> points;
+  for (double x = 0.0; x <= 2.0; x += 0.02) points.push_back({static_cast<float>(x), 2.0F});
+  const RangeProfile profile(points, T_robot_laser);
+  EXPECT_EQ(profile.view({1.0, 1.0}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({1.0, 2.0}, 0.1), View::kSurface);
+  EXPECT_EQ(profile.view({1.0, 2.5}, 0.1), View::kHidden);
+  EXPECT_EQ(profile.view({1.0, -1.0}, 0.1), View::kUnknown);
+  // From the robot's origin this place is seen free, from the laser it lies outside the wall seen.
+  EXPECT_EQ(profile.view({0.0, 0.5}, 0.1), View::kUnknown);
+}
+
+topomap::LocalBranch straight_branch(double step_m, std::size_t count, double clearance_m) {
+  topomap::LocalBranch branch;
+  for (std::size_t i = 0; i < count; ++i) {
+    branch.points.push_back({{step_m * static_cast<double>(i), 1.0}, clearance_m});
+  }
+  return branch;
+}
+
+TEST(BranchSamplesTest, LieEverySpacingWithDirectionAndClearance) {
+  topomap::LocalMap map;
+  map.branches.push_back(straight_branch(0.0625, 30, 0.8));
+  const MatchFeatures features = extract_features(map);
+  // The first step, then every fourth: 0.25 m is the first multiple of the step over 0.20 m.
+  ASSERT_EQ(features.branches.size(), 8U);
+  for (std::size_t i = 0; i < features.branches.size(); ++i) {
+    EXPECT_DOUBLE_EQ(features.branches[i].position_m.x(), 0.0625 + 0.25 * static_cast<double>(i));
+    EXPECT_NEAR(std::fabs(features.branches[i].direction.x()), 1.0, 1e-12);
+    EXPECT_DOUBLE_EQ(features.branches[i].clearance_m, 0.8);
+  }
+}
+
+TEST(BranchSamplesTest, VirtualBranchesAndImaginaryNodesAreLeftOut) {
+  topomap::LocalMap map;
+  map.branches.push_back(straight_branch(0.1, 30, 0.8));
+  map.branches.back().is_virtual = true;
+  using topomap::NodeKind;
+  for (const NodeKind kind : {NodeKind::kReal, NodeKind::kFictitious, NodeKind::kVirtual,
+                              NodeKind::kDoor, NodeKind::kNarrowing, NodeKind::kHallCorridor}) {
+    map.nodes.push_back(test::node(1.0, 2.0, 0.5, kind));
+  }
+  const MatchFeatures features = extract_features(map);
+  EXPECT_TRUE(features.branches.empty());
+  ASSERT_EQ(features.nodes.size(), 4U);
+  for (const topomap::LocalNode& node : features.nodes) {
+    EXPECT_NE(node.kind, NodeKind::kFictitious);
+    EXPECT_NE(node.kind, NodeKind::kVirtual);
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::localization

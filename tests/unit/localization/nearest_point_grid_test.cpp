@@ -1,0 +1,92 @@
+#include "topogeo/localization/nearest_point_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+struct Resolution {
+  double cell_m;
+  double reach_m;
+};
+
+void PrintTo(const Resolution& resolution, std::ostream* out) {
+  *out << resolution.cell_m << " m cells, " << resolution.reach_m << " m reach";
+}
+
+class NearestPointGridTest : public testing::TestWithParam<Resolution> {};
+
+TEST_P(NearestPointGridTest, IsNearlyAsGoodAsComparingWithEveryPoint) {
+  const auto [cell_m, reach_m] = GetParam();
+  support::Random random(3);
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < 250; ++i) {
+    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
+  }
+  NearestPointGrid grid;
+  grid.build(points, cell_m, reach_m);
+  int near = 0;
+  int far = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector2d place(random.uniform(-6.0, 6.0), random.uniform(-5.0, 7.0));
+    double nearest_m = std::numeric_limits<double>::max();
+    for (const auto& p : points) nearest_m = std::min(nearest_m, (p - place).norm());
+    const std::int32_t found = grid.find(place.x(), place.y());
+    if (nearest_m <= reach_m) {
+      ++near;
+      ASSERT_NE(found, NearestPointGrid::kNone) << place.transpose() << ": " << nearest_m;
+      // The point nearest to the centre of the cell, which is half a diagonal away at most.
+      const double found_m = (points[static_cast<std::size_t>(found)] - place).norm();
+      ASSERT_LE(found_m, nearest_m + std::numbers::sqrt2 * cell_m + 1e-9) << place.transpose();
+    }
+    if (nearest_m > std::numbers::sqrt2 * (reach_m + 2.0 * cell_m)) {
+      ++far;
+      ASSERT_EQ(found, NearestPointGrid::kNone) << place.transpose() << ": " << nearest_m;
+    }
+  }
+  EXPECT_GT(near, 500);
+  EXPECT_GT(far, 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(Resolutions, NearestPointGridTest,
+                         testing::Values(Resolution{0.10, 0.60}, Resolution{0.10, 0.25},
+                                         Resolution{0.30, 0.30}, Resolution{0.07, 0.50}),
+                         [](const auto& resolution) {
+                           return "cell" +
+                                  std::to_string(std::lround(100 * resolution.param.cell_m)) +
+                                  "reach" +
+                                  std::to_string(std::lround(100 * resolution.param.reach_m));
+                         });
+
+TEST(NearestPointGridEdgeTest, FindsNothingWithoutPointsOrFarAway) {
+  NearestPointGrid grid;
+  EXPECT_EQ(grid.find(0.0, 0.0), NearestPointGrid::kNone);
+  grid.build({{1.0, 1.0}}, 0.1, 0.5);
+  EXPECT_EQ(grid.find(1.0, 1.0), 0);
+  EXPECT_EQ(grid.find(1.0, 3.0), NearestPointGrid::kNone);
+  EXPECT_EQ(grid.find(-1e9, 1e9), NearestPointGrid::kNone);
+  EXPECT_EQ(grid.find(std::numeric_limits<double>::quiet_NaN(), 1.0), NearestPointGrid::kNone);
+}
+
+TEST(NearestPointGridEdgeTest, BuildingAgainForgetsTheOldPoints) {
+  NearestPointGrid grid;
+  grid.build({{0.0, 0.0}, {5.0, 5.0}}, 0.1, 0.5);
+  grid.build({{2.0, 2.0}}, 0.1, 0.5);
+  EXPECT_EQ(grid.find(2.1, 2.0), 0);
+  EXPECT_EQ(grid.find(0.0, 0.0), NearestPointGrid::kNone);
+  grid.build({}, 0.1, 0.5);
+  EXPECT_EQ(grid.find(2.1, 2.0), NearestPointGrid::kNone);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

@@ -1,0 +1,157 @@
+#include "topogeo/localization/refinement.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "hand_scenes.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::kDegree;
+
+PosePrior no_prior() {
+  return {};
+}
+
+TEST(RefinementTest, FindsAKnownOffsetInARoom) {
+  const Reference reference = make_reference(test::features_at(test::l_room(), {}));
+  const Pose2 truth{0.4, -0.3, 0.3};
+  const MatchFeatures query = test::features_at(test::l_room(), truth);
+  for (const Pose2& offset :
+       {Pose2{0.1, -0.08, 0.05}, Pose2{-0.12, 0.05, -0.06}, Pose2{0, 0, 0.1}, Pose2{0.15, 0, 0}}) {
+    const Refinement found =
+        refine(reference, query,
+               {truth.x_m + offset.x_m, truth.y_m + offset.y_m, truth.theta_rad + offset.theta_rad},
+               no_prior());
+    EXPECT_TRUE(found.converged);
+    EXPECT_LT(test::distance_m(found.T_reference_query, truth), 0.01);
+    EXPECT_LT(test::turn_rad(found.T_reference_query, truth), 0.2 * kDegree);
+    EXPECT_GT(found.overlap, 0.9);
+    EXPECT_GT(found.inliers, 0.97);
+    EXPECT_LT(found.violations, 0.03);
+    EXPECT_LT(found.residual_rms_m, 0.02);
+  }
+}
+
+TEST(RefinementTest, AlongABareCorridorThePriorStands) {
+  const Reference reference = make_reference(test::features_at(test::endless_corridor(), {}));
+  const MatchFeatures query = test::features_at(test::endless_corridor(), {0.5, 0.1, 0.1});
+  PosePrior prior{{0.3, 0.0, 0.05}, Eigen::Matrix3d::Zero()};
+  prior.information.diagonal() << 100.0, 100.0, 400.0;
+  const Refinement found = refine(reference, query, prior.T_reference_query, prior);
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(found.T_reference_query.x_m, 0.3, 0.01);  // the prior, not the truth at 0.5
+  EXPECT_NEAR(found.T_reference_query.y_m, 0.1, 0.01);
+  EXPECT_NEAR(found.T_reference_query.theta_rad, 0.1, 0.2 * kDegree);
+  // The evidence says so, too: it knows the way across a thousand times better than along.
+  EXPECT_LT(found.information(0, 0), 1e-3 * found.information(1, 1));
+
+  const Refinement free = refine(reference, query, {0.3, 0.0, 0.05}, no_prior());
+  EXPECT_NEAR(free.T_reference_query.x_m, 0.3, 0.02);
+  EXPECT_NEAR(free.T_reference_query.y_m, 0.1, 0.01);
+}
+
+TEST(RefinementTest, AStrongPriorHoldsThePose) {
+  const Reference reference = make_reference(test::features_at(test::l_room(), {}));
+  const MatchFeatures query = test::features_at(test::l_room(), {0.1, 0.0, 0.0});
+  PosePrior prior{{}, Eigen::Matrix3d::Identity() * 1e9};
+  EXPECT_LT(test::distance_m(refine(reference, query, {}, prior).T_reference_query, {}), 1e-3);
+}
+
+TEST(RefinementTest, TooFewPointsAreNoEvidence) {
+  const Reference reference = make_reference(test::features_at(test::l_room(), {}));
+  const MatchFeatures few = test::features_at(test::l_room(), {}, {-40, 40, 10, 8});
+  ASSERT_GT(few.surface.size(), 5U);
+  ASSERT_LT(few.surface.size(), 12U);
+  const Pose2 guess{0.03, 0.02, 0.01};
+  const Refinement found = refine(reference, few, guess, no_prior());
+  EXPECT_FALSE(found.converged);
+  EXPECT_EQ(found.T_reference_query, guess);
+  EXPECT_TRUE(found.information.isZero());
+}
+
+TEST(RefinementTest, NothingInViewLeavesThePoseAndSaysSo) {
+  const MatchFeatures room = test::features_at(test::l_room(), {});
+  const Reference reference = make_reference(room);
+  const Refinement away = refine(reference, room, {200.0, 0.0, 0.0}, no_prior());
+  EXPECT_FALSE(away.converged);
+  EXPECT_EQ(away.T_reference_query, (Pose2{200.0, 0.0, 0.0}));
+  EXPECT_EQ(away.overlap, 0.0);
+  const MatchFeatures nothing;
+  EXPECT_EQ(refine(reference, nothing, {}, no_prior()).overlap, 0.0);
+  EXPECT_FALSE(refine(make_reference({}), room, {}, no_prior()).converged);
+}
+
+// A wall of the reference in what the query saw free, and the other way round.
+TEST(RefinementTest, SeesWallsWhereTheOtherMapSawFreeSpace) {
+  simulation::World with_wall = test::l_room();
+  with_wall.segments.push_back({{-1.0, 0.8}, {1.0, 0.8}});
+  const MatchFeatures open = test::features_at(test::l_room(), {});
+  const MatchFeatures divided = test::features_at(with_wall, {});
+  EXPECT_GT(refine(make_reference(open), divided, {}, no_prior()).violations, 0.1);
+  EXPECT_GT(refine(make_reference(divided), open, {}, no_prior()).violations, 0.1);
+  EXPECT_LT(refine(make_reference(open), open, {}, no_prior()).violations, 0.01);
+}
+
+// Point-to-line residual of every query point that the refinement uses near a good pose, by the
+// public look-up.
+std::vector<double> residuals(const Reference& reference, const MatchFeatures& query,
+                              const Pose2& T_association, const Pose2& T) {
+  std::vector<double> out;
+  for (const SurfacePoint& point : query.surface) {
+    const Eigen::Vector2d at = T_association * point.position_m;
+    const std::int32_t found = reference.surface_grid.find(at.x(), at.y());
+    if (found == NearestPointGrid::kNone) continue;
+    const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+    if (!other.on_line || (at - other.position_m).norm() > 0.2) continue;
+    const Pose2 only_turn{0.0, 0.0, T_association.theta_rad};
+    const double cosine = (only_turn * point.normal).dot(other.normal);
+    if (point.on_line && cosine * cosine < 0.5) continue;
+    out.push_back(other.normal.dot(T * point.position_m - other.position_m));
+  }
+  return out;
+}
+
+// The Hessian of the data term against numeric derivatives of the residuals: in a scene without
+// noise all weights are 1 / sigma^2 at the optimum.
+TEST(RefinementTest, InformationIsThatOfNumericDerivatives) {
+  const Reference reference = make_reference(test::features_at(test::l_room(), {}));
+  const Pose2 truth{0.3, 0.2, 0.15};
+  const MatchFeatures query = test::features_at(test::l_room(), truth);
+  const Refinement found = refine(reference, query, truth, no_prior());
+  ASSERT_TRUE(found.converged);
+  const Pose2 T = found.T_reference_query;
+  constexpr double kStep = 1e-5;
+  constexpr double kSigma_m = 0.08;
+  constexpr double kCauchy_m = 0.05;
+  const auto at = [&](double x, double y, double theta) {
+    return residuals(reference, query, T, {T.x_m + x, T.y_m + y, T.theta_rad + theta});
+  };
+  const auto centre = at(0, 0, 0);
+  const auto x_up = at(kStep, 0, 0);
+  const auto x_down = at(-kStep, 0, 0);
+  const auto y_up = at(0, kStep, 0);
+  const auto y_down = at(0, -kStep, 0);
+  const auto t_up = at(0, 0, kStep);
+  const auto t_down = at(0, 0, -kStep);
+  ASSERT_GT(centre.size(), 100U);
+  Eigen::Matrix3d numeric = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < centre.size(); ++i) {
+    const Eigen::Vector3d row =
+        Eigen::Vector3d(x_up[i] - x_down[i], y_up[i] - y_down[i], t_up[i] - t_down[i]) /
+        (2.0 * kStep);
+    const double u = centre[i] / kCauchy_m;
+    numeric += row * row.transpose() / (kSigma_m * kSigma_m * (1.0 + u * u));
+  }
+  EXPECT_TRUE(found.information.isApprox(numeric, 0.02)) << found.information << "\n\n" << numeric;
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(found.information).eigenvalues()(0),
+            0.0);
+}
+
+}  // namespace
+}  // namespace topogeo::localization
