@@ -38,6 +38,11 @@ void Localizer::append(std::shared_ptr<const LocalMap> map) {
     throw std::invalid_argument("localizer: local map " + std::to_string(map->id) +
                                 " came, expected " + std::to_string(stops_.size()));
   }
+  if (!stops_.empty() && map->robot_id != stops_.front().map->robot_id) {
+    throw std::invalid_argument("localizer: local map " + std::to_string(map->id) +
+                                " is of robot '" + map->robot_id + "', expected '" +
+                                stops_.front().map->robot_id + "'");
+  }
   pool_.add_map(map);
   Stop stop;
   stop.hash = topomap::content_hash(*map);

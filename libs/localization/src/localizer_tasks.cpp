@@ -1,8 +1,6 @@
 // The part of Localizer that chooses what to compare and judges the answers.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "topogeo/localization/localizer.hpp"
 #include "topogeo/support/seed.hpp"

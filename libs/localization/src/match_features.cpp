@@ -134,6 +134,7 @@ RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_rob
 
 RangeProfile::View RangeProfile::view(const Eigen::Vector2d& point_robot_m,
                                       double tolerance_m) const {
+  if (near_m_.empty()) return View::kUnknown;  // made of no scan
   const Eigen::Vector2d p = T_laser_robot_ * point_robot_m;
   const double turn = geometry::atan2(p.y(), p.x()) / (2.0 * std::numbers::pi);
   const auto bin = static_cast<std::size_t>(static_cast<int>((turn + 0.5) * kBins) % kBins);

@@ -1,6 +1,7 @@
 #include "topogeo/localization/matcher.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -12,20 +13,34 @@
 namespace topogeo::localization {
 namespace {
 
+using geometry::Pose2;
+
 constexpr std::size_t kCachedReferences = 4;
 constexpr std::size_t kRefined = 3;  // solutions that are refined before the winner is chosen
 
+constexpr std::uint32_t kMostSolutions = 40;
+
+void require(bool condition, const MatchTask& task, const std::string& complaint) {
+  if (condition) return;
+  throw std::invalid_argument("match task " + std::to_string(task.task_id) + ": " + complaint);
+}
+
+// A task may come from another machine, so nothing of it is taken on trust.
 void check(const MatchTask& task) {
-  const bool positive = task.covariance(0, 0) > 0.0 && task.covariance(1, 1) > 0.0 &&
-                        task.covariance(2, 2) > 0.0 && task.covariance.determinant() > 0.0;
-  if (!positive) {
-    throw std::invalid_argument("match task " + std::to_string(task.task_id) +
-                                ": the covariance is not positive definite");
-  }
-  if (!(task.half_width.x() > 0.0 && task.half_width.y() > 0.0 && task.half_width.z() > 0.0)) {
-    throw std::invalid_argument("match task " + std::to_string(task.task_id) +
-                                ": the search space is empty");
-  }
+  const Pose2& T = task.T_reference_query;
+  require(std::isfinite(T.x_m) && std::isfinite(T.y_m) && std::isfinite(T.theta_rad), task,
+          "the predicted pose is not finite");
+  const Eigen::Matrix3d& c = task.covariance;
+  require(c.allFinite() && c(0, 0) > 0.0 && c.topLeftCorner<2, 2>().determinant() > 0.0 &&
+              c.determinant() > 0.0,
+          task, "the covariance is not positive definite");
+  require(task.half_width.allFinite() && task.half_width.minCoeff() > 0.0, task,
+          "the search space is empty");
+  require(task.genetic.resolution_m > 0.0 && task.genetic.resolution_rad > 0.0, task,
+          "the resolution must be greater than 0");
+  require(task.solutions_wanted >= 1 && task.solutions_wanted <= kMostSolutions, task,
+          std::to_string(task.solutions_wanted) + " solutions wanted, allowed are 1 to " +
+              std::to_string(kMostSolutions));
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ void NearestPointGrid::build(const std::vector<Eigen::Vector2d>& points_m, doubl
   nearest_.assign(cells, kNone);
   squared_m2_.assign(cells, std::numeric_limits<float>::max());
 
-  const int reach_cells = static_cast<int>(reach_m * cells_per_m_);
+  // Rounded up: a place just within reach must not fall into a cell that was left out.
+  const int reach_cells = static_cast<int>(std::ceil(reach_m * cells_per_m_));
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const double x = (points_m[i].x() - origin_x_m_) * cells_per_m_;
     const double y = (points_m[i].y() - origin_y_m_) * cells_per_m_;

@@ -25,7 +25,8 @@ class Matcher {
   [[nodiscard]] bool has_map(std::uint32_t id, std::uint64_t hash) const;
 
   /// Throws std::out_of_range when a map that the task names is not known or has another content,
-  /// std::invalid_argument when the task's covariance is not positive or the search space is empty.
+  /// std::invalid_argument when a number in the task is not finite, the covariance not positive
+  /// definite, the search space empty, the resolution not positive or solutions_wanted not 1 to 40.
   MatchResult solve(const MatchTask& task);
 
  private:
