@@ -1,0 +1,237 @@
+#include "topogeo/localization/localizer.hpp"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/matcher.hpp"
+
+#include "hand_scenes.hpp"
+#include "simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::DrivenMaps;
+
+// Once round the floor and 10 m on: 110 m of corridors, of which the last see the first again.
+const DrivenMaps& round_trip() {
+  static const DrivenMaps driven = test::drive(test::world("floor"), {{1.3, 1.2},
+                                                                      {15.0, 1.15},
+                                                                      {28.9, 1.2},
+                                                                      {28.9, 9.0},
+                                                                      {28.8, 18.7},
+                                                                      {15.0, 18.8},
+                                                                      {1.3, 18.8},
+                                                                      {1.3, 9.6},
+                                                                      {1.3, 1.2},
+                                                                      {11.0, 1.15}});
+  return driven;
+}
+
+struct Outcome {
+  topomap::Trajectory trajectory;
+  std::vector<topomap::LoopClosure> closures;
+  LocalizerCounts counts;
+  int corrections = 0;  // steps that moved earlier poses
+};
+
+Outcome localize(const test::Maps& maps, MatchPool& pool, const LocalizerConfig& config = {}) {
+  Localizer localizer(config, pool);
+  Outcome outcome;
+  for (const auto& map : maps) outcome.corrections += localizer.add(map) ? 1 : 0;
+  localizer.finish();
+  outcome.trajectory = localizer.trajectory();
+  outcome.closures = localizer.loop_closures();
+  outcome.counts = localizer.counts();
+  return outcome;
+}
+
+Outcome localize(const test::Maps& maps, const LocalizerConfig& config = {}) {
+  InProcessPool pool;
+  return localize(maps, pool, config);
+}
+
+// Root mean square position error when the first poses coincide.
+double position_error_m(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    sum += (geometry::between(poses[0], poses[i]).position_m() -
+            geometry::between(truth[0], truth[i]).position_m())
+               .squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+std::vector<Pose2> poses_of(const topomap::Trajectory& trajectory) {
+  std::vector<Pose2> poses;
+  for (const topomap::StopPose& stop : trajectory.stops) poses.push_back(stop.T_map_robot);
+  return poses;
+}
+
+void expect_same(const Outcome& a, const Outcome& b) {
+  ASSERT_EQ(a.trajectory.stops.size(), b.trajectory.stops.size());
+  EXPECT_EQ(a.trajectory.version, b.trajectory.version);
+  for (std::size_t i = 0; i < a.trajectory.stops.size(); ++i) {
+    ASSERT_EQ(a.trajectory.stops[i].T_map_robot, b.trajectory.stops[i].T_map_robot) << i;
+    ASSERT_EQ(a.trajectory.stops[i].covariance, b.trajectory.stops[i].covariance) << i;
+  }
+  ASSERT_EQ(a.closures.size(), b.closures.size());
+  for (std::size_t i = 0; i < a.closures.size(); ++i) {
+    EXPECT_EQ(a.closures[i].earlier_id, b.closures[i].earlier_id);
+    EXPECT_EQ(a.closures[i].T_earlier_later, b.closures[i].T_earlier_later);
+  }
+  EXPECT_EQ(a.counts.evaluations, b.counts.evaluations);
+  EXPECT_EQ(a.counts.verdicts, b.counts.verdicts);
+}
+
+TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
+  const DrivenMaps& driven = round_trip();
+  ASSERT_GT(driven.maps.size(), 80U);
+  const Outcome outcome = localize(driven.maps);
+  std::vector<Pose2> odometry;
+  for (const auto& map : driven.maps) odometry.push_back(map->T_odom_robot);
+  const double before_m = position_error_m(odometry, driven.T_world_robot);
+  const double after_m = position_error_m(poses_of(outcome.trajectory), driven.T_world_robot);
+  EXPECT_GT(before_m, 1.0);
+  EXPECT_LT(after_m, 0.25);
+  EXPECT_LT(after_m, 0.1 * before_m);
+
+  EXPECT_GE(outcome.closures.size(), 5U);
+  EXPECT_GE(outcome.corrections, 1);
+  EXPECT_EQ(outcome.counts.removed_loops, 0U);
+  for (const topomap::LoopClosure& loop : outcome.closures) {
+    const Pose2 truth = geometry::between(driven.T_world_robot[loop.earlier_id],
+                                          driven.T_world_robot[loop.later_id]);
+    EXPECT_LT(loop.earlier_id, loop.later_id);
+    EXPECT_LT(test::distance_m(loop.T_earlier_later, truth), 0.5)
+        << loop.earlier_id << " - " << loop.later_id;
+  }
+  std::uint64_t judged = 0;
+  for (const std::uint64_t count : outcome.counts.verdicts) judged += count;
+  EXPECT_EQ(judged, outcome.counts.tasks);
+  for (std::size_t i = 0; i < driven.maps.size(); ++i) {
+    const topomap::StopPose& stop = outcome.trajectory.stops[i];
+    EXPECT_EQ(stop.local_map_id, i);
+    EXPECT_EQ(stop.stamp_ns, driven.maps[i]->stamp_ns);
+    if (i > 0) {
+      EXPECT_GT(stop.covariance.diagonal().minCoeff(), 0.0);
+    }
+  }
+  EXPECT_EQ(outcome.trajectory.stops[0].T_map_robot, Pose2{});
+}
+
+TEST(LocalizerTest, WithoutRevisitsNoLoopIsClosed) {
+  LocalizerConfig config;
+  config.revisit_matches = 0;
+  const Outcome outcome = localize(round_trip().maps, config);
+  EXPECT_TRUE(outcome.closures.empty());
+  EXPECT_EQ(outcome.corrections, 0);
+}
+
+// Answers every batch backwards, each task on one of two matchers that take turns.
+class TwoWorkersBackwards : public MatchPool {
+ public:
+  void add_map(std::shared_ptr<const topomap::LocalMap> map) override {
+    for (Matcher& worker : workers_) worker.add_map(*map);
+  }
+  std::vector<MatchResult> match(std::span<const MatchTask> tasks) override {
+    std::vector<MatchResult> results(tasks.size());
+    for (std::size_t i = tasks.size(); i-- > 0;) results[i] = workers_[turn_++ % 2].solve(tasks[i]);
+    return results;
+  }
+
+ private:
+  std::array<Matcher, 2> workers_;
+  std::size_t turn_ = 0;
+};
+
+TEST(LocalizerTest, TheResultDependsNeitherOnTheRunNorOnWhoAnswersInWhichOrder) {
+  const test::Maps& maps = round_trip().maps;
+  const Outcome once = localize(maps);
+  expect_same(once, localize(maps));
+  TwoWorkersBackwards pool;
+  expect_same(once, localize(maps, pool));
+
+  LocalizerConfig other_seed;
+  other_seed.seed = 2;
+  EXPECT_NE(localize(maps, other_seed).trajectory.stops.back().T_map_robot,
+            once.trajectory.stops.back().T_map_robot);
+}
+
+TEST(LocalizerTest, RefusesMapsOutOfOrderAndOfAnotherRobot) {
+  const simulation::World room = test::world("room");
+  const auto map = [&](std::uint32_t id, const char* robot) {
+    topomap::LocalMap made = test::map_at(room, {1.0 + 0.5 * id, 1.0, 0.0}, id);
+    made.robot_id = robot;
+    return std::make_shared<const topomap::LocalMap>(std::move(made));
+  };
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  EXPECT_THROW(localizer.add(map(1, "robot")), std::invalid_argument);
+  localizer.add(map(0, "robot"));
+  EXPECT_THROW(localizer.add(map(0, "robot")), std::invalid_argument);
+  EXPECT_THROW(localizer.add(map(2, "robot")), std::invalid_argument);
+  EXPECT_THROW(localizer.add(map(1, "stranger")), std::invalid_argument);
+  EXPECT_EQ(localizer.trajectory().stops.size(), 1U);
+  EXPECT_NO_THROW(localizer.add(map(1, "robot")));
+  EXPECT_NEAR(localizer.trajectory().stops[1].T_map_robot.x_m, 0.5, 0.05);
+}
+
+TEST(LocalizerTest, NothingOrOneStopIsNoError) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  localizer.finish();
+  EXPECT_TRUE(localizer.trajectory().stops.empty());
+  localizer.add(round_trip().maps[0]);
+  localizer.finish();
+  EXPECT_EQ(localizer.trajectory().stops.size(), 1U);
+  EXPECT_TRUE(localizer.loop_closures().empty());
+}
+
+TEST(LocalizerTest, TheVersionGrowsWithEveryStep) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  std::uint64_t version = 0;
+  for (std::size_t i = 0; i < 12; ++i) {
+    localizer.add(round_trip().maps[i]);
+    EXPECT_GT(localizer.trajectory().version, version);
+    version = localizer.trajectory().version;
+  }
+}
+
+// The robot goes round the first half of the floor and back, then its scans come from a closed room
+// of another building while its odometry says that it drives the first corridor again.
+TEST(LocalizerTest, ScansOfAnotherWorldCloseNoLoop) {
+  const DrivenMaps floor = test::drive(
+      test::world("floor"), {{1.3, 1.2}, {15.0, 1.15}, {16.0, 1.2}, {15.0, 1.15}, {1.3, 1.2}});
+  const DrivenMaps room = test::drive(test::world("room"), {});
+  test::Maps maps = floor.maps;
+  const Pose2 T_odom_kidnapped = floor.maps.back()->T_odom_robot;
+  for (const auto& map : room.maps) {
+    topomap::LocalMap moved = *map;
+    moved.id = static_cast<std::uint32_t>(maps.size());
+    moved.T_odom_robot = T_odom_kidnapped * map->T_odom_robot;
+    for (topomap::TrackedScan& scan : moved.track) {
+      scan.T_odom_robot = T_odom_kidnapped * scan.T_odom_robot;
+    }
+    maps.push_back(std::make_shared<const topomap::LocalMap>(std::move(moved)));
+  }
+  const Outcome outcome = localize(maps);
+  const auto first_of_room = static_cast<std::uint32_t>(floor.maps.size());
+  for (const topomap::LoopClosure& loop : outcome.closures) {
+    EXPECT_FALSE(loop.earlier_id < first_of_room && loop.later_id >= first_of_room)
+        << loop.earlier_id << " - " << loop.later_id;
+  }
+  // The way there and back is closed all the same.
+  EXPECT_FALSE(outcome.closures.empty());
+}
+
+}  // namespace
+}  // namespace topogeo::localization
