@@ -22,8 +22,9 @@ Rate parse_rate(const std::string& text) {
 ReplayPace::Due ReplayPace::next(std::int64_t stamp_ns) {
   Due due;
   if (rate_ && last_stamp_ns_) {
-    const double gap_s = static_cast<double>(stamp_ns - *last_stamp_ns_) * 1e-9;
-    if (gap_s > kLongestGap_s) {
+    const std::int64_t gap_ns = stamp_ns - *last_stamp_ns_;
+    const double gap_s = static_cast<double>(gap_ns) / 1e9;
+    if (gap_ns > kLongestGap_ns) {
       due.shortened_gap_s = gap_s;
       after_s_ += kShortened_s;
     } else {

@@ -17,7 +17,7 @@ class ReplayPace {
  public:
   /// Gaps in the log longer than this are replayed as kShortened_s: nobody wants to wait for a
   /// lunch break.
-  static constexpr double kLongestGap_s = 60.0;
+  static constexpr std::int64_t kLongestGap_ns = 60'000'000'000;
   static constexpr double kShortened_s = 1.0;
 
   explicit ReplayPace(Rate rate) : rate_(rate) {}

@@ -1,5 +1,6 @@
 #include "topogeo/messaging/status_publisher.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <utility>
@@ -24,6 +25,15 @@ std::string host_name() {
   std::array<char, 64> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) return "unknown";
   return name.data();
+}
+
+/// Topics where only the last sample of an instance counts: one that was lost has been replaced by
+/// a newer one before it could be sent.
+bool is_replaceable(const std::string& name) {
+  const auto topics = all_topics();
+  return std::any_of(topics.begin(), topics.end(), [&](const TopicInfo* topic) {
+    return topic->name == name && (topic->role == "state" || topic->role == "status");
+  });
 }
 
 std::int64_t wall_clock_ns() {
@@ -113,10 +123,12 @@ void StatusPublisher::fault(std::string_view reason, std::string_view detail) {
 
 void StatusPublisher::on_event(const Event& event) {
   switch (event.kind) {
+    case EventKind::kSampleLost:
+      if (is_replaceable(event.topic)) return;
+      [[fallthrough]];
     case EventKind::kIncompatibleQos:
     case EventKind::kInvalidSample:
     case EventKind::kDeadlineMissed:
-    case EventKind::kSampleLost:
       fault(to_string(event.kind), event.topic + (event.detail.empty() ? "" : ": ") + event.detail);
       return;
     case EventKind::kMatched:

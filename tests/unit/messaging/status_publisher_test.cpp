@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <gmock/gmock.h>
+
 #include "fixture.hpp"
 
 namespace topogeo::messaging {
@@ -64,6 +66,15 @@ TEST_F(Status, IncompatibleQosIsAFault) {
   const Reader<msg::Goal> reader(receiver_);
   ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() > 0; }));
   EXPECT_EQ(seen_.faults()[0].reason().to_string(), "incompatible_qos");
+}
+
+TEST_F(Status, LostSampleIsAFaultUnlessANewerStateReplacedIt) {
+  StatusPublisher status(sender_, loop_, identity_);
+  status.on_event({EventKind::kSampleLost, std::string(kTrajectorySegment), {}, 1, ""});
+  status.on_event({EventKind::kSampleLost, std::string(kScan), {}, 1, ""});
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() > 0; }));
+  EXPECT_EQ(seen_.fault_count(), 1U);
+  EXPECT_THAT(seen_.message().to_string(), testing::HasSubstr(std::string(kScan)));
 }
 
 TEST_F(Status, BoundsHold) {

@@ -48,8 +48,9 @@ class StatusPublisher {
   /// happened this time.
   void fault(std::string_view reason, std::string_view detail);
 
-  /// Turns events that nobody should overlook into faults: incompatible QoS, lost samples, missed
-  /// deadlines, invalid messages. The publisher sets itself as event handler of its loop.
+  /// Turns events that nobody should overlook into faults: incompatible QoS, lost samples (but not
+  /// those of a state that a newer one has replaced), missed deadlines, invalid messages. The
+  /// publisher sets itself as event handler of its loop.
   void on_event(const Event& event);
 
   /// Sends the status now.

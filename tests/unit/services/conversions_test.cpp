@@ -1,0 +1,275 @@
+#include "topogeo/service/conversions.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/service/trajectory_assembly.hpp"
+
+#include "random_values.hpp"
+
+namespace topogeo::service {
+namespace {
+
+using testing::HasSubstr;
+
+class Conversions : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  support::Random random_{GetParam()};
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, Conversions, testing::Range(std::uint64_t{1}, std::uint64_t{21}));
+
+TEST_P(Conversions, ScanIsExact) {
+  const scan::Scan scan = any_scan(random_);
+  const scan::Scan back = from_msg(to_msg(scan, "robot"));
+  EXPECT_EQ(back.sequence, scan.sequence);
+  EXPECT_EQ(back.stamp_ns, scan.stamp_ns);
+  EXPECT_EQ(back.angle_min_rad, scan.angle_min_rad);
+  EXPECT_EQ(back.angle_step_rad, scan.angle_step_rad);
+  EXPECT_EQ(back.ranges_m, scan.ranges_m);
+  EXPECT_EQ(back.T_odom_robot, scan.T_odom_robot);
+}
+
+TEST_P(Conversions, LocalMapIsExact) {
+  const topomap::LocalMap map = any_local_map(random_);
+  EXPECT_TRUE(from_msg(to_msg(map)) == map);
+}
+
+TEST_P(Conversions, MatchTaskIsExact) {
+  localization::MatchTask task;
+  task.task_id = random_.next_u64();
+  task.reference_map_id = any_u32(random_);
+  task.query_map_id = any_u32(random_);
+  task.reference_hash = random_.next_u64();
+  task.query_hash = random_.next_u64();
+  task.T_reference_query = any_pose(random_);
+  task.covariance = any_matrix(random_);
+  task.half_width = {any_double(random_), any_double(random_), any_double(random_)};
+  task.genetic = {any_u32(random_), any_u32(random_), any_double(random_), any_double(random_),
+                  any_double(random_)};
+  task.fitness_form = static_cast<localization::FitnessForm>(random_.below(2));
+  for (int i = 0; i < 7; ++i) task.initial_individuals.push_back(any_pose(random_));
+  task.solutions_wanted = 1 + static_cast<std::uint32_t>(random_.below(40));
+  task.seed = random_.next_u64();
+  const localization::MatchTask back =
+      from_msg(to_msg(task, {"robot", 1, 2, "worker", "client", "0.1", 3}));
+  EXPECT_EQ(back.task_id, task.task_id);
+  EXPECT_EQ(back.reference_map_id, task.reference_map_id);
+  EXPECT_EQ(back.query_map_id, task.query_map_id);
+  EXPECT_EQ(back.reference_hash, task.reference_hash);
+  EXPECT_EQ(back.query_hash, task.query_hash);
+  EXPECT_EQ(back.T_reference_query, task.T_reference_query);
+  EXPECT_EQ(back.covariance, task.covariance);
+  EXPECT_EQ(back.half_width, task.half_width);
+  EXPECT_EQ(back.genetic, task.genetic);
+  EXPECT_EQ(back.fitness_form, task.fitness_form);
+  EXPECT_EQ(back.initial_individuals, task.initial_individuals);
+  EXPECT_EQ(back.solutions_wanted, task.solutions_wanted);
+  EXPECT_EQ(back.seed, task.seed);
+}
+
+TEST_P(Conversions, MatchResultIsExact) {
+  localization::MatchResult result;
+  result.task_id = random_.next_u64();
+  result.status = static_cast<localization::MatchStatus>(random_.below(2));
+  for (int i = 0; i < 3; ++i) result.solutions.push_back({any_pose(random_), any_double(random_)});
+  result.T_reference_query = any_pose(random_);
+  result.information = any_matrix(random_);
+  for (double* value :
+       {&result.overlap, &result.inliers, &result.violations, &result.residual_rms_m,
+        &result.scan_fitness, &result.topological_fitness, &result.second_fitness}) {
+    *value = any_double(random_);
+  }
+  result.evaluations = any_u32(random_);
+  const localization::MatchResult back = from_msg(to_msg(result, {"robot", 1, 2, "w", "c", "", 0}));
+  EXPECT_EQ(back.task_id, result.task_id);
+  EXPECT_EQ(back.status, result.status);
+  ASSERT_EQ(back.solutions.size(), result.solutions.size());
+  for (std::size_t i = 0; i < back.solutions.size(); ++i) {
+    EXPECT_EQ(back.solutions[i].T_reference_query, result.solutions[i].T_reference_query);
+    EXPECT_EQ(back.solutions[i].fitness, result.solutions[i].fitness);
+  }
+  EXPECT_EQ(back.T_reference_query, result.T_reference_query);
+  EXPECT_EQ(back.information, result.information);
+  EXPECT_EQ(back.overlap, result.overlap);
+  EXPECT_EQ(back.inliers, result.inliers);
+  EXPECT_EQ(back.violations, result.violations);
+  EXPECT_EQ(back.residual_rms_m, result.residual_rms_m);
+  EXPECT_EQ(back.scan_fitness, result.scan_fitness);
+  EXPECT_EQ(back.topological_fitness, result.topological_fitness);
+  EXPECT_EQ(back.second_fitness, result.second_fitness);
+  EXPECT_EQ(back.evaluations, result.evaluations);
+}
+
+TEST_P(Conversions, TrajectoryIsExactInAnyOrderOfItsSegments) {
+  const topomap::Trajectory trajectory = any_trajectory(random_, 600);
+  std::vector<msg::TrajectorySegment> segments = to_segments(trajectory, "robot", 7);
+  ASSERT_EQ(segments.size(), 3U);
+  EXPECT_EQ(segments[2].sequence_number(), 9U);
+  std::rotate(segments.begin(), segments.begin() + 1 + static_cast<long>(random_.below(2)),
+              segments.end());
+  TrajectoryAssembly assembly;
+  for (const auto& segment : segments) {
+    EXPECT_FALSE(assembly.whole(trajectory.version).has_value());
+    EXPECT_TRUE(assembly.add(segment));
+  }
+  ASSERT_TRUE(assembly.whole(trajectory.version).has_value());
+  EXPECT_TRUE(*assembly.whole(trajectory.version) == trajectory);
+  EXPECT_TRUE(assembly.newest() == trajectory);
+}
+
+TEST_P(Conversions, LoopClosuresAreExact) {
+  std::vector<topomap::LoopClosure> closures;
+  for (int i = 0; i < 30; ++i) {
+    const auto earlier = static_cast<std::uint32_t>(random_.below(1000));
+    closures.push_back({earlier, earlier + 1, any_pose(random_)});
+  }
+  EXPECT_TRUE(from_msg(to_msg(closures, 5, "robot", 6, 7)) == closures);
+}
+
+TEST_P(Conversions, LivePoseIsExact) {
+  const LivePose pose{any_i64(random_),  random_.next_u64(),  msg::kPoseUncertain,
+                      any_pose(random_), any_matrix(random_), any_u32(random_),
+                      random_.next_u64()};
+  const LivePose back = from_msg(to_msg(pose, "robot"));
+  EXPECT_EQ(back.stamp_ns, pose.stamp_ns);
+  EXPECT_EQ(back.sequence, pose.sequence);
+  EXPECT_EQ(back.state, pose.state);
+  EXPECT_EQ(back.T_map_robot, pose.T_map_robot);
+  EXPECT_EQ(back.covariance, pose.covariance);
+  EXPECT_EQ(back.local_map_id, pose.local_map_id);
+  EXPECT_EQ(back.trajectory_version, pose.trajectory_version);
+}
+
+TEST_P(Conversions, GlobalMapIsExactInAnyOrderOfItsElements) {
+  const topomap::GlobalMap map = any_global_map(random_);
+  std::vector<msg::MapElement> elements = to_elements(map, "robot", 1);
+  ASSERT_EQ(elements.size(), 51U);
+  std::reverse(elements.begin(), elements.end());
+  EXPECT_TRUE(from_elements(elements) == map);
+}
+
+TEST_P(Conversions, RouteIsExact) {
+  planning::Route route;
+  for (int i = 0; i < 20; ++i) {
+    route.points.push_back({{any_double(random_), any_double(random_)}, any_double(random_)});
+    route.node_ids.push_back(any_u32(random_));
+  }
+  route.length_m = any_double(random_);
+  const planning::Route back = from_msg(to_msg(route));
+  EXPECT_EQ(back.node_ids, route.node_ids);
+  EXPECT_EQ(back.length_m, route.length_m);
+  ASSERT_EQ(back.points.size(), route.points.size());
+  double narrowest_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < back.points.size(); ++i) {
+    EXPECT_EQ(back.points[i].position_m, route.points[i].position_m);
+    EXPECT_EQ(back.points[i].clearance_m, route.points[i].clearance_m);
+    narrowest_m = std::min(narrowest_m, route.points[i].clearance_m);
+  }
+  EXPECT_EQ(back.min_clearance_m, narrowest_m);
+}
+
+/// The text of the std::invalid_argument that `call` throws.
+template <class Call>
+std::string refusal(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(ConversionBounds, WhatDoesNotFitIsRefusedByName) {
+  support::Random random(1);
+  scan::Scan scan = any_scan(random);
+  scan.ranges_m.resize(2049);
+  EXPECT_THAT(refusal([&] { to_msg(scan, "robot"); }),
+              "ranges_m has 2049 entries, allowed are 2048");
+  EXPECT_THAT(refusal([&] { to_msg(any_scan(random), std::string(33, 'r')); }),
+              HasSubstr("robot_id"));
+  topomap::LocalMap map = any_local_map(random);
+  map.branches[0].points.resize(2049);
+  EXPECT_THAT(refusal([&] { to_msg(map); }), HasSubstr("branches.points has 2049"));
+  map = any_local_map(random);
+  map.track.resize(257);
+  EXPECT_THAT(refusal([&] { to_msg(map); }), HasSubstr("track has 257"));
+  localization::MatchTask task;
+  task.initial_individuals.resize(257);
+  EXPECT_THAT(refusal([&] { to_msg(task, {}); }), HasSubstr("initial_individuals has 257"));
+  EXPECT_THAT(refusal([&] {
+                to_msg(localization::MatchTask{}, {"r", 0, 0, std::string(65, 'w'), "", "", 0});
+              }),
+              HasSubstr("worker_id"));
+  const std::vector<topomap::LoopClosure> closures(16385);
+  EXPECT_THAT(refusal([&] { to_msg(closures, 0, "r", 0, 0); }), HasSubstr("closures has 16385"));
+}
+
+TEST(ConversionChecks, NumbersThatAreNoneAreRefused) {
+  support::Random random(2);
+  const float bad[] = {std::numeric_limits<float>::quiet_NaN(),
+                       std::numeric_limits<float>::infinity(), -1.0F};
+  for (const float range_m : bad) {
+    msg::Scan message = to_msg(any_scan(random), "robot");
+    message.ranges_m()[17] = range_m;
+    EXPECT_THAT(refusal([&] { from_msg(message); }), HasSubstr("ranges_m"));
+  }
+  msg::Scan empty = to_msg(any_scan(random), "robot");
+  empty.ranges_m().clear();
+  EXPECT_THAT(refusal([&] { from_msg(empty); }), HasSubstr("at least one beam"));
+}
+
+TEST(ConversionChecks, LocalMapThatContradictsItselfIsRefused) {
+  support::Random random(3);
+  const msg::LocalMap good = to_msg(any_local_map(random));
+  msg::LocalMap message = good;
+  message.branches()[3].node_b(20);
+  EXPECT_THAT(refusal([&] { from_msg(message); }), HasSubstr("branches.node_b"));
+  message = good;
+  message.nodes()[3].id(4);
+  EXPECT_THAT(refusal([&] { from_msg(message); }), HasSubstr("nodes.id"));
+  message = good;
+  message.points()[5].x_m(message.points()[5].x_m() + 1.0F);
+  EXPECT_THAT(refusal([&] { from_msg(message); }), HasSubstr("content_hash"));
+}
+
+TEST(ConversionChecks, RefusalOfATaskIsNoResult) {
+  msg::MatchResult message = to_msg(localization::MatchResult{}, {"r", 0, 0, "w", "c", "", 0});
+  message.status(msg::kMatchMapMissing);
+  EXPECT_THAT(refusal([&] { from_msg(message); }), HasSubstr("status"));
+}
+
+TEST(ConversionChecks, SegmentWithMissingStopsIsRefused) {
+  support::Random random(4);
+  msg::TrajectorySegment message = to_segments(any_trajectory(random, 300), "r", 0)[1];
+  message.stops().pop_back();
+  EXPECT_THAT(refusal([&] { from_msg(message); }), HasSubstr("stops"));
+}
+
+TEST(Assembly, NewestOfEachSegmentCountsUntilAVersionIsWhole) {
+  support::Random random(5);
+  topomap::Trajectory first = any_trajectory(random, 300);
+  first.version = 1;
+  topomap::Trajectory second = any_trajectory(random, 301);
+  second.version = 2;
+  TrajectoryAssembly assembly;
+  for (const auto& segment : to_segments(first, "r", 0)) assembly.add(segment);
+  assembly.add(to_segment(second, 1, "r", 2));
+  EXPECT_FALSE(assembly.add(to_segment(first, 1, "r", 3)));  // older
+  EXPECT_FALSE(assembly.whole(1).has_value());
+  EXPECT_FALSE(assembly.whole(2).has_value());
+  const topomap::Trajectory newest = assembly.newest();
+  EXPECT_EQ(newest.version, 2U);
+  ASSERT_EQ(newest.stops.size(), 301U);
+  EXPECT_TRUE(newest.stops[255] == first.stops[255]);
+  EXPECT_TRUE(newest.stops[256] == second.stops[256]);
+  assembly.add(to_segment(second, 0, "r", 4));
+  ASSERT_TRUE(assembly.whole(2).has_value());
+  EXPECT_TRUE(*assembly.whole(2) == second);
+}
+
+}  // namespace
+}  // namespace topogeo::service

@@ -1,0 +1,104 @@
+#include "map_store/map_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+#include "random_values.hpp"
+
+namespace topogeo::map_store {
+namespace {
+
+using Arrival = MapInput::Arrival;
+
+class Input : public testing::Test {
+ protected:
+  Input() {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      maps_.push_back(any_local_map(random_));
+      maps_.back().id = i;
+    }
+    trajectory_ = any_trajectory(random_, 3);
+    trajectory_.version = 8;
+    end_.count(3);
+    end_.version(8);
+  }
+  [[nodiscard]] msg::LoopClosures closures(std::uint64_t version) const {
+    const std::vector<topomap::LoopClosure> list = {{0, 1, {}}, {0, 2, {}}};
+    return service::to_msg(list, version, "robot", 0, 0);
+  }
+
+  support::Random random_{1};
+  std::vector<topomap::LocalMap> maps_;
+  topomap::Trajectory trajectory_;
+  msg::StreamEnd end_;
+  MapInput input_;
+};
+
+TEST_F(Input, LocalMapsWaitForTheOnesBefore) {
+  EXPECT_EQ(input_.add(maps_[2]), Arrival::kNew);
+  EXPECT_EQ(input_.add(maps_[1]), Arrival::kNew);
+  EXPECT_TRUE(input_.local_maps().empty());
+  EXPECT_EQ(input_.waiting(), 2U);
+  EXPECT_EQ(input_.add(maps_[0]), Arrival::kNew);
+  EXPECT_TRUE(input_.local_maps() == maps_);
+  EXPECT_EQ(input_.waiting(), 0U);
+}
+
+TEST_F(Input, SecondMapOfAnIdIsKnownOrDifferent) {
+  input_.add(maps_[0]);
+  input_.add(maps_[2]);
+  EXPECT_EQ(input_.add(maps_[0]), Arrival::kKnown);
+  EXPECT_EQ(input_.add(maps_[2]), Arrival::kKnown);
+  topomap::LocalMap other = maps_[0];
+  other.points[0].x_m += 1.0F;
+  EXPECT_EQ(input_.add(other), Arrival::kDifferent);
+  EXPECT_TRUE(input_.local_maps()[0] == maps_[0]);
+}
+
+TEST_F(Input, TrajectoryReachesAsFarAsTheLocalMaps) {
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  input_.add(closures(8));
+  EXPECT_TRUE(input_.newest_trajectory().stops.empty());
+  input_.add(maps_[0]);
+  input_.add(maps_[1]);
+  EXPECT_EQ(input_.newest_trajectory().stops.size(), 2U);
+  EXPECT_EQ(input_.usable_closures().size(), 1U);
+}
+
+TEST_F(Input, CompleteOnlyWithEveryPartOfTheFinalVersion) {
+  using Step = std::function<void()>;
+  const std::vector<Step> steps = {
+      [&] { input_.add(maps_[0]); },
+      [&] { input_.add(maps_[1]); },
+      [&] { input_.add(maps_[2]); },
+      [&] { input_.add(service::to_segment(trajectory_, 0, "robot", 0)); },
+      [&] { input_.add(closures(8)); },
+      [&] { input_.set_end(end_); },
+  };
+  for (std::size_t last = 0; last < steps.size(); ++last) {
+    input_ = MapInput();
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (i != last) steps[i]();
+    }
+    EXPECT_FALSE(input_.final_trajectory().has_value()) << "without step " << last;
+    steps[last]();
+    ASSERT_TRUE(input_.final_trajectory().has_value()) << "step " << last << " last";
+    EXPECT_TRUE(*input_.final_trajectory() == trajectory_);
+  }
+}
+
+TEST_F(Input, OlderPartsDoNotCompleteIt) {
+  for (const auto& map : maps_) input_.add(map);
+  input_.set_end(end_);
+  input_.add(closures(7));
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  EXPECT_FALSE(input_.final_trajectory().has_value());
+  input_.add(closures(8));
+  input_.add(closures(7));  // late: passed over
+  EXPECT_TRUE(input_.final_trajectory().has_value());
+}
+
+}  // namespace
+}  // namespace topogeo::map_store
