@@ -114,7 +114,8 @@ bool MapStoreService::store() {
 void MapStoreService::work_on_live_map() {
   if (finished_) return;
   const topomap::Trajectory trajectory = input_.newest_trajectory();
-  live_map_.look(trajectory.stops);
+  // Not between a map and its publication, or frequent corrections would leave nothing to publish.
+  if (Clock::now() >= next_publish_) live_map_.look(trajectory.stops);
   const auto start = Clock::now();
   bool more = true;
   while (more && Clock::now() - start < kLiveSlice) {
