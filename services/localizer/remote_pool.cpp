@@ -18,6 +18,13 @@ namespace {
 /// Longest wait for an event that wakes the pool anyway.
 constexpr std::chrono::seconds kLongestWait{1};
 
+/// Workers tell their status every 500 ms; one that is silent for a second is gone. Liveliness of
+/// DDS alone does not do: while any other worker lives, Fast DDS 2.9 takes the dead one to live,
+/// too, until the lease of its participant ends (its issue 4373). Ticks of the loop are counted
+/// and not time, so that a loop that stood still takes nobody to be gone.
+constexpr std::chrono::milliseconds kTick{125};
+constexpr int kSilentTicks = 9;
+
 BoardTime now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
@@ -53,6 +60,11 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
         on_result(message);
       });
   loop_.add(task_writer_);
+  timer_ = loop_.add_timer(kTick, [this] { drop_silent_workers(); });
+}
+
+RemotePool::~RemotePool() {
+  loop_.cancel_timer(timer_);
 }
 
 void RemotePool::add_map(std::shared_ptr<const topomap::LocalMap> map) {
@@ -194,7 +206,7 @@ void RemotePool::on_status(const msg::WorkerStatus& status, const messaging::Sam
     exclude(worker_id, "version " + version + ", this is " + options_.version);
     return;
   }
-  const KnownWorker worker{worker_id, service::participant_of(info.writer)};
+  const KnownWorker worker{worker_id, service::participant_of(info.writer), 0};
   known_[info.instance] = worker;
   board_.worker_up(worker_id, status.slots(), incarnation(status));
   board_.set_reachable(worker_id, task_readers_.contains(worker.participant));
@@ -207,6 +219,20 @@ void RemotePool::on_worker_gone(const messaging::SampleInfo& info) {
   board_.worker_gone(found->second.worker_id);
   known_.erase(found);
   go_on();
+}
+
+void RemotePool::drop_silent_workers() {
+  bool any = false;
+  for (auto it = known_.begin(); it != known_.end();) {
+    if (++it->second.silent_ticks <= kSilentTicks) {
+      ++it;
+      continue;
+    }
+    board_.worker_gone(it->second.worker_id);
+    it = known_.erase(it);
+    any = true;
+  }
+  if (any) go_on();
 }
 
 void RemotePool::exclude(const std::string& worker_id, const std::string& why) {

@@ -54,6 +54,7 @@ class RemotePool : public localization::MatchPool {
   /// Reader and Writer.
   RemotePool(const messaging::Participant& participant, messaging::EventLoop& loop,
              RemotePoolOptions options, FaultHandler on_fault);
+  ~RemotePool() override;
 
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override;
   /// Throws Stopped, and what Matcher::solve throws for a task that cannot be solved.
@@ -71,10 +72,12 @@ class RemotePool : public localization::MatchPool {
   struct KnownWorker {
     std::string worker_id;
     service::ParticipantId participant;
+    int silent_ticks = 0;  // since its last status
   };
 
   void on_status(const msg::WorkerStatus& status, const messaging::SampleInfo& info);
   void on_worker_gone(const messaging::SampleInfo& info);
+  void drop_silent_workers();
   void on_result(const msg::MatchResult& message);
   void on_event(const messaging::Event& event);
   void exclude(const std::string& worker_id, const std::string& why);
@@ -102,6 +105,7 @@ class RemotePool : public localization::MatchPool {
   std::uint64_t sequence_ = 0;
   std::function<bool()> until_;
   bool woken_ = false;
+  std::uint64_t timer_ = 0;
 };
 
 }  // namespace topogeo::localizer

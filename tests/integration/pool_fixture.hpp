@@ -91,13 +91,16 @@ class FakeWorker {
  public:
   using OnTask = std::function<void(FakeWorker&, const msg::MatchTask&)>;
 
+  FakeWorker(const FakeWorker&) = delete;
+  FakeWorker& operator=(const FakeWorker&) = delete;
   FakeWorker(const std::string& partition, messaging::EventLoop& loop, std::string worker_id,
              OnTask on_task)
-      : participant_(options_in(partition)),
+      : loop_(loop),
+        participant_(options_in(partition)),
         statuses_(participant_),
         results_(participant_),
         tasks_(participant_, {{}, {"worker_id = %0", {"'" + worker_id + "'"}}}) {
-    loop.add<msg::MatchTask>(tasks_, [this, on_task](const msg::MatchTask& task, const auto&) {
+    loop_.add<msg::MatchTask>(tasks_, [this, on_task](const msg::MatchTask& task, const auto&) {
       ++received;
       on_task(*this, task);
     });
@@ -105,12 +108,16 @@ class FakeWorker {
     messaging::set_text(status_.worker_id(), worker_id, "worker_id");
     messaging::set_text(status_.version(), support::kVersion, "version");
     status_.slots(1);
+    timer_ = loop_.add_timer(std::chrono::milliseconds(200), [this] { announce(); });
     announce();
   }
+  ~FakeWorker() { loop_.cancel_timer(timer_); }
 
-  void announce() { EXPECT_TRUE(statuses_.write(status_)); }
   /// Says that it goes, as a worker that drains does.
-  void leave() { statuses_.dispose(status_); }
+  void leave() {
+    loop_.cancel_timer(timer_);
+    statuses_.dispose(status_);
+  }
 
   void answer(const msg::MatchTask& task, localization::MatchResult result,
               msg::MatchStatus status = msg::kMatchSolved) {
@@ -128,6 +135,10 @@ class FakeWorker {
   int received = 0;
 
  private:
+  void announce() { EXPECT_TRUE(statuses_.write(status_)); }
+
+  messaging::EventLoop& loop_;
+  std::uint64_t timer_ = 0;
   messaging::Participant participant_;
   messaging::Writer<msg::WorkerStatus> statuses_;
   messaging::Writer<msg::MatchResult> results_;
