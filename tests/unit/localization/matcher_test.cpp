@@ -47,8 +47,9 @@ struct Pair {
   double error_m;  ///< allowed; in a bare corridor what the prediction leaves
 };
 
-void PrintTo(const Pair& pair, std::ostream* out) {
-  *out << pair.world << " " << pair.T_world_reference.x_m << " " << pair.T_world_reference.y_m;
+std::ostream& operator<<(std::ostream& out, const Pair& pair) {
+  return out << pair.world << " " << pair.T_world_reference.x_m << " "
+             << pair.T_world_reference.y_m;
 }
 
 class TrueRelativePoseTest : public testing::TestWithParam<Pair> {};

@@ -20,8 +20,8 @@ struct Resolution {
   double reach_m;
 };
 
-void PrintTo(const Resolution& resolution, std::ostream* out) {
-  *out << resolution.cell_m << " m cells, " << resolution.reach_m << " m reach";
+std::ostream& operator<<(std::ostream& out, const Resolution& resolution) {
+  return out << resolution.cell_m << " m cells, " << resolution.reach_m << " m reach";
 }
 
 class NearestPointGridTest : public testing::TestWithParam<Resolution> {};
@@ -29,8 +29,10 @@ class NearestPointGridTest : public testing::TestWithParam<Resolution> {};
 TEST_P(NearestPointGridTest, IsNearlyAsGoodAsComparingWithEveryPoint) {
   const auto [cell_m, reach_m] = GetParam();
   support::Random random(3);
+  constexpr std::size_t kPoints = 250;
   std::vector<Eigen::Vector2d> points;
-  for (int i = 0; i < 250; ++i) {
+  points.reserve(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
     points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
   }
   NearestPointGrid grid;

@@ -97,6 +97,12 @@ TEST(PoseGraphTest, ASquareClosesWithItsClosingEdge) {
   }
 }
 
+// Pose i of a vector of all poses but the first.
+Pose2 pose_in(const Eigen::VectorXd& x, std::uint32_t i) {
+  const Eigen::Index row = 3 * (Eigen::Index{i} - 1);
+  return {x(row), x(row + 1), x(row + 2)};
+}
+
 // Dense Gauss-Newton with numeric derivatives, without loss function.
 class DenseOracle {
  public:
@@ -105,7 +111,7 @@ class DenseOracle {
   Eigen::VectorXd residuals(const Eigen::VectorXd& x) const {
     const auto pose = [&](std::uint32_t i) {
       if (i == 0) return graph_.poses()[0];
-      return Pose2{x(3 * (i - 1)), x(3 * (i - 1) + 1), x(3 * (i - 1) + 2)};
+      return pose_in(x, i);
     };
     Eigen::VectorXd out(3 * static_cast<Eigen::Index>(graph_.edges().size()));
     Eigen::Index row = 0;
@@ -184,8 +190,7 @@ TEST(PoseGraphTest, FindsTheSameOptimumAsADenseSolver) {
     EXPECT_NEAR(summary.final_cost, 0.5 * oracle.residuals(expected).squaredNorm(),
                 1e-4 * summary.final_cost);
     for (std::uint32_t i = 1; i < kPoses; ++i) {
-      const Pose2 optimum{expected(3 * (i - 1)), expected(3 * (i - 1) + 1),
-                          expected(3 * (i - 1) + 2)};
+      const Pose2 optimum = pose_in(expected, i);
       EXPECT_LT(test::distance_m(graph.poses()[i], optimum), 2e-3) << trial << ", " << i;
       EXPECT_LT(test::turn_rad(graph.poses()[i], optimum), 1e-3) << trial << ", " << i;
     }
