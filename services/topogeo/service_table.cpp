@@ -1,7 +1,5 @@
 #include "service_table.hpp"
 
-#include <algorithm>
-
 #include <spdlog/fmt/fmt.h>
 
 namespace topogeo::cli {
@@ -19,20 +17,21 @@ std::string text(const auto& bounded) {
 }  // namespace
 
 void ServiceTable::update(const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
-  by_instance_[info.instance] = status;
+  Name name{text(status.service()), text(status.instance())};
+  by_name_[name] = status;
+  names_[info.instance] = std::move(name);
 }
 
 void ServiceTable::remove(const messaging::SampleInfo& info) {
-  by_instance_.erase(info.instance);
+  const auto found = names_.find(info.instance);
+  if (found == names_.end()) return;
+  by_name_.erase(found->second);
+  names_.erase(found);
 }
 
 std::vector<const msg::ServiceStatus*> ServiceTable::rows() const {
   std::vector<const msg::ServiceStatus*> rows;
-  for (const auto& [instance, status] : by_instance_) rows.push_back(&status);
-  std::sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
-    return std::pair(text(a->service()), text(a->instance())) <
-           std::pair(text(b->service()), text(b->instance()));
-  });
+  for (const auto& [name, status] : by_name_) rows.push_back(&status);
   return rows;
 }
 

@@ -30,7 +30,12 @@ class ServiceTable {
   [[nodiscard]] std::string progress_mark() const;
 
  private:
-  std::map<messaging::Handle, msg::ServiceStatus> by_instance_;
+  using Name = std::pair<std::string, std::string>;  // service, instance
+
+  // By name, because the handles of one instance are not always the same: the generated code
+  // derives them from a buffer with left-overs between the two strings of this key.
+  std::map<Name, msg::ServiceStatus> by_name_;
+  std::map<messaging::Handle, Name> names_;
 };
 
 /// The value of a counter, 0 if the service has none of that name.

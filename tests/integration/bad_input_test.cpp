@@ -1,0 +1,179 @@
+// What a user is told about a log, configuration or directory that cannot be used.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class BadInputTest : public testing::Test {
+ protected:
+  struct Outcome {
+    int code;
+    std::string err;
+  };
+
+  Outcome call(const std::string& command, const std::string& log,
+               const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {command, "--log", log, "--out", out_};
+    words.insert(words.end(), more.begin(), more.end());
+    if (command == "run") words.insert(words.end(), {"--domain", own_domain()});
+    Program program(scratch_, "topogeo", words);
+    const int code = program.wait();
+    return {code, program.err()};
+  }
+
+  std::string file(const std::string& name, const std::string& content) {
+    std::ofstream(scratch_ / name, std::ios::binary) << content;
+    return scratch_ / name;
+  }
+
+  /// Lines of a good log.
+  std::vector<std::string> good_lines() {
+    write_log("room", scratch_ / "good.clf");
+    std::vector<std::string> lines;
+    std::istringstream text(read_file(scratch_ / "good.clf"));
+    for (std::string line; std::getline(text, line);) {
+      if (line.starts_with("FLASER")) lines.push_back(line);
+    }
+    return lines;
+  }
+
+  static std::string join(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    return text;
+  }
+
+  Scratch scratch_;
+  std::string out_ = scratch_ / "out";
+};
+
+/// Replaces the blank-separated word `index` of a line.
+std::string with_word(const std::string& line, std::size_t index, const std::string& word) {
+  std::istringstream in(line);
+  std::string result;
+  std::size_t i = 0;
+  for (std::string w; in >> w; ++i) result += (i == 0 ? "" : " ") + (i == index ? word : w);
+  return result;
+}
+
+std::string without_words(const std::string& line, std::size_t first, std::size_t count) {
+  std::istringstream in(line);
+  std::string result;
+  std::size_t i = 0;
+  for (std::string w; in >> w; ++i) {
+    if (i >= first && i < first + count) continue;
+    result += (result.empty() ? "" : " ") + w;
+  }
+  return result;
+}
+
+TEST_F(BadInputTest, UnusableLogsEndWithCodeThreeBeforeAnyWork) {
+  const std::vector<std::string> logs = {
+      scratch_ / "missing.clf",
+      file("empty.clf", ""),
+      file("binary.clf", std::string("\x7f"
+                                     "ELF\x02\x01\0\0\0\x80\xff\n\0\n",
+                                     14)),
+      file("no_laser.clf", "# a comment\nPARAM robot_width 0.5\nODOM 0 0 0 0 0 0 1.0 host 1.0\n"),
+      file("broken.clf.gz", "\x1f\x8b\x08 and then nothing sensible"),
+  };
+  for (const char* command : {"map", "run"}) {
+    for (const std::string& log : logs) {
+      const Outcome outcome = call(command, log);
+      EXPECT_EQ(outcome.code, 3) << command << " " << log;
+      EXPECT_THAT(outcome.err, HasSubstr(log));
+      EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+      EXPECT_FALSE(std::filesystem::exists(out_)) << "work was begun on " << log;
+    }
+  }
+}
+
+TEST_F(BadInputTest, BadLinesAreToldCountedAndLeftOut) {
+  std::vector<std::string> lines = good_lines();
+  ASSERT_GT(lines.size(), 30U);
+  const std::size_t good = lines.size();
+  const std::string sample = lines[20];
+  // From the back, so that the numbers of the lines before stay: line numbers count from 1.
+  lines.insert(lines.begin() + 20, without_words(with_word(sample, 1, "180"), 2, 181));
+  lines.insert(lines.begin() + 15, lines[3]);                        // time goes backwards
+  lines.insert(lines.begin() + 12, without_words(sample, 100, 50));  // too few ranges
+  lines.insert(lines.begin() + 9, with_word(sample, 7, "-1.5"));
+  lines.insert(lines.begin() + 6, with_word(sample, 5, "nan"));
+  const std::string log = file("bad.clf", join(lines));
+
+  const Outcome map = call("map", log);
+  ASSERT_EQ(map.code, 0) << map.err;
+  for (const int line : {7, 11, 15, 19, 25}) {
+    EXPECT_THAT(map.err, HasSubstr("bad.clf:" + std::to_string(line) + ":"));
+  }
+  const json counts = json::parse(read_file(out_ + "/report.json"))["counts"];
+  EXPECT_EQ(counts["scans"], good);
+  std::size_t skipped = 0;
+  for (const auto& [reason, count] : counts["skipped_lines"].items()) {
+    skipped += count.get<std::size_t>();
+  }
+  EXPECT_EQ(skipped, 5U);
+  const std::string trajectory = read_file(out_ + "/trajectory.tum");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(trajectory.begin(), trajectory.end(), '\n')), good);
+
+  const Outcome run = call("run", log);
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(json::parse(read_file(out_ + "/report.json"))["counts"], counts);
+  EXPECT_TRUE(read_file(out_ + "/trajectory.tum") == trajectory);
+}
+
+TEST_F(BadInputTest, TruncatedArchiveIsMappedAsFarAsItGoes) {
+  write_log("room", scratch_ / "whole.clf.gz");
+  const std::string whole = read_file(scratch_ / "whole.clf.gz");
+  const std::string log = file("cut.clf.gz", whole.substr(0, whole.size() / 2));
+  const Outcome outcome = call("map", log);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("cut.clf.gz"), HasSubstr("skipped 1")));
+  const json counts = json::parse(read_file(out_ + "/report.json"))["counts"];
+  EXPECT_GT(counts["scans"], 10);
+  EXPECT_EQ(counts["skipped_lines"].size(), 1U);
+}
+
+TEST_F(BadInputTest, UnwritableDirectoryIsToldBeforeTheWork) {
+  write_log("room", scratch_ / "log.clf");
+  out_ = file("file", "in the way") + "/out";  // root may write anywhere, but not below a file
+  for (const char* command : {"map", "run"}) {
+    const Outcome outcome = call(command, scratch_ / "log.clf");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(out_), Not(HasSubstr("scans"))));
+  }
+}
+
+TEST_F(BadInputTest, ConfigurationFaultsNameTheLine) {
+  write_log("room", scratch_ / "log.clf");
+  const std::string unknown = file("unknown.yaml", "stop:\n  distance_m: 1\n  distanze_m: 1\n");
+  const std::string range = file("range.yaml", "stop:\n  distance_m: 99\n");
+  for (const char* command : {"map", "run"}) {
+    const Outcome of_key = call(command, scratch_ / "log.clf", {"--config", unknown});
+    EXPECT_EQ(of_key.code, 2);
+    EXPECT_THAT(of_key.err, AllOf(HasSubstr(unknown + ":3:"), HasSubstr("stop.distanze_m")));
+    const Outcome of_value = call(command, scratch_ / "log.clf", {"--config", range});
+    EXPECT_EQ(of_value.code, 2);
+    EXPECT_THAT(of_value.err, AllOf(HasSubstr(range + ":2:"), HasSubstr("between 0.1 and 10 m")));
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::test

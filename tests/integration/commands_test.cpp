@@ -1,0 +1,174 @@
+// The commands beside mapping: help, configuration, status, plan, demo, and the report of a run.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "topogeo/support/version.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class CommandsTest : public testing::Test {
+ protected:
+  Scratch scratch_;
+};
+
+TEST_F(CommandsTest, EveryProgramHasHelpAndVersion) {
+  for (const char* name : {"topogeo", "sensor_gateway", "local_mapper", "localizer", "ga_worker",
+                           "map_store", "planner"}) {
+    Program help(scratch_, name, {"--help"});
+    EXPECT_EQ(help.wait(), 0) << name;
+    EXPECT_THAT(help.out(), HasSubstr("Usage: " + std::string(name)));
+    Program version(scratch_, name, {"--version"});
+    EXPECT_EQ(version.wait(), 0) << name;
+    EXPECT_THAT(version.out(), HasSubstr(support::kVersion));
+  }
+}
+
+TEST_F(CommandsTest, EverySubcommandHasHelp) {
+  for (const char* name : {"run", "map", "demo", "status", "plan", "config"}) {
+    Program help(scratch_, "topogeo", {name, "--help"});
+    EXPECT_EQ(help.wait(), 0) << name;
+    EXPECT_THAT(help.out(), HasSubstr("Usage: topogeo " + std::string(name)));
+  }
+}
+
+TEST_F(CommandsTest, WrongCommandLinesAreToldInOneLine) {
+  const std::vector<std::vector<std::string>> lines = {
+      {},
+      {"fly"},
+      {"map", "--out", "o"},
+      {"run", "--log", "l", "--out", "o", "--workers", "-1"},
+      {"run", "--log", "l", "--out", "o", "--domain", "233"},
+      {"run", "--log", "l", "--out", "o", "--rate", "slow"},
+      {"run", "--log", "l", "--out", "o", "--robot", std::string(33, 'x')},
+      {"map", "--log", "l", "--out", "o", "--nonsense"},
+      {"plan", "m", "--from", "1", "--to", "2,3"},
+  };
+  for (const auto& line : lines) {
+    Program program(scratch_, "topogeo", line);
+    EXPECT_EQ(program.wait(), 2) << testing::PrintToString(line);
+    const std::string err = program.err();
+    EXPECT_THAT(err, StartsWith("topogeo: ")) << testing::PrintToString(line);
+    EXPECT_EQ(err.find('\n'), err.size() - 1) << err;
+  }
+}
+
+TEST_F(CommandsTest, StatusShowsTheServicesOfARun) {
+  const std::string log = scratch_ / "log.clf.gz";
+  write_log("floor", log);
+  Program run(scratch_, "topogeo",
+              {"run", "--log", log, "--out", scratch_ / "out", "--workers", "1", "--domain",
+               own_domain(), "--rate", "2"});
+  for (int i = 0; i < 20; ++i) {
+    Program status(scratch_, "topogeo", {"status", "--domain", own_domain()});
+    const int code = status.wait();
+    ASSERT_TRUE(code == 0 || code == 1) << code;
+    if (status.out().find("localizer") != std::string::npos &&
+        status.out().find("scans_sent=") != std::string::npos) {
+      for (const char* name :
+           {"sensor_gateway", "local_mapper", "localizer", "ga_worker", "map_store", "planner"}) {
+        EXPECT_THAT(status.out(), HasSubstr(name));
+      }
+      return;
+    }
+  }
+  FAIL() << "the services were never seen";
+}
+
+TEST_F(CommandsTest, StatusWithoutServicesSaysSo) {
+  Program status(scratch_, "topogeo", {"status", "--domain", own_domain()});
+  EXPECT_EQ(status.wait(), 1);
+  EXPECT_THAT(status.err(), HasSubstr("no service is alive on domain " + own_domain()));
+}
+
+TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {
+  const std::string log = scratch_ / "log.clf.gz";
+  const std::string map = scratch_ / "out" / "map.pb";
+  write_log("floor", log);
+  Program mapping(scratch_, "topogeo", {"map", "--log", log, "--out", scratch_ / "out"});
+  ASSERT_EQ(mapping.wait(), 0) << mapping.err();
+
+  // The map begins at (1.3, 1.2) of the floor, looking along x: from the south room at (9.1, 4.4)
+  // to the one in the east at (26.4, 15.2). Straight they are 20.4 m apart, through the walls.
+  Program plan(scratch_, "topogeo",
+               {"plan", map, "--from", "7.8,3.2", "--to", "25.1,14", "--json"});
+  ASSERT_EQ(plan.wait(), 0) << plan.err();
+  const json route = json::parse(plan.out());
+  EXPECT_GT(route["length_m"], 22.0);
+  EXPECT_LT(route["length_m"], 45.0);
+  EXPECT_GE(route["min_clearance_m"], 0.3);
+  EXPECT_GT(route["points"].size(), 10U);
+
+  Program text(scratch_, "topogeo", {"plan", map, "--from", "7.8,3.2", "--to", "25.1,14"});
+  ASSERT_EQ(text.wait(), 0);
+  EXPECT_THAT(text.out(), HasSubstr("length "));
+
+  Program nowhere(scratch_, "topogeo", {"plan", map, "--from", "-90,3", "--to", "25.1,14"});
+  EXPECT_EQ(nowhere.wait(), 1);
+  EXPECT_THAT(nowhere.err(), HasSubstr("no route"));
+}
+
+TEST_F(CommandsTest, PlanRefusesWhatIsNoMap) {
+  Program missing(scratch_, "topogeo",
+                  {"plan", scratch_ / "no.pb", "--from", "0,0", "--to", "1,1"});
+  EXPECT_EQ(missing.wait(), 3);
+  EXPECT_THAT(missing.err(), HasSubstr("no.pb"));
+  const std::string log = scratch_ / "log.clf";
+  write_log("corridor", log);
+  Program wrong(scratch_, "topogeo", {"plan", log, "--from", "0,0", "--to", "1,1"});
+  EXPECT_EQ(wrong.wait(), 3);
+}
+
+TEST_F(CommandsTest, DemoTellsTheErrorBeforeAndAfter) {
+  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  Program demo(scratch_, "topogeo",
+               {"demo", "--out", scratch_ / "out", "--world", world, "--domain", own_domain()});
+  ASSERT_EQ(demo.wait(), 0) << demo.err();
+  EXPECT_THAT(demo.out(), HasSubstr("odometry "));
+  EXPECT_THAT(demo.out(), HasSubstr("corrected "));
+  EXPECT_THAT(demo.out(), HasSubstr("map.png"));
+  for (const char* file : {"floor.clf.gz", "truth.tum", "trajectory.tum", "odometry.tum", "map.pb",
+                           "map.svg", "map.png", "report.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(scratch_ / "out" / file)) << file;
+  }
+}
+
+TEST_F(CommandsTest, ReportOfRunAgreesWithThatOfMap) {
+  const std::string log = scratch_ / "log.clf.gz";
+  write_log("corridor", log);
+  Program map(scratch_, "topogeo", {"map", "--log", log, "--out", scratch_ / "map"});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+  Program run(scratch_, "topogeo",
+              {"run", "--log", log, "--out", scratch_ / "run", "--domain", own_domain()});
+  ASSERT_EQ(run.wait(), 0) << run.err();
+
+  const json of_map = json::parse(read_file(scratch_ / "map" / "report.json"));
+  const json of_run = json::parse(read_file(scratch_ / "run" / "report.json"));
+  for (const char* key : {"version", "log", "robot_id", "seed", "counts", "distance_m",
+                          "loop_closures", "configuration"}) {
+    EXPECT_EQ(of_run[key], of_map[key]) << key;
+  }
+  EXPECT_GT(of_map["counts"]["matches_tried"], 0);
+  EXPECT_EQ(of_run["workers"], 2);
+  for (const char* stage : {"sensor_gateway", "local_mapper", "localizer", "ga_worker_1",
+                            "ga_worker_2", "map_store", "planner"}) {
+    EXPECT_GT(of_run["stages"][stage]["cpu_s"], 0.0) << stage;
+  }
+  for (const char* stage : {"reading", "local_mapper", "localizer", "map_store", "writing"}) {
+    EXPECT_TRUE(of_map["stages"].contains(stage)) << stage;
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::test

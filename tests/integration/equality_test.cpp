@@ -1,0 +1,105 @@
+// A run of all services over DDS gives the bytes of a run in one process, whatever the number of
+// workers and whatever happens to them.
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using testing::HasSubstr;
+
+class EqualityTest : public testing::Test {
+ protected:
+  void map(const std::string& world) {
+    write_log(world, log_);
+    Program program(scratch_, "topogeo", {"map", "--log", log_, "--out", scratch_ / "map"});
+    ASSERT_EQ(program.wait(), 0) << program.err();
+    ASSERT_FALSE(read_file(scratch_ / "map" / "map.pb").empty());
+  }
+
+  std::vector<std::string> run_words(const std::string& out, int workers) {
+    return {"run",
+            "--log",
+            log_,
+            "--out",
+            scratch_ / out,
+            "--workers",
+            std::to_string(workers),
+            "--domain",
+            own_domain()};
+  }
+
+  void expect_same_bytes(const std::string& out) {
+    for (const char* file : {"trajectory.tum", "odometry.tum", "map.pb", "map.svg"}) {
+      // No EXPECT_EQ: it would print megabytes.
+      EXPECT_TRUE(read_file(scratch_ / out / file) == read_file(scratch_ / "map" / file))
+          << file << " of " << out << " differs from that of the run in one process";
+    }
+  }
+
+  Scratch scratch_;
+  std::string log_ = scratch_ / "log.clf.gz";
+};
+
+class EqualityByWorkersTest : public EqualityTest, public testing::WithParamInterface<int> {};
+
+TEST_P(EqualityByWorkersTest, Floor) {
+  map("floor");
+  Program run(scratch_, "topogeo", run_words("run", GetParam()));
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  expect_same_bytes("run");
+  EXPECT_TRUE(run.services().empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Workers, EqualityByWorkersTest, testing::Values(0, 1, 2, 4),
+                         [](const auto& workers) { return std::to_string(workers.param); });
+
+TEST_F(EqualityTest, WorkerKilledHalfWay) {
+  map("floor");
+  Program run(scratch_, "topogeo", run_words("run", 2));
+  run.wait_for_progress(40);
+  const std::vector<pid_t> workers = run.services("ga_worker");
+  ASSERT_EQ(workers.size(), 2U);
+  ::kill(workers[0], SIGKILL);
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.err(), HasSubstr("was killed by signal 9"));
+  EXPECT_THAT(run.err(), HasSubstr("going on without it"));
+  expect_same_bytes("run");
+}
+
+TEST_F(EqualityTest, AllWorkersKilledHalfWay) {
+  map("floor");
+  Program run(scratch_, "topogeo", run_words("run", 2));
+  run.wait_for_progress(40);
+  for (const pid_t worker : run.services("ga_worker")) ::kill(worker, SIGKILL);
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  expect_same_bytes("run");
+}
+
+TEST_F(EqualityTest, TwoRunsAtOnceOnOneDomain) {
+  map("corridor");
+  Program first(scratch_, "topogeo", run_words("first", 1));
+  Program second(scratch_, "topogeo", run_words("second", 2));
+  ASSERT_EQ(first.wait(), 0) << first.err();
+  ASSERT_EQ(second.wait(), 0) << second.err();
+  expect_same_bytes("first");
+  expect_same_bytes("second");
+}
+
+TEST_F(EqualityTest, SecondRunReplacesTheResultsOfTheFirst) {
+  map("room");
+  for (int i = 0; i < 2; ++i) {
+    Program run(scratch_, "topogeo", run_words("run", 1));
+    ASSERT_EQ(run.wait(), 0) << run.err();
+    expect_same_bytes("run");
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::test

@@ -1,0 +1,179 @@
+#include "program.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "topogeo/scan/carmen_log_writer.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/storage/tum.hpp"
+
+namespace topogeo::test {
+namespace {
+
+constexpr std::chrono::milliseconds kPoll{10};
+constexpr int kSignalBase = 128;
+
+/// Asks `done` again and again; false after `timeout_s`.
+bool wait_until(double timeout_s, const std::function<bool()>& done) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(kPoll);
+  }
+  return true;
+}
+
+std::string test_name() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  std::string name = std::string(test->test_suite_name()) + "." + test->name();
+  for (char& c : name) {
+    if (c == '/') c = '_';
+  }
+  return name;
+}
+
+}  // namespace
+
+Scratch::Scratch()
+    : path_(std::filesystem::temp_directory_path() /
+            ("topogeo_" + test_name() + "_" + std::to_string(::getpid()))) {
+  std::filesystem::remove_all(path_);
+  std::filesystem::create_directories(path_);
+}
+
+Scratch::~Scratch() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+Program::Program(const Scratch& scratch, const std::string& name,
+                 const std::vector<std::string>& words) {
+  static int count = 0;
+  const std::string number = std::to_string(++count);
+  out_ = scratch / ("stdout" + number);
+  err_ = scratch / ("stderr" + number);
+  std::vector<std::string> all = {std::string(TOPOGEO_BIN) + "/" + name};
+  all.insert(all.end(), words.begin(), words.end());
+  std::vector<char*> pointers;
+  for (std::string& word : all) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kFlags, 0644);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kFlags, 0644);
+  const int error = posix_spawn(&pid_, pointers[0], &actions, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw std::runtime_error("cannot start " + all[0]);
+}
+
+Program::~Program() {
+  if (ended()) return;
+  ::kill(pid_, SIGKILL);
+  ::waitpid(pid_, &status_, 0);
+}
+
+bool Program::ended() {
+  if (!ended_) ended_ = ::waitpid(pid_, &status_, WNOHANG) == pid_;
+  return ended_;
+}
+
+int Program::wait(double timeout_s) {
+  if (!wait_until(timeout_s, [this] { return ended(); })) {
+    throw std::runtime_error("the program does not end; it said: " + err());
+  }
+  return WIFSIGNALED(status_) ? kSignalBase + WTERMSIG(status_) : WEXITSTATUS(status_);
+}
+
+void Program::wait_for_error_text(const std::string& text, double timeout_s) {
+  const bool there =
+      wait_until(timeout_s, [&] { return err().find(text) != std::string::npos || ended(); });
+  if (!there || err().find(text) == std::string::npos) {
+    throw std::runtime_error("the program never said '" + text + "' but: " + err());
+  }
+}
+
+void Program::wait_for_progress(int percent, double timeout_s) {
+  // "mapping [###...]  22 % 240/1049 scans, ..."
+  const auto reached = [&] {
+    const std::string text = err();
+    const std::size_t sign = text.rfind(" %");
+    return sign != std::string::npos &&
+           std::stoi(text.substr(text.rfind(']', sign) + 1)) >= percent;
+  };
+  const bool there = wait_until(timeout_s, [&] { return reached() || ended(); });
+  if (!there || !reached()) {
+    throw std::runtime_error("the program never got to " + std::to_string(percent) +
+                             " % but said: " + err());
+  }
+}
+
+void Program::send_signal(int signal_number) const {
+  ::kill(pid_, signal_number);
+}
+
+std::string Program::out() const {
+  return read_file(out_);
+}
+
+std::string Program::err() const {
+  return read_file(err_);
+}
+
+std::vector<pid_t> Program::services(const std::string& name) const {
+  const std::string partition = "run-" + std::to_string(pid_) + "-";
+  std::vector<pid_t> found;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", ignored)) {
+    const std::string number = entry.path().filename().string();
+    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string words = read_file(entry.path() / "cmdline");
+    if (words.find(partition) == std::string::npos) continue;
+    const std::string program = std::filesystem::path(words.c_str()).filename().string();
+    if (name.empty() || program == name) found.push_back(std::stoi(number));
+  }
+  return found;
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::string own_domain() {
+  // 1 to 100: the ports of higher domains overlap with those that the system gives to clients.
+  return std::to_string(1 + std::hash<std::string>{}(test_name()) % 100);
+}
+
+void write_log(const std::string& world, const std::filesystem::path& log,
+               const std::filesystem::path& truth) {
+  const auto file = std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml");
+  const auto simulated = simulation::simulate_log(simulation::load_world(file), {});
+  scan::CarmenLogWriter writer(log);
+  std::vector<topomap::StampedPose> poses;
+  for (std::size_t i = 0; i < simulated.scans.size(); ++i) {
+    writer.write(simulated.scans[i]);
+    poses.push_back(
+        {simulated.scans[i].sequence, simulated.scans[i].stamp_ns, simulated.T_world_robot[i]});
+  }
+  writer.close();
+  if (!truth.empty()) storage::write_trajectory_tum(truth, poses);
+}
+
+}  // namespace topogeo::test

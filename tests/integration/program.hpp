@@ -1,0 +1,76 @@
+// Runs the project's executables from tests and looks at what they do.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace topogeo::test {
+
+/// A directory of its own for each test, removed at the end.
+class Scratch {
+ public:
+  Scratch();
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch();
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A started program whose output goes to files. Killed at the end of its life if it still runs.
+class Program {
+ public:
+  /// `name` is an executable of build/bin, `scratch` takes its output.
+  Program(const Scratch& scratch, const std::string& name, const std::vector<std::string>& words);
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  ~Program();
+
+  /// Exit code, or 128 + signal. Throws std::runtime_error when it does not end within `timeout_s`.
+  int wait(double timeout_s = 110.0);
+
+  /// Waits until its standard error contains `text`. Throws std::runtime_error when it ends before,
+  /// or after `timeout_s`.
+  void wait_for_error_text(const std::string& text, double timeout_s = 60.0);
+
+  /// The same for its progress bar: until that many per cent are done.
+  void wait_for_progress(int percent, double timeout_s = 60.0);
+
+  void send_signal(int signal_number) const;
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  [[nodiscard]] std::string out() const;
+  [[nodiscard]] std::string err() const;
+
+  /// Services of this `topogeo run`, by the partition in their command lines; all of them, or those
+  /// of one name.
+  [[nodiscard]] std::vector<pid_t> services(const std::string& name = {}) const;
+
+ private:
+  bool ended();
+
+  pid_t pid_ = -1;
+  int status_ = 0;
+  bool ended_ = false;
+  std::filesystem::path out_;
+  std::filesystem::path err_;
+};
+
+std::string read_file(const std::filesystem::path& path);
+
+/// A DDS domain for the running test, so that tests that run at the same time do not see each
+/// other.
+std::string own_domain();
+
+/// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
+void write_log(const std::string& world, const std::filesystem::path& log,
+               const std::filesystem::path& truth = {});
+
+}  // namespace topogeo::test
