@@ -250,6 +250,7 @@ void LocalizerService::count() {
   }
   set("loop_closures", sent_closures_.size());
   set("optimizations", counts.optimizations);
+  set("failed_optimizations", counts.failed_optimizations);
   set("unconfirmed_loops", counts.unconfirmed_loops);
   set("removed_loops", counts.removed_loops);
   set("steps_in_doubt", counts.steps_in_doubt);

@@ -38,7 +38,7 @@ bool identical(const MatchResult& a, const MatchResult& b) {
          same(a.overlap, b.overlap) && same(a.inliers, b.inliers) &&
          same(a.violations, b.violations) && same(a.residual_rms_m, b.residual_rms_m) &&
          same(a.scan_fitness, b.scan_fitness) &&
-         same(a.topological_fitness, b.topological_fitness) &&
+         same(a.topological_fitness, b.topological_fitness) && same(a.fitness, b.fitness) &&
          same(a.second_fitness, b.second_fitness);
 }
 

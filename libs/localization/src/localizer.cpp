@@ -141,6 +141,7 @@ bool Localizer::add_loop(const PoseGraphEdge& edge) {
     return true;
   }
   pending_.push_back({edge, correction});
+  compared_.erase({edge.from, edge.to});  // it is not in the graph, so it may be compared again
   ++counts_.unconfirmed_loops;
   return false;
 }
@@ -152,9 +153,6 @@ void Localizer::finish() {
     if (match_all_revisits() == 0) break;
     optimize();
   }
-  const std::vector<UncertainPose> relative = graph_.relative_to(0);
-  for (std::size_t i = 1; i < stops_.size(); ++i) stops_[i].covariance = relative[i].covariance;
-  ++version_;
 }
 
 std::size_t Localizer::match_all_revisits() {
@@ -165,24 +163,28 @@ std::size_t Localizer::match_all_revisits() {
       tasks.push_back(make_task(stop, candidate.id, relative[candidate.id]));
     }
   }
-  std::size_t added = 0;
+  const std::size_t before = graph_.edges().size();
+  pending_.clear();
   for (const Answer& answer : run(tasks, EdgeKind::kRevisit)) {
-    if (!answer.accepted) continue;
-    graph_.add_edge(answer.edge);
-    ++added;
+    if (answer.accepted) add_loop(answer.edge);
   }
-  return added;
+  return graph_.edges().size() - before;
 }
 
 void Localizer::optimize() {
-  graph_.optimize();
   ++counts_.optimizations;
+  loops_since_optimization_ = 0;
+  if (!graph_.optimize().usable) {
+    ++counts_.failed_optimizations;
+    return;
+  }
   const std::size_t removed = graph_.remove_edges(EdgeKind::kRevisit, kOutvoted);
   if (removed > 0) {
     counts_.removed_loops += removed;
     graph_.optimize();
   }
-  loops_since_optimization_ = 0;
+  const std::vector<UncertainPose> relative = graph_.relative_to(0);
+  for (std::size_t i = 1; i < stops_.size(); ++i) stops_[i].covariance = relative[i].covariance;
   ++version_;
 }
 

@@ -50,8 +50,7 @@ Verdict judge(const MatchTask& task, const MatchResult& result, const GateConfig
   if (error.dot(task.covariance.inverse() * error) > config.largest_mahalanobis2) {
     return Verdict::kImplausible;
   }
-  const double best = result.solutions.empty() ? 0.0 : result.solutions.front().fitness;
-  if (result.second_fitness > config.largest_ambiguity * best) return Verdict::kAmbiguous;
+  if (result.second_fitness > config.largest_ambiguity * result.fitness) return Verdict::kAmbiguous;
   return Verdict::kAccepted;
 }
 

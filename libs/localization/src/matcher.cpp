@@ -111,6 +111,7 @@ MatchResult Matcher::solve(const MatchTask& task) {
     }
   }
   result.T_reference_query = best.T_reference_query;
+  result.fitness = best_fitness;
   result.information = best.information;
   result.overlap = best.overlap;
   result.inliers = best.inliers;

@@ -56,7 +56,7 @@ class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
 }  // namespace
 
 OptimizationSummary PoseGraph::optimize() {
-  if (poses_.size() < 2 || edges_.empty()) return {true, 0.0, 0.0, 0};
+  if (poses_.size() < 2 || edges_.empty()) return {true, true, 0.0, 0.0, 0};
   std::vector<std::array<double, 3>> values;
   values.reserve(poses_.size());
   for (const Pose2& pose : poses_) values.push_back({pose.x_m, pose.y_m, pose.theta_rad});
@@ -83,11 +83,11 @@ OptimizationSummary PoseGraph::optimize() {
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
+  for (std::size_t i = 0; summary.IsSolutionUsable() && i < poses_.size(); ++i) {
     poses_[i] = {values[i][0], values[i][1], geometry::wrap_angle(values[i][2])};
   }
-  return {summary.termination_type == ceres::CONVERGENCE, summary.initial_cost, summary.final_cost,
-          static_cast<int>(summary.iterations.size())};
+  return {summary.IsSolutionUsable(), summary.termination_type == ceres::CONVERGENCE,
+          summary.initial_cost, summary.final_cost, static_cast<int>(summary.iterations.size())};
 }
 
 }  // namespace topogeo::localization

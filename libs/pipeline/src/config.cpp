@@ -135,7 +135,7 @@ void describe_localizer(Config& c, ConfigSchema& schema) {
 
 void describe_global_map(Config& c, ConfigSchema& schema) {
   topomap::GlobalMapConfig& g = c.global_map;
-  schema.add("global_map.cell_m", &g.cell_m, 0.02, 0.5, "m",
+  schema.add("global_map.cell_m", &g.cell_m, 0.032, 0.25, "m",
              "side of a cell in which views vote for branches");
   schema.add("global_map.node_merge_m", &g.node_merge_m, 0.01, 5.0, "m",
              "nodes nearer than this and of similar clearance are one");
@@ -143,7 +143,7 @@ void describe_global_map(Config& c, ConfigSchema& schema) {
              "difference of clearance up to which they are similar");
   schema.add("global_map.min_observations", &g.min_observations, 1U, 1000U, "",
              "views that must have seen an element");
-  schema.add("global_map.keep_share", &g.keep_share, 0.01, 0.99, "",
+  schema.add("global_map.keep_share", &g.keep_share, 0.12, 0.99, "",
              "share of the views that looked from which a place is on a branch");
   schema.add("planning.max_snap_m", &c.planning.max_snap_m, 0.0, 100.0, "m",
              "farthest that start and goal may lie from a branch");
@@ -177,6 +177,8 @@ LoadedConfig load_config(const std::optional<std::filesystem::path>& file) {
   if (file) support::load_yaml_file(*file, schema);
   loaded.effective = support::effective(schema);
   share_values(loaded.config);
+  topomap::check(loaded.config.global_map);
+  planning::check(loaded.config.planning);
   return loaded;
 }
 

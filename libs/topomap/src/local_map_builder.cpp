@@ -151,19 +151,22 @@ void mark_main_graph(double separated_m, LocalMap& map) {
   }
 }
 
-void fill_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser, double limit_m,
-                 LocalMap& map) {
+}  // namespace
+
+std::vector<ScanPoint> scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser,
+                                   double range_limit_m) {
+  std::vector<ScanPoint> points;
+  points.reserve(scan.ranges_m.size());
   for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
     const auto range_m = static_cast<double>(scan.ranges_m[i]);
-    if (!(range_m > 0.0 && range_m <= limit_m)) continue;
+    if (!(range_m > 0.0 && range_m <= range_limit_m)) continue;
     const auto [sin, cos] =
         geometry::sincos(scan.angle_min_rad + static_cast<double>(i) * scan.angle_step_rad);
     const Eigen::Vector2d point_m = T_robot_laser * Eigen::Vector2d{range_m * cos, range_m * sin};
-    map.points.push_back({static_cast<float>(point_m.x()), static_cast<float>(point_m.y())});
+    points.push_back({static_cast<float>(point_m.x()), static_cast<float>(point_m.y())});
   }
+  return points;
 }
-
-}  // namespace
 
 void build_local_map(const LocalVoronoiDiagram& diagram, const scan::Scan& scan,
                      const geometry::Pose2& T_robot_laser, const LocalMapConfig& config,
@@ -171,7 +174,6 @@ void build_local_map(const LocalVoronoiDiagram& diagram, const scan::Scan& scan,
   out.T_robot_laser = T_robot_laser;
   out.nodes.clear();
   out.branches.clear();
-  out.points.clear();
   add_diagram_nodes(diagram, T_robot_laser, out);
   std::vector<BranchPoint> points;
   for (const DiagramBranch& branch : diagram.branches) {
@@ -183,7 +185,7 @@ void build_local_map(const LocalVoronoiDiagram& diagram, const scan::Scan& scan,
     if (points.size() >= 2) add_branch(branch, points, diagram.is_virtual, config, out);
   }
   mark_main_graph(config.separated_m, out);
-  fill_points(scan, T_robot_laser, config.range_limit_m, out);
+  out.points = scan_points(scan, T_robot_laser, config.range_limit_m);
 }
 
 }  // namespace topogeo::topomap

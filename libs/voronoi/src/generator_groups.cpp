@@ -105,7 +105,9 @@ bool BeamDirections::update(const scan::Scan& scan) {
   }
   const double turn =
       scan.angle_step_rad * static_cast<double>(std::max<std::size_t>(scan.ranges_m.size(), 1) - 1);
-  if (turn > 2.0 * std::numbers::pi + 1e-6 || scan.ranges_m.size() > 65000) {
+  // The tolerance lets a full turn through whose step was rounded in a log.
+  constexpr double kTolerance_rad = 0.01;
+  if (turn > 2.0 * std::numbers::pi + kTolerance_rad || scan.ranges_m.size() > 65000) {
     throw std::invalid_argument(
         "scan " + std::to_string(scan.sequence) + ": " + std::to_string(scan.ranges_m.size()) +
         " beams over " + std::to_string(turn) + " rad: must be at most 65000 and at most one turn");

@@ -105,6 +105,7 @@ msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddr
   out.residual_rms_m(result.residual_rms_m);
   out.scan_fitness(result.scan_fitness);
   out.topological_fitness(result.topological_fitness);
+  out.fitness(result.fitness);
   out.second_fitness(result.second_fitness);
   out.evaluations(result.evaluations);
   return out;
@@ -127,6 +128,7 @@ localization::MatchResult from_msg(const msg::MatchResult& message) {
   out.residual_rms_m = finite(message.residual_rms_m(), "residual_rms_m");
   out.scan_fitness = finite(message.scan_fitness(), "scan_fitness");
   out.topological_fitness = finite(message.topological_fitness(), "topological_fitness");
+  out.fitness = finite(message.fitness(), "fitness");
   out.second_fitness = finite(message.second_fitness(), "second_fitness");
   out.evaluations = message.evaluations();
   return out;

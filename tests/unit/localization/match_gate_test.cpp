@@ -23,6 +23,7 @@ class MatchGateTest : public testing::Test {
     result_.residual_rms_m = 0.02;
     result_.scan_fitness = 0.7;
     result_.solutions = {{result_.T_reference_query, 0.8}};
+    result_.fitness = 0.8;
     result_.second_fitness = 0.4;
   }
   Verdict verdict() const { return judge(task_, result_, config_); }

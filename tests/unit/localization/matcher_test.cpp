@@ -32,6 +32,7 @@ void expect_same(const MatchResult& a, const MatchResult& b) {
   EXPECT_EQ(a.inliers, b.inliers);
   EXPECT_EQ(a.violations, b.violations);
   EXPECT_EQ(a.residual_rms_m, b.residual_rms_m);
+  EXPECT_EQ(a.fitness, b.fitness);
   EXPECT_EQ(a.second_fitness, b.second_fitness);
   ASSERT_EQ(a.solutions.size(), b.solutions.size());
   for (std::size_t i = 0; i < a.solutions.size(); ++i) {

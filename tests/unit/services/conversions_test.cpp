@@ -80,7 +80,7 @@ TEST_P(Conversions, MatchResultIsExact) {
   result.information = any_matrix(random_);
   for (double* value :
        {&result.overlap, &result.inliers, &result.violations, &result.residual_rms_m,
-        &result.scan_fitness, &result.topological_fitness, &result.second_fitness}) {
+        &result.scan_fitness, &result.topological_fitness, &result.fitness, &result.second_fitness}) {
     *value = any_double(random_);
   }
   result.evaluations = any_u32(random_);
@@ -100,6 +100,7 @@ TEST_P(Conversions, MatchResultIsExact) {
   EXPECT_EQ(back.residual_rms_m, result.residual_rms_m);
   EXPECT_EQ(back.scan_fitness, result.scan_fitness);
   EXPECT_EQ(back.topological_fitness, result.topological_fitness);
+  EXPECT_EQ(back.fitness, result.fitness);
   EXPECT_EQ(back.second_fitness, result.second_fitness);
   EXPECT_EQ(back.evaluations, result.evaluations);
 }

@@ -55,7 +55,8 @@ struct LocalizerCounts {
       0;  ///< no recent match was accepted; a doubtful one or odometry stood in
   std::uint64_t unconfirmed_loops = 0;  ///< large corrections that no second loop agreed with
   std::uint64_t optimizations = 0;
-  std::uint64_t removed_loops = 0;  ///< outvoted by the rest after optimisation
+  std::uint64_t failed_optimizations = 0;  ///< of those, without a usable result: poses kept
+  std::uint64_t removed_loops = 0;         ///< outvoted by the rest after optimisation
 };
 
 class Localizer {

@@ -75,7 +75,8 @@ struct MatchResult {
   double residual_rms_m = 0.0;
   double scan_fitness = 0.0;         ///< of the refined pose, without the prior, [0, 1]
   double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
-  double second_fitness = 0.0;       ///< of the second best distinct solution, 0 if none
+  double fitness = 0.0;              ///< of the refined pose, [0, 1]
+  double second_fitness = 0.0;  ///< of the second best distinct one after refinement, 0 if none
   std::uint32_t evaluations = 0;
 };
 

@@ -30,6 +30,7 @@ struct PoseGraphEdge {
 };
 
 struct OptimizationSummary {
+  bool usable = false;  ///< false: the poses are as they were
   bool converged = false;
   double initial_cost = 0.0;
   double final_cost = 0.0;

@@ -7,6 +7,8 @@
 // graph.
 #pragma once
 
+#include <vector>
+
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -44,6 +46,10 @@ struct LocalMapConfig {
   /// the niche of a door.
   double hall_rise_m = 0.3;
 };
+
+/// Points of the echoes up to `range_limit_m`, in beam order, in the robot frame.
+std::vector<ScanPoint> scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser,
+                                   double range_limit_m);
 
 /// Fills `nodes`, `branches`, `points` and `T_robot_laser` of `out` from a diagram and the scan
 /// that it was made of; the other fields are the caller's. Coordinates are in the robot frame. Of a
