@@ -1,0 +1,179 @@
+// The localizer as a process: local maps in any order in, the trajectory of one process out.
+#include "topogeo/localization/localizer.hpp"
+
+#include <algorithm>
+#include <csignal>
+
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/trajectory_assembly.hpp"
+
+#include "pool_fixture.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+class LocalizerTest : public ::testing::Test {
+ protected:
+  LocalizerTest() {
+    loop_.add<msg::TrajectorySegment>(segments_, [this](const auto& message, const auto&) {
+      EXPECT_TRUE(assembly_.add(message));
+    });
+    loop_.add<msg::LoopClosures>(
+        closures_, [this](const auto& message, const auto&) { last_closures_ = message; });
+    loop_.add<msg::LivePose>(poses_,
+                             [this](const auto& message, const auto&) { last_pose_ = message; });
+    loop_.add<msg::StreamEnd>(ends_in_, [this](const auto& message, const auto&) {
+      if (message.stage() == "localizer") end_ = message;
+    });
+    loop_.add<msg::ServiceStatus>(
+        statuses_, [this](const auto& message, const auto&) { last_status_ = message; });
+  }
+
+  std::unique_ptr<Program> start(const std::string& name, std::vector<std::string> words = {}) {
+    words.insert(words.end(), {"--partition", partition_});
+    return std::make_unique<Program>(scratch_, name, words);
+  }
+  void publish(const topomap::LocalMap& map) {
+    ASSERT_TRUE(map_writer_.write(service::to_msg(map)));
+  }
+  void end_stream() {
+    msg::StreamEnd end;
+    messaging::set_header(end, "robot", maps_.back()->stamp_ns, 0);
+    messaging::set_text(end.stage(), "local_mapper", "stage");
+    end.count(maps_.size());
+    ASSERT_TRUE(ends_out_.write(end));
+  }
+  bool wait_until(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition() && std::chrono::steady_clock::now() < end) loop_.run_for(milliseconds(5));
+    return condition();
+  }
+  double counter(const std::string& name) const {
+    for (const msg::Counter& c : last_status_->counters()) {
+      if (c.name().to_string() == name) return c.value();
+    }
+    return -1.0;
+  }
+  void expect_result_of_one_process() {
+    localization::InProcessPool pool;
+    localization::Localizer localizer({}, pool);
+    for (const auto& map : maps_) localizer.add(map);
+    localizer.finish();
+    const topomap::Trajectory expected = localizer.trajectory();
+    const auto got = assembly_.whole(end_->version());
+    ASSERT_TRUE(got) << "not all segments came before the end with its version";
+    EXPECT_EQ(end_->count(), maps_.size());
+    EXPECT_EQ(got->version, expected.version);
+    ASSERT_EQ(got->stops.size(), expected.stops.size());
+    for (std::size_t i = 0; i < expected.stops.size(); ++i) {
+      EXPECT_EQ(got->stops[i].T_map_robot, expected.stops[i].T_map_robot) << i;
+      EXPECT_EQ(got->stops[i].covariance, expected.stops[i].covariance) << i;
+    }
+    const std::vector<topomap::LoopClosure> loops = localizer.loop_closures();
+    EXPECT_EQ(last_closures_->version(), expected.version);
+    ASSERT_EQ(last_closures_->closures().size(), loops.size());
+    ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+    EXPECT_EQ(counter("stops"), static_cast<double>(maps_.size()));
+    EXPECT_EQ(counter("tasks"), static_cast<double>(localizer.counts().tasks));
+    EXPECT_EQ(counter("accepted"), static_cast<double>(localizer.counts().verdicts[0]));
+    EXPECT_EQ(counter("loop_closures"), static_cast<double>(loops.size()));
+    EXPECT_EQ(last_status_->fault_count(), 0U) << last_status_->message().to_string();
+  }
+
+  std::string partition_ = random_partition();
+  Scratch scratch_;
+  Maps maps_ = maps_of_room();
+  messaging::Participant participant_{options_in(partition_)};
+  messaging::Writer<msg::LocalMap> map_writer_{participant_};
+  messaging::Writer<msg::Odometry> odometry_writer_{participant_};
+  messaging::Writer<msg::StreamEnd> ends_out_{participant_};
+  messaging::Reader<msg::TrajectorySegment> segments_{participant_};
+  messaging::Reader<msg::LoopClosures> closures_{participant_};
+  messaging::Reader<msg::LivePose> poses_{participant_};
+  messaging::Reader<msg::StreamEnd> ends_in_{participant_};
+  messaging::Reader<msg::ServiceStatus> statuses_{participant_};
+  messaging::EventLoop loop_;
+  service::TrajectoryAssembly assembly_;
+  std::optional<msg::LoopClosures> last_closures_;
+  std::optional<msg::LivePose> last_pose_;
+  std::optional<msg::StreamEnd> end_;
+  std::optional<msg::ServiceStatus> last_status_;
+};
+
+TEST_F(LocalizerTest, MapsInAnyOrderGiveTheTrajectoryOfOneProcess) {
+  const auto localizer = start("localizer");
+  // The end first, then from the last map to the first: nothing may be lost by a race of topics.
+  end_stream();
+  for (auto map = maps_.rbegin(); map != maps_.rend(); ++map) publish(**map);
+  ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
+  expect_result_of_one_process();
+  EXPECT_EQ(counter("tasks_in_process"), counter("tasks"));
+  localizer->send_signal(SIGTERM);
+  EXPECT_EQ(localizer->wait(), 0) << localizer->err();
+}
+
+TEST_F(LocalizerTest, WorkersThatItWaitedForDoAllTheMatching) {
+  const auto localizer = start("localizer", {"--wait-workers", "2", "--wait-seconds", "30"});
+  for (const auto& map : maps_) publish(*map);
+  end_stream();
+  const auto one = start("ga_worker", {"--worker-id", "one"});
+  const auto two = start("ga_worker", {"--worker-id", "two", "--slots", "2"});
+  ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
+  expect_result_of_one_process();
+  EXPECT_EQ(counter("tasks_in_process"), 0.0);
+  EXPECT_GT(counter("tasks_sent"), 0.0);
+}
+
+TEST_F(LocalizerTest, WithoutTheWorkersItGoesOnAfterAWhile) {
+  const auto localizer = start("localizer", {"--wait-workers", "3", "--wait-seconds", "0.2"});
+  for (const auto& map : maps_) publish(*map);
+  end_stream();
+  ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
+  expect_result_of_one_process();
+  EXPECT_THAT(localizer->err(), ::testing::HasSubstr("0 of 3 workers came within 0.2 s"));
+}
+
+TEST_F(LocalizerTest, TheLivePoseFollowsTheOdometryBetweenStops) {
+  const auto localizer = start("localizer");
+  publish(*maps_[0]);
+  ASSERT_TRUE(wait_until([&] { return assembly_.version() == 1; }));
+  ASSERT_TRUE(odometry_writer_.wait_for_matched(1, kPatience));
+  const geometry::Pose2 moved{0.4, -0.1, 0.2};
+  msg::Odometry odometry;
+  messaging::set_header(odometry, "robot", maps_[0]->stamp_ns + 1, 9);
+  odometry.T_odom_robot(service::to_msg(maps_[0]->T_odom_robot * moved));
+  ASSERT_TRUE(odometry_writer_.write(odometry));
+  ASSERT_TRUE(wait_until([&] { return last_pose_.has_value(); }));
+  const service::LivePose pose = service::from_msg(*last_pose_);
+  EXPECT_EQ(pose.sequence, 9U);
+  EXPECT_EQ(pose.state, msg::kPoseTracking);
+  EXPECT_EQ(pose.local_map_id, 0U);
+  EXPECT_NEAR(pose.T_map_robot.x_m, 0.4, 1e-12);
+  EXPECT_NEAR(pose.T_map_robot.y_m, -0.1, 1e-12);
+  EXPECT_NEAR(pose.T_map_robot.theta_rad, 0.2, 1e-12);
+  EXPECT_GT(pose.covariance(0, 0), 0.0);
+}
+
+TEST_F(LocalizerTest, AStopWhileItWaitsForWorkersOrMapsEndsItCleanly) {
+  const auto waiting = start("localizer", {"--wait-workers", "1", "--wait-seconds", "600"});
+  ASSERT_TRUE(wait_until([&] { return last_status_.has_value(); }));
+  waiting->send_signal(SIGINT);
+  EXPECT_EQ(waiting->wait(10.0), 0) << waiting->err();
+}
+
+TEST_F(LocalizerTest, AStopWhileAWorkerHangsEndsItCleanly) {
+  FakeWorker hanging(partition_, loop_, "hanging", [](FakeWorker&, const msg::MatchTask&) {});
+  const auto localizer = start("localizer", {"--wait-workers", "1", "--wait-seconds", "30"});
+  for (const auto& map : maps_) publish(*map);
+  ASSERT_TRUE(wait_until([&] { return hanging.received > 0; }));
+  localizer->send_signal(SIGTERM);
+  EXPECT_EQ(localizer->wait(10.0), 0) << localizer->err();
+  EXPECT_FALSE(end_);
+}
+
+}  // namespace
+}  // namespace topogeo::test
