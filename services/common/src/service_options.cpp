@@ -31,7 +31,7 @@ void add_service_options(CLI::App& app, ServiceOptions& options) {
       ->capture_default_str();
   app.add_option("--partition", options.partition, "only services of one partition meet")
       ->capture_default_str();
-  app.add_option("--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
+  app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
       ->check([](const std::string& id) {
         return id.empty() || id.size() > kLongestRobotId ? "expected 1 to 32 bytes" : "";
       })
