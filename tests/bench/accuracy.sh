@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Maps every log of a data folder with one process and prints how far odometry and the corrected
+# trajectory are from the reference, as the accuracy table of RESULTS.md.
+#   tests/bench/accuracy.sh EVALUATION_TOOL [DATA_FOLDER]
+# EVALUATION_TOOL compares two TUM trajectories and prints JSON (evaluate_trajectory.py).
+# DATA_FOLDER holds X.clf.gz, X.ref.tum and X.relations; default ../shared/data beside the project.
+# TOPOGEO names the executable; default build/bin/topogeo.
+set -euo pipefail
+
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
+topogeo=${TOPOGEO:-$root/build/bin/topogeo}
+
+die() { printf 'accuracy: %s\n' "$*" >&2; exit 1; }
+
+if [ $# -lt 1 ] || [ $# -gt 2 ]; then die "usage: accuracy.sh EVALUATION_TOOL [DATA_FOLDER]"; fi
+tool=$1
+data=${2:-$root/../shared/data}
+[ -r "$tool" ] || die "cannot read the evaluation tool '$tool'"
+[ -x "$topogeo" ] || die "there is no '$topogeo'; build it with ./run build"
+shopt -s nullglob
+logs=("$data"/*.clf.gz)
+[ ${#logs[@]} -gt 0 ] || die "no *.clf.gz in '$data'"
+
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
+# One row: log, which trajectory, then the figures of the tool's JSON.
+row() {
+  local log=$1 which=$2 estimate=$3 seconds=$4
+  local reference=${log%.clf.gz}.ref.tum relations=${log%.clf.gz}.relations arguments=()
+  [ ! -r "$relations" ] || arguments=(--relations "$relations")
+  python3 "$tool" "$estimate" "$reference" "${arguments[@]}" --json |
+    python3 -c '
+import json, sys
+log, which, seconds = sys.argv[1:]
+figures = json.load(sys.stdin)
+relations = figures.get("relations") or {}
+def metres(group, digits):
+    return "-" if not group else "%.*f" % (digits, group["m"])
+print("| %s | %s | %.3f | %s | %.3f | %s | %s | %s |" % (
+    log, which, figures["ate"], metres(figures["loop"], 3), figures["end"],
+    metres(relations.get("all"), 4), metres(relations.get("far"), 4), seconds))
+' "$(basename "${log%.clf.gz}")" "$which" "$seconds"
+}
+
+printf '| log | trajectory | ate m | loop m | end m | relations, all m | relations, far m | wall / CPU s |\n'
+printf '|---|---|---|---|---|---|---|---|\n'
+TIMEFORMAT='%1R / %1U'
+for log in "${logs[@]}"; do
+  [ -r "${log%.clf.gz}.ref.tum" ] || continue
+  folder=$out/$(basename "${log%.clf.gz}")
+  { time "$topogeo" map --log "$log" --out "$folder" > "$out/said" 2>&1; } 2> "$out/time" ||
+    { cat "$out/said" >&2; die "topogeo failed on '$log'"; }
+  row "$log" odometry "$folder/odometry.tum" -
+  row "$log" corrected "$folder/trajectory.tum" "$(tail -n 1 "$out/time")"
+done
