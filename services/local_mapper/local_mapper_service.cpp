@@ -45,7 +45,11 @@ void LocalMapperService::on_scan(const msg::Scan& message) {
       service_.status().set_state(msg::kServiceRunning);
     }
     service_.status().set_counter("scans", static_cast<double>(++scans_used_));
-    if (const std::optional<topomap::LocalMap> map = mapper_.add(*scan)) publish(*map);
+    try {
+      if (const std::optional<topomap::LocalMap> map = mapper_.add(*scan)) publish(*map);
+    } catch (const std::invalid_argument& error) {
+      service_.status().fault("unusable scan", error.what());
+    }
   }
   finish_if_complete();
 }

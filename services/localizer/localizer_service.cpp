@@ -116,8 +116,14 @@ void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
 // The pose between stops: the corrected pose of the last stop and the odometry since.
 void LocalizerService::on_odometry(const msg::Odometry& message) {
   if (!service_.is_own(message) || !last_map_) return;
-  const geometry::Pose2 T_stop_robot =
-      geometry::between(last_map_->T_odom_robot, service::from_msg(message.T_odom_robot()));
+  geometry::Pose2 T_odom_robot;
+  try {
+    T_odom_robot = service::from_msg(message.T_odom_robot());
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("invalid odometry", error.what());
+    return;
+  }
+  const geometry::Pose2 T_stop_robot = geometry::between(last_map_->T_odom_robot, T_odom_robot);
   const localization::UncertainPose pose =
       localization::advance({last_stop_.T_map_robot, last_stop_.covariance}, T_stop_robot,
                             service_.setup().config.config.localizer.odometry);

@@ -147,7 +147,7 @@ void MapStoreService::publish(const topomap::GlobalMap& map) {
   for (const msg::MapElement& element : update.changed) {
     if (elements_.write(element)) {
       updates_.sent(element);
-    } else {  // the next update has it again
+    } else {  // tried again with the next update
       service_.status().fault("map element not sent", std::to_string(element.id()));
     }
   }
@@ -182,6 +182,7 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   document.loop_closures = input_.usable_closures();
   document.global_map = pipeline::fuse(config.global_map, document.local_maps, trajectory);
   publish(document.global_map);
+  stored_version_ = 0;  // the closures of this version may have come after its poses were stored
   if (!store()) throw std::runtime_error("the database could not be brought up to date");
   database_.put_global_map(document.global_map);
   write_results(options_.directory, document, options_.title);

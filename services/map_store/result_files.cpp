@@ -21,8 +21,12 @@ storage::MapDatabase fresh_database(const fs::path& path, const std::string& rob
                                  "; move it away or name another file with --database");
   }
   try {
-    // The main file last: what is left of an interrupted removal is still taken for ours.
-    for (const char* suffix : {"-wal", "-shm", ""}) fs::remove(path.string() + suffix);
+    // The map of the run before is kept once: a map store that was started again by mistake must
+    // not cost it. The write-ahead log is empty here, since opening it above has merged it.
+    fs::path previous = path;
+    previous.replace_extension(".previous" + path.extension().string());
+    if (fs::exists(path)) fs::rename(path, previous);
+    for (const char* suffix : {"-wal", "-shm"}) fs::remove(path.string() + suffix);
     return storage::MapDatabase::open_or_create(path, robot_id, seed);
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());

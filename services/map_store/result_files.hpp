@@ -10,7 +10,8 @@
 
 namespace topogeo::map_store {
 
-/// An empty database in place of the one that an earlier run has left. Throws
+/// An empty database in place of the one that an earlier run has left, which is kept under the name
+/// NAME.previous.EXTENSION. Throws
 /// service::BadInputError when the file there is no readable topogeo database (nothing is removed
 /// then) or the new one cannot be made.
 storage::MapDatabase fresh_database(const std::filesystem::path& path, const std::string& robot_id,

@@ -110,6 +110,7 @@ int map_log(const JobOptions& options) {
   if (!add_scans(job, run, times, interruption)) return kSignalBase + interruption.received();
   tell_skipped(job.reader.statistics());
 
+  if (interruption.received() != 0) return kSignalBase + interruption.received();
   std::cerr << "matching revisited places\n";
   storage::MapDocument document;
   {
@@ -128,6 +129,8 @@ int map_log(const JobOptions& options) {
   report.cpu_s = support::process_cpu_s();
   storage::write_report(options.out / "report.json", report);
   print_summary(std::cout, report, options.out);
+  if (interruption.received() != 0)
+    return kSignalBase + interruption.received();  // came while writing
   if (options.reference) print_comparison(std::cout, compare(options.out, *options.reference));
   return 0;
 }

@@ -58,8 +58,8 @@ std::string check_rate(const std::string& text) {
   double factor = 0.0;
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, factor);
-  if (error == std::errc() && rest == end && factor > 0.0 && factor <= 1e6) return {};
-  return "'" + text + "': expected lossless, realtime or a factor above 0";
+  if (error == std::errc() && rest == end && factor >= 0.01 && factor <= 1000.0) return {};
+  return "'" + text + "': expected lossless, realtime or a factor from 0.01 to 1000";
 }
 
 }  // namespace

@@ -72,14 +72,12 @@ std::string profile_name(const TopicInfo& topic, const std::string& role, const 
 
 void Endpoint::Shared::push(Event event) {
   event.topic = topic;
-  std::function<void()> wake_now;
-  {
-    const std::lock_guard lock(mutex);
-    if (events.size() == kMaxEvents) events.pop_front();
-    events.push_back(std::move(event));
-    wake_now = wake;
-  }
-  if (wake_now) wake_now();
+  // Woken under the lock: once set_wake({}) has returned, nobody is still on the way to a loop that
+  // ends.
+  const std::lock_guard lock(mutex);
+  if (events.size() == kMaxEvents) events.pop_front();
+  events.push_back(std::move(event));
+  if (wake) wake();
 }
 
 void Endpoint::Shared::set_matched(int current, int change,
