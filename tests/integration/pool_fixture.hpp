@@ -93,8 +93,8 @@ class FakeWorker {
 
   FakeWorker(const FakeWorker&) = delete;
   FakeWorker& operator=(const FakeWorker&) = delete;
-  FakeWorker(const std::string& partition, messaging::EventLoop& loop, std::string worker_id,
-             OnTask on_task)
+  FakeWorker(const std::string& partition, messaging::EventLoop& loop, const std::string& worker_id,
+             const OnTask& on_task)
       : loop_(loop),
         participant_(options_in(partition)),
         statuses_(participant_),
