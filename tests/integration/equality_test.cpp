@@ -61,6 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Workers, EqualityByWorkersTest, testing::Values(0, 1, 2
                          [](const auto& workers) { return std::to_string(workers.param); });
 
 TEST_F(EqualityTest, WorkerKilledHalfWay) {
+  use_udp_only();
   map("floor");
   Program run(scratch_, "topogeo", run_words("run", 2));
   run.wait_for_progress(40);
@@ -74,6 +75,7 @@ TEST_F(EqualityTest, WorkerKilledHalfWay) {
 }
 
 TEST_F(EqualityTest, AllWorkersKilledHalfWay) {
+  use_udp_only();
   map("floor");
   Program run(scratch_, "topogeo", run_words("run", 2));
   run.wait_for_progress(40);

@@ -19,7 +19,10 @@ using testing::SizeIs;
 
 class InterruptionTest : public testing::Test {
  protected:
-  InterruptionTest() { write_log("floor", log_); }
+  InterruptionTest() {
+    use_udp_only();
+    write_log("floor", log_);
+  }
 
   std::vector<std::string> words() {
     return {"run", "--log", log_, "--out", out_, "--workers", "1", "--domain", own_domain()};

@@ -68,6 +68,7 @@ Program::Program(const Scratch& scratch, const std::string& name,
   std::vector<std::string> all = {std::string(TOPOGEO_BIN) + "/" + name};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> pointers;
+  pointers.reserve(all.size() + 1);
   for (std::string& word : all) pointers.push_back(word.data());
   pointers.push_back(nullptr);
 
@@ -159,6 +160,10 @@ std::string read_file(const std::filesystem::path& path) {
 std::string own_domain() {
   // 1 to 100: the ports of higher domains overlap with those that the system gives to clients.
   return std::to_string(1 + std::hash<std::string>{}(test_name()) % 100);
+}
+
+void use_udp_only() {
+  ::setenv("TOPOGEO_DDS_PARTICIPANT", "udp_only", 1);
 }
 
 void write_log(const std::string& world, const std::filesystem::path& log,

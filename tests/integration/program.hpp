@@ -69,6 +69,10 @@ std::string read_file(const std::filesystem::path& path);
 /// other.
 std::string own_domain();
 
+/// Programs started from here on use no shared memory. For tests that kill programs: what these
+/// leave in /dev/shm would fill that of a container.
+void use_udp_only();
+
 /// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth = {});

@@ -31,6 +31,7 @@ const std::vector<Pose2> kCross = {{1, 0, 0}, {0, 1, 0.5}, {-1, 0, 1}, {0, -1, -
 TEST(TrajectoryErrorTest, TurnedAndShiftedTruthHasNone) {
   const Pose2 T{3.0, -7.0, 2.0};
   std::vector<Pose2> moved;
+  moved.reserve(kCross.size());
   for (const Pose2& pose : kCross) moved.push_back(T * pose);
 
   const TrajectoryError error = trajectory_error(poses(moved), poses(kCross));
