@@ -81,15 +81,9 @@ void MapStoreService::on_local_map(const msg::LocalMap& message) {
   if (service_.status().state() == msg::kServiceWaiting) {
     service_.status().set_state(msg::kServiceRunning);
   }
-  switch (input_.add(service::from_msg(message))) {
-    case MapInput::Arrival::kNew:
-      return;
-    case MapInput::Arrival::kKnown:
-      return;
-    case MapInput::Arrival::kDifferent:
-      service_.status().fault("local map differs",
-                              "another map " + std::to_string(message.id()) + " came before");
-      return;
+  if (input_.add(service::from_msg(message)) == MapInput::Arrival::kDifferent) {
+    service_.status().fault("local map differs",
+                            "another map " + std::to_string(message.id()) + " came before");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -78,9 +79,9 @@ TEST_P(Conversions, MatchResultIsExact) {
   for (int i = 0; i < 3; ++i) result.solutions.push_back({any_pose(random_), any_double(random_)});
   result.T_reference_query = any_pose(random_);
   result.information = any_matrix(random_);
-  for (double* value :
-       {&result.overlap, &result.inliers, &result.violations, &result.residual_rms_m,
-        &result.scan_fitness, &result.topological_fitness, &result.fitness, &result.second_fitness}) {
+  for (double* value : {&result.overlap, &result.inliers, &result.violations,
+                        &result.residual_rms_m, &result.scan_fitness, &result.topological_fitness,
+                        &result.fitness, &result.second_fitness}) {
     *value = any_double(random_);
   }
   result.evaluations = any_u32(random_);
@@ -205,8 +206,9 @@ TEST(ConversionBounds, WhatDoesNotFitIsRefusedByName) {
                 to_msg(localization::MatchTask{}, {"r", 0, 0, std::string(65, 'w'), "", "", 0});
               }),
               HasSubstr("worker_id"));
-  const std::vector<topomap::LoopClosure> closures(16385);
-  EXPECT_THAT(refusal([&] { to_msg(closures, 0, "r", 0, 0); }), HasSubstr("closures has 16385"));
+  const std::vector<topomap::LoopClosure> closures(msg::kMaxLoopClosures + 1);
+  EXPECT_THAT(refusal([&] { to_msg(closures, 0, "r", 0, 0); }),
+              HasSubstr("closures has " + std::to_string(closures.size())));
 }
 
 TEST(ConversionChecks, NumbersThatAreNoneAreRefused) {

@@ -20,7 +20,7 @@ messaging::Handle handle_of(const msg::MapElement& element) {
 class Elements : public testing::Test {
  protected:
   map_store::ElementUpdates::Update send(const topomap::GlobalMap& map) {
-    const auto update = updates_.update_to(map, 1);
+    auto update = updates_.update_to(map, 1);
     for (const auto& element : update.gone) {
       mirror_.remove(handle_of(element));
       updates_.disposed(element);
