@@ -45,11 +45,13 @@ void LocalMapperService::on_scan(const msg::Scan& message) {
       service_.status().set_state(msg::kServiceRunning);
     }
     service_.status().set_counter("scans", static_cast<double>(++scans_used_));
+    std::optional<topomap::LocalMap> map;
     try {
-      if (const std::optional<topomap::LocalMap> map = mapper_.add(*scan)) publish(*map);
+      map = mapper_.add(*scan);
     } catch (const std::invalid_argument& error) {
       service_.status().fault("unusable scan", error.what());
     }
+    if (map) publish(*map);
   }
   finish_if_complete();
 }

@@ -113,23 +113,29 @@ void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
   schedule();
 }
 
-// The pose between stops: the corrected pose of the last stop and the odometry since.
 void LocalizerService::on_odometry(const msg::Odometry& message) {
-  if (!service_.is_own(message) || !last_map_) return;
-  geometry::Pose2 T_odom_robot;
+  if (!service_.is_own(message)) return;
   try {
-    T_odom_robot = service::from_msg(message.T_odom_robot());
+    newest_ = {message.stamp_ns(), message.sequence_number(),
+               service::from_msg(message.T_odom_robot())};
   } catch (const std::invalid_argument& error) {
     service_.status().fault("invalid odometry", error.what());
     return;
   }
-  const geometry::Pose2 T_stop_robot = geometry::between(last_map_->T_odom_robot, T_odom_robot);
+  send_pose();
+}
+
+// The pose now: the corrected pose of the last stop and the odometry since.
+void LocalizerService::send_pose() {
+  if (!last_map_) return;
+  const geometry::Pose2 T_stop_robot =
+      geometry::between(last_map_->T_odom_robot, newest_.T_odom_robot);
   const localization::UncertainPose pose =
       localization::advance({last_stop_.T_map_robot, last_stop_.covariance}, T_stop_robot,
                             service_.setup().config.config.localizer.odometry);
   service::LivePose live;
-  live.stamp_ns = message.stamp_ns();
-  live.sequence = message.sequence_number();
+  live.stamp_ns = newest_.stamp_ns;
+  live.sequence = newest_.sequence;
   live.state = last_step_in_doubt_ ? msg::kPoseUncertain : msg::kPoseTracking;
   live.T_map_robot = pose.T_a_b;
   live.covariance = pose.covariance;
@@ -190,7 +196,11 @@ void LocalizerService::step(const MapPointer& map) {
   localizer_.add(map);
   last_step_in_doubt_ = localizer_.counts().steps_in_doubt > in_doubt;
   last_map_ = map;
+  if (map->stamp_ns >= newest_.stamp_ns) {
+    newest_ = {map->stamp_ns, map->sequence, map->T_odom_robot};
+  }
   publish(false);
+  send_pose();  // a correction shows at once, also when no odometry comes any more
   count();
 }
 
@@ -199,6 +209,7 @@ void LocalizerService::finish() {
   localizer_.finish();
   finished_ = true;
   publish(true);
+  send_pose();
   count();
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stop_.stamp_ns, 0);

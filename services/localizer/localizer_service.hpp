@@ -40,6 +40,7 @@ class LocalizerService {
 
   void on_map(const msg::LocalMap& message);
   void on_odometry(const msg::Odometry& message);
+  void send_pose();
   void on_stream_end(const msg::StreamEnd& message);
   /// Has the work done outside of message handlers, which the pool needs.
   void schedule();
@@ -67,6 +68,12 @@ class LocalizerService {
   std::vector<std::uint64_t> hashes_;          // of those worked on; index: id
   MapPointer last_map_;
   topomap::StopPose last_stop_;
+  struct Newest {
+    std::int64_t stamp_ns = 0;
+    std::uint64_t sequence = 0;
+    geometry::Pose2 T_odom_robot;
+  };
+  Newest newest_;  // odometry that came last
   bool last_step_in_doubt_ = false;
   TrajectoryUpdates updates_;
   std::vector<topomap::LoopClosure> sent_closures_;

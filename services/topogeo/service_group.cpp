@@ -74,8 +74,10 @@ std::optional<ServiceGroup::Death> ServiceGroup::next_death() {
   return std::nullopt;
 }
 
-void ServiceGroup::send_signal(int signal_number) {
-  for (ChildProcess& child : children_) child.send_signal(signal_number);
+void ServiceGroup::send_signal(int signal_number, const std::string& name) {
+  for (ChildProcess& child : children_) {
+    if (name.empty() || child.name() == name) child.send_signal(signal_number);
+  }
 }
 
 std::vector<std::string> ServiceGroup::running() {

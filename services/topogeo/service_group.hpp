@@ -36,7 +36,8 @@ class ServiceGroup {
   /// A service that has ended since the last call.
   std::optional<Death> next_death();
 
-  void send_signal(int signal_number);
+  /// To all of them, or to the one of that name.
+  void send_signal(int signal_number, const std::string& name = {});
   /// Names of those that still run.
   [[nodiscard]] std::vector<std::string> running();
 
