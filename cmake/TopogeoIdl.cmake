@@ -13,7 +13,8 @@ find_program(FASTDDSGEN fastddsgen REQUIRED)
 #
 # The generated constructors register the type's description every time, which costs 20 us for each
 # point of a map; sed takes that out, and libs/messaging registers it once. It also takes out
-# addresses in comments that differ from run to run.
+# addresses in comments that differ from run to run, and has the buffer of a key cleared before each use:
+# what an earlier, longer key left in the padding would give one instance two handles.
 function(topogeo_add_idl)
   cmake_parse_arguments(ARG "" "NAME" "FILES" ${ARGN})
   set(staging ${CMAKE_CURRENT_BINARY_DIR}/staging)
@@ -23,10 +24,12 @@ function(topogeo_add_idl)
 
   set(staged "")
   set(staged_types "")
+  set(staged_keys "")
   set(outputs "")
   foreach(file IN LISTS ARG_FILES)
     cmake_path(GET file STEM stem)
     list(APPEND staged_types ${staging}/${stem}.cxx)
+    list(APPEND staged_keys ${staging}/${stem}PubSubTypes.cxx)
     foreach(name ${stem} ${stem}PubSubTypes ${stem}TypeObject)
       list(APPEND staged ${staging}/${name}.h ${staging}/${name}.cxx)
       list(APPEND outputs ${generated}/${name}.h ${generated}/${name}.cxx)
@@ -41,6 +44,9 @@ function(topogeo_add_idl)
             || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
     COMMAND sed -i -E -e "/^ +register[A-Za-z0-9_]+Types\\(\\)$<SEMICOLON>$/d"
             -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
+    COMMAND sed -i -E
+            -e "s/^( +)p_type->serializeKey\\(ser\\)$<SEMICOLON>/\\1memset(m_keyBuffer, 0, p_type->getKeyMaxCdrSerializedSize())$<SEMICOLON>\\n&/"
+            ${staged_keys}
     COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${generated}
     DEPENDS ${ARG_FILES}
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}

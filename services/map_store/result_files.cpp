@@ -14,7 +14,7 @@ storage::MapDatabase fresh_database(const fs::path& path, const std::string& rob
                                     std::uint64_t seed) {
   try {
     if (fs::exists(path) && !fs::is_empty(path)) {
-      static_cast<void>(storage::MapDatabase::open_existing(path));
+      storage::MapDatabase::check_replaceable(path);
     }
   } catch (const std::exception& error) {
     throw service::BadInputError(std::string(error.what()) +

@@ -217,6 +217,10 @@ MapDatabase MapDatabase::open_existing(const std::filesystem::path& path) {
   return database;
 }
 
+void MapDatabase::check_replaceable(const std::filesystem::path& path) {
+  static_cast<void>(MapDatabase(path, true));
+}
+
 void MapDatabase::create_schema(const std::string& robot_id, std::uint64_t seed) {
   SqliteTransaction transaction(*connection_, SqliteTransaction::Kind::kWrite);
   connection_->execute(kSchema);

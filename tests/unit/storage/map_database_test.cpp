@@ -131,6 +131,22 @@ TEST_F(MapDatabaseFile, RefusesFilesThatAreNone) {
               HasSubstr("cannot be opened"));
 }
 
+TEST_F(MapDatabaseFile, TakesAFileThatWasJustBegunForReplaceable) {
+  std::ofstream(path(), std::ios::binary) << "no database, but long enough to be looked into";
+  EXPECT_THROW(MapDatabase::check_replaceable(path()), std::runtime_error);
+  std::filesystem::remove(path());
+  // What SQLite writes first, before there is any table.
+  std::string page(4096, '\0');
+  page.replace(0, 16, std::string("SQLite format 3\0", 16));
+  page.replace(16, 8, std::string("\x10\x00\x02\x02\x00\x40\x20\x20", 8));
+  page[27] = 1;
+  page[31] = 1;
+  page[100] = 0x0d;
+  page[105] = 0x10;
+  std::ofstream(path(), std::ios::binary) << page;
+  EXPECT_NO_THROW(MapDatabase::check_replaceable(path()));
+}
+
 TEST_F(MapDatabaseFile, RefusesATruncatedFile) {
   store(sample_document(60));
   const std::string bytes = content(path());

@@ -34,6 +34,10 @@ class MapDatabase {
   /// Opens an existing database of any robot. Throws as above, also when there is none.
   static MapDatabase open_existing(const std::filesystem::path& path);
 
+  /// Throws std::runtime_error when the file is neither a map database, of whatever robot, nor an
+  /// SQLite file without content, as a program leaves that was stopped while it created one.
+  static void check_replaceable(const std::filesystem::path& path);
+
   MapDatabase(MapDatabase&&) noexcept;
   MapDatabase& operator=(MapDatabase&&) noexcept;
   ~MapDatabase();
