@@ -1,5 +1,5 @@
-// Local maps of recorded logs. The recordings are not part of the project: set TOPOGEO_LOG_DIR to a
-// folder with CARMEN logs (*.clf, *.clf.gz) to run this.
+// Local maps of recorded logs. The recordings are not part of the project: they are looked for
+// beside it in ../shared/data, or in the folder that TOPOGEO_LOG_DIR names (*.clf, *.clf.gz).
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -17,8 +17,10 @@ namespace {
 
 std::vector<std::filesystem::path> logs() {
   std::vector<std::filesystem::path> paths;
-  const char* folder = std::getenv("TOPOGEO_LOG_DIR");
-  if (folder == nullptr) return paths;
+  const char* named = std::getenv("TOPOGEO_LOG_DIR");
+  const std::filesystem::path folder =
+      named != nullptr ? named : TOPOGEO_SOURCE_DIR "/../shared/data";
+  if (!std::filesystem::is_directory(folder)) return paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().string().find(".clf") != std::string::npos) paths.push_back(entry.path());
   }
@@ -27,7 +29,7 @@ std::vector<std::filesystem::path> logs() {
 }
 
 TEST(LocalMapBuilderLogs, MostScansGiveARealBranch) {
-  if (logs().empty()) GTEST_SKIP() << "no logs in TOPOGEO_LOG_DIR";
+  if (logs().empty()) GTEST_SKIP() << "no logs in ../shared/data or TOPOGEO_LOG_DIR";
   for (const auto& path : logs()) {
     scan::CarmenLogReader reader(path);
     voronoi::LocalVoronoi voronoi{voronoi::VoronoiConfig{}};
