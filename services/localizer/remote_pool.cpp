@@ -20,8 +20,8 @@ constexpr std::chrono::seconds kLongestWait{1};
 
 /// Workers tell their status every 500 ms; one that is silent for a second is gone. Liveliness of
 /// DDS alone does not do: while any other worker lives, Fast DDS 2.9 takes the dead one to live,
-/// too, until the lease of its participant ends (upstream report 4373). Ticks of the loop are counted
-/// and not time, so that a loop that stood still takes nobody to be gone.
+/// too, until the lease of its participant ends (upstream report 4373). Ticks of the loop are
+/// counted and not time, so that a loop that stood still takes nobody to be gone.
 constexpr std::chrono::milliseconds kTick{125};
 constexpr int kSilentTicks = 9;
 
