@@ -18,8 +18,8 @@ namespace topogeo::sensor_gateway {
 
 struct GatewayOptions {
   std::filesystem::path log;
-  Rate rate;        ///< empty: lossless
-  int readers = 1;  ///< scan readers to wait for before the first scan, >= 0
+  service::ReplayRate rate;  ///< empty: lossless
+  int readers = 1;           ///< scan readers to wait for before the first scan, >= 0
   bool exit_at_end = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
            "--rate",
            [&](const std::string& text) {
              try {
-               options.rate = sensor_gateway::parse_rate(text);
+               options.rate = service::parse_rate(text);
              } catch (const std::invalid_argument& error) {
                throw CLI::ValidationError("--rate", error.what());
              }

@@ -3,15 +3,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
+
+#include "topogeo/service/replay_rate.hpp"
 
 namespace topogeo::sensor_gateway {
-
-/// Speed of a replay: log time over real time, > 0; empty: as fast as the readers take the scans.
-using Rate = std::optional<double>;
-
-/// "realtime", "lossless" or a factor from 0.01 to 1000. Throws std::invalid_argument otherwise.
-Rate parse_rate(const std::string& text);
 
 class ReplayPace {
  public:
@@ -20,7 +15,7 @@ class ReplayPace {
   static constexpr std::int64_t kLongestGap_ns = 60'000'000'000;
   static constexpr double kShortened_s = 1.0;
 
-  explicit ReplayPace(Rate rate) : rate_(rate) {}
+  explicit ReplayPace(service::ReplayRate rate) : rate_(rate) {}
 
   struct Due {
     double after_s = 0.0;        ///< real time from the first scan to this one
@@ -30,7 +25,7 @@ class ReplayPace {
   Due next(std::int64_t stamp_ns);
 
  private:
-  Rate rate_;
+  service::ReplayRate rate_;
   std::optional<std::int64_t> last_stamp_ns_;
   double after_s_ = 0.0;
 };

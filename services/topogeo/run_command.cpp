@@ -1,5 +1,4 @@
 // topogeo run: maps a log with all services as processes on DDS.
-#include <charconv>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
@@ -54,12 +54,12 @@ storage::Report make_report(const RunOptions& options, Job& job, const RunResult
 }
 
 std::string check_rate(const std::string& text) {
-  if (text == "lossless" || text == "realtime") return {};
-  double factor = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, factor);
-  if (error == std::errc() && rest == end && factor >= 0.01 && factor <= 1000.0) return {};
-  return "'" + text + "': expected lossless, realtime or a factor from 0.01 to 1000";
+  try {
+    static_cast<void>(service::parse_rate(text));
+    return {};
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
 }
 
 }  // namespace

@@ -40,6 +40,10 @@ Pose2 between(const Pose2& T_a_b, const Pose2& T_a_c) {
   return inverse(T_a_b) * T_a_c;
 }
 
+Eigen::Vector3d difference(const Pose2& a, const Pose2& b) {
+  return {a.x_m - b.x_m, a.y_m - b.y_m, wrap_angle(a.theta_rad - b.theta_rad)};
+}
+
 Eigen::Matrix3d compose_covariance(const Pose2& T_a_b, const Eigen::Matrix3d& cov_a_b,
                                    const Pose2& T_b_c, const Eigen::Matrix3d& cov_b_c) {
   const SinCos r = sincos(T_a_b.theta_rad);

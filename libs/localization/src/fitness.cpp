@@ -156,8 +156,7 @@ double Fitness::scan(const Pose2& T_reference_query) const {
 }
 
 double Fitness::prior(const Pose2& T_reference_query) const {
-  const double d[3] = {T_reference_query.x_m - T_prior_.x_m, T_reference_query.y_m - T_prior_.y_m,
-                       geometry::wrap_angle(T_reference_query.theta_rad - T_prior_.theta_rad)};
+  const Eigen::Vector3d d = geometry::difference(T_reference_query, T_prior_);
   double mahalanobis2 = 0.0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) mahalanobis2 += d[i] * information_(i, j) * d[j];

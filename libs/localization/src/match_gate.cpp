@@ -43,10 +43,8 @@ Verdict judge(const MatchTask& task, const MatchResult& result, const GateConfig
   if (doubt(result) > config.largest_doubt - config.doubt_per_search_m * search_m) {
     return Verdict::kDoubtful;
   }
-  const Eigen::Vector3d error(
-      result.T_reference_query.x_m - task.T_reference_query.x_m,
-      result.T_reference_query.y_m - task.T_reference_query.y_m,
-      geometry::wrap_angle(result.T_reference_query.theta_rad - task.T_reference_query.theta_rad));
+  const Eigen::Vector3d error =
+      geometry::difference(result.T_reference_query, task.T_reference_query);
   if (error.dot(task.covariance.inverse() * error) > config.largest_mahalanobis2) {
     return Verdict::kImplausible;
   }

@@ -56,8 +56,7 @@ void PoseGraph::add_to_link(const PoseGraphEdge& edge) {
 
 double PoseGraph::disagreement(const PoseGraphEdge& edge) const {
   const Pose2 now = geometry::between(poses_[edge.from], poses_[edge.to]);
-  const Eigen::Vector3d error(now.x_m - edge.T_from_to.x_m, now.y_m - edge.T_from_to.y_m,
-                              geometry::wrap_angle(now.theta_rad - edge.T_from_to.theta_rad));
+  const Eigen::Vector3d error = geometry::difference(now, edge.T_from_to);
   return error.dot(edge.covariance.inverse() * error);
 }
 
@@ -73,9 +72,7 @@ void PoseGraph::place_last_pose() {
       const Eigen::Matrix3d covariance = geometry::compose_covariance(
           poses_[edge->from], Eigen::Matrix3d::Zero(), edge->T_from_to, edge->covariance);
       const Eigen::Matrix3d information = covariance.inverse();
-      const Eigen::Vector3d error(
-          T_map_last.x_m - T_map_says.x_m, T_map_last.y_m - T_map_says.y_m,
-          geometry::wrap_angle(T_map_last.theta_rad - T_map_says.theta_rad));
+      const Eigen::Vector3d error = geometry::difference(T_map_last, T_map_says);
       const double weight = 1.0 / (1.0 + error.dot(information * error) / 9.0);
       hessian += weight * information;
       gradient += weight * (information * error);

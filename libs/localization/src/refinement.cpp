@@ -69,8 +69,7 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
 
 // Adds what the prior says; both its error and the update are (x, y, theta) in the reference frame.
 void add_prior(NormalEquations& equations, const Pose2& T, const PosePrior& prior) {
-  const double error[3] = {T.x_m - prior.T_reference_query.x_m, T.y_m - prior.T_reference_query.y_m,
-                           geometry::wrap_angle(T.theta_rad - prior.T_reference_query.theta_rad)};
+  const Eigen::Vector3d error = geometry::difference(T, prior.T_reference_query);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       equations.hessian(i, j) += prior.information(i, j);

@@ -28,8 +28,7 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
   const MatchFeatures features = extract_scan_features(points, T_robot_laser_);
   const Refinement refined = refine(stop_, features, last_.T_a_b, prior);
   const Pose2& T = refined.T_reference_query;
-  const Eigen::Vector3d error(T.x_m - last_.T_a_b.x_m, T.y_m - last_.T_a_b.y_m,
-                              geometry::wrap_angle(T.theta_rad - last_.T_a_b.theta_rad));
+  const Eigen::Vector3d error = geometry::difference(T, last_.T_a_b);
   const bool matched = !refined.information.isZero() &&
                        refined.overlap >= config_.smallest_overlap &&
                        refined.inliers >= config_.smallest_inliers &&

@@ -9,12 +9,12 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-TEST(Rate, WordsAndFactors) {
-  EXPECT_EQ(parse_rate("lossless"), std::nullopt);
-  EXPECT_EQ(parse_rate("realtime"), 1.0);
-  EXPECT_EQ(parse_rate("2.5"), 2.5);
+TEST(ReplayRate, WordsAndFactors) {
+  EXPECT_EQ(service::parse_rate("lossless"), std::nullopt);
+  EXPECT_EQ(service::parse_rate("realtime"), 1.0);
+  EXPECT_EQ(service::parse_rate("2.5"), 2.5);
   for (const char* bad : {"", "fast", "0", "-1", "1x", "nan", "1e9", "0.001"}) {
-    EXPECT_THROW(parse_rate(bad), std::invalid_argument) << bad;
+    EXPECT_THROW(service::parse_rate(bad), std::invalid_argument) << bad;
   }
 }
 

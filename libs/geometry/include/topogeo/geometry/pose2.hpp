@@ -35,6 +35,10 @@ Pose2 inverse(const Pose2& T_a_b);
 /// T_b_c from T_a_b and T_a_c: the pose of c seen from b.
 Pose2 between(const Pose2& T_a_b, const Pose2& T_a_c);
 
+/// (x, y, theta) of `a` less that of `b`, both in one frame, the angle wrapped; metres and radians.
+/// The error that covariances of this project speak of.
+Eigen::Vector3d difference(const Pose2& a, const Pose2& b);
+
 /// Covariance of T_a_c = T_a_b * T_b_c to first order. Each covariance is of (x, y, theta) in the
 /// frame of its own first index (cov_a_b in a, cov_b_c in b); the two errors are taken as
 /// independent.
