@@ -145,9 +145,13 @@ void CarmenLineParser::parse_robotlaser(Scan& scan) {
   scan.angle_step_rad = parse_number(4, SkipReason::kGeometry, "an angular resolution");
   // The tolerance lets a full turn through whose step was rounded in the log.
   constexpr double kTurn = 2.0 * std::numbers::pi + 0.01;
-  if (!(std::fabs(scan.angle_min_rad) <= kTurn) || !(scan.angle_step_rad > 0.0) ||
+  // A hundredth of the finest laser's; below it, angles divided by the step leave every integer
+  // type.
+  constexpr double kFinest_rad = 1e-5;
+  if (!(std::fabs(scan.angle_min_rad) <= kTurn) || !(scan.angle_step_rad >= kFinest_rad) ||
       !(scan.angle_step_rad * static_cast<double>(count - 1) <= kTurn)) {
-    fail(SkipReason::kGeometry, "a start angle and a positive angular resolution within one turn",
+    fail(SkipReason::kGeometry,
+         "a start angle and an angular resolution of 0.00001 or more, within one turn",
          quoted(fields_[2]) + " and " + quoted(fields_[4]));
   }
   const double sensor_max_m = parse_number(5, SkipReason::kRange, "a maximum range");

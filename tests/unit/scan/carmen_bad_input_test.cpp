@@ -74,6 +74,10 @@ INSTANTIATE_TEST_SUITE_P(
             "robotlaser_step",
             "ROBOTLASER1 4 -1.5 2.0 0.5 8.0 0.01 0 4 1 2 3 4 0 5 5 5 1 2 3 0 0 0 0 0 2.0 h 2.0\n",
             SkipReason::kGeometry, "first scan"},
+        BadLine{"robotlaser_tiny_step",
+                "ROBOTLASER1 4 -1.5 2.0 1e-300 8.0 0.01 0 4 1 2 3 4 0 5 5 5 1 2 3 0 0 0 0 0 2.0 h "
+                "2.0\n",
+                SkipReason::kGeometry, "0.00001"},
         BadLine{
             "robotlaser_nan_max",
             "ROBOTLASER1 4 -1.5 2.0 0.5 nan 0.01 0 4 1 2 3 4 0 5 5 5 1 2 3 0 0 0 0 0 2.0 h 2.0\n",

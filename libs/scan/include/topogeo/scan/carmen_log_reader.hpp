@@ -37,7 +37,7 @@ enum class SkipReason : std::uint8_t {
   kPose,       ///< an odometry pose that is not finite or absurdly far away
   kStamp,      ///< a time stamp that is no plain decimal number of seconds
   kTime,       ///< the time does not increase
-  kGeometry,   ///< beam count or beam angles differ from the first scan's
+  kGeometry,   ///< beam angles no laser has, or count or angles differ from the first scan's
   kText,       ///< binary bytes, or a line longer than any scan
   kTruncated,  ///< the compressed data ends early or is damaged; the rest is lost
 };

@@ -1,0 +1,31 @@
+// What must hold of whatever bytes stand in a file: one function per file format. The fuzzers call
+// it with inputs of their own making, the tests with the committed seeds.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string_view>
+
+namespace topogeo::fuzz {
+
+/// Thrown by a check when the code under it broke a promise. Nothing but main() catches it.
+struct BrokenPromise : std::logic_error {
+  using std::logic_error::logic_error;
+};
+
+inline void require(bool holds, const char* promise) {
+  if (!holds) throw BrokenPromise(promise);
+}
+
+/// Reads `bytes` as a CARMEN log, plain or gzip, and makes a local map of its first scans. Returns
+/// how many it made; 0 when the reader refuses the log. Throws BrokenPromise when a scan or a map
+/// is not well-formed, and lets through whatever else the libraries throw at a scan from their
+/// reader.
+std::size_t check_carmen_log(std::string_view bytes);
+
+/// Reads `bytes` as a map file, as they are and once more with a start and a checksum that are
+/// right, since no chance change of a file keeps its checksum. What can be read must be the same
+/// after writing and reading. Returns how many of the two were read. Throws BrokenPromise.
+std::size_t check_map_file(std::string_view bytes);
+
+}  // namespace topogeo::fuzz

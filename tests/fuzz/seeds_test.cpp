@@ -1,0 +1,67 @@
+// The committed seeds through the checks of the fuzzers, with the compiler of the build and without
+// libFuzzer.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "checks.hpp"
+
+namespace topogeo::fuzz {
+namespace {
+
+std::filesystem::path seeds(const std::string& target) {
+  return std::filesystem::path(TOPOGEO_SOURCE_DIR) / "tests/fuzz/seeds" / target;
+}
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+template <typename Check>
+void expect_all_pass(const std::string& target, const Check& check) {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(seeds(target))) {
+    paths.push_back(entry.path());
+  }
+  std::ranges::sort(paths);
+  ASSERT_FALSE(paths.empty());
+  for (const auto& path : paths) {
+    EXPECT_NO_THROW(check(content(path))) << path;
+    // Every file that ends early: what a full disk or a cut connection leaves behind.
+    const std::string whole = content(path);
+    for (std::size_t part = 1; part < 16; ++part) {
+      EXPECT_NO_THROW(check(whole.substr(0, part * whole.size() / 16))) << path << " / " << part;
+    }
+  }
+}
+
+TEST(FuzzSeeds, LogsPass) {
+  expect_all_pass("carmen_log", [](const std::string& bytes) { check_carmen_log(bytes); });
+}
+
+TEST(FuzzSeeds, MapFilesPass) {
+  expect_all_pass("map_file", [](const std::string& bytes) { check_map_file(bytes); });
+}
+
+// The checks are worth something only where the inputs reach the code behind the reader.
+TEST(FuzzSeeds, ReachTheMaps) {
+  const auto maps = [](const char* name) {
+    return check_carmen_log(content(seeds("carmen_log") / name));
+  };
+  EXPECT_EQ(maps("flaser"), 3U);
+  EXPECT_EQ(maps("flaser_gzip"), 3U);
+  EXPECT_EQ(maps("robotlaser"), 2U);
+  EXPECT_EQ(maps("nothing_usable"), 0U);
+  EXPECT_EQ(check_map_file(content(seeds("map_file") / "whole_file")), 2U);
+  EXPECT_EQ(check_map_file(content(seeds("map_file") / "body")), 1U);
+}
+
+}  // namespace
+}  // namespace topogeo::fuzz
