@@ -1,0 +1,98 @@
+// The scenes of the source's figures (tests/data/figures) and what a diagram of them says in words.
+//
+// Walls have the letters A, B, C ... in the order of the scene file, columns a, b, c ... A group is
+// named by the letters of the surfaces that its points lie on ("BC"), a node and a branch by the
+// groups that they are equally far from ("A|BC|D"). So an expectation does not depend on the order
+// of groups and can be compared between turned and mirrored scenes.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/scan/scan.hpp"
+#include "topogeo/simulation/laser.hpp"
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/voronoi/local_voronoi.hpp"
+
+namespace topogeo::figure_scenes {
+
+struct Scene {
+  simulation::World world;
+  /// Where the laser stands: each point of the tour, looking along x.
+  std::vector<geometry::Pose2> T_world_laser;
+};
+
+/// Scene of tests/data/figures/figure_<number>.world.yaml.
+Scene load_scene(const std::string& number);
+/// All of them.
+const std::vector<std::string>& scene_numbers();
+/// The scene as a mirror along the x axis shows it.
+Scene mirrored(const Scene& scene);
+
+/// The laser of the source: 361 beams over 180 degrees.
+inline simulation::BeamPattern half_turn() {
+  return {};
+}
+/// 720 beams all around, the first to the rear.
+simulation::BeamPattern full_turn();
+
+/// Exact readings, no noise.
+scan::Scan scan_of(const simulation::World& world, const geometry::Pose2& T_world_laser,
+                   const simulation::BeamPattern& beams = half_turn());
+
+/// The rules of the source with its range limit and its cells. The source prints no thresholds:
+/// 0.3 m splits the objects of its figures, and 0.55 m is just over the width of its robot.
+voronoi::VoronoiConfig source_config();
+/// The same without the rules after the split at discontinuities (steps 2 to 5).
+voronoi::VoronoiConfig only_splitting();
+
+struct NamedNode {
+  std::string name;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
+  double clearance_m = 0.0;
+};
+
+struct Seen {
+  std::vector<std::string> groups;  ///< in beam order; "*" is a virtual group
+  std::vector<NamedNode> nodes;
+  std::vector<std::string> branches;  ///< "A|B: A|B|C - open", sorted
+  bool is_virtual = false;
+
+  [[nodiscard]] std::vector<std::string> node_names() const;  ///< sorted
+  /// The node of that name; empty if there is none or more than one.
+  [[nodiscard]] std::optional<NamedNode> node(std::string_view name) const;
+};
+
+/// Names of the groups of a diagram that was made at T_world_laser.
+std::vector<std::string> group_names(const voronoi::LocalVoronoiDiagram& diagram,
+                                     const simulation::World& world,
+                                     const geometry::Pose2& T_world_laser);
+/// "A|BC|D" for a list of group indices.
+template <typename Groups>
+std::string joined_names(const Groups& groups, const std::vector<std::string>& names);
+
+Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const simulation::World& world,
+              const geometry::Pose2& T_world_laser);
+/// Diagram of the scene from place `at`, in words.
+Seen see(const Scene& scene, const voronoi::VoronoiConfig& config,
+         const simulation::BeamPattern& beams = half_turn(), std::size_t at = 0);
+
+/// Expects one node of that name within 3 cm of `position_m`, worked out by hand for whole walls.
+void expect_node(const Seen& seen, const std::string& name, const Eigen::Vector2d& position_m);
+
+std::string sorted_joined(std::vector<std::string> names);
+
+template <typename Groups>
+std::string joined_names(const Groups& groups, const std::vector<std::string>& names) {
+  std::vector<std::string> parts;
+  for (const auto group : groups) parts.push_back(names[group]);
+  return sorted_joined(std::move(parts));
+}
+
+}  // namespace topogeo::figure_scenes
