@@ -1,0 +1,51 @@
+// Local maps of the figure scenes in words: "door A|B", "A|B: real A|B|C - fictitious A|B".
+// Elements off the main graph end with " (off)". Groups have the names of figure_scenes.hpp.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/topomap/local_map_builder.hpp"
+
+#include "../voronoi/figure_scenes.hpp"
+
+namespace topogeo::figure_scenes {
+
+/// The source's search for states with thresholds for its figures, and its range limit.
+topomap::LocalMapConfig source_map_config();
+
+struct MapSeen {
+  std::vector<NamedNode> nodes;       ///< all, "real A|B|C"
+  std::vector<std::string> branches;  ///< sorted
+
+  [[nodiscard]] std::vector<std::string> node_names() const;  ///< sorted
+  /// The node of that name; empty if there is none or more than one.
+  [[nodiscard]] std::optional<NamedNode> node(std::string_view name) const;
+};
+
+/// Expects one node of that name within `tolerance_m` of a position worked out by hand.
+void expect_node(const MapSeen& seen, const std::string& name, const Eigen::Vector2d& position_m,
+                 double tolerance_m = 0.03);
+
+MapSeen describe(const topomap::LocalMap& map, const std::vector<std::string>& group_names);
+
+/// A diagram and the local map made of it, laser at the robot's origin unless `T_robot_laser` says
+/// otherwise.
+struct Made {
+  voronoi::LocalVoronoiDiagram diagram;
+  topomap::LocalMap map;
+};
+Made make_map(const scan::Scan& scan, const voronoi::VoronoiConfig& config,
+              const topomap::LocalMapConfig& map_config, const geometry::Pose2& T_robot_laser = {});
+
+/// Local map of the scene from place `at`, in words.
+MapSeen see_map(const Scene& scene, const voronoi::VoronoiConfig& config,
+                const topomap::LocalMapConfig& map_config,
+                const simulation::BeamPattern& beams = half_turn(), std::size_t at = 0);
+
+}  // namespace topogeo::figure_scenes
