@@ -47,6 +47,13 @@ std::string name_of_group(const voronoi::GeneratorGroups& groups, const voronoi:
   return name.empty() ? "*" : name;
 }
 
+/// What the project adds to the source's rules.
+template <typename Config>
+void set_additions_off(Config& config) {
+  if constexpr (requires { config.on_wall_m; }) config.on_wall_m = 0.0;
+  if constexpr (requires { config.site_spacing_m; }) config.site_spacing_m = 0.0;
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& number) {
@@ -98,6 +105,7 @@ scan::Scan scan_of(const simulation::World& world, const geometry::Pose2& T_worl
 
 voronoi::VoronoiConfig source_config() {
   voronoi::VoronoiConfig config;
+  set_additions_off(config);
   config.range_limit_m = 4.0;
   config.resolution_m = 0.05;
   config.forward_rad = 0.0;
