@@ -32,6 +32,10 @@ struct MapSeen {
 void expect_node(const MapSeen& seen, const std::string& name, const Eigen::Vector2d& position_m,
                  double tolerance_m = 0.03);
 
+/// Expects what must hold of every local map: ids, ends of branches, finite coordinates, branches
+/// of two base groups of their nodes, and nothing but virtual elements of a virtual diagram.
+void expect_well_formed(const topomap::LocalMap& map, bool is_virtual);
+
 MapSeen describe(const topomap::LocalMap& map, const std::vector<std::string>& group_names);
 
 /// A diagram and the local map made of it, laser at the robot's origin unless `T_robot_laser` says
