@@ -1,4 +1,5 @@
-// Colours, text and node markers: what the map and its legend draw in the same way.
+// Colours, strokes, text and node markers: what all pictures and their legends draw in the same
+// way.
 #pragma once
 
 #include <string>
@@ -26,13 +27,40 @@ inline constexpr Colour kOdometry{0.95, 0.60, 0.05};
 inline constexpr Colour kLoopClosure{0.55, 0.20, 0.65};
 inline constexpr Colour kDoor{0.00, 0.60, 0.40};
 inline constexpr Colour kWhite{1.0, 1.0, 1.0};
+// Of one scan; branches and nodes of the diagram as in the source's figures.
+inline constexpr Colour kDiagramBranch{0.00, 0.58, 0.15};
+inline constexpr Colour kDiagramNode{0.10, 0.15, 0.90};
+inline constexpr Colour kFreeSpace{0.93, 0.95, 0.98};
+inline constexpr Colour kRangeLimit{0.45, 0.45, 0.45};
 
 inline void set_colour(cairo_t* cr, const Colour& c) {
   cairo_set_source_rgb(cr, c.red, c.green, c.blue);
 }
 
+/// `c` on white paper at `strength` in [0, 1]: 1 is the colour itself, 0 white.
+inline Colour paled(const Colour& c, double strength) {
+  const auto mixed = [&](double part) { return 1.0 - strength * (1.0 - part); };
+  return {mixed(c.red), mixed(c.green), mixed(c.blue)};
+}
+
+/// White paper, round strokes, text that looks the same on every machine.
+void start_page(cairo_t* cr);
+
+/// A quarter of a pixel: finer steps cannot be seen but make the numbers in an SVG longer.
+double snapped(double value_px);
+void move_to(cairo_t* cr, const Eigen::Vector2d& point_px);
+void line_to(cairo_t* cr, const Eigen::Vector2d& point_px);
+
+/// Adds a circle to the path.
+void circle(cairo_t* cr, const Eigen::Vector2d& centre_px, double radius_px);
+/// Fills and outlines the path and ends it.
+void fill_and_edge(cairo_t* cr, const Colour& fill, const Colour& edge, double edge_px);
+
 /// A text whose baseline starts at (x_px, y_px).
 void draw_text(cairo_t* cr, const std::string& text, double x_px, double y_px, double size_px);
+/// The same about x_px.
+void draw_text_centred(cairo_t* cr, const std::string& text, double x_px, double y_px,
+                       double size_px);
 double text_width_px(cairo_t* cr, const std::string& text, double size_px);
 
 inline constexpr double kDashes_px = 5.0;
@@ -40,10 +68,14 @@ inline void set_dashes(cairo_t* cr, bool dashed) {
   cairo_set_dash(cr, &kDashes_px, dashed ? 1 : 0, 0.0);
 }
 
-/// The marker of a kind of node, centred.
-void draw_node_marker(cairo_t* cr, topomap::NodeKind kind, const Eigen::Vector2d& centre_px);
+/// The marker of a kind of node, centred; `strength` as of `paled`.
+void draw_node_marker(cairo_t* cr, topomap::NodeKind kind, const Eigen::Vector2d& centre_px,
+                      double strength = 1.0);
 
 /// Where the robot started: a disc in a ring.
 void draw_start_marker(cairo_t* cr, const Eigen::Vector2d& centre_px);
+
+/// The robot, looking up: an arrow head about its position, 16 px long at `size` 1.
+void draw_robot_marker(cairo_t* cr, const Eigen::Vector2d& centre_px, double size);
 
 }  // namespace topogeo::render

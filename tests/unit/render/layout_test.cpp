@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "legend.hpp"
+#include "legend_items.hpp"
 #include "point_raster.hpp"
 #include "sample_floor.hpp"
 

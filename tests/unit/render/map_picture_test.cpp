@@ -1,17 +1,14 @@
 #include "topogeo/render/map_picture.hpp"
 
-#include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <stdexcept>
 
-#include <cairo.h>
 #include <gmock/gmock.h>
 
 #include "canvas.hpp"
+#include "pixels.hpp"
 #include "sample_floor.hpp"
 
 namespace topogeo::render {
@@ -19,58 +16,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-/// A PNG file's pixels, decoded by cairo.
-class Pixels {
- public:
-  explicit Pixels(std::string png) : png_(std::move(png)) {
-    surface_.reset(cairo_image_surface_create_from_png_stream(read, this));
-    EXPECT_EQ(cairo_surface_status(surface_.get()), CAIRO_STATUS_SUCCESS);
-  }
-  [[nodiscard]] int width() const { return cairo_image_surface_get_width(surface_.get()); }
-  [[nodiscard]] int height() const { return cairo_image_surface_get_height(surface_.get()); }
-
-  /// Pixels of about this colour: smoothing mixes the edges of a line with what is below.
-  [[nodiscard]] int count(const Colour& colour) const {
-    constexpr double kTolerance = 0.12;
-    const auto is_near = [](std::uint32_t byte, double wanted) {
-      return std::abs(static_cast<double>(byte & 0xffU) / 255.0 - wanted) <= kTolerance;
-    };
-    int found = 0;
-    for (int y = 0; y < height(); ++y) {
-      for (int x = 0; x < width(); ++x) {
-        const std::uint32_t pixel = at(x, y);
-        found += is_near(pixel >> 16U, colour.red) && is_near(pixel >> 8U, colour.green) &&
-                         is_near(pixel, colour.blue)
-                     ? 1
-                     : 0;
-      }
-    }
-    return found;
-  }
-
- private:
-  [[nodiscard]] std::uint32_t at(int x, int y) const {
-    const unsigned char* data = cairo_image_surface_get_data(surface_.get());
-    const int stride = cairo_image_surface_get_stride(surface_.get());
-    std::uint32_t pixel = 0;
-    std::memcpy(&pixel, data + static_cast<std::ptrdiff_t>(y) * stride + 4L * x, 4);
-    return pixel & 0xffffffU;
-  }
-  static cairo_status_t read(void* self, unsigned char* data, unsigned int length) {
-    auto* pixels = static_cast<Pixels*>(self);
-    if (pixels->at_ + length > pixels->png_.size()) return CAIRO_STATUS_READ_ERROR;
-    std::memcpy(data, pixels->png_.data() + pixels->at_, length);
-    pixels->at_ += length;
-    return CAIRO_STATUS_SUCCESS;
-  }
-  struct Destroy {
-    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-  };
-  std::string png_;
-  std::size_t at_ = 0;
-  std::unique_ptr<cairo_surface_t, Destroy> surface_;
-};
 
 TEST(MapPicture, ShowsEveryPartInItsColour) {
   const SampleFloor floor = sample_floor();

@@ -1,0 +1,15 @@
+// The kinds of picture file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace topogeo::render {
+
+enum class PictureFormat : std::uint8_t { kPng, kSvg };
+
+/// By the ending of the name, .png or .svg in any case. Throws std::invalid_argument naming the
+/// file for any other.
+PictureFormat picture_format(const std::filesystem::path& path);
+
+}  // namespace topogeo::render

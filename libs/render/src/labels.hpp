@@ -1,0 +1,29 @@
+// Texts beside marks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <cairo.h>
+
+#include "rect.hpp"
+
+namespace topogeo::render {
+
+/// Labels that keep off each other and off marks.
+class Labels {
+ public:
+  /// Keeps a square of that half side free of labels.
+  void block(const Eigen::Vector2d& centre_px, double half_px);
+  /// Writes the text beside `at_px` at the first of eight places around it, `away_px` off, that is
+  /// inside `within` and free; at the first place if none is and `always` is set.
+  void draw(cairo_t* cr, const std::string& text, const Eigen::Vector2d& at_px, double away_px,
+            double size_px, const Rect& within, bool always);
+
+ private:
+  [[nodiscard]] bool is_free(const Rect& rect) const;
+  std::vector<Rect> taken_;
+};
+
+}  // namespace topogeo::render
