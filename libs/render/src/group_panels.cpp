@@ -151,11 +151,6 @@ void draw_free_space(cairo_t* cr, const ScanView& view, const PlanFrame& frame) 
   cairo_fill(cr);
 }
 
-void clip_to(cairo_t* cr, const Rect& rect) {
-  cairo_rectangle(cr, rect.left, rect.top, rect.width, rect.height);
-  cairo_clip(cr);
-}
-
 /// The cells of each group in one path: without seams between the rows.
 void draw_cells(cairo_t* cr, const ScanView& view, const PlanFrame& frame) {
   constexpr double kStrength = 0.18;

@@ -44,12 +44,13 @@ void draw_path(cairo_t* cr, std::span<const topomap::StampedPose> poses, const L
   cairo_stroke(cr);
 }
 
-void draw_branches(cairo_t* cr, const topomap::GlobalMap& map, const Layout& layout) {
-  cairo_set_line_width(cr, 2.0);
+void draw_branches(cairo_t* cr, const topomap::GlobalMap& map, bool virtual_ones,
+                   const Layout& layout) {
+  cairo_set_line_width(cr, virtual_ones ? 3.0 : 2.0);
+  set_colour(cr, virtual_ones ? kVirtualBranch : kBranch);
+  set_dashes(cr, virtual_ones);
   for (const topomap::MapBranch& branch : map.branches) {
-    if (branch.points.empty()) continue;
-    set_colour(cr, branch.is_virtual ? kVirtualBranch : kBranch);
-    set_dashes(cr, branch.is_virtual);
+    if (branch.points.empty() || branch.is_virtual != virtual_ones) continue;
     Eigen::Vector2d last_px = layout.to_px(branch.points.front().position_m);
     move_to(cr, last_px);
     for (std::size_t i = 1; i < branch.points.size(); ++i) {
@@ -110,10 +111,14 @@ void draw_map(cairo_t* cr, const MapPicture& picture, const std::vector<ScanOutl
   cairo_clip(cr);
   draw_laser_points(cr, outlines, layout);
   draw_path(cr, picture.odometry, layout, kOdometry, 1.5);
-  if (picture.global_map != nullptr) draw_branches(cr, *picture.global_map, layout);
+  if (picture.global_map != nullptr) draw_branches(cr, *picture.global_map, false, layout);
   draw_loop_closures(cr, picture, layout);
   draw_path(cr, picture.corrected, layout, kCorrected, 2.0);
-  if (picture.global_map != nullptr) draw_nodes(cr, *picture.global_map, layout);
+  if (picture.global_map != nullptr) {
+    // On top of the trajectory, which they follow.
+    draw_branches(cr, *picture.global_map, true, layout);
+    draw_nodes(cr, *picture.global_map, layout);
+  }
   if (!picture.corrected.empty()) {
     draw_start_marker(cr, layout.to_px(picture.corrected.front().pose.position_m()));
   }

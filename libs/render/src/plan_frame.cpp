@@ -36,6 +36,11 @@ PlanFrame fit(const Extent& extent, const Rect& rect_px, double most_px_per_m) {
   return frame;
 }
 
+void clip_to(cairo_t* cr, const Rect& rect) {
+  cairo_rectangle(cr, rect.left, rect.top, rect.width, rect.height);
+  cairo_clip(cr);
+}
+
 void draw_plan_axes(cairo_t* cr, const PlanFrame& frame) {
   const Rect& rect = frame.rect_px;
   const Eigen::Vector2d min_m = frame.min_m();

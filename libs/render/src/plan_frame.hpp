@@ -41,6 +41,9 @@ struct PlanFrame {
 /// The extent as large as it fits, in the middle of the rectangle, at most `most_px_per_m`.
 PlanFrame fit(const Extent& extent, const Rect& rect_px, double most_px_per_m);
 
+/// Cuts off everything outside the rectangle, until cairo_restore.
+void clip_to(cairo_t* cr, const Rect& rect);
+
 /// Grid lines and axes in metres ("x forward", "y left"), left of and below the rectangle.
 void draw_plan_axes(cairo_t* cr, const PlanFrame& frame);
 

@@ -1,0 +1,25 @@
+// How branches and nodes of a local map look in every panel.
+#pragma once
+
+#include <cairo.h>
+
+#include "topogeo/topomap/local_map.hpp"
+
+#include "canvas.hpp"
+
+namespace topogeo::render {
+
+inline constexpr double kPale = 0.35;  ///< strength of what is off the main graph
+
+inline double strength(bool in_main_graph) {
+  return in_main_graph ? 1.0 : kPale;
+}
+
+/// Colour and dashes of a branch.
+inline void set_branch_stroke(cairo_t* cr, const topomap::LocalBranch& branch) {
+  set_colour(cr,
+             paled(branch.is_virtual ? kVirtualBranch : kBranch, strength(branch.in_main_graph)));
+  set_dashes(cr, branch.is_virtual);
+}
+
+}  // namespace topogeo::render
