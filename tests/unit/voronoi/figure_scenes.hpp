@@ -91,6 +91,7 @@ std::string sorted_joined(std::vector<std::string> names);
 template <typename Groups>
 std::string joined_names(const Groups& groups, const std::vector<std::string>& names) {
   std::vector<std::string> parts;
+  parts.reserve(groups.size());
   for (const auto group : groups) parts.push_back(names[group]);
   return sorted_joined(std::move(parts));
 }
