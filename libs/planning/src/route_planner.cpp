@@ -133,7 +133,8 @@ class RoadNetwork {
   }
 
   void add_piece(Vertex from, Vertex to, const Piece& piece) {
-    if (narrowest_m(piece.points) < min_clearance_m_) return;
+    const bool driven = map_.branches[piece.branch].is_virtual;
+    if (!driven && narrowest_m(piece.points) < min_clearance_m_) return;
     pieces_.push_back(piece);
     pieces_.back().length_m = length_of(piece.points);
     piece_starts_.push_back(from);

@@ -11,7 +11,10 @@ std::optional<BranchPlace> nearest_place(const topomap::GlobalMap& map,
     const auto& points = map.branches[b].points;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
       // A segment counts as narrow as its narrower end: the two ends are a few centimetres apart.
-      if (std::min(points[i].clearance_m, points[i + 1].clearance_m) < min_clearance_m) continue;
+      if (!map.branches[b].is_virtual &&
+          std::min(points[i].clearance_m, points[i + 1].clearance_m) < min_clearance_m) {
+        continue;
+      }
       const Eigen::Vector2d along = points[i + 1].position_m - points[i].position_m;
       const double length2 = along.squaredNorm();
       const double t =

@@ -19,8 +19,9 @@ struct BranchPlace {
   double distance_m = 0.0;  ///< from the point that was looked up
 };
 
-/// The nearest place to a point on the map, where the clearance is at least min_clearance_m; of
-/// equally near ones the one on the branch of the lowest index. Empty when there is none.
+/// The nearest place to a point on the map, where the clearance is at least min_clearance_m or the
+/// branch is virtual; of equally near ones the one on the branch of the lowest index. Empty when
+/// there is none.
 std::optional<BranchPlace> nearest_place(const topomap::GlobalMap& map,
                                          const Eigen::Vector2d& point_m, double min_clearance_m);
 

@@ -5,10 +5,12 @@
 #include <string>
 
 #include "branch_names.hpp"
+#include "driven_way.hpp"
 #include "field_of_view.hpp"
 #include "map_extraction.hpp"
 #include "node_fusion.hpp"
 #include "ridge_refinement.hpp"
+#include "virtual_links.hpp"
 #include "vote_grid.hpp"
 
 namespace topogeo::topomap {
@@ -52,6 +54,9 @@ void check_input(const LocalMap& map, const geometry::Pose2& T_map_robot) {
                                 " is not finite or more than 5 km from the origin");
   }
   for (const ScanPoint& p : map.points) check_coordinate(map, "scan point", {p.x_m, p.y_m}, 0.0);
+  for (const TrackedScan& scan : map.track) {
+    check_coordinate(map, "tracked scan", scan.T_stop_robot.position_m(), 0.0);
+  }
   for (const LocalNode& n : map.nodes) check_coordinate(map, "node", n.position_m, n.clearance_m);
   for (const LocalBranch& b : map.branches) {
     for (const BranchPoint& p : b.points) {
@@ -85,6 +90,7 @@ struct GlobalMapBuilder::State {
   VoteGrid grid;
   NodeFusion nodes;
   BranchNames names;
+  DrivenWay way;
 };
 
 GlobalMapBuilder::GlobalMapBuilder(const GlobalMapConfig& config) {
@@ -102,6 +108,7 @@ void GlobalMapBuilder::integrate(const LocalMap& map, const geometry::Pose2& T_m
   state_->grid.add(map, T_map_robot, view);
   state_->nodes.add(map, T_map_robot, view);
   state_->names.add(map, T_map_robot);
+  state_->way.add(map, T_map_robot);
 }
 
 void GlobalMapBuilder::rebuild(std::span<const LocalMap> maps, std::span<const StopPose> poses) {
@@ -117,6 +124,7 @@ void GlobalMapBuilder::rebuild(std::span<const LocalMap> maps, std::span<const S
 GlobalMap GlobalMapBuilder::snapshot(std::uint64_t version) const {
   const RidgeGraph ridge = refine_ridge(trace_ridge(state_->grid, state_->config), state_->config);
   GlobalMap map = extract_map(ridge, state_->nodes, state_->names, state_->config);
+  add_virtual_links(state_->way, state_->config, map);
   map.version = version;
   return map;
 }

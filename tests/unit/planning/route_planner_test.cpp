@@ -96,6 +96,24 @@ TEST(Plan, GoesRoundWhereTheRobotDoesNotFit) {
   EXPECT_EQ(result.route.min_clearance_m, 1.0);
 }
 
+TEST(Plan, GoesAlongAVirtualBranchWhateverItsClearance) {
+  // The robot drove from 2 to 7 and saw nothing on the way.
+  GlobalMap map = ring();
+  ASSERT_EQ(plan(map, {19, 0}, {35, 0}).status, PlanStatus::kNotConnected);
+  add_branch(map, 15, 2, 7, {{25, 0}}, 0.0);
+  EXPECT_EQ(plan(map, {19, 0}, {35, 0}).status, PlanStatus::kTooNarrow);
+  map.branches.back().is_virtual = true;
+  const PlanResult result = plan(map, {19, 0}, {35, 0});
+  ASSERT_TRUE(result.found()) << result.reason;
+  expect_consistent(result.route);
+  EXPECT_THAT(result.route.branch_ids, ElementsAre(10, 15, 14));
+  EXPECT_NEAR(result.route.length_m, 16.0, 1e-9);
+  EXPECT_EQ(result.route.min_clearance_m, 0.0);
+  // The robot can also stand on it when it gets its goal.
+  EXPECT_EQ(plan(map, {24, 1}, {35, 0}).start->branch_id, 15U);
+  EXPECT_TRUE(plan_between_nodes(map, 1, 8).found());
+}
+
 TEST(Plan, StaysOnOneBranchWhenBothEndsLieOnIt) {
   for (const auto& [from, to] : {std::pair(3.0, 17.0), std::pair(17.0, 3.0)}) {
     const PlanResult result = plan(ring(), {from, 0.5}, {to, -0.5});

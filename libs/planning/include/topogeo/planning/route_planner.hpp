@@ -2,7 +2,8 @@
 //
 // The graph's edges are the branches, as long as their curves; start and goal split the branch that
 // they snap to. A robot moves along branches only, so a route keeps the largest possible distance
-// to the walls and is a little longer than the shortest free path.
+// to the walls and is a little longer than the shortest free path. Virtual branches are ways that
+// the robot has driven without seeing much: they are open whatever their clearance says.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ namespace topogeo::planning {
 struct PlanningConfig {
   double max_snap_m = 3.0;       ///< farthest that start and goal may lie from a branch, >= 0
   double min_clearance_m = 0.3;  ///< the robot's radius with a margin: a branch is closed where its
-                                 ///< clearance is less, >= 0. B21: 0.2625 m.
+                                 ///< clearance is less, unless it is virtual, >= 0. B21:
+                                 ///< 0.2625 m.
 };
 
 /// Throws std::invalid_argument naming the field, the value and the allowed range.

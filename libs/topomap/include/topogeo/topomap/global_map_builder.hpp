@@ -8,6 +8,10 @@
 // and a false branch is outvoted (fig. 8.8). Nodes are fused as the source does: equivalent ones
 // merge to the mean of position (7.25) and clearance (7.26), near-by ones collapse (fig. 8.10).
 // The trade-off: branches closer together than about twice `vote_radius_m` become one.
+//
+// Where the robot drove from one part of the map to another and saw nothing that joins them (local
+// maps that do not overlap, fig. 8.23), a virtual branch along the way that it drove does. It
+// serves navigation; matching never looks at the global map.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +68,10 @@ class GlobalMapBuilder {
   void rebuild(std::span<const LocalMap> maps, std::span<const StopPose> poses);
 
   /// The map as it stands, labelled `version`. Nodes and branches keep their ids from snapshot to
-  /// snapshot as long as they stay at their place. Fictitious nodes are free branch ends.
+  /// snapshot as long as they stay at their place. Fictitious nodes are free branch ends. Virtual
+  /// branches are the links of virtual_links.hpp, virtual nodes the places where one meets the
+  /// middle of a branch. A map is taken to follow the one integrated before it, with its track as
+  /// the way between, when its id is the next.
   [[nodiscard]] GlobalMap snapshot(std::uint64_t version) const;
 
  private:

@@ -1,0 +1,41 @@
+// Where the robot drove, and what it saw of the map on the way, as far as virtual links need it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::topomap {
+
+struct VisitedStop {
+  std::uint32_t map_id = 0;
+  geometry::Pose2 T_map_robot;
+  /// Its map has the id after that of the stop before it in DrivenWay::stops, so the robot drove
+  /// from there to here.
+  bool follows = false;
+  std::vector<Eigen::Vector2d> way_m;  ///< tracked scans since that stop, map frame
+  std::vector<ScanPoint> points;       ///< of its scan, robot frame
+  /// Places on the branches that vote for the map (real, on the main graph), map frame, nearest to
+  /// the robot first.
+  std::vector<Eigen::Vector2d> seen_m;
+
+  /// From a point of the map frame to the nearest scan point; 0 when there is none.
+  [[nodiscard]] double clearance_m(const Eigen::Vector2d& point_m) const;
+};
+
+class DrivenWay {
+ public:
+  /// The next stop in time.
+  void add(const LocalMap& map, const geometry::Pose2& T_map_robot);
+
+  [[nodiscard]] const std::vector<VisitedStop>& stops() const { return stops_; }
+
+ private:
+  std::vector<VisitedStop> stops_;
+};
+
+}  // namespace topogeo::topomap
