@@ -21,6 +21,7 @@
 #include "topogeo/support/progress_bar.hpp"
 
 #include "commands.hpp"
+#include "job.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -99,10 +100,12 @@ std::string picture_of_scan(const DvlOptions& options, const pipeline::Config& c
     progress.update(++read, *options.scan + 1);
     if (scan->sequence != *options.scan) continue;
     progress.finish(read);
+    tell_skipped(reader.statistics());
     return render::scan_picture(
         ScanViews(config.local_mapper).make(*scan), options.log.filename().string(),
         render::picture_format(options.out), {.max_width_px = options.width_px});
   }
+  tell_skipped(reader.statistics());
   throw service::UsageError(fmt::format("--scan {}: {} has {} usable scans, 0 to {}", *options.scan,
                                         options.log.string(), read, read - 1));
 }
@@ -144,6 +147,7 @@ std::string sheet_of_log(const DvlOptions& options, const pipeline::Config& conf
     views.back().cells.clear();  // large, and not in a thumbnail
   }
   progress.finish(scans);
+  tell_skipped(reader.statistics());
   const std::string title = fmt::format("{}   {} of {} scans (counted from 0), range limit {:g} m",
                                         options.log.filename().string(), views.size(), scans,
                                         config.local_mapper.voronoi.range_limit_m);

@@ -19,9 +19,9 @@ constexpr double kHeader_px = 46.0;
 constexpr double kLegend_px = 52.0;
 constexpr double kGap_px = 8.0;
 constexpr double kCaption_px = 18.0;
-constexpr double kWanted_px = 252.0;  // width of a thumbnail
-constexpr double kShape = 0.8;        // height to width
-constexpr double kLargest_px_per_m = 40.0;
+constexpr double kWanted_px = 252.0;       // width of a thumbnail
+constexpr double kShape = 0.8;             // height to width
+constexpr double kLargestScale_px = 40.0;  // of one metre
 
 struct Sheet {
   std::size_t columns = 1;
@@ -37,15 +37,16 @@ struct Sheet {
   }
   [[nodiscard]] double row_px() const { return kCaption_px + height_px + kGap_px; }
   [[nodiscard]] Rect thumbnail(std::size_t i) const {
-    return {kMargin_px + static_cast<double>(i % columns) * (cell_px + kGap_px),
-            kHeader_px + kCaption_px + static_cast<double>(i / columns) * row_px(), cell_px,
-            height_px};
+    const std::size_t row = i / columns;
+    const std::size_t column = i % columns;
+    return {kMargin_px + static_cast<double>(column) * (cell_px + kGap_px),
+            kHeader_px + kCaption_px + static_cast<double>(row) * row_px(), cell_px, height_px};
   }
 };
 
 void draw_thumbnail(cairo_t* cr, const ScanView& view, const Rect& rect) {
   constexpr double kText_px = 12.0;
-  const PlanFrame frame = fit(extent_of(view), rect, kLargest_px_per_m);
+  const PlanFrame frame = fit(extent_of(view), rect, kLargestScale_px);
   draw_local_map_thumbnail(cr, view, frame);
   set_colour(cr, kLaserPoints);
   cairo_set_line_width(cr, 0.75);

@@ -22,7 +22,8 @@ LegendItem group_item() {
 }
 
 LegendItem circle_item() {
-  return {"clearance of a node", [](cairo_t* cr, const Eigen::Vector2d& centre_px) {
+  return {"node of the diagram and its clearance",
+          [](cairo_t* cr, const Eigen::Vector2d& centre_px) {
             set_colour(cr, kDiagramNode);
             circle(cr, centre_px, 3.0);
             cairo_fill(cr);
@@ -62,12 +63,12 @@ std::vector<LegendItem> thumbnail_legend() {
 }
 
 std::vector<LegendItem> scan_legend(const ScanView& view) {
-  std::vector<LegendItem> items{group_item(),
-                                dot_item(),
-                                line_item("range limit", kRangeLimit, 1.5, true),
-                                line_item("branch of the diagram", kDiagramBranch, 2.0, false),
-                                circle_item(),
-                                robot_item()};
+  std::vector<LegendItem> items{group_item(), dot_item(),
+                                line_item("range limit", kRangeLimit, 1.5, true), robot_item()};
+  if (!view.diagram.branches.empty()) {
+    items.push_back(line_item("branch of the diagram", kDiagramBranch, 2.0, false));
+  }
+  if (!view.diagram.nodes.empty()) items.push_back(circle_item());
   const auto& branches = view.map.branches;
   const auto has = [&](bool is_virtual, bool main) {
     return std::ranges::any_of(branches, [&](const LocalBranch& b) {

@@ -17,7 +17,7 @@ constexpr double kHeader_px = 66.0;
 constexpr double kPanelTitle_px = 24.0;
 constexpr double kClearance_px = 190.0;
 constexpr double kLegendSpace_px = 76.0;
-constexpr double kLargest_px_per_m = 160.0;
+constexpr double kLargestScale_px = 160.0;  // of one metre
 
 /// Where the panels lie: polar | groups, diagram | local map, clearance over the full width.
 struct Panels {
@@ -64,11 +64,11 @@ void draw_scan(cairo_t* cr, const ScanView& view, const std::string& log_name, c
   draw_panel_title(cr, panels.polar, "Readings, in polar coordinates");
   draw_polar_panel(cr, view, panels.polar);
   draw_panel_title(cr, panels.groups, "Generator groups and space known to be free");
-  draw_groups_panel(cr, view, fit(extent, panels.groups, kLargest_px_per_m));
+  draw_groups_panel(cr, view, fit(extent, panels.groups, kLargestScale_px));
   draw_panel_title(cr, panels.diagram, "Local Voronoi diagram");
-  draw_diagram_panel(cr, view, fit(extent, panels.diagram, kLargest_px_per_m));
+  draw_diagram_panel(cr, view, fit(extent, panels.diagram, kLargestScale_px));
   draw_panel_title(cr, panels.local_map, "Local topo-geometric map");
-  draw_local_map_panel(cr, view, fit(extent, panels.local_map, kLargest_px_per_m));
+  draw_local_map_panel(cr, view, fit(extent, panels.local_map, kLargestScale_px));
   draw_panel_title(cr, panels.clearance, "Clearance along the branches, one behind the other");
   draw_clearance_panel(cr, view, panels.clearance);
   draw_legend_items(cr, scan_legend(view), {kMargin_px, panels.legend_top + 18.0},

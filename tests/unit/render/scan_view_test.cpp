@@ -10,7 +10,6 @@ namespace topogeo::render {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(ScanView, HoldsGroupsDiagramAndMapOfTheScan) {
   const ScanView view = view_of(corridor_scan(true, true));
