@@ -174,7 +174,7 @@ MatchFeatures extract_features(const topomap::LocalMap& map) {
     }
   }
   for (const topomap::LocalBranch& branch : map.branches) {
-    if (!branch.is_virtual) add_branch_samples(branch, features.branches);
+    if (!branch.is_virtual && branch.confirmed) add_branch_samples(branch, features.branches);
   }
   return features;
 }

@@ -36,6 +36,11 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "grouping step 4.7");
   schema.add("local_map.discontinuity_m", &m.voronoi.discontinuity_m, 0.01, 10.0, "m",
              "4.7: successive ranges that differ by more belong to two objects");
+  schema.add("local_map.on_wall_m", &m.voronoi.on_wall_m, 0.0, 1.0, "m",
+             "4.7: readings on one line within this belong together however far apart they are; 0: "
+             "as in the source");
+  schema.add("local_map.site_spacing_m", &m.voronoi.site_spacing_m, 0.0, 10.0, "m",
+             "a wall between its readings counts as seen every so often; 0: only readings count");
   schema.add("local_map.join_contiguous", &m.voronoi.join_contiguous, "grouping step 4.8");
   schema.add("local_map.contiguous_m", &m.voronoi.contiguous_m, 0.0, 10.0, "m",
              "4.8: gaps that the robot does not pass make no branch; just over its width");
@@ -49,6 +54,31 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "4.10: groups of this many points or fewer are dropped");
   schema.add("local_map.join_hidden_zones", &m.voronoi.join_hidden_zones,
              "grouping step 4.11; costs half of the nodes on real floors");
+  schema.add("local_map.node_merge_m", &m.voronoi.node_merge_m, 0.0, 10.0, "m",
+             "nodes that a branch no longer than this joins are one node");
+  schema.add("local_map.min_branch_m", &m.voronoi.min_branch_m, 0.0, 10.0, "m",
+             "branches with a loose end shorter than this are dropped");
+  schema.add("local_map.virtual_half_width_m", &m.voronoi.virtual_half_width_m, 0.05, 10.0, "m",
+             "half the distance between two virtual groups; over half of the robot's width");
+  schema.add("local_map.largest_hidden_share", &m.local_map.largest_hidden_share, 0.0, 1.0, "",
+             "part of the clearance by which the circle of a real node or confirmed branch may "
+             "reach into what was not seen; 1: all are real, as in the source");
+  schema.add("local_map.min_stretch_m", &m.local_map.min_stretch_m, 0.0, 10.0, "m",
+             "shorter stretches of a branch, confirmed or not, count as what is around them");
+  schema.add("local_map.remove_off_main_graph", &m.local_map.remove_off_main_graph,
+             "5.2.2: what is off the graph nearest to the robot is removed instead of marked");
+  schema.add("local_map.find_states", &m.local_map.find_states,
+             "5.2.2.1: doors, narrowings and hall-corridor passages along branches");
+  schema.add("local_map.state_rise_m", &m.local_map.state_rise_m, 0.01, 10.0, "m",
+             "5.3: rise of the clearance on a side of a minimum that counts as a change of slope");
+  schema.add("local_map.state_confirm_m", &m.local_map.state_confirm_m, 0.0, 10.0, "m",
+             "5.4: the point that confirms a change of slope lies farther than this from it");
+  schema.add("local_map.plateau_m", &m.local_map.plateau_m, 0.0, 10.0, "m",
+             "clearances that differ by no more than this are one plateau");
+  schema.add("local_map.corridor_length_m", &m.local_map.corridor_length_m, 0.1, 100.0, "m",
+             "a plateau at least this long is a corridor, a shorter one a door or narrowing");
+  schema.add("local_map.hall_rise_m", &m.local_map.hall_rise_m, 0.01, 10.0, "m",
+             "rise of the clearance from a corridor to a hall");
   schema.add("local_map.door_half_width_m", &m.local_map.door_half_width_m, 0.1, 5.0, "m",
              "minima of clearance up to this are doors, wider ones narrowings");
   schema.add("local_map.separated_m", &m.local_map.separated_m, 0.05, 10.0, "m",

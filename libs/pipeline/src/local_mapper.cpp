@@ -20,7 +20,8 @@ LocalMapper::LocalMapper(const LocalMapperConfig& config, std::string robot_id)
     : config_(config),
       robot_id_(std::move(robot_id)),
       tracker_(config.tracker),
-      diagram_maker_(config.voronoi) {}
+      diagram_maker_(config.voronoi),
+      map_builder_(config.local_map) {}
 
 std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   if (next_id_ == 0) return make_stop(scan, Pose2{});
@@ -62,7 +63,7 @@ LocalMap LocalMapper::make_stop(const scan::Scan& scan, const Pose2& T_stop_robo
   map.T_previous_robot = T_stop_robot;
   map.track = std::exchange(track_, {});
   diagram_maker_.compute(scan, diagram_);
-  topomap::build_local_map(diagram_, scan, config_.T_robot_laser, config_.local_map, map);
+  map_builder_.build(diagram_, scan, config_.T_robot_laser, map);
   last_.reset();
   tracker_.start(map.points, config_.T_robot_laser, scan.T_odom_robot);
   return map;

@@ -83,6 +83,7 @@ void to_proto(const topomap::LocalBranch& branch, proto::LocalBranch* out) {
   out->set_base_group_b(branch.base_groups[1]);
   out->set_is_virtual(branch.is_virtual);
   out->set_in_main_graph(branch.in_main_graph);
+  out->set_unconfirmed(!branch.confirmed);
   to_proto(branch.points, out->mutable_points());
 }
 
@@ -111,6 +112,7 @@ topomap::LocalBranch local_branch_from_proto(const proto::LocalBranch& in, std::
   branch.base_groups = {group_from_proto(in.base_group_a()), group_from_proto(in.base_group_b())};
   branch.is_virtual = in.is_virtual();
   branch.in_main_graph = in.in_main_graph();
+  branch.confirmed = !in.unconfirmed();
   branch.points = branch_points_from_proto(in.points());
   return branch;
 }

@@ -53,6 +53,7 @@ std::uint64_t content_hash(const LocalMap& map) {
     hash.add(b.node_b);
     hash.add(b.is_virtual);
     hash.add(b.in_main_graph);
+    hash.add(b.confirmed);
     hash.add(b.points.size());
     for (const BranchPoint& p : b.points) {
       hash.add(p.position_m);

@@ -3,42 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "topogeo/geometry/portable_math.hpp"
 
+#include "components.hpp"
 #include "local_map_states.hpp"
+#include "recycled.hpp"
 
 namespace topogeo::topomap {
 namespace {
 
 using voronoi::DiagramBranch;
 using voronoi::LocalVoronoiDiagram;
-
-std::uint32_t add_node(LocalMap& map, NodeKind kind, const BranchPoint& at,
-                       const std::array<std::uint16_t, 2>& groups) {
-  LocalNode node;
-  node.id = static_cast<std::uint32_t>(map.nodes.size());
-  node.kind = kind;
-  node.position_m = at.position_m;
-  node.clearance_m = at.clearance_m;
-  node.base_groups.assign(groups.begin(), groups.end());
-  map.nodes.push_back(std::move(node));
-  return map.nodes.back().id;
-}
-
-void add_diagram_nodes(const LocalVoronoiDiagram& diagram, const geometry::Pose2& T_robot_laser,
-                       LocalMap& map) {
-  for (const voronoi::DiagramNode& from : diagram.nodes) {
-    LocalNode node;
-    node.id = static_cast<std::uint32_t>(map.nodes.size());
-    node.kind = diagram.is_virtual ? NodeKind::kVirtual : NodeKind::kReal;
-    node.position_m = T_robot_laser * from.position_m;
-    node.clearance_m = from.clearance_m;
-    node.base_groups = from.base_groups;
-    map.nodes.push_back(std::move(node));
-  }
-}
 
 std::size_t nearest_to_robot(const std::vector<BranchPoint>& points) {
   const auto nearer = [](const BranchPoint& a, const BranchPoint& b) {
@@ -48,85 +24,199 @@ std::size_t nearest_to_robot(const std::vector<BranchPoint>& points) {
                                   points.begin());
 }
 
+}  // namespace
+
+class LocalMapBuilder::Work {
+ public:
+  explicit Work(const LocalMapConfig& config) : config_(config) {}
+
+  void build(const LocalVoronoiDiagram& diagram, const scan::Scan& scan,
+             const geometry::Pose2& T_robot_laser, LocalMap& out);
+
+ private:
+  [[nodiscard]] bool confirms(double clearance_m, double hidden_m) const {
+    return hidden_m <= config_.largest_hidden_share * clearance_m;
+  }
+  void add_diagram_nodes(const LocalVoronoiDiagram& diagram, const geometry::Pose2& T_robot_laser);
+  std::uint32_t add_node(NodeKind kind, const BranchPoint& at,
+                         const std::array<std::uint16_t, 2>& groups);
+  void take_points(const LocalVoronoiDiagram& diagram, const DiagramBranch& branch,
+                   const geometry::Pose2& T_robot_laser);
+  void cut_far_points(const DiagramBranch& branch);
+  void absorb_short_stretches(bool short_ones_are);
+  void find_cuts();
+  void add_branch(const DiagramBranch& from, bool is_virtual);
+  void add_piece(const DiagramBranch& from, bool is_virtual, std::uint32_t node_a,
+                 std::uint32_t node_b, std::size_t first, std::size_t last);
+  void mark_main_graph(LocalMap& map);
+  void remove_off_main_graph(LocalMap& map);
+
+  LocalMapConfig config_;
+  Recycled<LocalNode> nodes_;
+  Recycled<LocalBranch> branches_;
+  Components components_;
+  BranchStateFinder state_finder_;
+  // Of the branch at hand.
+  std::vector<BranchPoint> points_;
+  std::vector<char> confirmed_;      // per point
+  std::vector<BranchState> cuts_;    // where the branch is cut into pieces, in order
+  std::vector<std::uint32_t> kept_;  // new id of each node
+};
+
+void LocalMapBuilder::Work::add_diagram_nodes(const LocalVoronoiDiagram& diagram,
+                                              const geometry::Pose2& T_robot_laser) {
+  for (const voronoi::DiagramNode& from : diagram.nodes) {
+    const auto id = static_cast<std::uint32_t>(nodes_.size());
+    LocalNode& node = nodes_.add();
+    node.id = id;
+    node.kind = NodeKind::kFictitious;
+    if (diagram.is_virtual) {
+      node.kind = NodeKind::kVirtual;
+    } else if (confirms(from.clearance_m, from.hidden_m)) {
+      node.kind = NodeKind::kReal;
+    }
+    node.position_m = T_robot_laser * from.position_m;
+    node.clearance_m = from.clearance_m;
+    node.base_groups.assign(from.base_groups.begin(), from.base_groups.end());
+  }
+}
+
+std::uint32_t LocalMapBuilder::Work::add_node(NodeKind kind, const BranchPoint& at,
+                                              const std::array<std::uint16_t, 2>& groups) {
+  const auto id = static_cast<std::uint32_t>(nodes_.size());
+  LocalNode& node = nodes_.add();
+  node.id = id;
+  node.kind = kind;
+  node.position_m = at.position_m;
+  node.clearance_m = at.clearance_m;
+  node.base_groups.assign(groups.begin(), groups.end());
+  return id;
+}
+
+void LocalMapBuilder::Work::take_points(const LocalVoronoiDiagram& diagram,
+                                        const DiagramBranch& branch,
+                                        const geometry::Pose2& T_robot_laser) {
+  points_.clear();
+  confirmed_.clear();
+  for (const voronoi::DiagramPoint& point : diagram.points_of(branch)) {
+    points_.push_back({T_robot_laser * point.position_m, point.clearance_m});
+    confirmed_.push_back(diagram.is_virtual || confirms(point.clearance_m, point.hidden_m) ? 1 : 0);
+  }
+}
+
 /// 5.5: walks outward from the real node, or from the point nearest to the robot, and ends a loose
 /// end before the first step longer than the threshold. Successive points are compared, not each
 /// with the start (spec A2, errata).
-void cut_far_points(const DiagramBranch& branch, double separated_m,
-                    std::vector<BranchPoint>& points) {
+void LocalMapBuilder::Work::cut_far_points(const DiagramBranch& branch) {
   const bool loose_a = branch.node_a == DiagramBranch::kLoose;
   const bool loose_b = branch.node_b == DiagramBranch::kLoose;
   if (!loose_a && !loose_b) return;
   const auto apart = [&](std::size_t i) {
-    return (points[i + 1].position_m - points[i].position_m).norm() > separated_m;
+    return (points_[i + 1].position_m - points_[i].position_m).norm() > config_.separated_m;
   };
   const std::size_t start =
-      loose_a && loose_b ? nearest_to_robot(points) : (loose_a ? points.size() - 1 : 0);
+      loose_a && loose_b ? nearest_to_robot(points_) : (loose_a ? points_.size() - 1 : 0);
   std::size_t first = start;
   std::size_t last = start;
   while (first > 0 && !(loose_a && apart(first - 1))) --first;
-  while (last + 1 < points.size() && !(loose_b && apart(last))) ++last;
-  points.erase(points.begin() + static_cast<std::ptrdiff_t>(last) + 1, points.end());
-  points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(first));
+  while (last + 1 < points_.size() && !(loose_b && apart(last))) ++last;
+  const auto keep = [&](auto& values) {
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>(last) + 1, values.end());
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  keep(points_);
+  keep(confirmed_);
 }
 
-/// Adds a branch, in two or more pieces where it has states.
-void add_branch(const DiagramBranch& from, std::vector<BranchPoint> points, bool is_virtual,
-                const LocalMapConfig& config, LocalMap& map) {
-  const NodeKind end_kind = is_virtual ? NodeKind::kVirtual : NodeKind::kFictitious;
-  const auto end_node = [&](std::uint32_t node, const BranchPoint& at) {
-    return node == DiagramBranch::kLoose ? add_node(map, end_kind, at, from.base_groups) : node;
-  };
-  const std::uint32_t node_a = end_node(from.node_a, points.front());
-  const std::uint32_t node_b = end_node(from.node_b, points.back());
-  const auto add_piece = [&](std::uint32_t a, std::uint32_t b, std::size_t first,
-                             std::size_t last) {
-    LocalBranch branch;
-    branch.id = static_cast<std::uint32_t>(map.branches.size());
-    branch.node_a = a;
-    branch.node_b = b;
-    branch.base_groups = from.base_groups;
-    branch.is_virtual = is_virtual;
-    branch.points.assign(points.begin() + static_cast<std::ptrdiff_t>(first),
-                         points.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-    map.branches.push_back(std::move(branch));
-  };
-  std::uint32_t before = node_a;
-  std::size_t first = 0;
-  if (config.find_states && !is_virtual) {
-    for (const BranchState& state : find_branch_states(points, config)) {
-      const std::uint32_t node = add_node(map, state.kind, points[state.point], from.base_groups);
-      add_piece(before, node, first, state.point);
-      before = node;
-      first = state.point;
+/// Gives stretches of the given kind that lie between two of the other kind and are too short to
+/// mean anything the kind of those.
+void LocalMapBuilder::Work::absorb_short_stretches(bool short_ones_are) {
+  const char kind = short_ones_are ? 1 : 0;
+  for (std::size_t i = 1; i < confirmed_.size(); ++i) {
+    if (confirmed_[i] != kind || confirmed_[i - 1] == kind) continue;
+    double length_m = 0.0;
+    std::size_t end = i;
+    while (end < confirmed_.size() && confirmed_[end] == kind) {
+      length_m += (points_[end].position_m - points_[end - 1].position_m).norm();
+      ++end;
+    }
+    if (end < confirmed_.size() && length_m < config_.min_stretch_m) {
+      std::fill(confirmed_.begin() + static_cast<std::ptrdiff_t>(i),
+                confirmed_.begin() + static_cast<std::ptrdiff_t>(end), short_ones_are ? 0 : 1);
+    }
+    i = end - 1;
+  }
+}
+
+/// Where the branch has a state, and where it stops or starts to be confirmed. A state that is not
+/// confirmed is none: what narrows the way can be the end of what was seen.
+void LocalMapBuilder::Work::find_cuts() {
+  cuts_.clear();
+  absorb_short_stretches(false);
+  absorb_short_stretches(true);
+  if (config_.find_states) {
+    for (const BranchState& state : state_finder_.find(points_, config_)) {
+      if (confirmed_[state.point] != 0) cuts_.push_back(state);
     }
   }
-  add_piece(before, node_b, first, points.size() - 1);
+  for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
+    // The point on the border is the last one that is confirmed.
+    const bool border = confirmed_[i] != 0 && (confirmed_[i - 1] == 0 || confirmed_[i + 1] == 0);
+    if (border) cuts_.push_back({i, NodeKind::kFictitious});
+  }
+  std::ranges::sort(cuts_, [](const BranchState& a, const BranchState& b) {
+    return a.point != b.point ? a.point < b.point : a.kind > b.kind;  // states before borders
+  });
+  const auto same = [](const BranchState& a, const BranchState& b) { return a.point == b.point; };
+  cuts_.erase(std::unique(cuts_.begin(), cuts_.end(), same), cuts_.end());
 }
 
-/// Groups of connected nodes.
-class Components {
- public:
-  explicit Components(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
+void LocalMapBuilder::Work::add_piece(const DiagramBranch& from, bool is_virtual,
+                                      std::uint32_t node_a, std::uint32_t node_b, std::size_t first,
+                                      std::size_t last) {
+  const auto id = static_cast<std::uint32_t>(branches_.size());
+  LocalBranch& branch = branches_.add();
+  branch.id = id;
+  branch.node_a = node_a;
+  branch.node_b = node_b;
+  branch.base_groups = from.base_groups;
+  branch.is_virtual = is_virtual;
+  // The ends can belong to the neighbours' kind; what lies between does not change.
+  branch.confirmed = confirmed_[first] != 0 && confirmed_[last] != 0 &&
+                     confirmed_[first + (last - first) / 2] != 0;
+  branch.points.assign(points_.begin() + static_cast<std::ptrdiff_t>(first),
+                       points_.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+}
 
- private:
-  std::vector<std::uint32_t> parent_;
-};
+/// Adds a branch, in pieces where it has states or borders of what is confirmed.
+void LocalMapBuilder::Work::add_branch(const DiagramBranch& from, bool is_virtual) {
+  const NodeKind end_kind = is_virtual ? NodeKind::kVirtual : NodeKind::kFictitious;
+  const auto end_node = [&](std::uint32_t node, const BranchPoint& at) {
+    return node == DiagramBranch::kLoose ? add_node(end_kind, at, from.base_groups) : node;
+  };
+  const std::uint32_t node_a = end_node(from.node_a, points_.front());
+  const std::uint32_t node_b = end_node(from.node_b, points_.back());
+  cuts_.clear();
+  if (!is_virtual) find_cuts();
+  std::uint32_t before = node_a;
+  std::size_t first = 0;
+  for (const BranchState& cut : cuts_) {
+    const std::uint32_t node = add_node(cut.kind, points_[cut.point], from.base_groups);
+    add_piece(from, is_virtual, before, node, first, cut.point);
+    before = node;
+    first = cut.point;
+  }
+  add_piece(from, is_virtual, before, node_b, first, points_.size() - 1);
+}
 
 /// Marks the graph nearest to the robot (def. 5.2.2). Loose ends of the same base groups that lie
 /// nearer than the threshold of 5.5 are ends of one branch that the laser did not see whole.
-void mark_main_graph(double separated_m, LocalMap& map) {
-  Components components(map.nodes.size());
+void LocalMapBuilder::Work::mark_main_graph(LocalMap& map) {
+  components_.reset(map.nodes.size());
   double best_sq = std::numeric_limits<double>::infinity();
   std::uint32_t nearest = 0;
   for (const LocalBranch& branch : map.branches) {
-    components.join(branch.node_a, branch.node_b);
+    components_.join(branch.node_a, branch.node_b);
     const double sq = branch.points[nearest_to_robot(branch.points)].position_m.squaredNorm();
     if (sq < best_sq) {
       best_sq = sq;
@@ -138,24 +228,69 @@ void mark_main_graph(double separated_m, LocalMap& map) {
     for (std::size_t i = a.id + 1; i < map.nodes.size(); ++i) {
       const LocalNode& b = map.nodes[i];
       if (b.kind == NodeKind::kFictitious && a.base_groups == b.base_groups &&
-          (a.position_m - b.position_m).norm() <= separated_m) {
-        components.join(a.id, b.id);
+          (a.position_m - b.position_m).norm() <= config_.separated_m) {
+        components_.join(a.id, b.id);
       }
     }
   }
   for (LocalNode& node : map.nodes) {
-    node.in_main_graph = components.root(node.id) == components.root(nearest);
+    node.in_main_graph = components_.root(node.id) == components_.root(nearest);
   }
   for (LocalBranch& branch : map.branches) {
     branch.in_main_graph = map.nodes[branch.node_a].in_main_graph;
   }
 }
 
-}  // namespace
+void LocalMapBuilder::Work::remove_off_main_graph(LocalMap& map) {
+  kept_.clear();
+  std::uint32_t nodes = 0;
+  for (const LocalNode& node : map.nodes) {
+    kept_.push_back(nodes);
+    if (node.in_main_graph) ++nodes;
+  }
+  std::erase_if(map.nodes, [](const LocalNode& node) { return !node.in_main_graph; });
+  std::erase_if(map.branches, [](const LocalBranch& branch) { return !branch.in_main_graph; });
+  for (LocalNode& node : map.nodes) node.id = kept_[node.id];
+  std::uint32_t branches = 0;
+  for (LocalBranch& branch : map.branches) {
+    branch.id = branches++;
+    branch.node_a = kept_[branch.node_a];
+    branch.node_b = kept_[branch.node_b];
+  }
+}
 
-std::vector<ScanPoint> scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser,
-                                   double range_limit_m) {
-  std::vector<ScanPoint> points;
+void LocalMapBuilder::Work::build(const LocalVoronoiDiagram& diagram, const scan::Scan& scan,
+                                  const geometry::Pose2& T_robot_laser, LocalMap& out) {
+  out.T_robot_laser = T_robot_laser;
+  nodes_.open(out.nodes);
+  branches_.open(out.branches);
+  add_diagram_nodes(diagram, T_robot_laser);
+  for (const DiagramBranch& branch : diagram.branches) {
+    take_points(diagram, branch, T_robot_laser);
+    cut_far_points(branch);
+    if (points_.size() >= 2) add_branch(branch, diagram.is_virtual);
+  }
+  nodes_.close();
+  branches_.close();
+  mark_main_graph(out);
+  if (config_.remove_off_main_graph) remove_off_main_graph(out);
+  scan_points(scan, T_robot_laser, config_.range_limit_m, out.points);
+}
+
+LocalMapBuilder::LocalMapBuilder(const LocalMapConfig& config)
+    : work_(std::make_unique<Work>(config)) {}
+LocalMapBuilder::~LocalMapBuilder() = default;
+LocalMapBuilder::LocalMapBuilder(LocalMapBuilder&&) noexcept = default;
+LocalMapBuilder& LocalMapBuilder::operator=(LocalMapBuilder&&) noexcept = default;
+
+void LocalMapBuilder::build(const LocalVoronoiDiagram& diagram, const scan::Scan& scan,
+                            const geometry::Pose2& T_robot_laser, LocalMap& out) {
+  work_->build(diagram, scan, T_robot_laser, out);
+}
+
+void scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser, double range_limit_m,
+                 std::vector<ScanPoint>& points) {
+  points.clear();
   points.reserve(scan.ranges_m.size());
   for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
     const auto range_m = static_cast<double>(scan.ranges_m[i]);
@@ -165,27 +300,19 @@ std::vector<ScanPoint> scan_points(const scan::Scan& scan, const geometry::Pose2
     const Eigen::Vector2d point_m = T_robot_laser * Eigen::Vector2d{range_m * cos, range_m * sin};
     points.push_back({static_cast<float>(point_m.x()), static_cast<float>(point_m.y())});
   }
+}
+
+std::vector<ScanPoint> scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser,
+                                   double range_limit_m) {
+  std::vector<ScanPoint> points;
+  scan_points(scan, T_robot_laser, range_limit_m, points);
   return points;
 }
 
 void build_local_map(const LocalVoronoiDiagram& diagram, const scan::Scan& scan,
                      const geometry::Pose2& T_robot_laser, const LocalMapConfig& config,
                      LocalMap& out) {
-  out.T_robot_laser = T_robot_laser;
-  out.nodes.clear();
-  out.branches.clear();
-  add_diagram_nodes(diagram, T_robot_laser, out);
-  std::vector<BranchPoint> points;
-  for (const DiagramBranch& branch : diagram.branches) {
-    points.clear();
-    for (const voronoi::DiagramPoint& point : diagram.points_of(branch)) {
-      points.push_back({T_robot_laser * point.position_m, point.clearance_m});
-    }
-    cut_far_points(branch, config.separated_m, points);
-    if (points.size() >= 2) add_branch(branch, points, diagram.is_virtual, config, out);
-  }
-  mark_main_graph(config.separated_m, out);
-  out.points = scan_points(scan, T_robot_laser, config.range_limit_m);
+  LocalMapBuilder(config).build(diagram, scan, T_robot_laser, out);
 }
 
 }  // namespace topogeo::topomap

@@ -14,10 +14,29 @@ struct BranchState {
   NodeKind kind = NodeKind::kDoor;
 };
 
-/// The states of a branch in the order of its points. A minimum of the clearance, confirmed on both
-/// sides (5.3, 5.4), is a door or a narrowing; a long level stretch that the clearance rises from
-/// is a corridor, and the end of the stretch the passage to the hall. A maximum is no state.
-std::vector<BranchState> find_branch_states(std::span<const BranchPoint> points,
-                                            const LocalMapConfig& config);
+/// A reusable work space.
+class BranchStateFinder {
+ public:
+  /// The states of a branch in the order of its points, valid until the next call. A minimum of the
+  /// clearance, confirmed on both sides (5.3, 5.4), is a door or a narrowing; a long level stretch
+  /// that the clearance rises from is a corridor, and the end of the stretch the passage to the
+  /// hall. A maximum is no state.
+  std::span<const BranchState> find(std::span<const BranchPoint> points,
+                                    const LocalMapConfig& config);
+
+ private:
+  struct Floor;
+
+  void measure_arc_lengths(std::span<const BranchPoint> points);
+  void find_minima(std::span<const BranchPoint> points, double rise_m);
+  std::size_t middle_of(std::span<const BranchPoint> points, std::size_t lowest) const;
+  std::size_t mouth_of(std::span<const BranchPoint> points, const Floor& floor,
+                       std::ptrdiff_t step);
+
+  std::vector<double> arc_m_;         ///< along the branch, per point
+  std::vector<std::size_t> minima_;   ///< indices of points
+  std::vector<double> clearances_m_;  ///< of one floor
+  std::vector<BranchState> states_;
+};
 
 }  // namespace topogeo::topomap

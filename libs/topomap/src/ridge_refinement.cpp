@@ -5,29 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "components.hpp"
+
 namespace topogeo::topomap {
 namespace {
-
-class Components {
- public:
-  explicit Components(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0U);
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  bool unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 std::vector<std::uint32_t> degrees(const RidgeGraph& graph) {
   std::vector<std::uint32_t> degree(graph.nodes.size(), 0);
@@ -101,14 +82,14 @@ void drop_outvoted(RidgeGraph& graph, const GlobalMapConfig& config) {
     const RidgeEdge& e = graph.edges[i];
     const double share = worst_share(graph, e);
     if (share >= config.keep_share) {
-      parts.unite(e.a, e.b);
+      parts.join(e.a, e.b);
     } else {
       weak.emplace_back(-share, i);
     }
   }
   std::sort(weak.begin(), weak.end());
   for (const auto& [negative_share, i] : weak) {
-    drop[i] = parts.unite(graph.edges[i].a, graph.edges[i].b) ? 0 : 1;
+    drop[i] = parts.join(graph.edges[i].a, graph.edges[i].b) ? 0 : 1;
   }
   drop_edges(graph, drop);
 }
@@ -230,12 +211,12 @@ void drop_doubles(RidgeGraph& graph, const GlobalMapConfig& config) {
 
 void drop_small_components(RidgeGraph& graph, const GlobalMapConfig& config) {
   Components parts(graph.nodes.size());
-  for (const RidgeEdge& e : graph.edges) parts.unite(e.a, e.b);
+  for (const RidgeEdge& e : graph.edges) parts.join(e.a, e.b);
   std::vector<double> total_m(graph.nodes.size(), 0.0);
-  for (const RidgeEdge& e : graph.edges) total_m[parts.find(e.a)] += length_m(graph, e);
+  for (const RidgeEdge& e : graph.edges) total_m[parts.root(e.a)] += length_m(graph, e);
   std::vector<char> drop(graph.edges.size(), 0);
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
-    drop[i] = total_m[parts.find(graph.edges[i].a)] < config.min_component_m ? 1 : 0;
+    drop[i] = total_m[parts.root(graph.edges[i].a)] < config.min_component_m ? 1 : 0;
   }
   drop_edges(graph, drop);
 }
@@ -266,7 +247,7 @@ std::optional<Gap> nearest_gap(const RidgeGraph& graph, std::uint32_t end, Compo
   };
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const RidgeEdge& e = graph.edges[i];
-    if (parts.find(e.a) == parts.find(end)) continue;
+    if (parts.root(e.a) == parts.root(end)) continue;
     look_at(graph.nodes[e.a], {i, std::nullopt, e.a});
     look_at(graph.nodes[e.b], {i, std::nullopt, e.b});
     for (std::size_t k = 0; k < e.points.size(); ++k) look_at(e.points[k], {i, k, 0});
@@ -291,7 +272,7 @@ std::uint32_t split(RidgeGraph& graph, const Place& place) {
 void close_gaps(RidgeGraph& graph, const GlobalMapConfig& config) {
   for (;;) {
     Components parts(graph.nodes.size());
-    for (const RidgeEdge& e : graph.edges) parts.unite(e.a, e.b);
+    for (const RidgeEdge& e : graph.edges) parts.join(e.a, e.b);
     const std::vector<std::uint32_t> degree = degrees(graph);
     std::optional<Gap> best;
     for (std::uint32_t n = 0; n < graph.nodes.size(); ++n) {

@@ -168,7 +168,7 @@ DiagramPoint CrackGraph::crack_point(std::uint32_t corner, int direction,
   const double t = sum > 0.0 ? std::clamp(at_p / sum, 0.0, 1.0) : 0.5;
   const Eigen::Vector2d position_m = p + t * (q - p);
   return {position_m,
-          0.5 * ((position_m - a.position_m).norm() + (position_m - b.position_m).norm())};
+          0.5 * ((position_m - a.position_m).norm() + (position_m - b.position_m).norm()), 0.0};
 }
 
 int CrackGraph::next_direction(std::uint32_t corner, int arrived) const {
@@ -208,7 +208,7 @@ void CrackGraph::trace_from(std::uint32_t corner, int direction) {
   piece.node_b = kLoose;
   if (piece.node_a != kLoose) {
     const Junction& junction = junctions_[piece.node_a];
-    points_.push_back({junction.position_m, junction.clearance_m});
+    points_.push_back({junction.position_m, junction.clearance_m, 0.0});
   }
   while (direction >= 0 && ((used_[corner] >> direction) & 1U) == 0) {
     append(crack_point(corner, direction, piece.base_groups), piece);
@@ -231,7 +231,7 @@ void CrackGraph::trace_from(std::uint32_t corner, int direction) {
     if (points_.size() > piece.points.begin) {
       piece.length_m += (points_.back().position_m - junction.position_m).norm();
     }
-    points_.push_back({junction.position_m, junction.clearance_m});
+    points_.push_back({junction.position_m, junction.clearance_m, 0.0});
   }
   piece.points.end = static_cast<std::uint32_t>(points_.size());
   piece.dropped = piece.points.size() < 2;
@@ -280,24 +280,24 @@ void CrackGraph::write(LocalVoronoiDiagram& out) {
   out.nodes.clear();
   out.branches.clear();
   out.points.clear();
-  std::vector<std::uint32_t> node_of(junctions_.size(), kLoose);
-  std::vector<int> members(junctions_.size(), 0);
+  node_of_.assign(junctions_.size(), kLoose);
+  members_.assign(junctions_.size(), 0);
   for (Piece& piece : pieces_) {
     if (piece.node_a != kLoose) piece.node_a = root_of(piece.node_a);
     if (piece.node_b != kLoose) piece.node_b = root_of(piece.node_b);
     if (piece.dropped) continue;
-    if (piece.node_a != kLoose) node_of[piece.node_a] = 0;
-    if (piece.node_b != kLoose) node_of[piece.node_b] = 0;
+    if (piece.node_a != kLoose) node_of_[piece.node_a] = 0;
+    if (piece.node_b != kLoose) node_of_[piece.node_b] = 0;
   }
   for (std::uint32_t i = 0; i < junctions_.size(); ++i) {
     const std::uint32_t root = root_of(i);
-    if (node_of[root] == kLoose) continue;
+    if (node_of_[root] == kLoose) continue;
     if (root == i) {
-      node_of[i] = static_cast<std::uint32_t>(out.nodes.size());
+      node_of_[i] = static_cast<std::uint32_t>(out.nodes.size());
       out.nodes.emplace_back();
     }
-    DiagramNode& node = out.nodes[node_of[root]];
-    const double weight = 1.0 / ++members[root];
+    DiagramNode& node = out.nodes[node_of_[root]];
+    const double weight = 1.0 / ++members_[root];
     node.position_m += weight * (junctions_[i].position_m - node.position_m);
     node.clearance_m += weight * (junctions_[i].clearance_m - node.clearance_m);
     node.base_groups.insert(node.base_groups.end(), junctions_[i].groups.begin(),
@@ -318,9 +318,9 @@ void CrackGraph::write(LocalVoronoiDiagram& out) {
     branch.points.end = static_cast<std::uint32_t>(out.points.size());
     const auto end_at = [&](std::uint32_t junction, std::uint32_t point) {
       if (junction == kLoose) return kLoose;
-      const DiagramNode& node = out.nodes[node_of[junction]];
-      out.points[point] = {node.position_m, node.clearance_m};
-      return node_of[junction];
+      const DiagramNode& node = out.nodes[node_of_[junction]];
+      out.points[point] = {node.position_m, node.clearance_m, 0.0};
+      return node_of_[junction];
     };
     branch.node_a = end_at(piece.node_a, branch.points.begin);
     branch.node_b = end_at(piece.node_b, branch.points.end - 1);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -78,6 +79,55 @@ void drop_group(GeneratorGroups& groups, std::size_t k) {
   }
 }
 
+/// Which successive readings of a scan belong to one surface.
+class Surfaces {
+ public:
+  Surfaces(const scan::Scan& scan, const BeamDirections& beams, const VoronoiConfig& config)
+      : ranges_m_(scan.ranges_m), beams_(beams), config_(config) {}
+
+  [[nodiscard]] bool is_reading(std::uint32_t beam) const {
+    return within_limit(ranges_m_[beam], config_);
+  }
+  [[nodiscard]] Eigen::Vector2d position_m(std::uint32_t beam) const {
+    return beams_.directions()[beam] * static_cast<double>(ranges_m_[beam]);
+  }
+  /// 4.7 for two successive beams, the second of which has a reading.
+  [[nodiscard]] bool continues(std::uint32_t before, std::uint32_t beam) const {
+    if (!is_reading(before)) return false;
+    const double jump_m =
+        static_cast<double>(ranges_m_[beam]) - static_cast<double>(ranges_m_[before]);
+    if (!config_.split_discontinuities || std::abs(jump_m) <= config_.discontinuity_m) return true;
+    return config_.on_wall_m > 0.0 &&
+           (on_line(next(before, -1), before, beam) || on_line(next(beam, 1), beam, before));
+  }
+
+ private:
+  [[nodiscard]] std::optional<std::uint32_t> next(std::uint32_t beam, int step) const {
+    const auto count = static_cast<std::uint32_t>(ranges_m_.size());
+    const bool at_the_end = step > 0 ? beam + 1 == count : beam == 0;
+    if (at_the_end && !beams_.closed()) return std::nullopt;
+    return (beam + count + static_cast<std::uint32_t>(step)) % count;
+  }
+  /// True if reading `c` goes on the line from reading `a` to `b`. Two readings say where a line
+  /// goes for not much longer than they are apart; along a wall the distances grow less than that.
+  [[nodiscard]] bool on_line(std::optional<std::uint32_t> a, std::uint32_t b,
+                             std::uint32_t c) const {
+    if (!a || !is_reading(*a)) return false;
+    constexpr double kLongest = 2.5;
+    const Eigen::Vector2d base_m = position_m(b) - position_m(*a);
+    const Eigen::Vector2d on_m = position_m(c) - position_m(b);
+    const double sq = base_m.squaredNorm();
+    const double along = base_m.dot(on_m);
+    const double across = base_m.x() * on_m.y() - base_m.y() * on_m.x();
+    return along > 0.0 && along <= kLongest * sq &&
+           across * across <= config_.on_wall_m * config_.on_wall_m * sq;
+  }
+
+  const std::vector<float>& ranges_m_;
+  const BeamDirections& beams_;
+  const VoronoiConfig& config_;
+};
+
 /// True if group `between` is seen through the gap between its neighbours.
 bool lies_behind(const GeneratorGroups& groups, std::size_t before, std::size_t between,
                  std::size_t after) {
@@ -141,24 +191,20 @@ void split_at_discontinuities(const scan::Scan& scan, const BeamDirections& beam
   out.points.clear();
   out.groups.clear();
   out.closed = beams.closed();
-  const auto continues = [&](float range_m, float previous_m) {
-    if (!within_limit(previous_m, config)) return false;
-    return !config.split_discontinuities ||
-           std::abs(static_cast<double>(range_m) - static_cast<double>(previous_m)) <=
-               config.discontinuity_m;
-  };
+  const Surfaces surfaces(scan, beams, config);
   for (std::uint32_t i = 0; i < scan.ranges_m.size(); ++i) {
-    const float range_m = scan.ranges_m[i];
-    if (!within_limit(range_m, config)) continue;
+    if (!surfaces.is_reading(i)) continue;
     const auto at = static_cast<std::uint32_t>(out.points.size());
-    if (i == 0 || !continues(range_m, scan.ranges_m[i - 1])) out.groups.push_back({at, at});
-    out.points.push_back({beams.directions()[i] * static_cast<double>(range_m), range_m, i});
+    const bool on_wall = i > 0 && surfaces.continues(i - 1, i);
+    if (!on_wall) out.groups.push_back({at, at});
+    out.points.push_back({surfaces.position_m(i), scan.ranges_m[i], i, on_wall});
     out.groups.back().end = at + 1;
   }
-  if (out.closed && out.groups.size() > 1 && within_limit(scan.ranges_m.front(), config) &&
-      continues(scan.ranges_m.front(), scan.ranges_m.back())) {
-    join_with_next(out, out.groups.size() - 1);
-  }
+  if (!out.closed || out.groups.empty() || !surfaces.is_reading(0)) return;
+  const auto last = static_cast<std::uint32_t>(scan.ranges_m.size()) - 1;
+  if (!surfaces.continues(last, 0)) return;
+  out.points.front().on_wall = true;
+  if (out.groups.size() > 1) join_with_next(out, out.groups.size() - 1);
 }
 
 void join_contiguous_groups(const VoronoiConfig& config, GeneratorGroups& groups) {
@@ -227,7 +273,9 @@ void join_across_hidden_zones(const BeamDirections& beams, const VoronoiConfig& 
     const double angle_rad = geometry::wrap_angle(
         beams.angle_min_rad() + (static_cast<double>(last.beam) + 0.5) * beams.angle_step_rad() -
         config.forward_rad);
-    const bool hidden = angle_rad < 0.0 ? last.range_m < next.range_m : last.range_m > next.range_m;
+    // Ahead on the right and behind on the left the beams turn towards the line of motion.
+    const bool towards_motion = (angle_rad < 0.0) == (std::abs(angle_rad) < 0.5 * std::numbers::pi);
+    const bool hidden = towards_motion ? last.range_m < next.range_m : last.range_m > next.range_m;
     if (successive && hidden) {
       join_with_next(groups, k);
     } else {

@@ -56,15 +56,45 @@ void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
     add_virtual_groups(beams_, free_range_m_, config_, out.groups);
   }
 
-  sites_.clear();
-  for (std::size_t group = 0; group < out.groups.groups.size(); ++group) {
-    const PointRun& run = out.groups.groups[group];
-    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      sites_.push_back({out.groups.points[i].position_m, static_cast<std::uint16_t>(group)});
-    }
-  }
+  place_sites(out.groups);
   grid_.compute(sites_, free_range_m_);
   cracks_.trace(grid_, sites_, config_, out);
+  measure_hidden_depths(out);
+}
+
+/// Every reading of a group is a site, and so are points on a wall between readings that are far
+/// apart.
+void LocalVoronoi::place_sites(const GeneratorGroups& groups) {
+  sites_.clear();
+  for (std::size_t g = 0; g < groups.groups.size(); ++g) {
+    const PointRun& run = groups.groups[g];
+    const auto group = static_cast<std::uint16_t>(g);
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const Eigen::Vector2d& at_m = groups.points[i].position_m;
+      if (i > run.begin && groups.points[i].on_wall && config_.site_spacing_m > 0.0) {
+        const Eigen::Vector2d& from_m = groups.points[i - 1].position_m;
+        const double pieces =
+            std::min(100.0, std::ceil((at_m - from_m).norm() / config_.site_spacing_m));
+        for (double piece = 1.0; piece < pieces; ++piece) {
+          sites_.push_back({from_m + (piece / pieces) * (at_m - from_m), group});
+        }
+      }
+      sites_.push_back({at_m, group});
+    }
+  }
+}
+
+void LocalVoronoi::measure_hidden_depths(LocalVoronoiDiagram& diagram) {
+  if (diagram.is_virtual) {
+    frontier_.clear();
+  } else {
+    frontier_.compute(beams_, free_range_m_, diagram.groups, config_.range_limit_m);
+  }
+  const auto measure = [&](auto& place) {
+    place.hidden_m = std::max(0.0, place.clearance_m - frontier_.distance_m(place.position_m));
+  };
+  for (DiagramPoint& point : diagram.points) measure(point);
+  for (DiagramNode& node : diagram.nodes) measure(node);
 }
 
 }  // namespace topogeo::voronoi

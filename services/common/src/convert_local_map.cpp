@@ -45,6 +45,7 @@ msg::LocalBranch to_branch(const topomap::LocalBranch& branch) {
   out.base_group_b(branch.base_groups[1]);
   out.is_virtual(branch.is_virtual);
   out.in_main_graph(branch.in_main_graph);
+  out.confirmed(branch.confirmed);
   out.points(detail::to_branch_points(branch.points, "branches.points"));
   return out;
 }
@@ -61,6 +62,7 @@ topomap::LocalBranch from_branch(const msg::LocalBranch& branch, std::size_t ind
   out.base_groups = {branch.base_group_a(), branch.base_group_b()};
   out.is_virtual = branch.is_virtual();
   out.in_main_graph = branch.in_main_graph();
+  out.confirmed = branch.confirmed();
   out.points = detail::from_branch_points(branch.points(), "branches.points");
   return out;
 }

@@ -100,6 +100,7 @@ inline topomap::LocalMap any_local_map(support::Random& random) {
                             {any_u16(random), any_u16(random)},
                             any_bool(random),
                             any_bool(random),
+                            any_bool(random),
                             any_points(random)});
   }
   for (int i = 0; i < 100; ++i) out.points.push_back({any_float(random), any_float(random)});
@@ -153,7 +154,7 @@ inline bool operator==(const LocalNode& a, const LocalNode& b) {
 inline bool operator==(const LocalBranch& a, const LocalBranch& b) {
   return a.id == b.id && a.node_a == b.node_a && a.node_b == b.node_b &&
          a.base_groups == b.base_groups && a.is_virtual == b.is_virtual &&
-         a.in_main_graph == b.in_main_graph && a.points == b.points;
+         a.in_main_graph == b.in_main_graph && a.confirmed == b.confirmed && a.points == b.points;
 }
 inline bool operator==(const ScanPoint& a, const ScanPoint& b) {
   return a.x_m == b.x_m && a.y_m == b.y_m;

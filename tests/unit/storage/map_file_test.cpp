@@ -40,6 +40,7 @@ TEST_F(MapFile, GivesBackEveryField) {
   EXPECT_EQ(map.branches[0].base_groups, (std::array<std::uint16_t, 2>{2, 5}));
   EXPECT_TRUE(map.branches[0].is_virtual);
   EXPECT_FALSE(map.branches[0].in_main_graph);
+  EXPECT_FALSE(map.branches[0].confirmed);
   ASSERT_EQ(map.branches[0].points.size(), 2U);
   EXPECT_EQ(map.branches[0].points[1].position_m, Eigen::Vector2d(3.0, 4.0));
   EXPECT_EQ(map.branches[0].points[1].clearance_m, 1.1);

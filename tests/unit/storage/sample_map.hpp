@@ -26,7 +26,7 @@ inline topomap::LocalMap sample_local_map(std::uint32_t id) {
   map.T_robot_laser = {0.17, -0.0, 0.01};
   map.nodes = {{0, topomap::NodeKind::kReal, {1.0 + d, 2.0}, 0.8, {0, 3, 65535}, true},
                {1, topomap::NodeKind::kHallCorridor, {3.0, 1.0 / 3.0}, 1.1, {}, false}};
-  map.branches = {{0, 0, 1, {2, 5}, true, false, {{{1.0, 2.0}, 0.8}, {{3.0, 4.0}, 1.1}}}};
+  map.branches = {{0, 0, 1, {2, 5}, true, false, false, {{{1.0, 2.0}, 0.8}, {{3.0, 4.0}, 1.1}}}};
   map.points = {{0.5F, 1.5F}, {-2.25F, 0.1F}, {0.0F, -0.0F}};
   if (id > 0) map.track = {{std::uint64_t{10} * id - 1, 5, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, true}};
   return map;

@@ -27,6 +27,13 @@ LocalMap map_of(const scan::Scan& scan, const Pose2& T_robot_laser = {},
   return map;
 }
 
+/// Everything counts as confirmed, as in the source.
+LocalMapConfig all_confirmed() {
+  LocalMapConfig config;
+  config.largest_hidden_share = 1.0;
+  return config;
+}
+
 std::vector<LocalNode> nodes_of(const LocalMap& map, NodeKind kind) {
   std::vector<LocalNode> result;
   std::ranges::copy_if(map.nodes, std::back_inserter(result),
@@ -67,6 +74,7 @@ TEST(LocalMapBuilder, ADoorIsANodeWhereTheBranchIsNarrowest) {
   EXPECT_NEAR(doors[0].position_m.y(), -0.05, 0.03);
   EXPECT_NEAR(doors[0].clearance_m, 0.45, 0.03);
   EXPECT_TRUE(doors[0].in_main_graph);
+  EXPECT_GE(map.branches.size(), 2U);
   // The node splits its branch in two.
   EXPECT_EQ(std::ranges::count_if(map.branches,
                                   [&](const LocalBranch& branch) {
@@ -75,9 +83,31 @@ TEST(LocalMapBuilder, ADoorIsANodeWhereTheBranchIsNarrowest) {
                                   }),
             2);
   // Behind it, as far from the door posts as from the wall: (x - 2)^2 + 0.45^2 = (4 - x)^2.
-  const auto real = nodes_of(map, NodeKind::kReal);
+  // The room behind is seen through the door alone: the walls beside the wedge can be anywhere.
+  EXPECT_TRUE(nodes_of(map, NodeKind::kReal).empty());
+  const auto real =
+      nodes_of(map_of(scan_of(kDoor, {0.7, 0.05, 0.0}), {}, all_confirmed()), NodeKind::kReal);
   ASSERT_EQ(real.size(), 1U);
   EXPECT_NEAR(real[0].position_m.x(), 2.949 - 0.7, 0.05);
+}
+
+// From the door itself the robot sees all of the circle round the place where the ways part.
+TEST(LocalMapBuilder, WhatIsBehindADoorIsConfirmedOnceItIsSeen) {
+  const World world{{-1, 2, 2, 2},     {2, 2, 2, 0.45}, {-1, -2, 2, -2},
+                    {2, -2, 2, -0.45}, {4, -3, 4, 3},   {2, 3, 4, 3},
+                    {2, -3, 4, -3},    {2, 2, 2, 3},    {2, -2, 2, -3}};
+  const LocalMap before = map_of(scan_of(world, {0.7, 0.05, 0.0}));
+  const LocalMap at =
+      map_of(scan_of(world, {1.9, 0.0, 0.0}, {.beams = 720, .field_of_view_deg = 360.0}));
+  const auto confirmed_beyond = [](const LocalMap& map, double x_m) {
+    return std::ranges::any_of(map.branches, [&](const LocalBranch& branch) {
+      return branch.confirmed && std::ranges::any_of(branch.points, [&](const BranchPoint& point) {
+               return point.position_m.x() > x_m;
+             });
+    });
+  };
+  EXPECT_FALSE(confirmed_beyond(before, 2.75 - 0.7));
+  EXPECT_TRUE(confirmed_beyond(at, 2.75 - 1.9));
 }
 
 TEST(LocalMapBuilder, AWiderMinimumIsANarrowingAndNoStateIsLookedForWhenSwitchedOff) {
@@ -123,7 +153,7 @@ TEST(LocalMapBuilder, AMaximumOfTheClearanceMakesNoNode) {
 // The far wall is beyond the range limit: it only shows that the corridor is free.
 TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodes) {
   const World corridor{{-3, 1, 5, 1}, {-3, -1, 5, -1}, {20, -9, 20, 9}};
-  const LocalMap map = map_of(scan_of(corridor));
+  const LocalMap map = map_of(scan_of(corridor), {}, all_confirmed());
   expect_well_formed(map);
   ASSERT_EQ(map.branches.size(), 1U);
   EXPECT_EQ(map.nodes.size(), 2U);
@@ -131,6 +161,21 @@ TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodes) {
   EXPECT_GT(map.branches[0].points.back().position_m.x(), 4.5);
   // Without the wall the beams along the axis meet nothing, which proves nothing to be free.
   EXPECT_TRUE(map_of(scan_of({corridor[0], corridor[1]})).branches.empty());
+}
+
+// The circles of the first points reach behind the robot. At the other end all is in sight.
+TEST(LocalMapBuilder, ABranchIsCutWhereItStopsBeingConfirmed) {
+  const World corridor{{-3, 1, 5, 1}, {-3, -1, 5, -1}, {20, -9, 20, 9}};
+  const LocalMap map = map_of(scan_of(corridor));
+  expect_well_formed(map);
+  ASSERT_EQ(map.branches.size(), 2U);
+  EXPECT_FALSE(map.branches[0].confirmed);
+  EXPECT_TRUE(map.branches[1].confirmed);
+  const auto ends = std::minmax(map.branches[1].points.front().position_m.x(),
+                                map.branches[1].points.back().position_m.x());
+  EXPECT_NEAR(ends.first, 0.8, 0.06);  // hidden by 0.2 m of a clearance of 1 m
+  EXPECT_GT(ends.second, 4.0);
+  for (const LocalBranch& branch : map.branches) EXPECT_TRUE(branch.in_main_graph);
 }
 
 TEST(LocalMapBuilder, AVirtualDiagramMakesOnlyVirtualElements) {
@@ -165,6 +210,31 @@ TEST(LocalMapBuilder, WhatIsOffTheMainGraphIsKeptAndMarked) {
   EXPECT_TRUE(map.branches[1].in_main_graph);
   EXPECT_TRUE(map.branches[2].in_main_graph);  // the same branch with a few beams missing
   EXPECT_FALSE(map.branches[3].in_main_graph);
+
+  LocalMapConfig source;
+  source.remove_off_main_graph = true;
+  build_local_map(diagram, scan::Scan{}, {}, source, map);
+  expect_well_formed(map);
+  ASSERT_EQ(map.branches.size(), 2U);
+  EXPECT_EQ(map.nodes.size(), 4U);
+  EXPECT_EQ(map.branches[0].points.front().position_m, Eigen::Vector2d(0.0, 0.1));
+}
+
+// Built again and again into the same object, in another order, the maps are those built once.
+TEST(LocalMapBuilder, AMapDoesNotDependOnWhatTheObjectsHeldBefore) {
+  LocalMapBuilder builder{LocalMapConfig{}};
+  LocalMap reused;
+  for (const std::uint32_t seed : {3U, 1U, 4U, 1U, 5U, 9U, 2U, 6U, 5U, 3U}) {
+    const scan::Scan scan = scan_of(test_world::random_world(seed));
+    voronoi::LocalVoronoi voronoi{voronoi::VoronoiConfig{}};
+    const auto diagram = voronoi.compute(scan);
+    builder.build(diagram, scan, {}, reused);
+    LocalMap once;
+    build_local_map(diagram, scan, {}, {}, once);
+    EXPECT_EQ(content_hash(reused), content_hash(once));
+    EXPECT_EQ(reused.nodes.size(), once.nodes.size());
+    expect_well_formed(reused);
+  }
 }
 
 TEST(LocalMapBuilder, AnOuterBranchEndsBeforeTheFirstLongStep) {
@@ -184,10 +254,10 @@ TEST(LocalMapBuilder, AnOuterBranchEndsBeforeTheFirstLongStep) {
 TEST(LocalMapBuilder, CoordinatesAreOfTheRobotHoweverTheLaserIsMounted) {
   const Laser laser{.beams = 720, .field_of_view_deg = 360.0};
   const Pose2 T_world_robot{0.7, 0.05, 0.1};
-  const LocalMap straight = map_of(scan_of(kDoor, T_world_robot, laser));
+  const LocalMap straight = map_of(scan_of(kDoor, T_world_robot, laser), {}, all_confirmed());
   for (const Pose2& T_robot_laser : {Pose2{0.1, 0.0, 0.0}, Pose2{0.05, -0.1, 0.7}}) {
-    const LocalMap map =
-        map_of(scan_of(kDoor, T_world_robot * T_robot_laser, laser), T_robot_laser);
+    const LocalMap map = map_of(scan_of(kDoor, T_world_robot * T_robot_laser, laser), T_robot_laser,
+                                all_confirmed());
     expect_well_formed(map);
     EXPECT_EQ(map.T_robot_laser, T_robot_laser);
     for (const NodeKind kind : {NodeKind::kReal, NodeKind::kDoor}) {

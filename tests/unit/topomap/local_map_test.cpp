@@ -44,6 +44,7 @@ TEST(ContentHash, ChangesWithEverythingThatAMatchDependsOn) {
       [](LocalMap& m) { m.branches.clear(); },
       [](LocalMap& m) { m.branches[0].is_virtual = true; },
       [](LocalMap& m) { m.branches[0].in_main_graph = false; },
+      [](LocalMap& m) { m.branches[0].confirmed = false; },
       [](LocalMap& m) { m.nodes[0].in_main_graph = false; },
   };
   std::set<std::uint64_t> hashes{content_hash(sample())};

@@ -36,23 +36,23 @@ class MotionCommand;
 
 namespace topogeo::messaging {
 
-inline constexpr std::string_view kScan = "topogeo/v1/scan";
-inline constexpr std::string_view kOdometry = "topogeo/v1/odometry";
-inline constexpr std::string_view kSonar = "topogeo/v1/sonar";
-inline constexpr std::string_view kBaseStatus = "topogeo/v1/base_status";
-inline constexpr std::string_view kStreamEnd = "topogeo/v1/stream_end";
-inline constexpr std::string_view kLocalMap = "topogeo/v1/local_map";
-inline constexpr std::string_view kMatchTask = "topogeo/v1/match_task";
-inline constexpr std::string_view kMatchResult = "topogeo/v1/match_result";
-inline constexpr std::string_view kWorkerStatus = "topogeo/v1/worker_status";
-inline constexpr std::string_view kServiceStatus = "topogeo/v1/service_status";
-inline constexpr std::string_view kLivePose = "topogeo/v1/pose";
-inline constexpr std::string_view kTrajectorySegment = "topogeo/v1/trajectory";
-inline constexpr std::string_view kLoopClosures = "topogeo/v1/loop_closures";
-inline constexpr std::string_view kMapElement = "topogeo/v1/map";
-inline constexpr std::string_view kGoal = "topogeo/v1/goal";
-inline constexpr std::string_view kRoute = "topogeo/v1/route";
-inline constexpr std::string_view kMotionCommand = "topogeo/v1/motion_command";
+inline constexpr std::string_view kScan = "topogeo/v2/scan";
+inline constexpr std::string_view kOdometry = "topogeo/v2/odometry";
+inline constexpr std::string_view kSonar = "topogeo/v2/sonar";
+inline constexpr std::string_view kBaseStatus = "topogeo/v2/base_status";
+inline constexpr std::string_view kStreamEnd = "topogeo/v2/stream_end";
+inline constexpr std::string_view kLocalMap = "topogeo/v2/local_map";
+inline constexpr std::string_view kMatchTask = "topogeo/v2/match_task";
+inline constexpr std::string_view kMatchResult = "topogeo/v2/match_result";
+inline constexpr std::string_view kWorkerStatus = "topogeo/v2/worker_status";
+inline constexpr std::string_view kServiceStatus = "topogeo/v2/service_status";
+inline constexpr std::string_view kLivePose = "topogeo/v2/pose";
+inline constexpr std::string_view kTrajectorySegment = "topogeo/v2/trajectory";
+inline constexpr std::string_view kLoopClosures = "topogeo/v2/loop_closures";
+inline constexpr std::string_view kMapElement = "topogeo/v2/map";
+inline constexpr std::string_view kGoal = "topogeo/v2/goal";
+inline constexpr std::string_view kRoute = "topogeo/v2/route";
+inline constexpr std::string_view kMotionCommand = "topogeo/v2/motion_command";
 
 /// Role of the sensor topics while a log is replayed: a slow reader slows the writer. Writer and
 /// readers of a run must agree on it.

@@ -47,6 +47,7 @@ class LocalMapper {
   localization::ScanTracker tracker_;
   voronoi::LocalVoronoi diagram_maker_;
   voronoi::LocalVoronoiDiagram diagram_;
+  topomap::LocalMapBuilder map_builder_;
   std::uint32_t next_id_ = 0;
   std::vector<topomap::TrackedScan> track_;  // since the last stop
   std::optional<scan::Scan> last_;           // the last scan, if it was no stop

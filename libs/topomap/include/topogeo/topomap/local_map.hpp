@@ -16,8 +16,8 @@
 namespace topogeo::topomap {
 
 enum class NodeKind : std::uint8_t {
-  kReal = 0,          ///< three or more generator groups equally near
-  kFictitious = 1,    ///< end of a branch at the border of what was seen
+  kReal = 0,          ///< three or more generator groups equally near, proved by what was seen
+  kFictitious = 1,    ///< where what is known of a branch ends: no place of its own meaning
   kVirtual = 2,       ///< of a virtual diagram; for navigation only
   kDoor = 3,          ///< minimum of clearance up to door_half_width
   kNarrowing = 4,     ///< any other minimum of clearance
@@ -45,6 +45,8 @@ struct LocalBranch {
   std::array<std::uint16_t, 2> base_groups{};
   bool is_virtual = false;
   bool in_main_graph = true;
+  bool confirmed = true;  ///< the clearance circles of its points were seen; else objects not seen
+                          ///< yet can move it
   std::vector<BranchPoint> points;  ///< ordered from node_a to node_b, at least two
 };
 

@@ -2,11 +2,17 @@
 //
 // Branches follow the cracks of the diagram, so a branch and its two nodes share its base groups by
 // construction and 5.2.1 needs no search. Far points are cut (5.5), states are added where the
-// clearance along a branch says so (5.1-5.4), and the main graph is marked; nothing off the main
-// graph is thrown away, because matching on everything is more repeatable than matching on the main
-// graph.
+// clearance along a branch says so (5.1-5.4), and the main graph is marked.
+//
+// Two things are kept that the source would throw away or take for certain. What is off the main
+// graph is marked instead of removed, because matching on everything is more repeatable than on the
+// main graph (`remove_off_main_graph` removes it). And nodes and branches whose clearance circle
+// reaches into what the scan did not see are told from the others: such a node is fictitious, such
+// a stretch of a branch not confirmed. They are ways to go on, but no landmarks; both tables are in
+// tests/bench/RESULTS.md.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
@@ -24,6 +30,17 @@ struct LocalMapConfig {
   /// loose ends of the same base groups nearer than this belong to one graph. 0.5: a beam or two
   /// missing at some metres leaves less, another room's branch more.
   double separated_m = 0.5;
+
+  /// Largest part of the clearance, [0, 1], by which the circle of a real node or confirmed branch
+  /// point may reach into what was not seen (voronoi::Frontier). 1: everything counts as confirmed,
+  /// as in the source.
+  double largest_hidden_share = 0.2;
+  /// Stretches of a branch that are shorter than this count as what lies on both sides of them,
+  /// metres.
+  double min_stretch_m = 0.2;
+  /// Remove what is not connected with the graph nearest to the robot (5.2.2) instead of marking
+  /// it.
+  bool remove_off_main_graph = false;
 
   /// Search for states on branches (5.2.2.1).
   bool find_states = true;
@@ -50,10 +67,31 @@ struct LocalMapConfig {
 /// Points of the echoes up to `range_limit_m`, in beam order, in the robot frame.
 std::vector<ScanPoint> scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser,
                                    double range_limit_m);
+/// The same into `points`, which keeps its memory.
+void scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser, double range_limit_m,
+                 std::vector<ScanPoint>& points);
 
-/// Fills `nodes`, `branches`, `points` and `T_robot_laser` of `out` from a diagram and the scan
-/// that it was made of; the other fields are the caller's. Coordinates are in the robot frame. Of a
-/// virtual diagram every node and branch is virtual.
+/// Makes local maps; a reusable work space, so that once it is warm a map that is built into the
+/// same object again costs no allocation.
+class LocalMapBuilder {
+ public:
+  explicit LocalMapBuilder(const LocalMapConfig& config);
+  ~LocalMapBuilder();
+  LocalMapBuilder(LocalMapBuilder&&) noexcept;
+  LocalMapBuilder& operator=(LocalMapBuilder&&) noexcept;
+
+  /// Fills `nodes`, `branches`, `points` and `T_robot_laser` of `out` from a diagram and the scan
+  /// that it was made of; the other fields are the caller's. Coordinates are in the robot frame. Of
+  /// a virtual diagram every node and branch is virtual.
+  void build(const voronoi::LocalVoronoiDiagram& diagram, const scan::Scan& scan,
+             const geometry::Pose2& T_robot_laser, LocalMap& out);
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
+};
+
+/// The same once, without a work space.
 void build_local_map(const voronoi::LocalVoronoiDiagram& diagram, const scan::Scan& scan,
                      const geometry::Pose2& T_robot_laser, const LocalMapConfig& config,
                      LocalMap& out);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <boost/container/small_vector.hpp>
 
 #include "topogeo/voronoi/generator_groups.hpp"
 #include "topogeo/voronoi/nearest_site_grid.hpp"
@@ -21,12 +22,17 @@ namespace topogeo::voronoi {
 struct DiagramPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   double clearance_m = 0.0;                              ///< distance to both base groups
+  /// How far the circle of the clearance reaches into what was not seen (see Frontier); 0: seen
+  /// whole.
+  double hidden_m = 0.0;
 };
 
 struct DiagramNode {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   double clearance_m = 0.0;
-  std::vector<std::uint16_t> base_groups;  ///< equally near, ascending, at least three
+  double hidden_m = 0.0;  ///< as of a point
+  /// Equally near, ascending, at least three; rarely more than four.
+  boost::container::small_vector<std::uint16_t, 6> base_groups;
 };
 
 struct DiagramBranch {
@@ -108,6 +114,8 @@ class CrackGraph {
   std::vector<Junction> junctions_;
   std::vector<Piece> pieces_;
   std::vector<DiagramPoint> points_;
+  std::vector<std::uint32_t> node_of_;  ///< per junction
+  std::vector<int> members_;            ///< per junction: those merged into it
 };
 
 }  // namespace topogeo::voronoi

@@ -22,6 +22,7 @@ struct GroupPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   float range_m = 0.0F;
   std::uint32_t beam = 0;
+  bool on_wall = false;  ///< of the same surface as the reading of the beam before
 };
 
 /// Points [begin, end) of GeneratorGroups::points.
@@ -60,7 +61,7 @@ class BeamDirections {
 bool within_limit(float range_m, const VoronoiConfig& config);
 
 /// Step 1 (4.7). Fills `out` from the scan; every run of successive readings is one group, split
-/// where ranges jump.
+/// where ranges jump and the readings do not lie on one wall either.
 void split_at_discontinuities(const scan::Scan& scan, const BeamDirections& beams,
                               const VoronoiConfig& config, GeneratorGroups& out);
 /// Step 2 (4.8).
@@ -69,8 +70,11 @@ void join_contiguous_groups(const VoronoiConfig& config, GeneratorGroups& groups
 void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups);
 /// Step 4 (4.10).
 void drop_small_groups(const VoronoiConfig& config, GeneratorGroups& groups);
-/// Step 5 (4.11, 4.12). The first quadrant of the source is everything right of the forward
-/// direction, the second everything left of it, for any field of view and mounting.
+/// Step 5 (4.11, 4.12). A wall along the way ends at a corner, and what follows is farther away:
+/// the range jumps outward where successive beams turn towards the line of motion, inward where
+/// they turn away from it. That is 4.11 for the first quadrant (ahead on the right), 4.12 for the
+/// second (ahead on the left), and for a wider field of view their mirror images behind the robot.
+/// Quadrants are those of the forward direction of the configuration, however the laser is mounted.
 void join_across_hidden_zones(const BeamDirections& beams, const VoronoiConfig& config,
                               GeneratorGroups& groups);
 

@@ -22,6 +22,7 @@
 
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/voronoi/crack_graph.hpp"
+#include "topogeo/voronoi/frontier.hpp"
 #include "topogeo/voronoi/generator_groups.hpp"
 #include "topogeo/voronoi/nearest_site_grid.hpp"
 #include "topogeo/voronoi/voronoi_config.hpp"
@@ -45,16 +46,21 @@ class LocalVoronoi {
   /// Of the last scan, for pictures and tests.
   [[nodiscard]] const NearestSiteGrid& grid() const { return grid_; }
   [[nodiscard]] std::span<const Site> sites() const { return sites_; }
+  /// Empty if the last diagram is virtual.
+  [[nodiscard]] const Frontier& frontier() const { return frontier_; }
   /// How far each beam of the last scan is known to be free, metres.
   [[nodiscard]] std::span<const double> free_range_m() const { return free_range_m_; }
 
  private:
   void measure_free_space(const scan::Scan& scan);
+  void place_sites(const GeneratorGroups& groups);
+  void measure_hidden_depths(LocalVoronoiDiagram& diagram);
 
   VoronoiConfig config_;
   BeamDirections beams_;
   NearestSiteGrid grid_;
   CrackGraph cracks_;
+  Frontier frontier_;
   std::vector<double> free_range_m_;
   std::vector<Site> sites_;
 };
