@@ -87,6 +87,21 @@ TEST_F(DvlTest, AScanBeyondTheLogTellsHowManyThereAre) {
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "x.png"));
 }
 
+TEST_F(DvlTest, CountsUsableScansAndTellsOfSkippedLines) {
+  const std::string whole = scratch_ / "whole.svg";
+  const std::string spoiled = scratch_ / "spoiled.svg";
+  const std::string log = scratch_ / "plain" / "log.clf";
+  std::filesystem::create_directory(scratch_ / "plain");
+  write_log("room", log);
+  log_ = log;
+  ASSERT_EQ(dvl({"--scan", "2", "--out", whole}), 0) << err_;
+  const std::string content = read_file(log);
+  std::ofstream(log) << "FLASER 3 1.0 two 3.0\n" << content;
+  ASSERT_EQ(dvl({"--scan", "2", "--out", spoiled}), 0) << err_;
+  EXPECT_THAT(err_, HasSubstr("log.clf:1: expected"));
+  EXPECT_TRUE(read_file(spoiled) == read_file(whole));
+}
+
 TEST_F(DvlTest, WrongCommandLinesAreToldInOneLine) {
   const std::string out = scratch_ / "x.png";
   const std::vector<std::vector<std::string>> lines = {
