@@ -15,11 +15,13 @@ inline double strength(bool in_main_graph) {
   return in_main_graph ? 1.0 : kPale;
 }
 
-/// Colour and dashes of a branch.
-inline void set_branch_stroke(cairo_t* cr, const topomap::LocalBranch& branch) {
+/// Colour, dashes and width of a branch: thin where it is not confirmed.
+inline void set_branch_stroke(cairo_t* cr, const topomap::LocalBranch& branch, double width_px) {
+  constexpr double kThin = 0.45;
   set_colour(cr,
              paled(branch.is_virtual ? kVirtualBranch : kBranch, strength(branch.in_main_graph)));
   set_dashes(cr, branch.is_virtual);
+  cairo_set_line_width(cr, branch.confirmed ? width_px : kThin * width_px);
 }
 
 }  // namespace topogeo::render

@@ -79,10 +79,9 @@ struct ClearancePlot {
 };
 
 void draw_clearance_lines(cairo_t* cr, const LocalMap& map, const ClearancePlot& plot) {
-  cairo_set_line_width(cr, 1.5);
   for (std::size_t i = 0; i < map.branches.size(); ++i) {
     const LocalBranch& branch = map.branches[i];
-    set_branch_stroke(cr, branch);
+    set_branch_stroke(cr, branch, 1.75);
     for (std::size_t k = 0; k < branch.points.size(); ++k) {
       line_to(cr, plot.to_px(i, k, branch.points[k].clearance_m));
     }

@@ -14,7 +14,7 @@ const char* text_of(topomap::NodeKind kind) {
     case topomap::NodeKind::kReal:
       return "real node";
     case topomap::NodeKind::kFictitious:
-      return "fictitious node (end of view)";
+      return "fictitious node (end of what is known)";
     case topomap::NodeKind::kVirtual:
       return "virtual node";
     case topomap::NodeKind::kDoor:

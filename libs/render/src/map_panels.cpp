@@ -27,11 +27,10 @@ void draw_points(cairo_t* cr, const LocalMap& map, const PlanFrame& frame, doubl
 }
 
 void draw_branches(cairo_t* cr, const LocalMap& map, const PlanFrame& frame, double width_px) {
-  cairo_set_line_width(cr, width_px);
   for (const bool main : {false, true}) {  // the main graph on top
     for (const LocalBranch& branch : map.branches) {
       if (branch.in_main_graph != main) continue;
-      set_branch_stroke(cr, branch);
+      set_branch_stroke(cr, branch, width_px);
       for (const topomap::BranchPoint& point : branch.points) {
         line_to(cr, frame.to_px(point.position_m));
       }

@@ -51,10 +51,11 @@ LegendItem robot_item() {
 }  // namespace
 
 std::vector<LegendItem> thumbnail_legend() {
-  std::vector<LegendItem> items{robot_item(),
-                                line_item("branch of the main graph", kBranch, 2.0, false),
-                                line_item("branch off it", paled(kBranch, kPale), 2.0, false),
-                                line_item("virtual branch", kVirtualBranch, 2.0, true)};
+  std::vector<LegendItem> items{
+      robot_item(), line_item("branch of the main graph", kBranch, 2.0, false),
+      line_item("branch off it", paled(kBranch, kPale), 2.0, false),
+      line_item("thin: what is unseen can still move it", kBranch, 0.8, false),
+      line_item("virtual branch", kVirtualBranch, 2.0, true)};
   for (const NodeKind kind : {NodeKind::kReal, NodeKind::kDoor, NodeKind::kNarrowing,
                               NodeKind::kHallCorridor, NodeKind::kFictitious, NodeKind::kVirtual}) {
     items.push_back(node_item(kind));
@@ -78,6 +79,10 @@ std::vector<LegendItem> scan_legend(const ScanView& view) {
   if (has(false, true)) items.push_back(line_item("branch of the main graph", kBranch, 2.5, false));
   if (has(false, false)) {
     items.push_back(line_item("branch off it", paled(kBranch, kPale), 2.5, false));
+  }
+  const auto is_unsure = [](const LocalBranch& b) { return !b.confirmed; };
+  if (std::ranges::any_of(branches, is_unsure)) {
+    items.push_back(line_item("what is unseen can still move it", kBranch, 1.1, false));
   }
   if (has(true, true)) items.push_back(line_item("virtual branch", kVirtualBranch, 2.5, true));
   for (LegendItem& item : node_items(view.map.nodes)) items.push_back(std::move(item));

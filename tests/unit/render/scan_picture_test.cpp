@@ -58,6 +58,15 @@ TEST(ScanPicture, HasDiagramAndMapAndPalesWhatIsOffTheMainGraph) {
   EXPECT_EQ(off.count(kDiagramBranch), main.count(kDiagramBranch));
 }
 
+TEST(ScanPicture, ThinsBranchesThatAreNotConfirmed) {
+  ScanView view = view_of(corridor_scan(true, true));
+  for (topomap::LocalBranch& branch : view.map.branches) branch.confirmed = true;
+  const int sure = Pixels(scan_picture(view, "hall", PictureFormat::kPng)).count(kBranch);
+  for (topomap::LocalBranch& branch : view.map.branches) branch.confirmed = false;
+  const int unsure = Pixels(scan_picture(view, "hall", PictureFormat::kPng)).count(kBranch);
+  EXPECT_LT(unsure + 300, sure);
+}
+
 TEST(ScanPicture, MarksEveryKindOfNode) {
   ScanView view = view_of(corridor_scan(true, true));
   view.map.nodes.clear();
