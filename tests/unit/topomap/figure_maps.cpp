@@ -29,21 +29,15 @@ std::string kind_name(topomap::NodeKind kind) {
   return "unknown";
 }
 
-/// What the project adds to the source's rules.
-template <typename Config>
-void set_additions_off(Config& config) {
-  if constexpr (requires { config.largest_hidden_share; }) config.largest_hidden_share = 1.0;
-  if constexpr (requires { config.min_stretch_m; }) config.min_stretch_m = 0.2;
-  if constexpr (requires { config.remove_off_main_graph; }) config.remove_off_main_graph = false;
-}
-
 }  // namespace
 
 topomap::LocalMapConfig source_map_config() {
   topomap::LocalMapConfig config;
-  set_additions_off(config);
   config.range_limit_m = 4.0;
   config.separated_m = 0.5;
+  config.largest_hidden_share = 1.0;
+  config.min_stretch_m = 0.2;
+  config.remove_off_main_graph = false;
   config.find_states = true;
   config.door_half_width_m = 0.6;
   config.state_rise_m = 0.15;

@@ -57,8 +57,8 @@ TEST(FiguresOfChapter5, Figure1NodesThatShareTwoGroupsAreJoinedByABranch) {
 }
 
 // Figure 5.2: the node of the objects 1, 3, 4, 5 with four branches is the main graph; the fifth
-// branch, of 1 and 2, is off it. The objects 1 to 5 are AF, B, C, D, E. The jambs are equally far
-// from (0.525, 0.1).
+// branch, of 1 and 2, is off it, and removed where 5.2.2 is followed to the letter. The objects 1
+// to 5 are AF, B, C, D, E. The jambs are equally far from (0.525, 0.1).
 TEST(FiguresOfChapter5, Figure2ABranchThatNothingJoinsIsOffTheMainGraph) {
   const Scene scene = load_scene("5_02");
   const auto diagram = see(scene, source_config());

@@ -47,13 +47,6 @@ std::string name_of_group(const voronoi::GeneratorGroups& groups, const voronoi:
   return name.empty() ? "*" : name;
 }
 
-/// What the project adds to the source's rules.
-template <typename Config>
-void set_additions_off(Config& config) {
-  if constexpr (requires { config.on_wall_m; }) config.on_wall_m = 0.0;
-  if constexpr (requires { config.site_spacing_m; }) config.site_spacing_m = 0.0;
-}
-
 }  // namespace
 
 Scene load_scene(const std::string& number) {
@@ -105,13 +98,13 @@ scan::Scan scan_of(const simulation::World& world, const geometry::Pose2& T_worl
 
 voronoi::VoronoiConfig source_config() {
   voronoi::VoronoiConfig config;
-  set_additions_off(config);
   config.range_limit_m = 4.0;
   config.resolution_m = 0.05;
   config.forward_rad = 0.0;
   config.dropout_rad = 0.035;
   config.split_discontinuities = true;
   config.discontinuity_m = 0.3;
+  config.on_wall_m = 0.0;
   config.join_contiguous = true;
   config.contiguous_m = 0.55;
   config.join_alternate = true;
@@ -120,6 +113,7 @@ voronoi::VoronoiConfig source_config() {
   config.drop_small = true;
   config.min_group_points = 2;
   config.join_hidden_zones = true;
+  config.site_spacing_m = 0.0;
   config.node_merge_m = 0.15;
   config.min_branch_m = 0.2;
   config.virtual_half_width_m = 0.6;
