@@ -125,7 +125,7 @@ struct Tally {
     distance_m += apart_m;
   }
 
-  static constexpr double kFar_m = 10.0;  ///< where the other map has no such element at all
+  static constexpr double kFar_m = 1.0;  ///< what counts at most for one that is not found
 };
 
 struct Counts {

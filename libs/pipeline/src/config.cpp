@@ -30,6 +30,8 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "readings beyond it are not used; 8 to 10 gives far richer maps than the source's 4");
   schema.add("local_map.resolution_m", &m.voronoi.resolution_m, 0.01, 1.0, "m",
              "cell of the grid under the Voronoi diagram");
+  schema.add("local_map.window_of_groups", &m.voronoi.window_of_groups,
+             "4.14: the grid covers the extent of the groups only; branches may end earlier");
   schema.add("local_map.dropout_rad", &m.voronoi.dropout_rad, 0.0, 0.5, "rad",
              "missing readings over at most this angle are taken for drop-outs");
   schema.add("local_map.split_discontinuities", &m.voronoi.split_discontinuities,
@@ -49,9 +51,13 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "4.9: the same for groups k, k+2");
   schema.add("local_map.alternate_behind_only", &m.voronoi.alternate_behind_only,
              "4.9 only where the group between lies behind the gap; off: as in the source");
+  schema.add("local_map.alternate_large_only", &m.voronoi.alternate_large_only,
+             "4.9 only between groups that 4.10 keeps, so that no stray reading takes a wall away");
   schema.add("local_map.drop_small", &m.voronoi.drop_small, "grouping step 4.10");
   schema.add("local_map.min_group_points", &m.voronoi.min_group_points, 0, 1000, "points",
              "4.10: groups of this many points or fewer are dropped");
+  schema.add("local_map.join_again", &m.voronoi.join_again,
+             "4.8 and 4.9 once more after 4.10: a dropped reading keeps no groups apart");
   schema.add("local_map.join_hidden_zones", &m.voronoi.join_hidden_zones,
              "grouping step 4.11; costs half of the nodes on real floors");
   schema.add("local_map.node_merge_m", &m.voronoi.node_merge_m, 0.0, 10.0, "m",
@@ -65,6 +71,9 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "reach into what was not seen; 1: all are real, as in the source");
   schema.add("local_map.min_stretch_m", &m.local_map.min_stretch_m, 0.0, 10.0, "m",
              "shorter stretches of a branch, confirmed or not, count as what is around them");
+  schema.add(
+      "local_map.min_main_graph_m", &m.local_map.min_main_graph_m, 0.0, 100.0, "m",
+      "5.2.2: graphs with less length of branches are not the main graph if others are there");
   schema.add("local_map.remove_off_main_graph", &m.local_map.remove_off_main_graph,
              "5.2.2: what is off the graph nearest to the robot is removed instead of marked");
   schema.add("local_map.find_states", &m.local_map.find_states,
@@ -73,6 +82,8 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "5.3: rise of the clearance on a side of a minimum that counts as a change of slope");
   schema.add("local_map.state_confirm_m", &m.local_map.state_confirm_m, 0.0, 10.0, "m",
              "5.4: the point that confirms a change of slope lies farther than this from it");
+  schema.add("local_map.state_reach_m", &m.local_map.state_reach_m, 0.0, 10.0, "m",
+             "way to both sides over which the exact place of a door or narrowing is fitted");
   schema.add("local_map.plateau_m", &m.local_map.plateau_m, 0.0, 10.0, "m",
              "clearances that differ by no more than this are one plateau");
   schema.add("local_map.corridor_length_m", &m.local_map.corridor_length_m, 0.1, 100.0, "m",
@@ -81,6 +92,8 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "rise of the clearance from a corridor to a hall");
   schema.add("local_map.door_half_width_m", &m.local_map.door_half_width_m, 0.1, 5.0, "m",
              "minima of clearance up to this are doors, wider ones narrowings");
+  schema.add("local_map.door_min_half_width_m", &m.local_map.door_min_half_width_m, 0.0, 5.0, "m",
+             "a minimum of clearance below this is a narrowing: the robot does not fit through");
   schema.add("local_map.separated_m", &m.local_map.separated_m, 0.05, 10.0, "m",
              "5.5: an outer branch ends before the first jump longer than this");
 }

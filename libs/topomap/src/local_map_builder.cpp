@@ -43,12 +43,14 @@ class LocalMapBuilder::Work {
   void take_points(const LocalVoronoiDiagram& diagram, const DiagramBranch& branch,
                    const geometry::Pose2& T_robot_laser);
   void cut_far_points(const DiagramBranch& branch);
+  [[nodiscard]] std::size_t end_of_stretch(std::size_t first) const;
   void absorb_short_stretches(bool short_ones_are);
   void find_cuts();
   void add_branch(const DiagramBranch& from, bool is_virtual);
   void add_piece(const DiagramBranch& from, bool is_virtual, std::uint32_t node_a,
                  std::uint32_t node_b, std::size_t first, std::size_t last);
   void mark_main_graph(LocalMap& map);
+  [[nodiscard]] std::uint32_t find_main_graph(const LocalMap& map);
   void remove_off_main_graph(LocalMap& map);
 
   LocalMapConfig config_;
@@ -60,6 +62,7 @@ class LocalMapBuilder::Work {
   std::vector<BranchPoint> points_;
   std::vector<char> confirmed_;      // per point
   std::vector<BranchState> cuts_;    // where the branch is cut into pieces, in order
+  std::vector<double> length_m_;     // per root: of all its branches
   std::vector<std::uint32_t> kept_;  // new id of each node
 };
 
@@ -128,41 +131,46 @@ void LocalMapBuilder::Work::cut_far_points(const DiagramBranch& branch) {
   keep(confirmed_);
 }
 
-/// Gives stretches of the given kind that lie between two of the other kind and are too short to
-/// mean anything the kind of those.
+std::size_t LocalMapBuilder::Work::end_of_stretch(std::size_t first) const {
+  std::size_t end = first;
+  while (end < confirmed_.size() && confirmed_[end] == confirmed_[first]) ++end;
+  return end;
+}
+
+/// Gives stretches of the given kind that are too short to mean anything the kind of what is beside
+/// them.
 void LocalMapBuilder::Work::absorb_short_stretches(bool short_ones_are) {
   const char kind = short_ones_are ? 1 : 0;
-  for (std::size_t i = 1; i < confirmed_.size(); ++i) {
-    if (confirmed_[i] != kind || confirmed_[i - 1] == kind) continue;
+  for (std::size_t first = 0; first < confirmed_.size();) {
+    const std::size_t end = end_of_stretch(first);
     double length_m = 0.0;
-    std::size_t end = i;
-    while (end < confirmed_.size() && confirmed_[end] == kind) {
-      length_m += (points_[end].position_m - points_[end - 1].position_m).norm();
-      ++end;
+    for (std::size_t i = std::max<std::size_t>(first, 1); i < end; ++i) {
+      length_m += (points_[i].position_m - points_[i - 1].position_m).norm();
     }
-    if (end < confirmed_.size() && length_m < config_.min_stretch_m) {
-      std::fill(confirmed_.begin() + static_cast<std::ptrdiff_t>(i),
+    const bool alone = first == 0 && end == confirmed_.size();
+    if (confirmed_[first] == kind && !alone && length_m < config_.min_stretch_m) {
+      std::fill(confirmed_.begin() + static_cast<std::ptrdiff_t>(first),
                 confirmed_.begin() + static_cast<std::ptrdiff_t>(end), short_ones_are ? 0 : 1);
     }
-    i = end - 1;
+    first = end;
   }
 }
 
-/// Where the branch has a state, and where it stops or starts to be confirmed. A state that is not
-/// confirmed is none: what narrows the way can be the end of what was seen.
+/// Where the branch has a state, and where it stops or starts to be confirmed. The branch goes
+/// through the exact places of its states.
 void LocalMapBuilder::Work::find_cuts() {
   cuts_.clear();
   absorb_short_stretches(false);
   absorb_short_stretches(true);
   if (config_.find_states) {
-    for (const BranchState& state : state_finder_.find(points_, config_)) {
-      if (confirmed_[state.point] != 0) cuts_.push_back(state);
-    }
+    const auto states = state_finder_.find(points_, confirmed_, config_);
+    cuts_.assign(states.begin(), states.end());
+    for (const BranchState& state : cuts_) points_[state.point] = state.at;
   }
   for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
     // The point on the border is the last one that is confirmed.
     const bool border = confirmed_[i] != 0 && (confirmed_[i - 1] == 0 || confirmed_[i + 1] == 0);
-    if (border) cuts_.push_back({i, NodeKind::kFictitious});
+    if (border) cuts_.push_back({i, NodeKind::kFictitious, points_[i]});
   }
   std::ranges::sort(cuts_, [](const BranchState& a, const BranchState& b) {
     return a.point != b.point ? a.point < b.point : a.kind > b.kind;  // states before borders
@@ -213,16 +221,7 @@ void LocalMapBuilder::Work::add_branch(const DiagramBranch& from, bool is_virtua
 /// nearer than the threshold of 5.5 are ends of one branch that the laser did not see whole.
 void LocalMapBuilder::Work::mark_main_graph(LocalMap& map) {
   components_.reset(map.nodes.size());
-  double best_sq = std::numeric_limits<double>::infinity();
-  std::uint32_t nearest = 0;
-  for (const LocalBranch& branch : map.branches) {
-    components_.join(branch.node_a, branch.node_b);
-    const double sq = branch.points[nearest_to_robot(branch.points)].position_m.squaredNorm();
-    if (sq < best_sq) {
-      best_sq = sq;
-      nearest = branch.node_a;
-    }
-  }
+  for (const LocalBranch& branch : map.branches) components_.join(branch.node_a, branch.node_b);
   for (const LocalNode& a : map.nodes) {
     if (a.kind != NodeKind::kFictitious) continue;
     for (std::size_t i = a.id + 1; i < map.nodes.size(); ++i) {
@@ -233,12 +232,37 @@ void LocalMapBuilder::Work::mark_main_graph(LocalMap& map) {
       }
     }
   }
-  for (LocalNode& node : map.nodes) {
-    node.in_main_graph = components_.root(node.id) == components_.root(nearest);
-  }
+  const std::uint32_t main = find_main_graph(map);
+  for (LocalNode& node : map.nodes) node.in_main_graph = components_.root(node.id) == main;
   for (LocalBranch& branch : map.branches) {
     branch.in_main_graph = map.nodes[branch.node_a].in_main_graph;
   }
+}
+
+/// Root of the component with the branch nearest to the robot among those that are long enough, or
+/// among all if none is.
+std::uint32_t LocalMapBuilder::Work::find_main_graph(const LocalMap& map) {
+  length_m_.assign(map.nodes.size(), 0.0);
+  for (const LocalBranch& branch : map.branches) {
+    double& length_m = length_m_[components_.root(branch.node_a)];
+    for (std::size_t i = 1; i < branch.points.size(); ++i) {
+      length_m += (branch.points[i].position_m - branch.points[i - 1].position_m).norm();
+    }
+  }
+  bool best_is_long = false;
+  double best_sq = std::numeric_limits<double>::infinity();
+  std::uint32_t best = 0;
+  for (const LocalBranch& branch : map.branches) {
+    const std::uint32_t root = components_.root(branch.node_a);
+    const bool is_long = length_m_[root] >= config_.min_main_graph_m;
+    if (best_is_long && !is_long) continue;
+    const double sq = branch.points[nearest_to_robot(branch.points)].position_m.squaredNorm();
+    if (sq >= best_sq && is_long == best_is_long) continue;
+    best_is_long = is_long;
+    best_sq = sq;
+    best = root;
+  }
+  return best;
 }
 
 void LocalMapBuilder::Work::remove_off_main_graph(LocalMap& map) {

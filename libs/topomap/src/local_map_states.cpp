@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <Eigen/Dense>
+
 namespace topogeo::topomap {
 
 /// A stretch [first, last] of a branch around a minimum of the clearance.
@@ -22,15 +24,16 @@ struct BranchStateFinder::Floor {
 
   /// True if walking from the floor in direction `step` the clearance rises to `rise_m` above that
   /// of the floor, at a point farther than the threshold of 5.4, before it comes down to the floor
-  /// again.
-  [[nodiscard]] bool rises(std::span<const BranchPoint> points, std::ptrdiff_t step, double rise_m,
-                           double confirm_m) const {
+  /// again. Where `confirmed` is not empty the rise ends where that is 0.
+  [[nodiscard]] bool rises(std::span<const BranchPoint> points, std::span<const char> confirmed,
+                           std::ptrdiff_t step, double rise_m, double confirm_m) const {
     const std::size_t from = step > 0 ? last : first;
     const double low_m = points[lowest].clearance_m;
     auto i = static_cast<std::ptrdiff_t>(from) + step;
     for (; i >= 0 && i < static_cast<std::ptrdiff_t>(points.size()); i += step) {
       const BranchPoint& point = points[static_cast<std::size_t>(i)];
       if (point.clearance_m < low_m) return false;
+      if (!confirmed.empty() && confirmed[static_cast<std::size_t>(i)] == 0) return false;
       if (point.clearance_m >= low_m + rise_m &&
           (point.position_m - points[lowest].position_m).norm() > confirm_m) {
         return true;
@@ -81,15 +84,39 @@ constexpr double kLevelM = 0.02;
 
 }  // namespace
 
-/// Point in the middle of the lowest part of a floor: readings make the very minimum jump along a
-/// door frame of some depth.
-std::size_t BranchStateFinder::middle_of(std::span<const BranchPoint> points,
-                                         std::size_t lowest) const {
-  const Floor level = Floor::around(points, lowest, kLevelM);
-  const double middle_m = 0.5 * (arc_m_[level.first] + arc_m_[level.last]);
-  std::size_t middle = level.first;
-  while (middle < level.last && arc_m_[middle] < middle_m) ++middle;
-  return middle;
+/// The minimum of the parabola through the squared clearances around a lowest point, by least
+/// squares: beside a door post the squared clearance is one, and readings make the lowest point
+/// itself jump along a frame of some depth. The lowest point where there are too few points, or no
+/// minimum within reach.
+BranchState BranchStateFinder::minimum(std::span<const BranchPoint> points, std::size_t lowest,
+                                       double reach_m) const {
+  std::size_t first = lowest;
+  std::size_t last = lowest;
+  while (first > 0 && arc_m_[lowest] - arc_m_[first - 1] <= reach_m) --first;
+  while (last + 1 < points.size() && arc_m_[last + 1] - arc_m_[lowest] <= reach_m) ++last;
+  BranchState state{lowest, NodeKind::kDoor, points[lowest]};
+  if (last - first < 4 || first == lowest || last == lowest) return state;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = first; i <= last; ++i) {
+    const double s = arc_m_[i] - arc_m_[lowest];
+    const Eigen::Vector3d row{1.0, s, s * s};
+    normal += row * row.transpose();
+    right += row * points[i].clearance_m * points[i].clearance_m;
+  }
+  const Eigen::Vector3d parabola = normal.ldlt().solve(right);
+  if (!(parabola.z() > 0.0)) return state;
+  const double at_m = arc_m_[lowest] - 0.5 * parabola.y() / parabola.z();
+  if (!(at_m > arc_m_[first] && at_m < arc_m_[last])) return state;
+  const auto after = static_cast<std::size_t>(std::upper_bound(arc_m_.begin(), arc_m_.end(), at_m) -
+                                              arc_m_.begin());
+  const BranchPoint& a = points[after - 1];
+  const BranchPoint& b = points[after];
+  const double t = (at_m - arc_m_[after - 1]) / (arc_m_[after] - arc_m_[after - 1]);
+  state.point = t < 0.5 ? after - 1 : after;
+  state.at = {a.position_m + t * (b.position_m - a.position_m),
+              a.clearance_m + t * (b.clearance_m - a.clearance_m)};
+  return state;
 }
 
 /// Mouth of a corridor: the last point of its floor in direction `step` that is still on the level
@@ -109,6 +136,7 @@ std::size_t BranchStateFinder::mouth_of(std::span<const BranchPoint> points, con
 }
 
 std::span<const BranchState> BranchStateFinder::find(std::span<const BranchPoint> points,
+                                                     std::span<const char> confirmed,
                                                      const LocalMapConfig& config) {
   states_.clear();
   if (points.size() < 3) return states_;
@@ -116,22 +144,23 @@ std::span<const BranchState> BranchStateFinder::find(std::span<const BranchPoint
   find_minima(points, config.state_rise_m);
   for (const std::size_t lowest : minima_) {
     const Floor floor = Floor::around(points, lowest, config.plateau_m);
-    const auto rises = [&](std::ptrdiff_t step, double rise_m) {
-      return floor.rises(points, step, rise_m, config.state_confirm_m);
-    };
     if (arc_m_[floor.last] - arc_m_[floor.first] >= config.corridor_length_m) {
       for (const std::ptrdiff_t step : {-1, 1}) {
-        if (rises(step, config.hall_rise_m)) {
-          states_.push_back({mouth_of(points, floor, step), NodeKind::kHallCorridor});
+        if (floor.rises(points, confirmed, step, config.hall_rise_m, config.state_confirm_m)) {
+          const std::size_t mouth = mouth_of(points, floor, step);
+          states_.push_back({mouth, NodeKind::kHallCorridor, points[mouth]});
         }
       }
-    } else if (rises(-1, config.state_rise_m) && rises(1, config.state_rise_m)) {
-      const bool door = points[lowest].clearance_m <= config.door_half_width_m;
-      states_.push_back({middle_of(points, lowest), door ? NodeKind::kDoor : NodeKind::kNarrowing});
+    } else if (floor.rises(points, {}, -1, config.state_rise_m, config.state_confirm_m) &&
+               floor.rises(points, {}, 1, config.state_rise_m, config.state_confirm_m)) {
+      const bool door = points[lowest].clearance_m <= config.door_half_width_m &&
+                        points[lowest].clearance_m >= config.door_min_half_width_m;
+      states_.push_back(minimum(points, lowest, config.state_reach_m));
+      states_.back().kind = door ? NodeKind::kDoor : NodeKind::kNarrowing;
     }
   }
   std::erase_if(states_, [&](const BranchState& state) {
-    return state.point == 0 || state.point + 1 >= points.size();
+    return state.point == 0 || state.point + 1 >= points.size() || confirmed[state.point] == 0;
   });
   std::sort(states_.begin(), states_.end(),
             [](const BranchState& a, const BranchState& b) { return a.point < b.point; });

@@ -12,6 +12,7 @@ namespace topogeo::topomap {
 struct BranchState {
   std::size_t point = 0;  ///< index along the branch, never its first or last
   NodeKind kind = NodeKind::kDoor;
+  BranchPoint at;  ///< the place on the branch, at most half a step from the point
 };
 
 /// A reusable work space.
@@ -20,16 +21,19 @@ class BranchStateFinder {
   /// The states of a branch in the order of its points, valid until the next call. A minimum of the
   /// clearance, confirmed on both sides (5.3, 5.4), is a door or a narrowing; a long level stretch
   /// that the clearance rises from is a corridor, and the end of the stretch the passage to the
-  /// hall. A maximum is no state.
+  /// hall. A maximum is no state. `confirmed` has one value per point; a state lies where it is not
+  /// 0, and so does the rise from a corridor to a hall: where a wall stops being seen the clearance
+  /// rises as at a mouth.
   std::span<const BranchState> find(std::span<const BranchPoint> points,
-                                    const LocalMapConfig& config);
+                                    std::span<const char> confirmed, const LocalMapConfig& config);
 
  private:
   struct Floor;
 
   void measure_arc_lengths(std::span<const BranchPoint> points);
   void find_minima(std::span<const BranchPoint> points, double rise_m);
-  std::size_t middle_of(std::span<const BranchPoint> points, std::size_t lowest) const;
+  BranchState minimum(std::span<const BranchPoint> points, std::size_t lowest,
+                      double reach_m) const;
   std::size_t mouth_of(std::span<const BranchPoint> points, const Floor& floor,
                        std::ptrdiff_t step);
 

@@ -19,18 +19,28 @@ constexpr std::array<int, 4> kCellCol{-1, 0, 0, -1};
 // The two of those cells on either side of the crack in each direction.
 constexpr std::array<std::array<int, 2>, 4> kCellsBeside{{{1, 2}, {2, 3}, {3, 0}, {0, 1}}};
 
-/// Point equally far from three points; nothing if they are almost on a line.
-std::optional<Eigen::Vector2d> circumcentre(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                                            const Eigen::Vector2d& c) {
-  const Eigen::Vector2d ab = b - a;
-  const Eigen::Vector2d ac = c - a;
-  const double cross = ab.x() * ac.y() - ab.y() * ac.x();
-  if (std::abs(cross) < 1e-9) return std::nullopt;
-  const double ab_sq = ab.squaredNorm();
-  const double ac_sq = ac.squaredNorm();
-  const Eigen::Vector2d offset{(ac.y() * ab_sq - ab.y() * ac_sq) / (2.0 * cross),
-                               (ab.x() * ac_sq - ac.x() * ab_sq) / (2.0 * cross)};
-  return a + offset;
+/// Point equally far from all of `sites`, of which there are at least three; of more than three the
+/// one with the least squared differences. Nothing if they are almost on a line. The order of the
+/// sites does not matter.
+std::optional<Eigen::Vector2d> equidistant_point(std::span<const Eigen::Vector2d> sites) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& site : sites) mean += site;
+  mean /= static_cast<double>(sites.size());
+  // With q_i seen from the mean, |q_i|^2 - 2 q_i x is the same number for each i.
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& site : sites) {
+    const Eigen::Vector2d q = site - mean;
+    scatter += q * q.transpose();
+    right += 0.5 * q.squaredNorm() * q;
+  }
+  const double determinant = scatter(0, 0) * scatter(1, 1) - scatter(0, 1) * scatter(1, 0);
+  const double trace = scatter(0, 0) + scatter(1, 1);
+  if (determinant < 1e-12 * trace * trace) return std::nullopt;
+  const Eigen::Vector2d offset{
+      (scatter(1, 1) * right.x() - scatter(0, 1) * right.y()) / determinant,
+      (scatter(0, 0) * right.y() - scatter(1, 0) * right.x()) / determinant};
+  return mean + offset;
 }
 
 }  // namespace
@@ -111,25 +121,32 @@ CrackGraph::Junction CrackGraph::make_junction(std::uint32_t corner) const {
   const double half_m = 0.5 * grid_->resolution_m();
   Junction junction;
   junction.corner = corner;
-  std::array<std::uint16_t, 4> site_of{};
+  const Eigen::Vector2d at = grid_->centre(row, col) - Eigen::Vector2d{half_m, half_m};
+  // Of each group the site nearest to the corner.
+  std::array<Eigen::Vector2d, 4> nearest;
   for (const std::uint16_t site : sites_around(corner)) {
     if (site == kNone) continue;
     const std::uint16_t group = sites_[site].group;
+    const Eigen::Vector2d& position_m = sites_[site].position_m;
     const auto end = junction.groups.begin() + junction.group_count;
-    if (std::find(junction.groups.begin(), end, group) != end) continue;
-    site_of[static_cast<std::size_t>(junction.group_count)] = site;
-    junction.groups[static_cast<std::size_t>(junction.group_count++)] = group;
+    const auto known = std::find(junction.groups.begin(), end, group);
+    const auto i = static_cast<std::size_t>(known - junction.groups.begin());
+    if (known == end) {
+      junction.groups[static_cast<std::size_t>(junction.group_count++)] = group;
+      nearest[i] = position_m;
+    } else if ((position_m - at).squaredNorm() < (nearest[i] - at).squaredNorm()) {
+      nearest[i] = position_m;
+    }
   }
   if (junction.group_count < 3) return junction;
-  const Eigen::Vector2d at = grid_->centre(row, col) - Eigen::Vector2d{half_m, half_m};
-  const auto equidistant = circumcentre(
-      sites_[site_of[0]].position_m, sites_[site_of[1]].position_m, sites_[site_of[2]].position_m);
+  const std::span<const Eigen::Vector2d> sites(nearest.data(),
+                                               static_cast<std::size_t>(junction.group_count));
+  const auto equidistant = equidistant_point(sites);
   // Three sites almost on a line have their centre anywhere; the corner is within a cell of it.
   const bool near = equidistant && (*equidistant - at).norm() <= 3.0 * half_m;
   junction.position_m = near ? *equidistant : at;
-  for (int i = 0; i < junction.group_count; ++i) {
-    const auto& site = sites_[site_of[static_cast<std::size_t>(i)]];
-    junction.clearance_m += (site.position_m - junction.position_m).norm() / junction.group_count;
+  for (const Eigen::Vector2d& site : sites) {
+    junction.clearance_m += (site - junction.position_m).norm() / junction.group_count;
   }
   return junction;
 }

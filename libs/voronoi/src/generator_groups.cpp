@@ -14,6 +14,8 @@
 namespace topogeo::voronoi {
 namespace {
 
+/// No laser has finer beams; below it beam numbers would overflow.
+constexpr double kLeastStep_rad = 1e-5;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 struct Box {
@@ -147,11 +149,11 @@ std::size_t border_count(const GeneratorGroups& groups) {
 
 bool BeamDirections::update(const scan::Scan& scan) {
   if (!std::isfinite(scan.angle_min_rad) || std::abs(scan.angle_min_rad) > 100.0 ||
-      !std::isfinite(scan.angle_step_rad) || scan.angle_step_rad <= 0.0) {
+      !std::isfinite(scan.angle_step_rad) || scan.angle_step_rad < kLeastStep_rad) {
     throw std::invalid_argument("scan " + std::to_string(scan.sequence) + ": angle_min_rad " +
                                 std::to_string(scan.angle_min_rad) + ", angle_step_rad " +
                                 std::to_string(scan.angle_step_rad) +
-                                ": must be finite, the step > 0");
+                                ": must be finite, the step at least 1e-5");
   }
   const double turn =
       scan.angle_step_rad * static_cast<double>(std::max<std::size_t>(scan.ranges_m.size(), 1) - 1);
@@ -224,6 +226,11 @@ void join_contiguous_groups(const VoronoiConfig& config, GeneratorGroups& groups
 }
 
 void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups) {
+  // A stray reading in front of a wall must not take the wall away.
+  const auto is_small = [&](std::size_t k) {
+    return config.drop_small && config.alternate_large_only &&
+           static_cast<int>(groups.groups[k].size()) <= config.min_group_points;
+  };
   while (groups.groups.size() > 2) {
     // Of three groups in a closed scan each is next to each other one: none are alternate.
     if (groups.closed && groups.groups.size() == 3) return;
@@ -235,6 +242,7 @@ void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups)
       if (config.alternate_behind_only && !lies_behind(groups, k, (k + 1) % n, (k + 2) % n)) {
         continue;
       }
+      if (is_small(k) || is_small((k + 2) % n)) continue;
       const double m = distance_below(groups, groups.groups[k], groups.groups[(k + 2) % n], best_m);
       if (m < best_m) {
         best_m = m;
@@ -287,9 +295,16 @@ void join_across_hidden_zones(const BeamDirections& beams, const VoronoiConfig& 
 void make_generator_groups(const scan::Scan& scan, const BeamDirections& beams,
                            const VoronoiConfig& config, GeneratorGroups& out) {
   split_at_discontinuities(scan, beams, config, out);
-  if (config.join_contiguous) join_contiguous_groups(config, out);
-  if (config.join_alternate) join_alternate_groups(config, out);
-  if (config.drop_small) drop_small_groups(config, out);
+  const auto join = [&] {
+    if (config.join_contiguous) join_contiguous_groups(config, out);
+    if (config.join_alternate) join_alternate_groups(config, out);
+  };
+  join();
+  if (config.drop_small) {
+    const std::size_t before = out.groups.size();
+    drop_small_groups(config, out);
+    if (config.join_again && out.groups.size() < before) join();
+  }
   if (config.join_hidden_zones) join_across_hidden_zones(beams, config, out);
 }
 

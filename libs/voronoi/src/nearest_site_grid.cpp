@@ -32,6 +32,8 @@ std::uint16_t beam_at(const BeamDirections& beams, double x_m, double y_m) {
 
 void NearestSiteGrid::set_geometry(const BeamDirections& beams, const VoronoiConfig& config) {
   resolution_m_ = config.resolution_m;
+  window_of_groups_ = config.window_of_groups;
+  directions_ = beams.directions();
   low_x_ = high_x_ = low_y_ = high_y_ = 0;
   for (const Eigen::Vector2d& direction : beams.directions()) {
     const Eigen::Vector2d end = direction * config.range_limit_m;
@@ -51,12 +53,18 @@ void NearestSiteGrid::set_geometry(const BeamDirections& beams, const VoronoiCon
   }
 }
 
-void NearestSiteGrid::set_window(std::span<const Site> sites) {
+void NearestSiteGrid::set_window(std::span<const Site> sites,
+                                 std::span<const double> free_range_m) {
   Eigen::Array2d low = sites.front().position_m.array();
   Eigen::Array2d high = low;
   for (const Site& site : sites) {
     low = low.min(site.position_m.array());
     high = high.max(site.position_m.array());
+  }
+  for (std::size_t i = 0; i < free_range_m.size() && !window_of_groups_; ++i) {
+    const Eigen::Array2d end_m = directions_[i].array() * free_range_m[i];
+    low = low.min(end_m);
+    high = high.max(end_m);
   }
   first_x_ = std::max(low_x_, cell_of(low.x(), resolution_m_));
   first_y_ = std::max(low_y_, cell_of(low.y(), resolution_m_));
@@ -71,7 +79,7 @@ void NearestSiteGrid::compute(std::span<const Site> sites, std::span<const doubl
     throw std::invalid_argument("a diagram of " + std::to_string(sites.size()) +
                                 " sites: at most 65534 are allowed");
   }
-  set_window(sites);
+  set_window(sites, free_range_m);
   sites_.resize(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_));
   groups_.resize(sites_.size());
 

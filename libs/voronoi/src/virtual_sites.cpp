@@ -22,8 +22,9 @@ std::uint32_t nearest_beam(const BeamDirections& beams, const Eigen::Vector2d& p
   return best;
 }
 
-/// A line of points at `side_m` to the left of the motion, from the robot on, where space is free.
-void add_line(const BeamDirections& beams, std::span<const double> free_range_m, const Axes& axes,
+/// A line of points at `side_m` to the left of the motion, from the first free place beside the
+/// robot on as long as space is free. What lies beyond the line counts as taken, as behind a wall.
+void add_line(const BeamDirections& beams, std::span<double> free_range_m, const Axes& axes,
               double side_m, double length_m, GeneratorGroups& groups) {
   // A tenth of a metre keeps the branch between two lines straight to a millimetre.
   constexpr double kSpacingM = 0.1;
@@ -34,17 +35,27 @@ void add_line(const BeamDirections& beams, std::span<const double> free_range_m,
     const std::uint32_t beam = nearest_beam(beams, point_m);
     const double range_m = point_m.norm();
     if (range_m > free_range_m[beam] || beams.directions()[beam].dot(point_m) < 0.9 * range_m) {
+      if (groups.points.size() > begin) break;
       continue;
     }
     groups.points.push_back({point_m, static_cast<float>(range_m), beam});
   }
   const auto end = static_cast<std::uint32_t>(groups.points.size());
-  if (end > begin) groups.groups.push_back({begin, end});
+  if (end == begin) return;
+  groups.groups.push_back({begin, end});
+  const double end_m = axes.forward.dot(groups.points.back().position_m);
+  for (std::size_t i = 0; i < free_range_m.size(); ++i) {
+    const Eigen::Vector2d& direction = beams.directions()[i];
+    const double reach_m = side_m / axes.left.dot(direction);  // along the beam to the line
+    if (reach_m > 0.0 && reach_m * axes.forward.dot(direction) <= end_m) {
+      free_range_m[i] = std::min(free_range_m[i], reach_m);
+    }
+  }
 }
 
 }  // namespace
 
-void add_virtual_groups(const BeamDirections& beams, std::span<const double> free_range_m,
+void add_virtual_groups(const BeamDirections& beams, std::span<double> free_range_m,
                         const VoronoiConfig& config, GeneratorGroups& groups) {
   const auto [sin, cos] = geometry::sincos(config.forward_rad);
   const Axes axes{{cos, sin}, {-sin, cos}};
@@ -59,14 +70,19 @@ void add_virtual_groups(const BeamDirections& beams, std::span<const double> fre
   }
   const double group_side = on_the_left > 0 ? 1.0 : -1.0;
   double nearest_m = config.range_limit_m;
+  double opposite_m = config.range_limit_m;  // of a group that goes round the robot
   double length_m = 0.0;
   for (const GroupPoint& point : groups.points) {
     const double side_m = group_side * axes.left.dot(point.position_m);
-    if (side_m <= 0.0) continue;
+    if (side_m <= 0.0) {
+      opposite_m = std::min(opposite_m, -side_m);
+      continue;
+    }
     nearest_m = std::min(nearest_m, side_m);
     length_m = std::max(length_m, axes.forward.dot(point.position_m));
   }
-  const double side_m = std::max(nearest_m, config.virtual_half_width_m);
+  const double side_m =
+      std::min(std::max(nearest_m, config.virtual_half_width_m), 0.9 * opposite_m);
   add_line(beams, free_range_m, axes, -group_side * side_m, length_m, groups);
 }
 

@@ -151,26 +151,30 @@ TEST(LocalMapBuilder, AMaximumOfTheClearanceMakesNoNode) {
 }
 
 // The far wall is beyond the range limit: it only shows that the corridor is free.
-TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodes) {
+TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodesAndItsMouth) {
   const World corridor{{-3, 1, 5, 1}, {-3, -1, 5, -1}, {20, -9, 20, 9}};
   const LocalMap map = map_of(scan_of(corridor), {}, all_confirmed());
   expect_well_formed(map);
-  ASSERT_EQ(map.branches.size(), 1U);
-  EXPECT_EQ(map.nodes.size(), 2U);
+  ASSERT_EQ(map.branches.size(), 2U);
+  EXPECT_EQ(map.nodes.size(), 3U);
   EXPECT_EQ(nodes_of(map, NodeKind::kFictitious).size(), 2U);
-  EXPECT_GT(map.branches[0].points.back().position_m.x(), 4.5);
+  const auto mouths = nodes_of(map, NodeKind::kHallCorridor);
+  ASSERT_EQ(mouths.size(), 1U);
+  EXPECT_NEAR(mouths[0].position_m.x(), 5.1, 0.15);
   // Without the wall the beams along the axis meet nothing, which proves nothing to be free.
   EXPECT_TRUE(map_of(scan_of({corridor[0], corridor[1]})).branches.empty());
 }
 
-// The circles of the first points reach behind the robot. At the other end all is in sight.
+// The circles of the first points reach behind the robot, those of the last beyond the range limit.
 TEST(LocalMapBuilder, ABranchIsCutWhereItStopsBeingConfirmed) {
   const World corridor{{-3, 1, 5, 1}, {-3, -1, 5, -1}, {20, -9, 20, 9}};
   const LocalMap map = map_of(scan_of(corridor));
   expect_well_formed(map);
-  ASSERT_EQ(map.branches.size(), 2U);
+  ASSERT_EQ(map.branches.size(), 4U);
   EXPECT_FALSE(map.branches[0].confirmed);
-  EXPECT_TRUE(map.branches[1].confirmed);
+  EXPECT_TRUE(map.branches[1].confirmed);  // up to the mouth of the corridor
+  EXPECT_TRUE(map.branches[2].confirmed);
+  EXPECT_FALSE(map.branches[3].confirmed);
   const auto ends = std::minmax(map.branches[1].points.front().position_m.x(),
                                 map.branches[1].points.back().position_m.x());
   EXPECT_NEAR(ends.first, 0.8, 0.06);  // hidden by 0.2 m of a clearance of 1 m

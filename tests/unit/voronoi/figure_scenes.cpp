@@ -100,6 +100,7 @@ voronoi::VoronoiConfig source_config() {
   voronoi::VoronoiConfig config;
   config.range_limit_m = 4.0;
   config.resolution_m = 0.05;
+  config.window_of_groups = true;
   config.forward_rad = 0.0;
   config.dropout_rad = 0.035;
   config.split_discontinuities = true;
@@ -109,9 +110,11 @@ voronoi::VoronoiConfig source_config() {
   config.contiguous_m = 0.55;
   config.join_alternate = true;
   config.alternate_behind_only = false;
+  config.alternate_large_only = false;
   config.alternate_m = 0.55;
   config.drop_small = true;
   config.min_group_points = 2;
+  config.join_again = false;
   config.join_hidden_zones = true;
   config.site_spacing_m = 0.0;
   config.node_merge_m = 0.15;

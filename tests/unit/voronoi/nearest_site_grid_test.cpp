@@ -74,6 +74,7 @@ TEST(NearestSiteGrid, SitesInOneColumnAndAtOnePlaceAreNoTrouble) {
   NearestSiteGrid grid;
   VoronoiConfig config;
   config.range_limit_m = 4.0;
+  config.window_of_groups = true;
   grid.set_geometry(beams, config);
   const std::vector<double> free_range_m(31, 4.0);
   const std::vector<Site> sites{{{1.0, 0.5}, 0}, {{2.0, 0.5}, 1}, {{2.0, 0.5}, 2}, {{0.0, 0.5}, 3}};

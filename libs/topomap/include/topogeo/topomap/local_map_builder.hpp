@@ -38,6 +38,9 @@ struct LocalMapConfig {
   /// Stretches of a branch that are shorter than this count as what lies on both sides of them,
   /// metres.
   double min_stretch_m = 0.2;
+  /// The graph nearest to the robot is looked for among those with at least this length of
+  /// branches, metres: a stub beside the robot is no way to go.
+  double min_main_graph_m = 1.0;
   /// Remove what is not connected with the graph nearest to the robot (5.2.2) instead of marking
   /// it.
   bool remove_off_main_graph = false;
@@ -46,6 +49,9 @@ struct LocalMapConfig {
   bool find_states = true;
   /// Largest clearance of a door, metres. 0.6: half of a wide single door (1.2 m).
   double door_half_width_m = 0.6;
+  /// Smallest clearance of a door, metres; a narrower one is a narrowing. 0.275: just over half of
+  /// the robot's width (0.525 m).
+  double door_min_half_width_m = 0.275;
   /// The clearance must rise by this much on a side of a minimum to count as a change of slope,
   /// metres. 0.15: three times the error of a reading (0.05 m), since a branch point depends on
   /// two.
@@ -53,6 +59,9 @@ struct LocalMapConfig {
   /// Threshold of 5.4, metres: the point that confirms a change of slope lies farther than this
   /// from it. 0.15, as above.
   double state_confirm_m = 0.15;
+  /// The place of a door or narrowing is the minimum of the parabola through the clearances this
+  /// far to both sides, metres.
+  double state_reach_m = 0.35;
   /// Clearances that differ by no more than this are one plateau, metres. Twice the error of a
   /// reading.
   double plateau_m = 0.1;

@@ -42,8 +42,8 @@ struct GeneratorGroups {
 /// Unit vectors of the beams of one scan geometry, made once and kept while it stays the same.
 class BeamDirections {
  public:
-  /// Throws std::invalid_argument if the angles of the scan are not finite or the step is not > 0.
-  /// Returns true if the geometry differs from the last one.
+  /// Throws std::invalid_argument if the angles of the scan are not finite or the step is below
+  /// 1e-5 rad. Returns true if the geometry differs from the last one.
   bool update(const scan::Scan& scan);
   [[nodiscard]] const std::vector<Eigen::Vector2d>& directions() const { return directions_; }
   [[nodiscard]] double angle_min_rad() const { return angle_min_rad_; }

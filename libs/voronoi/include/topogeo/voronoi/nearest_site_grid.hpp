@@ -35,8 +35,8 @@ class NearestSiteGrid {
 
   /// Finds the nearest site of every cell whose centre is nearer than `free_range_m` of its beam.
   /// `free_range_m` has one value per beam, 0 where nothing is known to be free. The window of
-  /// cells is the extent of the sites (4.14). Ties go to the site with the smaller y, then to the
-  /// one that comes first. At most 65,534 sites.
+  /// cells is the extent of the free space, or of the sites (4.14). Ties go to the site with the
+  /// smaller y, then to the one that comes first. At most 65,534 sites.
   void compute(std::span<const Site> sites, std::span<const double> free_range_m);
 
   [[nodiscard]] int rows() const { return rows_; }
@@ -64,13 +64,15 @@ class NearestSiteGrid {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(cols_) +
            static_cast<std::size_t>(col);
   }
-  void set_window(std::span<const Site> sites);
+  void set_window(std::span<const Site> sites, std::span<const double> free_range_m);
   void hull_of_row(double x_m);
   void fill_row(int row, std::span<const Site> sites);
 
   double resolution_m_ = 0.05;
   // The whole field of view, in cells: rows [low_x_, high_x_), columns [low_y_, high_y_).
   int low_x_ = 0, high_x_ = 0, low_y_ = 0, high_y_ = 0;
+  bool window_of_groups_ = false;
+  std::vector<Eigen::Vector2d> directions_;  // of the beams
   std::vector<std::uint16_t> beam_of_cell_;  ///< beam count where no beam crosses the cell
   // The window of this scan.
   int first_x_ = 0, first_y_ = 0, rows_ = 0, cols_ = 0;

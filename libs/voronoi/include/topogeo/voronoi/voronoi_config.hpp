@@ -10,6 +10,9 @@ struct VoronoiConfig {
   /// Side of a grid cell, metres, in [0.01, 1]. 0.05 is the source's value; points lie on the locus
   /// between the cell centres, so a finer grid resolves narrower gaps rather than moving points.
   double resolution_m = 0.05;
+  /// 4.14: the grid covers the extent of the groups along the axes of the laser instead of that of
+  /// the free space. Off: where a branch ends would depend on how the laser is turned.
+  bool window_of_groups = false;
   /// Direction of the robot's forward motion in the laser frame, radians. 0: the laser looks
   /// forward. Decides what is left and right for hidden zones and for virtual groups.
   double forward_rad = 0.0;
@@ -38,11 +41,17 @@ struct VoronoiConfig {
   /// three real logs: 3.0 nodes per scan and 0.56 of them found again half a metre on, against 2.6
   /// and 0.52 as in the source, and 3.9 and 0.54 without 4.9).
   bool alternate_behind_only = true;
+  /// 4.9 only between groups that 4.10 keeps. On: one stray reading in front of a wall would take
+  /// the wall away.
+  bool alternate_large_only = true;
   double alternate_m = 0.55;
   /// 4.10: drop groups of this many points or fewer. The equation prints "fewer", the text "equal
   /// or below"; the text is followed. 2: a single reading on an edge makes a false branch.
   bool drop_small = true;
   int min_group_points = 2;
+  /// 4.8 and 4.9 once more after 4.10 dropped a group. On: a stray reading between two groups keeps
+  /// them apart until it is gone, and leaves a branch through a gap that the robot cannot pass.
+  bool join_again = true;
   /// 4.11, 4.12: join groups that a corner hides a zone between. Off: it costs half of the nodes on
   /// real floors, and of the others 0.39 are found again instead of 0.56.
   bool join_hidden_zones = false;
