@@ -1,16 +1,19 @@
 // How much of a local map is found again in the local map made half a metre farther on.
 //
-//   topogeo_repeatability (--world FILE | --log FILE --reference FILE.tum) [--config FILE]
+//   topogeo_repeatability [--world FILE]... [--log FILE --reference FILE.tum]... [--config FILE]
 //
 // For each scan the next one that lies `--apart` metres away by the true poses (simulation) or by
 // the reference trajectory (recorded log). A node or branch point is in common view when the other
-// scan proves the place to be free, within its range limit. It is found again when the other map
-// has a real node (a branch) within 0.15 m of it. Both directions count. Prints one line of a
-// table.
+// scan proves the place to be free, within its range limit, and shows the circle of its
+// clearance as far as the configuration asks of a real node. It is found again when the other map
+// has a real node (a confirmed branch) within 0.15 m of it; states have 0.3 m, because along the
+// branch a door is no point. Both directions count. Prints a row of a table for each input, or with
+// --total one for all together; repeatability.sh makes whole tables.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -114,35 +117,64 @@ std::vector<View> views_of(const Input& input, const pipeline::LocalMapperConfig
 struct Tally {
   std::size_t count = 0;
   std::size_t found = 0;
-  double distance_m = 0.0;        ///< sum over those found
-  double every_distance_m = 0.0;  ///< sum over all
+  double distance_m = 0.0;  ///< sum over those found
 
   void add(double apart_m, double found_m) {
     ++count;
-    every_distance_m += std::min(apart_m, kFar_m);
     if (apart_m > found_m) return;
     ++found;
     distance_m += apart_m;
   }
-
-  static constexpr double kFar_m = 1.0;  ///< what counts at most for one that is not found
+  Tally& operator+=(const Tally& other) {
+    count += other.count;
+    found += other.found;
+    distance_m += other.distance_m;
+    return *this;
+  }
 };
 
 struct Counts {
+  std::size_t scans = 0, with_node = 0, real_nodes = 0;
   std::size_t pairs = 0;
-  Tally nodes, nodes_place, states, points, points_place;
+  Tally nodes, states, points;
+  /// In common view if the place is, the circle or not; a node counts as found where branches meet,
+  /// confirmed or not.
+  Tally nodes_by_place, points_by_place;
+
+  Counts& operator+=(const Counts& other) {
+    scans += other.scans;
+    with_node += other.with_node;
+    real_nodes += other.real_nodes;
+    pairs += other.pairs;
+    nodes += other.nodes;
+    states += other.states;
+    points += other.points;
+    nodes_by_place += other.nodes_by_place;
+    points_by_place += other.points_by_place;
+    return *this;
+  }
 };
 
-bool is_state(NodeKind kind) {
-  return kind == NodeKind::kDoor || kind == NodeKind::kNarrowing || kind == NodeKind::kHallCorridor;
+bool is_state(const topomap::LocalNode& node) {
+  return node.kind == NodeKind::kDoor || node.kind == NodeKind::kNarrowing ||
+         node.kind == NodeKind::kHallCorridor;
 }
 
-/// Distance to the nearest node of `map` that `wanted` accepts.
-template <typename Wanted>
-double nearest_node_m(const LocalMap& map, const Eigen::Vector2d& at, Wanted wanted) {
+bool is_real(const topomap::LocalNode& node) {
+  return node.kind == NodeKind::kReal;
+}
+
+/// A meeting of three or more branches, confirmed or not.
+bool is_meeting(const topomap::LocalNode& node) {
+  return node.kind != NodeKind::kVirtual && node.base_groups.size() >= 3;
+}
+
+/// Distance to the nearest node of `map` that is wanted.
+double nearest_node_m(const LocalMap& map, const Eigen::Vector2d& at,
+                      bool (*wanted)(const topomap::LocalNode&)) {
   double best_m = std::numeric_limits<double>::infinity();
   for (const topomap::LocalNode& node : map.nodes) {
-    if (wanted(node.kind)) best_m = std::min(best_m, (node.position_m - at).norm());
+    if (wanted(node)) best_m = std::min(best_m, (node.position_m - at).norm());
   }
   return best_m;
 }
@@ -173,12 +205,11 @@ void look_for(const View& from, const View& in, Counts& counts) {
     const Eigen::Vector2d at = T_in_from * node.position_m;
     if (!in.sees(at)) continue;
     const bool confirmed = in.confirms(at, node.clearance_m);
-    if (node.kind == NodeKind::kReal) {
-      const double apart_m =
-          nearest_node_m(in.map, at, [](NodeKind kind) { return kind == NodeKind::kReal; });
-      counts.nodes_place.add(apart_m, kFound_m);
+    if (is_real(node)) {
+      const double apart_m = nearest_node_m(in.map, at, is_real);
+      counts.nodes_by_place.add(nearest_node_m(in.map, at, is_meeting), kFound_m);
       if (confirmed) counts.nodes.add(apart_m, kFound_m);
-    } else if (is_state(node.kind) && confirmed) {
+    } else if (is_state(node) && confirmed) {
       counts.states.add(nearest_node_m(in.map, at, is_state), 2.0 * kFound_m);
     }
   }
@@ -188,7 +219,7 @@ void look_for(const View& from, const View& in, Counts& counts) {
       const Eigen::Vector2d at = T_in_from * branch.points[i].position_m;
       if (!in.sees(at)) continue;
       const double apart_m = nearest_branch_m(in.map, at);
-      counts.points_place.add(apart_m, kFound_m);
+      counts.points_by_place.add(apart_m, kFound_m);
       if (in.confirms(at, branch.points[i].clearance_m)) counts.points.add(apart_m, kFound_m);
     }
   }
@@ -211,7 +242,12 @@ std::optional<std::size_t> partner(const std::vector<View>& views, std::size_t i
 
 Counts compare(const std::vector<View>& views, double apart_m) {
   Counts counts;
+  counts.scans = views.size();
   for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto real =
+        std::ranges::count(views[i].map.nodes, NodeKind::kReal, &topomap::LocalNode::kind);
+    counts.real_nodes += static_cast<std::size_t>(real);
+    counts.with_node += real > 0 ? 1 : 0;
     const auto j = partner(views, i, apart_m);
     if (!j) continue;
     ++counts.pairs;
@@ -225,55 +261,76 @@ double ratio(double part, std::size_t whole) {
   return whole > 0 ? part / static_cast<double>(whole) : 0.0;
 }
 
-double found(const Tally& tally) {
+double share(const Tally& tally) {
   return ratio(static_cast<double>(tally.found), tally.count);
 }
 
-void print(const std::string& name, const std::vector<View>& views, const Counts& counts) {
-  std::size_t nodes = 0;
-  std::size_t with_node = 0;
-  for (const View& view : views) {
-    const auto real =
-        std::ranges::count(view.map.nodes, NodeKind::kReal, &topomap::LocalNode::kind);
-    nodes += static_cast<std::size_t>(real);
-    with_node += real > 0 ? 1 : 0;
-  }
+constexpr const char* kHeader =
+    "| | pairs | scans with a real node | real nodes a scan | found again | apart m | found, by "
+    "place "
+    "alone | states a pair | found again | branch points found again | apart m | place alone in "
+    "view |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+
+void print(const std::string& name, const Counts& counts) {
   std::printf(
-      "| %s | %zu | %.2f | %.2f | %.3f of %zu | %.3f | %.3f | %.3f of %zu | %.3f of %zu | "
-      "%.3f | %.3f | %.3f |\n",
-      name.c_str(), counts.pairs, ratio(static_cast<double>(with_node), views.size()),
-      ratio(static_cast<double>(nodes), views.size()), found(counts.nodes), counts.nodes.count,
-      ratio(counts.nodes.distance_m, counts.nodes.found), found(counts.nodes_place),
-      found(counts.states), counts.states.count, found(counts.points), counts.points.count,
-      ratio(counts.points.distance_m, counts.points.found),
-      ratio(counts.points.every_distance_m, counts.points.count), found(counts.points_place));
+      "| %s | %zu | %.2f | %.2f | %.3f of %zu | %.3f | %.3f | %.2f | %.3f | %.3f | %.3f | %.3f |\n",
+      name.c_str(), counts.pairs, ratio(static_cast<double>(counts.with_node), counts.scans),
+      ratio(static_cast<double>(counts.real_nodes), counts.scans), share(counts.nodes),
+      counts.nodes.count, ratio(counts.nodes.distance_m, counts.nodes.found),
+      share(counts.nodes_by_place),
+      ratio(0.5 * static_cast<double>(counts.states.count), counts.pairs), share(counts.states),
+      share(counts.points), ratio(counts.points.distance_m, counts.points.found),
+      share(counts.points_by_place));
+  std::fflush(stdout);
+}
+
+std::string stem(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.substr(0, name.find('.'));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"how much of a local map is found again half a metre farther on"};
-  std::string world;
-  std::string log;
-  std::string reference;
-  std::optional<std::string> config_file;
-  std::string name;
+  std::vector<std::string> worlds;
+  std::vector<std::string> logs;
+  std::vector<std::string> references;
+  std::string config_file;
+  std::string total;
   double apart_m = 0.5;
-  app.add_option("--world", world, "world file to simulate a log in");
-  app.add_option("--log", log, "CARMEN log")->excludes("--world");
-  app.add_option("--reference", reference, "reference trajectory of the log, TUM");
-  app.add_option("--config", config_file, "configuration file");
-  app.add_option("--name", name, "first column");
-  app.add_option("--apart", apart_m, "metres between two scans")->capture_default_str();
+  bool header = false;
+  app.add_option("--world", worlds, "world file to simulate a log in");
+  app.add_option("--log", logs, "CARMEN log");
+  app.add_option("--reference", references, "reference trajectory of each log, TUM");
+  app.add_option("--config", config_file, "configuration file")->check(CLI::ExistingFile);
+  app.add_option("--total", total, "one row of this name for all together");
+  app.add_option("--apart", apart_m, "metres between two scans")
+      ->capture_default_str()
+      ->check(CLI::Range(0.05, 5.0));
+  app.add_flag("--header", header, "print the head of the table first");
   CLI11_PARSE(app, argc, argv);
+  if (logs.size() != references.size()) {
+    std::fprintf(stderr, "topogeo_repeatability: every --log needs a --reference\n");
+    return 2;
+  }
   try {
     const pipeline::Config config =
-        pipeline::load_config(config_file ? std::optional<std::filesystem::path>(*config_file)
-                                          : std::nullopt)
+        pipeline::load_config(
+            config_file.empty() ? std::nullopt : std::optional<std::filesystem::path>(config_file))
             .config;
-    const Input input = world.empty() ? recorded(log, reference, config) : simulated(world);
-    const auto views = views_of(input, config.local_mapper);
-    print(name, views, compare(views, apart_m));
+    if (header) std::fputs(kHeader, stdout);
+    Counts all;
+    const auto take = [&](const std::string& path, const Input& input) {
+      const Counts counts = compare(views_of(input, config.local_mapper), apart_m);
+      if (total.empty()) print(stem(path), counts);
+      all += counts;
+    };
+    for (const std::string& world : worlds) take(world, simulated(world));
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      take(logs[i], recorded(logs[i], references[i], config));
+    }
+    if (!total.empty()) print(total, all);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "topogeo_repeatability: %s\n", error.what());
     return 1;

@@ -49,17 +49,25 @@ void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
   make_generator_groups(scan, beams_, config_, out.groups);
   measure_free_space(scan);
 
-  out.is_virtual = out.groups.groups.size() < 2;
+  trace(out);
+  out.is_virtual = out.branches.empty();
   if (out.is_virtual && !scan.ranges_m.empty()) {
+    // Groups that do not meet where it was seen are to the robot what one group is.
+    if (!out.groups.groups.empty()) {
+      out.groups.groups = {{0, static_cast<std::uint32_t>(out.groups.points.size())}};
+    }
     // For navigation, a beam that met nothing is free: otherwise a robot in the open has no way on.
     std::replace(free_range_m_.begin(), free_range_m_.end(), 0.0, config_.range_limit_m);
     add_virtual_groups(beams_, free_range_m_, config_, out.groups);
+    trace(out);
   }
-
-  place_sites(out.groups);
-  grid_.compute(sites_, free_range_m_);
-  cracks_.trace(grid_, sites_, config_, out);
   measure_hidden_depths(out);
+}
+
+void LocalVoronoi::trace(LocalVoronoiDiagram& diagram) {
+  place_sites(diagram.groups);
+  grid_.compute(sites_, free_range_m_);
+  cracks_.trace(grid_, sites_, config_, diagram);
 }
 
 /// Every reading of a group is a site, and so are points on a wall between readings that are far

@@ -43,13 +43,10 @@ void add_line(const BeamDirections& beams, std::span<double> free_range_m, const
   const auto end = static_cast<std::uint32_t>(groups.points.size());
   if (end == begin) return;
   groups.groups.push_back({begin, end});
-  const double end_m = axes.forward.dot(groups.points.back().position_m);
   for (std::size_t i = 0; i < free_range_m.size(); ++i) {
     const Eigen::Vector2d& direction = beams.directions()[i];
     const double reach_m = side_m / axes.left.dot(direction);  // along the beam to the line
-    if (reach_m > 0.0 && reach_m * axes.forward.dot(direction) <= end_m) {
-      free_range_m[i] = std::min(free_range_m[i], reach_m);
-    }
+    if (reach_m > 0.0) free_range_m[i] = std::min(free_range_m[i], reach_m);
   }
 }
 
@@ -74,13 +71,13 @@ void add_virtual_groups(const BeamDirections& beams, std::span<double> free_rang
   double length_m = 0.0;
   for (const GroupPoint& point : groups.points) {
     const double side_m = group_side * axes.left.dot(point.position_m);
-    if (side_m <= 0.0) {
-      opposite_m = std::min(opposite_m, -side_m);
-      continue;
-    }
-    nearest_m = std::min(nearest_m, side_m);
-    length_m = std::max(length_m, axes.forward.dot(point.position_m));
+    const double ahead_m = axes.forward.dot(point.position_m);
+    if (side_m > 0.0) length_m = std::max(length_m, ahead_m);
+    if (std::abs(side_m) < std::abs(ahead_m)) continue;  // ahead rather than beside the robot
+    double& beside_m = side_m > 0.0 ? nearest_m : opposite_m;
+    beside_m = std::min(beside_m, std::abs(side_m));
   }
+  if (nearest_m == config.range_limit_m) nearest_m = config.virtual_half_width_m;
   const double side_m =
       std::min(std::max(nearest_m, config.virtual_half_width_m), 0.9 * opposite_m);
   add_line(beams, free_range_m, axes, -group_side * side_m, length_m, groups);

@@ -53,9 +53,9 @@ struct LocalMapConfig {
   /// the robot's width (0.525 m).
   double door_min_half_width_m = 0.275;
   /// The clearance must rise by this much on a side of a minimum to count as a change of slope,
-  /// metres. 0.15: three times the error of a reading (0.05 m), since a branch point depends on
-  /// two.
-  double state_rise_m = 0.15;
+  /// metres. 0.1: twice the error of a reading (0.05 m), since a branch point depends on two;
+  /// 0.15 and more find fewer states again.
+  double state_rise_m = 0.1;
   /// Threshold of 5.4, metres: the point that confirms a change of slope lies farther than this
   /// from it. 0.15, as above.
   double state_confirm_m = 0.15;

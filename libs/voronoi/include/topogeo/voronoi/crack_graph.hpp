@@ -50,7 +50,7 @@ struct LocalVoronoiDiagram {
   std::vector<DiagramNode> nodes;  ///< every one has a branch
   std::vector<DiagramBranch> branches;
   std::vector<DiagramPoint> points;  ///< of all branches
-  bool is_virtual = false;           ///< fewer than two groups in the scan
+  bool is_virtual = false;           ///< fewer than two groups, or none that meet in sight
 
   [[nodiscard]] std::span<const DiagramPoint> points_of(const DiagramBranch& branch) const {
     return {points.data() + branch.points.begin, branch.points.size()};

@@ -8,10 +8,10 @@
 // line where they are equal. Every point is moved from the cell border to the place between the two
 // cell centres where both distances are equal, so positions are far better than a cell.
 //
-// A diagram of fewer than two groups is virtual (4.2.1): it serves navigation and is never offered
-// to matching. With one group a line of virtual points is put on the other side of the robot,
-// parallel to the motion; with none, two of them. A virtual diagram can be empty, where nothing is
-// free.
+// A diagram of fewer than two groups, or of groups that meet nowhere in sight, is virtual (4.2.1):
+// it serves navigation and is never offered to matching. With one group a line of virtual points is
+// put on the other side of the robot, parallel to the motion; with none, two of them. A virtual
+// diagram can be empty, where nothing is free.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +53,7 @@ class LocalVoronoi {
 
  private:
   void measure_free_space(const scan::Scan& scan);
+  void trace(LocalVoronoiDiagram& diagram);
   void place_sites(const GeneratorGroups& groups);
   void measure_hidden_depths(LocalVoronoiDiagram& diagram);
 

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Prints how much of a local map is found again half a metre farther on: for each input with the
+# default configuration, then for all inputs together with one setting of it changed at a time. These
+# are the tables of RESULTS.md that the defaults are chosen by.
+#   tests/bench/repeatability.sh [DATA_FOLDER]
+# Inputs are the simulated floor (tests/data/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
+# DATA_FOLDER, default ../shared/data beside the project. REPEATABILITY names the program; default
+# build/bin/topogeo_repeatability.
+set -euo pipefail
+
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
+tool=${REPEATABILITY:-$root/build/bin/topogeo_repeatability}
+data=${1:-$root/../shared/data}
+
+[ -x "$tool" ] || { echo "repeatability: there is no '$tool'; build it with ./run bench NONE" >&2; exit 1; }
+inputs=(--world "$root/tests/data/floor.world.yaml")
+shopt -s nullglob
+for log in "$data"/*.clf.gz; do
+  reference=${log%.clf.gz}.ref.tum
+  [ ! -r "$reference" ] || inputs+=(--log "$log" --reference "$reference")
+done
+
+config=$(mktemp --suffix=.yaml)
+trap 'rm -f "$config"' EXIT
+
+echo "### Default configuration"
+"$tool" --header "${inputs[@]}"
+echo
+echo "### All inputs together, one setting changed"
+"$tool" --header --total default "${inputs[@]}"
+while read -r setting; do
+  printf 'local_map:\n  %s\n' "$setting" > "$config"
+  "$tool" --total "$setting" --config "$config" "${inputs[@]}"
+done <<'SETTINGS'
+split_discontinuities: false
+discontinuity_m: 0.3
+discontinuity_m: 1.0
+on_wall_m: 0
+join_contiguous: false
+contiguous_m: 0.45
+contiguous_m: 0.65
+join_alternate: false
+alternate_behind_only: false
+alternate_large_only: false
+drop_small: false
+min_group_points: 1
+min_group_points: 4
+join_again: false
+join_hidden_zones: true
+site_spacing_m: 0
+window_of_groups: true
+resolution_m: 0.025
+resolution_m: 0.1
+node_merge_m: 0.1
+node_merge_m: 0.25
+largest_hidden_share: 0.1
+largest_hidden_share: 0.15
+largest_hidden_share: 0.25
+largest_hidden_share: 0.3
+largest_hidden_share: 1
+remove_off_main_graph: true
+state_rise_m: 0.05
+state_rise_m: 0.15
+state_rise_m: 0.25
+corridor_length_m: 1.0
+corridor_length_m: 2.5
+plateau_m: 0.2
+range_limit_m: 4
+range_limit_m: 6
+range_limit_m: 8
+range_limit_m: 12
+SETTINGS
