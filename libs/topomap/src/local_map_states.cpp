@@ -1,6 +1,7 @@
 #include "local_map_states.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Dense>
 
@@ -81,8 +82,25 @@ namespace {
 
 /// Clearances this close are taken as equal, metres.
 constexpr double kLevelM = 0.02;
+/// Behind the corner of one wall the clearance of a corridor 2 m wide is 2 cm above its level after
+/// 0.28 m, and a wider one later.
+constexpr double kLargestDelayM = 0.4;
 
 }  // namespace
+
+/// The place on a branch at an arc length within its first and last.
+BranchState BranchStateFinder::state_at(std::span<const BranchPoint> points, double arc_m,
+                                        NodeKind kind) const {
+  const auto found = std::upper_bound(arc_m_.begin() + 1, arc_m_.end() - 1, arc_m);
+  const auto after = static_cast<std::size_t>(found - arc_m_.begin());
+  const BranchPoint& a = points[after - 1];
+  const BranchPoint& b = points[after];
+  const double t = (arc_m - arc_m_[after - 1]) / (arc_m_[after] - arc_m_[after - 1]);
+  return {t < 0.5 ? after - 1 : after,
+          kind,
+          {a.position_m + t * (b.position_m - a.position_m),
+           a.clearance_m + t * (b.clearance_m - a.clearance_m)}};
+}
 
 /// The minimum of the parabola through the squared clearances around a lowest point, by least
 /// squares: beside a door post the squared clearance is one, and readings make the lowest point
@@ -108,31 +126,55 @@ BranchState BranchStateFinder::minimum(std::span<const BranchPoint> points, std:
   if (!(parabola.z() > 0.0)) return state;
   const double at_m = arc_m_[lowest] - 0.5 * parabola.y() / parabola.z();
   if (!(at_m > arc_m_[first] && at_m < arc_m_[last])) return state;
-  const auto after = static_cast<std::size_t>(std::upper_bound(arc_m_.begin(), arc_m_.end(), at_m) -
-                                              arc_m_.begin());
-  const BranchPoint& a = points[after - 1];
-  const BranchPoint& b = points[after];
-  const double t = (at_m - arc_m_[after - 1]) / (arc_m_[after] - arc_m_[after - 1]);
-  state.point = t < 0.5 ? after - 1 : after;
-  state.at = {a.position_m + t * (b.position_m - a.position_m),
-              a.clearance_m + t * (b.clearance_m - a.clearance_m)};
-  return state;
+  return state_at(points, at_m, NodeKind::kDoor);
 }
 
-/// Mouth of a corridor: the last point of its floor in direction `step` that is still on the level
-/// of the floor. The clearance rises slowly at first behind the mouth, so the end of the floor is
-/// late.
-std::size_t BranchStateFinder::mouth_of(std::span<const BranchPoint> points, const Floor& floor,
-                                        std::ptrdiff_t step) {
+/// The clearance in a corridor: the median of its floor.
+double BranchStateFinder::level_of(std::span<const BranchPoint> points, const Floor& floor) {
   clearances_m_.clear();
   for (std::size_t i = floor.first; i <= floor.last; ++i) {
     clearances_m_.push_back(points[i].clearance_m);
   }
   const auto middle = clearances_m_.begin() + static_cast<std::ptrdiff_t>(clearances_m_.size() / 2);
   std::nth_element(clearances_m_.begin(), middle, clearances_m_.end());
-  std::size_t mouth = step > 0 ? floor.last : floor.first;
-  while (points[mouth].clearance_m > *middle + kLevelM) mouth = step > 0 ? mouth - 1 : mouth + 1;
-  return mouth;
+  return *middle;
+}
+
+/// Mouth of a corridor: where the clearance starts to rise from its level. Beyond the corners of a
+/// mouth the squared clearance grows with the square of the way from it, as much where both walls
+/// end there and half as much where one does. So the root of its growth is a line over the way:
+/// fitted by least squares up to a rise of `rise_m` and followed back to zero. The last point on
+/// the level, up to 0.3 m beyond the mouth, where there are too few points for a line.
+BranchState BranchStateFinder::mouth_of(std::span<const BranchPoint> points, const Floor& floor,
+                                        std::ptrdiff_t step, double rise_m) {
+  const double level_m = level_of(points, floor);
+  std::size_t last = step > 0 ? floor.last : floor.first;
+  while (points[last].clearance_m > level_m + kLevelM) last = step > 0 ? last - 1 : last + 1;
+
+  // way = a + b * root, both from the last point on the level outward.
+  double count = 0.0, roots = 0.0, ways = 0.0, roots_sq = 0.0, products = 0.0;
+  const auto end = step > 0 ? static_cast<std::ptrdiff_t>(points.size()) : -1;
+  for (auto i = static_cast<std::ptrdiff_t>(last) + step; i != end; i += step) {
+    const double clearance_m = points[static_cast<std::size_t>(i)].clearance_m;
+    if (clearance_m > level_m + rise_m) break;
+    if (clearance_m <= level_m) continue;
+    const double way = std::abs(arc_m_[static_cast<std::size_t>(i)] - arc_m_[last]);
+    const double root = std::sqrt(clearance_m * clearance_m - level_m * level_m);
+    count += 1.0;
+    roots += root;
+    ways += way;
+    roots_sq += root * root;
+    products += root * way;
+  }
+  BranchState state{last, NodeKind::kHallCorridor, points[last]};
+  const double spread = count * roots_sq - roots * roots;
+  if (count < 4.0 || !(spread > 0.0)) return state;
+  const double way_m = (ways * roots_sq - roots * products) / spread;
+  // Where it would lie beyond the last level point, or far back, walls do not end at a corner.
+  const double back_m = std::clamp(-way_m, 0.0, kLargestDelayM);
+  const double inner_m = arc_m_[last] - static_cast<double>(step) * back_m;
+  return state_at(points, std::clamp(inner_m, arc_m_[floor.first], arc_m_[floor.last]),
+                  NodeKind::kHallCorridor);
 }
 
 std::span<const BranchState> BranchStateFinder::find(std::span<const BranchPoint> points,
@@ -147,8 +189,7 @@ std::span<const BranchState> BranchStateFinder::find(std::span<const BranchPoint
     if (arc_m_[floor.last] - arc_m_[floor.first] >= config.corridor_length_m) {
       for (const std::ptrdiff_t step : {-1, 1}) {
         if (floor.rises(points, confirmed, step, config.hall_rise_m, config.state_confirm_m)) {
-          const std::size_t mouth = mouth_of(points, floor, step);
-          states_.push_back({mouth, NodeKind::kHallCorridor, points[mouth]});
+          states_.push_back(mouth_of(points, floor, step, config.hall_rise_m));
         }
       }
     } else if (floor.rises(points, {}, -1, config.state_rise_m, config.state_confirm_m) &&

@@ -32,10 +32,13 @@ class BranchStateFinder {
 
   void measure_arc_lengths(std::span<const BranchPoint> points);
   void find_minima(std::span<const BranchPoint> points, double rise_m);
+  [[nodiscard]] BranchState state_at(std::span<const BranchPoint> points, double arc_m,
+                                     NodeKind kind) const;
   BranchState minimum(std::span<const BranchPoint> points, std::size_t lowest,
                       double reach_m) const;
-  std::size_t mouth_of(std::span<const BranchPoint> points, const Floor& floor,
-                       std::ptrdiff_t step);
+  double level_of(std::span<const BranchPoint> points, const Floor& floor);
+  BranchState mouth_of(std::span<const BranchPoint> points, const Floor& floor, std::ptrdiff_t step,
+                       double rise_m);
 
   std::vector<double> arc_m_;         ///< along the branch, per point
   std::vector<std::size_t> minima_;   ///< indices of points

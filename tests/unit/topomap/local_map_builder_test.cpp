@@ -132,7 +132,7 @@ TEST(LocalMapBuilder, TheMouthOfACorridorIsAHallCorridorPassage) {
   expect_well_formed(map);
   const auto passages = nodes_of(map, NodeKind::kHallCorridor);
   ASSERT_EQ(passages.size(), 1U);
-  EXPECT_NEAR(passages[0].position_m.x(), 3.1, 0.25);
+  EXPECT_NEAR(passages[0].position_m.x(), 3.0, 0.1);
   EXPECT_NEAR(passages[0].clearance_m, 1.0, 0.05);
   EXPECT_TRUE(nodes_of(map, NodeKind::kDoor).empty());
   EXPECT_TRUE(nodes_of(map, NodeKind::kNarrowing).empty());
@@ -160,7 +160,8 @@ TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodesAndItsMouth) {
   EXPECT_EQ(nodes_of(map, NodeKind::kFictitious).size(), 2U);
   const auto mouths = nodes_of(map, NodeKind::kHallCorridor);
   ASSERT_EQ(mouths.size(), 1U);
-  EXPECT_NEAR(mouths[0].position_m.x(), 5.1, 0.15);
+  // So far off readings on the walls are 0.2 m apart, so the last may be as far from the corner.
+  EXPECT_NEAR(mouths[0].position_m.x(), 5.0, 0.15);
   // Without the wall the beams along the axis meet nothing, which proves nothing to be free.
   EXPECT_TRUE(map_of(scan_of({corridor[0], corridor[1]})).branches.empty());
 }
