@@ -41,6 +41,8 @@ std::vector<View> all_views() {
         for (const bool hidden_zones : {false, true}) {
           View view{number + " from place " + std::to_string(at), number, scene, at, full_turn, {}};
           view.config = source_config();
+          // The window of 4.14 lies along the axes of the laser and does not turn with the walls.
+          view.config.window_of_groups = false;
           view.config.join_hidden_zones = hidden_zones;
           view.title += full_turn ? ", full turn" : ", half turn";
           view.title += hidden_zones ? ", hidden zones" : "";
@@ -131,11 +133,9 @@ double farthest_apart_m(const Picture& a, const Picture& b) {
   return farthest_m;
 }
 
-// A node of four groups lies where the first three cells in grid order put it, and a state on one
-// of the points of a branch, which are counted from the end that was traced first: hence 2 cm for
-// the one and one step between points, 6 cm, for the other. A loose end lies in the last cell that
-// is visible.
-constexpr Tolerance kSameGrid{0.02, 0.06, 0.06};
+// The cells turn with the laser. Sites that are equally near a cell differ by less than a
+// millimetre.
+constexpr Tolerance kSameGrid{0.001, 0.001, 0.06};
 
 void expect_same_picture(const Picture& a, const Picture& b) {
   EXPECT_EQ(a.groups, b.groups);
@@ -163,20 +163,33 @@ TEST(SymmetryOfLocalMaps, TheMirrorImageOfASceneHasTheMirrorImageOfItsMap) {
   }
 }
 
-// The grid ends at the extent of the readings along the axes of the laser (4.14). In these scenes a
-// branch leads through a door beyond which nothing is seen: with the laser along the corridor it
-// ends in the door, with the laser askew beyond it, where it rises enough for a door node.
-bool ends_at_the_grid(const std::string& number) {
-  return number == "4_20" || number == "5_02" || number == "5_07";
+// A loose end lies in the last visible cells: up to the diagonal of one, 7.1 cm, apart.
+constexpr Tolerance kOtherGrid{0.01, 0.02, 0.071};
+// In figure 5.7 the shadow of the chair's leg is as thin as a cell, and the axis leaves it at an
+// angle of 3 degrees: the cells decide where the branch behind it begins, and whether as one piece
+// or as two of the same name.
+constexpr Tolerance kThinShadow{0.01, 0.02, 0.3};
+
+std::vector<std::string> once_if_off(std::vector<std::string> sorted) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    return a == b && a.ends_with(" (off)");
+  };
+  sorted.erase(std::unique(sorted.begin(), sorted.end(), same), sorted.end());
+  return sorted;
 }
 
-MapSeen real_nodes(MapSeen seen) {
-  std::erase_if(seen.nodes, [](const NamedNode& node) { return !node.name.starts_with("real"); });
-  return seen;
+void expect_same_on_other_grid(const MapSeen& straight, const MapSeen& turned, bool thin_shadow) {
+  const Tolerance& tolerance = thin_shadow ? kThinShadow : kOtherGrid;
+  expect_nodes_near(straight, turned, tolerance);
+  expect_nodes_near(turned, straight, tolerance);
+  if (thin_shadow) {
+    EXPECT_EQ(once_if_off(straight.node_names()), once_if_off(turned.node_names()));
+    EXPECT_EQ(once_if_off(straight.branches), once_if_off(turned.branches));
+  } else {
+    EXPECT_EQ(straight.node_names(), turned.node_names());
+    EXPECT_EQ(straight.branches, turned.branches);
+  }
 }
-
-// Loose ends move with the grid.
-constexpr Tolerance kOtherGrid{0.02, 0.1, std::numeric_limits<double>::infinity()};
 
 TEST(SymmetryOfLocalMaps, AnyTurnOfTheLaserKeepsGroupsNodesAndBranches) {
   for (const View& view : all_views()) {
@@ -185,12 +198,7 @@ TEST(SymmetryOfLocalMaps, AnyTurnOfTheLaserKeepsGroupsNodesAndBranches) {
       SCOPED_TRACE(view.title + ", turned by " + std::to_string(turn_deg));
       const Picture turned = picture_of(view, turn_deg * std::numbers::pi / 180.0);
       EXPECT_EQ(straight.groups, turned.groups);
-      expect_nodes_near(real_nodes(straight.seen), turned.seen, kOtherGrid);
-      expect_nodes_near(real_nodes(turned.seen), straight.seen, kOtherGrid);
-      if (ends_at_the_grid(view.number)) continue;
-      EXPECT_EQ(straight.seen.node_names(), turned.seen.node_names());
-      EXPECT_EQ(straight.seen.branches, turned.seen.branches);
-      expect_nodes_near(straight.seen, turned.seen, kOtherGrid);
+      expect_same_on_other_grid(straight.seen, turned.seen, view.number == "5_07");
     }
   }
 }
