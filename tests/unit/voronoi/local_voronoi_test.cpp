@@ -1,11 +1,14 @@
 #include "topogeo/voronoi/local_voronoi.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -114,6 +117,31 @@ TEST(LocalVoronoi, FourGroupsAtACrossingAreOneNode) {
   EXPECT_EQ(diagram.nodes[0].base_groups.size(), 4U);
   EXPECT_NEAR(diagram.nodes[0].position_m.x(), 3.0, 0.05);
   EXPECT_NEAR(diagram.nodes[0].position_m.y(), 0.0, 0.02);
+}
+
+//  --------------------------
+//  robot >      [box]
+//  --------------------------
+TEST(LocalVoronoi, PiecesOfTheSameGroupsThatDoNotTouchAreTwoBranches) {
+  const World world{{-1, 1.5, 9, 1.5},  {-1, -1.5, 9, -1.5},   {3, -0.3, 3, 0.3},
+                    {3, 0.3, 3.5, 0.3}, {3.5, 0.3, 3.5, -0.3}, {3.5, -0.3, 3, -0.3},
+                    {14, -9, 14, 9}};
+  const LocalVoronoiDiagram diagram = diagram_of(scan_of(world, {0.0, 0.9, 0.0}));
+  ASSERT_EQ(diagram.groups.groups.size(), 3U);
+  std::map<std::array<std::uint16_t, 2>, std::vector<double>> first_x_m;
+  for (const DiagramBranch& branch : diagram.branches) {
+    first_x_m[branch.base_groups].push_back(
+        std::ranges::min(diagram.points_of(branch), {}, [](const DiagramPoint& point) {
+          return point.position_m.x();
+        }).position_m.x());
+  }
+  // Beams go from right to left: the right wall is the first group, the box the second.
+  auto between_walls = first_x_m.at({0, 2});
+  std::ranges::sort(between_walls);
+  ASSERT_EQ(between_walls.size(), 2U);
+  EXPECT_LT(between_walls[0], 0.5);  // in front of the box
+  EXPECT_GT(between_walls[1], 4.0);  // behind it
+  EXPECT_EQ(first_x_m.at({1, 2}).size(), 1U);
 }
 
 TEST(LocalVoronoi, OneWallGivesAVirtualDiagramBesideTheRobot) {
