@@ -25,17 +25,21 @@ void LocalVoronoi::measure_free_space(const scan::Scan& scan) {
   const std::size_t count = scan.ranges_m.size();
   free_range_m_.assign(count, 0.0);
   const auto most = static_cast<std::size_t>(config_.dropout_rad / scan.angle_step_rad + 1e-6);
-  std::size_t last = count;  // the last echo before i
+  const auto fill_between = [&](std::size_t from, std::size_t to) {
+    if (to - from - 1 > most) return;
+    const double free_m = std::min(free_range_m_[from], free_range_m_[to % count]);
+    for (std::size_t i = from + 1; i < to; ++i) free_range_m_[i % count] = free_m;
+  };
+  std::size_t first = count;  // the first echo of all, and the last one before i
+  std::size_t last = count;
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_echo(scan.ranges_m[i])) continue;
     free_range_m_[i] = std::min(static_cast<double>(scan.ranges_m[i]), config_.range_limit_m);
-    if (last < count && i - last > 1 && i - last - 1 <= most) {
-      std::fill(free_range_m_.begin() + static_cast<std::ptrdiff_t>(last) + 1,
-                free_range_m_.begin() + static_cast<std::ptrdiff_t>(i),
-                std::min(free_range_m_[last], free_range_m_[i]));
-    }
+    if (last < count) fill_between(last, i);
+    if (first == count) first = i;
     last = i;
   }
+  if (beams_.closed() && first < count) fill_between(last, first + count);
 }
 
 LocalVoronoiDiagram LocalVoronoi::compute(const scan::Scan& scan) {
@@ -60,8 +64,31 @@ void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
     std::replace(free_range_m_.begin(), free_range_m_.end(), 0.0, config_.range_limit_m);
     add_virtual_groups(beams_, free_range_m_, config_, out.groups);
     trace(out);
+    drop_tight_ends(out);
   }
   measure_hidden_depths(out);
+}
+
+/// Where the line of a virtual group meets a wall the branch between them runs into the corner. The
+/// line stands for nothing, so what is narrower than the robot there is no way. A branch that is
+/// narrow all along stays: the robot is in it.
+void LocalVoronoi::drop_tight_ends(LocalVoronoiDiagram& diagram) const {
+  const double least_m = 0.5 * config_.contiguous_m;
+  std::uint32_t dropped = 0;  // of the branches so far
+  for (DiagramBranch& branch : diagram.branches) {
+    branch.points.begin -= dropped;
+    branch.points.end -= dropped;
+    const auto tight = [&](std::uint32_t i) { return diagram.points[i].clearance_m < least_m; };
+    auto [first, end] = branch.points;
+    while (branch.node_a == DiagramBranch::kLoose && first < end && tight(first)) ++first;
+    while (branch.node_b == DiagramBranch::kLoose && first < end && tight(end - 1)) --end;
+    if (end - first < 2) continue;
+    const auto at = [&](std::uint32_t i) { return diagram.points.begin() + std::ptrdiff_t{i}; };
+    diagram.points.erase(at(end), at(branch.points.end));
+    diagram.points.erase(at(branch.points.begin), at(first));
+    dropped += branch.points.size() - (end - first);
+    branch.points.end = branch.points.begin + (end - first);
+  }
 }
 
 void LocalVoronoi::trace(LocalVoronoiDiagram& diagram) {

@@ -54,6 +54,7 @@ class LocalVoronoi {
  private:
   void measure_free_space(const scan::Scan& scan);
   void trace(LocalVoronoiDiagram& diagram);
+  void drop_tight_ends(LocalVoronoiDiagram& diagram) const;
   void place_sites(const GeneratorGroups& groups);
   void measure_hidden_depths(LocalVoronoiDiagram& diagram);
 
