@@ -113,6 +113,40 @@ TEST(GeneratorGroups, SmallGroupsGoUpToAndIncludingTheThreshold) {
   EXPECT_EQ(groups.points.front().beam, 3U);
 }
 
+// Two boards one metre ahead with a gap of 0.4 m. Through the gap nothing is seen but one stray
+// reading, 0.73 m before the edges of the boards.
+TEST(GeneratorGroups, WhatAStrayReadingKeptApartIsJoinedOnceItIsGone) {
+  scan::Scan scan = scan_of({{1, -2, 1, -0.2}, {1, 0.2, 1, 2}});
+  ASSERT_EQ(scan.ranges_m[180], scan::Scan::kNoReturn);
+  scan.ranges_m[180] = 0.3F;
+  VoronoiConfig config;
+  config.join_again = false;
+  EXPECT_EQ(groups_of(scan, config).groups.size(), 2U);
+  config.join_again = true;
+  const GeneratorGroups joined = groups_of(scan, config);
+  ASSERT_EQ(joined.groups.size(), 1U);
+  for (const GroupPoint& point : joined.points) EXPECT_GT(point.range_m, 0.9F);
+  // The stray reading stays where small groups do, and so does the gap.
+  config.drop_small = false;
+  EXPECT_EQ(groups_of(scan, config).groups.size(), 3U);
+}
+
+// A wall at 4 m and two stray readings 0.19 m apart at 1 m: between them the wall is seen.
+TEST(GeneratorGroups, StrayReadingsDoNotTakeAwayTheWallBehindThem) {
+  std::vector<float> ranges_m(32, 4.0F);
+  ranges_m[10] = ranges_m[21] = 1.0F;
+  const auto scan = scan_with(ranges_m, -16.0);
+  VoronoiConfig config;
+  config.alternate_large_only = true;
+  EXPECT_EQ(sizes(groups_of(scan, config)), (Sizes{30}));
+  config.alternate_large_only = false;
+  EXPECT_EQ(sizes(groups_of(scan, config)), (Sizes{10, 10}));
+  // Three readings are no stray: what stands 0.19 m apart is one object.
+  for (const std::size_t beam : {8U, 9U, 22U, 23U}) ranges_m[beam] = 1.0F;
+  config.alternate_large_only = true;
+  EXPECT_EQ(sizes(groups_of(scan_with(ranges_m, -16.0), config)), (Sizes{8, 6, 8}));
+}
+
 TEST(GeneratorGroups, HiddenZonesJoinOutwardJumpsOnTheRightAndInwardJumpsOnTheLeft) {
   VoronoiConfig config = nothing_on();
   config.join_hidden_zones = true;
@@ -155,6 +189,10 @@ TEST(GeneratorGroups, AnglesThatMakeNoSenseAreNamed) {
   scan::Scan scan = scan_with({1, 1, 1});
   scan.angle_step_rad = 0.0;
   EXPECT_THROW(beams.update(scan), std::invalid_argument);
+  scan.angle_step_rad = 0.99e-5;
+  EXPECT_THROW(beams.update(scan), std::invalid_argument);
+  scan.angle_step_rad = 1e-5;
+  EXPECT_NO_THROW(beams.update(scan));
   scan.angle_step_rad = 4.0;
   EXPECT_THROW(beams.update(scan), std::invalid_argument);
   scan.angle_step_rad = 0.01;
