@@ -317,13 +317,12 @@ void CrackGraph::write(LocalVoronoiDiagram& out) {
     const double weight = 1.0 / ++members_[root];
     node.position_m += weight * (junctions_[i].position_m - node.position_m);
     node.clearance_m += weight * (junctions_[i].clearance_m - node.clearance_m);
-    node.base_groups.insert(node.base_groups.end(), junctions_[i].groups.begin(),
-                            junctions_[i].groups.begin() + junctions_[i].group_count);
-  }
-  for (DiagramNode& node : out.nodes) {
-    std::sort(node.base_groups.begin(), node.base_groups.end());
-    node.base_groups.erase(std::unique(node.base_groups.begin(), node.base_groups.end()),
-                           node.base_groups.end());
+    // One at a time: merged junctions share most groups, and more than six would allocate.
+    for (int k = 0; k < junctions_[i].group_count; ++k) {
+      const std::uint16_t group = junctions_[i].groups[static_cast<std::size_t>(k)];
+      const auto at = std::lower_bound(node.base_groups.begin(), node.base_groups.end(), group);
+      if (at == node.base_groups.end() || *at != group) node.base_groups.insert(at, group);
+    }
   }
   for (const Piece& piece : pieces_) {
     if (piece.dropped) continue;

@@ -138,11 +138,18 @@ bool lies_behind(const GeneratorGroups& groups, std::size_t before, std::size_t 
          points[runs[between].end - 1].range_m > points[runs[after].begin].range_m;
 }
 
-/// Number of borders between successive groups.
+/// Number of borders between successive groups. Two groups of a closed scan have two.
 std::size_t border_count(const GeneratorGroups& groups) {
   const std::size_t n = groups.groups.size();
   if (n < 2) return 0;
-  return groups.closed && n > 2 ? n : n - 1;
+  return groups.closed ? n : n - 1;
+}
+
+/// Distance across what lies between groups `before` and `after`.
+double gap_m(const GeneratorGroups& groups, std::size_t before, std::size_t after) {
+  return (groups.points[groups.groups[before].end - 1].position_m -
+          groups.points[groups.groups[after].begin].position_m)
+      .norm();
 }
 
 }  // namespace
@@ -235,14 +242,16 @@ void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups)
     // Of three groups in a closed scan each is next to each other one: none are alternate.
     if (groups.closed && groups.groups.size() == 3) return;
     const std::size_t n = groups.groups.size();
-    const std::size_t pairs = groups.closed && n > 4 ? n : n - 2;
+    const std::size_t pairs = groups.closed ? n : n - 2;
+    const auto may_join = [&](std::size_t k) {
+      const std::size_t after = (k + 2) % n;
+      if (config.alternate_behind_only && !lies_behind(groups, k, (k + 1) % n, after)) return false;
+      return !is_small(k) && !is_small(after);
+    };
     double best_m = config.alternate_m;
     std::size_t best = n;
     for (std::size_t k = 0; k < pairs; ++k) {
-      if (config.alternate_behind_only && !lies_behind(groups, k, (k + 1) % n, (k + 2) % n)) {
-        continue;
-      }
-      if (is_small(k) || is_small((k + 2) % n)) continue;
+      if (!may_join(k)) continue;
       const double m = distance_below(groups, groups.groups[k], groups.groups[(k + 2) % n], best_m);
       if (m < best_m) {
         best_m = m;
@@ -250,6 +259,12 @@ void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups)
       }
     }
     if (best == n) return;
+    // Of four groups in a closed scan a pair has one of the others on each side: the one in the
+    // narrower gap goes, whichever comes first in the scan.
+    if (groups.closed && n == 4) {
+      const std::size_t other = (best + 2) % n;
+      if (may_join(other) && gap_m(groups, other, best) < gap_m(groups, best, other)) best = other;
+    }
     const std::size_t between = (best + 1) % n;
     drop_group(groups, between);
     join_with_next(groups, between < best ? best - 1 : best);

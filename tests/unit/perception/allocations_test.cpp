@@ -64,7 +64,7 @@ class Perception {
 
 std::vector<scan::Scan> scans() {
   std::vector<scan::Scan> all;
-  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
     all.push_back(test_world::scan_of(test_world::random_world(seed)));
   }
   all.push_back(test_world::scan_of({}));  // a virtual diagram

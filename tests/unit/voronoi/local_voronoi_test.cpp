@@ -275,6 +275,57 @@ TEST(LocalVoronoi, TurningTheLaserTurnsTheDiagram) {
   }
 }
 
+/// The beams of each group, counted from beam `first` of a full turn, in an order of their own.
+std::vector<std::vector<std::size_t>> beams_of_groups(const LocalVoronoiDiagram& diagram,
+                                                      std::size_t first, std::size_t count) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (const PointRun& run : diagram.groups.groups) {
+    std::vector<std::size_t>& beams = groups.emplace_back();
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      beams.push_back((diagram.groups.points[i].beam + first) % count);
+    }
+    std::ranges::sort(beams);
+  }
+  std::ranges::sort(groups);
+  return groups;
+}
+
+TEST(LocalVoronoi, GroupsAndFreeSpaceOfAFullTurnDoNotDependOnItsFirstBeam) {
+  constexpr std::size_t kBeams = 360;
+  VoronoiConfig as_in_the_source;
+  as_in_the_source.alternate_behind_only = false;
+  as_in_the_source.alternate_large_only = false;
+  VoronoiConfig hidden_zones;
+  hidden_zones.join_hidden_zones = true;
+  for (VoronoiConfig config : {VoronoiConfig{}, as_in_the_source, hidden_zones}) {
+    config.resolution_m = 0.2;  // groups do not depend on it
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+      scan::Scan scan =
+          scan_of(random_world(seed), {}, {.beams = kBeams, .field_of_view_deg = 360.0});
+      scan.ranges_m.front() = scan.ranges_m.back() = scan::Scan::kNoReturn;  // a drop-out
+      LocalVoronoi voronoi{config};
+      const LocalVoronoiDiagram diagram = voronoi.compute(scan);
+      for (const std::size_t first : {90U, 175U, 250U}) {
+        scan::Scan turned = scan;
+        std::ranges::rotate(turned.ranges_m,
+                            turned.ranges_m.begin() + static_cast<std::ptrdiff_t>(first));
+        turned.angle_min_rad = geometry::wrap_angle(
+            scan.angle_min_rad + static_cast<double>(first) * scan.angle_step_rad);
+        LocalVoronoi other{config};
+        const LocalVoronoiDiagram again = other.compute(turned);
+        ASSERT_EQ(again.is_virtual, diagram.is_virtual) << "seed " << seed;
+        if (diagram.is_virtual) continue;  // its points stand on the beams nearest to a line
+        EXPECT_EQ(beams_of_groups(again, first, kBeams), beams_of_groups(diagram, 0, kBeams))
+            << "seed " << seed;
+        for (std::size_t i = 0; i < kBeams; ++i) {
+          ASSERT_EQ(other.free_range_m()[i], voronoi.free_range_m()[(i + first) % kBeams])
+              << "seed " << seed << " beam " << i;
+        }
+      }
+    }
+  }
+}
+
 TEST(LocalVoronoi, AScanGivesTheSameBytesWhateverCameBefore) {
   const scan::Scan first = scan_of(random_world(1));
   const scan::Scan other = scan_of(random_world(2), {}, {.beams = 720, .field_of_view_deg = 360.0});
