@@ -19,7 +19,7 @@ void check(const char* field, double value, double low, double high) {
 void validate(const VoronoiConfig& config) {
   check("range_limit_m", config.range_limit_m, 0.5, 100.0);
   check("resolution_m", config.resolution_m, 0.01, 1.0);
-  // Two bytes for each cell: 16 million cells is as far as a table in memory makes sense.
+  // Tables of all cells: beyond 16 million cells they take hundreds of megabytes.
   check("range_limit_m / resolution_m", config.range_limit_m / config.resolution_m, 2.0, 2000.0);
   check("forward_rad", config.forward_rad, -6.3, 6.3);
   check("dropout_rad", config.dropout_rad, 0.0, 0.5);

@@ -1,9 +1,10 @@
-// From the nearest sites of the cells to ordered branches and nodes (spec A1.5 and its pitfalls).
+// From the nearest sites of the cells to ordered branches and nodes (spec A1.5 and its pitfalls,
+// thesis 4.19-4.25). local_voronoi.hpp says how they differ from the source's cells.
 //
 // Cracks are the cell borders between different groups; they are followed from corner to corner of
 // the grid. A corner where three groups meet is a node. Where only two groups meet crosswise (a b /
 // b a) the crack does not cross itself: the diagonal whose group is nearer at the corner stays
-// connected.
+// connected. Nodes joined by a very short branch are one node at the mean of their places.
 #pragma once
 
 #include <array>

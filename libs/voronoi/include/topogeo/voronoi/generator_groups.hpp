@@ -22,7 +22,7 @@ struct GroupPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   float range_m = 0.0F;
   std::uint32_t beam = 0;
-  bool on_wall = false;  ///< of the same surface as the reading of the beam before
+  bool on_wall = false;  ///< of the same surface as the reading of the beam before (4.7)
 };
 
 /// Points [begin, end) of GeneratorGroups::points.
@@ -42,8 +42,9 @@ struct GeneratorGroups {
 /// Unit vectors of the beams of one scan geometry, made once and kept while it stays the same.
 class BeamDirections {
  public:
-  /// Throws std::invalid_argument if the angles of the scan are not finite or the step is below
-  /// 1e-5 rad. Returns true if the geometry differs from the last one.
+  /// Returns true if the geometry differs from the last one. Throws std::invalid_argument if the
+  /// first angle is not within +-100 rad, the step is not finite or below 1e-5 rad, or there are
+  /// more than 65,000 beams or more than one turn of them.
   bool update(const scan::Scan& scan);
   [[nodiscard]] const std::vector<Eigen::Vector2d>& directions() const { return directions_; }
   [[nodiscard]] double angle_min_rad() const { return angle_min_rad_; }

@@ -1,12 +1,14 @@
-// The local Voronoi diagram of one laser scan (spec A1, thesis chapter 4).
+// The local Voronoi diagram of one laser scan (spec A1, thesis chapter 4), in the laser frame.
 //
-// A branch is the crack between visible neighbour cells whose nearest sites belong to different
-// groups; a node is a corner of cells where three groups meet. That gives ordered curves one cell
-// wide, where the source's rule (every cell whose two smallest group distances differ by less than
-// 2 E_max) gives bands, and whole wedges behind a gap between two groups: there the distances to
-// both groups grow almost alike, so the rule holds over an area. The crack through a wedge is the
-// line where they are equal. Every point is moved from the cell border to the place between the two
-// cell centres where both distances are equal, so positions are far better than a cell.
+// Every reading of a group is a site, and so are points between readings of one wall that are far
+// apart. A branch is the crack between visible neighbour cells whose nearest sites belong to
+// different groups; a node is a corner of cells where three groups meet. That gives ordered curves
+// one cell wide, where the source's rule (every cell whose two smallest group distances differ by
+// less than 2 E_max) gives bands, and whole wedges behind a gap between two groups: there the
+// distances to both groups grow almost alike, so the rule holds over an area. The crack through a
+// wedge is the line where they are equal. Every point is moved from the cell border to the place
+// between the two cell centres where both distances are equal, so positions are far better than a
+// cell.
 //
 // A diagram of fewer than two groups, or of groups that meet nowhere in sight, is virtual (4.2.1):
 // it serves navigation and is never offered to matching. With one group a line of virtual points is
@@ -37,18 +39,20 @@ class LocalVoronoi {
   explicit LocalVoronoi(const VoronoiConfig& config);
 
   /// The diagram of `scan` in the laser frame. Throws std::invalid_argument if the angles of the
-  /// scan are not finite, its step is not > 0, or it covers more than a turn.
+  /// scan make no sense (see BeamDirections) or its groups have more than 65,534 sites.
   LocalVoronoiDiagram compute(const scan::Scan& scan);
   /// The same into `out`, which keeps its memory.
   void compute(const scan::Scan& scan, LocalVoronoiDiagram& out);
 
   [[nodiscard]] const VoronoiConfig& config() const { return config_; }
-  /// Of the last scan, for pictures and tests.
+  /// The cells of the last scan, for pictures and tests.
   [[nodiscard]] const NearestSiteGrid& grid() const { return grid_; }
+  /// The readings of all groups of the last scan and the points between them on walls.
   [[nodiscard]] std::span<const Site> sites() const { return sites_; }
   /// Empty if the last diagram is virtual.
   [[nodiscard]] const Frontier& frontier() const { return frontier_; }
-  /// How far each beam of the last scan is known to be free, metres.
+  /// How far each beam of the last scan is known to be free, metres. Of a virtual diagram: how far
+  /// it takes it to be free, up to its lines and without an echo up to the range limit.
   [[nodiscard]] std::span<const double> free_range_m() const { return free_range_m_; }
 
  private:

@@ -1,4 +1,5 @@
-// The nearest site of every visible cell of a grid around the laser (spec A1.3, A1.4).
+// The nearest site of every visible cell of a grid around the laser (spec A1.3, A1.4, thesis
+// 4.14-4.16).
 //
 // One exact Euclidean distance transform over the sites of all groups at once: along a row of cells
 // the squared distance to site i is f_i - 2 u u_i + u^2, so the nearest sites are the lower convex
@@ -36,7 +37,8 @@ class NearestSiteGrid {
   /// Finds the nearest site of every cell whose centre is nearer than `free_range_m` of its beam.
   /// `free_range_m` has one value per beam, 0 where nothing is known to be free. The window of
   /// cells is the extent of the free space, or of the sites (4.14). Ties go to the site with the
-  /// smaller y, then to the one that comes first. At most 65,534 sites.
+  /// smaller y, then to the one that comes first. Without a site there are no cells. Throws
+  /// std::invalid_argument if there are more than 65,534 sites.
   void compute(std::span<const Site> sites, std::span<const double> free_range_m);
 
   [[nodiscard]] int rows() const { return rows_; }

@@ -1,4 +1,8 @@
 // Parameters of the local Voronoi diagram (spec A1, thesis 4.2).
+//
+// Defaults are chosen by how many real nodes are found again in a scan half a metre farther on, on
+// a simulated floor and three recorded logs together (tests/bench/repeatability.sh, RESULTS.md);
+// the shares below are from that table.
 #pragma once
 
 namespace topogeo::voronoi {
@@ -37,9 +41,8 @@ struct VoronoiConfig {
   /// width for the same reason.
   bool join_alternate = true;
   /// 4.9 only where group k+1 is seen through the gap, farther away than both edges. On: the source
-  /// also drops what stands in front of a wall, which hides an obstacle and costs nodes (mean of
-  /// three real logs: 3.0 nodes per scan and 0.56 of them found again half a metre on, against 2.6
-  /// and 0.52 as in the source, and 3.9 and 0.54 without 4.9).
+  /// also drops what stands in front of a wall, which hides an obstacle, and fewer nodes are found
+  /// again (0.75 instead of 0.77; 0.74 without 4.9).
   bool alternate_behind_only = true;
   /// 4.9 only between groups that 4.10 keeps. On: one stray reading in front of a wall would take
   /// the wall away.
@@ -52,13 +55,13 @@ struct VoronoiConfig {
   /// 4.8 and 4.9 once more after 4.10 dropped a group. On: a stray reading between two groups keeps
   /// them apart until it is gone, and leaves a branch through a gap that the robot cannot pass.
   bool join_again = true;
-  /// 4.11, 4.12: join groups that a corner hides a zone between. Off: it costs half of the nodes on
-  /// real floors, and of the others 0.39 are found again instead of 0.56.
+  /// 4.11, 4.12: join groups that a corner hides a zone between. Off: it costs half of the nodes,
+  /// and of the others 0.58 are found again instead of 0.77.
   bool join_hidden_zones = false;
 
   /// Sites are put between successive readings of one wall so that none is farther than this from
-  /// the next, metres (0: only readings are sites, as in the source). Without it the diagram of two
-  /// walls seen at grazing incidence weaves between their readings.
+  /// the next, metres (0: only readings are sites, as in the source); at most 99 between two.
+  /// Without it the diagram of two walls seen at grazing incidence weaves between their readings.
   double site_spacing_m = 0.1;
 
   /// Two nodes joined by a branch no longer than this are one node, metres. 0.15 is three cells:
