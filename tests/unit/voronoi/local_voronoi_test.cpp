@@ -307,8 +307,9 @@ TEST(LocalVoronoi, GroupsAndFreeSpaceOfAFullTurnDoNotDependOnItsFirstBeam) {
       const LocalVoronoiDiagram diagram = voronoi.compute(scan);
       for (const std::size_t first : {90U, 175U, 250U}) {
         scan::Scan turned = scan;
-        std::ranges::rotate(turned.ranges_m,
-                            turned.ranges_m.begin() + static_cast<std::ptrdiff_t>(first));
+        std::rotate(turned.ranges_m.begin(),
+                    turned.ranges_m.begin() + static_cast<std::ptrdiff_t>(first),
+                    turned.ranges_m.end());
         turned.angle_min_rad = geometry::wrap_angle(
             scan.angle_min_rad + static_cast<double>(first) * scan.angle_step_rad);
         LocalVoronoi other{config};
