@@ -61,7 +61,8 @@ class EquidistantCells {
   }
 
   [[nodiscard]] Cell& at(int row, int col) {
-    return cells_[static_cast<std::size_t>(row * grid_.cols() + col)];
+    return cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.cols()) +
+                  static_cast<std::size_t>(col)];
   }
   [[nodiscard]] bool inside(int row, int col) const {
     return row >= 0 && col >= 0 && row < grid_.rows() && col < grid_.cols();
