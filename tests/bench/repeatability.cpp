@@ -137,8 +137,8 @@ struct Counts {
   std::size_t scans = 0, with_node = 0, real_nodes = 0;
   std::size_t pairs = 0;
   Tally nodes, states, points;
-  /// In common view if the place is, the circle or not; a node counts as found where branches meet,
-  /// confirmed or not.
+  /// In common view if the place is, whether or not the circle is; a node counts as found where
+  /// branches meet, confirmed or not.
   Tally nodes_by_place, points_by_place;
 
   Counts& operator+=(const Counts& other) {
@@ -266,9 +266,9 @@ double share(const Tally& tally) {
 }
 
 constexpr const char* kHeader =
-    "| | pairs | scans with a real node | real nodes a scan | found again | apart m | found, by "
-    "place "
-    "alone | states a pair | found again | branch points found again | apart m | place alone in "
+    "| | pairs | scans with a real node | real nodes a scan | real nodes found again | m apart | "
+    "of those with only the place in view, found as any meeting of branches | states a pair | "
+    "states found again | branch points found again | m apart | of those with only the place in "
     "view |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 void print(const std::string& name, const Counts& counts) {

@@ -36,7 +36,7 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
              "missing readings over at most this angle are taken for drop-outs");
   schema.add("local_map.split_discontinuities", &m.voronoi.split_discontinuities,
              "grouping step 4.7");
-  schema.add("local_map.discontinuity_m", &m.voronoi.discontinuity_m, 0.01, 10.0, "m",
+  schema.add("local_map.discontinuity_m", &m.voronoi.discontinuity_m, 0.0, 100.0, "m",
              "4.7: successive ranges that differ by more belong to two objects");
   schema.add("local_map.on_wall_m", &m.voronoi.on_wall_m, 0.0, 1.0, "m",
              "4.7: readings on one line within this belong together however far apart they are; 0: "
@@ -44,10 +44,10 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
   schema.add("local_map.site_spacing_m", &m.voronoi.site_spacing_m, 0.0, 10.0, "m",
              "a wall between its readings counts as seen every so often; 0: only readings count");
   schema.add("local_map.join_contiguous", &m.voronoi.join_contiguous, "grouping step 4.8");
-  schema.add("local_map.contiguous_m", &m.voronoi.contiguous_m, 0.0, 10.0, "m",
+  schema.add("local_map.contiguous_m", &m.voronoi.contiguous_m, 0.0, 100.0, "m",
              "4.8: gaps that the robot does not pass make no branch; just over its width");
   schema.add("local_map.join_alternate", &m.voronoi.join_alternate, "grouping step 4.9");
-  schema.add("local_map.alternate_m", &m.voronoi.alternate_m, 0.0, 10.0, "m",
+  schema.add("local_map.alternate_m", &m.voronoi.alternate_m, 0.0, 100.0, "m",
              "4.9: the same for groups k, k+2");
   schema.add("local_map.alternate_behind_only", &m.voronoi.alternate_behind_only,
              "4.9 only where the group between lies behind the gap; off: as in the source");
@@ -95,7 +95,7 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
   schema.add("local_map.door_min_half_width_m", &m.local_map.door_min_half_width_m, 0.0, 5.0, "m",
              "a minimum of clearance below this is a narrowing: the robot does not fit through");
   schema.add("local_map.separated_m", &m.local_map.separated_m, 0.05, 10.0, "m",
-             "5.5: an outer branch ends before the first jump longer than this");
+             "5.5: loose ends of the same groups nearer than this are one branch not seen whole");
 }
 
 void describe_odometry(Config& c, ConfigSchema& schema) {

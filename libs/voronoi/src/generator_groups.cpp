@@ -16,6 +16,8 @@ namespace {
 
 /// No laser has finer beams; below it beam numbers would overflow.
 constexpr double kLeastStep_rad = 1e-5;
+/// Of a full turn whose step was rounded in a log.
+constexpr double kTurnTolerance_rad = 0.01;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 struct Box {
@@ -164,9 +166,7 @@ bool BeamDirections::update(const scan::Scan& scan) {
   }
   const double turn =
       scan.angle_step_rad * static_cast<double>(std::max<std::size_t>(scan.ranges_m.size(), 1) - 1);
-  // The tolerance lets a full turn through whose step was rounded in a log.
-  constexpr double kTolerance_rad = 0.01;
-  if (turn > 2.0 * std::numbers::pi + kTolerance_rad || scan.ranges_m.size() > 65000) {
+  if (turn > 2.0 * std::numbers::pi + kTurnTolerance_rad || scan.ranges_m.size() > 65000) {
     throw std::invalid_argument(
         "scan " + std::to_string(scan.sequence) + ": " + std::to_string(scan.ranges_m.size()) +
         " beams over " + std::to_string(turn) + " rad: must be at most 65000 and at most one turn");
@@ -187,8 +187,9 @@ bool BeamDirections::update(const scan::Scan& scan) {
 }
 
 bool BeamDirections::closed() const {
+  const double tolerance_rad = std::max(0.5 * angle_step_rad_, kTurnTolerance_rad);
   return static_cast<double>(directions_.size()) * angle_step_rad_ >
-         2.0 * std::numbers::pi - 0.5 * angle_step_rad_;
+         2.0 * std::numbers::pi - tolerance_rad;
 }
 
 bool within_limit(float range_m, const VoronoiConfig& config) {

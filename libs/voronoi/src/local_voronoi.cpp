@@ -97,19 +97,29 @@ void LocalVoronoi::trace(LocalVoronoiDiagram& diagram) {
   cracks_.trace(grid_, sites_, config_, diagram);
 }
 
+/// As close as the configuration says, or as the number of sites that the grid can tell apart
+/// allows.
+void LocalVoronoi::place_sites(const GeneratorGroups& groups) {
+  double spacing_m = config_.site_spacing_m;
+  place_sites(groups, spacing_m);
+  while (sites_.size() >= NearestSiteGrid::kNone && spacing_m > 0.0) {
+    spacing_m = spacing_m < config_.range_limit_m ? 2.0 * spacing_m : 0.0;
+    place_sites(groups, spacing_m);
+  }
+}
+
 /// Every reading of a group is a site, and so are points on a wall between readings that are far
 /// apart.
-void LocalVoronoi::place_sites(const GeneratorGroups& groups) {
+void LocalVoronoi::place_sites(const GeneratorGroups& groups, double spacing_m) {
   sites_.clear();
   for (std::size_t g = 0; g < groups.groups.size(); ++g) {
     const PointRun& run = groups.groups[g];
     const auto group = static_cast<std::uint16_t>(g);
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const Eigen::Vector2d& at_m = groups.points[i].position_m;
-      if (i > run.begin && groups.points[i].on_wall && config_.site_spacing_m > 0.0) {
+      if (i > run.begin && groups.points[i].on_wall && spacing_m > 0.0) {
         const Eigen::Vector2d& from_m = groups.points[i - 1].position_m;
-        const double pieces =
-            std::min(100.0, std::ceil((at_m - from_m).norm() / config_.site_spacing_m));
+        const double pieces = std::min(100.0, std::ceil((at_m - from_m).norm() / spacing_m));
         for (double piece = 1.0; piece < pieces; ++piece) {
           sites_.push_back({from_m + (piece / pieces) * (at_m - from_m), group});
         }

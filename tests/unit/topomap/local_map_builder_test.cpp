@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -164,9 +166,9 @@ TEST(LocalMapBuilder, ACorridorWithAnOpenEndHasTwoFictitiousNodesAndItsMouth) {
   EXPECT_NEAR(mouths[0].position_m.x(), 5.0, 0.15);
   // Without the wall the beams along the axis meet nothing, which proves nothing to be free: the
   // way on is virtual.
-  for (const LocalBranch& branch : map_of(scan_of({corridor[0], corridor[1]})).branches) {
-    EXPECT_TRUE(branch.is_virtual);
-  }
+  const LocalMap open = map_of(scan_of({corridor[0], corridor[1]}));
+  EXPECT_FALSE(open.branches.empty());
+  for (const LocalBranch& branch : open.branches) EXPECT_TRUE(branch.is_virtual);
 }
 
 // The circles of the first points reach behind the robot, those of the last beyond the range limit.
@@ -279,6 +281,17 @@ TEST(LocalMapBuilder, CoordinatesAreOfTheRobotHoweverTheLaserIsMounted) {
                              std::abs(at.x() - 2.0) < 1e-4 || std::abs(at.x() - 4.0) < 1e-4;
       EXPECT_TRUE(on_a_wall) << at.transpose();
     }
+  }
+}
+
+TEST(LocalMapBuilder, AFieldOutsideItsRangeIsNamed) {
+  LocalMapConfig config;
+  config.largest_hidden_share = 1.5;
+  try {
+    const LocalMapBuilder builder{config};
+    ADD_FAILURE() << "no error";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("largest_hidden_share"), std::string::npos);
   }
 }
 

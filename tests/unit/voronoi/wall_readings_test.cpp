@@ -155,5 +155,18 @@ TEST(SiteSpacing, NoSiteIsPutBetweenReadingsThatAreNotOfOneWall) {
   }
 }
 
+// A room of 80 m of wall: as many sites as asked for would be more than the grid can tell apart.
+TEST(WallReadings, SitesAreFartherApartWhereThereWouldBeTooMany) {
+  const test_world::World room{
+      {-9, -9, 9, -9}, {9, -9, 9, 9}, {9, 9, -9, 9}, {-9, 9, -9, -9}, {3, -1, 3, 1}};
+  VoronoiConfig config;
+  config.range_limit_m = 20.0;
+  config.site_spacing_m = 0.001;
+  LocalVoronoi voronoi{config};
+  voronoi.compute(test_world::scan_of(room, {}, {.beams = 2048, .field_of_view_deg = 360.0}));
+  EXPECT_LT(voronoi.sites().size(), NearestSiteGrid::kNone);
+  EXPECT_GT(voronoi.sites().size(), 20000U);
+}
+
 }  // namespace
 }  // namespace topogeo::voronoi

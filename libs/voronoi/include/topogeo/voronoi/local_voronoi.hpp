@@ -60,6 +60,7 @@ class LocalVoronoi {
   void trace(LocalVoronoiDiagram& diagram);
   void drop_tight_ends(LocalVoronoiDiagram& diagram) const;
   void place_sites(const GeneratorGroups& groups);
+  void place_sites(const GeneratorGroups& groups, double spacing_m);
   void measure_hidden_depths(LocalVoronoiDiagram& diagram);
 
   VoronoiConfig config_;
