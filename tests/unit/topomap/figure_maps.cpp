@@ -51,31 +51,6 @@ topomap::LocalMapConfig source_map_config() {
   return config;
 }
 
-std::vector<std::string> MapSeen::node_names() const {
-  std::vector<std::string> names;
-  for (const NamedNode& node : nodes) names.push_back(node.name);
-  std::ranges::sort(names);
-  return names;
-}
-
-std::optional<NamedNode> MapSeen::node(std::string_view name) const {
-  std::optional<NamedNode> found;
-  for (const NamedNode& node : nodes) {
-    if (node.name != name) continue;
-    if (found) return std::nullopt;
-    found = node;
-  }
-  return found;
-}
-
-void expect_node(const MapSeen& seen, const std::string& name, const Eigen::Vector2d& position_m,
-                 double tolerance_m) {
-  const std::optional<NamedNode> node = seen.node(name);
-  ASSERT_TRUE(node.has_value()) << "not exactly one node " << name;
-  EXPECT_LT((node->position_m - position_m).norm(), tolerance_m)
-      << name << " at " << node->position_m.transpose() << ", not at " << position_m.transpose();
-}
-
 void expect_well_formed(const topomap::LocalMap& map, bool is_virtual) {
   for (std::size_t i = 0; i < map.nodes.size(); ++i) {
     const topomap::LocalNode& node = map.nodes[i];

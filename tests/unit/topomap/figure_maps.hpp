@@ -19,18 +19,9 @@ namespace topogeo::figure_scenes {
 /// The source's search for states with thresholds for its figures, and its range limit.
 topomap::LocalMapConfig source_map_config();
 
-struct MapSeen {
-  std::vector<NamedNode> nodes;       ///< all, "real A|B|C"
+struct MapSeen : NamedNodes {         // names like "real A|B|C"
   std::vector<std::string> branches;  ///< sorted
-
-  [[nodiscard]] std::vector<std::string> node_names() const;  ///< sorted
-  /// The node of that name; empty if there is none or more than one.
-  [[nodiscard]] std::optional<NamedNode> node(std::string_view name) const;
 };
-
-/// Expects one node of that name within `tolerance_m` of a position worked out by hand.
-void expect_node(const MapSeen& seen, const std::string& name, const Eigen::Vector2d& position_m,
-                 double tolerance_m = 0.03);
 
 /// Expects what must hold of every local map: ids, ends of branches, finite coordinates, branches
 /// of two base groups of their nodes, and nothing but virtual elements of a virtual diagram.

@@ -132,14 +132,14 @@ voronoi::VoronoiConfig only_splitting() {
   return config;
 }
 
-std::vector<std::string> Seen::node_names() const {
+std::vector<std::string> NamedNodes::node_names() const {
   std::vector<std::string> names;
   for (const NamedNode& node : nodes) names.push_back(node.name);
   std::ranges::sort(names);
   return names;
 }
 
-std::optional<NamedNode> Seen::node(std::string_view name) const {
+std::optional<NamedNode> NamedNodes::node(std::string_view name) const {
   std::optional<NamedNode> found;
   for (const NamedNode& node : nodes) {
     if (node.name != name) continue;
@@ -149,10 +149,11 @@ std::optional<NamedNode> Seen::node(std::string_view name) const {
   return found;
 }
 
-void expect_node(const Seen& seen, const std::string& name, const Eigen::Vector2d& position_m) {
+void expect_node(const NamedNodes& seen, const std::string& name, const Eigen::Vector2d& position_m,
+                 double tolerance_m) {
   const std::optional<NamedNode> node = seen.node(name);
   ASSERT_TRUE(node.has_value()) << "not exactly one node " << name;
-  EXPECT_LT((node->position_m - position_m).norm(), 0.03)
+  EXPECT_LT((node->position_m - position_m).norm(), tolerance_m)
       << name << " at " << node->position_m.transpose() << ", not at " << position_m.transpose();
 }
 

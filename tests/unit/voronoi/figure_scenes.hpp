@@ -58,15 +58,19 @@ struct NamedNode {
   double clearance_m = 0.0;
 };
 
-struct Seen {
-  std::vector<std::string> groups;  ///< in beam order; "*" is a virtual group
+/// The nodes of a diagram or map, each with its name.
+struct NamedNodes {
   std::vector<NamedNode> nodes;
-  std::vector<std::string> branches;  ///< "A|B: A|B|C - open", sorted
-  bool is_virtual = false;
 
   [[nodiscard]] std::vector<std::string> node_names() const;  ///< sorted
   /// The node of that name; empty if there is none or more than one.
   [[nodiscard]] std::optional<NamedNode> node(std::string_view name) const;
+};
+
+struct Seen : NamedNodes {
+  std::vector<std::string> groups;    ///< in beam order; "*" is a virtual group
+  std::vector<std::string> branches;  ///< "A|B: A|B|C - open", sorted
+  bool is_virtual = false;
 };
 
 /// Names of the groups of a diagram that was made at T_world_laser.
@@ -84,7 +88,8 @@ Seen see(const Scene& scene, const voronoi::VoronoiConfig& config,
          const simulation::BeamPattern& beams = half_turn(), std::size_t at = 0);
 
 /// Expects one node of that name within 3 cm of `position_m`, worked out by hand for whole walls.
-void expect_node(const Seen& seen, const std::string& name, const Eigen::Vector2d& position_m);
+void expect_node(const NamedNodes& seen, const std::string& name, const Eigen::Vector2d& position_m,
+                 double tolerance_m = 0.03);
 
 std::string sorted_joined(std::vector<std::string> names);
 

@@ -13,7 +13,6 @@
 namespace topogeo::voronoi {
 namespace {
 
-using test_world::Laser;
 using test_world::scan_of;
 using test_world::World;
 
@@ -37,6 +36,20 @@ bool is_seen(const LocalVoronoi& voronoi, const scan::Scan& scan, const Eigen::V
   const Eigen::Vector2d along = end_m(after) - a;
   const Eigen::Vector2d to = at_m - a;
   return before == after || along.x() * to.y() - along.y() * to.x() >= 0.0;
+}
+
+/// Of a scan that meets a wall in every direction, nearer than the range limit.
+Frontier frontier_of(const scan::Scan& scan) {
+  BeamDirections beams;
+  beams.update(scan);
+  GeneratorGroups groups;
+  const VoronoiConfig config;
+  make_generator_groups(scan, beams, config, groups);
+  EXPECT_EQ(groups.groups.size(), 1U);
+  const std::vector<double> free_range_m(scan.ranges_m.begin(), scan.ranges_m.end());
+  Frontier frontier;
+  frontier.compute(beams, free_range_m, groups, config.range_limit_m);
+  return frontier;
 }
 
 // The circle of the clearance of a branch point, sampled every 2 cm: how deep is it hidden?
@@ -79,15 +92,7 @@ TEST(Frontier, HiddenDepthsAreThoseOfTheCircleSampledPointByPoint) {
 TEST(Frontier, AClosedRoomSeenAllRoundHasNone) {
   const World room{{-3, -2, 3, -2}, {3, -2, 3, 2}, {3, 2, -3, 2}, {-3, 2, -3, -2}};
   const scan::Scan scan = scan_of(room, {}, {.beams = 720, .field_of_view_deg = 360.0});
-  BeamDirections beams;
-  beams.update(scan);
-  GeneratorGroups groups;
-  const VoronoiConfig config;
-  make_generator_groups(scan, beams, config, groups);
-  const std::vector<double> free_range_m(scan.ranges_m.begin(), scan.ranges_m.end());
-  Frontier frontier;
-  frontier.compute(beams, free_range_m, groups, config.range_limit_m);
-  EXPECT_EQ(groups.groups.size(), 1U);
+  Frontier frontier = frontier_of(scan);
   EXPECT_EQ(frontier.distance_m({1.0, 0.5}), std::numeric_limits<double>::infinity());
 }
 
@@ -95,14 +100,7 @@ TEST(Frontier, AClosedRoomSeenAllRoundHasNone) {
 TEST(Frontier, AFieldOfViewEndsAtItsOuterBeams) {
   const World room{{-3, -2, 3, -2}, {3, -2, 3, 2}, {3, 2, -3, 2}, {-3, 2, -3, -2}};
   const scan::Scan scan = scan_of(room);
-  BeamDirections beams;
-  beams.update(scan);
-  GeneratorGroups groups;
-  const VoronoiConfig config;
-  make_generator_groups(scan, beams, config, groups);
-  const std::vector<double> free_range_m(scan.ranges_m.begin(), scan.ranges_m.end());
-  Frontier frontier;
-  frontier.compute(beams, free_range_m, groups, config.range_limit_m);
+  Frontier frontier = frontier_of(scan);
   EXPECT_NEAR(frontier.distance_m({1.2, 0.5}), 1.2, 1e-9);
   frontier.clear();
   EXPECT_EQ(frontier.distance_m({1.2, 0.5}), std::numeric_limits<double>::infinity());
