@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -41,7 +42,7 @@ class LocalMapBuilder::Work {
   }
   void add_diagram_nodes(const LocalVoronoiDiagram& diagram, const geometry::Pose2& T_robot_laser);
   std::uint32_t add_node(NodeKind kind, const BranchPoint& at,
-                         const std::array<std::uint16_t, 2>& groups);
+                         std::span<const std::uint16_t> groups);
   void take_points(const LocalVoronoiDiagram& diagram, const DiagramBranch& branch,
                    const geometry::Pose2& T_robot_laser);
   void cut_far_points(const DiagramBranch& branch);
@@ -71,23 +72,19 @@ class LocalMapBuilder::Work {
 void LocalMapBuilder::Work::add_diagram_nodes(const LocalVoronoiDiagram& diagram,
                                               const geometry::Pose2& T_robot_laser) {
   for (const voronoi::DiagramNode& from : diagram.nodes) {
-    const auto id = static_cast<std::uint32_t>(nodes_.size());
-    LocalNode& node = nodes_.add();
-    node.id = id;
-    node.kind = NodeKind::kFictitious;
+    NodeKind kind = NodeKind::kFictitious;
     if (diagram.is_virtual) {
-      node.kind = NodeKind::kVirtual;
+      kind = NodeKind::kVirtual;
     } else if (confirms(from.clearance_m, from.hidden_m)) {
-      node.kind = NodeKind::kReal;
+      kind = NodeKind::kReal;
     }
-    node.position_m = T_robot_laser * from.position_m;
-    node.clearance_m = from.clearance_m;
-    node.base_groups.assign(from.base_groups.begin(), from.base_groups.end());
+    add_node(kind, {T_robot_laser * from.position_m, from.clearance_m},
+             {from.base_groups.data(), from.base_groups.size()});
   }
 }
 
 std::uint32_t LocalMapBuilder::Work::add_node(NodeKind kind, const BranchPoint& at,
-                                              const std::array<std::uint16_t, 2>& groups) {
+                                              std::span<const std::uint16_t> groups) {
   const auto id = static_cast<std::uint32_t>(nodes_.size());
   LocalNode& node = nodes_.add();
   node.id = id;
