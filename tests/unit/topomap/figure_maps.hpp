@@ -23,8 +23,7 @@ struct MapSeen : NamedNodes {         // names like "real A|B|C"
   std::vector<std::string> branches;  ///< sorted
 };
 
-/// Expects what must hold of every local map: ids, ends of branches, finite coordinates, branches
-/// of two base groups of their nodes, and nothing but virtual elements of a virtual diagram.
+/// Expects a well-formed map with nothing but virtual elements of a virtual diagram, and none else.
 void expect_well_formed(const topomap::LocalMap& map, bool is_virtual);
 
 MapSeen describe(const topomap::LocalMap& map, const std::vector<std::string>& group_names);

@@ -1,36 +1,20 @@
-// Local maps of recorded logs. The recordings are not part of the project: they are looked for
-// beside it in ../shared/data, or in the folder that TOPOGEO_LOG_DIR names (*.clf, *.clf.gz).
+// Local maps of recorded logs.
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 
+#include "../recorded_logs.hpp"
+
 namespace topogeo::topomap {
 namespace {
 
-std::vector<std::filesystem::path> logs() {
-  std::vector<std::filesystem::path> paths;
-  const char* named = std::getenv("TOPOGEO_LOG_DIR");
-  const std::filesystem::path folder =
-      named != nullptr ? named : TOPOGEO_SOURCE_DIR "/../shared/data";
-  if (!std::filesystem::is_directory(folder)) return paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().string().find(".clf") != std::string::npos) paths.push_back(entry.path());
-  }
-  std::ranges::sort(paths);
-  return paths;
-}
-
 TEST(LocalMapBuilderLogs, MostScansGiveARealBranch) {
-  if (logs().empty()) GTEST_SKIP() << "no logs in ../shared/data or TOPOGEO_LOG_DIR";
-  for (const auto& path : logs()) {
+  if (recorded_logs().empty()) GTEST_SKIP() << "no logs in ../shared/data or TOPOGEO_LOG_DIR";
+  for (const auto& path : recorded_logs()) {
     scan::CarmenLogReader reader(path);
     voronoi::LocalVoronoi voronoi{voronoi::VoronoiConfig{}};
     voronoi::LocalVoronoiDiagram diagram;

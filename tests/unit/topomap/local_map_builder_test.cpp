@@ -12,11 +12,13 @@
 #include <gtest/gtest.h>
 
 #include "../voronoi/test_world.hpp"
+#include "well_formed.hpp"
 
 namespace topogeo::topomap {
 namespace {
 
 using geometry::Pose2;
+using test::expect_well_formed;
 using test_world::Laser;
 using test_world::scan_of;
 using test_world::World;
@@ -41,26 +43,6 @@ std::vector<LocalNode> nodes_of(const LocalMap& map, NodeKind kind) {
   std::ranges::copy_if(map.nodes, std::back_inserter(result),
                        [&](const LocalNode& node) { return node.kind == kind; });
   return result;
-}
-
-/// What must hold of every local map.
-void expect_well_formed(const LocalMap& map) {
-  for (std::size_t i = 0; i < map.nodes.size(); ++i) {
-    EXPECT_EQ(map.nodes[i].id, i);
-    EXPECT_GE(map.nodes[i].base_groups.size(), 2U);
-  }
-  for (std::size_t i = 0; i < map.branches.size(); ++i) {
-    const LocalBranch& branch = map.branches[i];
-    EXPECT_EQ(branch.id, i);
-    ASSERT_GE(branch.points.size(), 2U);
-    EXPECT_EQ(branch.points.front().position_m, map.nodes[branch.node_a].position_m);
-    EXPECT_EQ(branch.points.back().position_m, map.nodes[branch.node_b].position_m);
-    EXPECT_EQ(branch.in_main_graph, map.nodes[branch.node_a].in_main_graph);
-    EXPECT_EQ(branch.in_main_graph, map.nodes[branch.node_b].in_main_graph);
-    for (const std::uint32_t node : {branch.node_a, branch.node_b}) {
-      EXPECT_TRUE(std::ranges::includes(map.nodes[node].base_groups, branch.base_groups));
-    }
-  }
 }
 
 // A room, a door 0.9 m wide in the wall at x = 2, and a wall behind it at x = 4.

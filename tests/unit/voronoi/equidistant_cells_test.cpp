@@ -11,8 +11,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <string>
@@ -24,6 +22,7 @@
 #include "topogeo/voronoi/distance_error.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
 
+#include "../recorded_logs.hpp"
 #include "test_world.hpp"
 
 namespace topogeo::voronoi {
@@ -213,27 +212,19 @@ TEST(EquidistantCells, HoldTheBranchesAndHaveNoOthersOnRandomScenes) {
   EXPECT_GT(tally.patches, 100);
 }
 
-// Recordings are not part of the project: looked for beside it, or where TOPOGEO_LOG_DIR says.
 TEST(EquidistantCells, HoldTheBranchesAndHaveNoOthersOnRecordedScans) {
-  const char* named = std::getenv("TOPOGEO_LOG_DIR");
-  const std::filesystem::path folder =
-      named != nullptr ? named : TOPOGEO_SOURCE_DIR "/../shared/data";
-  if (!std::filesystem::is_directory(folder)) {
-    GTEST_SKIP() << "no logs in ../shared/data or TOPOGEO_LOG_DIR";
-  }
+  if (recorded_logs().empty()) GTEST_SKIP() << "no logs in ../shared/data or TOPOGEO_LOG_DIR";
   VoronoiConfig config;
   config.range_limit_m = 6.0;
   config.min_branch_m = 0.0;  // the rule knows no crumbs; by default they are dropped
   Tally tally;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().string().find(".clf") == std::string::npos) continue;
-    scan::CarmenLogReader reader(entry.path());
+  for (const auto& path : recorded_logs()) {
+    scan::CarmenLogReader reader(path);
     int number = 0;
     while (const auto scan = reader.next()) {
       if (number++ % 60 != 0) continue;
       expect_agreement(*scan, config,
-                       entry.path().filename().string() + " scan " + std::to_string(number - 1),
-                       tally);
+                       path.filename().string() + " scan " + std::to_string(number - 1), tally);
     }
   }
   std::printf("%d branch points, %d patches of %d areas\n", tally.points, tally.patches,
