@@ -5,6 +5,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/topomap/arc_length.hpp"
+
 #include "axes.hpp"
 #include "branch_style.hpp"
 #include "canvas.hpp"
@@ -18,16 +20,6 @@ using topomap::LocalBranch;
 using topomap::LocalMap;
 using topomap::LocalNode;
 using topomap::NodeKind;
-
-/// Distance of each point from the first along the branch.
-std::vector<double> arc_lengths_m(const LocalBranch& branch) {
-  std::vector<double> arc_m(branch.points.size(), 0.0);
-  for (std::size_t i = 1; i < arc_m.size(); ++i) {
-    arc_m[i] =
-        arc_m[i - 1] + (branch.points[i].position_m - branch.points[i - 1].position_m).norm();
-  }
-  return arc_m;
-}
 
 /// True if branch i + 1 is the next piece of the curve that branch i is a piece of.
 bool continues(const LocalMap& map, std::size_t i) {
@@ -54,7 +46,7 @@ struct ClearancePlot {
     int gaps = 1;
     top_m = view.local_map.door_half_width_m;
     for (std::size_t i = 0; i < map.branches.size(); ++i) {
-      arc_m.push_back(arc_lengths_m(map.branches[i]));
+      arc_m.push_back(topomap::arc_lengths_m(map.branches[i].points));
       if (!arc_m.back().empty()) total_m += arc_m.back().back();
       if (!continues(map, i)) ++gaps;
       for (const auto& point : map.branches[i].points) top_m = std::max(top_m, point.clearance_m);

@@ -1,5 +1,7 @@
 #include "branch_names.hpp"
 
+#include "topogeo/topomap/arc_length.hpp"
+
 namespace topogeo::topomap {
 namespace {
 
@@ -7,22 +9,12 @@ namespace {
 constexpr double kEnd_m = 0.5;
 constexpr double kShortest_m = 1.2;
 
-// Distance along the branch of each of its points.
-std::vector<double> travelled(const LocalBranch& branch) {
-  std::vector<double> at_m{0.0};
-  for (std::size_t i = 1; i < branch.points.size(); ++i) {
-    at_m.push_back(at_m.back() +
-                   (branch.points[i].position_m - branch.points[i - 1].position_m).norm());
-  }
-  return at_m;
-}
-
 }  // namespace
 
 void BranchNames::add(const LocalMap& map, const geometry::Pose2& T_map_robot) {
   for (const LocalBranch& b : map.branches) {
     if (b.is_virtual || !b.in_main_graph || b.points.size() < 3) continue;
-    const std::vector<double> at_m = travelled(b);
+    const std::vector<double> at_m = arc_lengths_m(b.points);
     if (at_m.back() < kShortest_m || named(b, T_map_robot)) continue;
     std::size_t middle = 0;
     while (at_m[middle] < 0.5 * at_m.back()) ++middle;
@@ -34,7 +26,7 @@ void BranchNames::add(const LocalMap& map, const geometry::Pose2& T_map_robot) {
 
 bool BranchNames::named(const LocalBranch& branch, const geometry::Pose2& T_map_robot) const {
   using Box = boost::geometry::model::box<IndexPoint>;
-  const std::vector<double> at_m = travelled(branch);
+  const std::vector<double> at_m = arc_lengths_m(branch.points);
   for (std::size_t i = 0; i < branch.points.size(); ++i) {
     if (at_m[i] < kEnd_m || at_m[i] > at_m.back() - kEnd_m) continue;
     const Eigen::Vector2d p = T_map_robot * branch.points[i].position_m;

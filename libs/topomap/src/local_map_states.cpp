@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "topogeo/topomap/arc_length.hpp"
+
 namespace topogeo::topomap {
 
 /// A stretch [first, last] of a branch around a minimum of the clearance.
@@ -43,13 +45,6 @@ struct BranchStateFinder::Floor {
     return false;
   }
 };
-
-void BranchStateFinder::measure_arc_lengths(std::span<const BranchPoint> points) {
-  arc_m_.assign(points.size(), 0.0);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    arc_m_[i] = arc_m_[i - 1] + (points[i].position_m - points[i - 1].position_m).norm();
-  }
-}
 
 /// Minima between which the clearance rises by at least state_rise_m and falls again (5.1 with the
 /// confirmation of 5.3). The first and last can lie at the ends of the branch.
@@ -182,7 +177,7 @@ std::span<const BranchState> BranchStateFinder::find(std::span<const BranchPoint
                                                      const LocalMapConfig& config) {
   states_.clear();
   if (points.size() < 3) return states_;
-  measure_arc_lengths(points);
+  arc_lengths_m(points, arc_m_);
   find_minima(points, config.state_rise_m);
   for (const std::size_t lowest : minima_) {
     const Floor floor = Floor::around(points, lowest, config.plateau_m);

@@ -30,7 +30,6 @@ class BranchStateFinder {
  private:
   struct Floor;
 
-  void measure_arc_lengths(std::span<const BranchPoint> points);
   void find_minima(std::span<const BranchPoint> points, double rise_m);
   [[nodiscard]] BranchState state_at(std::span<const BranchPoint> points, double arc_m,
                                      NodeKind kind) const;
