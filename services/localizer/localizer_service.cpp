@@ -259,11 +259,10 @@ void LocalizerService::count() {
   set("stops", hashes_.size());
   set("tasks", counts.tasks);
   set("evaluations", counts.evaluations);
-  for (std::size_t i = 0; i < localization::kVerdicts; ++i) {
-    const auto verdict = static_cast<localization::Verdict>(i);
-    const std::string name = localization::to_string(verdict);
-    set(verdict == localization::Verdict::kAccepted ? name : "rejected: " + name,
-        counts.verdicts[i]);
+  for (std::size_t i = 0; i < localization::kReasons; ++i) {
+    const auto reason = static_cast<localization::Reason>(i);
+    const std::string name = localization::to_string(reason);
+    set(reason == localization::Reason::kNone ? name : "rejected: " + name, counts.reasons[i]);
   }
   set("loop_closures", sent_closures_.size());
   set("optimizations", counts.optimizations);

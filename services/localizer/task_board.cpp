@@ -1,9 +1,10 @@
 #include "task_board.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 #include <utility>
+
+#include "topogeo/support/hash.hpp"
 
 namespace topogeo::localizer {
 
@@ -12,97 +13,71 @@ using localization::MatchTask;
 
 namespace {
 
-constexpr std::size_t kAnswerTimes = 65;      // of which the median is taken
-constexpr std::size_t kResentAnswers = 1024;  // kept to compare late answers with
-
-bool same(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-bool same(const geometry::Pose2& a, const geometry::Pose2& b) {
-  return same(a.x_m, b.x_m) && same(a.y_m, b.y_m) && same(a.theta_rad, b.theta_rad);
-}
+constexpr std::size_t kKeptTasks = 1024;  // to compare late answers with
 
 }  // namespace
 
-bool identical(const MatchResult& a, const MatchResult& b) {
-  return a.task_id == b.task_id && a.status == b.status && a.evaluations == b.evaluations &&
-         std::equal(a.solutions.begin(), a.solutions.end(), b.solutions.begin(), b.solutions.end(),
-                    [](const auto& x, const auto& y) {
-                      return same(x.T_reference_query, y.T_reference_query) &&
-                             same(x.fitness, y.fitness);
-                    }) &&
-         same(a.T_reference_query, b.T_reference_query) &&
-         std::equal(a.information.data(), a.information.data() + a.information.size(),
-                    b.information.data(), [](double x, double y) { return same(x, y); }) &&
-         same(a.overlap, b.overlap) && same(a.inliers, b.inliers) &&
-         same(a.violations, b.violations) && same(a.residual_rms_m, b.residual_rms_m) &&
-         same(a.scan_fitness, b.scan_fitness) &&
-         same(a.topological_fitness, b.topological_fitness) && same(a.fitness, b.fitness) &&
-         same(a.second_fitness, b.second_fitness);
-}
-
-TaskBoard::TaskBoard(const BoardOptions& options)
-    : options_(options), straggler_time_(options.straggler_floor) {}
+TaskBoard::TaskBoard(const BoardOptions& options) : options_(options), workers_(options) {}
 
 // --- workers
 
-void TaskBoard::worker_up(const std::string& worker_id, std::uint32_t slots,
-                          std::uint64_t incarnation) {
-  Worker& worker = workers_[worker_id];
-  if (worker.incarnation != incarnation) {
-    if (worker.present) lose(worker_id, worker);
-    worker.excluded = false;
-  }
+void TaskBoard::worker_up(const std::string& worker_id, std::uint32_t slots, BoardTime now) {
+  Worker& worker = workers_.all()[worker_id];
   worker.present = true;
-  worker.incarnation = incarnation;
   worker.slots = slots;
+  worker.last_life = now;
 }
 
 void TaskBoard::worker_gone(const std::string& worker_id) {
-  const auto found = workers_.find(worker_id);
-  if (found == workers_.end()) return;
-  lose(worker_id, found->second);
-  if (!found->second.excluded) {
-    workers_.erase(found);
+  Worker* worker = workers_.find(worker_id);
+  if (worker == nullptr) return;
+  if (!worker->in_hand.empty()) ++counts_.workers_lost;
+  recovery_.begin(worker_id, Mishap::kLost, worker->last_life, open_in_hand(*worker));
+  take_all_from(worker_id, *worker);
+  if (!worker->excluded) {
+    workers_.all().erase(worker_id);
     return;
   }
-  found->second.present = false;
-  found->second.reachable = false;
+  worker->present = false;
+  worker->reachable = false;
 }
 
-bool TaskBoard::exclude(const std::string& worker_id) {
-  Worker& worker = workers_[worker_id];
+bool TaskBoard::exclude(const std::string& worker_id, BoardTime now) {
+  Worker& worker = workers_.all()[worker_id];
   if (worker.excluded) return false;
   worker.excluded = true;
+  ++counts_.workers_excluded;
+  recovery_.begin(worker_id, Mishap::kExcluded, now, open_in_hand(worker));
   take_all_from(worker_id, worker);
   return true;
 }
 
+bool TaskBoard::distrust(const std::string& worker_id, BoardTime now) {
+  if (!exclude(worker_id, now)) return false;
+  std::vector<std::uint64_t> redone;
+  for (std::size_t i = 0; i < batch_.size(); ++i) {
+    const BoardTask& task = batch_.at(i);
+    if (!task.result || task.proven || task.answered_by != worker_id) continue;
+    batch_.change(i, [](BoardTask& t) {
+      t.result.reset();
+      t.answered_by.clear();
+      t.others.clear();
+    });
+    audits_.erase(i);
+    redone.push_back(task.task.task_id);
+  }
+  counts_.redone += redone.size();
+  recovery_.begin(worker_id, Mishap::kExcluded, now, redone);
+  return true;
+}
+
+bool TaskBoard::is_excluded(const std::string& worker_id) const {
+  const auto found = workers_.all().find(worker_id);
+  return found != workers_.all().end() && found->second.excluded;
+}
+
 void TaskBoard::set_reachable(const std::string& worker_id, bool reachable) {
-  const auto found = workers_.find(worker_id);
-  if (found != workers_.end()) found->second.reachable = reachable;
-}
-
-std::size_t TaskBoard::workers() const {
-  return static_cast<std::size_t>(
-      std::count_if(workers_.begin(), workers_.end(), [](const auto& id_and_worker) {
-        const Worker& worker = id_and_worker.second;
-        return worker.present && worker.reachable && !worker.excluded && worker.slots > 0;
-      }));
-}
-
-bool TaskBoard::in_service(const Worker& worker, BoardTime now) const {
-  if (!worker.present || !worker.reachable || worker.excluded || worker.slots == 0) return false;
-  if (worker.rests_until > now) return false;
-  return std::none_of(worker.in_hand.begin(), worker.in_hand.end(), [&](const auto& id_and_sent) {
-    return now - id_and_sent.second >= straggler_time_;
-  });
-}
-
-bool TaskBoard::has_room(const Worker& worker) const {
-  return worker.in_hand.size() < std::min(std::size_t{worker.slots} * options_.tasks_per_slot,
-                                          std::size_t{options_.tasks_per_worker});
+  if (Worker* worker = workers_.find(worker_id)) worker->reachable = reachable;
 }
 
 // --- batches
@@ -110,251 +85,292 @@ bool TaskBoard::has_room(const Worker& worker) const {
 void TaskBoard::begin(std::span<const MatchTask> tasks) {
   if (!done()) throw std::logic_error("task board: the last batch is not done");
   abandon();
-  tasks_.resize(tasks.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    tasks_[i].id = tasks[i].task_id;
-    if (!index_.emplace(tasks[i].task_id, i).second) {
-      abandon();
-      throw std::logic_error("task board: task " + std::to_string(tasks[i].task_id) +
-                             " is twice in a batch");
-    }
-    waiting_.insert(i);
-  }
-  open_ = tasks.size();
+  batch_.begin(tasks);
 }
 
 void TaskBoard::abandon() {
-  tasks_.clear();
-  index_.clear();
-  waiting_.clear();
-  out_.clear();
-  open_ = 0;
+  batch_.clear();
+  audits_.clear();
+  recovery_.abandon();
 }
 
 std::vector<MatchResult> TaskBoard::take_results() {
   if (!done()) throw std::logic_error("task board: the batch is not done");
   std::vector<MatchResult> results;
-  results.reserve(tasks_.size());
-  for (Task& task : tasks_) {
-    keep_for_comparison(task);
-    results.push_back(std::move(*task.result));
+  results.reserve(batch_.size());
+  for (std::size_t i = 0; i < batch_.size(); ++i) {
+    const BoardTask& task = batch_.at(i);
+    results.push_back(*task.result);
+    Worker* worker = task.proven ? nullptr : workers_.find(task.answered_by);
+    if (worker != nullptr) ++worker->unchecked;
+    // Another answer may come from somebody who got the task and did not give the one that counts.
+    if (task.sends <= (task.answered_by.empty() ? 0U : 1U)) continue;
+    kept_.insert_or_assign(task.task.task_id, task);
+    if (kept_.size() > kKeptTasks) kept_.erase(kept_.begin());
   }
   abandon();
   return results;
 }
 
+const MatchTask& TaskBoard::task(std::size_t index) const {
+  return batch_.at(index).task;
+}
+
+const BoardTask* TaskBoard::find(std::uint64_t task_id) const {
+  if (const auto index = batch_.index_of(task_id)) return &batch_.at(*index);
+  const auto kept = kept_.find(task_id);
+  return kept == kept_.end() ? nullptr : &kept->second;
+}
+
+const MatchTask* TaskBoard::given(const std::string& worker_id, std::uint64_t task_id) const {
+  const BoardTask* task = find(task_id);
+  return task != nullptr && task->given.contains(worker_id) ? &task->task : nullptr;
+}
+
+bool TaskBoard::is_open(std::uint64_t task_id) const {
+  const auto index = batch_.index_of(task_id);
+  return index && !batch_.at(*index).result;
+}
+
 // --- what to do next
 
-bool TaskBoard::straggles(const Task& task, BoardTime now) const {
-  return now - task.last_sent >= straggler_time_;
-}
-
-TaskBoard::Workers::iterator TaskBoard::choose(const Task& task, BoardTime now) {
-  auto best = workers_.end();
-  for (auto it = workers_.begin(); it != workers_.end(); ++it) {
-    const Worker& worker = it->second;
-    if (!has_room(worker) || !in_service(worker, now) || task.tried.contains(it->first)) continue;
-    if (best == workers_.end() ||
-        worker.in_hand.size() * best->second.slots < best->second.in_hand.size() * worker.slots) {
-      best = it;
-    }
-  }
-  return best;
-}
-
-bool TaskBoard::worth_waiting(const Task& task, BoardTime now) const {
-  return !task.here_only &&
-         std::any_of(workers_.begin(), workers_.end(), [&](const auto& id_and_worker) {
-           return in_service(id_and_worker.second, now) &&
-                  !task.tried.contains(id_and_worker.first);
-         });
-}
-
-TaskBoard::Assignment TaskBoard::assign(std::size_t index, Workers::iterator worker,
+TaskBoard::Assignment TaskBoard::assign(std::size_t index, WorkerTable::Workers::value_type& worker,
                                         BoardTime now) {
-  Task& task = tasks_[index];
-  worker->second.in_hand[task.id] = now;
-  task.workers.insert(worker->first);
-  task.tried.insert(worker->first);
-  task.last_sent = now;
+  worker.second.in_hand.push_back({batch_.at(index).task.task_id, now});
   ++counts_.sent;
-  if (task.sends++ > 0) ++counts_.resent;
-  waiting_.erase(index);
-  out_.insert(index);
-  return {index, worker->first};
+  if (batch_.at(index).sends > 0) ++counts_.resent;
+  batch_.change(index, [&](BoardTask& task) {
+    task.workers.insert(worker.first);
+    task.tried.insert(worker.first);
+    task.given.insert(worker.first);
+    task.last_sent = now;
+    ++task.sends;
+  });
+  return {index, worker.first};
 }
 
 std::optional<TaskBoard::Assignment> TaskBoard::next_remote(BoardTime now) {
   forget_lost(now);
-  for (const std::size_t index : waiting_) {
-    const Task& task = tasks_[index];
-    if (task.here_only) continue;
-    const auto worker = choose(task, now);
-    if (worker != workers_.end()) return assign(index, worker, now);
-    if (task.tried.empty()) break;  // nobody has room for the others either
-  }
-  for (const std::size_t index : out_) {
-    if (!straggles(tasks_[index], now)) continue;
-    const auto worker = choose(tasks_[index], now);
-    if (worker != workers_.end()) return assign(index, worker, now);
+  if (const auto waiting = place_waiting(now)) return waiting;
+  for (const auto& [sent, index] : batch_.out()) {
+    if (now - sent < workers_.straggler_time()) break;  // the others are younger
+    const BoardTask& task = batch_.at(index);
+    if (auto* worker = workers_.choose(task.tried, now)) {
+      tell_stalled(task);
+      return assign(index, *worker, now);
+    }
   }
   return {};
+}
+
+std::optional<TaskBoard::Assignment> TaskBoard::place_waiting(BoardTime now) {
+  for (const std::size_t index : batch_.again()) {
+    const BoardTask& task = batch_.at(index);
+    if (task.here_only) continue;
+    if (auto* worker = workers_.choose(task.tried, now)) return assign(index, *worker, now);
+  }
+  if (batch_.fresh().empty()) return {};
+  auto* worker = workers_.choose({}, now);
+  if (worker == nullptr) return {};
+  return assign(*batch_.fresh().begin(), *worker, now);
 }
 
 std::optional<std::size_t> TaskBoard::next_local(BoardTime now) {
-  for (const std::size_t index : waiting_) {
-    if (!worth_waiting(tasks_[index], now)) return index;
+  if (!batch_.fresh().empty() && !workers_.any_in_service({}, now)) return *batch_.fresh().begin();
+  for (const std::size_t index : batch_.again()) {
+    const BoardTask& task = batch_.at(index);
+    if (task.here_only || !workers_.any_in_service(task.tried, now)) return index;
   }
-  for (const std::size_t index : out_) {
-    if (straggles(tasks_[index], now)) return index;
-  }
-  return {};
+  if (batch_.out().empty()) return {};
+  const auto& [sent, oldest] = *batch_.out().begin();
+  if (now - sent < workers_.straggler_time()) return {};
+  tell_stalled(batch_.at(oldest));
+  return oldest;
+}
+
+std::optional<std::size_t> TaskBoard::next_audit() const {
+  if (audits_.empty()) return {};
+  return *audits_.begin();
 }
 
 std::optional<BoardTime> TaskBoard::next_deadline(BoardTime now) const {
-  std::optional<BoardTime> first;
-  for (const auto& [id, worker] : workers_) {
-    for (const auto& [task, sent] : worker.in_hand) {
-      const BoardTime due = sent + straggler_time_;
-      if (due > now && (!first || due < *first)) first = due;
-    }
-  }
-  return first;
+  return workers_.next_straggler(now);
 }
 
 // --- answers
 
-TaskBoard::Task* TaskBoard::find(std::uint64_t task_id) {
-  const auto found = index_.find(task_id);
-  return found == index_.end() ? nullptr : &tasks_[found->second];
-}
-
-void TaskBoard::take_from(const std::string& worker_id, Worker& worker, std::uint64_t task_id) {
-  worker.in_hand.erase(task_id);
-  Task* task = find(task_id);
-  if (task == nullptr) return;
-  task->workers.erase(worker_id);
-  if (!task->result && task->workers.empty()) {
-    out_.erase(index_.at(task_id));
-    waiting_.insert(index_.at(task_id));
-  }
-}
-
-void TaskBoard::lose(const std::string& worker_id, Worker& worker) {
-  if (!worker.in_hand.empty()) ++counts_.workers_lost;
-  take_all_from(worker_id, worker);
-}
-
-void TaskBoard::take_all_from(const std::string& worker_id, Worker& worker) {
-  while (!worker.in_hand.empty()) {
-    const std::uint64_t task_id = worker.in_hand.begin()->first;
-    take_from(worker_id, worker, task_id);
-  }
-  // Should it come back, it has a fresh chance.
-  for (Task& task : tasks_) task.tried.erase(worker_id);
-}
-
-void TaskBoard::forget_lost(BoardTime now) {
-  for (auto& [id, worker] : workers_) {
-    std::vector<std::uint64_t> lost;
-    for (const auto& [task, sent] : worker.in_hand) {
-      if (now - sent >= std::max(options_.forget_after, 2 * straggler_time_)) lost.push_back(task);
+Reception TaskBoard::answer(const std::string& worker_id, MatchResult result, BoardTime now) {
+  const std::uint64_t task_id = result.task_id;
+  Worker* worker = workers_.find(worker_id);
+  if (worker != nullptr) {
+    worker->last_life = now;
+    if (const auto sent = WorkerTable::take(*worker, task_id)) {
+      workers_.note_answer_time(now - *sent);
     }
-    for (const std::uint64_t task : lost) take_from(id, worker, task);
+    take_from(worker_id, *worker, task_id);
   }
-}
-
-void TaskBoard::note_answer_time(BoardTime time) {
-  answer_times_.push_back(time);
-  if (answer_times_.size() > kAnswerTimes) answer_times_.pop_front();
-  std::vector<BoardTime> sorted(answer_times_.begin(), answer_times_.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  straggler_time_ =
-      std::max(options_.straggler_floor,
-               std::chrono::duration_cast<BoardTime>(
-                   std::chrono::duration<double, std::nano>(*middle) * options_.straggler_factor));
-}
-
-Reception TaskBoard::answer(const std::string& worker_id, const MatchResult& result,
-                            BoardTime now) {
-  const auto found = workers_.find(worker_id);
-  if (found != workers_.end()) {
-    if (found->second.excluded) return Reception::kUnknown;
-    const auto sent = found->second.in_hand.find(result.task_id);
-    if (sent != found->second.in_hand.end()) {
-      note_answer_time(now - sent->second);
-      take_from(worker_id, found->second, result.task_id);
-    }
+  if (given(worker_id, task_id) == nullptr || is_excluded(worker_id)) {
+    ++counts_.ignored;
+    return Reception::kUnknown;
   }
-  return receive(result.task_id, result);
-}
-
-Reception TaskBoard::receive(std::uint64_t task_id, const MatchResult& result) {
-  Task* task = find(task_id);
-  if (task != nullptr && !task->result) {
-    task->result = result;
-    waiting_.erase(index_.at(task_id));
-    out_.erase(index_.at(task_id));
-    --open_;
+  if (is_open(task_id)) {
+    const std::size_t index = *batch_.index_of(task_id);
+    accept(index, std::move(result), worker_id, now);
+    if (audit_is_due(worker, task_id)) audits_.insert(index);
     return Reception::kFirst;
   }
-  const MatchResult* first = nullptr;
-  if (task != nullptr) {
-    first = &*task->result;
-  } else if (const auto kept = resent_answers_.find(task_id); kept != resent_answers_.end()) {
-    first = &kept->second;
-  }
-  if (first == nullptr) return Reception::kUnknown;
   ++counts_.duplicates;
-  if (identical(*first, result)) return Reception::kDuplicate;
+  if (identical(*find(task_id)->result, result)) return Reception::kDuplicate;
   ++counts_.duplicate_differences;
+  const auto add = [&](BoardTask& task) { task.others.emplace_back(worker_id, std::move(result)); };
+  if (const auto index = batch_.index_of(task_id)) {
+    batch_.change(*index, add);
+  } else {
+    add(kept_.at(task_id));
+  }
   return Reception::kDifferent;
 }
 
-void TaskBoard::keep_for_comparison(const Task& task) {
-  // Another answer may come from somebody who got the task and did not give the one that counts.
-  if (task.sends < (task.solved_here ? 1U : 2U)) return;
-  resent_answers_[task.id] = *task.result;
-  if (resent_answers_.size() > kResentAnswers) resent_answers_.erase(resent_answers_.begin());
+void TaskBoard::accept(std::size_t index, MatchResult result, const std::string& worker_id,
+                       BoardTime now) {
+  batch_.change(index, [&](BoardTask& task) {
+    task.result = std::move(result);
+    task.answered_by = worker_id;
+    task.proven = worker_id.empty();
+  });
+  recovery_.answered(batch_.at(index).task.task_id, worker_id, now);
+}
+
+bool TaskBoard::audit_is_due(Worker* worker, std::uint64_t task_id) const {
+  if (worker == nullptr) return true;  // gone since: nothing is known of it
+  if (worker->answers++ < options_.probation) return true;
+  if (options_.audit_every == 0) return false;
+  support::Fnv1a hash;
+  hash.add(task_id);
+  constexpr int kUpperHalf = 32;  // the better mixed one
+  return (hash.value() >> kUpperHalf) % options_.audit_every == 0;
+}
+
+void TaskBoard::solved(std::size_t index, MatchResult result, BoardTime now) {
+  ++counts_.in_process;
+  if (!batch_.at(index).result) accept(index, std::move(result), {}, now);
+}
+
+std::vector<TaskBoard::Difference> TaskBoard::settle(const MatchResult& truth, BoardTime now) {
+  const BoardTask* task = find(truth.task_id);
+  if (task == nullptr || !task->result) return {};
+  ++counts_.audits;
+  std::vector<Difference> differences;
+  const auto compare = [&](const std::string& worker_id, const MatchResult& answer) {
+    if (identical(answer, truth)) return;
+    ++counts_.audit_differences;
+    const Worker* worker = workers_.find(worker_id);
+    differences.push_back({worker_id, answer, worker == nullptr ? 0 : worker->unchecked});
+  };
+  if (!task->proven) compare(task->answered_by, *task->result);
+  for (const auto& [worker_id, answer] : task->others) compare(worker_id, answer);
+  const auto prove = [&](BoardTask& t) {
+    t.others.clear();
+    t.result = truth;
+    t.proven = true;
+  };
+  if (const auto index = batch_.index_of(truth.task_id)) {
+    audits_.erase(*index);
+    batch_.change(*index, prove);
+  } else {
+    prove(kept_.at(truth.task_id));
+  }
+  for (const Difference& difference : differences) distrust(difference.worker_id, now);
+  return differences;
 }
 
 void TaskBoard::refuse(const std::string& worker_id, std::uint64_t task_id, Refusal refusal,
                        BoardTime now) {
-  const auto found = workers_.find(worker_id);
-  if (found == workers_.end() || !found->second.in_hand.contains(task_id)) return;
-  take_from(worker_id, found->second, task_id);
+  Worker* worker = workers_.find(worker_id);
+  if (worker == nullptr || !WorkerTable::take(*worker, task_id)) return;
+  worker->last_life = now;
+  take_from(worker_id, *worker, task_id);
   switch (refusal) {
     case Refusal::kMapMissing:
       ++counts_.map_missing;
-      found->second.rests_until = now + options_.rest;
-      break;
-    case Refusal::kOtherVersion:
-      static_cast<void>(exclude(worker_id));
+      worker->rests_until = now + options_.rest;
       break;
     case Refusal::kFailed:
       ++counts_.failed;
-      if (Task* task = find(task_id)) task->here_only = true;
+      if (is_open(task_id)) {
+        batch_.change(*batch_.index_of(task_id), [](BoardTask& task) { task.here_only = true; });
+      }
       break;
   }
 }
 
-Reception TaskBoard::solved(std::size_t task, const MatchResult& result) {
-  ++counts_.in_process;
-  const Reception reception = receive(tasks_.at(task).id, result);
-  tasks_[task].solved_here = reception == Reception::kFirst;
-  return reception;
+// --- tasks taken back
+
+void TaskBoard::take_from(const std::string& worker_id, Worker& worker, std::uint64_t task_id) {
+  WorkerTable::take(worker, task_id);
+  const auto index = batch_.index_of(task_id);
+  if (index) batch_.change(*index, [&](BoardTask& task) { task.workers.erase(worker_id); });
+}
+
+void TaskBoard::take_all_from(const std::string& worker_id, Worker& worker) {
+  while (!worker.in_hand.empty()) take_from(worker_id, worker, worker.in_hand.front().task_id);
+  // Should it come back, it has a fresh chance.
+  for (std::size_t i = 0; i < batch_.size(); ++i) {
+    if (!batch_.at(i).tried.contains(worker_id)) continue;
+    batch_.change(i, [&](BoardTask& task) { task.tried.erase(worker_id); });
+  }
+}
+
+void TaskBoard::forget_lost(BoardTime now) {
+  for (auto& [id, worker] : workers_.all()) {
+    while (workers_.has_forgotten(worker, now)) {
+      take_from(id, worker, worker.in_hand.front().task_id);
+    }
+  }
 }
 
 void TaskBoard::not_sent(const Assignment& assignment, BoardTime now) {
-  Task& task = tasks_.at(assignment.task);
+  const std::uint64_t task_id = batch_.at(assignment.task).task.task_id;
   --counts_.sent;
-  if (--task.sends > 0) --counts_.resent;
-  task.tried.erase(assignment.worker_id);
-  const auto worker = workers_.find(assignment.worker_id);
-  if (worker == workers_.end()) return;
-  worker->second.rests_until = now + options_.rest;
-  take_from(assignment.worker_id, worker->second, task.id);
+  if (batch_.at(assignment.task).sends > 1) --counts_.resent;
+  batch_.change(assignment.task, [&](BoardTask& task) {
+    --task.sends;
+    task.workers.erase(assignment.worker_id);
+    task.tried.erase(assignment.worker_id);
+    task.given.erase(assignment.worker_id);
+  });
+  Worker* worker = workers_.find(assignment.worker_id);
+  if (worker == nullptr) return;
+  worker->rests_until = now + options_.rest;
+  WorkerTable::take(*worker, task_id);
+}
+
+// --- recovery
+
+std::vector<std::uint64_t> TaskBoard::open_in_hand(const Worker& worker) const {
+  std::vector<std::uint64_t> open;
+  for (const Worker::InHand& entry : worker.in_hand) {
+    if (is_open(entry.task_id)) open.push_back(entry.task_id);
+  }
+  return open;
+}
+
+void TaskBoard::tell_stalled(const BoardTask& task) {
+  for (const std::string& worker_id : task.workers) {
+    const Worker* worker = workers_.find(worker_id);
+    if (worker == nullptr || worker->in_hand.empty()) continue;
+    recovery_.begin(worker_id, Mishap::kStalled, worker->in_hand.front().sent,
+                    open_in_hand(*worker));
+  }
+}
+
+std::vector<Recovery> TaskBoard::take_recoveries() {
+  std::vector<Recovery> recoveries = recovery_.take();
+  for (const Recovery& recovery : recoveries) {
+    counts_.last_recovery = recovery.duration;
+    counts_.longest_recovery = std::max(counts_.longest_recovery, recovery.duration);
+  }
+  return recoveries;
 }
 
 }  // namespace topogeo::localizer

@@ -30,8 +30,8 @@ void add_matches(storage::Report& report, const ServiceTable& services) {
   };
   report.matches_tried = count("tasks");
   report.matches_accepted = count("accepted");
-  for (std::size_t i = 1; i < localization::kVerdicts; ++i) {
-    const std::string reason = localization::to_string(static_cast<localization::Verdict>(i));
+  for (std::size_t i = 1; i < localization::kReasons; ++i) {
+    const std::string reason = localization::to_string(static_cast<localization::Reason>(i));
     report.matches_rejected.emplace_back(reason, count("rejected: " + reason));
   }
 }

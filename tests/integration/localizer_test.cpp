@@ -79,7 +79,7 @@ class LocalizerTest : public ::testing::Test {
     ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
     EXPECT_EQ(counter("stops"), static_cast<double>(maps_.size()));
     EXPECT_EQ(counter("tasks"), static_cast<double>(localizer.counts().tasks));
-    EXPECT_EQ(counter("accepted"), static_cast<double>(localizer.counts().verdicts[0]));
+    EXPECT_EQ(counter("accepted"), static_cast<double>(localizer.counts().reasons[0]));
     EXPECT_EQ(counter("loop_closures"), static_cast<double>(loops.size()));
     EXPECT_EQ(last_status_->fault_count(), 0U) << last_status_->message().to_string();
   }

@@ -9,6 +9,23 @@ namespace topogeo::localization {
 
 using geometry::Pose2;
 
+MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_reference_query) {
+  MatchTask task;
+  task.T_reference_query = T_reference_query.T_a_b;
+  task.covariance = T_reference_query.covariance;
+  const Eigen::Vector3d half = search_half_width(
+      T_reference_query.covariance, config.search_probability, config.search_heading_sigmas);
+  const Eigen::Vector3d smallest(config.genetic.resolution_m, config.genetic.resolution_m,
+                                 config.genetic.resolution_rad);
+  task.half_width = half.cwiseMax(smallest);
+  task.half_width.z() = std::min(task.half_width.z(), config.largest_half_width_rad);
+  task.genetic = config.genetic;
+  task.fitness_form = config.fitness_form;
+  task.solutions_wanted = config.solutions_wanted;
+  task.gate = config.gate;
+  return task;
+}
+
 std::vector<Localizer::Candidate> Localizer::candidates(std::uint32_t stop,
                                                         std::span<const UncertainPose> relative,
                                                         bool recent, std::uint32_t count) const {
@@ -78,23 +95,12 @@ double Localizer::expected_overlap(const Stop& reference, const Stop& query,
 
 MatchTask Localizer::make_task(std::uint32_t reference, std::uint32_t query,
                                const UncertainPose& prior) {
-  MatchTask task;
+  MatchTask task = match_task(config_, prior);
   task.task_id = next_task_++;
   task.reference_map_id = reference;
   task.query_map_id = query;
   task.reference_hash = stops_[reference].hash;
   task.query_hash = stops_[query].hash;
-  task.T_reference_query = prior.T_a_b;
-  task.covariance = prior.covariance;
-  const Eigen::Vector3d half = search_half_width(prior.covariance, config_.search_probability,
-                                                 config_.search_heading_sigmas);
-  const Eigen::Vector3d smallest(config_.genetic.resolution_m, config_.genetic.resolution_m,
-                                 config_.genetic.resolution_rad);
-  task.half_width = half.cwiseMax(smallest);
-  task.half_width.z() = std::min(task.half_width.z(), config_.largest_half_width_rad);
-  task.genetic = config_.genetic;
-  task.fitness_form = config_.fitness_form;
-  task.solutions_wanted = config_.solutions_wanted;
   task.seed = support::derive_seed(config_.seed, stops_[reference].map->robot_id,
                                    {reference, query, task.task_id});
   return task;
@@ -107,18 +113,16 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const MatchTask& task = tasks[i];
     const MatchResult& result = results[i];
-    const Verdict verdict = judge(task, result, config_.gate);
-    compared_[{task.query_map_id, task.reference_map_id}] = {task.T_reference_query,
-                                                             verdict == Verdict::kAccepted};
+    const bool accepted = result.verdict == Verdict::kAccepted;
+    compared_[{task.query_map_id, task.reference_map_id}] = {task.T_reference_query, accepted};
     ++counts_.tasks;
     counts_.evaluations += result.evaluations;
-    ++counts_.verdicts[static_cast<std::size_t>(verdict)];
-    if (verdict != Verdict::kAccepted && verdict != Verdict::kDoubtful) continue;
-    answers.push_back(
-        {{task.query_map_id, task.reference_map_id, kind,
-          geometry::inverse(result.T_reference_query),
-          geometry::inverse_covariance(result.T_reference_query, match_covariance(result))},
-         verdict == Verdict::kAccepted});
+    ++counts_.reasons[static_cast<std::size_t>(result.reason)];
+    if (!accepted && result.reason != Reason::kDoubtful) continue;
+    answers.push_back({{task.query_map_id, task.reference_map_id, kind,
+                        geometry::inverse(result.T_reference_query),
+                        geometry::inverse_covariance(result.T_reference_query, result.covariance)},
+                       accepted});
   }
   return answers;
 }

@@ -12,18 +12,30 @@ const char* to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::kAccepted:
       return "accepted";
-    case Verdict::kNothingInCommon:
-      return "nothing in common";
-    case Verdict::kLittleOverlap:
-      return "little overlap";
-    case Verdict::kFewInliers:
-      return "few inliers";
-    case Verdict::kDoubtful:
-      return "doubtful";
-    case Verdict::kImplausible:
-      return "far from the prediction";
     case Verdict::kAmbiguous:
       return "ambiguous";
+    case Verdict::kRejected:
+      return "rejected";
+  }
+  return "unknown";
+}
+
+const char* to_string(Reason reason) {
+  switch (reason) {
+    case Reason::kNone:
+      return "accepted";
+    case Reason::kNothingInCommon:
+      return "nothing in common";
+    case Reason::kLittleOverlap:
+      return "little overlap";
+    case Reason::kFewInliers:
+      return "few inliers";
+    case Reason::kDoubtful:
+      return "doubtful";
+    case Reason::kImplausible:
+      return "far from the prediction";
+    case Reason::kSecondSolution:
+      return "second solution";
   }
   return "unknown";
 }
@@ -33,34 +45,38 @@ double doubt(const MatchResult& result) {
          result.residual_rms_m / 0.08 + std::max(0.0, 0.50 - result.scan_fitness) / 0.20;
 }
 
-Verdict judge(const MatchTask& task, const MatchResult& result, const GateConfig& config) {
-  if (result.status != MatchStatus::kSolved || result.information.isZero()) {
-    return Verdict::kNothingInCommon;
+Judgement judge(const MatchTask& task, const MatchResult& result) {
+  const GateConfig& gate = task.gate;
+  const auto rejected = [](Reason reason) { return Judgement{Verdict::kRejected, reason}; };
+  if (result.status != MatchStatus::kSolved || result.covariance.isZero(0.0)) {
+    return rejected(Reason::kNothingInCommon);
   }
-  if (result.overlap < config.smallest_overlap) return Verdict::kLittleOverlap;
-  if (result.inliers < config.smallest_inliers) return Verdict::kFewInliers;
+  if (result.overlap < gate.smallest_overlap) return rejected(Reason::kLittleOverlap);
+  if (result.inliers < gate.smallest_inliers) return rejected(Reason::kFewInliers);
   const double search_m = std::max(task.half_width.x(), task.half_width.y());
-  if (doubt(result) > config.largest_doubt - config.doubt_per_search_m * search_m) {
-    return Verdict::kDoubtful;
+  if (doubt(result) > gate.largest_doubt - gate.doubt_per_search_m * search_m) {
+    return rejected(Reason::kDoubtful);
   }
   const Eigen::Vector3d error =
       geometry::difference(result.T_reference_query, task.T_reference_query);
-  if (error.dot(task.covariance.inverse() * error) > config.largest_mahalanobis2) {
-    return Verdict::kImplausible;
+  if (error.dot(task.covariance.inverse() * error) > gate.largest_mahalanobis2) {
+    return rejected(Reason::kImplausible);
   }
-  if (result.second_fitness > config.largest_ambiguity * result.fitness) return Verdict::kAmbiguous;
-  return Verdict::kAccepted;
+  if (result.second.fitness > gate.largest_ambiguity * result.fitness) {
+    return {Verdict::kAmbiguous, Reason::kSecondSolution};
+  }
+  return {Verdict::kAccepted, Reason::kNone};
 }
 
-Eigen::Matrix3d match_covariance(const MatchResult& result) {
+Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doubt) {
   constexpr double kFloor_m = 0.02;
   constexpr double kFloor_rad = 0.0052;
   constexpr double kLeastInformation =
       0.25;  // along a bare corridor: a deviation of 2 m, not an infinite one
-  Eigen::Matrix3d information = result.information;
-  for (int i = 0; i < 3; ++i) information(i, i) += kLeastInformation;
-  const double widening = 0.5 + doubt(result);
-  Eigen::Matrix3d covariance = information.inverse() * (widening * widening);
+  Eigen::Matrix3d known = information;
+  for (int i = 0; i < 3; ++i) known(i, i) += kLeastInformation;
+  const double widening = 0.5 + doubt;
+  Eigen::Matrix3d covariance = known.inverse() * (widening * widening);
   covariance(0, 0) += kFloor_m * kFloor_m;
   covariance(1, 1) += kFloor_m * kFloor_m;
   covariance(2, 2) += kFloor_rad * kFloor_rad;

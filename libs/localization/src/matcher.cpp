@@ -1,14 +1,17 @@
 #include "topogeo/localization/matcher.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <Eigen/LU>
 
 #include "topogeo/localization/genetic_search.hpp"
 #include "topogeo/localization/refinement.hpp"
+
+#include "match_evidence.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -18,29 +21,29 @@ using geometry::Pose2;
 constexpr std::size_t kCachedReferences = 4;
 constexpr std::size_t kRefined = 3;  // solutions that are refined before the winner is chosen
 
-constexpr std::uint32_t kMostSolutions = 40;
-
-void require(bool condition, const MatchTask& task, const std::string& complaint) {
-  if (condition) return;
-  throw std::invalid_argument("match task " + std::to_string(task.task_id) + ": " + complaint);
-}
-
-// A task may come from another machine, so nothing of it is taken on trust.
-void check(const MatchTask& task) {
-  const Pose2& T = task.T_reference_query;
-  require(std::isfinite(T.x_m) && std::isfinite(T.y_m) && std::isfinite(T.theta_rad), task,
-          "the predicted pose is not finite");
-  const Eigen::Matrix3d& c = task.covariance;
-  require(c.allFinite() && c(0, 0) > 0.0 && c.topLeftCorner<2, 2>().determinant() > 0.0 &&
-              c.determinant() > 0.0,
-          task, "the covariance is not positive definite");
-  require(task.half_width.allFinite() && task.half_width.minCoeff() > 0.0, task,
-          "the search space is empty");
-  require(task.genetic.resolution_m > 0.0 && task.genetic.resolution_rad > 0.0, task,
-          "the resolution must be greater than 0");
-  require(task.solutions_wanted >= 1 && task.solutions_wanted <= kMostSolutions, task,
-          std::to_string(task.solutions_wanted) + " solutions wanted, allowed are 1 to " +
-              std::to_string(kMostSolutions));
+// Refines the best solutions and takes the one with the largest fitness as the result's pose, and
+// the best of those that lie elsewhere as its second.
+void choose(const MatchContext& context, MatchResult& result) {
+  const PosePrior prior{context.task.T_reference_query, context.task.covariance.inverse()};
+  std::array<MatchSolution, kRefined> refined;
+  const std::size_t count = std::min(kRefined, result.solutions.size());
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pose2 T =
+        align(context.reference, context.query, result.solutions[i].T_reference_query, prior)
+            .T_reference_query;
+    refined[i] = {T, context.fitness(T)};
+    if (refined[i].fitness > refined[best].fitness) best = i;
+  }
+  result.T_reference_query = refined[best].T_reference_query;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double apart_m2 =
+        (refined[i].T_reference_query.position_m() - result.T_reference_query.position_m())
+            .squaredNorm();
+    if (apart_m2 > kSecondApart_m * kSecondApart_m && refined[i].fitness > result.second.fitness) {
+      result.second = refined[i];
+    }
+  }
 }
 
 }  // namespace
@@ -86,40 +89,14 @@ MatchResult Matcher::solve(const MatchTask& task) {
   const Fitness fitness(against, query, task);
 
   MatchResult result;
-  result.task_id = task.task_id;
   SearchOutcome outcome = genetic_search(task, fitness);
   result.solutions = std::move(outcome.solutions);
   result.evaluations = outcome.evaluations;
-  if (result.solutions.empty() || result.solutions.front().fitness <= 0.0) return result;
-
-  const PosePrior prior{task.T_reference_query, task.covariance.inverse()};
-  Refinement best;
-  double best_fitness = -1.0;
-  const std::size_t count = std::min(kRefined, result.solutions.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const Refinement refined = refine(against, query, result.solutions[i].T_reference_query, prior);
-    const double value = fitness(refined.T_reference_query);
-    const bool distinct = best_fitness >= 0.0 && (refined.T_reference_query.position_m() -
-                                                  best.T_reference_query.position_m())
-                                                         .squaredNorm() > 0.09;
-    if (value > best_fitness) {
-      if (distinct) result.second_fitness = std::max(result.second_fitness, best_fitness);
-      best = refined;
-      best_fitness = value;
-    } else if (distinct) {
-      result.second_fitness = std::max(result.second_fitness, value);
-    }
+  const MatchContext context{task, against, query, fitness};
+  if (!result.solutions.empty() && result.solutions.front().fitness > 0.0) {
+    choose(context, result);
   }
-  result.T_reference_query = best.T_reference_query;
-  result.fitness = best_fitness;
-  result.information = best.information;
-  result.overlap = best.overlap;
-  result.inliers = best.inliers;
-  result.violations = best.violations;
-  result.residual_rms_m = best.residual_rms_m;
-  result.scan_fitness = fitness.scan(best.T_reference_query);
-  result.topological_fitness = fitness.topological(best.T_reference_query);
-  result.status = best.overlap > 0.0 ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
+  add_evidence(context, result);
   return result;
 }
 

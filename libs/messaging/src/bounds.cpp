@@ -90,7 +90,18 @@ Defect find_defect(const msg::MatchResult& message) {
   return Check(message)
       .size("solutions", message.solutions().size(), msg::kMaxSolutions)
       .value("status", message.status(), msg::kMatchFailed)
+      .value("verdict", message.verdict(), msg::kVerdictRejected)
+      .value("reason", message.reason(), msg::kReasonSecondSolution)
       .defect();
+}
+
+Defect find_defect(const msg::MapRequest& message) {
+  return Check(message).defect();
+}
+
+Defect find_defect(const msg::MapCopy& message) {
+  const Defect of_copy = Check(message).defect();
+  return of_copy ? of_copy : find_defect(message.local_map());
 }
 
 Defect find_defect(const msg::WorkerStatus& message) {

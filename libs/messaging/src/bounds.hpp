@@ -27,6 +27,8 @@ Defect find_defect(const msg::StreamEnd& message);
 Defect find_defect(const msg::LocalMap& message);
 Defect find_defect(const msg::MatchTask& message);
 Defect find_defect(const msg::MatchResult& message);
+Defect find_defect(const msg::MapRequest& message);
+Defect find_defect(const msg::MapCopy& message);
 Defect find_defect(const msg::WorkerStatus& message);
 Defect find_defect(const msg::ServiceStatus& message);
 Defect find_defect(const msg::LivePose& message);

@@ -77,6 +77,8 @@ TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state", registerstreamTypes)
 TOPOGEO_TOPIC(LocalMap, kLocalMap, "state", registerlocal_mapTypes)
 TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes)
 TOPOGEO_TOPIC(MatchResult, kMatchResult, "result", registermatchTypes)
+TOPOGEO_TOPIC(MapRequest, kMapRequest, "result", registerlocal_mapTypes)
+TOPOGEO_TOPIC(MapCopy, kMapCopy, "task", registerlocal_mapTypes)
 TOPOGEO_TOPIC(WorkerStatus, kWorkerStatus, "status", registerstatusTypes)
 TOPOGEO_TOPIC(ServiceStatus, kServiceStatus, "status", registerstatusTypes)
 TOPOGEO_TOPIC(LivePose, kLivePose, "motion_live", registertrajectoryTypes)
@@ -90,10 +92,11 @@ TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command", registermotionTypes)
 #undef TOPOGEO_TOPIC
 
 std::span<const TopicInfo* const> all_topics() {
-  static const std::array<const TopicInfo*, 17> topics = {
+  static const std::array<const TopicInfo*, 19> topics = {
       &TopicTraits<msg::BaseStatus>::info(),    &TopicTraits<msg::Goal>::info(),
       &TopicTraits<msg::LocalMap>::info(),      &TopicTraits<msg::LoopClosures>::info(),
-      &TopicTraits<msg::MapElement>::info(),    &TopicTraits<msg::MatchResult>::info(),
+      &TopicTraits<msg::MapElement>::info(),    &TopicTraits<msg::MapCopy>::info(),
+      &TopicTraits<msg::MapRequest>::info(),    &TopicTraits<msg::MatchResult>::info(),
       &TopicTraits<msg::MatchTask>::info(),     &TopicTraits<msg::MotionCommand>::info(),
       &TopicTraits<msg::Odometry>::info(),      &TopicTraits<msg::LivePose>::info(),
       &TopicTraits<msg::Route>::info(),         &TopicTraits<msg::Scan>::info(),

@@ -119,17 +119,24 @@ void describe_match(Config& c, ConfigSchema& schema) {
              "population of the genetic search");
   schema.add("match.generations", &l.genetic.generations, 1U, 10000U, "",
              "50 x 30 with refinement is as good as the source's 100 x 50");
+  schema.add("match.crossover_rate", &l.genetic.crossover_rate, 0.0, 1.0, "",
+             "probability that two parents exchange genes");
   schema.add("match.mutation_rate", &l.genetic.mutation_rate, 0.0, 0.5, "",
              "probability for each bit");
+  schema.add("match.elite", &l.genetic.elite, 1U, 100U, "",
+             "best individuals that live on unchanged");
+  schema.add("match.branch_hypotheses", &l.genetic.branch_hypotheses, 0U, 1000U, "",
+             "initial individuals, at most, that lay a branch or node on an equivalent one");
   schema.add("match.resolution_m", &l.genetic.resolution_m, 0.005, 2.0, "m",
              "of the position genes");
   schema.add("match.resolution_rad", &l.genetic.resolution_rad, 0.001, 0.5, "rad",
              "of the heading gene");
   schema.add("match.fitness", &l.fitness_form,
              {{"combined", localization::FitnessForm::kCombined},
-              {"topological", localization::FitnessForm::kTopological}},
+              {"topological", localization::FitnessForm::kTopological},
+              {"printed", localization::FitnessForm::kPrinted}},
              "combined: nodes, branches, scan points and the odometry prior; topological: nodes "
-             "and branches");
+             "and branches; printed: the source's equations, for comparison");
   schema.add("match.solutions", &l.solutions_wanted, 1U, 40U, "",
              "best distinct solutions kept of a match");
   schema.add("match.search_probability", &l.search_probability, 0.01, 0.9999, "",

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "topogeo/localization/match_gate.hpp"
 #include "topogeo/render/map_picture.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
@@ -41,12 +42,11 @@ void add_map(storage::Report& report, const storage::MapDocument& document) {
 
 void add_matches(storage::Report& report, const localization::LocalizerCounts& counts) {
   report.matches_tried = counts.tasks;
-  report.matches_accepted =
-      counts.verdicts[static_cast<std::size_t>(localization::Verdict::kAccepted)];
+  report.matches_accepted = counts.reasons[static_cast<std::size_t>(localization::Reason::kNone)];
   report.matches_rejected.clear();
-  for (std::size_t i = 1; i < localization::kVerdicts; ++i) {
+  for (std::size_t i = 1; i < localization::kReasons; ++i) {
     report.matches_rejected.emplace_back(
-        localization::to_string(static_cast<localization::Verdict>(i)), counts.verdicts[i]);
+        localization::to_string(static_cast<localization::Reason>(i)), counts.reasons[i]);
   }
 }
 

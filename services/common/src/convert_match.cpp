@@ -15,17 +15,59 @@ msg::GeneticParameters to_genetic(const localization::GeneticParameters& genetic
   msg::GeneticParameters out;
   out.individuals(genetic.individuals);
   out.generations(genetic.generations);
+  out.crossover_rate(genetic.crossover_rate);
   out.mutation_rate(genetic.mutation_rate);
+  out.elite(genetic.elite);
+  out.branch_hypotheses(genetic.branch_hypotheses);
   out.resolution_m(genetic.resolution_m);
   out.resolution_rad(genetic.resolution_rad);
   return out;
 }
 
 localization::GeneticParameters from_genetic(const msg::GeneticParameters& genetic) {
-  return {genetic.individuals(), genetic.generations(),
-          finite(genetic.mutation_rate(), "genetic.mutation_rate"),
-          finite(genetic.resolution_m(), "genetic.resolution_m"),
-          finite(genetic.resolution_rad(), "genetic.resolution_rad")};
+  localization::GeneticParameters out;
+  out.individuals = genetic.individuals();
+  out.generations = genetic.generations();
+  out.crossover_rate = finite(genetic.crossover_rate(), "genetic.crossover_rate");
+  out.mutation_rate = finite(genetic.mutation_rate(), "genetic.mutation_rate");
+  out.elite = genetic.elite();
+  out.branch_hypotheses = genetic.branch_hypotheses();
+  out.resolution_m = finite(genetic.resolution_m(), "genetic.resolution_m");
+  out.resolution_rad = finite(genetic.resolution_rad(), "genetic.resolution_rad");
+  return out;
+}
+
+msg::MatchGate to_gate(const localization::GateConfig& gate) {
+  msg::MatchGate out;
+  out.smallest_overlap(gate.smallest_overlap);
+  out.smallest_inliers(gate.smallest_inliers);
+  out.largest_doubt(gate.largest_doubt);
+  out.doubt_per_search_m(gate.doubt_per_search_m);
+  out.largest_mahalanobis2(gate.largest_mahalanobis2);
+  out.largest_ambiguity(gate.largest_ambiguity);
+  return out;
+}
+
+localization::GateConfig from_gate(const msg::MatchGate& gate) {
+  localization::GateConfig out;
+  out.smallest_overlap = finite(gate.smallest_overlap(), "gate.smallest_overlap");
+  out.smallest_inliers = finite(gate.smallest_inliers(), "gate.smallest_inliers");
+  out.largest_doubt = finite(gate.largest_doubt(), "gate.largest_doubt");
+  out.doubt_per_search_m = finite(gate.doubt_per_search_m(), "gate.doubt_per_search_m");
+  out.largest_mahalanobis2 = finite(gate.largest_mahalanobis2(), "gate.largest_mahalanobis2");
+  out.largest_ambiguity = finite(gate.largest_ambiguity(), "gate.largest_ambiguity");
+  return out;
+}
+
+msg::MatchSolution to_solution(const localization::MatchSolution& solution) {
+  msg::MatchSolution out;
+  out.T_reference_query(to_msg(solution.T_reference_query));
+  out.fitness(solution.fitness);
+  return out;
+}
+
+localization::MatchSolution from_solution(const msg::MatchSolution& solution) {
+  return {from_msg(solution.T_reference_query()), finite(solution.fitness(), "solution.fitness")};
 }
 
 }  // namespace
@@ -38,6 +80,7 @@ msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& a
   messaging::set_text(out.client_id(), address.client_id, "client_id");
   messaging::set_text(out.version(), address.version, "version");
   out.config_fingerprint(address.config_fingerprint);
+  out.matcher_fingerprint(address.matcher_fingerprint);
   out.task_id(task.task_id);
   out.reference_map_id(task.reference_map_id);
   out.query_map_id(task.query_map_id);
@@ -54,12 +97,13 @@ msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& a
     out.initial_individuals().push_back(to_msg(pose));
   }
   out.solutions_wanted(task.solutions_wanted);
+  out.gate(to_gate(task.gate));
   out.seed(task.seed);
   return out;
 }
 
 localization::MatchTask from_msg(const msg::MatchTask& message) {
-  check(message.fitness_form() <= msg::kFitnessCombined, "fitness_form", "0 or 1");
+  check(message.fitness_form() <= msg::kFitnessCombined, "fitness_form", "0 to 2");
   check(message.solutions_wanted() >= 1 && message.solutions_wanted() <= msg::kMaxSolutions,
         "solutions_wanted", "1 to 40");
   localization::MatchTask out;
@@ -79,6 +123,7 @@ localization::MatchTask from_msg(const msg::MatchTask& message) {
     out.initial_individuals.push_back(from_msg(pose));
   }
   out.solutions_wanted = message.solutions_wanted();
+  out.gate = from_gate(message.gate());
   out.seed = message.seed();
   return out;
 }
@@ -92,13 +137,10 @@ msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddr
   out.task_id(result.task_id);
   out.status(static_cast<msg::MatchStatus>(result.status));
   for (const localization::MatchSolution& solution : result.solutions) {
-    msg::MatchSolution entry;
-    entry.T_reference_query(to_msg(solution.T_reference_query));
-    entry.fitness(solution.fitness);
-    out.solutions().push_back(entry);
+    out.solutions().push_back(to_solution(solution));
   }
   out.T_reference_query(to_msg(result.T_reference_query));
-  out.information(to_msg(result.information));
+  out.covariance(to_msg(result.covariance));
   out.overlap(result.overlap);
   out.inliers(result.inliers);
   out.violations(result.violations);
@@ -106,22 +148,26 @@ msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddr
   out.scan_fitness(result.scan_fitness);
   out.topological_fitness(result.topological_fitness);
   out.fitness(result.fitness);
-  out.second_fitness(result.second_fitness);
+  out.second(to_solution(result.second));
   out.evaluations(result.evaluations);
+  out.seed(result.seed);
+  out.verdict(static_cast<msg::MatchVerdict>(result.verdict));
+  out.reason(static_cast<msg::MatchReason>(result.reason));
   return out;
 }
 
 localization::MatchResult from_msg(const msg::MatchResult& message) {
   check(message.status() <= msg::kMatchNothingInCommon, "status", "a result, no refusal");
+  check(message.verdict() <= msg::kVerdictRejected, "verdict", "0 to 2");
+  check(message.reason() <= msg::kReasonSecondSolution, "reason", "0 to 6");
   localization::MatchResult out;
   out.task_id = message.task_id();
   out.status = static_cast<localization::MatchStatus>(message.status());
   for (const msg::MatchSolution& solution : message.solutions()) {
-    out.solutions.push_back(
-        {from_msg(solution.T_reference_query()), finite(solution.fitness(), "solutions.fitness")});
+    out.solutions.push_back(from_solution(solution));
   }
   out.T_reference_query = from_msg(message.T_reference_query());
-  out.information = from_msg(message.information());
+  out.covariance = from_msg(message.covariance());
   out.overlap = finite(message.overlap(), "overlap");
   out.inliers = finite(message.inliers(), "inliers");
   out.violations = finite(message.violations(), "violations");
@@ -129,8 +175,11 @@ localization::MatchResult from_msg(const msg::MatchResult& message) {
   out.scan_fitness = finite(message.scan_fitness(), "scan_fitness");
   out.topological_fitness = finite(message.topological_fitness(), "topological_fitness");
   out.fitness = finite(message.fitness(), "fitness");
-  out.second_fitness = finite(message.second_fitness(), "second_fitness");
+  out.second = from_solution(message.second());
   out.evaluations = message.evaluations();
+  out.seed = message.seed();
+  out.verdict = static_cast<localization::Verdict>(message.verdict());
+  out.reason = static_cast<localization::Reason>(message.reason());
   return out;
 }
 

@@ -88,7 +88,7 @@ void expect_same(const Outcome& a, const Outcome& b) {
     EXPECT_EQ(a.closures[i].T_earlier_later, b.closures[i].T_earlier_later);
   }
   EXPECT_EQ(a.counts.evaluations, b.counts.evaluations);
-  EXPECT_EQ(a.counts.verdicts, b.counts.verdicts);
+  EXPECT_EQ(a.counts.reasons, b.counts.reasons);
 }
 
 TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
@@ -114,7 +114,7 @@ TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
         << loop.earlier_id << " - " << loop.later_id;
   }
   std::uint64_t judged = 0;
-  for (const std::uint64_t count : outcome.counts.verdicts) judged += count;
+  for (const std::uint64_t count : outcome.counts.reasons) judged += count;
   EXPECT_EQ(judged, outcome.counts.tasks);
   for (std::size_t i = 0; i < driven.maps.size(); ++i) {
     const topomap::StopPose& stop = outcome.trajectory.stops[i];

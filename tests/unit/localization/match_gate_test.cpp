@@ -16,7 +16,7 @@ class MatchGateTest : public testing::Test {
     task_.half_width = {0.25, 0.25, 0.1};
     result_.status = MatchStatus::kSolved;
     result_.T_reference_query = {1.05, -0.05, 0.12};
-    result_.information.diagonal() << 1e4, 1e4, 4e4;
+    result_.covariance.diagonal() << 1e-4, 1e-4, 2.5e-5;
     result_.overlap = 0.9;
     result_.inliers = 0.95;
     result_.violations = 0.012;
@@ -24,34 +24,40 @@ class MatchGateTest : public testing::Test {
     result_.scan_fitness = 0.7;
     result_.solutions = {{result_.T_reference_query, 0.8}};
     result_.fitness = 0.8;
-    result_.second_fitness = 0.4;
+    result_.second.fitness = 0.4;
   }
-  Verdict verdict() const { return judge(task_, result_, config_); }
+  Reason reason() const {
+    const Judgement judgement = judge(task_, result_);
+    EXPECT_EQ(judgement.verdict, judgement.reason == Reason::kNone ? Verdict::kAccepted
+                                 : judgement.reason == Reason::kSecondSolution
+                                     ? Verdict::kAmbiguous
+                                     : Verdict::kRejected);
+    return judgement.reason;
+  }
 
   MatchTask task_;
   MatchResult result_;
-  GateConfig config_;
 };
 
 TEST_F(MatchGateTest, AcceptsAGoodMatch) {
-  EXPECT_EQ(verdict(), Verdict::kAccepted);
+  EXPECT_EQ(reason(), Reason::kNone);
 }
 
 TEST_F(MatchGateTest, RejectsWhatFoundNothing) {
   result_.status = MatchStatus::kNothingInCommon;
-  EXPECT_EQ(verdict(), Verdict::kNothingInCommon);
+  EXPECT_EQ(reason(), Reason::kNothingInCommon);
   result_.status = MatchStatus::kSolved;
-  result_.information.setZero();
-  EXPECT_EQ(verdict(), Verdict::kNothingInCommon);
+  result_.covariance.setZero();
+  EXPECT_EQ(reason(), Reason::kNothingInCommon);
 }
 
 TEST_F(MatchGateTest, RejectsLittleOverlapAndFewInliers) {
   result_.overlap = 0.19;
-  EXPECT_EQ(verdict(), Verdict::kLittleOverlap);
+  EXPECT_EQ(reason(), Reason::kLittleOverlap);
   result_.overlap = 0.21;
-  EXPECT_EQ(verdict(), Verdict::kAccepted);
+  EXPECT_EQ(reason(), Reason::kNone);
   result_.inliers = 0.49;
-  EXPECT_EQ(verdict(), Verdict::kFewInliers);
+  EXPECT_EQ(reason(), Reason::kFewInliers);
 }
 
 TEST_F(MatchGateTest, DoubtAddsUpItsParts) {
@@ -73,60 +79,55 @@ TEST_F(MatchGateTest, AllowsLessDoubtForAWiderSearch) {
   result_.residual_rms_m = 0.04;
   result_.scan_fitness = 0.40;  // doubt 2.0; 2.2 - 0.25 per metre of half-width is allowed
   task_.half_width.x() = 0.7;
-  EXPECT_EQ(verdict(), Verdict::kAccepted);
+  EXPECT_EQ(reason(), Reason::kNone);
   task_.half_width.y() = 0.9;
-  EXPECT_EQ(verdict(), Verdict::kDoubtful);
+  EXPECT_EQ(reason(), Reason::kDoubtful);
 }
 
 TEST_F(MatchGateTest, RejectsWhatThePredictionRulesOut) {
   result_.T_reference_query = {1.49, 0.0, 0.1};  // 4.9 deviations
-  EXPECT_EQ(verdict(), Verdict::kAccepted);
+  EXPECT_EQ(reason(), Reason::kNone);
   result_.T_reference_query = {1.51, 0.0, 0.1};  // 5.1 deviations; 25 is the limit of the square
-  EXPECT_EQ(verdict(), Verdict::kImplausible);
+  EXPECT_EQ(reason(), Reason::kImplausible);
   result_.T_reference_query = {1.0, 0.0, 0.1 + 0.26};
-  EXPECT_EQ(verdict(), Verdict::kImplausible);
+  EXPECT_EQ(reason(), Reason::kImplausible);
 }
 
 TEST_F(MatchGateTest, ComparesHeadingsAcrossTheSeam) {
   task_.T_reference_query.theta_rad = 3.14;
   result_.T_reference_query.theta_rad = -3.14;
-  EXPECT_EQ(verdict(), Verdict::kAccepted);
+  EXPECT_EQ(reason(), Reason::kNone);
 }
 
 TEST_F(MatchGateTest, RejectsAMatchThatHasARival) {
-  result_.second_fitness = 0.95 * 0.8 + 0.001;
-  EXPECT_EQ(verdict(), Verdict::kAmbiguous);
-  result_.second_fitness = 0.95 * 0.8 - 0.001;
-  EXPECT_EQ(verdict(), Verdict::kAccepted);
+  result_.second.fitness = 0.95 * 0.8 + 0.001;
+  EXPECT_EQ(reason(), Reason::kSecondSolution);
+  result_.second.fitness = 0.95 * 0.8 - 0.001;
+  EXPECT_EQ(reason(), Reason::kNone);
 }
 
-TEST_F(MatchGateTest, EveryVerdictHasWordsOfItsOwn) {
+TEST_F(MatchGateTest, EveryReasonHasWordsOfItsOwn) {
   std::set<std::string> words;
-  for (std::size_t i = 0; i < kVerdicts; ++i) words.insert(to_string(static_cast<Verdict>(i)));
-  EXPECT_EQ(words.size(), kVerdicts);
+  for (std::size_t i = 0; i < kReasons; ++i) words.insert(to_string(static_cast<Reason>(i)));
+  EXPECT_EQ(words.size(), kReasons);
   EXPECT_EQ(words.count("unknown"), 0U);
 }
 
 TEST_F(MatchGateTest, CovarianceHasAFloorForThePerfectMatch) {
-  result_.information = Eigen::Matrix3d::Identity() * 1e12;
-  const Eigen::Matrix3d covariance = match_covariance(result_);
+  const Eigen::Matrix3d covariance = match_covariance(Eigen::Matrix3d::Identity() * 1e12, 0.0);
   EXPECT_NEAR(covariance(0, 0), 0.02 * 0.02, 1e-9);
   EXPECT_NEAR(covariance(1, 1), 0.02 * 0.02, 1e-9);
   EXPECT_NEAR(covariance(2, 2), 0.0052 * 0.0052, 1e-9);
 }
 
 TEST_F(MatchGateTest, CovarianceByHand) {
-  result_.inliers = 1.0;
-  result_.residual_rms_m = 0.04;
-  result_.violations = 0.0;  // doubt 0.5, so the deviation is widened by 1.0
-  result_.information.diagonal() << 99.75, 0.0, 399.75;
-  const Eigen::Matrix3d covariance = match_covariance(result_);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  information.diagonal() << 99.75, 0.0, 399.75;
+  const Eigen::Matrix3d covariance = match_covariance(information, 0.5);  // deviation as it is
   EXPECT_NEAR(covariance(0, 0), 0.01 + 0.0004, 1e-9);
   EXPECT_NEAR(covariance(1, 1), 4.0 + 0.0004, 1e-9);  // nothing known along it: 2 m, not infinite
   EXPECT_NEAR(covariance(2, 2), 0.0025 + 0.0052 * 0.0052, 1e-9);
-  MatchResult doubtful = result_;
-  doubtful.violations = 0.12;  // doubt 1.5: deviation twice as wide
-  EXPECT_NEAR(match_covariance(doubtful)(0, 0), 0.04 + 0.0004, 1e-9);
+  EXPECT_NEAR(match_covariance(information, 1.5)(0, 0), 0.04 + 0.0004, 1e-9);  // twice as wide
 }
 
 }  // namespace

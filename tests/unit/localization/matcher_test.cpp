@@ -27,13 +27,16 @@ void expect_same(const MatchResult& a, const MatchResult& b) {
   EXPECT_EQ(a.task_id, b.task_id);
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.T_reference_query, b.T_reference_query);
-  EXPECT_EQ(a.information, b.information);
+  EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(a.overlap, b.overlap);
   EXPECT_EQ(a.inliers, b.inliers);
   EXPECT_EQ(a.violations, b.violations);
   EXPECT_EQ(a.residual_rms_m, b.residual_rms_m);
   EXPECT_EQ(a.fitness, b.fitness);
-  EXPECT_EQ(a.second_fitness, b.second_fitness);
+  EXPECT_EQ(a.second.fitness, b.second.fitness);
+  EXPECT_EQ(a.second.T_reference_query, b.second.T_reference_query);
+  EXPECT_EQ(a.verdict, b.verdict);
+  EXPECT_EQ(a.reason, b.reason);
   ASSERT_EQ(a.solutions.size(), b.solutions.size());
   for (std::size_t i = 0; i < a.solutions.size(); ++i) {
     EXPECT_EQ(a.solutions[i].T_reference_query, b.solutions[i].T_reference_query);
@@ -73,13 +76,13 @@ TEST_P(TrueRelativePoseTest, IsFoundFromAPredictionThatIsOff) {
     EXPECT_EQ(result.status, MatchStatus::kSolved);
     EXPECT_LT(test::distance_m(result.T_reference_query, truth), pair.error_m);
     EXPECT_LT(test::turn_rad(result.T_reference_query, truth), 0.6 * kDegree);
-    EXPECT_EQ(judge(task, result, {}), Verdict::kAccepted)
-        << to_string(judge(task, result, {})) << " " << doubt(result);
+    EXPECT_EQ(result.verdict, Verdict::kAccepted)
+        << to_string(result.reason) << " " << doubt(result);
     const Pose2& T = result.T_reference_query;
     const Eigen::Vector3d error(T.x_m - truth.x_m, T.y_m - truth.y_m,
                                 geometry::wrap_angle(T.theta_rad - truth.theta_rad));
     // The covariance covers the error, also along the corridor.
-    EXPECT_LT(error.dot(match_covariance(result).inverse() * error), 11.3);
+    EXPECT_LT(error.dot(result.covariance.inverse() * error), 11.3);
     EXPECT_EQ(result.task_id, task.task_id);
     EXPECT_EQ(result.evaluations, 50U + 29U * 48U);
   }
@@ -192,8 +195,8 @@ TEST_F(MatcherTest, SaysWhenNothingIsInCommon) {
   EXPECT_EQ(result.status, MatchStatus::kNothingInCommon);
   EXPECT_EQ(result.task_id, task_.task_id);
   EXPECT_EQ(result.overlap, 0.0);
-  EXPECT_TRUE(result.information.isZero());
-  EXPECT_EQ(judge(task_, result, {}), Verdict::kNothingInCommon);
+  EXPECT_TRUE(result.covariance.isZero());
+  EXPECT_EQ(result.reason, Reason::kNothingInCommon);
 }
 
 TEST_F(MatcherTest, AMapWithoutPointsIsNoError) {

@@ -107,7 +107,7 @@ void fill(msg::MatchResult& result) {
   solution.T_reference_query(pose(1.0 / 3.0));
   solution.fitness(0.1);
   result.solutions().assign(msg::kMaxSolutions, solution);
-  result.information(matrix());
+  result.covariance(matrix());
   result.evaluations(1500);
 }
 

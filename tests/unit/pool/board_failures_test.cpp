@@ -77,7 +77,7 @@ TEST_F(TaskBoardTest, ADifferentDuplicateIsSeenAndDoesNotCount) {
   EXPECT_EQ(send_all(seconds(1)).size(), 2U) << "both to b as well";
   EXPECT_EQ(answer("a", 0, milliseconds(1001)), Reception::kFirst);
   MatchResult other = answer_to(first_id_);
-  other.information(2, 1) = 1e-300;
+  other.covariance(2, 1) = 1e-300;
   EXPECT_EQ(board_.answer("b", other, milliseconds(1002)), Reception::kDifferent);
   EXPECT_EQ(answer("a", 1, milliseconds(1003)), Reception::kFirst);
   expect_results(2);

@@ -78,13 +78,17 @@ TEST_P(Conversions, MatchResultIsExact) {
   result.status = static_cast<localization::MatchStatus>(random_.below(2));
   for (int i = 0; i < 3; ++i) result.solutions.push_back({any_pose(random_), any_double(random_)});
   result.T_reference_query = any_pose(random_);
-  result.information = any_matrix(random_);
-  for (double* value : {&result.overlap, &result.inliers, &result.violations,
-                        &result.residual_rms_m, &result.scan_fitness, &result.topological_fitness,
-                        &result.fitness, &result.second_fitness}) {
+  result.covariance = any_matrix(random_);
+  for (double* value :
+       {&result.overlap, &result.inliers, &result.violations, &result.residual_rms_m,
+        &result.scan_fitness, &result.topological_fitness, &result.fitness}) {
     *value = any_double(random_);
   }
+  result.second = {any_pose(random_), any_double(random_)};
   result.evaluations = any_u32(random_);
+  result.seed = random_.next_u64();
+  result.verdict = static_cast<localization::Verdict>(random_.below(3));
+  result.reason = static_cast<localization::Reason>(random_.below(localization::kReasons));
   const localization::MatchResult back = from_msg(to_msg(result, {"robot", 1, 2, "w", "c", "", 0}));
   EXPECT_EQ(back.task_id, result.task_id);
   EXPECT_EQ(back.status, result.status);
@@ -94,7 +98,7 @@ TEST_P(Conversions, MatchResultIsExact) {
     EXPECT_EQ(back.solutions[i].fitness, result.solutions[i].fitness);
   }
   EXPECT_EQ(back.T_reference_query, result.T_reference_query);
-  EXPECT_EQ(back.information, result.information);
+  EXPECT_EQ(back.covariance, result.covariance);
   EXPECT_EQ(back.overlap, result.overlap);
   EXPECT_EQ(back.inliers, result.inliers);
   EXPECT_EQ(back.violations, result.violations);
@@ -102,8 +106,12 @@ TEST_P(Conversions, MatchResultIsExact) {
   EXPECT_EQ(back.scan_fitness, result.scan_fitness);
   EXPECT_EQ(back.topological_fitness, result.topological_fitness);
   EXPECT_EQ(back.fitness, result.fitness);
-  EXPECT_EQ(back.second_fitness, result.second_fitness);
+  EXPECT_EQ(back.second.T_reference_query, result.second.T_reference_query);
+  EXPECT_EQ(back.second.fitness, result.second.fitness);
   EXPECT_EQ(back.evaluations, result.evaluations);
+  EXPECT_EQ(back.seed, result.seed);
+  EXPECT_EQ(back.verdict, result.verdict);
+  EXPECT_EQ(back.reason, result.reason);
 }
 
 TEST_P(Conversions, TrajectoryIsExactInAnyOrderOfItsSegments) {

@@ -17,7 +17,6 @@
 
 #include "topogeo/localization/match.hpp"
 #include "topogeo/localization/match_features.hpp"
-#include "topogeo/localization/match_gate.hpp"
 #include "topogeo/localization/odometry_model.hpp"
 #include "topogeo/localization/pose_graph.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -47,10 +46,14 @@ struct LocalizerConfig {
   GateConfig gate;
 };
 
+/// What a localizer of this configuration asks about two maps of which a relative pose is
+/// predicted: the search space and all settings. The caller names the maps and gives id and seed.
+MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_reference_query);
+
 struct LocalizerCounts {
   std::uint64_t tasks = 0;
   std::uint64_t evaluations = 0;
-  std::array<std::uint64_t, kVerdicts> verdicts{};  ///< index: Verdict
+  std::array<std::uint64_t, kReasons> reasons{};  ///< index: Reason; kNone: accepted
   std::uint64_t steps_in_doubt =
       0;  ///< no recent match was accepted; a doubtful one or odometry stood in
   std::uint64_t unconfirmed_loops = 0;  ///< large corrections that no second loop agreed with

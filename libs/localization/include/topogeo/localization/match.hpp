@@ -5,6 +5,7 @@
 // reference map's stop.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -19,19 +20,36 @@ namespace topogeo::localization {
 
 /// How an individual is scored (spec A5).
 enum class FitnessForm : std::uint8_t {
-  kTopological = 0,  ///< equivalent nodes and branches, clearance, orientation, coverage
+  kPrinted = 0,      ///< the equations as the source prints them, for comparison
+  kTopological = 1,  ///< equivalent nodes and branches, clearance, orientation, coverage
   kCombined =
-      1,  ///< topological and scan points against a distance field, times the odometry prior
+      2,  ///< topological and scan points against a distance field, times the odometry prior
 };
 
 /// Parameters of the genetic algorithm (spec A4).
 struct GeneticParameters {
   std::uint32_t individuals = 50;
   std::uint32_t generations = 30;
-  double mutation_rate = 0.05;          ///< probability per bit, 0.01 to 0.2
-  double resolution_m = 0.15;           ///< of the x and y genes
-  double resolution_rad = 0.034906585;  ///< of the heading gene, 2 degrees
+  double crossover_rate = 1.0;           ///< probability that two parents exchange genes, 0 to 1
+  double mutation_rate = 0.05;           ///< probability per bit, 0.01 to 0.2
+  std::uint32_t elite = 2;               ///< best individuals that live on unchanged, at least 1
+  std::uint32_t branch_hypotheses = 10;  ///< of the initial individuals, at most: poses that lay a
+                                         ///< branch or node on an equivalent one
+  double resolution_m = 0.15;            ///< of the x and y genes
+  double resolution_rad = 0.034906585;   ///< of the heading gene, 2 degrees
   friend bool operator==(const GeneticParameters&, const GeneticParameters&) = default;
+};
+
+/// When the result of a match is believed (see match_gate.hpp).
+struct GateConfig {
+  double smallest_overlap = 0.20;  ///< share of the query's points in the reference's view
+  double smallest_inliers = 0.50;  ///< of those, share on a surface
+  double largest_doubt = 2.2;      ///< see doubt()
+  double doubt_per_search_m =
+      0.25;  ///< less is allowed for a wider search, where look-alikes are likelier
+  double largest_mahalanobis2 = 25.0;  ///< between the result and the prediction (3 d.o.f.)
+  double largest_ambiguity = 0.95;  ///< fitness of the second best distinct solution over the best
+  friend bool operator==(const GateConfig&, const GateConfig&) = default;
 };
 
 struct MatchTask {
@@ -49,6 +67,7 @@ struct MatchTask {
   std::vector<geometry::Pose2>
       initial_individuals;             ///< T_reference_query candidates beside the prediction
   std::uint32_t solutions_wanted = 3;  ///< n best distinct solutions, 1 to 40
+  GateConfig gate;
   std::uint64_t seed = 0;
 };
 
@@ -62,13 +81,38 @@ enum class MatchStatus : std::uint8_t {
   kNothingInCommon = 1,  ///< no point of the query map falls into the view of the reference map
 };
 
+/// Whether a match is believed.
+enum class Verdict : std::uint8_t {
+  kAccepted = 0,
+  kAmbiguous = 1,  ///< another place fits nearly as well
+  kRejected = 2,
+};
+
+/// Why a match is not believed.
+enum class Reason : std::uint8_t {
+  kNone = 0,  ///< it is
+  kNothingInCommon,
+  kLittleOverlap,
+  kFewInliers,
+  kDoubtful,
+  kImplausible,     ///< far from the prediction
+  kSecondSolution,  ///< as good as the best one; the reason of kAmbiguous
+};
+
+inline constexpr std::size_t kReasons = 7;
+
+/// A pose with all the evidence for it. Everything but `second`, `solutions` (as a selection) and
+/// `evaluations` can be computed again from the task and the poses: see Matcher::verify.
 struct MatchResult {
   std::uint64_t task_id = 0;
   MatchStatus status = MatchStatus::kNothingInCommon;
   std::vector<MatchSolution> solutions;  ///< best first, distinct, before refinement
   geometry::Pose2
       T_reference_query;  ///< best solution after point-to-line refinement with the prior
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< Hessian of the refinement's data term
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Zero();  ///< of T_reference_query from the data alone (inverse Hessian with
+                                ///< a floor), (x, y, theta) in the reference frame; zero unless
+                                ///< solved
   double overlap = 0.0;  ///< share of the query's points inside the view of the reference, [0, 1]
   double inliers = 0.0;  ///< of those, share within the inlier distance of a reference line, [0, 1]
   double violations = 0.0;  ///< of those, share where the reference saw free space instead, [0, 1]
@@ -76,8 +120,11 @@ struct MatchResult {
   double scan_fitness = 0.0;         ///< of the refined pose, without the prior, [0, 1]
   double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
   double fitness = 0.0;              ///< of the refined pose, [0, 1]
-  double second_fitness = 0.0;  ///< of the second best distinct one after refinement, 0 if none
+  MatchSolution second;  ///< the second best distinct one after refinement; fitness 0: none
   std::uint32_t evaluations = 0;
+  std::uint64_t seed = 0;  ///< of the task
+  Verdict verdict = Verdict::kRejected;
+  Reason reason = Reason::kNothingInCommon;
 };
 
 /// Works on match tasks: in this process or on as many machines as there are.

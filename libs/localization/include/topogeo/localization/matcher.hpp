@@ -6,6 +6,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "topogeo/localization/fitness.hpp"
@@ -29,6 +30,12 @@ class Matcher {
   /// definite, the search space empty, the resolution not positive or solutions_wanted not 1 to 40.
   MatchResult solve(const MatchTask& task);
 
+  /// Computes again, from the task's maps and the poses in `result`, all that the result says of
+  /// them: fitness, evidence, covariance, verdict. What is wrong with it, for people; empty when it
+  /// is right to the last bit. A result that is right may still be poorer than that of solve():
+  /// only a second answer to the task shows that. Throws like solve().
+  [[nodiscard]] std::string verify(const MatchTask& task, const MatchResult& result);
+
  private:
   struct KnownMap {
     std::uint64_t hash = 0;
@@ -47,6 +54,10 @@ class Matcher {
   std::list<CachedReference>
       references_;  // most recently used first; grids are large, so only a few
 };
+
+/// Hash of what solve() makes of a small built-in task: two programs that differ in it would give
+/// different answers to the same task (other constants, another compiler's arithmetic).
+std::uint64_t matcher_fingerprint();
 
 /// Solves all tasks here, one after the other.
 class InProcessPool : public MatchPool {

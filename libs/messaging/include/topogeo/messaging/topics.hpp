@@ -23,6 +23,8 @@ class StreamEnd;
 class LocalMap;
 class MatchTask;
 class MatchResult;
+class MapRequest;
+class MapCopy;
 class WorkerStatus;
 class ServiceStatus;
 class LivePose;
@@ -36,23 +38,25 @@ class MotionCommand;
 
 namespace topogeo::messaging {
 
-inline constexpr std::string_view kScan = "topogeo/v2/scan";
-inline constexpr std::string_view kOdometry = "topogeo/v2/odometry";
-inline constexpr std::string_view kSonar = "topogeo/v2/sonar";
-inline constexpr std::string_view kBaseStatus = "topogeo/v2/base_status";
-inline constexpr std::string_view kStreamEnd = "topogeo/v2/stream_end";
-inline constexpr std::string_view kLocalMap = "topogeo/v2/local_map";
-inline constexpr std::string_view kMatchTask = "topogeo/v2/match_task";
-inline constexpr std::string_view kMatchResult = "topogeo/v2/match_result";
-inline constexpr std::string_view kWorkerStatus = "topogeo/v2/worker_status";
-inline constexpr std::string_view kServiceStatus = "topogeo/v2/service_status";
-inline constexpr std::string_view kLivePose = "topogeo/v2/pose";
-inline constexpr std::string_view kTrajectorySegment = "topogeo/v2/trajectory";
-inline constexpr std::string_view kLoopClosures = "topogeo/v2/loop_closures";
-inline constexpr std::string_view kMapElement = "topogeo/v2/map";
-inline constexpr std::string_view kGoal = "topogeo/v2/goal";
-inline constexpr std::string_view kRoute = "topogeo/v2/route";
-inline constexpr std::string_view kMotionCommand = "topogeo/v2/motion_command";
+inline constexpr std::string_view kScan = "topogeo/v3/scan";
+inline constexpr std::string_view kOdometry = "topogeo/v3/odometry";
+inline constexpr std::string_view kSonar = "topogeo/v3/sonar";
+inline constexpr std::string_view kBaseStatus = "topogeo/v3/base_status";
+inline constexpr std::string_view kStreamEnd = "topogeo/v3/stream_end";
+inline constexpr std::string_view kLocalMap = "topogeo/v3/local_map";
+inline constexpr std::string_view kMatchTask = "topogeo/v3/match_task";
+inline constexpr std::string_view kMatchResult = "topogeo/v3/match_result";
+inline constexpr std::string_view kMapRequest = "topogeo/v3/map_request";
+inline constexpr std::string_view kMapCopy = "topogeo/v3/map_copy";
+inline constexpr std::string_view kWorkerStatus = "topogeo/v3/worker_status";
+inline constexpr std::string_view kServiceStatus = "topogeo/v3/service_status";
+inline constexpr std::string_view kLivePose = "topogeo/v3/pose";
+inline constexpr std::string_view kTrajectorySegment = "topogeo/v3/trajectory";
+inline constexpr std::string_view kLoopClosures = "topogeo/v3/loop_closures";
+inline constexpr std::string_view kMapElement = "topogeo/v3/map";
+inline constexpr std::string_view kGoal = "topogeo/v3/goal";
+inline constexpr std::string_view kRoute = "topogeo/v3/route";
+inline constexpr std::string_view kMotionCommand = "topogeo/v3/motion_command";
 
 /// Role of the sensor topics while a log is replayed: a slow reader slows the writer. Writer and
 /// readers of a run must agree on it.

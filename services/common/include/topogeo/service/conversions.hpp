@@ -52,8 +52,9 @@ struct MatchAddress {
   std::uint64_t sequence_number = 0;
   std::string worker_id;
   std::string client_id;
-  std::string version;                   ///< of a task
-  std::uint64_t config_fingerprint = 0;  ///< of a task
+  std::string version;                    ///< of a task
+  std::uint64_t config_fingerprint = 0;   ///< of a task
+  std::uint64_t matcher_fingerprint = 0;  ///< of a task
 };
 
 msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& address);
