@@ -96,15 +96,12 @@ class KnownFitness {
 // The best distinct solutions seen so far.
 class Archive {
  public:
-  explicit Archive(const MatchTask& task)
-      : wanted_(task.solutions_wanted),
-        apart_m_(1.5 * task.genetic.resolution_m),
-        apart_rad_(1.5 * task.genetic.resolution_rad) {}
+  explicit Archive(const MatchTask& task) : task_(task), wanted_(task.solutions_wanted) {}
 
   void offer(const Pose2& pose, double fitness) {
     if (solutions_.size() >= wanted_ && fitness <= solutions_.back().fitness) return;
     for (std::size_t i = 0; i < solutions_.size(); ++i) {
-      if (!same(solutions_[i].T_reference_query, pose)) continue;
+      if (!same_solution(task_, solutions_[i].T_reference_query, pose)) continue;
       if (fitness <= solutions_[i].fitness) return;
       solutions_.erase(solutions_.begin() + static_cast<std::ptrdiff_t>(i));
       --i;
@@ -117,14 +114,8 @@ class Archive {
   [[nodiscard]] const std::vector<MatchSolution>& solutions() const { return solutions_; }
 
  private:
-  [[nodiscard]] bool same(const Pose2& a, const Pose2& b) const {
-    return (a.position_m() - b.position_m()).squaredNorm() < apart_m_ * apart_m_ &&
-           std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) < apart_rad_;
-  }
-
+  const MatchTask& task_;
   std::uint32_t wanted_;
-  double apart_m_;
-  double apart_rad_;
   std::vector<MatchSolution> solutions_;
 };
 
@@ -186,6 +177,19 @@ std::uint32_t gene_bits(const MatchTask& task) {
   std::uint32_t bits = 1;
   while (bits < 24 && static_cast<double>((1U << bits) - 1U) < steps) ++bits;
   return bits;
+}
+
+bool in_search_space(const MatchTask& task, const Pose2& T_reference_query) {
+  constexpr double kRounding = 1e-9;
+  const Eigen::Vector3d d = geometry::difference(T_reference_query, task.T_reference_query);
+  return ((d.cwiseAbs() - task.half_width).array() <= kRounding).all();
+}
+
+bool same_solution(const MatchTask& task, const Pose2& a, const Pose2& b) {
+  const double apart_m = 1.5 * task.genetic.resolution_m;
+  const double apart_rad = 1.5 * task.genetic.resolution_rad;
+  return (a.position_m() - b.position_m()).squaredNorm() < apart_m * apart_m &&
+         std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) < apart_rad;
 }
 
 SearchOutcome genetic_search(const MatchTask& task, const Fitness& fitness) {

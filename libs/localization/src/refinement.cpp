@@ -101,16 +101,17 @@ ReverseView look_back(const Reference& reference, const MatchFeatures& query, co
   return counts;
 }
 
-void collect_evidence(const Reference& reference, const MatchFeatures& query, Refinement& result) {
-  const geometry::SinCos r = geometry::sincos(result.T_reference_query.theta_rad);
+// Overlap, inliers, violations and residual.
+void compare_views(const Reference& reference, const MatchFeatures& query, const Pose2& T,
+                   PoseEvidence& result) {
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
   std::size_t in_view = 0;
   std::size_t inliers = 0;
   std::size_t violations = 0;
   double squared = 0.0;
   for (const SurfacePoint& point : query.surface) {
-    const Eigen::Vector2d p(
-        result.T_reference_query.x_m + r.cos * point.position_m.x() - r.sin * point.position_m.y(),
-        result.T_reference_query.y_m + r.sin * point.position_m.x() + r.cos * point.position_m.y());
+    const Eigen::Vector2d p(T.x_m + r.cos * point.position_m.x() - r.sin * point.position_m.y(),
+                            T.y_m + r.sin * point.position_m.x() + r.cos * point.position_m.y());
     const std::int32_t found = reference.surface_grid.find(p.x(), p.y());
     if (found != NearestPointGrid::kNone) {
       const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
@@ -134,7 +135,7 @@ void collect_evidence(const Reference& reference, const MatchFeatures& query, Re
   result.overlap = seen / static_cast<double>(query.surface.size());
   result.inliers = static_cast<double>(inliers) / seen;
   result.violations = static_cast<double>(violations) / seen;
-  const ReverseView back = look_back(reference, query, result.T_reference_query);
+  const ReverseView back = look_back(reference, query, T);
   if (back.in_view > 0) {
     result.violations = std::max(result.violations, static_cast<double>(back.violations) /
                                                         static_cast<double>(back.in_view));
@@ -144,21 +145,23 @@ void collect_evidence(const Reference& reference, const MatchFeatures& query, Re
 
 }  // namespace
 
-Refinement refine(const Reference& reference, const MatchFeatures& query,
-                  const Pose2& T_first_guess, const PosePrior& prior) {
-  Refinement result;
-  result.T_reference_query = T_first_guess;
+PoseEvidence evidence_at(const Reference& reference, const MatchFeatures& query,
+                         const Pose2& T_reference_query) {
+  PoseEvidence evidence;
+  const NormalEquations equations = linearize(reference, query, T_reference_query, kLastGate_m);
+  if (equations.points >= kFewestPoints) evidence.information = equations.hessian;
+  compare_views(reference, query, T_reference_query, evidence);
+  return evidence;
+}
+
+Alignment align(const Reference& reference, const MatchFeatures& query, const Pose2& T_first_guess,
+                const PosePrior& prior) {
+  Alignment result{T_first_guess, 0, false};
   Pose2& T = result.T_reference_query;
   for (int k = 0; k < kMaxIterations; ++k) {
     const double gate_m = std::max(kLastGate_m, kFirstGate_m - 0.06 * k);
     NormalEquations equations = linearize(reference, query, T, gate_m);
-    if (equations.points < kFewestPoints) {
-      result.T_reference_query = T_first_guess;
-      result.information.setZero();
-      result.converged = false;
-      break;
-    }
-    result.information = equations.hessian;
+    if (equations.points < kFewestPoints) return {T_first_guess, k, false};
     add_prior(equations, T, prior);
     // A little damping keeps a direction that nothing fixes (along a bare corridor) where it was.
     for (int i = 0; i < 3; ++i) equations.hessian(i, i) += 1e-3;
@@ -172,8 +175,14 @@ Refinement refine(const Reference& reference, const MatchFeatures& query,
       break;
     }
   }
-  collect_evidence(reference, query, result);
   return result;
+}
+
+Refinement refine(const Reference& reference, const MatchFeatures& query,
+                  const Pose2& T_first_guess, const PosePrior& prior) {
+  const Alignment aligned = align(reference, query, T_first_guess, prior);
+  return {evidence_at(reference, query, aligned.T_reference_query), aligned.T_reference_query,
+          aligned.iterations, aligned.converged};
 }
 
 }  // namespace topogeo::localization

@@ -17,22 +17,42 @@ struct PosePrior {
       Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the reference frame; zero: no prior
 };
 
-/// A refined pose and the evidence for it.
-struct Refinement {
-  geometry::Pose2 T_reference_query;
+/// What the scans say of one pose.
+struct PoseEvidence {
   Eigen::Matrix3d information =
-      Eigen::Matrix3d::Zero();  ///< Hessian of the data term, 1/m^2, 1/m, 1/rad^2
+      Eigen::Matrix3d::Zero();  ///< Hessian of the data term, 1/m^2, 1/m, 1/rad^2; zero with too
+                                ///< few points for three unknowns
   double overlap = 0.0;         ///< share of the query's points in the view of the reference
   double inliers = 0.0;         ///< of those, share that lie on a surface of the reference
   double violations =
       0.0;  ///< share of points in view where the other map saw free space; the worse direction
   double residual_rms_m = 0.0;  ///< of the inliers
+};
+
+/// The evidence at a pose, which stays as it is: anyone with the two maps gets the same bits.
+PoseEvidence evidence_at(const Reference& reference, const MatchFeatures& query,
+                         const geometry::Pose2& T_reference_query);
+
+/// Where the least squares ended.
+struct Alignment {
+  geometry::Pose2 T_reference_query;
   int iterations = 0;
   bool converged = false;
 };
 
 /// Gauss-Newton with a Cauchy weight, at most `kMaxIterations`. With too few points for three
-/// unknowns the pose comes back as it was, not converged and with zero information.
+/// unknowns the pose comes back as it was, not converged.
+Alignment align(const Reference& reference, const MatchFeatures& query,
+                const geometry::Pose2& T_first_guess, const PosePrior& prior);
+
+/// A refined pose and the evidence for it.
+struct Refinement : PoseEvidence {
+  geometry::Pose2 T_reference_query;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// align(), and evidence_at() where it ended.
 Refinement refine(const Reference& reference, const MatchFeatures& query,
                   const geometry::Pose2& T_first_guess, const PosePrior& prior);
 

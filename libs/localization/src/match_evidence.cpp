@@ -1,0 +1,131 @@
+#include "match_evidence.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "topogeo/localization/match_gate.hpp"
+#include "topogeo/localization/refinement.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+constexpr std::uint32_t kFewestIndividuals = 4;
+constexpr std::uint32_t kMostIndividuals = 10'000;
+constexpr std::uint64_t kMostEvaluations = 2'000'000;  // some seconds of one core
+constexpr std::uint32_t kMostSolutions = 40;
+constexpr double kFarthest_m = 1e6;
+constexpr double kWidest_m = 1000.0;
+constexpr double kWidest_rad = 4.0;  // a little over half a turn to both sides
+
+class Checker {
+ public:
+  explicit Checker(const MatchTask& task) : task_(task) {}
+
+  void require(bool condition, const std::string& complaint) const {
+    if (condition) return;
+    throw std::invalid_argument("match task " + std::to_string(task_.task_id) + ": " + complaint);
+  }
+  // Not a number is outside of every range.
+  void range(const char* name, double value, double low, double high) const {
+    if (value >= low && value <= high) return;
+    char text[160];
+    std::snprintf(text, sizeof text, "%s is %g, allowed are %g to %g", name, value, low, high);
+    require(false, text);
+  }
+  void pose(const char* name, const Pose2& T) const {
+    const std::string of = std::string(name) + ": ";
+    range((of + "x_m").c_str(), T.x_m, -kFarthest_m, kFarthest_m);
+    range((of + "y_m").c_str(), T.y_m, -kFarthest_m, kFarthest_m);
+    range((of + "theta_rad").c_str(), T.theta_rad, -1e4, 1e4);
+  }
+
+ private:
+  const MatchTask& task_;
+};
+
+void check_genetic(const Checker& checker, const GeneticParameters& g) {
+  checker.range("individuals", g.individuals, kFewestIndividuals, kMostIndividuals);
+  checker.range("generations", g.generations, 1.0,
+                static_cast<double>(kMostEvaluations / g.individuals));
+  checker.range("crossover_rate", g.crossover_rate, 0.0, 1.0);
+  checker.range("mutation_rate", g.mutation_rate, 0.0, 0.5);
+  checker.range("elite", g.elite, 1.0, g.individuals - 1.0);
+  checker.range("branch_hypotheses", g.branch_hypotheses, 0.0, kMostIndividuals);
+  checker.range("resolution_m", g.resolution_m, 1e-6, 10.0);
+  checker.range("resolution_rad", g.resolution_rad, 1e-6, 4.0);
+}
+
+void check_gate(const Checker& checker, const GateConfig& gate) {
+  for (const auto& [name, value] : {std::pair{"smallest_overlap", gate.smallest_overlap},
+                                    std::pair{"smallest_inliers", gate.smallest_inliers},
+                                    std::pair{"largest_doubt", gate.largest_doubt},
+                                    std::pair{"doubt_per_search_m", gate.doubt_per_search_m},
+                                    std::pair{"largest_mahalanobis2", gate.largest_mahalanobis2},
+                                    std::pair{"largest_ambiguity", gate.largest_ambiguity}}) {
+    checker.range(name, value, 0.0, 1e9);
+  }
+}
+
+}  // namespace
+
+void check(const MatchTask& task) {
+  const Checker checker(task);
+  checker.pose("predicted pose", task.T_reference_query);
+  for (const Pose2& T : task.initial_individuals) checker.pose("initial individual", T);
+  const Eigen::Matrix3d& c = task.covariance;
+  checker.require(c.allFinite() && c(0, 0) > 0.0 && c.topLeftCorner<2, 2>().determinant() > 0.0 &&
+                      c.determinant() > 0.0 && c.inverse().allFinite(),
+                  "the covariance is not positive definite");
+  checker.range("half_width.x", task.half_width.x(), 1e-6, kWidest_m);
+  checker.range("half_width.y", task.half_width.y(), 1e-6, kWidest_m);
+  checker.range("half_width.theta", task.half_width.z(), 1e-6, kWidest_rad);
+  check_genetic(checker, task.genetic);
+  check_gate(checker, task.gate);
+  checker.range("fitness_form", static_cast<double>(task.fitness_form), 0.0,
+                static_cast<double>(FitnessForm::kCombined));
+  checker.range("solutions_wanted", task.solutions_wanted, 1.0, kMostSolutions);
+}
+
+void add_evidence(const MatchContext& context, MatchResult& result) {
+  const auto& [task, reference, query, fitness] = context;
+  MatchResult said;  // starts from nothing, so that no field can be forgotten
+  said.task_id = task.task_id;
+  said.seed = task.seed;
+  said.evaluations = result.evaluations;
+  said.solutions = std::move(result.solutions);
+  for (MatchSolution& solution : said.solutions) {
+    solution.fitness = fitness(solution.T_reference_query);
+  }
+  if (!said.solutions.empty() && said.solutions.front().fitness > 0.0) {
+    const Pose2& T = result.T_reference_query;
+    const PoseEvidence evidence = evidence_at(reference, query, T);
+    said.T_reference_query = T;
+    said.fitness = fitness(T);
+    if (result.second.fitness > 0.0) {
+      said.second = {result.second.T_reference_query, fitness(result.second.T_reference_query)};
+    }
+    said.overlap = evidence.overlap;
+    said.inliers = evidence.inliers;
+    said.violations = evidence.violations;
+    said.residual_rms_m = evidence.residual_rms_m;
+    said.scan_fitness = fitness.scan(T);
+    said.topological_fitness = fitness.topological(T);
+    said.status = evidence.overlap > 0.0 ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
+    if (!evidence.information.isZero(0.0)) {
+      said.covariance = match_covariance(evidence.information, doubt(said));
+    }
+  }
+  const Judgement judgement = judge(task, said);
+  said.verdict = judgement.verdict;
+  said.reason = judgement.reason;
+  result = std::move(said);
+}
+
+}  // namespace topogeo::localization
