@@ -276,18 +276,34 @@ void LocalizerService::count() {
 void LocalizerService::count_pool() {
   messaging::StatusPublisher& status = service_.status();
   const BoardCounts& counts = pool_.counts();
+  const RegistryCounts& refused = pool_.registry_counts();
   const auto set = [&status](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };
+  const auto set_ms = [&status](const std::string& name, BoardTime time) {
+    status.set_counter(name, std::chrono::duration<double, std::milli>(time).count());
+  };
   set("workers", pool_.workers());
   set("workers_lost", counts.workers_lost);
+  set("workers_excluded", counts.workers_excluded);
+  set("workers_of_other_version", refused.other_version);
+  set("workers_of_other_matcher", refused.other_matcher);
+  set("workers_of_other_configuration", refused.other_configuration);
+  set("workers_of_one_id", refused.shared_ids);
   set("tasks_sent", counts.sent);
   set("tasks_resent", counts.resent);
+  set("tasks_redone", counts.redone);
   set("tasks_in_process", counts.in_process);
   set("tasks_failed", counts.failed);
   set("maps_missing", counts.map_missing);
+  set("maps_sent", pool_.maps_sent());
+  set("answers_ignored", counts.ignored);
+  set("audits", counts.audits);
+  set("audit_differences", counts.audit_differences);
   set("duplicates", counts.duplicates);
   set("duplicate_differences", counts.duplicate_differences);
+  set_ms("recovery_ms", counts.last_recovery);
+  set_ms("longest_recovery_ms", counts.longest_recovery);
 }
 
 }  // namespace topogeo::localizer

@@ -1,12 +1,12 @@
 #include "remote_pool.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
+
+#include <spdlog/spdlog.h>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
-#include "topogeo/support/hash.hpp"
 
 namespace topogeo::localizer {
 
@@ -29,12 +29,9 @@ BoardTime now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-/// Tells two processes apart that run under one worker id.
-std::uint64_t incarnation(const msg::WorkerStatus& status) {
-  support::Fnv1a hash;
-  hash.add(std::string(status.host().to_string()));
-  hash.add(std::uint64_t{status.process_id()});
-  return hash.value();
+PoolNews::Tell teller(PoolNews::Tell tell) {
+  if (tell) return tell;
+  return [](const std::string& line) { spdlog::info("{}", line); };
 }
 
 }  // namespace
@@ -44,23 +41,29 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
     : loop_(loop),
       options_(std::move(options)),
       on_fault_(std::move(on_fault)),
+      matcher_fingerprint_(localization::matcher_fingerprint()),
       board_(options_.board),
+      registry_({options_.version, matcher_fingerprint_, options_.config_fingerprint}),
+      news_(teller(options_.tell)),
       statuses_(participant),
       results_(participant, {{}, {"client_id = %0", {"'" + options_.client_id + "'"}}}),
-      task_writer_(participant) {
+      task_writer_(participant),
+      maps_(participant, loop, options_.client_id, on_fault_) {
   loop_.on_event([this](const messaging::Event& event) { on_event(event); });
   loop_.add<msg::WorkerStatus>(
       statuses_,
       [this](const msg::WorkerStatus& status, const messaging::SampleInfo& info) {
         on_status(status, info);
       },
-      [this](const messaging::SampleInfo& info) { on_worker_gone(info); });
+      [this](const messaging::SampleInfo& info) {
+        if (const auto worker_id = registry_.gone(info.instance, info.writer)) drop(*worker_id);
+      });
   loop_.add<msg::MatchResult>(
-      results_, [this](const msg::MatchResult& message, const messaging::SampleInfo&) {
-        on_result(message);
+      results_, [this](const msg::MatchResult& message, const messaging::SampleInfo& info) {
+        on_result(message, info);
       });
   loop_.add(task_writer_);
-  timer_ = loop_.add_timer(kTick, [this] { drop_silent_workers(); });
+  timer_ = loop_.add_timer(kTick, [this] { on_tick(); });
 }
 
 RemotePool::~RemotePool() {
@@ -68,36 +71,42 @@ RemotePool::~RemotePool() {
 }
 
 void RemotePool::add_map(std::shared_ptr<const topomap::LocalMap> map) {
-  const std::uint32_t id = map->id;
-  maps_[id] = std::move(map);
+  maps_.add(std::move(map));
 }
 
 // --- the wait
 
 std::vector<MatchResult> RemotePool::match(std::span<const MatchTask> tasks) {
   board_.begin(tasks);
-  batch_ = tasks;
   try {
-    while (!board_.done()) {
-      send_waiting();
-      if (const std::optional<std::size_t> here = board_.next_local(now())) {
-        report(board_.solved(*here, solve(batch_[*here])), "this process", batch_[*here].task_id);
-        run_loop(std::chrono::nanoseconds::zero(), {});
-        continue;
-      }
-      if (board_.done()) break;
-      const BoardTime time = now();
-      const BoardTime due = board_.next_deadline(time).value_or(time + kLongestWait);
-      run_loop(std::min<BoardTime>(due - time, kLongestWait),
-               [this] { return board_.done() || board_.next_local(now()).has_value(); });
-    }
+    work();
   } catch (...) {
     board_.abandon();
-    batch_ = {};
     throw;
   }
-  batch_ = {};
   return board_.take_results();
+}
+
+void RemotePool::work() {
+  while (!board_.done()) {
+    send_waiting();
+    if (const std::optional<std::size_t> here = board_.next_local(now())) {
+      news_.searching_here(board_.workers(), now());
+      board_.solved(*here, solve(board_.task(*here)), now());
+      tell_recoveries();
+      run_loop(std::chrono::nanoseconds::zero(), {});
+      continue;
+    }
+    if (const std::optional<std::size_t> audit = board_.next_audit()) {
+      settle(board_.task(*audit));
+      run_loop(std::chrono::nanoseconds::zero(), {});
+      continue;
+    }
+    const BoardTime time = now();
+    const BoardTime due = board_.next_deadline(time).value_or(time + kLongestWait);
+    run_loop(std::min<BoardTime>(due - time, kLongestWait),
+             [this] { return board_.done() || board_.next_audit() || board_.next_local(now()); });
+  }
 }
 
 std::size_t RemotePool::wait_for_workers(std::size_t count, std::chrono::nanoseconds patience) {
@@ -120,16 +129,20 @@ void RemotePool::run_loop(std::chrono::nanoseconds duration, const std::function
 
 void RemotePool::go_on() {
   send_waiting();
+  tell_recoveries();
   if (until_ && !woken_ && until_()) {
     woken_ = true;
     loop_.stop();
   }
 }
 
+void RemotePool::tell_recoveries() {
+  for (const Recovery& recovery : board_.take_recoveries()) news_.recovered(recovery);
+}
+
 // --- tasks out
 
 void RemotePool::send_waiting() {
-  if (batch_.empty()) return;
   while (const std::optional<TaskBoard::Assignment> next = board_.next_remote(now())) {
     if (send(*next)) continue;
     board_.not_sent(*next, now());
@@ -138,61 +151,150 @@ void RemotePool::send_waiting() {
 }
 
 bool RemotePool::send(const TaskBoard::Assignment& assignment) {
-  const MatchTask& task = batch_[assignment.task];
+  const MatchTask& task = board_.task(assignment.task);
+  const topomap::LocalMap* query = maps_.find(task.query_map_id);
+  if (query == nullptr) {
+    throw std::out_of_range("match task " + std::to_string(task.task_id) + ": local map " +
+                            std::to_string(task.query_map_id) + " is not known");
+  }
   service::MatchAddress address;
   address.robot_id = options_.robot_id;
-  address.stamp_ns = maps_.at(task.query_map_id)->stamp_ns;
+  address.stamp_ns = query->stamp_ns;
   address.sequence_number = sequence_++;
   address.worker_id = assignment.worker_id;
   address.client_id = options_.client_id;
   address.version = options_.version;
   address.config_fingerprint = options_.config_fingerprint;
+  address.matcher_fingerprint = matcher_fingerprint_;
   return task_writer_.write(service::to_msg(task, address));
 }
 
-MatchResult RemotePool::solve(const MatchTask& task) {
+// --- the same work here
+
+void RemotePool::prepare(const MatchTask& task) {
   for (const auto& [id, hash] : {std::pair{task.reference_map_id, task.reference_hash},
                                  std::pair{task.query_map_id, task.query_hash}}) {
-    const auto found = maps_.find(id);
-    if (found != maps_.end() && !matcher_.has_map(id, hash)) matcher_.add_map(*found->second);
+    const topomap::LocalMap* map = maps_.find(id);
+    if (map != nullptr && !matcher_.has_map(id, hash)) matcher_.add_map(*map);
   }
+}
+
+MatchResult RemotePool::solve(const MatchTask& task) {
+  prepare(task);
   return matcher_.solve(task);
+}
+
+std::string RemotePool::complaint(const MatchTask& task, const MatchResult& result) {
+  if (!options_.verify) return {};
+  try {
+    prepare(task);
+    return matcher_.verify(task, result);
+  } catch (const std::exception& error) {
+    return error.what();  // of a task that has no answer at all
+  }
+}
+
+void RemotePool::settle(const MatchTask& task) {
+  const MatchTask settled = task;  // the board may drop its own
+  const MatchResult truth = solve(settled);
+  for (const TaskBoard::Difference& difference : board_.settle(truth, now())) {
+    const std::string who =
+        registry_.name(difference.worker_id) + ", task " + std::to_string(settled.task_id) + ": ";
+    const std::string wrong = complaint(settled, difference.answer);
+    std::string stand;
+    if (difference.unchecked > 0) {
+      stand = "; " + std::to_string(difference.unchecked) +
+              " earlier answers of it were not compared and stand";
+    }
+    if (!wrong.empty()) {
+      on_fault_("wrong match result", who + wrong + stand);
+    } else if (difference.answer.fitness < truth.fitness) {
+      on_fault_("poorer match result", who + "fitness " +
+                                           std::to_string(difference.answer.fitness) + ", here " +
+                                           std::to_string(truth.fitness) + stand);
+    } else {
+      on_fault_("different answers to a task",
+                who + "right, but not what the search makes of it here" + stand);
+    }
+  }
+  tell_recoveries();
 }
 
 // --- answers in
 
-void RemotePool::on_result(const msg::MatchResult& message) {
+void RemotePool::on_result(const msg::MatchResult& message, const messaging::SampleInfo& info) {
   const std::string worker_id = message.worker_id().to_string();
   const std::uint64_t task_id = message.task_id();
-  const auto refuse = [&](Refusal refusal) { board_.refuse(worker_id, task_id, refusal, now()); };
+  // Whatever it says, it counts only from the process that the task was sent to.
+  if (!registry_.speaks_for(service::participant_of(info.writer), worker_id)) {
+    board_.ignore_answer();
+    return;
+  }
   switch (message.status()) {
     case msg::kMatchSolved:
     case msg::kMatchNothingInCommon:
-      try {
-        report(board_.answer(worker_id, service::from_msg(message), now()), worker_id, task_id);
-      } catch (const std::invalid_argument& error) {
-        on_fault_("bad match result", worker_id + ": " + error.what());
-        refuse(Refusal::kFailed);
-      }
+      on_answer(worker_id, message);
       break;
     case msg::kMatchMapMissing:
-      refuse(Refusal::kMapMissing);
+      board_.refuse(worker_id, task_id, Refusal::kMapMissing, now());
       break;
     case msg::kMatchOtherVersion:
-      exclude(worker_id, message.message().to_string());
+    case msg::kMatchOtherConfiguration:
+      if (board_.exclude(worker_id, now())) {
+        on_fault_(message.status() == msg::kMatchOtherVersion ? "worker of another version"
+                                                              : "worker of another configuration",
+                  registry_.name(worker_id) + ": " + message.message().to_string());
+      }
       break;
     case msg::kMatchFailed:
-      on_fault_("task failed", worker_id + ": " + message.message().to_string());
-      refuse(Refusal::kFailed);
+      on_fault_("task failed", registry_.name(worker_id) + ": " + message.message().to_string());
+      board_.refuse(worker_id, task_id, Refusal::kFailed, now());
       break;
+    default:
+      on_wrong(worker_id, task_id, "unknown status " + std::to_string(message.status()));
   }
   go_on();
 }
 
-void RemotePool::report(Reception reception, const std::string& worker_id, std::uint64_t task_id) {
-  if (reception != Reception::kDifferent) return;
-  on_fault_("different answers to a task",
-            "task " + std::to_string(task_id) + ", second answer from " + worker_id);
+void RemotePool::on_answer(const std::string& worker_id, const msg::MatchResult& message) {
+  const std::uint64_t task_id = message.task_id();
+  if (board_.is_excluded(worker_id)) {
+    board_.ignore_answer();
+    return;
+  }
+  MatchResult result;
+  try {
+    result = service::from_msg(message);
+  } catch (const std::invalid_argument& error) {
+    on_wrong(worker_id, task_id, error.what());
+    return;
+  }
+  const MatchTask* task = board_.given(worker_id, task_id);
+  if (task != nullptr && board_.is_open(task_id)) {
+    const std::string what = complaint(*task, result);
+    if (!what.empty()) {
+      on_wrong(worker_id, task_id, what);
+      return;
+    }
+  }
+  switch (board_.answer(worker_id, std::move(result), now())) {
+    case Reception::kFirst:
+      news_.answered();
+      break;
+    case Reception::kDifferent:
+      settle(*task);
+      break;
+    case Reception::kDuplicate:
+    case Reception::kUnknown:
+      break;
+  }
+}
+
+void RemotePool::on_wrong(const std::string& worker_id, std::uint64_t task_id,
+                          const std::string& what) {
+  if (!board_.distrust(worker_id, now())) return;
+  on_fault_("wrong match result",
+            registry_.name(worker_id) + ", task " + std::to_string(task_id) + ": " + what);
 }
 
 // --- workers
@@ -200,59 +302,56 @@ void RemotePool::report(Reception reception, const std::string& worker_id, std::
 void RemotePool::on_status(const msg::WorkerStatus& status, const messaging::SampleInfo& info) {
   const std::string robot_id = status.robot_id().to_string();
   if (!robot_id.empty() && robot_id != options_.robot_id) return;
-  const std::string worker_id = status.worker_id().to_string();
-  const std::string version = status.version().to_string();
-  if (version != options_.version) {
-    exclude(worker_id, "version " + version + ", this is " + options_.version);
+  WorkerReport report;
+  report.worker_id = status.worker_id().to_string();
+  report.host = status.host().to_string();
+  report.build = {status.version().to_string(), status.matcher_fingerprint(),
+                  status.config_fingerprint()};
+  const service::ParticipantId from = service::participant_of(info.writer);
+  const WorkerRegistry::Verdict verdict = registry_.hear(report, from, info.instance);
+  if (verdict.fault) on_fault_(verdict.fault->reason, verdict.fault->detail);
+  if (!verdict.usable) return;
+  board_.worker_up(report.worker_id, status.draining() ? 0 : status.slots(), now());
+  board_.set_reachable(report.worker_id, task_readers_.contains(from));
+  go_on();
+}
+
+void RemotePool::drop(const std::string& worker_id) {
+  board_.worker_gone(worker_id);
+  go_on();
+}
+
+void RemotePool::on_tick() {
+  for (const std::string& worker_id : registry_.tick(kSilentTicks)) drop(worker_id);
+  news_.workers(board_.usable_workers(), now());
+  maps_.tick();
+}
+
+void RemotePool::on_event(const messaging::Event& event) {
+  if (event.topic == messaging::kMatchTask) on_task_reader(event);
+  if (event.topic != messaging::kMatchResult || event.kind != messaging::EventKind::kInvalidSample)
     return;
+  // An answer that breaks the wire contract has no task id that could be relied on.
+  for (const std::string& worker_id : registry_.workers_of(service::participant_of(event.peer))) {
+    if (!board_.distrust(worker_id, now())) continue;
+    on_fault_("wrong match result", registry_.name(worker_id) + ": " + event.detail);
   }
-  const KnownWorker worker{worker_id, service::participant_of(info.writer), 0};
-  known_[info.instance] = worker;
-  board_.worker_up(worker_id, status.slots(), incarnation(status));
-  board_.set_reachable(worker_id, task_readers_.contains(worker.participant));
   go_on();
-}
-
-void RemotePool::on_worker_gone(const messaging::SampleInfo& info) {
-  const auto found = known_.find(info.instance);
-  if (found == known_.end()) return;
-  board_.worker_gone(found->second.worker_id);
-  known_.erase(found);
-  go_on();
-}
-
-void RemotePool::drop_silent_workers() {
-  bool any = false;
-  for (auto it = known_.begin(); it != known_.end();) {
-    if (++it->second.silent_ticks <= kSilentTicks) {
-      ++it;
-      continue;
-    }
-    board_.worker_gone(it->second.worker_id);
-    it = known_.erase(it);
-    any = true;
-  }
-  if (any) go_on();
-}
-
-void RemotePool::exclude(const std::string& worker_id, const std::string& why) {
-  if (board_.exclude(worker_id)) on_fault_("worker of another version", worker_id + ": " + why);
 }
 
 // A task to a worker whose reader is not connected yet would be lost, so the connections count.
-void RemotePool::on_event(const messaging::Event& event) {
-  if (event.topic != messaging::kMatchTask) return;
+void RemotePool::on_task_reader(const messaging::Event& event) {
   const service::ParticipantId participant = service::participant_of(event.peer);
   if (event.kind == messaging::EventKind::kMatched) {
     task_readers_.insert(participant);
   } else if (event.kind == messaging::EventKind::kUnmatched) {
-    task_readers_.erase(participant);
+    const auto found = task_readers_.find(participant);
+    if (found != task_readers_.end()) task_readers_.erase(found);
   } else {
     return;
   }
-  for (const auto& [instance, worker] : known_) {
-    if (worker.participant != participant) continue;
-    board_.set_reachable(worker.worker_id, task_readers_.contains(participant));
+  for (const std::string& worker_id : registry_.workers_of(participant)) {
+    board_.set_reachable(worker_id, task_readers_.contains(participant));
   }
   go_on();
 }

@@ -1,12 +1,13 @@
 // Lets search workers on the network work on match tasks, and does it itself where there are none
-// (design, the search pool). TaskBoard decides who gets what; this carries it over DDS.
+// (design, the search pool). TaskBoard decides who gets what, WorkerRegistry who may take part;
+// this carries it over DDS and checks every answer.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -24,7 +25,10 @@
 #include "topogeo/msg/status.h"
 #include "topogeo/service/participant_id.hpp"
 
+#include "map_sender.hpp"
+#include "pool_news.hpp"
 #include "task_board.hpp"
+#include "worker_registry.hpp"
 
 namespace topogeo::localizer {
 
@@ -38,10 +42,14 @@ struct RemotePoolOptions {
   std::string robot_id;                  ///< 1 to 32 bytes
   std::string client_id;                 ///< 1 to 64 bytes without quotes, unique on the domain
   std::string version;                   ///< workers of another one are not used
-  std::uint64_t config_fingerprint = 0;  ///< told to the workers
+  std::uint64_t config_fingerprint = 0;  ///< workers that were given another one are not used
   BoardOptions board;
+  /// Compute again what every answer says of its poses. Off only to measure what it costs.
+  bool verify = true;
   /// Asked after every wait: true when the program is to end. Empty: never.
   std::function<bool()> stopping;
+  /// Gets lines for the user; empty: they are logged.
+  PoolNews::Tell tell;
 };
 
 /// Everything happens in the thread that calls it. match() runs the event loop while it waits, so
@@ -67,41 +75,50 @@ class RemotePool : public localization::MatchPool {
 
   [[nodiscard]] std::size_t workers() const { return board_.workers(); }
   [[nodiscard]] const BoardCounts& counts() const { return board_.counts(); }
+  [[nodiscard]] const RegistryCounts& registry_counts() const { return registry_.counts(); }
+  /// Local maps sent to workers that asked for them.
+  [[nodiscard]] std::uint64_t maps_sent() const { return maps_.sent(); }
 
  private:
-  struct KnownWorker {
-    std::string worker_id;
-    service::ParticipantId participant;
-    int silent_ticks = 0;  // since its last status
-  };
-
   void on_status(const msg::WorkerStatus& status, const messaging::SampleInfo& info);
-  void on_worker_gone(const messaging::SampleInfo& info);
-  void drop_silent_workers();
-  void on_result(const msg::MatchResult& message);
+  void on_tick();
+  void drop(const std::string& worker_id);
   void on_event(const messaging::Event& event);
-  void exclude(const std::string& worker_id, const std::string& why);
+  void on_task_reader(const messaging::Event& event);
+  void on_result(const msg::MatchResult& message, const messaging::SampleInfo& info);
+  void on_answer(const std::string& worker_id, const msg::MatchResult& message);
+  void on_wrong(const std::string& worker_id, std::uint64_t task_id, const std::string& what);
+  /// Works until the batch is done.
+  void work();
   /// Gives workers what they have room for, then ends the wait if it has come true.
   void go_on();
   void send_waiting();
   bool send(const TaskBoard::Assignment& assignment);
-  void report(Reception reception, const std::string& worker_id, std::uint64_t task_id);
+  /// Solves an answered task here and blames the workers whose answers are others.
+  void settle(const localization::MatchTask& task);
+  /// What is wrong with an answer; empty: nothing.
+  std::string complaint(const localization::MatchTask& task,
+                        const localization::MatchResult& result);
   localization::MatchResult solve(const localization::MatchTask& task);
+  /// Lets the matcher know the task's maps.
+  void prepare(const localization::MatchTask& task);
+  void tell_recoveries();
   /// Runs the loop until `until` holds, for `duration` at most.
   void run_loop(std::chrono::nanoseconds duration, const std::function<bool()>& until);
 
   messaging::EventLoop& loop_;
   RemotePoolOptions options_;
   FaultHandler on_fault_;
+  const std::uint64_t matcher_fingerprint_;
   TaskBoard board_;
+  WorkerRegistry registry_;
+  PoolNews news_;
   messaging::Reader<msg::WorkerStatus> statuses_;
   messaging::Reader<msg::MatchResult> results_;
   messaging::Writer<msg::MatchTask> task_writer_;
-  std::map<messaging::Handle, KnownWorker> known_;  // by instance of WorkerStatus
-  std::set<service::ParticipantId> task_readers_;   // connected
-  std::map<std::uint32_t, std::shared_ptr<const topomap::LocalMap>> maps_;
-  localization::Matcher matcher_;  // holds the maps that it was needed for
-  std::span<const localization::MatchTask> batch_;
+  MapSender maps_;
+  std::multiset<service::ParticipantId> task_readers_;  // connected
+  localization::Matcher matcher_;                       // holds the maps that it was needed for
   std::uint64_t sequence_ = 0;
   std::function<bool()> until_;
   bool woken_ = false;

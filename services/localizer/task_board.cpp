@@ -242,7 +242,8 @@ void TaskBoard::accept(std::size_t index, MatchResult result, const std::string&
 }
 
 bool TaskBoard::audit_is_due(Worker* worker, std::uint64_t task_id) const {
-  if (worker == nullptr) return true;  // gone since: nothing is known of it
+  // One that has gone since is like a new one: nothing is known of it.
+  if (worker == nullptr) return options_.probation > 0;
   if (worker->answers++ < options_.probation) return true;
   if (options_.audit_every == 0) return false;
   support::Fnv1a hash;

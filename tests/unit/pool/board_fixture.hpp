@@ -38,8 +38,8 @@ inline MatchResult answer_to(std::uint64_t task_id) {
 
 class TaskBoardTest : public ::testing::Test {
  protected:
-  void up(const std::string& worker, std::uint32_t slots = 1, std::uint64_t incarnation = 1) {
-    board_.worker_up(worker, slots, incarnation);
+  void up(const std::string& worker, std::uint32_t slots = 1, BoardTime now = seconds(0)) {
+    board_.worker_up(worker, slots, now);
     board_.set_reachable(worker, true);
   }
   Sent send_all(BoardTime now) {
@@ -52,9 +52,20 @@ class TaskBoardTest : public ::testing::Test {
     std::vector<std::size_t> solved;
     while (const auto next = board_.next_local(now)) {
       solved.push_back(*next);
-      board_.solved(*next, answer_to(first_id_ + *next));
+      board_.solved(*next, answer_to(first_id_ + *next), now);
     }
     return solved;
+  }
+  /// Compares what is to be compared; the tasks and, in `differences_`, who erred.
+  std::vector<std::size_t> audit(BoardTime now) {
+    std::vector<std::size_t> compared;
+    while (const auto next = board_.next_audit()) {
+      compared.push_back(*next);
+      for (auto& difference : board_.settle(answer_to(first_id_ + *next), now)) {
+        differences_.push_back(std::move(difference));
+      }
+    }
+    return compared;
   }
   Reception answer(const std::string& worker, std::size_t task, BoardTime now) {
     return board_.answer(worker, answer_to(first_id_ + task), now);
@@ -69,8 +80,16 @@ class TaskBoardTest : public ::testing::Test {
     }
   }
 
+  static BoardOptions without_audits() {
+    BoardOptions options;
+    options.probation = 0;
+    options.audit_every = 0;
+    return options;
+  }
+
   std::uint64_t first_id_ = 100;
-  TaskBoard board_;
+  TaskBoard board_{without_audits()};
+  std::vector<TaskBoard::Difference> differences_;
 };
 
 }  // namespace topogeo::localizer

@@ -78,13 +78,14 @@ TEST_F(TaskBoardTest, WhenAllWorkersVanishTheRestIsSolvedHere) {
   expect_results(6);
 }
 
-TEST_F(TaskBoardTest, AWorkerThatWasRestartedUnderItsNameHasLostItsTasks) {
-  up("a", 1, 1);
+TEST_F(TaskBoardTest, AWorkerThatWasGoneAndIsBackHasLostItsTasks) {
+  up("a");
   begin(1);
   send_all(seconds(0));
-  up("a", 1, 1);
-  EXPECT_THAT(send_all(milliseconds(1)), IsEmpty()) << "the same run says so again";
-  up("a", 1, 2);
+  up("a");
+  EXPECT_THAT(send_all(milliseconds(1)), IsEmpty()) << "it only says so again";
+  board_.worker_gone("a");
+  up("a");
   EXPECT_THAT(send_all(milliseconds(2)), ElementsAre(std::pair{0U, "a"}));
   EXPECT_EQ(board_.counts().workers_lost, 1U);
 }
@@ -98,7 +99,7 @@ TEST_F(TaskBoardTest, ALateWorkerGetsTasksOfTheRunningBatch) {
 }
 
 TEST_F(TaskBoardTest, AWorkerIsUsedOnlyOnceItCanBeReached) {
-  board_.worker_up("a", 1, 1);
+  board_.worker_up("a", 1, seconds(0));
   EXPECT_EQ(board_.workers(), 0U);
   begin(1);
   EXPECT_THAT(send_all(seconds(0)), IsEmpty());

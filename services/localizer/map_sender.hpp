@@ -1,0 +1,69 @@
+// Sends local maps to the workers that ask for them: the map that a task names may reach a worker
+// later than the task, or never.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/service/participant_id.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localizer {
+
+/// Lives in the thread of its loop.
+class MapSender {
+ public:
+  using FaultHandler = std::function<void(std::string_view reason, std::string_view detail)>;
+
+  /// Answers requests to `client_id`. `loop` must outlive this and must not run any more once this
+  /// has gone. Throws like Reader and Writer.
+  MapSender(const messaging::Participant& participant, messaging::EventLoop& loop,
+            const std::string& client_id, FaultHandler on_fault);
+
+  /// Replaces an earlier map of that id.
+  void add(std::shared_ptr<const topomap::LocalMap> map);
+  /// Null when there is none of that id.
+  [[nodiscard]] const topomap::LocalMap* find(std::uint32_t map_id) const;
+
+  /// To be called some times in a second: sends what could not be sent before.
+  void tick();
+
+  /// Copies sent so far.
+  [[nodiscard]] std::uint64_t sent() const { return sequence_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Pending {
+    msg::MapRequest request;
+    service::ParticipantId participant{};
+    Clock::time_point since;
+  };
+
+  void on_request(const msg::MapRequest& request, const messaging::SampleInfo& info);
+  void on_event(const messaging::Event& event);
+  /// True when nothing more is to be done for the request.
+  bool answer(const Pending& pending);
+
+  FaultHandler on_fault_;
+  messaging::Reader<msg::MapRequest> requests_;
+  messaging::Writer<msg::MapCopy> copies_;
+  std::map<std::uint32_t, std::shared_ptr<const topomap::LocalMap>> maps_;  // by id
+  std::map<std::uint32_t, std::uint64_t> hashes_;  // of those that were asked for
+  std::multiset<service::ParticipantId> readers_;  // of copies, connected
+  std::list<Pending> pending_;                     // oldest first
+  std::uint64_t sequence_ = 0;
+};
+
+}  // namespace topogeo::localizer
