@@ -21,9 +21,10 @@ Service::Service(const Setup& setup, bool any_robot)
     : setup_(setup), participant_(make_participant(setup.options, setup.name)) {
   // Signals first: one that comes while the rest starts must end the program cleanly, too.
   signals_.emplace([this](int) { loop_.stop(); });
-  status_.emplace(participant_, loop_,
-                  messaging::ServiceIdentity{setup.name, "", any_robot ? "" : robot_id(),
-                                             std::string(support::kVersion)});
+  status_.emplace(
+      participant_, loop_,
+      messaging::ServiceIdentity{setup.name, setup.instance, any_robot ? "" : robot_id(),
+                                 std::string(support::kVersion)});
   loop_.add_timer(kCpuPeriod, [this] { status_->set_counter("cpu_s", support::process_cpu_s()); });
 }
 

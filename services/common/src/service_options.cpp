@@ -29,7 +29,8 @@ void add_service_options(CLI::App& app, ServiceOptions& options) {
   app.add_option("--domain", options.domain, "DDS domain")
       ->check(CLI::Range(std::uint32_t{0}, kLargestDomain))
       ->capture_default_str();
-  app.add_option("--partition", options.partition, "only services of one partition meet")
+  app.add_option("--partition", options.partition,
+                 "only services of one partition meet, * meets all")
       ->capture_default_str();
   app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
       ->check([](const std::string& id) {
@@ -54,10 +55,11 @@ messaging::Participant make_participant(const ServiceOptions& options, const std
 
 int run_service(int argc, const char* const* argv, const std::string& name,
                 const std::string& description, const std::function<void(CLI::App&)>& add_options,
-                const std::function<void(const Setup&)>& body) {
+                const std::function<void(const Setup&)>& body, const ServiceOptions& defaults) {
   try {
     Setup setup;
     setup.name = name;
+    setup.options = defaults;
     CLI::App app(description, name);
     app.set_version_flag("--version", name + " " + std::string(support::kVersion));
     add_service_options(app, setup.options);

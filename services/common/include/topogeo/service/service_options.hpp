@@ -51,7 +51,8 @@ messaging::Participant make_participant(const ServiceOptions& options, const std
 
 /// What a service starts with.
 struct Setup {
-  std::string name;  ///< of the executable
+  std::string name;      ///< of the executable
+  std::string instance;  ///< see messaging::ServiceIdentity
   ServiceOptions options;
   pipeline::LoadedConfig config;
 };
@@ -61,6 +62,6 @@ struct Setup {
 /// service is to end. What it throws becomes one line on stderr and an exit code.
 int run_service(int argc, const char* const* argv, const std::string& name,
                 const std::string& description, const std::function<void(CLI::App&)>& add_options,
-                const std::function<void(const Setup&)>& body);
+                const std::function<void(const Setup&)>& body, const ServiceOptions& defaults = {});
 
 }  // namespace topogeo::service
