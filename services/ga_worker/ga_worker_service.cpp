@@ -1,8 +1,11 @@
 #include "ga_worker_service.hpp"
 
+#include <algorithm>
 #include <array>
+#include <set>
 #include <stdexcept>
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -15,30 +18,19 @@ namespace {
 
 constexpr std::chrono::milliseconds kStatusPeriod{500};
 constexpr std::chrono::seconds kRateWindow{5};
-/// Local maps travel on another topic than the tasks that name them.
-constexpr std::chrono::seconds kMapPatience{2};
-/// A client that has not connected by then is gone.
+/// A client that has not connected by then, or does not take its results so long, is gone.
 constexpr std::chrono::seconds kClientPatience{10};
 constexpr std::chrono::seconds kDrainPatience{10};
+/// A client that has not heard yet that the worker goes may still send a task.
+constexpr std::chrono::milliseconds kDrainQuiet{30};
 constexpr std::chrono::milliseconds kFarewell{200};
-constexpr std::size_t kLongestWorkerId = 64;  // match.idl
+/// A slot with less would make the features of maps again for nearly every task.
+constexpr std::size_t kLeastPerSlot_bytes = std::size_t{4} << 20U;
 
 std::string host_name() {
-  std::array<char, 48> name{};
+  std::array<char, 65> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) return "unknown";
   return name.data();
-}
-
-WorkerOptions checked(WorkerOptions options) {
-  if (options.worker_id.empty()) {
-    options.worker_id = host_name() + "-" + std::to_string(::getpid());
-  }
-  if (options.worker_id.size() > kLongestWorkerId ||
-      options.worker_id.find_first_of("'\"%") != std::string::npos) {
-    throw std::invalid_argument("worker id '" + options.worker_id +
-                                "': expected at most 64 bytes without quotes and percent signs");
-  }
-  return options;
 }
 
 std::int64_t wall_clock_ns() {
@@ -47,142 +39,284 @@ std::int64_t wall_clock_ns() {
       .count();
 }
 
+/// One half of the memory holds the local maps, the other what the slots make of them.
+std::size_t half_of_memory(const WorkerOptions& options) {
+  return (std::size_t{options.memory_mb} << 20U) / 2;
+}
+
+IntakeOptions intake_options(const WorkerOptions& options) {
+  IntakeOptions intake;
+  intake.map_bytes = half_of_memory(options);
+  return intake;
+}
+
+messaging::ReaderOptions addressed_to(const std::string& worker_id) {
+  return {{}, {"worker_id = %0", {"'" + worker_id + "'"}}};
+}
+
 }  // namespace
 
 GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions& options)
     : service_(service),
-      options_(checked(options)),
+      options_(options),
       statuses_(service.participant()),
       results_(service.participant()),
+      requests_(service.participant()),
       maps_(service.participant()),
-      tasks_(service.participant(), {{}, {"worker_id = %0", {"'" + options_.worker_id + "'"}}}),
-      last_status_(Clock::now()) {
+      copies_(service.participant(), addressed_to(options.worker_id)),
+      tasks_(service.participant(), addressed_to(options.worker_id)),
+      intake_(intake_options(options)) {
   messaging::EventLoop& loop = service_.loop();
-  runner_.emplace(options_.slots, kMapPatience, [this, &loop](TaskRunner::Outcome outcome) {
-    loop.post([this, outcome = std::move(outcome)] { on_outcome(outcome); });
-  });
+  const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
+  runner_.emplace(options_.slots, std::max(per_slot, kLeastPerSlot_bytes),
+                  [this, &loop](TaskRunner::Outcome outcome) {
+                    loop.post([this, outcome = std::move(outcome)]() mutable {
+                      on_outcome(std::move(outcome));
+                    });
+                  });
+  fill_status();
+  listen();
+  loop.add_timer(kStatusPeriod, [this] { publish_status(); });
+  publish_status();
+  service_.status().set_state(msg::kServiceRunning);
+  const service::ServiceOptions& joined = service_.setup().options;
+  spdlog::info("worker {} with {} {} joined domain {}, partition {}", options_.worker_id,
+               options_.slots, options_.slots == 1 ? "slot" : "slots", joined.domain,
+               joined.partition);
+}
+
+void GaWorkerService::fill_status() {
   messaging::set_header(status_, "", 0, 0);  // of no robot: it works for any
   messaging::set_text(status_.worker_id(), options_.worker_id, "worker_id");
+  messaging::set_text(status_.name(), options_.name, "name");
   messaging::set_text_cut(status_.host(), host_name());
   messaging::set_text(status_.version(), support::kVersion, "version");
   status_.process_id(static_cast<std::uint32_t>(::getpid()));
   status_.slots(options_.slots);
+  const service::Setup& setup = service_.setup();
+  status_.config_fingerprint(setup.options.config ? setup.config.effective.fingerprint : 0);
+  status_.matcher_fingerprint(localization::matcher_fingerprint());
+}
+
+void GaWorkerService::listen() {
+  messaging::EventLoop& loop = service_.loop();
   loop.on_event([this](const messaging::Event& event) { on_event(event); });
-  loop.add<msg::LocalMap>(maps_, [this](const msg::LocalMap& message,
-                                        const messaging::SampleInfo&) { on_map(message); });
   loop.add<msg::MatchTask>(
       tasks_, [this](const msg::MatchTask& message, const messaging::SampleInfo& info) {
         on_task(message, info);
       });
+  loop.add<msg::MapCopy>(copies_, [this](const msg::MapCopy& message,
+                                         const messaging::SampleInfo&) { on_map_copy(message); });
+  loop.add<msg::LocalMap>(maps_, [this](const msg::LocalMap& message,
+                                        const messaging::SampleInfo&) { on_map(message); });
   loop.add(results_);
+  loop.add(requests_);
   loop.add(statuses_);
-  loop.add_timer(kStatusPeriod, [this] { publish_status(); });
-  publish_status();
-  service_.status().set_state(msg::kServiceRunning);
-  spdlog::info("worker {} with {} slots", options_.worker_id, options_.slots);
 }
 
+// --- maps
+
 void GaWorkerService::on_map(const msg::LocalMap& message) {
+  keep(message, "local map");
+}
+
+void GaWorkerService::on_map_copy(const msg::MapCopy& message) {
+  const msg::LocalMap& map = message.local_map();
+  if (intake_.lacks(map.content_hash())) keep(map, "map copy");
+}
+
+void GaWorkerService::keep(const msg::LocalMap& message, const char* what) {
   try {
-    runner_->add_map(std::make_shared<const topomap::LocalMap>(service::from_msg(message)));
+    topomap::LocalMap map = service::from_msg(message);  // checks content_hash
+    map.track = {};                                      // matching does not look at it
+    for (ReadyJob& job :
+         intake_.add_map(std::make_shared<const topomap::LocalMap>(std::move(map)))) {
+      runner_->add(std::move(job));
+    }
   } catch (const std::invalid_argument& error) {
-    service_.status().fault("invalid local map", error.what());
+    service_.status().fault(std::string("invalid ") + what, error.what());
   }
+}
+
+void GaWorkerService::look_for_maps() {
+  if (look_timer_) service_.loop().cancel_timer(*look_timer_);
+  look_timer_.reset();
+  const Clock::time_point now = Clock::now();
+  const TaskIntake::Due due = intake_.look(now);
+  for (const TaskIntake::Request& wanted : due.requests) request(wanted);
+  for (const TaskIntake::GivenUp& given_up : due.given_up) {
+    if (auto asked = asked_.extract(given_up.job.ticket)) {
+      refuse(asked.mapped(), msg::kMatchMapMissing, given_up.why);
+    }
+  }
+  if (const std::optional<Clock::time_point> next = intake_.next_look()) {
+    look_timer_ = service_.loop().call_after(
+        std::max<std::chrono::nanoseconds>(std::chrono::nanoseconds::zero(), *next - now),
+        [this] { look_for_maps(); });
+  }
+}
+
+void GaWorkerService::request(const TaskIntake::Request& request) {
+  msg::MapRequest message;
+  messaging::set_header(message, request.robot_id, request.stamp_ns, maps_requested_);
+  messaging::set_text(message.client_id(), request.client_id, "client_id");
+  messaging::set_text(message.worker_id(), options_.worker_id, "worker_id");
+  message.map_id(request.map_id);
+  message.content_hash(request.content_hash);
+  // One that cannot be sent now is sent again with the next period.
+  if (requests_.write(message)) ++maps_requested_;
+}
+
+// --- tasks
+
+std::optional<std::pair<msg::MatchStatus, std::string>> GaWorkerService::objection(
+    const msg::MatchTask& message) const {
+  const std::string version = message.version().to_string();
+  if (version != support::kVersion ||
+      message.matcher_fingerprint() != status_.matcher_fingerprint()) {
+    return std::pair{msg::kMatchOtherVersion,
+                     fmt::format("the client has version {} with matcher {:016x}, this worker "
+                                 "version {} with matcher {:016x}",
+                                 version, message.matcher_fingerprint(), support::kVersion,
+                                 status_.matcher_fingerprint())};
+  }
+  if (status_.config_fingerprint() != 0 &&
+      message.config_fingerprint() != status_.config_fingerprint()) {
+    return std::pair{
+        msg::kMatchOtherConfiguration,
+        fmt::format("the client has configuration {:016x}, this worker was given {:016x}",
+                    message.config_fingerprint(), status_.config_fingerprint())};
+  }
+  return {};
 }
 
 void GaWorkerService::on_task(const msg::MatchTask& message, const messaging::SampleInfo& info) {
   if (message.worker_id().to_string() != options_.worker_id) return;
-  Client client;
-  client.address.robot_id = message.robot_id().to_string();
-  client.address.stamp_ns = message.stamp_ns();
-  client.address.worker_id = options_.worker_id;
-  client.address.client_id = message.client_id().to_string();
-  client.task_id = message.task_id();
-  client.participant = service::participant_of(info.writer);
-  const std::string version = message.version().to_string();
-  if (version != support::kVersion) {
-    refuse(client, msg::kMatchOtherVersion,
-           "client has version " + version + ", this worker " + std::string(support::kVersion));
+  Asked asked;
+  asked.address.robot_id = message.robot_id().to_string();
+  asked.address.stamp_ns = message.stamp_ns();
+  asked.address.worker_id = options_.worker_id;
+  asked.address.client_id = message.client_id().to_string();
+  asked.task_id = message.task_id();
+  asked.participant = service::participant_of(info.writer);
+  const Clock::time_point now = Clock::now();
+  const std::string& client_id = asked.address.client_id;
+  if (clients_.task_came(client_id, asked.address.robot_id, asked.participant, now)) {
+    spdlog::info("first task of client {}, robot {}", client_id, asked.address.robot_id);
+  }
+  if (const auto refusal = objection(message)) {
+    refuse(asked, refusal->first, refusal->second);
     return;
   }
+  Job job{next_ticket_, client_id, asked.address.robot_id, message.stamp_ns(), {}};
   try {
-    TaskRunner::Job job{next_ticket_, client.address.robot_id, service::from_msg(message)};
-    clients_.emplace(next_ticket_++, std::move(client));
-    runner_->add(std::move(job));
+    job.task = service::from_msg(message);
   } catch (const std::invalid_argument& error) {
-    refuse(client, msg::kMatchFailed, error.what());
+    refuse(asked, msg::kMatchFailed, error.what());
+    return;
+  }
+  asked_.emplace(next_ticket_++, std::move(asked));
+  if (std::optional<ReadyJob> ready = intake_.add(std::move(job), now)) {
+    runner_->add(std::move(*ready));
+  } else {
+    look_for_maps();
   }
 }
 
-void GaWorkerService::on_outcome(const TaskRunner::Outcome& outcome) {
-  const auto found = clients_.find(outcome.ticket);
-  if (found == clients_.end()) return;
-  const Client client = std::move(found->second);
-  clients_.erase(found);
-  switch (outcome.failure) {
-    case TaskRunner::Failure::kNone:
-      ++done_;
-      answer(service::to_msg(outcome.result, client.address), client);
-      break;
-    case TaskRunner::Failure::kMapMissing:
-      refuse(client, msg::kMatchMapMissing, outcome.message);
-      break;
-    case TaskRunner::Failure::kFailed:
-      refuse(client, msg::kMatchFailed, outcome.message);
-      break;
+void GaWorkerService::on_outcome(TaskRunner::Outcome outcome) {
+  const auto asked = asked_.extract(outcome.ticket);
+  if (!asked) return;  // its client is gone
+  if (outcome.failed) {
+    refuse(asked.mapped(), msg::kMatchFailed, outcome.message);
+    return;
   }
+  ++done_;
+  answer(service::to_msg(outcome.result, asked.mapped().address), asked.mapped().participant);
 }
 
-void GaWorkerService::refuse(const Client& client, msg::MatchStatus status,
-                             const std::string& why) {
+void GaWorkerService::refuse(const Asked& asked, msg::MatchStatus status, const std::string& why) {
   ++failures_;
-  service_.status().fault("task refused", "task " + std::to_string(client.task_id) + " of " +
-                                              client.address.client_id + ": " + why);
+  service_.status().fault("task refused", "task " + std::to_string(asked.task_id) + " of client " +
+                                              asked.address.client_id + ": " + why);
   localization::MatchResult nothing;
-  nothing.task_id = client.task_id;
-  msg::MatchResult result = service::to_msg(nothing, client.address);
+  nothing.task_id = asked.task_id;
+  msg::MatchResult result = service::to_msg(nothing, asked.address);
   result.status(status);
   messaging::set_text_cut(result.message(), why);
-  answer(std::move(result), client);
+  answer(std::move(result), asked.participant);
 }
 
-void GaWorkerService::answer(msg::MatchResult result, const Client& client) {
-  if (connected_.contains(client.participant)) {
-    send(result);
-  } else {
-    unsent_.push_back({std::move(result), client.participant, Clock::now()});
-  }
+// --- answers
+
+void GaWorkerService::answer(msg::MatchResult result, const service::ParticipantId& participant) {
+  clients_.answered(result.client_id().to_string());
+  // A result to a client whose reader is not connected yet would be lost: it waits.
+  if (clients_.is_connected(participant) && send(result)) return;
+  unsent_.push_back({std::move(result), participant, Clock::now()});
 }
 
-void GaWorkerService::send(const msg::MatchResult& result) {
-  msg::MatchResult numbered = result;
-  numbered.sequence_number(sequence_++);
-  static_cast<void>(service_.send(results_, numbered, "match result"));
+bool GaWorkerService::send(msg::MatchResult& result) {
+  result.sequence_number(results_sent_);
+  if (!results_.write(result)) return false;
+  ++results_sent_;
+  return true;
 }
 
-// A result to a client whose reader is not connected yet would be lost: it waits.
+// A client that takes nothing costs one attempt, however much waits for it.
+void GaWorkerService::send_unsent() {
+  std::set<service::ParticipantId> blocked;
+  std::erase_if(unsent_, [&](Unsent& unsent) {
+    if (!clients_.is_connected(unsent.participant) || blocked.contains(unsent.participant)) {
+      return false;
+    }
+    if (send(unsent.result)) return true;
+    blocked.insert(unsent.participant);
+    service_.status().fault("send blocked", "client " + unsent.result.client_id().to_string());
+    return false;
+  });
+}
+
+// --- clients
+
 void GaWorkerService::on_event(const messaging::Event& event) {
   if (event.topic != messaging::kMatchResult) return;
   const service::ParticipantId participant = service::participant_of(event.peer);
-  if (event.kind == messaging::EventKind::kUnmatched) {
-    connected_.erase(participant);
-  } else if (event.kind == messaging::EventKind::kMatched) {
-    connected_.insert(participant);
-    for (const Unsent& unsent : unsent_) {
-      if (unsent.participant == participant) send(unsent.result);
-    }
-    std::erase_if(unsent_, [&](const Unsent& u) { return u.participant == participant; });
+  if (event.kind == messaging::EventKind::kMatched) {
+    clients_.reader_came(participant);
+    send_unsent();
+  } else if (event.kind == messaging::EventKind::kUnmatched) {
+    forget(clients_.reader_gone(participant));
   }
 }
 
-void GaWorkerService::publish_status() {
-  const Clock::time_point time = Clock::now();
-  std::erase_if(unsent_, [&](const Unsent& u) { return time - u.since > kClientPatience; });
+// Nobody waits for what is left to do for them.
+void GaWorkerService::forget(const std::vector<ClientBook::Entry>& gone) {
+  for (const auto& [client_id, client] : gone) {
+    spdlog::info("client {}, robot {}, is gone after {} answers", client_id, client.robot_id,
+                 client.answered);
+    for (const std::uint64_t ticket : runner_->remove(client_id)) asked_.erase(ticket);
+    for (const std::uint64_t ticket : intake_.remove(client_id)) asked_.erase(ticket);
+    std::erase_if(unsent_, [&](const Unsent& unsent) {
+      return unsent.result.client_id().to_string() == client_id;
+    });
+    // The writers have room for a limited number of instances, and a client is one.
+    msg::MatchResult result;
+    messaging::set_text(result.client_id(), client_id, "client_id");
+    results_.dispose(result);
+    msg::MapRequest request;
+    messaging::set_text(request.client_id(), client_id, "client_id");
+    requests_.dispose(request);
+  }
+}
+
+// --- status
+
+void GaWorkerService::measure_load(Clock::time_point time) {
   const std::chrono::nanoseconds busy = runner_->busy_time();
   const double available_s =
       std::chrono::duration<double>(time - last_status_).count() * options_.slots;
   const double busy_s = std::chrono::duration<double>(busy - busy_at_last_status_).count();
-  status_.load(available_s > 0.0 ? std::min(1.0, busy_s / available_s) : 0.0);
+  status_.load(available_s > 0.0 ? std::clamp(busy_s / available_s, 0.0, 1.0) : 0.0);
   busy_at_last_status_ = busy;
   last_status_ = time;
   done_history_.emplace_back(time, done_);
@@ -190,31 +324,58 @@ void GaWorkerService::publish_status() {
   const double window_s = std::chrono::duration<double>(time - done_history_.front().first).count();
   const double done_in_window = static_cast<double>(done_ - done_history_.front().second);
   status_.tasks_per_s(window_s > 0.0 ? done_in_window / window_s : 0.0);
+}
+
+void GaWorkerService::publish_status() {
+  const Clock::time_point time = Clock::now();
+  send_unsent();
+  std::erase_if(unsent_, [&](const Unsent& u) { return time - u.since > kClientPatience; });
+  forget(clients_.take_silent(time - kClientPatience));
+  measure_load(time);
   status_.stamp_ns(wall_clock_ns());
-  status_.tasks_in_hand(static_cast<std::uint32_t>(runner_->in_hand()));
+  status_.uptime_s(std::chrono::duration<double>(time - start_).count());
+  status_.tasks_in_hand(static_cast<std::uint32_t>(asked_.size()));
   status_.tasks_done(done_);
   status_.failures(failures_);
-  status_.maps_held(static_cast<std::uint32_t>(runner_->maps_held()));
+  status_.maps_held(static_cast<std::uint32_t>(intake_.maps().size()));
+  status_.clients(static_cast<std::uint32_t>(clients_.active(time - kRateWindow)));
   // The next period sends again what could not be sent now.
   if (statuses_.write(status_)) status_.sequence_number(status_.sequence_number() + 1);
   messaging::StatusPublisher& service_status = service_.status();
-  service_status.set_counter("slots", status_.slots());
-  service_status.set_counter("tasks_done", static_cast<double>(done_));
-  service_status.set_counter("failures", static_cast<double>(failures_));
-  service_status.set_counter("maps_held", status_.maps_held());
+  const auto set = [&](const char* name, std::uint64_t value) {
+    service_status.set_counter(name, static_cast<double>(value));
+  };
+  set("slots", status_.slots());
+  set("tasks_done", done_);
+  set("failures", failures_);
+  set("clients", status_.clients());
+  set("maps_held", intake_.maps().size());
+  set("maps_dropped", intake_.maps().dropped());
+  set("maps_requested", maps_requested_);
 }
 
 void GaWorkerService::drain() {
   status_.slots(0);
+  status_.draining(true);
   publish_status();
   static_cast<void>(statuses_.wait_for_acknowledgments(kFarewell));
-  const Clock::time_point end = Clock::now() + kDrainPatience;
   constexpr std::chrono::milliseconds kLook{5};
-  // At least once: outcomes and tasks that are here already.
-  while (!service_.loop().run_for(kLook) && !clients_.empty() && Clock::now() < end) {
+  const Clock::time_point start = Clock::now();
+  Clock::time_point busy_until = start;
+  bool told_again = false;
+  while (!told_again) {
+    told_again = service_.loop().run_for(kLook);
+    const Clock::time_point now = Clock::now();
+    if (!asked_.empty() || !unsent_.empty()) busy_until = now;
+    if (now - busy_until > kDrainQuiet || now - start > kDrainPatience) break;
   }
   static_cast<void>(results_.wait_for_acknowledgments(kFarewell));
   statuses_.dispose(status_);
+  const std::size_t left = asked_.size() + unsent_.size();
+  spdlog::info("worker {} left after {:.1f} s: {} tasks done for {} clients, {} failures{}",
+               options_.worker_id, std::chrono::duration<double>(Clock::now() - start_).count(),
+               done_, clients_.ever(), failures_,
+               left == 0 ? "" : fmt::format(", {} not finished", left));
 }
 
 }  // namespace topogeo::ga_worker

@@ -1,4 +1,5 @@
-// Wires TaskRunner to topics: local maps and tasks in, results and the worker's status out.
+// The service around the slots: maps and tasks in, results, requests for maps and the worker's
+// status out.
 #pragma once
 
 #include <chrono>
@@ -8,9 +9,9 @@
 #include <list>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
@@ -21,19 +22,23 @@
 #include "topogeo/service/participant_id.hpp"
 #include "topogeo/service/service.hpp"
 
+#include "client_book.hpp"
+#include "task_intake.hpp"
 #include "task_runner.hpp"
 
 namespace topogeo::ga_worker {
 
 struct WorkerOptions {
   std::uint32_t slots = 1;
-  std::string worker_id;  ///< unique on the domain, no quotes; empty: "<host>-<process id>"
+  std::uint32_t memory_mb = 64;  ///< for local maps and what the slots make of them
+  std::string name;              ///< see check_name
+  std::string worker_id;         ///< see make_worker_id
 };
 
 /// Lives in the loop of its service.
 class GaWorkerService {
  public:
-  /// Throws std::invalid_argument for 0 slots or a worker id that does not fit.
+  /// Throws std::invalid_argument for 0 slots or texts that do not fit their bounds.
   GaWorkerService(service::Service& service, const WorkerOptions& options);
 
   /// Tells that it takes no more tasks, finishes those in hand and sends their results. To be
@@ -42,8 +47,8 @@ class GaWorkerService {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// Where an answer goes.
-  struct Client {
+  /// A task in hand: where the answer goes.
+  struct Asked {
     service::MatchAddress address;
     std::uint64_t task_id = 0;
     service::ParticipantId participant{};
@@ -54,30 +59,53 @@ class GaWorkerService {
     Clock::time_point since;
   };
 
+  void fill_status();
+  void listen();
+
   void on_map(const msg::LocalMap& message);
+  void on_map_copy(const msg::MapCopy& message);
   void on_task(const msg::MatchTask& message, const messaging::SampleInfo& info);
-  void on_outcome(const TaskRunner::Outcome& outcome);
+  void on_outcome(TaskRunner::Outcome outcome);
   void on_event(const messaging::Event& event);
-  void refuse(const Client& client, msg::MatchStatus status, const std::string& why);
-  void answer(msg::MatchResult result, const Client& client);
-  void send(const msg::MatchResult& result);
+
+  /// Why a task is not for this worker; nothing when it is.
+  [[nodiscard]] std::optional<std::pair<msg::MatchStatus, std::string>> objection(
+      const msg::MatchTask& message) const;
+  void keep(const msg::LocalMap& message, const char* what);
+  /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
+  /// time.
+  void look_for_maps();
+  void request(const TaskIntake::Request& request);
+  void refuse(const Asked& asked, msg::MatchStatus status, const std::string& why);
+  void answer(msg::MatchResult result, const service::ParticipantId& participant);
+  /// False: the client does not take it now.
+  bool send(msg::MatchResult& result);
+  void send_unsent();
+  void forget(const std::vector<ClientBook::Entry>& gone);
   void publish_status();
+  void measure_load(Clock::time_point time);
 
   service::Service& service_;
   WorkerOptions options_;
   messaging::Writer<msg::WorkerStatus> statuses_;
   messaging::Writer<msg::MatchResult> results_;
+  messaging::Writer<msg::MapRequest> requests_;
   messaging::Reader<msg::LocalMap> maps_;
+  messaging::Reader<msg::MapCopy> copies_;
   messaging::Reader<msg::MatchTask> tasks_;
-  std::set<service::ParticipantId> connected_;  // clients whose result readers are
-  std::list<Unsent> unsent_;                    // to clients whose result readers are not yet
-  std::map<std::uint64_t, Client> clients_;     // by ticket
+  ClientBook clients_;
+  TaskIntake intake_;
+  std::optional<std::uint64_t> look_timer_;
+  std::map<std::uint64_t, Asked> asked_;  // by ticket
+  std::list<Unsent> unsent_;              // to clients who do not take them yet
   std::uint64_t next_ticket_ = 0;
-  std::uint64_t sequence_ = 0;
+  std::uint64_t results_sent_ = 0;
+  std::uint64_t maps_requested_ = 0;
   msg::WorkerStatus status_;
   std::uint64_t done_ = 0;
   std::uint64_t failures_ = 0;
-  Clock::time_point last_status_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_status_ = start_;
   std::chrono::nanoseconds busy_at_last_status_{0};
   std::deque<std::pair<Clock::time_point, std::uint64_t>> done_history_;
   std::optional<TaskRunner> runner_;  // last: its threads end first

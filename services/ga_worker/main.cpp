@@ -5,24 +5,43 @@
 #include "topogeo/service/service_options.hpp"
 
 #include "ga_worker_service.hpp"
+#include "worker_name.hpp"
 
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
   ga_worker::WorkerOptions options;
+  options.name = ga_worker::default_name();
+  service::ServiceOptions defaults;
+  defaults.partition = messaging::kAnyPartition;
   return service::run_service(
-      argc, argv, "ga_worker", "Works on the match tasks of any robot.",
+      argc, argv, "ga_worker",
+      "Works on the match tasks of any robot and run on the domain. One partition restricts it to "
+      "the runs of that, a configuration file to clients of the same configuration.",
       [&](CLI::App& app) {
         constexpr std::uint32_t kMostSlots = 256;
-        app.add_option("--slots", options.slots, "tasks that it works on at the same time")
+        constexpr std::uint32_t kLeastMemory_mb = 8;
+        constexpr std::uint32_t kMostMemory_mb = 65536;
+        app.add_option("--slots", options.slots,
+                       "tasks that it works on at the same time, one for each CPU that it may use")
             ->check(CLI::Range(std::uint32_t{1}, kMostSlots))
             ->capture_default_str();
-        app.add_option("--worker-id", options.worker_id,
-                       "unique name, up to 64 bytes (default: host and process id)");
+        app.add_option("--name", options.name,
+                       "for people; others may have the same, up to 24 bytes")
+            ->check(ga_worker::check_name)
+            ->capture_default_str();
+        app.add_option("--memory-mb", options.memory_mb,
+                       "for local maps and what is made of them, 4 MB for each slot at least")
+            ->check(CLI::Range(kLeastMemory_mb, kMostMemory_mb))
+            ->capture_default_str();
       },
       [&](const service::Setup& setup) {
-        service::Service service(setup, true);
+        options.worker_id = ga_worker::make_worker_id(options.name);
+        service::Setup of_worker = setup;
+        of_worker.instance = options.worker_id;
+        service::Service service(of_worker, true);
         ga_worker::GaWorkerService worker(service, options);
         service.run();
         worker.drain();
-      });
+      },
+      defaults);
 }

@@ -5,95 +5,66 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <list>
-#include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "topogeo/localization/match.hpp"
-#include "topogeo/localization/matcher.hpp"
-#include "topogeo/topomap/local_map.hpp"
+
+#include "fair_queue.hpp"
+#include "job.hpp"
+#include "slot_matchers.hpp"
 
 namespace topogeo::ga_worker {
 
-/// Safe to call from any thread.
+/// Safe to call from any thread. Clients are served in turn; slots share a queue and nothing else.
 class TaskRunner {
  public:
-  struct Job {
-    std::uint64_t ticket = 0;  ///< chosen by the caller, comes back with the outcome
-    std::string robot_id;      ///< whose maps are meant
-    localization::MatchTask task;
-  };
-  enum class Failure : std::uint8_t { kNone, kMapMissing, kFailed };
   struct Outcome {
     std::uint64_t ticket = 0;
-    Failure failure = Failure::kNone;
+    bool failed = false;
     std::string message;               ///< why it failed
     localization::MatchResult result;  ///< if it did not
   };
-  /// Called in the thread of the slot.
+  /// Called in the thread of the slot; must not throw.
   using OutcomeHandler = std::function<void(Outcome outcome)>;
 
-  /// Starts `slots` (>= 1) threads. A job whose maps are not there waits `map_patience` for them.
-  TaskRunner(std::size_t slots, std::chrono::nanoseconds map_patience, OutcomeHandler on_outcome);
+  /// Starts `slots` (>= 1) threads. Each keeps about `bytes_per_slot` of what it made of local
+  /// maps.
+  TaskRunner(std::size_t slots, std::size_t bytes_per_slot, OutcomeHandler on_outcome);
   TaskRunner(const TaskRunner&) = delete;
   TaskRunner& operator=(const TaskRunner&) = delete;
   /// Ends the jobs that run and drops those that wait.
   ~TaskRunner();
 
-  /// Replaces an earlier map of that robot and id.
-  void add_map(std::shared_ptr<const topomap::LocalMap> map);
-  void add(Job job);
+  void add(ReadyJob job);
+  /// Takes out the jobs of a client that no slot has begun and returns their tickets.
+  std::vector<std::uint64_t> remove(const std::string& client_id);
 
   /// Jobs without outcome.
   [[nodiscard]] std::size_t in_hand() const;
-  [[nodiscard]] std::size_t maps_held() const;
-  /// Sum of the time that slots have spent on jobs.
+  /// Sum of the time that slots have spent on jobs, those that run now included.
   [[nodiscard]] std::chrono::nanoseconds busy_time() const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct HeldMap {
-    std::uint64_t hash = 0;
-    std::shared_ptr<const topomap::LocalMap> map;
-  };
-  struct Ready {
-    Job job;
-    std::shared_ptr<const topomap::LocalMap> reference;
-    std::shared_ptr<const topomap::LocalMap> query;
-  };
-  struct Waiting {
-    Job job;
-    Clock::time_point until;
-  };
-  /// Of one slot: a matcher for each robot, with the maps that the slot was asked for.
-  using Matchers = std::map<std::string, localization::Matcher>;
 
-  void work();
-  /// Waits for a job; nothing when it is time to stop. `missing` is set when its maps did not come.
-  std::optional<Ready> next_job(bool& missing);
-  [[nodiscard]] std::shared_ptr<const topomap::LocalMap> held(const std::string& robot_id,
-                                                              std::uint32_t id,
-                                                              std::uint64_t hash) const;
-  [[nodiscard]] std::optional<Ready> make_ready(Job& job) const;
-  static Outcome solve(Matchers& matchers, const Ready& ready);
+  void work(std::size_t slot);
+  /// Waits for a job; nothing when it is time to stop.
+  std::optional<ReadyJob> next_job(std::size_t slot);
+  static Outcome solve(SlotMatchers& matchers, const ReadyJob& job);
 
-  std::chrono::nanoseconds map_patience_;
+  std::size_t bytes_per_slot_;
   OutcomeHandler on_outcome_;
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards all below but the threads
   std::condition_variable changed_;
-  std::map<std::pair<std::string, std::uint32_t>, HeldMap> maps_;  // by robot and id
-  std::deque<Ready> ready_;
-  std::list<Waiting> waiting_;  // oldest first
+  FairQueue<ReadyJob> queue_;
   std::size_t in_hand_ = 0;
   std::chrono::nanoseconds busy_{0};
+  std::vector<std::optional<Clock::time_point>> started_;  // by slot, of the job that runs
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };

@@ -49,7 +49,7 @@ ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partiti
   start("local_mapper", "local_mapper", common + Words{"--replay"});
   for (std::uint32_t i = 1; i <= options.workers; ++i) {
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);
-    start(name, std::string(kWorker), common + Words{"--worker-id", name, "--slots", "1"});
+    start(name, std::string(kWorker), common + Words{"--name", name, "--slots", "1"});
   }
   start("sensor_gateway", "sensor_gateway", common + Words{"--log", log, "--rate", options.rate});
   told_.assign(children_.size(), false);

@@ -120,8 +120,8 @@ TEST_F(LocalizerTest, WorkersThatItWaitedForDoAllTheMatching) {
   const auto localizer = start("localizer", {"--wait-workers", "2", "--wait-seconds", "30"});
   for (const auto& map : maps_) publish(*map);
   end_stream();
-  const auto one = start("ga_worker", {"--worker-id", "one"});
-  const auto two = start("ga_worker", {"--worker-id", "two", "--slots", "2"});
+  const auto one = start("ga_worker", {"--name", "one"});
+  const auto two = start("ga_worker", {"--name", "two", "--slots", "2"});
   ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
   expect_result_of_one_process();
   EXPECT_EQ(counter("tasks_in_process"), 0.0);

@@ -34,7 +34,7 @@ class PoolTest : public ::testing::Test {
   Program& start_worker(const std::string& id) {
     workers_.push_back(std::make_unique<Program>(
         scratch_, "ga_worker",
-        std::vector<std::string>{"--partition", partition_, "--worker-id", id}));
+        std::vector<std::string>{"--partition", partition_, "--name", id}));
     return *workers_.back();
   }
   void publish_maps() {
