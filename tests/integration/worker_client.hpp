@@ -1,0 +1,156 @@
+// A client of the search pool in the test's own process, for tests of real workers: it addresses
+// one worker after the other and records what comes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/matcher.hpp"
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/match.h"
+#include "topogeo/msg/status.h"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/support/version.hpp"
+
+#include "worker_fixture.hpp"
+
+namespace topogeo::test {
+
+using ga_worker::MapPointer;
+
+class WorkerClient {
+ public:
+  WorkerClient(const std::string& domain, const std::string& partition, std::string client_id)
+      : client_id_(std::move(client_id)),
+        participant_(options(domain, partition)),
+        maps_(participant_),
+        copies_(participant_),
+        tasks_(participant_),
+        results_(participant_, for_me()),
+        requests_(participant_, for_me()),
+        statuses_(participant_) {
+    loop_.add<msg::MatchResult>(results_, [this](const msg::MatchResult& result, const auto&) {
+      results[result.task_id()] = result;
+      loop_.stop();
+    });
+    loop_.add<msg::MapRequest>(requests_, [this](const msg::MapRequest& request, const auto&) {
+      requests.push_back(request);
+      if (on_request) on_request(request);
+      loop_.stop();
+    });
+    loop_.add<msg::WorkerStatus>(
+        statuses_,
+        [this](const msg::WorkerStatus& status, const messaging::SampleInfo& info) {
+          workers[status.worker_id().to_string()] = status;
+          instances_[info.instance] = status.worker_id().to_string();
+          if (on_status) on_status(status);
+          loop_.stop();
+        },
+        [this](const messaging::SampleInfo& info) { workers.erase(instances_[info.instance]); });
+    address.robot_id = "robot";
+    address.client_id = client_id_;
+    address.version = support::kVersion;
+    address.matcher_fingerprint = localization::matcher_fingerprint();
+  }
+  WorkerClient(const WorkerClient&) = delete;
+  WorkerClient& operator=(const WorkerClient&) = delete;
+
+  /// False when `condition` does not come true in the longest time that anything takes.
+  bool wait_until(const std::function<bool()>& condition) {
+    constexpr std::chrono::seconds kPatience{30};
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition() && std::chrono::steady_clock::now() < end) look();
+    return condition();
+  }
+  /// Lets messages come in; ends with the first.
+  void look() { loop_.run_for(std::chrono::milliseconds(2)); }
+
+  /// Ids of the workers of a name.
+  std::vector<std::string> named(const std::string& name) const {
+    std::vector<std::string> ids;
+    for (const auto& [id, status] : workers) {
+      if (status.name().to_string() == name) ids.push_back(id);
+    }
+    return ids;
+  }
+  /// The id of the only worker of a name, once it can be reached; empty: it did not come.
+  std::string find(const std::string& name) {
+    const bool there = wait_until([&] { return named(name).size() == 1; }) && reach(1);
+    return there ? named(name).front() : "";
+  }
+  bool reach(int workers_there) {
+    return wait_until([&] {
+      return tasks_.matched() >= workers_there && copies_.matched() >= workers_there &&
+             results_.matched() >= workers_there && requests_.matched() >= workers_there;
+    });
+  }
+
+  void publish(const MapPointer& map) { EXPECT_TRUE(maps_.write(service::to_msg(*map))); }
+  void send(const std::string& worker_id, const localization::MatchTask& task) {
+    address.worker_id = worker_id;
+    EXPECT_TRUE(tasks_.write(service::to_msg(task, address)));
+    ++address.sequence_number;
+  }
+  void send_copy(const std::string& worker_id, msg::LocalMap map) {
+    msg::MapCopy copy;
+    messaging::set_header(copy, "robot", 0, 0);
+    messaging::set_text(copy.worker_id(), worker_id, "worker_id");
+    copy.local_map(std::move(map));
+    EXPECT_TRUE(copies_.write(copy));
+  }
+  /// Sends each of these maps that the worker asks for.
+  void answer_requests(const std::string& worker_id, std::vector<MapPointer> maps) {
+    on_request = [this, worker_id, maps = std::move(maps)](const msg::MapRequest& request) {
+      for (const MapPointer& map : maps) {
+        if (topomap::content_hash(*map) != request.content_hash()) continue;
+        send_copy(worker_id, service::to_msg(*map));
+      }
+    };
+  }
+
+  service::MatchAddress address;  ///< of the next task
+  std::map<std::uint64_t, msg::MatchResult> results;
+  std::vector<msg::MapRequest> requests;
+  std::map<std::string, msg::WorkerStatus> workers;
+  std::function<void(const msg::MapRequest&)> on_request;
+  std::function<void(const msg::WorkerStatus&)> on_status;
+
+ private:
+  static messaging::ParticipantOptions options(const std::string& domain,
+                                               const std::string& partition) {
+    messaging::ParticipantOptions options;
+    options.domain = static_cast<std::uint32_t>(std::stoul(domain));
+    options.partition = partition;
+    options.name = "test";
+    return options;
+  }
+  [[nodiscard]] messaging::ReaderOptions for_me() const {
+    return {{}, {"client_id = %0", {"'" + client_id_ + "'"}}};
+  }
+
+  std::string client_id_;
+  messaging::Participant participant_;
+  messaging::Writer<msg::LocalMap> maps_;
+  messaging::Writer<msg::MapCopy> copies_;
+  messaging::Writer<msg::MatchTask> tasks_;
+  messaging::Reader<msg::MatchResult> results_;
+  messaging::Reader<msg::MapRequest> requests_;
+  messaging::Reader<msg::WorkerStatus> statuses_;
+  std::map<messaging::Handle, std::string> instances_;
+  messaging::EventLoop loop_;  // last: it goes before the readers
+};
+
+}  // namespace topogeo::test

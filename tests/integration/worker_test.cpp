@@ -1,0 +1,384 @@
+// Real search workers and clients that say what they want, each test in a domain of its own: a
+// worker serves every partition unless it is told not to.
+#include <csignal>
+#include <fstream>
+#include <random>
+
+#include "topogeo/pipeline/config.hpp"
+
+#include "program.hpp"
+#include "worker_client.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using ga_worker::room;
+using ga_worker::task;
+using localization::MatchTask;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class WorkerTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<Program> start(std::vector<std::string> words = {}) {
+    words.insert(words.end(), {"--name", name_, "--domain", domain_});
+    return std::make_unique<Program>(scratch_, "ga_worker", words);
+  }
+  std::unique_ptr<WorkerClient> client(const std::string& partition = "topogeo") {
+    const std::string id = "client-" + name_ + "-" + std::to_string(++clients_);
+    return std::make_unique<WorkerClient>(domain_, partition, id);
+  }
+  /// The result is bit for bit what a matcher in this process makes of the task.
+  static void expect_right(WorkerClient& client, const MatchTask& task, const MapPointer& reference,
+                           const MapPointer& query) {
+    ASSERT_TRUE(client.wait_until([&] { return client.results.contains(task.task_id); }));
+    localization::Matcher matcher;
+    matcher.add_map(*reference);
+    matcher.add_map(*query);
+    const msg::MatchResult& message = client.results.at(task.task_id);
+    ASSERT_LE(message.status(), msg::kMatchNothingInCommon) << message.message().to_string();
+    const localization::MatchResult expected = matcher.solve(task);
+    EXPECT_EQ(expected.status, localization::MatchStatus::kSolved);
+    EXPECT_TRUE(ga_worker::same(service::from_msg(message), expected));
+  }
+  msg::MatchResult refusal(WorkerClient& client, const std::string& worker, std::uint64_t id) {
+    client.send(worker, task(*zero_, *one_, id));
+    EXPECT_TRUE(client.wait_until([&] { return client.results.contains(id); }));
+    return client.results[id];
+  }
+
+  static std::string random_name() {
+    std::random_device device;
+    return "t" + std::to_string(device());
+  }
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  std::string name_ = random_name();
+  int clients_ = 0;
+  MapPointer zero_ = room(0, 0.0);
+  MapPointer one_ = room(1, 0.2);
+};
+
+TEST_F(WorkerTest, TwoOfOneNameAreTwo) {
+  const auto first = start();
+  const auto second = start();
+  const auto peer = client();
+  ASSERT_TRUE(peer->wait_until([&] { return peer->named(name_).size() == 2; }));
+  ASSERT_TRUE(peer->reach(2));
+  peer->publish(zero_);
+  peer->publish(one_);
+  std::uint64_t id = 0;
+  for (const std::string& worker : peer->named(name_)) {
+    EXPECT_THAT(worker, ::testing::StartsWith(name_ + "#"));
+    const MatchTask one_task = task(*zero_, *one_, id++);
+    peer->send(worker, one_task);
+    expect_right(*peer, one_task, zero_, one_);
+    EXPECT_EQ(peer->results.at(one_task.task_id).worker_id().to_string(), worker);
+  }
+}
+
+TEST_F(WorkerTest, HasTheLocalMapsOfBeforeItsTimeFromEveryPartition) {
+  for (const char* partition : {"topogeo", "run-7-abc"}) {
+    const auto peer = client(partition);
+    peer->publish(zero_);
+    peer->publish(one_);
+    const auto process = start();
+    const std::string worker = peer->find(name_);
+    const MatchTask wanted = task(*zero_, *one_, 1);
+    // The status says what it holds, so that this is not about who asks whom.
+    ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].maps_held() == 2; }));
+    peer->send(worker, wanted);
+    expect_right(*peer, wanted, zero_, one_);
+    EXPECT_THAT(peer->requests, IsEmpty());
+    process->send_signal(SIGTERM);
+    EXPECT_EQ(process->wait(), 0);
+    EXPECT_TRUE(peer->wait_until([&] { return peer->workers.empty(); }));
+  }
+}
+
+TEST_F(WorkerTest, ServesRunsWhoseRobotsAndMapsHaveTheSameNames) {
+  const auto process = start();
+  const auto live = client("topogeo");
+  const auto run = client("run-7-abc");
+  const std::string worker = live->find(name_);
+  ASSERT_EQ(run->find(name_), worker);
+  const MapPointer other_zero = room(0, 0.1);
+  const MapPointer other_one = room(1, 0.4);
+  // Of two maps of one key that come at once the worker may see the last one only, and asks.
+  live->answer_requests(worker, {zero_, one_});
+  run->answer_requests(worker, {other_zero, other_one});
+  live->publish(zero_);
+  run->publish(other_zero);
+  live->publish(one_);
+  run->publish(other_one);
+  for (std::uint64_t id = 0; id < 4; ++id) {
+    live->send(worker, task(*zero_, *one_, id));
+    run->send(worker, task(*other_zero, *other_one, id));
+  }
+  // Both have to look for requests until both have their results.
+  ASSERT_TRUE(live->wait_until([&] {
+    run->look();
+    return live->results.size() == 4 && run->results.size() == 4;
+  }));
+  for (std::uint64_t id = 0; id < 4; ++id) {
+    expect_right(*live, task(*zero_, *one_, id), zero_, one_);
+    expect_right(*run, task(*other_zero, *other_one, id), other_zero, other_one);
+  }
+  EXPECT_TRUE(live->wait_until([&] { return live->workers[worker].clients() == 2; }));
+  EXPECT_EQ(live->workers[worker].maps_held(), 4U);
+}
+
+TEST_F(WorkerTest, APartitionRestrictsIt) {
+  const auto process = start({"--partition", "mine"});
+  const auto mine = client("mine");
+  const auto other = client("other");
+  ASSERT_NE(mine->find(name_), "");
+  for (int i = 0; i < 50; ++i) other->look();
+  EXPECT_THAT(other->workers, IsEmpty());
+}
+
+TEST_F(WorkerTest, AsksForAMapThatItLacksUntilItHasTheRightOne) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  peer->publish(zero_);
+  peer->publish(room(1, 0.5));  // the id of the map that is meant, but another map
+  int damaged = 0;
+  peer->on_request = [&](const msg::MapRequest& request) {
+    EXPECT_EQ(request.worker_id().to_string(), worker);
+    EXPECT_EQ(request.content_hash(),
+              topomap::content_hash(request.map_id() == 0 ? *zero_ : *one_));
+    msg::LocalMap map = service::to_msg(request.map_id() == 0 ? *zero_ : *one_);
+    // A copy that is not what it says is not taken, and asked for again.
+    if (request.map_id() == 1 && damaged++ == 0) map.points()[0].x_m(-1.0F);
+    peer->send_copy(worker, map);
+  };
+  const MatchTask wanted = task(*zero_, *one_, 1);
+  peer->send(worker, wanted);
+  expect_right(*peer, wanted, zero_, one_);
+  EXPECT_EQ(damaged, 2);
+  process->wait_for_error_text("invalid map copy");
+}
+
+TEST_F(WorkerTest, SaysThatAMapIsMissingWhenItDoesNotCome) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  peer->publish(zero_);
+  const msg::MatchResult result = refusal(*peer, worker, 1);
+  EXPECT_EQ(result.status(), msg::kMatchMapMissing);
+  EXPECT_THAT(result.message().to_string(), HasSubstr("local map 1 ("));
+  EXPECT_GE(peer->requests.size(), 3U);
+  EXPECT_TRUE(peer->wait_until([&] { return peer->workers[worker].failures() == 1; }));
+  EXPECT_EQ(peer->workers[worker].tasks_in_hand(), 0U);
+}
+
+TEST_F(WorkerTest, AsksAgainForAMapThatMadeRoomForOthers) {
+  const auto process = start({"--memory-mb", "8"});
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  // 4 MB hold fewer than 260 maps of this size.
+  topomap::LocalMap large = *room(0, 0.0);
+  large.points.resize(2000, {1.0F, 1.0F});
+  for (std::uint32_t i = 1000; i < 1300; ++i) {
+    large.id = i;
+    peer->publish(std::make_shared<const topomap::LocalMap>(large));
+  }
+  ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].maps_held() > 150; }));
+  peer->publish(one_);
+  large.id = 1000;
+  const auto dropped = std::make_shared<const topomap::LocalMap>(large);
+  peer->answer_requests(worker, {dropped, one_});
+  const MatchTask wanted = task(*dropped, *one_, 1);
+  peer->send(worker, wanted);
+  expect_right(*peer, wanted, dropped, one_);
+  ASSERT_THAT(peer->requests, SizeIs(::testing::Ge(1U)));
+  EXPECT_EQ(peer->requests[0].map_id(), 1000U);
+  EXPECT_LT(peer->workers[worker].maps_held(), 270U);
+}
+
+TEST_F(WorkerTest, AClientWithALongQueueDoesNotKeepAnotherWaiting) {
+  const auto process = start();
+  const auto greedy = client();
+  const auto modest = client();
+  const std::string worker = greedy->find(name_);
+  ASSERT_EQ(modest->find(name_), worker);
+  greedy->publish(zero_);
+  greedy->publish(one_);
+  constexpr std::uint64_t kMany = 120;
+  MatchTask long_task = task(*zero_, *one_, 0);
+  long_task.genetic.generations = 500;  // sending takes less time than the work
+  for (; long_task.task_id < kMany; ++long_task.task_id) greedy->send(worker, long_task);
+  for (std::uint64_t id = 0; id < 3; ++id) modest->send(worker, task(*zero_, *one_, id));
+  ASSERT_TRUE(modest->wait_until([&] {
+    greedy->look();
+    return modest->results.size() == 3;
+  }));
+  EXPECT_LT(greedy->results.size(), kMany / 2);
+  EXPECT_TRUE(greedy->wait_until([&] { return greedy->results.size() == kMany; }));
+}
+
+TEST_F(WorkerTest, RefusesAnotherVersionAnotherMatcherAndAnotherConfiguration) {
+  const auto file = scratch_ / "config.yaml";
+  std::ofstream(file) << "localizer:\n  recent_matches: 2\n";
+  const std::uint64_t fingerprint = pipeline::load_config(file).effective.fingerprint;
+  const auto process = start({"--config", file.string()});
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  EXPECT_EQ(peer->workers[worker].config_fingerprint(), fingerprint);
+  peer->publish(zero_);
+  peer->publish(one_);
+  const service::MatchAddress good = [&] {
+    service::MatchAddress address = peer->address;
+    address.config_fingerprint = fingerprint;
+    return address;
+  }();
+
+  peer->address = good;
+  peer->address.version = "0.0.1";
+  const msg::MatchResult version = refusal(*peer, worker, 1);
+  EXPECT_EQ(version.status(), msg::kMatchOtherVersion);
+  EXPECT_THAT(version.message().to_string(), HasSubstr("0.0.1"));
+  EXPECT_THAT(version.message().to_string(), HasSubstr(std::string(support::kVersion)));
+
+  peer->address = good;
+  peer->address.matcher_fingerprint = 0xABC;
+  const msg::MatchResult matcher = refusal(*peer, worker, 2);
+  EXPECT_EQ(matcher.status(), msg::kMatchOtherVersion);
+  EXPECT_THAT(matcher.message().to_string(), HasSubstr("matcher 0000000000000abc"));
+
+  peer->address = good;
+  peer->address.config_fingerprint = 0xDEF;
+  const msg::MatchResult configuration = refusal(*peer, worker, 3);
+  EXPECT_EQ(configuration.status(), msg::kMatchOtherConfiguration);
+  EXPECT_THAT(configuration.message().to_string(), HasSubstr("0000000000000def"));
+
+  peer->address = good;
+  const MatchTask wanted = task(*zero_, *one_, 4);
+  peer->send(worker, wanted);
+  expect_right(*peer, wanted, zero_, one_);
+  process->wait_for_error_text("task refused");
+}
+
+TEST_F(WorkerTest, WithoutAConfigurationAnyWillDo) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  EXPECT_EQ(peer->workers[worker].config_fingerprint(), 0U);
+  peer->publish(zero_);
+  peer->publish(one_);
+  peer->address.config_fingerprint = 0xDEF;
+  const MatchTask wanted = task(*zero_, *one_, 1);
+  peer->send(worker, wanted);
+  expect_right(*peer, wanted, zero_, one_);
+}
+
+TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
+  const auto process = start({"--slots", "2"});
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  peer->publish(zero_);
+  peer->publish(one_);
+  const msg::WorkerStatus idle = peer->workers[worker];
+  EXPECT_EQ(idle.slots(), 2U);
+  EXPECT_FALSE(idle.draining());
+  EXPECT_EQ(idle.clients(), 0U);
+  EXPECT_EQ(idle.version().to_string(), std::string(support::kVersion));
+  EXPECT_EQ(idle.matcher_fingerprint(), localization::matcher_fingerprint());
+  EXPECT_FALSE(idle.host().to_string().empty());
+  double most_load = 0.0;
+  std::uint32_t most_in_hand = 0;
+  peer->on_status = [&](const msg::WorkerStatus& status) {
+    most_load = std::max(most_load, status.load());
+    most_in_hand = std::max(most_in_hand, status.tasks_in_hand());
+  };
+  // More work than what is done between two statuses.
+  MatchTask long_task = task(*zero_, *one_, 0);
+  long_task.genetic.generations = 3000;
+  for (; long_task.task_id < 100; ++long_task.task_id) peer->send(worker, long_task);
+  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 100; }));
+  ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].tasks_done() == 100; }));
+  const msg::WorkerStatus done = peer->workers[worker];
+  EXPECT_GT(most_load, 0.5);
+  EXPECT_LE(most_load, 1.0);
+  EXPECT_GT(most_in_hand, 2U);
+  EXPECT_EQ(done.tasks_in_hand(), 0U);
+  EXPECT_GT(done.tasks_per_s(), 0.0);
+  EXPECT_EQ(done.clients(), 1U);
+  EXPECT_EQ(done.failures(), 0U);
+  EXPECT_GT(done.uptime_s(), idle.uptime_s());
+}
+
+TEST_F(WorkerTest, FinishesWhatItHasInHandBeforeItGoes) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  peer->publish(zero_);
+  peer->publish(one_);
+  bool draining = false;
+  peer->on_status = [&](const msg::WorkerStatus& status) {
+    draining = draining || (status.draining() && status.slots() == 0);
+  };
+  for (std::uint64_t id = 0; id < 60; ++id) peer->send(worker, task(*zero_, *one_, id));
+  ASSERT_TRUE(peer->wait_until([&] { return !peer->results.empty(); }));
+  process->send_signal(SIGTERM);
+  ASSERT_TRUE(peer->wait_until([&] { return peer->workers.empty(); }));
+  EXPECT_EQ(process->wait(), 0);
+  EXPECT_TRUE(draining);
+  EXPECT_EQ(peer->results.size(), 60U);
+  EXPECT_THAT(process->err(), HasSubstr("joined domain " + domain_));
+  EXPECT_THAT(process->err(), HasSubstr("first task of client"));
+  EXPECT_THAT(process->err(), HasSubstr("60 tasks done for 1 clients, 0 failures"));
+}
+
+TEST_F(WorkerTest, ASecondSignalEndsItAtOnce) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  peer->publish(zero_);
+  peer->publish(one_);
+  MatchTask long_task = task(*zero_, *one_, 0);
+  long_task.genetic.generations = 2000;
+  for (; long_task.task_id < 120; ++long_task.task_id) peer->send(worker, long_task);
+  ASSERT_TRUE(peer->wait_until([&] { return !peer->results.empty(); }));
+  process->send_signal(SIGTERM);
+  ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].draining(); }));
+  process->send_signal(SIGTERM);
+  EXPECT_EQ(process->wait(), 0);
+  EXPECT_LT(peer->results.size(), 120U);
+  EXPECT_THAT(process->err(), HasSubstr("not finished"));
+}
+
+TEST_F(WorkerTest, HasRoomForEverNewClients) {
+  // More than a writer has room for at a time (deploy/dds_profiles.xml, results).
+  constexpr int kAtATime = 10;
+  const auto process = start();
+  for (int i = 0; i < 7; ++i) {
+    std::vector<std::unique_ptr<WorkerClient>> peers;
+    for (int k = 0; k < kAtATime; ++k) peers.push_back(client());
+    for (const auto& peer : peers) {
+      const std::string worker = peer->find(name_);
+      peer->publish(zero_);
+      peer->publish(one_);
+      const MatchTask wanted = task(*zero_, *one_, 1);
+      peer->send(worker, wanted);
+      ASSERT_NO_FATAL_FAILURE(expect_right(*peer, wanted, zero_, one_)) << "round " << i;
+    }
+  }
+  process->send_signal(SIGTERM);
+  EXPECT_EQ(process->wait(), 0);
+  EXPECT_THAT(process->err(), HasSubstr("is gone after 1 answers"));
+  EXPECT_THAT(process->err(), HasSubstr("70 tasks done for 70 clients"));
+}
+
+TEST_F(WorkerTest, ABadNameIsAUsageError) {
+  Program process(scratch_, "ga_worker", {"--name", "a#b"});
+  EXPECT_EQ(process.wait(), 2);
+  EXPECT_THAT(process.err(), HasSubstr("worker name 'a#b': expected 1 to 24 bytes"));
+}
+
+}  // namespace
+}  // namespace topogeo::test
