@@ -34,7 +34,7 @@ class LocalizerTest : public ::testing::Test {
   }
 
   std::unique_ptr<Program> start(const std::string& name, std::vector<std::string> words = {}) {
-    words.insert(words.end(), {"--partition", partition_});
+    words.insert(words.end(), {"--domain", own_domain(), "--partition", partition_});
     return std::make_unique<Program>(scratch_, name, words);
   }
   void publish(const topomap::LocalMap& map) {

@@ -2,6 +2,8 @@
 // the test's own.
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -79,8 +81,10 @@ inline std::string random_partition() {
   return "test-" + std::to_string(device()) + std::to_string(device());
 }
 
+/// In the test's own domain: workers of other tests look into every partition of theirs.
 inline messaging::ParticipantOptions options_in(const std::string& partition) {
   messaging::ParticipantOptions options;
+  options.domain = static_cast<std::uint32_t>(std::stoul(own_domain()));
   options.partition = partition;
   options.name = "test";
   return options;
@@ -90,15 +94,18 @@ inline messaging::ParticipantOptions options_in(const std::string& partition) {
 class FakeWorker {
  public:
   using OnTask = std::function<void(FakeWorker&, const msg::MatchTask&)>;
+  using Dress = std::function<void(msg::WorkerStatus&)>;
 
   FakeWorker(const FakeWorker&) = delete;
   FakeWorker& operator=(const FakeWorker&) = delete;
+  /// `dress` changes what it says of itself, which otherwise is what any client wants to hear.
   FakeWorker(const std::string& partition, messaging::EventLoop& loop, const std::string& worker_id,
-             const OnTask& on_task)
+             const OnTask& on_task, const Dress& dress = {})
       : loop_(loop),
         participant_(options_in(partition)),
         statuses_(participant_),
         results_(participant_),
+        requests_(participant_),
         tasks_(participant_, {{}, {"worker_id = %0", {"'" + worker_id + "'"}}}) {
     loop_.add<msg::MatchTask>(tasks_, [this, on_task](const msg::MatchTask& task, const auto&) {
       ++received;
@@ -106,8 +113,11 @@ class FakeWorker {
     });
     messaging::set_header(status_, "", 0, 0);
     messaging::set_text(status_.worker_id(), worker_id, "worker_id");
+    messaging::set_text(status_.host(), "here", "host");
     messaging::set_text(status_.version(), support::kVersion, "version");
+    status_.matcher_fingerprint(localization::matcher_fingerprint());
     status_.slots(1);
+    if (dress) dress(status_);
     timer_ = loop_.add_timer(std::chrono::milliseconds(200), [this] { announce(); });
     announce();
   }
@@ -117,6 +127,11 @@ class FakeWorker {
   void leave() {
     loop_.cancel_timer(timer_);
     statuses_.dispose(status_);
+  }
+  /// Says from now on what `dress` makes of its status.
+  void change(const Dress& dress) {
+    dress(status_);
+    announce();
   }
 
   void answer(const msg::MatchTask& task, localization::MatchResult result,
@@ -131,6 +146,16 @@ class FakeWorker {
     EXPECT_TRUE(results_.wait_for_matched(1, kPatience));
     EXPECT_TRUE(results_.write(message));
   }
+  void request_map(const msg::MatchTask& task, std::uint32_t map_id, std::uint64_t hash) {
+    msg::MapRequest request;
+    messaging::set_header(request, "robot", 0, 0);
+    request.client_id(task.client_id());
+    request.worker_id(task.worker_id());
+    request.map_id(map_id);
+    request.content_hash(hash);
+    EXPECT_TRUE(requests_.wait_for_matched(1, kPatience));
+    EXPECT_TRUE(requests_.write(request));
+  }
 
   int received = 0;
 
@@ -142,8 +167,114 @@ class FakeWorker {
   messaging::Participant participant_;
   messaging::Writer<msg::WorkerStatus> statuses_;
   messaging::Writer<msg::MatchResult> results_;
+  messaging::Writer<msg::MapRequest> requests_;
   messaging::Reader<msg::MatchTask> tasks_;
   msg::WorkerStatus status_;
+};
+
+/// Solves tasks as a worker does, or with other parameters of the search.
+class Solver {
+ public:
+  explicit Solver(const Maps& maps) {
+    for (const auto& map : maps) matcher_.add_map(*map);
+  }
+  localization::MatchResult solve(const msg::MatchTask& task) {
+    return matcher_.solve(service::from_msg(task));
+  }
+  /// Right, but of a search that gave up early.
+  localization::MatchResult solve_poorly(const msg::MatchTask& task) {
+    localization::MatchTask shorter = service::from_msg(task);
+    shorter.genetic.generations = 1;
+    return matcher_.solve(shorter);
+  }
+
+ private:
+  localization::Matcher matcher_;
+};
+
+/// A pool in the test's process with the local maps of a room.
+class PoolTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    localizer::RemotePoolOptions options;
+    options.robot_id = "robot";
+    options.client_id = "client-" + partition_;
+    options.client_id.resize(std::min<std::size_t>(options.client_id.size(), 64));
+    options.version = support::kVersion;
+    options.config_fingerprint = 0x12;
+    options.board = board_options_;
+    options.tell = [this](const std::string& line) { lines_.push_back(line); };
+    pool_.emplace(participant_, loop_, options,
+                  [this](std::string_view reason, std::string_view detail) {
+                    faults_.emplace_back(reason);
+                    details_.emplace_back(detail);
+                  });
+    for (const auto& map : maps_) pool_->add_map(map);
+  }
+  void TearDown() override { workers_.clear(); }
+
+  Program& start_worker(const std::string& name) {
+    workers_.push_back(
+        std::make_unique<Program>(scratch_, "ga_worker",
+                                  std::vector<std::string>{"--domain", own_domain(), "--partition",
+                                                           partition_, "--name", name}));
+    return *workers_.back();
+  }
+  void publish_maps() {
+    for (const auto& map : maps_) ASSERT_TRUE(map_writer_.write(service::to_msg(*map)));
+  }
+  void expect_same(const std::vector<localization::MatchTask>& tasks,
+                   const std::vector<localization::MatchResult>& results) {
+    localization::InProcessPool in_process;
+    for (const auto& map : maps_) in_process.add_map(map);
+    const std::vector<localization::MatchResult> expected = in_process.match(tasks);
+    ASSERT_EQ(results.size(), expected.size());
+    std::size_t solved = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_TRUE(localizer::identical(results[i], expected[i])) << "task " << i;
+      if (expected[i].status == localization::MatchStatus::kSolved) ++solved;
+    }
+    EXPECT_GT(solved, expected.size() / 2) << "the tasks are not worth comparing";
+  }
+  /// Does something once so many tasks are sent, while match() runs.
+  void when_sent(std::uint64_t count, std::function<void()> action) {
+    timer_ =
+        loop_.add_timer(std::chrono::milliseconds(1), [this, count, action = std::move(action)] {
+          if (pool_->counts().sent < count) return;
+          loop_.cancel_timer(timer_);
+          action();
+        });
+  }
+  /// Runs the loop outside of match(); false when `condition` does not come true.
+  bool wait_until(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition() && std::chrono::steady_clock::now() < end) {
+      loop_.run_for(std::chrono::milliseconds(5));
+    }
+    return condition();
+  }
+
+  std::string partition_ = random_partition();
+  Scratch scratch_;
+  Maps maps_ = maps_of_room();
+  messaging::Participant participant_{options_in(partition_)};
+  messaging::Writer<msg::LocalMap> map_writer_{participant_};
+  messaging::EventLoop loop_;
+  localizer::BoardOptions board_options_ = patient();
+  std::vector<std::string> faults_;
+  std::vector<std::string> details_;
+  std::vector<std::string> lines_;
+  std::optional<localizer::RemotePool> pool_;
+  std::vector<std::unique_ptr<Program>> workers_;
+  std::uint64_t timer_ = 0;
+
+ private:
+  /// Nothing is taken from a slow worker on a busy machine, unless a test wants it.
+  static localizer::BoardOptions patient() {
+    localizer::BoardOptions options;
+    options.straggler_floor = kPatience;
+    return options;
+  }
 };
 
 }  // namespace topogeo::test

@@ -1,0 +1,269 @@
+// Workers that are not what they should be: of another build, wrong, worse, or two under one id.
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "pool_fixture.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using localization::MatchResult;
+using localization::MatchTask;
+using std::chrono::milliseconds;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A short search often ends at the same pose as a long one, by another way.
+const ::testing::Matcher<std::string> kWorse =
+    ::testing::AnyOf("poorer match result", "different answers to a task");
+
+class PoolTrustTest : public PoolTest {
+ protected:
+  /// A worker that solves every task as it should.
+  FakeWorker::OnTask honest() {
+    return [this](FakeWorker& self, const msg::MatchTask& task) {
+      self.answer(task, solver_.solve(task));
+    };
+  }
+  /// What the pool makes of a worker that says this of itself: no task gets to it.
+  void expect_refused(const FakeWorker::Dress& dress, const std::string& reason,
+                      const std::string& detail) {
+    FakeWorker other(partition_, loop_, "other", honest(), dress);
+    ASSERT_TRUE(wait_until([&] { return !faults_.empty(); }));
+    const std::vector<MatchTask> tasks = tasks_on(maps_, 10);
+    expect_same(tasks, pool_->match(tasks));
+    loop_.run_for(milliseconds(500));
+    EXPECT_EQ(other.received, 0);
+    EXPECT_EQ(pool_->workers(), 0U);
+    EXPECT_THAT(faults_, ElementsAre(reason)) << "once";
+    EXPECT_THAT(details_[0], HasSubstr("worker other on host here: " + detail));
+  }
+  /// What it makes of one that answers like this, next to an honest one.
+  void expect_excluded(const FakeWorker::OnTask& on_task,
+                       const ::testing::Matcher<std::string>& reason, const std::string& detail) {
+    FakeWorker liar(partition_, loop_, "liar", on_task);
+    FakeWorker good(partition_, loop_, "good", honest());
+    ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+    const std::vector<MatchTask> tasks = tasks_on(maps_, 40);
+    expect_same(tasks, pool_->match(tasks));
+    EXPECT_THAT(faults_, ElementsAre(reason)) << "once";
+    EXPECT_THAT(details_[0], HasSubstr("worker liar on host here, task "));
+    EXPECT_THAT(details_[0], HasSubstr(detail));
+    EXPECT_EQ(pool_->workers(), 1U);
+    EXPECT_EQ(pool_->counts().workers_excluded, 1U);
+    EXPECT_EQ(pool_->counts().in_process, 0U) << "the other one did it all";
+    const int received = liar.received;
+    const std::vector<MatchTask> more = tasks_on(maps_, 10, 1000);
+    expect_same(more, pool_->match(more));
+    EXPECT_EQ(liar.received, received);
+    EXPECT_EQ(faults_.size(), 1U);
+  }
+
+  Solver solver_{maps_};
+};
+
+TEST_F(PoolTrustTest, AnotherVersionIsRefusedBeforeAnyTask) {
+  expect_refused([](msg::WorkerStatus& s) { messaging::set_text(s.version(), "0.0.1", "version"); },
+                 "worker of another version",
+                 "version 0.0.1, here " + std::string(support::kVersion));
+  EXPECT_EQ(pool_->registry_counts().other_version, 1U);
+}
+
+TEST_F(PoolTrustTest, AnotherMatcherIsRefusedBeforeAnyTask) {
+  expect_refused([](msg::WorkerStatus& s) { s.matcher_fingerprint(0xabc); },
+                 "worker computes differently", "matcher fingerprint 0000000000000abc, here ");
+  EXPECT_EQ(pool_->registry_counts().other_matcher, 1U);
+}
+
+TEST_F(PoolTrustTest, AnotherConfigurationIsRefusedBeforeAnyTask) {
+  expect_refused([](msg::WorkerStatus& s) { s.config_fingerprint(0x13); },
+                 "worker of another configuration",
+                 "configuration fingerprint 0000000000000013, here 0000000000000012");
+  EXPECT_EQ(pool_->registry_counts().other_configuration, 1U);
+}
+
+TEST_F(PoolTrustTest, TheSameConfigurationIsNotRefused) {
+  FakeWorker same(partition_, loop_, "same", honest(),
+                  [](msg::WorkerStatus& s) { s.config_fingerprint(0x12); });
+  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  const std::vector<MatchTask> tasks = tasks_on(maps_, 10);
+  expect_same(tasks, pool_->match(tasks));
+  EXPECT_EQ(same.received, 10);
+  EXPECT_EQ(pool_->counts().audits, 3U) << "as many as a new worker has to stand";
+  EXPECT_THAT(faults_, IsEmpty());
+}
+
+TEST_F(PoolTrustTest, AWorkerThatRefusesIsNotAskedAgain) {
+  for (const auto& [status, reason] :
+       {std::pair{msg::kMatchOtherVersion, "worker of another version"},
+        std::pair{msg::kMatchOtherConfiguration, "worker of another configuration"}}) {
+    faults_.clear();
+    FakeWorker refusing(partition_, loop_, reason,
+                        [status = status](FakeWorker& self, const msg::MatchTask& task) {
+                          self.answer(task, {}, status);
+                        });
+    ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+    const std::vector<MatchTask> tasks = tasks_on(maps_, 30, 1000 * std::uint64_t{status});
+    expect_same(tasks, pool_->match(tasks));
+    EXPECT_LE(refusing.received, 2);
+    EXPECT_THAT(faults_, ElementsAre(reason));
+    EXPECT_EQ(pool_->workers(), 0U);
+  }
+}
+
+TEST_F(PoolTrustTest, AWrongAnswerIsRefused) {
+  expect_excluded(
+      [this](FakeWorker& self, const msg::MatchTask& task) {
+        MatchResult result = solver_.solve(task);
+        if (self.received > 1) result.fitness += 1e-9;  // one before is right
+        self.answer(task, result);
+      },
+      "wrong match result", "the fitness");
+}
+
+TEST_F(PoolTrustTest, AnAnswerWithoutASearchIsRefused) {
+  expect_excluded(
+      [this](FakeWorker& self, const msg::MatchTask& task) {
+        MatchResult result = solver_.solve(task);
+        result.evaluations = 0;
+        self.answer(task, result);
+      },
+      "wrong match result", "0 evaluations");
+}
+
+TEST_F(PoolTrustTest, AMalformedAnswerIsRefused) {
+  expect_excluded(
+      [this](FakeWorker& self, const msg::MatchTask& task) {
+        MatchResult result = solver_.solve(task);
+        result.overlap = std::numeric_limits<double>::quiet_NaN();
+        self.answer(task, result);
+      },
+      "wrong match result", "overlap");
+}
+
+TEST_F(PoolTrustTest, AnAnswerWithAnotherSeedIsRefused) {
+  expect_excluded(
+      [this](FakeWorker& self, const msg::MatchTask& task) {
+        MatchResult result = solver_.solve(task);
+        result.seed += 1;
+        self.answer(task, result);
+      },
+      "wrong match result", "seed");
+}
+
+TEST_F(PoolTrustTest, APoorerAnswerIsFoundByComparing) {
+  expect_excluded(
+      [this](FakeWorker& self, const msg::MatchTask& task) {
+        self.answer(task, solver_.solve_poorly(task));
+      },
+      kWorse, "here");
+  EXPECT_EQ(pool_->counts().audit_differences, 1U);
+}
+
+class PoolAuditTest : public PoolTrustTest {
+ protected:
+  PoolAuditTest() { board_options_.audit_every = 4; }
+};
+
+TEST_F(PoolAuditTest, AWorkerThatBecomesLazyLaterIsFoundAndItsAnswersAreDoneAgain) {
+  expect_excluded(
+      [this](FakeWorker& self, const msg::MatchTask& task) {
+        self.answer(task, self.received <= 3 ? solver_.solve(task) : solver_.solve_poorly(task));
+      },
+      kWorse, "here");
+  EXPECT_GE(pool_->counts().audits, 4U);
+}
+
+class PoolDuplicatesTest : public PoolTrustTest {
+ protected:
+  PoolDuplicatesTest() {
+    board_options_.straggler_floor = milliseconds(300);
+    board_options_.audit_every = 0;
+  }
+};
+
+TEST_F(PoolDuplicatesTest, LateAnswersAreCompared) {
+  std::vector<msg::MatchTask> held;
+  FakeWorker hanging(partition_, loop_, "hanging",
+                     [&](FakeWorker&, const msg::MatchTask& task) { held.push_back(task); });
+  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
+  expect_same(tasks, pool_->match(tasks));
+  ASSERT_EQ(held.size(), 2U);
+  hanging.answer(held[0], solver_.solve(held[0]));
+  ASSERT_TRUE(wait_until([&] { return pool_->counts().duplicates == 1; }));
+  EXPECT_THAT(faults_, IsEmpty());
+  hanging.answer(held[1], solver_.solve_poorly(held[1]));
+  ASSERT_TRUE(wait_until([&] { return pool_->counts().duplicates == 2; }));
+  EXPECT_EQ(pool_->counts().duplicate_differences, 1U);
+  EXPECT_THAT(faults_, ElementsAre(kWorse));
+  EXPECT_EQ(pool_->workers(), 0U) << "it is excluded";
+}
+
+TEST_F(PoolDuplicatesTest, WhenTwoWorkersDifferTheOneThatErredGoes) {
+  std::vector<msg::MatchTask> held;
+  bool awake = false;
+  FakeWorker slow(partition_, loop_, "slow", [&](FakeWorker& self, const msg::MatchTask& task) {
+    if (!awake) return held.push_back(task);
+    self.answer(task, solver_.solve(task));
+  });
+  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  // The first three of the fast one are honest, so that only the duplicate shows what it does.
+  std::optional<FakeWorker> fast;
+  when_sent(2, [&] {
+    fast.emplace(partition_, loop_, "fast", [&](FakeWorker& self, const msg::MatchTask& task) {
+      const bool resent = std::any_of(held.begin(), held.end(), [&](const msg::MatchTask& other) {
+        return other.task_id() == task.task_id();
+      });
+      self.answer(task,
+                  resent && self.received > 3 ? solver_.solve_poorly(task) : solver_.solve(task));
+      if (!resent || self.received <= 3) return;
+      for (const msg::MatchTask& other : held) slow.answer(other, solver_.solve(other));
+      held.clear();
+      awake = true;
+    });
+  });
+  const std::vector<MatchTask> tasks = tasks_on(maps_, 40);
+  expect_same(tasks, pool_->match(tasks));
+  EXPECT_THAT(faults_, ElementsAre(kWorse));
+  EXPECT_THAT(details_[0], HasSubstr("worker fast"));
+  EXPECT_EQ(pool_->counts().duplicate_differences, 1U);
+}
+
+TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
+  FakeWorker first(partition_, loop_, "twin", honest());
+  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  bool lies = true;
+  FakeWorker second(partition_, loop_, "twin", [&](FakeWorker& self, const msg::MatchTask& task) {
+    MatchResult result = solver_.solve(task);
+    if (lies) result.fitness = 1.0;
+    self.answer(task, result);
+  });
+  ASSERT_TRUE(wait_until([&] { return !faults_.empty(); }));
+  const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
+  expect_same(tasks, pool_->match(tasks));
+  loop_.run_for(milliseconds(500));
+  EXPECT_THAT(faults_, ElementsAre("two workers of one id"));
+  EXPECT_EQ(pool_->workers(), 1U);
+  EXPECT_EQ(pool_->counts().in_process, 0U);
+  EXPECT_EQ(first.received, 30);
+  EXPECT_EQ(second.received, 30) << "both hear what goes to the id";
+  EXPECT_EQ(pool_->counts().ignored, 30U);
+
+  lies = false;
+  first.leave();
+  ASSERT_TRUE(wait_until([&] { return pool_->workers() == 0; }));
+  ASSERT_TRUE(wait_until([&] { return pool_->workers() == 1; })) << "the other takes over";
+  const std::vector<MatchTask> more = tasks_on(maps_, 10, 1000);
+  expect_same(more, pool_->match(more));
+  EXPECT_EQ(pool_->counts().in_process, 0U);
+  EXPECT_EQ(pool_->counts().ignored, 40U) << "those of the first, which still hears";
+  EXPECT_EQ(faults_.size(), 1U);
+}
+
+}  // namespace
+}  // namespace topogeo::test
