@@ -12,6 +12,7 @@
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 
+#include "address_filter.hpp"
 #include "participant_core.hpp"
 
 namespace topogeo::messaging {
@@ -97,6 +98,11 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   participant_ = require(factory->create_participant(options.domain, qos),
                          "a participant in domain " + std::to_string(options.domain));
   try {
+    if (participant_->register_content_filter_factory(
+            kAddressFilterClass, &AddressFilterFactory::instance()) != ReturnCode_t::RETCODE_OK) {
+      throw std::runtime_error("DDS: cannot register the filter class " +
+                               std::string(kAddressFilterClass));
+    }
     dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
     publisher_qos.partition().push_back(options.partition.c_str());
     publisher_ = require(participant_->create_publisher(publisher_qos), "a publisher");
@@ -139,8 +145,11 @@ dds::ContentFilteredTopic& ParticipantCore::make_filtered(const TopicInfo& info,
   dds::Topic& related = topic(info);
   const std::lock_guard lock(mutex_);
   const std::string name = std::string(info.name) + "/filter" + std::to_string(filters_made_++);
-  return *require(participant_->create_contentfilteredtopic(name, &related, filter.expression,
-                                                            filter.parameters),
+  const bool by_address =
+      !info.addressee.empty() && filter.expression == std::string(info.addressee) + " = %0";
+  return *require(participant_->create_contentfilteredtopic(
+                      name, &related, filter.expression, filter.parameters,
+                      by_address ? kAddressFilterClass : FASTDDS_SQLFILTER_NAME),
                   "filter '" + filter.expression + "' on topic " + std::string(info.name));
 }
 

@@ -55,13 +55,19 @@ std::optional<std::string> find_defect_of(const void* message) {
 
 template <class T, class TypeSupport>
 TopicInfo make_info(std::string_view name, std::string_view role, void (*register_type_object)(),
-                    std::string_view replay_role = {}) {
-  return {name, role, replay_role, make_type<TypeSupport>, register_type_object, find_defect_of<T>};
+                    std::string_view replay_role = {}, std::string_view addressee = {}) {
+  return {name,
+          role,
+          replay_role,
+          addressee,
+          make_type<TypeSupport>,
+          register_type_object,
+          find_defect_of<T>};
 }
 
 }  // namespace
 
-// One line for each topic: type, name, role, generated registration, role in replay.
+// One line for each topic: type, name, role, generated registration, role in replay, addressee.
 #define TOPOGEO_TOPIC(Type, name, ...)                                                             \
   template <>                                                                                      \
   const TopicInfo& TopicTraits<msg::Type>::info() {                                                \
@@ -75,10 +81,10 @@ TOPOGEO_TOPIC(Sonar, kSonar, "sensor_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(BaseStatus, kBaseStatus, "sensor_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state", registerstreamTypes)
 TOPOGEO_TOPIC(LocalMap, kLocalMap, "state", registerlocal_mapTypes)
-TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes)
-TOPOGEO_TOPIC(MatchResult, kMatchResult, "result", registermatchTypes)
-TOPOGEO_TOPIC(MapRequest, kMapRequest, "result", registerlocal_mapTypes)
-TOPOGEO_TOPIC(MapCopy, kMapCopy, "task", registerlocal_mapTypes)
+TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes, {}, "worker_id")
+TOPOGEO_TOPIC(MatchResult, kMatchResult, "result", registermatchTypes, {}, "client_id")
+TOPOGEO_TOPIC(MapRequest, kMapRequest, "result", registerlocal_mapTypes, {}, "client_id")
+TOPOGEO_TOPIC(MapCopy, kMapCopy, "task", registerlocal_mapTypes, {}, "worker_id")
 TOPOGEO_TOPIC(WorkerStatus, kWorkerStatus, "status", registerstatusTypes)
 TOPOGEO_TOPIC(ServiceStatus, kServiceStatus, "status", registerstatusTypes)
 TOPOGEO_TOPIC(LivePose, kLivePose, "motion_live", registertrajectoryTypes)

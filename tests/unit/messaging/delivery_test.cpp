@@ -214,6 +214,81 @@ TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   EXPECT_TRUE(writer.wait_for_acknowledgments(kPatience));
 }
 
+/// Addressed messages reach whom they are for, however the fields before the address are aligned.
+template <class T, class SetAddressee>
+void expect_addressed(const Participant& sender, const Participant& receiver,
+                      const std::string& field, const SetAddressee& set_addressee) {
+  const auto options = [&](const std::string& who) {
+    return ReaderOptions{
+        .role = {}, .filter = {.expression = field + " = %0", .parameters = {"'" + who + "'"}}};
+  };
+  Writer<T> writer(sender);
+  Reader<T> me(receiver, options("me"));
+  Reader<T> mee(receiver, options("mee"));
+  ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
+  std::vector<std::string> for_me;
+  std::vector<std::string> for_mee;
+  constexpr std::size_t kLongest = 9;
+  for (std::size_t length = 0; length <= kLongest; ++length) {
+    for (const char* who : {"me", "mee", "m", ""}) {
+      T sent;
+      set_header(sent, std::string(length, 'r'), 1, length);
+      set_addressee(sent, who);
+      ASSERT_TRUE(writer.write(sent));
+    }
+    for_me.push_back(std::string(length, 'r'));
+  }
+  for_mee = for_me;
+  std::vector<std::string> got_me;
+  std::vector<std::string> got_mee;
+  EXPECT_TRUE(eventually([&] {
+    me.take([&](const T& t, const SampleInfo&) { got_me.push_back(t.robot_id().to_string()); });
+    mee.take([&](const T& t, const SampleInfo&) { got_mee.push_back(t.robot_id().to_string()); });
+    return got_me.size() >= for_me.size() && got_mee.size() >= for_mee.size();
+  }));
+  EXPECT_EQ(got_me, for_me);
+  EXPECT_EQ(got_mee, for_mee);
+}
+
+TEST_F(Delivery, EveryAddressedTopicReachesTheAddresseeAlone) {
+  const auto set_worker = [](auto& message, const char* who) {
+    set_text(message.worker_id(), who, "worker_id");
+  };
+  const auto set_client = [](auto& message, const char* who) {
+    set_text(message.client_id(), who, "client_id");
+  };
+  expect_addressed<msg::MatchTask>(sender_, receiver_, "worker_id", set_worker);
+  expect_addressed<msg::MapCopy>(sender_, receiver_, "worker_id", [&](auto& message, auto who) {
+    set_worker(message, who);
+    message.local_map().schema_version(msg::kSchemaVersion);
+  });
+  expect_addressed<msg::MatchResult>(sender_, receiver_, "client_id", set_client);
+  expect_addressed<msg::MapRequest>(sender_, receiver_, "client_id", set_client);
+}
+
+TEST_F(Delivery, AnAddresseeWithoutQuotesIsAnError) {
+  EXPECT_THROW(
+      Reader<msg::MatchTask>(
+          receiver_, {.role = {}, .filter = {.expression = "worker_id = %0", .parameters = {"x"}}}),
+      std::runtime_error);
+}
+
+TEST_F(Delivery, FiltersOnOtherFieldsOfAnAddressedTopicWork) {
+  Writer<msg::MatchTask> writer(sender_);
+  Reader<msg::MatchTask> seven(
+      receiver_, {.role = {}, .filter = {.expression = "task_id = %0", .parameters = {"7"}}});
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  for (std::uint64_t i = 5; i < 10; ++i) {
+    auto task = message<msg::MatchTask>(i);
+    task.task_id(i);
+    ASSERT_TRUE(writer.write(task));
+  }
+  EXPECT_TRUE(writer.wait_for_acknowledgments(kPatience));
+  std::vector<std::uint64_t> ids;
+  seven.take([&](const msg::MatchTask& t, const SampleInfo&) { ids.push_back(t.task_id()); });
+  EXPECT_EQ(ids, (std::vector<std::uint64_t>{7}));
+}
+
 TEST_F(Delivery, FilterThatDoesNotFitTheTypeIsAnError) {
   EXPECT_THROW(
       Reader<msg::MatchTask>(

@@ -67,6 +67,9 @@ struct TopicInfo {
   std::string_view name;
   std::string_view role;         ///< profiles in normal operation
   std::string_view replay_role;  ///< profiles while a log is replayed; empty: same as `role`
+  /// Field that says whom a message is for: the first one after those that all messages start with;
+  /// empty: for everybody.
+  std::string_view addressee;
 
   /// Makes the type support; the caller owns it.
   eprosima::fastdds::dds::TopicDataType* (*make_type)();

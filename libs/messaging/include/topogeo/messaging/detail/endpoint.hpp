@@ -51,7 +51,9 @@ class WriterCore final : public Endpoint {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Field filter on the topic's type in SQL form, for example "worker_id = %0" with {"'pc1'"}.
+/// Field filter on the topic's type in SQL form, for example "worker_id = %0" with {"'pc1'"}. The
+/// writer evaluates it for each reader and message: the addressee of a topic (TopicInfo) alone in
+/// less than a microsecond, all else in about 90.
 struct Filter {
   std::string expression;
   std::vector<std::string> parameters;  ///< strings in single quotes
