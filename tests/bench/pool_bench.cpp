@@ -1,0 +1,225 @@
+// What the search pool costs and gains. Everything is real (client, DDS, other processes) but for
+// the searches of dispatch/64; no other program is to run meanwhile, and two cores are needed.
+//
+// dispatch/64         tasks through 64 workers in 8 processes that answer without searching. Each
+//                     worker has readers and writers of its own; a process shares one participant,
+//                     as 64 participants on two cores would measure the scheduler. The client does
+//                     all that a localizer's does, checking of every answer and audits included.
+// dispatch/64_bare    the same without the checking of answers.
+// pool/2              1,000 tasks of 100 individuals and 50 generations with two real workers;
+//                     `speed_up` against one. pool/2_50x30: the default parameters.
+// pool/latency        one task at a time: median of the time through a pool of one real worker
+// minus
+//                     that of the same search in this process, all maps known everywhere.
+// pool/late_map       from the moment that the client knows a worker that has just been started to
+//                     the answer to a task on maps that were sent before, minus the search.
+// pool/late_map_asked the same with maps that were never sent, so that the worker has to ask.
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <iterator>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "topogeo/localization/matcher.hpp"
+#include "topogeo/support/cpu_time.hpp"
+
+#include "pool_peers.hpp"
+#include "stub_workers.hpp"
+
+namespace topogeo::bench {
+namespace {
+
+using localization::MatchTask;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// What a batch took.
+struct Cost {
+  double wall_s = 0.0;
+  double cpu_s = 0.0;  // of this process
+};
+
+Cost cost_of(PoolClient& client, const std::vector<MatchTask>& tasks) {
+  const double cpu_s = support::process_cpu_s();
+  const Clock::time_point start = Clock::now();
+  benchmark::DoNotOptimize(client.pool().match(tasks));
+  return {seconds_since(start), support::process_cpu_s() - cpu_s};
+}
+
+/// A benchmark with a fault measures something else.
+void check(benchmark::State& state, const PoolClient& client) {
+  if (!client.fault().empty()) state.SkipWithError(client.fault().c_str());
+}
+
+/// Waits until there are `count` workers that can be used.
+bool have_workers(benchmark::State& state, PoolClient& client, std::size_t count) {
+  if (client.pool().wait_for_workers(count, kPatience) == count) return true;
+  state.SkipWithError("the workers did not come");
+  return false;
+}
+
+void dispatch(benchmark::State& state, bool verify) {
+  constexpr std::size_t kProcesses = 8;
+  constexpr std::size_t kWorkers = 64;
+  constexpr std::size_t kBatch = 1000;
+  TaskSource source(maps_of_floor());
+  PoolClient client(source.maps(), verify);
+  Workers workers;
+  for (std::size_t i = 0; i < kProcesses; ++i) workers.start_stubs(client, kWorkers / kProcesses);
+  if (!have_workers(state, client, kWorkers)) return;
+  // Until every worker has gone through the comparisons that a new one has to.
+  for (int i = 0; i < 2; ++i) cost_of(client, source.next(kBatch, kStubTasks));
+
+  const std::uint64_t resent = client.pool().counts().resent;
+  Cost total;
+  for (auto _ : state) {
+    const Cost cost = cost_of(client, source.next(kBatch, kStubTasks));
+    state.SetIterationTime(cost.wall_s);
+    total.wall_s += cost.wall_s;
+    total.cpu_s += cost.cpu_s;
+  }
+  const double tasks = static_cast<double>(state.iterations()) * kBatch;
+  state.counters["tasks_per_s"] = tasks / total.wall_s;
+  state.counters["client_cpu_us"] = 1e6 * total.cpu_s / tasks;
+  state.counters["resent"] = static_cast<double>(client.pool().counts().resent - resent);
+  check(state, client);
+}
+
+void speed_up(benchmark::State& state, std::uint32_t individuals, std::uint32_t generations) {
+  constexpr std::size_t kBatch = 1000;
+  constexpr int kRounds = 3;
+  TaskSource source(maps_of_floor());
+  PoolClient client(source.maps());
+  client.publish(source.maps());
+  const auto batch = [&] {
+    std::vector<MatchTask> tasks = source.next(kBatch);
+    for (MatchTask& task : tasks) {
+      task.genetic.individuals = individuals;
+      task.genetic.generations = generations;
+    }
+    return cost_of(client, tasks);
+  };
+  Workers workers;
+  std::vector<double> by_one_s;
+  std::vector<double> by_two_s;
+  double cpu_s = 0.0;
+  for (auto _ : state) {
+    workers.start_real(client);
+    if (!have_workers(state, client, 1)) return;
+    batch();  // the worker makes the features of the maps
+    for (int i = 0; i < kRounds; ++i) by_one_s.push_back(batch().wall_s);
+    workers.start_real(client);
+    if (!have_workers(state, client, 2)) return;
+    batch();
+    for (int i = 0; i < kRounds; ++i) {
+      const Cost cost = batch();
+      by_two_s.push_back(cost.wall_s);
+      cpu_s += cost.cpu_s;
+    }
+    state.SetIterationTime(median(by_two_s));
+  }
+  state.counters["speed_up"] = median(by_one_s) / median(by_two_s);
+  state.counters["tasks_per_s"] = kBatch / median(by_two_s);
+  state.counters["client_cpu_us"] = 1e6 * cpu_s / (kBatch * kRounds);
+  check(state, client);
+}
+
+void latency(benchmark::State& state) {
+  constexpr int kTasks = 300;
+  TaskSource source(maps_of_floor());
+  PoolClient client(source.maps());
+  client.publish(source.maps());
+  Workers workers;
+  workers.start_real(client);
+  if (!have_workers(state, client, 1)) return;
+  localization::Matcher matcher;
+  for (const auto& map : source.maps()) matcher.add_map(*map);
+  MatchTask task = source.next(1).front();
+  std::vector<double> through_pool_s;
+  std::vector<double> added_s;
+  for (auto _ : state) {
+    for (int i = 0; i < kTasks; ++i) {
+      ++task.task_id;
+      ++task.seed;
+      const double pool_s = cost_of(client, {task}).wall_s;
+      const Clock::time_point start = Clock::now();
+      benchmark::DoNotOptimize(matcher.solve(task));
+      if (i < kTasks / 10) continue;  // warm-up
+      through_pool_s.push_back(pool_s);
+      added_s.push_back(pool_s - seconds_since(start));
+    }
+    state.SetIterationTime(median(added_s));
+  }
+  state.counters["through_pool_us"] = 1e6 * median(through_pool_s);
+  check(state, client);
+}
+
+void late_map(benchmark::State& state, bool sent_before) {
+  TaskSource source(maps_of_floor());
+  localization::Matcher matcher;
+  for (const auto& map : source.maps()) matcher.add_map(*map);
+  std::vector<double> known_s;
+  std::vector<double> answered_s;
+  for (auto _ : state) {
+    PoolClient client(source.maps());
+    if (sent_before) client.publish(source.maps());
+    const std::vector<MatchTask> tasks = source.next(1);
+    Workers workers;
+    const Clock::time_point start = Clock::now();
+    workers.start_real(client);
+    if (!have_workers(state, client, 1)) return;
+    known_s.push_back(seconds_since(start));
+    const double through_pool_s = cost_of(client, tasks).wall_s;
+    const Clock::time_point search = Clock::now();
+    benchmark::DoNotOptimize(matcher.solve(tasks.front()));
+    answered_s.push_back(std::max(0.0, through_pool_s - seconds_since(search)));
+    state.SetIterationTime(answered_s.back());
+    check(state, client);
+    if (client.pool().counts().in_process > 0) state.SkipWithError("the worker did not answer");
+  }
+  state.counters["median_s"] = median(answered_s);
+  state.counters["known_after_s"] = median(known_s);
+}
+
+void register_all() {
+  constexpr int kBatches = 5;
+  constexpr int kStarts = 5;
+  const auto add = [](const char* name, auto function, auto... arguments) {
+    return benchmark::RegisterBenchmark(name, function, arguments...)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+  };
+  add("dispatch/64", dispatch, true)->Iterations(kBatches);
+  add("dispatch/64_bare", dispatch, false)->Iterations(kBatches);
+  add("pool/2", speed_up, 100, 50)->Iterations(1);
+  add("pool/2_50x30", speed_up, 50, 30)->Iterations(1);
+  add("pool/latency", latency)->Iterations(1);
+  add("pool/late_map", late_map, true)->Iterations(kStarts);
+  add("pool/late_map_asked", late_map, false)->Iterations(kStarts);
+}
+
+}  // namespace
+}  // namespace topogeo::bench
+
+int main(int argc, char** argv) {
+  const std::span<char*> words(argv, static_cast<std::size_t>(argc));
+  if (std::any_of(words.begin(), words.end(),
+                  [](std::string_view word) { return word == "--stub-workers"; })) {
+    return topogeo::bench::run_stub_workers(argc, argv);
+  }
+  topogeo::bench::register_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}

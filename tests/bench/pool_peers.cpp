@@ -1,0 +1,111 @@
+#include "pool_peers.hpp"
+
+#include <csignal>
+#include <filesystem>
+#include <random>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <unistd.h>
+
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/support/version.hpp"
+
+namespace topogeo::bench {
+
+using localization::MatchTask;
+using localization::test::Maps;
+
+namespace {
+
+/// Ports of higher domains overlap with those that the system gives to clients.
+constexpr std::uint32_t kDomains = 100;
+
+std::filesystem::path this_program() {
+  return std::filesystem::read_symlink("/proc/self/exe");
+}
+
+}  // namespace
+
+Maps maps_of_floor() {
+  return localization::test::drive(localization::test::world("floor"), {}).maps;
+}
+
+TaskSource::TaskSource(Maps maps) : maps_(std::move(maps)) {
+  for (const auto& map : maps_) hashes_.push_back(topomap::content_hash(*map));
+}
+
+std::vector<MatchTask> TaskSource::next(std::size_t count, std::uint64_t different) {
+  constexpr std::size_t kBack = 3;
+  std::vector<MatchTask> tasks(count);
+  for (MatchTask& task : tasks) {
+    task.task_id = made_++;
+    task.seed = task.task_id % different;
+    const std::size_t query = kBack + (task.seed / kBack) % (maps_.size() - kBack);
+    const std::size_t reference = query - 1 - task.seed % kBack;
+    task.reference_map_id = maps_[reference]->id;
+    task.query_map_id = maps_[query]->id;
+    task.reference_hash = hashes_[reference];
+    task.query_hash = hashes_[query];
+    task.T_reference_query =
+        geometry::between(maps_[reference]->T_odom_robot, maps_[query]->T_odom_robot);
+    // What odometry is believed to know after half a metre; 95 % of it and two deviations.
+    task.covariance = Eigen::Vector3d(0.01, 0.01, 0.0324).asDiagonal();
+    task.half_width = localization::search_half_width(task.covariance, 0.95, 2.0);
+  }
+  return tasks;
+}
+
+PoolClient::PoolClient(const Maps& maps, bool verify) {
+  std::random_device device;
+  const std::string number = std::to_string(device());
+  options_.domain = 1 + device() % kDomains;
+  options_.partition = "bench-" + number;
+  options_.name = "bench";
+  participant_.emplace(options_);
+  map_writer_.emplace(*participant_);
+  localizer::RemotePoolOptions pool;
+  pool.robot_id = "robot";
+  pool.client_id = "bench-" + number;
+  pool.version = support::kVersion;
+  pool.verify = verify;
+  pool.tell = [](const std::string& /*line*/) {};
+  pool_.emplace(*participant_, loop_, pool, [this](std::string_view why, std::string_view detail) {
+    fault_ = std::string(why) + ": " + std::string(detail);
+  });
+  for (const auto& map : maps) pool_->add_map(map);
+}
+
+std::vector<std::string> PoolClient::flags() const {
+  return {"--domain", std::to_string(options_.domain), "--partition", options_.partition};
+}
+
+void PoolClient::publish(const Maps& maps) {
+  for (const auto& map : maps) {
+    if (!map_writer_->write(service::to_msg(*map))) fault_ = "local map not sent";
+  }
+}
+
+Workers::~Workers() {
+  for (cli::ChildProcess& child : children_) child.send_signal(SIGTERM);
+  constexpr std::chrono::seconds kToLeave{5};
+  constexpr std::chrono::milliseconds kLook{5};
+  const Clock::time_point end = Clock::now() + kToLeave;
+  for (cli::ChildProcess& child : children_) {
+    while (!child.poll() && Clock::now() < end) std::this_thread::sleep_for(kLook);
+  }
+}
+
+void Workers::start_real(const PoolClient& client) {
+  children_.emplace_back("ga_worker", this_program().parent_path() / "ga_worker", client.flags(),
+                         "/dev/null");
+}
+
+void Workers::start_stubs(const PoolClient& client, std::size_t count) {
+  std::vector<std::string> words = client.flags();
+  words.insert(words.end(), {"--stub-workers", std::to_string(count)});
+  children_.emplace_back("stub workers", this_program(), words, "/dev/null");
+}
+
+}  // namespace topogeo::bench

@@ -1,0 +1,98 @@
+// What the benchmarks of the search pool work with: local maps of a simulated drive, tasks on them,
+// a client in this process and workers in others.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/localization/match.hpp"
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+
+#include "../unit/localization/simulated_maps.hpp"
+#include "child_process.hpp"
+#include "remote_pool.hpp"
+
+namespace topogeo::bench {
+
+/// Longer than anything takes on a busy machine.
+constexpr std::chrono::seconds kPatience{30};
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Maps of the stops of a drive through the simulated floor; the same in every process.
+localization::test::Maps maps_of_floor();
+
+/// Makes tasks between each map and the three before it in turn, as a localizer does, round and
+/// round.
+class TaskSource {
+ public:
+  explicit TaskSource(localization::test::Maps maps);
+
+  [[nodiscard]] const localization::test::Maps& maps() const { return maps_; }
+  /// The next `count` tasks, with ascending ids; after `different` of them they repeat but for the
+  /// id. The seed tells the different ones apart.
+  std::vector<localization::MatchTask> next(
+      std::size_t count, std::uint64_t different = std::numeric_limits<std::uint64_t>::max());
+
+ private:
+  localization::test::Maps maps_;
+  std::vector<std::uint64_t> hashes_;
+  std::uint64_t made_ = 0;
+};
+
+/// Different tasks that stub workers know the answers to.
+constexpr std::uint64_t kStubTasks = 60;
+
+/// A localizer's end of the pool, in a partition of its own.
+class PoolClient {
+ public:
+  /// Knows the maps but sends them to nobody.
+  explicit PoolClient(const localization::test::Maps& maps, bool verify = true);
+
+  [[nodiscard]] localizer::RemotePool& pool() { return *pool_; }
+  /// Flags that let a service meet this client.
+  [[nodiscard]] std::vector<std::string> flags() const;
+  /// Sends the maps to whoever listens, now or later.
+  void publish(const localization::test::Maps& maps);
+  /// What went wrong last; empty: nothing.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+
+ private:
+  std::string fault_;
+  messaging::ParticipantOptions options_;
+  std::optional<messaging::Participant> participant_;
+  std::optional<messaging::Writer<msg::LocalMap>> map_writer_;
+  messaging::EventLoop loop_;
+  std::optional<localizer::RemotePool> pool_;
+};
+
+/// Worker processes, asked to leave at the end.
+class Workers {
+ public:
+  Workers() = default;
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+  ~Workers();
+
+  /// Starts a real worker of one slot.
+  void start_real(const PoolClient& client);
+  /// Starts a process with `count` workers that answer without searching (stub_workers.hpp).
+  void start_stubs(const PoolClient& client, std::size_t count);
+
+ private:
+  std::vector<cli::ChildProcess> children_;
+};
+
+}  // namespace topogeo::bench
