@@ -64,6 +64,7 @@ bool MapSender::answer(const Pending& pending) {
   messaging::set_header(copy, map->robot_id, map->stamp_ns, sequence_);
   copy.worker_id(request.worker_id());
   copy.local_map(service::to_msg(*map));
+  addressed_[pending.participant].insert(request.worker_id().to_string());
   if (!copies_.write(copy)) return false;
   ++sequence_;
   return true;
@@ -78,7 +79,20 @@ void MapSender::on_event(const messaging::Event& event) {
   } else if (event.kind == messaging::EventKind::kUnmatched) {
     const auto found = readers_.find(participant);
     if (found != readers_.end()) readers_.erase(found);
+    if (!readers_.contains(participant)) forget(participant);
   }
+}
+
+// A writer has room for a bounded number of worker ids, and every worker that starts has a new one.
+void MapSender::forget(const service::ParticipantId& participant) {
+  const auto found = addressed_.find(participant);
+  if (found == addressed_.end()) return;
+  for (const std::string& worker_id : found->second) {
+    msg::MapCopy copy;
+    copy.worker_id(worker_id);
+    copies_.dispose(copy);
+  }
+  addressed_.erase(found);
 }
 
 void MapSender::tick() {

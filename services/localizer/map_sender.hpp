@@ -53,6 +53,7 @@ class MapSender {
 
   void on_request(const msg::MapRequest& request, const messaging::SampleInfo& info);
   void on_event(const messaging::Event& event);
+  void forget(const service::ParticipantId& participant);
   /// True when nothing more is to be done for the request.
   bool answer(const Pending& pending);
 
@@ -62,7 +63,8 @@ class MapSender {
   std::map<std::uint32_t, std::shared_ptr<const topomap::LocalMap>> maps_;  // by id
   std::map<std::uint32_t, std::uint64_t> hashes_;  // of those that were asked for
   std::multiset<service::ParticipantId> readers_;  // of copies, connected
-  std::list<Pending> pending_;                     // oldest first
+  std::map<service::ParticipantId, std::set<std::string>> addressed_;  // ids that got copies
+  std::list<Pending> pending_;                                         // oldest first
   std::uint64_t sequence_ = 0;
 };
 

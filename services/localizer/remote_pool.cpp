@@ -166,6 +166,7 @@ bool RemotePool::send(const TaskBoard::Assignment& assignment) {
   address.version = options_.version;
   address.config_fingerprint = options_.config_fingerprint;
   address.matcher_fingerprint = matcher_fingerprint_;
+  addressed_[registry_.owner(assignment.worker_id)].insert(assignment.worker_id);
   return task_writer_.write(service::to_msg(task, address));
 }
 
@@ -339,6 +340,18 @@ void RemotePool::on_event(const messaging::Event& event) {
   go_on();
 }
 
+// A writer has room for a bounded number of worker ids, and every worker that starts has a new one.
+void RemotePool::forget(const service::ParticipantId& participant) {
+  const auto found = addressed_.find(participant);
+  if (found == addressed_.end()) return;
+  for (const std::string& worker_id : found->second) {
+    msg::MatchTask task;
+    task.worker_id(worker_id);
+    task_writer_.dispose(task);
+  }
+  addressed_.erase(found);
+}
+
 // A task to a worker whose reader is not connected yet would be lost, so the connections count.
 void RemotePool::on_task_reader(const messaging::Event& event) {
   const service::ParticipantId participant = service::participant_of(event.peer);
@@ -347,6 +360,7 @@ void RemotePool::on_task_reader(const messaging::Event& event) {
   } else if (event.kind == messaging::EventKind::kUnmatched) {
     const auto found = task_readers_.find(participant);
     if (found != task_readers_.end()) task_readers_.erase(found);
+    if (!task_readers_.contains(participant)) forget(participant);
   } else {
     return;
   }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -85,6 +86,7 @@ class RemotePool : public localization::MatchPool {
   void drop(const std::string& worker_id);
   void on_event(const messaging::Event& event);
   void on_task_reader(const messaging::Event& event);
+  void forget(const service::ParticipantId& participant);
   void on_result(const msg::MatchResult& message, const messaging::SampleInfo& info);
   void on_answer(const std::string& worker_id, const msg::MatchResult& message);
   void on_wrong(const std::string& worker_id, std::uint64_t task_id, const std::string& what);
@@ -117,8 +119,9 @@ class RemotePool : public localization::MatchPool {
   messaging::Reader<msg::MatchResult> results_;
   messaging::Writer<msg::MatchTask> task_writer_;
   MapSender maps_;
-  std::multiset<service::ParticipantId> task_readers_;  // connected
-  localization::Matcher matcher_;                       // holds the maps that it was needed for
+  std::multiset<service::ParticipantId> task_readers_;                 // connected
+  std::map<service::ParticipantId, std::set<std::string>> addressed_;  // ids that got tasks
+  localization::Matcher matcher_;  // holds the maps that it was needed for
   std::uint64_t sequence_ = 0;
   std::function<bool()> until_;
   bool woken_ = false;

@@ -122,6 +122,11 @@ bool WorkerRegistry::speaks_for(const service::ParticipantId& from,
   });
 }
 
+service::ParticipantId WorkerRegistry::owner(const std::string& worker_id) const {
+  const auto found = entries_.find(worker_id);
+  return found == entries_.end() ? service::ParticipantId{} : found->second.owner;
+}
+
 std::vector<std::string> WorkerRegistry::workers_of(const service::ParticipantId& process) const {
   std::vector<std::string> ids;
   for (const auto& [worker_id, entry] : entries_) {

@@ -68,6 +68,8 @@ class WorkerRegistry {
   /// listened to, or was until it went.
   [[nodiscard]] bool speaks_for(const service::ParticipantId& from,
                                 const std::string& worker_id) const;
+  /// The process that is listened to under an id; all zero when there is none.
+  [[nodiscard]] service::ParticipantId owner(const std::string& worker_id) const;
   [[nodiscard]] std::vector<std::string> workers_of(const service::ParticipantId& process) const;
   /// "id on host", as far as known.
   [[nodiscard]] std::string name(const std::string& worker_id) const;

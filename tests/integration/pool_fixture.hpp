@@ -157,6 +157,8 @@ class FakeWorker {
     EXPECT_TRUE(requests_.write(request));
   }
 
+  [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
+
   int received = 0;
 
  private:

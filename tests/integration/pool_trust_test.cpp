@@ -145,6 +145,32 @@ TEST_F(PoolTrustTest, AMalformedAnswerIsRefused) {
       "wrong match result", "overlap");
 }
 
+TEST_F(PoolTrustTest, AnAnswerOfAnotherSchemaIsRefused) {
+  // A writer that sends what the library does not.
+  messaging::TopicInfo unchecked = messaging::TopicTraits<msg::MatchResult>::info();
+  unchecked.find_defect = [](const void*) { return std::optional<std::string>(); };
+  std::optional<messaging::detail::WriterCore> writer;
+  FakeWorker::OnTask on_task = [&](FakeWorker& self, const msg::MatchTask& task) {
+    if (!writer) writer.emplace(self.participant(), unchecked, "");
+    ASSERT_TRUE(writer->wait_for_matched(1, kPatience));
+    msg::MatchResult result;
+    result.schema_version(1);
+    result.client_id(task.client_id());
+    result.worker_id(task.worker_id());
+    result.task_id(task.task_id());
+    ASSERT_TRUE(writer->write(&result));
+  };
+  FakeWorker old(partition_, loop_, "old", on_task);
+  FakeWorker good(partition_, loop_, "good", honest());
+  ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+  const std::vector<MatchTask> tasks = tasks_on(maps_, 40);
+  expect_same(tasks, pool_->match(tasks));
+  EXPECT_THAT(faults_, ElementsAre("wrong match result"));
+  EXPECT_THAT(details_[0], HasSubstr("worker old on host here: "));
+  EXPECT_THAT(details_[0], HasSubstr("schema"));
+  EXPECT_EQ(pool_->workers(), 1U);
+}
+
 TEST_F(PoolTrustTest, AnAnswerWithAnotherSeedIsRefused) {
   expect_excluded(
       [this](FakeWorker& self, const msg::MatchTask& task) {

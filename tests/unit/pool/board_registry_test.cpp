@@ -55,6 +55,8 @@ TEST_F(RegistryTest, AWorkerThatAgreesIsUsed) {
   EXPECT_FALSE(registry_.speaks_for(process(1), "w#3"));
   EXPECT_THAT(registry_.workers_of(process(2)), ElementsAre("w#2"));
   EXPECT_EQ(registry_.name("w#1"), "worker w#1 on host pc7");
+  EXPECT_EQ(registry_.owner("w#2"), process(2));
+  EXPECT_EQ(registry_.owner("w#3"), ParticipantId{});
 }
 
 TEST_F(RegistryTest, AnotherVersionIsRefusedOnceWithBothNamed) {
