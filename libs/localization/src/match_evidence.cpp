@@ -18,9 +18,10 @@ using geometry::Pose2;
 
 constexpr std::uint32_t kFewestIndividuals = 4;
 constexpr std::uint32_t kMostIndividuals = 10'000;
-constexpr std::uint64_t kMostEvaluations = 2'000'000;  // some seconds of one core
+constexpr std::uint64_t kMostEvaluations = 1'000'000;  // a second of one core, 32 MB
 constexpr std::uint32_t kMostSolutions = 40;
 constexpr double kFarthest_m = 1e6;
+constexpr double kMostTurned_rad = 1e4;
 constexpr double kWidest_m = 1000.0;
 constexpr double kWidest_rad = 4.0;  // a little over half a turn to both sides
 
@@ -28,22 +29,25 @@ class Checker {
  public:
   explicit Checker(const MatchTask& task) : task_(task) {}
 
-  void require(bool condition, const std::string& complaint) const {
-    if (condition) return;
-    throw std::invalid_argument("match task " + std::to_string(task_.task_id) + ": " + complaint);
-  }
   // Not a number is outside of every range.
   void range(const char* name, double value, double low, double high) const {
     if (value >= low && value <= high) return;
     char text[160];
     std::snprintf(text, sizeof text, "%s is %g, allowed are %g to %g", name, value, low, high);
-    require(false, text);
+    fail(text);
   }
   void pose(const char* name, const Pose2& T) const {
-    const std::string of = std::string(name) + ": ";
-    range((of + "x_m").c_str(), T.x_m, -kFarthest_m, kFarthest_m);
-    range((of + "y_m").c_str(), T.y_m, -kFarthest_m, kFarthest_m);
-    range((of + "theta_rad").c_str(), T.theta_rad, -1e4, 1e4);
+    if (std::fabs(T.x_m) <= kFarthest_m && std::fabs(T.y_m) <= kFarthest_m &&
+        std::fabs(T.theta_rad) <= kMostTurned_rad) {
+      return;
+    }
+    char text[200];
+    std::snprintf(text, sizeof text, "%s is (%g m, %g m, %g rad), allowed are %g m and %g rad",
+                  name, T.x_m, T.y_m, T.theta_rad, kFarthest_m, kMostTurned_rad);
+    fail(text);
+  }
+  [[noreturn]] void fail(const char* complaint) const {
+    throw std::invalid_argument("match task " + std::to_string(task_.task_id) + ": " + complaint);
   }
 
  private:
@@ -80,9 +84,10 @@ void check(const MatchTask& task) {
   checker.pose("predicted pose", task.T_reference_query);
   for (const Pose2& T : task.initial_individuals) checker.pose("initial individual", T);
   const Eigen::Matrix3d& c = task.covariance;
-  checker.require(c.allFinite() && c(0, 0) > 0.0 && c.topLeftCorner<2, 2>().determinant() > 0.0 &&
-                      c.determinant() > 0.0 && c.inverse().allFinite(),
-                  "the covariance is not positive definite");
+  const bool positive_definite = c.allFinite() && c(0, 0) > 0.0 &&
+                                 c.topLeftCorner<2, 2>().determinant() > 0.0 &&
+                                 c.determinant() > 0.0 && c.inverse().allFinite();
+  if (!positive_definite) checker.fail("the covariance is not positive definite");
   checker.range("half_width.x", task.half_width.x(), 1e-6, kWidest_m);
   checker.range("half_width.y", task.half_width.y(), 1e-6, kWidest_m);
   checker.range("half_width.theta", task.half_width.z(), 1e-6, kWidest_rad);
@@ -93,8 +98,16 @@ void check(const MatchTask& task) {
   checker.range("solutions_wanted", task.solutions_wanted, 1.0, kMostSolutions);
 }
 
+bool same_place(const Pose2& a, const Pose2& b) {
+  constexpr double kApart_m = 0.30;
+  constexpr double kApart_rad = 0.15;
+  return (a.position_m() - b.position_m()).squaredNorm() <= kApart_m * kApart_m &&
+         std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) <= kApart_rad;
+}
+
 void add_evidence(const MatchContext& context, MatchResult& result) {
-  const auto& [task, reference, query, fitness] = context;
+  const auto& [task, reference, query, forms] = context;
+  const Fitness& fitness = forms.chosen();
   MatchResult said;  // starts from nothing, so that no field can be forgotten
   said.task_id = task.task_id;
   said.seed = task.seed;
@@ -115,8 +128,8 @@ void add_evidence(const MatchContext& context, MatchResult& result) {
     said.inliers = evidence.inliers;
     said.violations = evidence.violations;
     said.residual_rms_m = evidence.residual_rms_m;
-    said.scan_fitness = fitness.scan(T);
-    said.topological_fitness = fitness.topological(T);
+    said.scan_fitness = forms.combined().scan()(T);
+    said.topological_fitness = forms.combined().topological()(T);
     said.status = evidence.overlap > 0.0 ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
     if (!evidence.information.isZero(0.0)) {
       said.covariance = match_covariance(evidence.information, doubt(said));

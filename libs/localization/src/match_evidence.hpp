@@ -1,7 +1,7 @@
 // All that a match result says of its poses, computed in one place for solve() and verify().
 #pragma once
 
-#include "topogeo/localization/fitness.hpp"
+#include "topogeo/localization/fitness_forms.hpp"
 #include "topogeo/localization/match.hpp"
 #include "topogeo/localization/match_features.hpp"
 
@@ -17,11 +17,12 @@ struct MatchContext {
   const MatchTask& task;
   const Reference& reference;
   const MatchFeatures& query;
-  const Fitness& fitness;
+  const FitnessForms& forms;
 };
 
-/// Two refined poses further apart than this are two solutions.
-inline constexpr double kSecondApart_m = 0.30;
+/// Whether two poses are so near each other that refinement takes both to one: within 0.3 m and
+/// 0.15 rad.
+bool same_place(const geometry::Pose2& a, const geometry::Pose2& b);
 
 /// Sets every field of `result` that follows from the task and the poses in it: those of the
 /// solutions, the refined one and that of `second`, which counts when its fitness is above 0. Only

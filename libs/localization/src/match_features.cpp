@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
 
@@ -92,6 +93,22 @@ void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSa
   }
 }
 
+BranchCurve whole_branch(const topomap::LocalBranch& branch) {
+  constexpr double kSpacing2 = MatchFeatures::kCurveSpacing_m * MatchFeatures::kCurveSpacing_m;
+  BranchCurve curve;
+  for (const topomap::BranchPoint& point : branch.points) {
+    curve.clearance_m += point.clearance_m;
+    if (curve.points_m.empty() ||
+        (point.position_m - curve.points_m.back()).squaredNorm() >= kSpacing2) {
+      curve.points_m.push_back(point.position_m);
+    }
+  }
+  curve.clearance_m /= static_cast<double>(branch.points.size());
+  if (curve.points_m.size() > 1) curve.points_m.pop_back();
+  curve.points_m.push_back(branch.points.back().position_m);
+  return curve;
+}
+
 }  // namespace
 
 RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_robot_laser)
@@ -174,9 +191,38 @@ MatchFeatures extract_features(const topomap::LocalMap& map) {
     }
   }
   for (const topomap::LocalBranch& branch : map.branches) {
-    if (!branch.is_virtual && branch.confirmed) add_branch_samples(branch, features.branches);
+    if (branch.is_virtual || !branch.confirmed || branch.points.empty()) continue;
+    add_branch_samples(branch, features.branches);
+    features.curves.push_back(whole_branch(branch));
   }
   return features;
+}
+
+Reference make_reference(MatchFeatures features) {
+  constexpr double kGridCell_m = 0.10;
+  constexpr float kFarAway_m = 1e9F;
+  Reference reference;
+  std::vector<Eigen::Vector2d> positions_m;
+  positions_m.reserve(std::max(features.surface.size(), features.branches.size()));
+  reference.surface_m.reserve(features.surface.size() + 1);
+  for (const SurfacePoint& p : features.surface) {
+    positions_m.push_back(p.position_m);
+    reference.surface_m.emplace_back(p.position_m.cast<float>());
+  }
+  reference.surface_m.emplace_back(kFarAway_m, kFarAway_m);
+  reference.surface_grid.build(positions_m, kGridCell_m, kReach_m);
+  positions_m.clear();
+  reference.branches.reserve(features.branches.size() + 1);
+  for (const BranchSample& s : features.branches) {
+    positions_m.push_back(s.position_m);
+    const Eigen::Vector2f p = s.position_m.cast<float>();
+    const Eigen::Vector2f d = s.direction.cast<float>();
+    reference.branches.push_back({p.x(), p.y(), d.x(), d.y(), static_cast<float>(s.clearance_m)});
+  }
+  reference.branches.push_back({kFarAway_m, kFarAway_m, 0.0F, 0.0F, 0.0F});
+  reference.branch_grid.build(positions_m, kGridCell_m, kReach_m);
+  reference.features = std::move(features);
+  return reference;
 }
 
 }  // namespace topogeo::localization

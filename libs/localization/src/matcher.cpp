@@ -4,7 +4,6 @@
 #include <array>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include <Eigen/LU>
 
@@ -18,29 +17,26 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr std::size_t kCachedReferences = 4;
-constexpr std::size_t kRefined = 3;  // solutions that are refined before the winner is chosen
+constexpr std::size_t kCachedReferences = 16;  // of about 150 kB
+constexpr std::size_t kRefined = 3;  // places that are refined before the winner is chosen
 
-// Refines the best solutions and takes the one with the largest fitness as the result's pose, and
-// the best of those that lie elsewhere as its second.
-void choose(const MatchContext& context, MatchResult& result) {
+// Refines the `starts` and takes the one with the largest fitness as the result's pose, and the
+// best of those that end elsewhere as its second.
+void choose(const MatchContext& context, const std::vector<MatchSolution>& starts,
+            MatchResult& result) {
   const PosePrior prior{context.task.T_reference_query, context.task.covariance.inverse()};
   std::array<MatchSolution, kRefined> refined;
-  const std::size_t count = std::min(kRefined, result.solutions.size());
   std::size_t best = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Pose2 T =
-        align(context.reference, context.query, result.solutions[i].T_reference_query, prior)
-            .T_reference_query;
-    refined[i] = {T, context.fitness(T)};
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Alignment aligned =
+        align(context.reference, context.query, starts[i].T_reference_query, prior);
+    refined[i] = {aligned.T_reference_query, context.forms.chosen()(aligned.T_reference_query)};
     if (refined[i].fitness > refined[best].fitness) best = i;
   }
   result.T_reference_query = refined[best].T_reference_query;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double apart_m2 =
-        (refined[i].T_reference_query.position_m() - result.T_reference_query.position_m())
-            .squaredNorm();
-    if (apart_m2 > kSecondApart_m * kSecondApart_m && refined[i].fitness > result.second.fitness) {
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (refined[i].fitness > result.second.fitness &&
+        !same_place(refined[i].T_reference_query, result.T_reference_query)) {
       result.second = refined[i];
     }
   }
@@ -86,15 +82,19 @@ MatchResult Matcher::solve(const MatchTask& task) {
   check(task);
   const MatchFeatures& query = known(task.query_map_id, task.query_hash).features;
   const Reference& against = reference(task.reference_map_id, task.reference_hash);
-  const Fitness fitness(against, query, task);
+  forms_.bind(against, query, task);
 
   MatchResult result;
-  SearchOutcome outcome = genetic_search(task, fitness);
-  result.solutions = std::move(outcome.solutions);
-  result.evaluations = outcome.evaluations;
-  const MatchContext context{task, against, query, fitness};
+  result.evaluations =
+      search_.run(task, forms_.chosen(), hypotheses_.find(task, against.features, query));
+  result.solutions.reserve(task.solutions_wanted);
+  search_.best_distinct(
+      task.solutions_wanted,
+      [&](const Pose2& a, const Pose2& b) { return same_solution(task, a, b); }, result.solutions);
+  const MatchContext context{task, against, query, forms_};
   if (!result.solutions.empty() && result.solutions.front().fitness > 0.0) {
-    choose(context, result);
+    search_.best_distinct(kRefined, same_place, starts_);
+    choose(context, starts_, result);
   }
   add_evidence(context, result);
   return result;

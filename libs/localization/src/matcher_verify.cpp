@@ -120,10 +120,9 @@ std::string faults_of_choice(const MatchResult& right) {
   }
   if (right.second.fitness == 0.0) return {};
   if (right.second.fitness > right.fitness) return "the second is better than the best";
-  const double apart_m2 =
-      (right.second.T_reference_query.position_m() - right.T_reference_query.position_m())
-          .squaredNorm();
-  if (apart_m2 <= kSecondApart_m * kSecondApart_m) return "the second is the best one again";
+  if (same_place(right.second.T_reference_query, right.T_reference_query)) {
+    return "the second is the best one again";
+  }
   return {};
 }
 
@@ -135,9 +134,9 @@ std::string Matcher::verify(const MatchTask& task, const MatchResult& result) {
   const Reference& against = reference(task.reference_map_id, task.reference_hash);
   std::string fault = faults_of_form(task, result);
   if (!fault.empty()) return fault;
-  const Fitness fitness(against, query, task);
+  forms_.bind(against, query, task);
   MatchResult right = result;
-  add_evidence({task, against, query, fitness}, right);
+  add_evidence({task, against, query, forms_}, right);
   fault = difference(result, right);
   return fault.empty() ? faults_of_choice(right) : fault;
 }

@@ -152,6 +152,32 @@ TEST_F(MatcherTest, RefusesTasksThatMakeNoSense) {
       {"pose nan", [&](MatchTask& t) { t.T_reference_query.theta_rad = nan; }},
       {"no resolution", [](MatchTask& t) { t.genetic.resolution_m = 0.0; }},
       {"resolution nan", [&](MatchTask& t) { t.genetic.resolution_rad = nan; }},
+      {"three individuals", [](MatchTask& t) { t.genetic.individuals = 3; }},
+      {"individuals without end", [](MatchTask& t) { t.genetic.individuals = 10'001; }},
+      {"no generation", [](MatchTask& t) { t.genetic.generations = 0; }},
+      {"hours of work", [](MatchTask& t) { t.genetic.generations = 20'001; }},
+      {"crossover rate", [](MatchTask& t) { t.genetic.crossover_rate = 1.01; }},
+      {"crossover rate negative", [](MatchTask& t) { t.genetic.crossover_rate = -0.01; }},
+      {"crossover rate nan", [&](MatchTask& t) { t.genetic.crossover_rate = nan; }},
+      {"mutation rate", [](MatchTask& t) { t.genetic.mutation_rate = 0.51; }},
+      {"mutation rate negative", [](MatchTask& t) { t.genetic.mutation_rate = -0.01; }},
+      {"mutation rate nan", [&](MatchTask& t) { t.genetic.mutation_rate = nan; }},
+      {"no elite", [](MatchTask& t) { t.genetic.elite = 0; }},
+      {"all elite", [](MatchTask& t) { t.genetic.elite = 50; }},
+      {"hypotheses", [](MatchTask& t) { t.genetic.branch_hypotheses = 10'001; }},
+      {"initial individual nan",
+       [&](MatchTask& t) {
+         t.initial_individuals = {{0, nan, 0}};
+       }},
+      {"initial individual heading",
+       [](MatchTask& t) {
+         t.initial_individuals = {{0, 0, 1e9}};
+       }},
+      {"gate nan", [&](MatchTask& t) { t.gate.largest_doubt = nan; }},
+      {"gate negative", [](MatchTask& t) { t.gate.smallest_overlap = -0.1; }},
+      {"form", [](MatchTask& t) { t.fitness_form = static_cast<FitnessForm>(3); }},
+      {"space", [](MatchTask& t) { t.half_width.x() = 1e9; }},
+      {"pose far", [](MatchTask& t) { t.T_reference_query.x_m = 1e30; }},
       {"no solutions", [](MatchTask& t) { t.solutions_wanted = 0; }},
       {"too many solutions", [](MatchTask& t) { t.solutions_wanted = 41; }},
   };

@@ -1,5 +1,5 @@
 // What matching reads of a local map, made once per map: thinned scan points with the direction of
-// the wall under them, what was seen from the stop, and the nodes and branches as samples.
+// the wall under them, what was seen from the stop, and the nodes and branches.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/nearest_point_grid.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {
@@ -51,17 +52,26 @@ struct BranchSample {
   double clearance_m = 0.0;
 };
 
+/// A branch from end to end, as the equations of the source need it.
+struct BranchCurve {
+  std::vector<Eigen::Vector2d>
+      points_m;              ///< about kCurveSpacing_m apart, both ends included; at least two
+  double clearance_m = 0.0;  ///< mean
+};
+
 struct MatchFeatures {
   static constexpr double kFineSpacing_m = 0.05;
   static constexpr double kCoarseSpacing_m = 0.20;
   static constexpr double kBranchSpacing_m = 0.20;
+  static constexpr double kCurveSpacing_m = 0.10;
 
   std::vector<SurfacePoint> surface;      ///< at least kFineSpacing_m apart along the scan
   std::vector<Eigen::Vector2d> coarse_m;  ///< at least kCoarseSpacing_m apart along the scan
   RangeProfile profile;
   std::vector<topomap::LocalNode>
       nodes;  ///< real nodes and states of a branch; none fictitious or virtual
-  std::vector<BranchSample> branches;  ///< of all branches that are not virtual
+  std::vector<BranchSample> branches;  ///< of all confirmed branches that are not virtual
+  std::vector<BranchCurve> curves;     ///< the same branches whole
 };
 
 MatchFeatures extract_features(const topomap::LocalMap& map);
@@ -69,5 +79,27 @@ MatchFeatures extract_features(const topomap::LocalMap& map);
 /// Only the scan's part of the features, for tracking between stops.
 MatchFeatures extract_scan_features(std::span<const topomap::ScanPoint> points,
                                     const geometry::Pose2& T_robot_laser);
+
+/// Features of the reference map of a match together with the look-up grids on them. The arrays in
+/// single precision are what the genetic search reads; each ends with one element more, far away,
+/// for places that have no neighbour.
+struct Reference {
+  struct Branch {
+    float x_m, y_m;
+    float direction_x, direction_y;
+    float clearance_m;
+  };
+  MatchFeatures features;
+  NearestPointGrid surface_grid;  ///< on features.surface
+  NearestPointGrid branch_grid;   ///< on features.branches
+  std::vector<Eigen::Vector2f> surface_m;
+  std::vector<Branch> branches;
+};
+
+/// Further apart than this, in metres, nothing is looked up in a reference.
+inline constexpr double kReach_m = 0.60;
+
+/// Throws std::invalid_argument when the points lie too far apart (see NearestPointGrid::build).
+Reference make_reference(MatchFeatures features);
 
 }  // namespace topogeo::localization

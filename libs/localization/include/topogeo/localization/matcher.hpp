@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/fitness.hpp"
+#include "topogeo/localization/fitness_forms.hpp"
+#include "topogeo/localization/genetic_search.hpp"
+#include "topogeo/localization/genetic_search_hypotheses.hpp"
 #include "topogeo/localization/match.hpp"
 #include "topogeo/localization/match_features.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -53,6 +55,11 @@ class Matcher {
   std::map<std::uint32_t, KnownMap> maps_;
   std::list<CachedReference>
       references_;  // most recently used first; grids are large, so only a few
+  // What a match works with, kept for its memory.
+  FitnessForms forms_;
+  BranchHypotheses hypotheses_;
+  GeneticSearch search_;
+  std::vector<MatchSolution> starts_;
 };
 
 /// Hash of what solve() makes of a small built-in task: two programs that differ in it would give

@@ -6,6 +6,8 @@
 // cell border.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +19,12 @@ class NearestPointGrid {
  public:
   static constexpr std::int32_t kNone = -1;
 
-  /// Points in any one frame, metres. `cell_m` > 0, `reach_m` >= `cell_m`.
+  /// Finds nothing.
+  NearestPointGrid() : nearest_(1, 0) {}
+
+  /// Points in any one frame, metres. `cell_m` > 0, `reach_m` >= `cell_m`. Throws
+  /// std::invalid_argument for more than 65,534 points or when they lie so far apart that the grid
+  /// would have more than 2^22 cells.
   void build(const std::vector<Eigen::Vector2d>& points_m, double cell_m, double reach_m);
 
   /// Index of the point nearest to the cell of (x, y); kNone if none lies within reach.
@@ -25,18 +32,43 @@ class NearestPointGrid {
     const double column = (x_m - origin_x_m_) * cells_per_m_;
     const double row = (y_m - origin_y_m_) * cells_per_m_;
     if (!(column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_)) return kNone;
-    return nearest_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                    static_cast<std::size_t>(column)];
+    const std::uint16_t found =
+        nearest_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                 static_cast<std::size_t>(column)];
+    return found == count_ ? kNone : found;
+  }
+
+  /// For each of four finite places the index of the point nearest to its cell; the number of
+  /// points if none lies within reach. Its single precision can put a place within some micrometres
+  /// of a border into the cell beside.
+  [[nodiscard]] std::array<std::size_t, 4> find_four(const Eigen::Array4f& x_m,
+                                                     const Eigen::Array4f& y_m) const {
+    // The cells at the border have no point in reach, so places outside are put there.
+    const Eigen::Array4f column = ((x_m - float_origin_x_m_) * float_cells_per_m_)
+                                      .max(0.0F)
+                                      .min(static_cast<float>(columns_ - 1));
+    const Eigen::Array4f row = ((y_m - float_origin_y_m_) * float_cells_per_m_)
+                                   .max(0.0F)
+                                   .min(static_cast<float>(rows_ - 1));
+    std::array<std::size_t, 4> found;
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      const int cell = static_cast<int>(row[k]) * columns_ + static_cast<int>(column[k]);
+      found[static_cast<std::size_t>(k)] = nearest_[static_cast<std::size_t>(cell)];
+    }
+    return found;
   }
 
  private:
   double origin_x_m_ = 0.0;
   double origin_y_m_ = 0.0;
   double cells_per_m_ = 1.0;
-  int columns_ = 0;
-  int rows_ = 0;
-  std::vector<std::int32_t> nearest_;
-  std::vector<float> squared_m2_;  // of the nearest point so far, while building
+  float float_origin_x_m_ = 0.0F;  // the same again
+  float float_origin_y_m_ = 0.0F;
+  float float_cells_per_m_ = 1.0F;
+  int columns_ = 1;
+  int rows_ = 1;
+  std::uint16_t count_ = 0;             // of the points
+  std::vector<std::uint16_t> nearest_;  // count_: none
 };
 
 }  // namespace topogeo::localization
