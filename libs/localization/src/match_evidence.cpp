@@ -56,8 +56,8 @@ class Checker {
 
 void check_genetic(const Checker& checker, const GeneticParameters& g) {
   checker.range("individuals", g.individuals, kFewestIndividuals, kMostIndividuals);
-  checker.range("generations", g.generations, 1.0,
-                static_cast<double>(kMostEvaluations / g.individuals));
+  const std::uint64_t most_generations = kMostEvaluations / g.individuals;
+  checker.range("generations", g.generations, 1.0, static_cast<double>(most_generations));
   checker.range("crossover_rate", g.crossover_rate, 0.0, 1.0);
   checker.range("mutation_rate", g.mutation_rate, 0.0, 0.5);
   checker.range("elite", g.elite, 1.0, g.individuals - 1.0);

@@ -169,5 +169,48 @@ TEST(BranchSamplesTest, VirtualBranchesAndImaginaryNodesAreLeftOut) {
   }
 }
 
+TEST(MatchFeaturesTest, CurvesRunFromEndToEnd) {
+  topomap::LocalMap map;
+  topomap::LocalBranch branch;
+  for (int i = 0; i <= 21; ++i) branch.points.push_back({{0.05 * i, 1.0}, 0.5 + 0.1 * i});
+  map.branches.push_back(branch);
+  branch.is_virtual = true;
+  map.branches.push_back(branch);
+  branch.is_virtual = false;
+  branch.confirmed = false;
+  map.branches.push_back(branch);
+  const MatchFeatures features = extract_features(map);
+  ASSERT_EQ(features.curves.size(), 1U) << "neither virtual nor unconfirmed ones";
+  const BranchCurve& curve = features.curves.front();
+  EXPECT_EQ(curve.points_m.front(), Eigen::Vector2d(0.0, 1.0));
+  EXPECT_EQ(curve.points_m.back(), Eigen::Vector2d(0.05 * 21, 1.0));
+  EXPECT_NEAR(curve.clearance_m, 0.5 + 0.1 * 10.5, 1e-12);
+  for (std::size_t i = 1; i < curve.points_m.size(); ++i) {
+    const double step_m = (curve.points_m[i] - curve.points_m[i - 1]).norm();
+    EXPECT_GT(step_m, 0.09);
+    EXPECT_LT(step_m, 0.21);
+  }
+}
+
+// The last element is what a place without a neighbour finds: nothing may be near it.
+TEST(MatchFeaturesTest, TheArraysOfAReferenceAreItsFeaturesAndOneFarAway) {
+  MatchFeatures features = test::features_at(test::l_room(), {});
+  features.branches = {test::sample(1.0, 2.0, 0.5, 0.7)};
+  const Reference reference = make_reference(features);
+  ASSERT_EQ(reference.surface_m.size(), features.surface.size() + 1);
+  for (std::size_t i = 0; i < features.surface.size(); ++i) {
+    EXPECT_EQ(reference.surface_m[i], features.surface[i].position_m.cast<float>());
+  }
+  EXPECT_GT(reference.surface_m.back().norm(), 1e8F);
+  ASSERT_EQ(reference.branches.size(), 2U);
+  EXPECT_EQ(reference.branches[0].x_m, 1.0F);
+  EXPECT_EQ(reference.branches[0].y_m, 2.0F);
+  EXPECT_EQ(reference.branches[0].direction_x, static_cast<float>(std::cos(0.5)));
+  EXPECT_EQ(reference.branches[0].direction_y, static_cast<float>(std::sin(0.5)));
+  EXPECT_EQ(reference.branches[0].clearance_m, 0.7F);
+  EXPECT_GT(reference.branches[1].x_m, 1e8F);
+  EXPECT_EQ(make_reference({}).surface_m.size(), 1U);
+}
+
 }  // namespace
 }  // namespace topogeo::localization
