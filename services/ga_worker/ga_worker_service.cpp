@@ -70,9 +70,7 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
   runner_.emplace(options_.slots, std::max(per_slot, kLeastPerSlot_bytes),
                   [this, &loop](TaskRunner::Outcome outcome) {
-                    loop.post([this, outcome = std::move(outcome)]() mutable {
-                      on_outcome(std::move(outcome));
-                    });
+                    loop.post([this, outcome = std::move(outcome)] { on_outcome(outcome); });
                   });
   fill_status();
   listen();
@@ -223,7 +221,7 @@ void GaWorkerService::on_task(const msg::MatchTask& message, const messaging::Sa
   }
 }
 
-void GaWorkerService::on_outcome(TaskRunner::Outcome outcome) {
+void GaWorkerService::on_outcome(const TaskRunner::Outcome& outcome) {
   const auto asked = asked_.extract(outcome.ticket);
   if (!asked) return;  // its client is gone
   if (outcome.failed) {
@@ -291,7 +289,9 @@ void GaWorkerService::on_event(const messaging::Event& event) {
 
 // Nobody waits for what is left to do for them.
 void GaWorkerService::forget(const std::vector<ClientBook::Entry>& gone) {
-  for (const auto& [client_id, client] : gone) {
+  for (const ClientBook::Entry& entry : gone) {
+    const std::string& client_id = entry.first;
+    const ClientBook::Client& client = entry.second;
     spdlog::info("client {}, robot {}, is gone after {} answers", client_id, client.robot_id,
                  client.answered);
     for (const std::uint64_t ticket : runner_->remove(client_id)) asked_.erase(ticket);

@@ -65,7 +65,7 @@ class GaWorkerService {
   void on_map(const msg::LocalMap& message);
   void on_map_copy(const msg::MapCopy& message);
   void on_task(const msg::MatchTask& message, const messaging::SampleInfo& info);
-  void on_outcome(TaskRunner::Outcome outcome);
+  void on_outcome(const TaskRunner::Outcome& outcome);
   void on_event(const messaging::Event& event);
 
   /// Why a task is not for this worker; nothing when it is.

@@ -15,7 +15,6 @@ namespace {
 using ga_worker::room;
 using ga_worker::task;
 using localization::MatchTask;
-using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -358,6 +357,7 @@ TEST_F(WorkerTest, HasRoomForEverNewClients) {
   const auto process = start();
   for (int i = 0; i < 7; ++i) {
     std::vector<std::unique_ptr<WorkerClient>> peers;
+    peers.reserve(kAtATime);
     for (int k = 0; k < kAtATime; ++k) peers.push_back(client());
     for (const auto& peer : peers) {
       const std::string worker = peer->find(name_);
