@@ -1,9 +1,8 @@
 #include "topogeo/localization/odometry_model.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
-#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/error_ellipse.hpp"
 
 namespace topogeo::localization {
 
@@ -36,13 +35,6 @@ UncertainPose odometry_between_stops(const Pose2& T_odom_previous, const topomap
     T_odom_before = scan.T_odom_robot;
   }
   return advance(sum, geometry::between(T_odom_before, map.T_odom_robot), noise);
-}
-
-double ellipse_k2(double probability) {
-  if (!(probability > 0.0 && probability < 1.0)) {
-    throw std::invalid_argument("ellipse_k2: probability must lie between 0 and 1");
-  }
-  return -2.0 * geometry::log(1.0 - probability);
 }
 
 Eigen::Vector3d search_half_width(const Eigen::Matrix3d& covariance, double probability,

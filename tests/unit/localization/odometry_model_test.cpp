@@ -1,15 +1,15 @@
 #include "topogeo/localization/odometry_model.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "topogeo/localization/error_ellipse.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization {
@@ -25,16 +25,22 @@ UncertainPose drive_straight(double way_m, int steps, const OdometryNoise& noise
   return pose;
 }
 
-TEST(EllipseTest, GivesTheTableOfTheSource) {
-  EXPECT_NEAR(ellipse_k2(0.50), 1.386, 0.0005);
-  EXPECT_NEAR(ellipse_k2(0.90), 4.605, 0.0005);
-  EXPECT_NEAR(ellipse_k2(0.95), 5.991, 0.0005);
-}
-
-TEST(EllipseTest, RefusesWhatIsNoProbability) {
-  for (const double wrong : {0.0, 1.0, -0.1, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(ellipse_k2(wrong), std::invalid_argument) << wrong;
+TEST(OdometryModelTest, HasTheModelOfTheSourceAsASpecialCase) {
+  const double k11 = 0.01;
+  const double k33 = 0.03;
+  const OdometryNoise source{k11, 0.0, 0.0, 0.0, k33};
+  // 6.4 to 6.8 along the x axis, where the axes of 6.8 are those of the step.
+  const std::vector<std::pair<double, double>> steps{{1.0, 0.0}, {2.0, 0.0}, {0.5, 0.4}};
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  UncertainPose found;
+  for (const auto& [way_m, turn_rad] : steps) {
+    Eigen::Matrix3d j = Eigen::Matrix3d::Identity();
+    j(1, 2) = way_m;  // 6.7 at heading 0
+    const Eigen::Vector3d q(k11 * way_m, 0.0, k33 * turn_rad);
+    expected = (j * expected * j.transpose() + Eigen::Matrix3d(q.asDiagonal())).eval();
+    found = advance(found, {way_m, 0.0, turn_rad}, source);
   }
+  EXPECT_TRUE(found.covariance.isApprox(expected, 1e-12)) << found.covariance;
 }
 
 TEST(OdometryModelTest, OneStepHasTheVariancesOfItsWayAndTurn) {

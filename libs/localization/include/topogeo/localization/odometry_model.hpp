@@ -9,8 +9,15 @@
 namespace topogeo::localization {
 
 /// Variances that grow with the way travelled, as in 6.8, so that they do not depend on how the way
-/// is cut into steps. The source has no heading noise per metre; without it every straight corridor
-/// makes the covariance optimistic, which was the costliest mistake of all trials, so it is here.
+/// is cut into steps. In the frame of the step the source's diag(|dx|, |dy|, |dtheta|) K_error is
+/// translation_m2_per_m = K_error(1,1), heading_rad2_per_rad = K_error(3,3) and zero for the rest,
+/// as its robot never moves sideways. What the source does not have, and why it is here:
+/// - heading_rad2_per_m: wheels slip and differ on a straight way too. Without it every corridor
+///   makes the covariance optimistic, which was the costliest mistake of all trials.
+/// - lateral_m2_per_m: carpets push the robot sideways, which its wheels do not measure.
+/// - translation_m2_per_rad: a turn moves a robot that does not turn exactly about the point that
+///   its odometry speaks of.
+/// `topogeo calibrate-odometry` finds the values of a robot from a log (odometry_calibration.hpp).
 struct OdometryNoise {
   double translation_m2_per_m = 0.004;    ///< along the motion
   double translation_m2_per_rad = 0.004;  ///< in x and y, per turn: also an unknown laser offset
@@ -35,12 +42,9 @@ UncertainPose odometry_between_stops(const geometry::Pose2& T_odom_previous,
                                      const topomap::LocalMap& map, const OdometryNoise& noise);
 
 /// Half-widths (m, m, rad) of the rectangle around the error ellipse of the given probability
-/// (6.22) and of `heading_sigmas` standard deviations of heading (6.23). 0 < probability < 1.
+/// (6.22; error_ellipse.hpp) and of `heading_sigmas` standard deviations of heading (6.23).
+/// 0 < probability < 1.
 Eigen::Vector3d search_half_width(const Eigen::Matrix3d& covariance, double probability,
                                   double heading_sigmas);
-
-/// k^2 = -2 ln(1 - P) of 6.22: the squared Mahalanobis radius of the ellipse that holds probability
-/// P.
-double ellipse_k2(double probability);
 
 }  // namespace topogeo::localization

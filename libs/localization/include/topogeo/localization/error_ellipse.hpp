@@ -1,0 +1,34 @@
+// The ellipse in which a position lies with a given probability, and the rectangle around it: the
+// space that a search has to cover (spec A3, thesis 6.2.1.2 and 6.2.1.3).
+//
+// The source inverts the covariance and writes the ellipse as A x^2 + 2 B x y + C y^2 = k^2 (6.16,
+// with the 2 that its print lacks). Here the same axes come from the covariance itself, which also
+// works where one variance is zero. Of the two directions that 6.18 allows, this is always that of
+// the major axis: 1/2 atan2(-2B, C - A).
+#pragma once
+
+#include <Eigen/Core>
+
+namespace topogeo::localization {
+
+/// Centred on the mean of the position.
+struct ErrorEllipse {
+  double semi_major_m = 0.0;
+  double semi_minor_m = 0.0;
+  double direction_rad = 0.0;  ///< of the major axis from x, in (-pi/2, pi/2]; 0 for a circle
+};
+
+/// k^2 = -2 ln(1 - P) of 6.22: the squared Mahalanobis radius of the ellipse that holds probability
+/// P. Throws std::invalid_argument unless 0 < probability < 1.
+double ellipse_k2(double probability);
+
+/// The ellipse of squared Mahalanobis radius `k2` of a covariance of (x, y) in m^2 (6.14 to 6.20).
+/// Throws std::invalid_argument when the covariance is not symmetric, finite and positive
+/// semidefinite, or k2 is negative or not finite.
+ErrorEllipse error_ellipse(const Eigen::Matrix2d& covariance_m2, double k2);
+
+/// Half-widths along x and y of the rectangle around the ellipse (definition 6.2.1); each is k
+/// times the standard deviation along its axis.
+Eigen::Vector2d bounding_half_width_m(const ErrorEllipse& ellipse);
+
+}  // namespace topogeo::localization
