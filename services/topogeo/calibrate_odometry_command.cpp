@@ -1,0 +1,333 @@
+// topogeo calibrate-odometry: how wrong the odometry of a robot is, from one of its logs.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/odometry_calibration.hpp"
+#include "topogeo/localization/odometry_calibration_samples.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/tum.hpp"
+#include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/progress_bar.hpp"
+
+#include "commands.hpp"
+#include "job.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using localization::LocalMaps;
+using localization::NoiseParameter;
+using localization::OdometryCalibration;
+
+/// Accepted matches for each stop, at most: enough that motions of one to six metres occur. Closing
+/// loops would cost as much again and says nothing of single steps.
+constexpr std::uint32_t kRecentMatches = 6;
+
+struct CalibrateOptions {
+  std::filesystem::path log;
+  std::optional<std::filesystem::path> reference;
+  std::optional<std::filesystem::path> config;
+  std::optional<std::filesystem::path> out;
+};
+
+/// All that is read before the work starts.
+struct Inputs {
+  pipeline::LoadedConfig config;
+  scan::CarmenLogReader reader;
+  std::uint64_t laser_lines = 0;
+  std::vector<topomap::StampedPose> reference;
+};
+
+Inputs read_inputs(const CalibrateOptions& options) {
+  pipeline::LoadedConfig config;
+  try {
+    config = pipeline::load_config(options.config);
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+  if (options.out) {
+    const auto directory = std::filesystem::absolute(*options.out).parent_path();
+    if (!std::filesystem::is_directory(directory)) {
+      throw std::runtime_error(options.out->string() + ": its directory does not exist");
+    }
+    support::check_writable_directory(directory);
+  }
+  try {
+    std::vector<topomap::StampedPose> reference;
+    if (options.reference) reference = storage::read_trajectory_tum(*options.reference);
+    std::stable_sort(reference.begin(), reference.end(),
+                     [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+    scan::CarmenLogReader reader(options.log, config.config.log);
+    return {std::move(config), std::move(reader), scan::count_scans(options.log),
+            std::move(reference)};
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+/// The motions of a log as measured, and what people should know of where they come from.
+struct Measured {
+  LocalMaps maps;
+  std::vector<localization::MeasuredMotion> motions;
+  std::string yardstick;
+};
+
+class Bar {
+ public:
+  Bar(const char* label, const char* unit)
+      : bar_(std::cerr, support::stderr_is_terminal(), label, unit),
+        start_s_(support::monotonic_s()) {}
+  void update(std::uint64_t done, std::uint64_t total) {
+    bar_.update(done, total, support::monotonic_s() - start_s_);
+    done_ = done;
+  }
+  void finish() { bar_.finish(done_, done_, support::monotonic_s() - start_s_); }
+
+ private:
+  support::ProgressBar bar_;
+  double start_s_;
+  std::uint64_t done_ = 0;
+};
+
+/// Makes the local maps of the log and gives each to `use`.
+template <typename Use>
+LocalMaps make_maps(Inputs& inputs, const char* label, const Use& use) {
+  LocalMaps maps;
+  const auto take = [&](std::optional<topomap::LocalMap> map) {
+    if (!map) return;
+    maps.push_back(std::make_shared<const topomap::LocalMap>(std::move(*map)));
+    use(maps.back());
+  };
+  Bar bar(label, "scans");
+  pipeline::LocalMapper mapper(inputs.config.config.local_mapper, "robot");
+  std::uint64_t done = 0;
+  while (const std::optional<scan::Scan> scan = inputs.reader.next()) {
+    take(mapper.add(*scan));
+    bar.update(++done, inputs.laser_lines);
+  }
+  take(mapper.finish());
+  bar.finish();
+  tell_skipped(inputs.reader.statistics());
+  return maps;
+}
+
+Measured measure_by_reference(Inputs& inputs, const std::filesystem::path& reference) {
+  Measured measured;
+  measured.maps = make_maps(inputs, "following", [](const auto&) {});
+  const double longest_way_m = inputs.config.config.localizer.recent_way_m;
+  measured.motions =
+      localization::motions_from_reference(measured.maps, inputs.reference, longest_way_m);
+  if (measured.motions.empty()) {
+    throw service::BadInputError(reference.string() +
+                                 ": no two stops of the log lie within its time");
+  }
+  measured.yardstick = fmt::format("{} motions of up to {:g} m in {}", measured.motions.size(),
+                                   longest_way_m, reference.filename().string());
+  return measured;
+}
+
+Measured measure_by_matches(Inputs& inputs) {
+  localization::LocalizerConfig config = inputs.config.config.localizer;
+  config.recent_matches = std::max(config.recent_matches, kRecentMatches);
+  config.revisit_matches = 0;
+  config.final_passes = 0;
+  localization::InProcessPool searching;
+  localization::RecordingPool pool(searching);
+  localization::Localizer localizer(config, pool);
+  Measured measured;
+  measured.maps = make_maps(inputs, "matching", [&](const auto& map) { localizer.add(map); });
+  localizer.finish();
+  const localization::MatchedMotions matched =
+      localization::motions_from_matches(measured.maps, pool.accepted(), localizer.trajectory());
+  measured.motions = matched.motions;
+  measured.yardstick = fmt::format(
+      "{} matches of stops up to {:g} m apart; left out: {} that the others contradict, {} that "
+      "the scans do not fix",
+      matched.motions.size(), config.recent_way_m, matched.contradicted, matched.unrefined);
+  return measured;
+}
+
+OdometryCalibration calibrate(const CalibrateOptions& options, const Inputs& inputs,
+                              const Measured& measured) {
+  localization::OdometryCalibrationConfig config;
+  config.fallback = inputs.config.config.localizer.odometry;
+  config.seed = inputs.config.config.localizer.seed;
+  try {
+    Bar bar("refitting", "fits");
+    OdometryCalibration found = localization::calibrate_odometry(
+        localization::odometry_stretches(measured.maps), measured.motions, config,
+        [&](std::size_t done, std::size_t total) { bar.update(done, total); });
+    bar.finish();
+    return found;
+  } catch (const std::runtime_error& error) {
+    throw service::BadInputError(options.log.string() + ": " + error.what());
+  }
+}
+
+/// As people and the file get it: three digits, which is more than is known.
+std::string digits(double value) {
+  return fmt::format("{:.3g}", value);
+}
+
+std::string value_text(const localization::Estimate& estimate) {
+  return (estimate.at_most ? "<" : "") + digits(estimate.value);
+}
+
+void print_table(std::ostream& out, const Inputs& inputs, const OdometryCalibration& found) {
+  const localization::OdometryNoise& configured = inputs.config.config.localizer.odometry;
+  const auto row = [&](const auto&... cells) {
+    out << fmt::format("{:<24}{:>10}{:>10}{:>12}{:>12}{:>10}{:>11}  {}\n", cells...);
+  };
+  row("parameter", "value", "spread", "configured", "corrected", "spread", "stretches", "unit");
+  for (std::size_t p = 0; p < localization::kNoiseParameters; ++p) {
+    const NoiseParameter& parameter = localization::kOdometryParameters[p];
+    const localization::NoiseEstimate& estimate = found.parameters[p];
+    const std::string now = digits(configured.*parameter.field);
+    if (estimate.known) {
+      row(parameter.key, value_text(estimate.as_is), digits(estimate.as_is.spread), now,
+          value_text(estimate.corrected), digits(estimate.corrected.spread), estimate.stretches,
+          parameter.unit);
+      continue;
+    }
+    row(parameter.key, now, "-", now, now, "-", estimate.stretches, parameter.unit);
+    out << fmt::format("  kept: only {} stretches have {}, {} are needed to say something of it\n",
+                       estimate.stretches, parameter.per_turn ? "0.2 rad of turn" : "0.2 m of way",
+                       localization::kFewestStretches);
+  }
+}
+
+/// Matches are searched for as far as the configured noise reaches, and no farther.
+void warn_of_narrow_search(std::ostream& out, const Inputs& inputs,
+                           const OdometryCalibration& found) {
+  constexpr double kFarAbove = 2.0;
+  for (std::size_t p = 0; p < localization::kNoiseParameters; ++p) {
+    const NoiseParameter& parameter = localization::kOdometryParameters[p];
+    const double configured = inputs.config.config.localizer.odometry.*parameter.field;
+    if (found.noise.*parameter.field <= kFarAbove * configured) continue;
+    out << "  " << parameter.key
+        << " is far above the configured value, so the worst motions may not have been matched:\n"
+           "  run again with --config and the values found\n";
+  }
+}
+
+void print_systematic(std::ostream& out, const localization::SystematicErrors& errors) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const auto line = [&](const char* name, const localization::Estimate& e, double factor,
+                        const char* unit) {
+    out << fmt::format("  {:<8}{:>+9.3f} +- {:<7.3f} {}\n", name, factor * e.value,
+                       factor * e.spread, unit);
+  };
+  out << "systematic errors, counted as noise in `value`, taken out in `corrected`\n"
+         "(+: the odometry says too much, or turns to the left on its own):\n";
+  line("way", errors.way, 100.0, "% of the way");
+  line("heading", errors.heading_rad_per_m, kDegrees, "degrees per m of way");
+  line("turn", errors.turn, 100.0, "% of the turn");
+  line("ahead", errors.ahead_m, 1.0, "m from laser.x_m to where the laser is");
+  line("left", errors.left_m, 1.0, "m from laser.y_m to where the laser is");
+  line("yaw", errors.yaw_rad, kDegrees, "degrees from laser.yaw_rad to where it looks");
+}
+
+void print_yaml(std::ostream& out, const localization::OdometryNoise& noise) {
+  out << "odometry:\n";
+  for (const NoiseParameter& parameter : localization::kOdometryParameters) {
+    out << "  " << parameter.key << ": " << digits(noise.*parameter.field) << '\n';
+  }
+}
+
+/// A configuration that `topogeo map` takes: that of --config with the values found, or them alone.
+std::string configuration(const CalibrateOptions& options,
+                          const localization::OdometryNoise& noise) {
+  std::ostringstream block;
+  block << "# Odometry of " << options.log.filename().string()
+        << ", by topogeo calibrate-odometry.\n";
+  print_yaml(block, noise);
+  if (!options.config) return block.str();
+  pipeline::Config config;
+  const support::ConfigSchema schema = pipeline::describe(config);
+  support::load_yaml_file(*options.config, schema);
+  support::load_yaml_text(block.str(), "the values found", schema);
+  std::ostringstream whole;
+  support::write_yaml(schema, whole);
+  return whole.str();
+}
+
+int calibrate_log(const CalibrateOptions& options) {
+  Inputs inputs = read_inputs(options);
+  const Measured measured = options.reference ? measure_by_reference(inputs, *options.reference)
+                                              : measure_by_matches(inputs);
+  const OdometryCalibration found = calibrate(options, inputs, measured);
+
+  double way_m = 0.0;
+  double turn_rad = 0.0;
+  for (const auto& stretch : localization::odometry_stretches(measured.maps)) {
+    for (const geometry::Pose2& step : stretch) {
+      way_m += std::sqrt(step.position_m().squaredNorm());
+      turn_rad += std::fabs(step.theta_rad);
+    }
+  }
+  std::cout << fmt::format("{}: {} stops, {:.1f} m of way, {:.1f} rad of turn\n",
+                           options.log.filename().string(), measured.maps.size(), way_m, turn_rad)
+            << measured.yardstick << fmt::format("; {} outlying\n", found.outlying)
+            << fmt::format("these measurements err {:.2f} times as much as they state\n\n",
+                           found.measurement_scale);
+  print_table(std::cout, inputs, found);
+  if (!options.reference) warn_of_narrow_search(std::cout, inputs, found);
+  std::cout << '\n';
+  print_systematic(std::cout, found.systematic);
+  std::cout << '\n';
+  print_yaml(std::cout, found.noise);
+  if (options.out) {
+    support::write_file_atomically(*options.out, configuration(options, found.noise));
+    std::cout << "written to " << options.out->string() << '\n';
+  }
+  return service::kOk;
+}
+
+}  // namespace
+
+void add_calibrate_odometry_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate-odometry", "Estimate from a log how wrong the odometry of its robot is");
+  auto options = std::make_shared<CalibrateOptions>();
+  command->add_option("LOG", options->log, "CARMEN log, plain or gzip")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--reference", options->reference,
+                   "true trajectory of the robot (TUM) to measure by; without it scans are matched")
+      ->type_name("FILE");
+  command->add_option("--config", options->config, "configuration (YAML); see `topogeo config`")
+      ->type_name("FILE");
+  command
+      ->add_option("--out", options->out,
+                   "configuration to write with the values found; with --config all of its values")
+      ->type_name("FILE");
+  command->footer(
+      "Drive some minutes with turns to both sides, through rooms rather than one long corridor.\n"
+      "Example:\n"
+      "  topogeo calibrate-odometry drive.clf.gz --out robot.yaml\n"
+      "  topogeo map --log drive.clf.gz --config robot.yaml --out map");
+  command->callback([options, &exit_code] { exit_code = calibrate_log(*options); });
+}
+
+}  // namespace topogeo::cli
