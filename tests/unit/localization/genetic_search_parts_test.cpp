@@ -129,6 +129,7 @@ TEST(FitnessTableTest, NeverMixesUpChromosomes) {
 TEST(RouletteTest, DrawsInProportionToFitness) {
   const std::vector<double> fitness{0.1, 0.0, 0.4, 0.0, 0.2, 0.3, 0.0};
   std::vector<Individual> population;
+  population.reserve(fitness.size());
   for (const double value : fitness) population.push_back({{}, value});
   Roulette roulette;
   roulette.fill(population);

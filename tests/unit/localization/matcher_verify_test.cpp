@@ -128,7 +128,9 @@ TEST_F(MatcherVerifyTest, FindsEverySingleFieldThatIsChanged) {
                          [i](MatchResult& r) { return &r.covariance(i); });
   }
   std::vector<std::pair<std::string, Spoil>> faults;
-  for (const auto& [name, at] : numbers) {
+  for (const auto& number : numbers) {
+    const std::string& name = number.first;
+    const auto at = number.second;
     faults.emplace_back(name + " up", [at](MatchResult& r) { *at(r) = next(*at(r)); });
     faults.emplace_back(name + " negative", [at](MatchResult& r) { *at(r) = -*at(r); });
     faults.emplace_back(name + " nan", [at](MatchResult& r) { *at(r) = kNan; });
@@ -164,7 +166,9 @@ TEST_F(MatcherVerifyTest, FindsPosesThatAreNotThoseOfTheEvidence) {
       {"first", [](MatchResult& r) -> Pose2& { return r.solutions.front().T_reference_query; }},
       {"last", [](MatchResult& r) -> Pose2& { return r.solutions.back().T_reference_query; }},
   };
-  for (const auto& [name, at] : poses) {
+  for (const auto& pose : poses) {
+    const std::string& name = pose.first;
+    const auto at = pose.second;
     faults.emplace_back(name + " moved", [at](MatchResult& r) { at(r).x_m += 1e-4; });
     faults.emplace_back(name + " aside", [at](MatchResult& r) { at(r).y_m -= 1e-4; });
     faults.emplace_back(name + " turned", [at](MatchResult& r) { at(r).theta_rad += 1e-4; });
@@ -228,10 +232,10 @@ TEST_F(MatcherVerifyTest, ThrowsLikeSolve) {
   const MatchResult result = worker_.solve(task_);
   MatchTask spoilt = task_;
   ++spoilt.query_hash;
-  EXPECT_THROW(client_.verify(spoilt, result), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(client_.verify(spoilt, result)), std::out_of_range);
   spoilt = task_;
   spoilt.half_width.x() = kNan;
-  EXPECT_THROW(client_.verify(spoilt, result), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(client_.verify(spoilt, result)), std::invalid_argument);
 }
 
 TEST(MatcherFingerprintTest, IsTheSameEachTime) {

@@ -76,6 +76,7 @@ TEST_P(NearestPointGridTest, FourAtOnceAreTheSame) {
   const auto [cell_m, reach_m] = GetParam();
   support::Random random(5);
   std::vector<Eigen::Vector2d> points;
+  points.reserve(100);
   for (int i = 0; i < 100; ++i) {
     points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
   }
