@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include "topogeo/messaging/message.hpp"
@@ -196,29 +197,30 @@ std::string RemotePool::complaint(const MatchTask& task, const MatchResult& resu
 }
 
 void RemotePool::settle(const MatchTask& task) {
-  const MatchTask settled = task;  // the board may drop its own
-  const MatchResult truth = solve(settled);
+  const MatchResult truth = solve(task);
   for (const TaskBoard::Difference& difference : board_.settle(truth, now())) {
-    const std::string who =
-        registry_.name(difference.worker_id) + ", task " + std::to_string(settled.task_id) + ": ";
-    const std::string wrong = complaint(settled, difference.answer);
-    std::string stand;
-    if (difference.unchecked > 0) {
-      stand = "; " + std::to_string(difference.unchecked) +
-              " earlier answers of it were not compared and stand";
-    }
-    if (!wrong.empty()) {
-      on_fault_("wrong match result", who + wrong + stand);
-    } else if (difference.answer.fitness < truth.fitness) {
-      on_fault_("poorer match result", who + "fitness " +
-                                           std::to_string(difference.answer.fitness) + ", here " +
-                                           std::to_string(truth.fitness) + stand);
-    } else {
-      on_fault_("different answers to a task",
-                who + "right, but not what the search makes of it here" + stand);
-    }
+    blame(task, difference, truth);
   }
   tell_recoveries();
+}
+
+void RemotePool::blame(const MatchTask& task, const TaskBoard::Difference& difference,
+                       const MatchResult& truth) {
+  const char* reason = "different answers to a task";
+  std::string what = complaint(task, difference.answer);
+  if (!what.empty()) {
+    reason = "wrong match result";
+  } else {
+    if (difference.answer.fitness < truth.fitness) reason = "poorer match result";
+    what = fmt::format("what it says is right, of fitness {:.6f}; searched here, fitness {:.6f}",
+                       difference.answer.fitness, truth.fitness);
+  }
+  if (difference.unchecked > 0) {
+    what +=
+        fmt::format("; {} earlier answers of it were not compared and stand", difference.unchecked);
+  }
+  on_fault_(reason, fmt::format("{}, task {}: {}", registry_.name(difference.worker_id),
+                                task.task_id, what));
 }
 
 // --- answers in

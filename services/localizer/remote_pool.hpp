@@ -98,6 +98,8 @@ class RemotePool : public localization::MatchPool {
   bool send(const TaskBoard::Assignment& assignment);
   /// Solves an answered task here and blames the workers whose answers are others.
   void settle(const localization::MatchTask& task);
+  void blame(const localization::MatchTask& task, const TaskBoard::Difference& difference,
+             const localization::MatchResult& truth);
   /// What is wrong with an answer; empty: nothing.
   std::string complaint(const localization::MatchTask& task,
                         const localization::MatchResult& result);

@@ -151,7 +151,7 @@ TaskBoard::Assignment TaskBoard::assign(std::size_t index, WorkerTable::Workers:
 
 std::optional<TaskBoard::Assignment> TaskBoard::next_remote(BoardTime now) {
   forget_lost(now);
-  if (const auto waiting = place_waiting(now)) return waiting;
+  if (auto waiting = place_waiting(now)) return waiting;
   for (const auto& [sent, index] : batch_.out()) {
     if (now - sent < workers_.straggler_time()) break;  // the others are younger
     const BoardTask& task = batch_.at(index);

@@ -7,7 +7,6 @@
 namespace topogeo::test {
 namespace {
 
-using localization::MatchResult;
 using localization::MatchTask;
 using std::chrono::milliseconds;
 using ::testing::Contains;

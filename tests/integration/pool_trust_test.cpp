@@ -11,8 +11,6 @@ namespace {
 using localization::MatchResult;
 using localization::MatchTask;
 using std::chrono::milliseconds;
-using ::testing::Contains;
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
