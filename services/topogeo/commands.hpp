@@ -11,6 +11,7 @@ void add_run_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);
 void add_status_command(CLI::App& app, int& exit_code);
+void add_workers_command(CLI::App& app, int& exit_code);
 void add_plan_command(CLI::App& app, int& exit_code);
 void add_dvl_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app, int& exit_code);

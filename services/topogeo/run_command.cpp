@@ -53,6 +53,30 @@ storage::Report make_report(const RunOptions& options, Job& job, const RunResult
   return report;
 }
 
+/// Who did the searching, and what went wrong on the way.
+void print_pool(std::ostream& out, const ServiceTable& services) {
+  const msg::ServiceStatus* localizer = services.find("localizer");
+  if (localizer == nullptr) return;
+  const auto count = [&](std::string_view name) {
+    return static_cast<std::uint64_t>(counter(localizer, name));
+  };
+  const std::uint64_t in_process = count("tasks_in_process");
+  out << "search: " << count("tasks") << " matches, " << in_process
+      << " in the localizer's process";
+  if (const std::uint64_t sent = count("tasks_sent"); sent > 0) {
+    out << ", " << sent << " sent to workers (" << count("tasks_resent") << " of them again)";
+  }
+  if (const std::uint64_t lost = count("workers_lost"); lost > 0) {
+    out << "; " << lost << " workers lost with tasks in hand, answered elsewhere after "
+        << count("longest_recovery_ms") << " ms at most";
+  }
+  out << '\n';
+  for (const msg::FaultCount& fault : localizer->faults()) {
+    out << "fault of the localizer: " << fault.reason().c_str() << ", " << fault.count()
+        << (fault.count() == 1 ? " time" : " times") << ", see logs/localizer.log\n";
+  }
+}
+
 std::string check_rate(const std::string& text) {
   try {
     static_cast<void>(service::parse_rate(text));
@@ -69,6 +93,10 @@ void add_run_options(CLI::App& app, RunOptions& options) {
                  "search workers to start; 0: the localizer searches itself")
       ->check(CLI::Range(0U, 256U))
       ->capture_default_str();
+  app.add_option("--wait-workers", options.wait_workers,
+                 "search workers to wait for (5 s) before the first step, those on other machines "
+                 "included (default: as many as --workers)")
+      ->check(CLI::Range(0U, 1024U));
   app.add_option("--domain", options.domain, "DDS domain")
       ->check(CLI::Range(0U, 232U))
       ->capture_default_str();
@@ -95,6 +123,7 @@ int run_log(const RunOptions& options) {
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
   tell_skipped(job.reader.statistics());
+  print_pool(std::cout, result.services);
   print_summary(std::cout, report, options.job.out);
   if (options.job.reference) {
     print_comparison(std::cout, compare(options.job.out, *options.job.reference));

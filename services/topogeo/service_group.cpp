@@ -45,7 +45,8 @@ ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partiti
         common + Words{"--out", out, "--title", options.job.log.filename().string()});
   start("planner", "planner", common);
   start("localizer", "localizer",
-        common + Words{"--wait-workers", std::to_string(options.workers)});
+        common + Words{"--wait-workers",
+                       std::to_string(options.wait_workers.value_or(options.workers))});
   start("local_mapper", "local_mapper", common + Words{"--replay"});
   for (std::uint32_t i = 1; i <= options.workers; ++i) {
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);

@@ -17,6 +17,7 @@ namespace topogeo::cli {
 struct RunOptions {
   JobOptions job;
   std::uint32_t workers = 2;
+  std::optional<std::uint32_t> wait_workers;  ///< before the first step; none: `workers`
   std::uint32_t domain = 0;
   std::string rate = "lossless";
   std::filesystem::path profiles_file;  ///< empty: built in

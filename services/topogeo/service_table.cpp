@@ -45,6 +45,7 @@ const msg::ServiceStatus* ServiceTable::find(std::string_view service) const {
 std::string ServiceTable::progress_mark() const {
   std::string mark;
   for (const msg::ServiceStatus* row : rows()) {
+    if (row->service() == "ga_worker") continue;  // it may be busy for another run
     mark += fmt::format("{}={}", row->instance().c_str(), static_cast<int>(row->state()));
     for (const msg::Counter& c : row->counters()) {
       if (!is_time(c.name().c_str())) mark += fmt::format(",{}={}", c.name().c_str(), c.value());

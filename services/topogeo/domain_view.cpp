@@ -1,0 +1,56 @@
+#include "domain_view.hpp"
+
+#include <chrono>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/messaging/signal_stop.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+// Services tell every half second; discovery takes the rest, longer on a busy machine.
+constexpr std::chrono::milliseconds kListen{1200};
+constexpr std::chrono::milliseconds kListenOnceMore{2000};
+constexpr std::chrono::milliseconds kAgain{1000};
+
+}  // namespace
+
+void add_view_options(CLI::App& app, DomainView& view) {
+  app.add_option("--domain", view.domain, "DDS domain")
+      ->check(CLI::Range(0U, 232U))
+      ->capture_default_str();
+  app.add_option("--partition", view.partition, "only what lives in this partition; *: all")
+      ->capture_default_str();
+  app.add_option("--profiles", view.profiles_file, "QoS profiles instead of the built-in ones")
+      ->type_name("FILE");
+  app.add_flag("--watch", view.watch, "again every second until Ctrl-C");
+}
+
+messaging::Participant join(const DomainView& view, const std::string& name) {
+  messaging::ParticipantOptions options;
+  options.domain = view.domain;
+  options.partition = view.partition;
+  options.name = name;
+  options.profiles_file = view.profiles_file;
+  return messaging::Participant(options);
+}
+
+bool look(const DomainView& view, messaging::EventLoop& loop, const std::function<bool()>& any,
+          const std::function<void()>& show) {
+  const messaging::SignalStop signals([&](int) { loop.stop(); });
+  if (loop.run_for(kListen) || (!any() && loop.run_for(kListenOnceMore))) return any();
+  do {
+    if (any() || view.watch) show();
+    std::cout << std::flush;
+  } while (view.watch && !loop.run_for(kAgain));
+  return any();
+}
+
+std::string nothing_alive(const DomainView& view, const std::string& what) {
+  return "no " + what + " is alive on domain " + std::to_string(view.domain) + ", partition '" +
+         view.partition + "'";
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,37 @@
+// Looking at a domain from the command line: the flags and the rhythm that the commands share.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+
+namespace topogeo::cli {
+
+struct DomainView {
+  std::uint32_t domain = 0;
+  std::string partition = messaging::kAnyPartition;
+  std::filesystem::path profiles_file;
+  bool watch = false;
+};
+
+/// Adds --domain, --partition, --profiles and --watch; `view` must outlive the app.
+void add_view_options(CLI::App& app, DomainView& view);
+
+/// Joins the domain under a name that DDS tools show. Throws like messaging::Participant.
+messaging::Participant join(const DomainView& view, const std::string& name);
+
+/// Listens for as long as services take to tell of themselves, somewhat longer while there are not
+/// `any`, then shows them; again and again with --watch, until Ctrl-C. Whether there were any.
+bool look(const DomainView& view, messaging::EventLoop& loop, const std::function<bool()>& any,
+          const std::function<void()>& show);
+
+/// "no <what> is alive on domain 3, partition '*'".
+std::string nothing_alive(const DomainView& view, const std::string& what);
+
+}  // namespace topogeo::cli

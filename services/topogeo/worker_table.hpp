@@ -1,0 +1,53 @@
+// What the search workers on a domain last said of themselves, as a table for people.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "topogeo/messaging/events.hpp"
+#include "topogeo/msg/status.h"
+
+namespace topogeo::cli {
+
+class WorkerTable {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// `version` and `matcher_fingerprint` of this program: workers of others are marked.
+  WorkerTable(std::string version, std::uint64_t matcher_fingerprint)
+      : version_(std::move(version)), matcher_fingerprint_(matcher_fingerprint) {}
+
+  void update(const msg::WorkerStatus& status, const messaging::SampleInfo& info,
+              Clock::time_point now);
+  /// The worker said goodbye, or is known to be gone.
+  void remove(const messaging::SampleInfo& info);
+  /// Forgets workers that have been silent for kForget.
+  void forget_silent(Clock::time_point now);
+
+  [[nodiscard]] bool empty() const { return rows_.empty(); }
+  /// Head line, one line for each worker by name, a line with the sums. Workers tell twice a
+  /// second; one that is silent for kSilent is marked.
+  [[nodiscard]] std::string text(Clock::time_point now) const;
+  /// The same for programs: an array of objects, field names as in the IDL.
+  [[nodiscard]] std::string json(Clock::time_point now) const;
+
+  static constexpr std::chrono::milliseconds kSilent{1500};
+  static constexpr std::chrono::seconds kForget{10};
+
+ private:
+  struct Row {
+    msg::WorkerStatus status;
+    Clock::time_point heard;
+  };
+  [[nodiscard]] std::string state(const Row& row, Clock::time_point now) const;
+
+  std::string version_;
+  std::uint64_t matcher_fingerprint_;
+  std::map<std::string, Row> rows_;  // by worker id
+  std::map<messaging::Handle, std::string> ids_;
+};
+
+}  // namespace topogeo::cli
