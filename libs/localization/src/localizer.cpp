@@ -80,8 +80,13 @@ void Localizer::match_recent(std::uint32_t stop, const std::vector<UncertainPose
     const Pose2 T_candidate_previous =
         geometry::between(graph_.poses()[candidate.id], graph_.poses()[stop - 1]);
     task.initial_individuals.push_back(geometry::inverse(T_candidate_previous * T_previous_robot));
+    for (const MatchSolution& solution : last_solutions_[candidate.id]) {
+      task.initial_individuals.push_back(geometry::inverse(T_previous_robot) *
+                                         solution.T_reference_query);
+    }
     tasks.push_back(std::move(task));
   }
+  last_solutions_.clear();
   const std::vector<Answer> answers = run(tasks, EdgeKind::kSequential);
   // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt, doubtful
   // ones, with their wide covariance, still say more than it does.

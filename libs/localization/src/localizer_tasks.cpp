@@ -115,6 +115,7 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
     const MatchResult& result = results[i];
     const bool accepted = result.verdict == Verdict::kAccepted;
     compared_[{task.query_map_id, task.reference_map_id}] = {task.T_reference_query, accepted};
+    if (kind == EdgeKind::kSequential) last_solutions_[task.query_map_id] = result.solutions;
     ++counts_.tasks;
     counts_.evaluations += result.evaluations;
     ++counts_.reasons[static_cast<std::size_t>(result.reason)];

@@ -131,6 +131,9 @@ class Localizer {
     bool accepted = false;
   };
   std::map<std::pair<std::uint32_t, std::uint32_t>, Comparison> compared_;  // (earlier, later)
+  /// Of the sequential matches of the last stop, by the id of the older map: where a search for the
+  /// next stop against the same map starts (spec A4).
+  std::map<std::uint32_t, std::vector<MatchSolution>> last_solutions_;
   std::uint64_t version_ = 0;
   std::uint64_t next_task_ = 0;
   std::uint32_t loops_since_optimization_ = 0;
