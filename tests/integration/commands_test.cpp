@@ -36,11 +36,26 @@ TEST_F(CommandsTest, EveryProgramHasHelpAndVersion) {
 }
 
 TEST_F(CommandsTest, EverySubcommandHasHelp) {
-  for (const char* name : {"run", "map", "demo", "status", "plan", "config"}) {
+  for (const char* name :
+       {"run", "map", "demo", "status", "workers", "plan", "dvl", "config", "calibrate-odometry"}) {
     Program help(scratch_, "topogeo", {name, "--help"});
     EXPECT_EQ(help.wait(), 0) << name;
     EXPECT_THAT(help.out(), HasSubstr("Usage: topogeo " + std::string(name)));
   }
+}
+
+TEST_F(CommandsTest, WorkersListsThoseOfTheDomainAndSaysWhenThereAreNone) {
+  const std::string domain = own_domain();
+  Program none(scratch_, "topogeo", {"workers", "--domain", domain});
+  EXPECT_EQ(none.wait(), 1);
+  EXPECT_THAT(none.err(), HasSubstr("no search worker is alive on domain " + domain));
+  Program worker(scratch_, "ga_worker", {"--domain", domain, "--slots", "3", "--name", "pc-2"});
+  worker.wait_for_error_text("joined");
+  Program list(scratch_, "topogeo", {"workers", "--domain", domain});
+  EXPECT_EQ(list.wait(), 0) << list.err();
+  EXPECT_THAT(list.out(), HasSubstr("pc-2"));
+  EXPECT_THAT(list.out(), HasSubstr("1 worker, 3 slots"));
+  EXPECT_THAT(list.out(), HasSubstr("idle"));
 }
 
 TEST_F(CommandsTest, WrongCommandLinesAreToldInOneLine) {
