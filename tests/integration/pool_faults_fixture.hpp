@@ -1,0 +1,131 @@
+// A run of the real services in which the test plays the sensor gateway: it decides how far the run
+// gets, so that things happen in the middle of it on a machine of any speed.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/status.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/scan/scan.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+
+/// Longer than anything takes on a busy machine.
+constexpr std::chrono::seconds kPatience{30};
+
+/// The first part of a drive through the simulated floor, once past a place that it has seen.
+class Drive {
+ public:
+  /// Writes the log and maps it with `topogeo map`.
+  explicit Drive(const Scratch& scratch);
+
+  [[nodiscard]] const std::vector<scan::Scan>& scans() const { return scans_; }
+  [[nodiscard]] const std::string& log() const { return log_; }
+  /// A file of the results of one process.
+  [[nodiscard]] std::string expected(const std::string& file) const;
+  /// Matches that one process has tried.
+  [[nodiscard]] double expected_tasks() const;
+
+ private:
+  std::string log_;
+  std::filesystem::path out_;
+  std::vector<scan::Scan> scans_;
+};
+
+/// map_store, local_mapper and localizer on a partition of their own.
+class ServiceRun {
+ public:
+  using Condition = std::function<bool()>;
+
+  /// `name` names the directory of the results.
+  ServiceRun(const Scratch& scratch, const Drive& drive, const std::string& name);
+  ServiceRun(const ServiceRun&) = delete;
+  ServiceRun& operator=(const ServiceRun&) = delete;
+  /// Asks the services to end.
+  ~ServiceRun();
+
+  /// Flags for programs that are to take part.
+  [[nodiscard]] std::vector<std::string> flags() const;
+  /// Starts a ga_worker of this run.
+  Program& start_worker(const std::string& name);
+
+  /// Sends scans until `condition` holds. False when it does not in the longest time that anything
+  /// takes. The localizer has always some stops to work on, and never many.
+  bool go_on_until(const Condition& condition);
+  /// Until so many stops are localized.
+  bool go_on_until_stop(std::size_t stop);
+  /// Sends the rest and waits for the results.
+  bool finish();
+  /// Sends scans (if the localizer has little left to do) and hears what has come.
+  void look();
+
+  // These do not send scans.
+  bool wait_until(const Condition& condition);
+  bool wait_for_workers(std::size_t count);
+  /// Until the localizer has worked off everything.
+  bool wait_until_idle();
+
+  /// Stops localized so far.
+  [[nodiscard]] std::size_t stops() const { return stops_; }
+  /// A counter of the localizer; -1: it has not told yet.
+  [[nodiscard]] double counter(const std::string& name) const;
+  /// How often a fault happened to the localizer.
+  [[nodiscard]] std::uint64_t faults(const std::string& reason) const;
+  [[nodiscard]] bool has_ended() const { return ended_; }
+  /// What the localizer has logged.
+  [[nodiscard]] std::string log() const { return localizer_->err(); }
+  /// What workers say of themselves, by process id.
+  [[nodiscard]] const std::map<pid_t, msg::WorkerStatus>& workers() const { return workers_; }
+  [[nodiscard]] std::uint64_t tasks_done(const Program& worker) const;
+
+  /// The results are those of one process, and every task was answered.
+  void expect_same_results();
+  /// Prints what the localizer says of the longest time that it took to get over a worker; fails
+  /// if it never had to.
+  void report_recovery();
+
+ private:
+  void send_scan();
+
+  const Scratch& scratch_;
+  const Drive& drive_;
+  std::filesystem::path out_;
+  messaging::ParticipantOptions options_;
+  messaging::Participant participant_;
+  messaging::Writer<msg::Scan> scan_writer_;
+  messaging::Writer<msg::StreamEnd> end_writer_;
+  messaging::Reader<msg::LocalMap> maps_in_;
+  messaging::Reader<msg::TrajectorySegment> segments_in_;
+  messaging::Reader<msg::StreamEnd> ends_in_;
+  messaging::Reader<msg::ServiceStatus> statuses_in_;
+  messaging::Reader<msg::WorkerStatus> workers_in_;
+  messaging::EventLoop loop_;
+  std::vector<std::unique_ptr<Program>> services_;
+  std::vector<std::unique_ptr<Program>> own_workers_;
+  Program* localizer_ = nullptr;
+  std::size_t next_scan_ = 0;
+  std::size_t maps_ = 0;
+  std::size_t stops_ = 0;
+  bool ended_ = false;
+  msg::ServiceStatus status_;
+  std::map<pid_t, msg::WorkerStatus> workers_;
+};
+
+}  // namespace topogeo::test

@@ -1,0 +1,268 @@
+// Whatever happens to the workers of a run, and whatever they answer: its results are those of one
+// process, and no task is lost.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pool_faults_fixture.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Share of the tasks that workers do while there are some; the localizer does others itself when
+/// the machine is so busy that workers miss their time.
+constexpr double kMost = 0.7;
+
+/// Enough for every worker to have had a task.
+constexpr std::size_t kFewStops = 6;
+
+class PoolFaultsTest : public testing::Test {
+ protected:
+  /// Starts up to 3 workers and waits until the localizer can use them.
+  std::vector<Program*> start_workers(ServiceRun& run, std::size_t count) {
+    std::vector<Program*> workers;
+    for (const char* name : {"w1", "w2", "w3"}) {
+      if (workers.size() < count) workers.push_back(&run.start_worker(name));
+    }
+    EXPECT_TRUE(run.wait_for_workers(count)) << run.log();
+    return workers;
+  }
+  std::unique_ptr<Program> start_faulty(const ServiceRun& run, const std::string& fault) {
+    std::vector<std::string> words = run.flags();
+    words.insert(words.end(), {"--fault", fault});
+    return std::make_unique<Program>(scratch_, "../tests/faulty_worker", words);
+  }
+  /// Kills workers that have tasks in hand: for a moment before, they get tasks and do not work.
+  static void kill_with_tasks_in_hand(ServiceRun& run, const std::vector<Program*>& workers) {
+    for (const Program* worker : workers) worker->send_signal(SIGSTOP);
+    const auto end = std::chrono::steady_clock::now() + milliseconds(40);
+    while (std::chrono::steady_clock::now() < end) run.look();
+    for (const Program* worker : workers) worker->send_signal(SIGKILL);
+  }
+  /// Lets a worker with the fault join for some stops and then ends it. `found_out` says whether
+  /// the localizer has noticed.
+  void join_with_fault(ServiceRun& run, const std::string& fault,
+                       const std::function<bool(const std::string& worker)>& found_out) {
+    SCOPED_TRACE(fault);
+    const std::unique_ptr<Program> worker = start_faulty(run, fault);
+    EXPECT_TRUE(run.wait_for_workers(2)) << worker->err();
+    EXPECT_TRUE(run.go_on_until_stop(run.stops() + kFewStops));
+    const std::string id = fault + "#" + std::to_string(worker->pid());
+    EXPECT_TRUE(run.wait_until([&] { return found_out("worker " + id); })) << run.log();
+    EXPECT_FALSE(run.has_ended());
+    worker->send_signal(SIGTERM);
+    EXPECT_EQ(worker->wait(), 0) << worker->err();
+    EXPECT_TRUE(run.wait_for_workers(1));
+  }
+  /// The worker is named in a fault (empty: of any reason) and gets no more tasks.
+  void expect_excluded(ServiceRun& run, const std::string& fault,
+                       const std::string& reason = "wrong match result") {
+    // A reason is logged once per second.
+    constexpr milliseconds kLogPeriod{1100};
+    const auto start = std::chrono::steady_clock::now();
+    run.wait_until([&] { return std::chrono::steady_clock::now() - start > kLogPeriod; });
+    const double excluded = run.counter("workers_excluded");
+    join_with_fault(run, fault, [&](const std::string& worker) {
+      return run.counter("workers_excluded") == excluded + 1.0 && run.counter("workers") == 1.0 &&
+             run.log().find(reason + ": " + worker) != std::string::npos;
+    });
+    EXPECT_TRUE(reason.empty() || run.faults(reason) > 0);
+  }
+  /// The worker is named as one that stalls, and gets no tasks for a while.
+  void expect_passed_over(ServiceRun& run, const std::string& fault) {
+    join_with_fault(run, fault, [&](const std::string& worker) {
+      return run.log().find(worker + " stalled with") != std::string::npos;
+    });
+  }
+  static void expect_mostly_by_workers(const ServiceRun& run) {
+    EXPECT_LT(run.counter("tasks_in_process"), (1.0 - kMost) * run.counter("tasks"));
+  }
+
+  // A killed program leaves its part of /dev/shm behind, which would fill that of a container.
+  const bool udp_only_ = (use_udp_only(), true);
+  Scratch scratch_;
+  Drive drive_{scratch_};
+};
+
+TEST_F(PoolFaultsTest, OneOfThreeWorkersIsKilled) {
+  ServiceRun run(scratch_, drive_, "run");
+  const std::vector<Program*> workers = start_workers(run, 3);
+  ASSERT_TRUE(run.go_on_until_stop(30));
+  kill_with_tasks_in_hand(run, {workers[0]});
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  run.report_recovery();
+  EXPECT_TRUE(run.wait_for_workers(2));
+  expect_mostly_by_workers(run);
+}
+
+TEST_F(PoolFaultsTest, AllWorkersAreKilledAndOthersCome) {
+  ServiceRun run(scratch_, drive_, "run");
+  const std::vector<Program*> workers = start_workers(run, 2);
+  ASSERT_TRUE(run.go_on_until_stop(25));
+  kill_with_tasks_in_hand(run, workers);
+  ASSERT_TRUE(run.go_on_until_stop(run.stops() + 20));
+  ASSERT_TRUE(run.wait_until_idle());
+  ASSERT_TRUE(run.wait_for_workers(0));
+  const double in_process = run.counter("tasks_in_process");
+  EXPECT_GT(in_process, 0.0);
+  const double sent = run.counter("tasks_sent");
+  const double tasks = run.counter("tasks");
+
+  run.start_worker("late1");
+  run.start_worker("late2");
+  ASSERT_TRUE(run.wait_for_workers(2));
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  run.report_recovery();
+  EXPECT_GT(run.counter("tasks_sent") - sent, kMost * (run.counter("tasks") - tasks))
+      << "the new workers are not used";
+}
+
+TEST_F(PoolFaultsTest, AWorkerStandsStillForFiveSeconds) {
+  constexpr std::chrono::seconds kStill{5};
+  ServiceRun run(scratch_, drive_, "run");
+  const std::vector<Program*> workers = start_workers(run, 2);
+  ASSERT_TRUE(run.go_on_until_stop(20));
+  workers[0]->send_signal(SIGSTOP);
+  const auto end = std::chrono::steady_clock::now() + kStill;
+  ASSERT_TRUE(run.go_on_until_stop(run.stops() + 20));
+  ASSERT_TRUE(run.wait_for_workers(1));
+  run.wait_until([&] { return std::chrono::steady_clock::now() >= end; });
+  workers[0]->send_signal(SIGCONT);
+  ASSERT_TRUE(run.wait_for_workers(2)) << run.log();
+  const std::uint64_t done = run.tasks_done(*workers[0]);
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  run.report_recovery();
+  EXPECT_EQ(run.counter("duplicate_differences"), 0.0);
+  // More than what it had in hand.
+  EXPECT_TRUE(run.wait_until([&] { return run.tasks_done(*workers[0]) > done + 2; }));
+}
+
+TEST_F(PoolFaultsTest, WorkersAnswerMalformedResults) {
+  ServiceRun run(scratch_, drive_, "run");
+  start_workers(run, 1);
+  ASSERT_TRUE(run.go_on_until_stop(5));
+  expect_excluded(run, "not_a_number");
+  expect_excluded(run, "many_solutions");
+  // Nothing in these says which task they answer.
+  expect_passed_over(run, "unknown_task");
+  expect_passed_over(run, "garbage");
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  run.report_recovery();
+}
+
+TEST_F(PoolFaultsTest, WorkersAnswerWrongOrPoorResults) {
+  ServiceRun run(scratch_, drive_, "run");
+  start_workers(run, 1);
+  ASSERT_TRUE(run.go_on_until_stop(5));
+  expect_excluded(run, "shifted");
+  expect_excluded(run, "embellished");
+  expect_excluded(run, "poorer", "");  // or as good, but not what the task asks for
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  run.report_recovery();
+}
+
+TEST_F(PoolFaultsTest, WorkersHaveTheSameNameOrId) {
+  ServiceRun run(scratch_, drive_, "run");
+  const Program& one = run.start_worker("twin");
+  const Program& other = run.start_worker("twin");
+  ASSERT_TRUE(run.wait_for_workers(2)) << "a name is not an id";
+  const std::unique_ptr<Program> copy = start_faulty(run, "copied_worker_id");
+  ASSERT_TRUE(run.wait_until([&] { return run.counter("workers_of_one_id") == 1.0; }));
+  EXPECT_EQ(run.counter("workers"), 2.0);
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  EXPECT_EQ(run.faults("two workers of one id"), 1U);
+  EXPECT_GT(run.counter("answers_ignored"), 0.0) << "the copy has not answered";
+  EXPECT_EQ(run.counter("workers_excluded"), 0.0) << "its answers were taken for the other's";
+  EXPECT_TRUE(run.wait_until([&] { return run.tasks_done(one) > 0 && run.tasks_done(other) > 0; }));
+}
+
+TEST_F(PoolFaultsTest, TwoRobotsOfOneNameShareTheWorkers) {
+  ServiceRun first(scratch_, drive_, "first");
+  ServiceRun second(scratch_, drive_, "second");
+  // Started by hand: for every run on the domain.
+  const Program one(scratch_, "ga_worker", {"--domain", own_domain()});
+  const Program other(scratch_, "ga_worker", {"--domain", own_domain()});
+  ASSERT_TRUE(first.wait_for_workers(2) && second.wait_for_workers(2));
+  const auto look = [&] {
+    first.look();
+    second.look();
+  };
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  constexpr std::size_t kFar = 70;
+  while (std::max(first.stops(), second.stops()) < kFar && std::chrono::steady_clock::now() < end) {
+    look();
+  }
+  // Both have as many tasks for each stop, so stops tell who was served how often.
+  const auto [slow, fast] = std::minmax({first.stops(), second.stops()});
+  EXPECT_LE(fast, 2 * slow);
+  std::cout << "stops while both ran: " << slow << " and " << fast << '\n';
+  ASSERT_TRUE(first.finish() && second.finish());
+  first.expect_same_results();
+  second.expect_same_results();
+  expect_mostly_by_workers(first);
+  expect_mostly_by_workers(second);
+}
+
+TEST_F(PoolFaultsTest, WorkersOfOtherBuildsAreRefused) {
+  ServiceRun run(scratch_, drive_, "run");
+  const std::string config = scratch_ / "other.yaml";
+  std::ofstream(config) << "localizer:\n  seed: 2\n";
+  std::vector<std::string> words = run.flags();
+  words.insert(words.end(), {"--config", config});
+  const Program other_configuration(scratch_, "ga_worker", words);
+  const std::unique_ptr<Program> other_version = start_faulty(run, "other_version");
+  const std::unique_ptr<Program> other_matcher = start_faulty(run, "other_matcher");
+  EXPECT_TRUE(run.wait_until([&] {
+    return run.counter("workers_of_other_configuration") == 1.0 &&
+           run.counter("workers_of_other_version") == 1.0 &&
+           run.counter("workers_of_other_matcher") == 1.0;
+  }));
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  EXPECT_EQ(run.faults("worker of another configuration"), 1U);
+  EXPECT_EQ(run.faults("worker of another version"), 1U);
+  EXPECT_EQ(run.faults("worker computes differently"), 1U);
+  EXPECT_THAT(run.log(), HasSubstr("version 0.0.0-other, here "));
+  EXPECT_EQ(run.counter("tasks_sent"), 0.0);
+  EXPECT_EQ(run.counter("tasks_in_process"), run.counter("tasks"));
+}
+
+TEST_F(PoolFaultsTest, AWorkerLeavesInOrder) {
+  ServiceRun run(scratch_, drive_, "run");
+  const std::vector<Program*> workers = start_workers(run, 2);
+  ASSERT_TRUE(run.go_on_until_stop(30));
+  workers[0]->send_signal(SIGTERM);
+  ASSERT_TRUE(run.go_on_until_stop(run.stops() + 20));
+  EXPECT_EQ(workers[0]->wait(), 0) << workers[0]->err();
+  ASSERT_TRUE(run.finish()) << run.log();
+  run.expect_same_results();
+  EXPECT_EQ(run.counter("workers_lost"), 0.0);
+  EXPECT_THAT(workers[0]->err(), Not(HasSubstr("not finished")));
+  expect_mostly_by_workers(run);
+  // On a machine so busy that workers miss their time, tasks are sent again for that reason.
+  if (run.log().find("stalled with") == std::string::npos) {
+    EXPECT_EQ(run.counter("tasks_resent"), 0.0) << run.log();
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::test
