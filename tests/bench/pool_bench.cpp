@@ -63,7 +63,7 @@ void check(benchmark::State& state, const PoolClient& client) {
 /// Waits until there are `count` workers that can be used.
 bool have_workers(benchmark::State& state, PoolClient& client, std::size_t count) {
   if (client.pool().wait_for_workers(count, kPatience) == count) return true;
-  state.SkipWithError("the workers did not come");
+  state.SkipWithError(("the workers did not come; " + client.fault()).c_str());
   return false;
 }
 
