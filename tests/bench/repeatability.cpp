@@ -23,11 +23,10 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/pipeline/config.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
-#include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/storage/tum.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
+
+#include "recordings.hpp"
 
 namespace {
 
@@ -66,40 +65,16 @@ struct View {
   }
 };
 
-struct Input {
-  std::vector<scan::Scan> scans;
-  std::vector<geometry::Pose2> T_world_robot;
-};
-
-Input simulated(const std::string& world) {
-  simulation::SimulatedLog log = simulation::simulate_log(simulation::load_world(world), {});
-  return {std::move(log.scans), std::move(log.T_world_robot)};
-}
-
-Input recorded(const std::string& log, const std::string& reference,
-               const pipeline::Config& config) {
-  const auto truth = storage::read_trajectory_tum(reference);
-  scan::CarmenLogReader reader(log, config.log);
-  Input input;
-  std::size_t next = 0;
-  while (auto scan = reader.next()) {
-    while (next < truth.size() && truth[next].stamp_ns < scan->stamp_ns - 1'000'000) ++next;
-    if (next == truth.size()) break;
-    if (std::abs(truth[next].stamp_ns - scan->stamp_ns) > 1'000'000) continue;
-    input.T_world_robot.push_back(truth[next].pose);
-    input.scans.push_back(std::move(*scan));
-  }
-  return input;
-}
-
-std::vector<View> views_of(const Input& input, const pipeline::LocalMapperConfig& config) {
+std::vector<View> views_of(const bench::Recording& input,
+                           const pipeline::LocalMapperConfig& config) {
   voronoi::LocalVoronoi voronoi{config.voronoi};
   voronoi::LocalVoronoiDiagram diagram;
   std::vector<View> views;
   for (std::size_t i = 0; i < input.scans.size(); ++i) {
+    if (!input.T_world_robot[i]) continue;
     const scan::Scan& scan = input.scans[i];
     View view;
-    view.T_world_robot = input.T_world_robot[i];
+    view.T_world_robot = *input.T_world_robot[i];
     view.T_robot_laser = config.T_robot_laser;
     view.angle_min_rad = scan.angle_min_rad;
     view.angle_step_rad = scan.angle_step_rad;
@@ -284,11 +259,6 @@ void print(const std::string& name, const Counts& counts) {
   std::fflush(stdout);
 }
 
-std::string stem(const std::string& path) {
-  const std::string name = std::filesystem::path(path).filename().string();
-  return name.substr(0, name.find('.'));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -321,14 +291,14 @@ int main(int argc, char** argv) {
             .config;
     if (header) std::fputs(kHeader, stdout);
     Counts all;
-    const auto take = [&](const std::string& path, const Input& input) {
+    const auto take = [&](const bench::Recording& input) {
       const Counts counts = compare(views_of(input, config.local_mapper), apart_m);
-      if (total.empty()) print(stem(path), counts);
+      if (total.empty()) print(input.name, counts);
       all += counts;
     };
-    for (const std::string& world : worlds) take(world, simulated(world));
+    for (const std::string& world : worlds) take(bench::simulated(world));
     for (std::size_t i = 0; i < logs.size(); ++i) {
-      take(logs[i], recorded(logs[i], references[i], config));
+      take(bench::recorded(logs[i], references[i], config.log));
     }
     if (!total.empty()) print(total, all);
   } catch (const std::exception& error) {

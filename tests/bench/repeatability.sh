@@ -11,14 +11,12 @@ set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
 tool=${REPEATABILITY:-$root/build/bin/topogeo_repeatability}
 data=${1:-$root/../shared/data}
+inputs=()
+# shellcheck disable=SC1091  # found by its full path
+source "$root/tests/bench/inputs.sh"
 
 [ -x "$tool" ] || { echo "repeatability: there is no '$tool'; build it with ./run bench NONE" >&2; exit 1; }
-inputs=(--world "$root/tests/data/floor.world.yaml")
-shopt -s nullglob
-for log in "$data"/*.clf.gz; do
-  reference=${log%.clf.gz}.ref.tum
-  [ ! -r "$reference" ] || inputs+=(--log "$log" --reference "$reference")
-done
+name_inputs "$root" "$data"
 
 config=$(mktemp --suffix=.yaml)
 trap 'rm -f "$config"' EXIT
