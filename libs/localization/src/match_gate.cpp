@@ -5,8 +5,14 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/fitness_combined.hpp"
 
 namespace topogeo::localization {
+namespace {
+
+constexpr double kOutweighed = 0.12;  // violations at which no match is believed, whatever fits
+
+}  // namespace
 
 const char* to_string(Verdict verdict) {
   switch (verdict) {
@@ -45,6 +51,14 @@ double doubt(const MatchResult& result) {
          result.residual_rms_m / 0.08 + std::max(0.0, 0.50 - result.scan_fitness) / 0.20;
 }
 
+double rivalry(const MatchTask& task, const MatchResult& result) {
+  if (!(result.second.fitness > 0.0 && result.fitness > 0.0)) return 0.0;
+  const double ratio = result.second.fitness / result.fitness;
+  if (task.fitness_form != FitnessForm::kCombined) return ratio;
+  const OdometryPrior prior(task);
+  return ratio * prior(result.T_reference_query) / prior(result.second.T_reference_query);
+}
+
 Judgement judge(const MatchTask& task, const MatchResult& result) {
   const GateConfig& gate = task.gate;
   const auto rejected = [](Reason reason) { return Judgement{Verdict::kRejected, reason}; };
@@ -57,14 +71,19 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
   if (doubt(result) > gate.largest_doubt - gate.doubt_per_search_m * search_m) {
     return rejected(Reason::kDoubtful);
   }
+  // Each of the two is seen at right matches too, both together hardly ever: where another pose
+  // fits nearly as well, little of what speaks against this one is enough
+  // (tests/bench/matching.sh).
+  const double rival = rivalry(task, result);
+  if (rival <= gate.largest_ambiguity && result.violations / kOutweighed + rival > 1.0) {
+    return rejected(Reason::kDoubtful);
+  }
   const Eigen::Vector3d error =
       geometry::difference(result.T_reference_query, task.T_reference_query);
   if (error.dot(task.covariance.inverse() * error) > gate.largest_mahalanobis2) {
     return rejected(Reason::kImplausible);
   }
-  if (result.second.fitness > gate.largest_ambiguity * result.fitness) {
-    return {Verdict::kAmbiguous, Reason::kSecondSolution};
-  }
+  if (rival > gate.largest_ambiguity) return {Verdict::kAmbiguous, Reason::kSecondSolution};
   return {Verdict::kAccepted, Reason::kNone};
 }
 

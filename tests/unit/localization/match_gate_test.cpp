@@ -1,12 +1,16 @@
 #include "topogeo/localization/match_gate.hpp"
 
+#include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 namespace topogeo::localization {
 namespace {
+
+using geometry::Pose2;
 
 class MatchGateTest : public testing::Test {
  protected:
@@ -24,7 +28,6 @@ class MatchGateTest : public testing::Test {
     result_.scan_fitness = 0.7;
     result_.solutions = {{result_.T_reference_query, 0.8}};
     result_.fitness = 0.8;
-    result_.second.fitness = 0.4;
   }
   Reason reason() const {
     const Judgement judgement = judge(task_, result_);
@@ -100,10 +103,36 @@ TEST_F(MatchGateTest, ComparesHeadingsAcrossTheSeam) {
 }
 
 TEST_F(MatchGateTest, RejectsAMatchThatHasARival) {
-  result_.second.fitness = 0.95 * 0.8 + 0.001;
+  result_.violations = 0.0;
+  result_.second = {result_.T_reference_query, 0.95 * 0.8 + 0.001};
   EXPECT_EQ(reason(), Reason::kSecondSolution);
   result_.second.fitness = 0.95 * 0.8 - 0.001;
   EXPECT_EQ(reason(), Reason::kNone);
+}
+
+TEST_F(MatchGateTest, ViolationsAndARivalAddUp) {
+  result_.second = {result_.T_reference_query, 0.5 * 0.8};
+  result_.violations = 0.059;  // half of 0.12, less a little
+  EXPECT_EQ(reason(), Reason::kNone);
+  result_.violations = 0.061;
+  EXPECT_EQ(reason(), Reason::kDoubtful);
+  result_.second.fitness = 0.48 * 0.8;
+  EXPECT_EQ(reason(), Reason::kNone);
+}
+
+TEST_F(MatchGateTest, OdometryDoesNotSpeakAgainstARival) {
+  // 3.46 deviations from the prediction, where the prior of the combined form is a half.
+  const Pose2 far{1.0 + 0.1 * std::sqrt(12.0), 0.0, 0.1};
+  result_.T_reference_query = task_.T_reference_query;
+  result_.second = {far, 0.5 * 0.8};
+  EXPECT_NEAR(rivalry(task_, result_), 1.0, 1e-12);
+  EXPECT_EQ(reason(), Reason::kSecondSolution);
+  std::swap(result_.T_reference_query, result_.second.T_reference_query);
+  EXPECT_NEAR(rivalry(task_, result_), 0.25, 1e-12);
+  task_.fitness_form = FitnessForm::kTopological;  // has no odometry in it
+  EXPECT_NEAR(rivalry(task_, result_), 0.5, 1e-12);
+  result_.second.fitness = 0.0;
+  EXPECT_EQ(rivalry(task_, result_), 0.0);
 }
 
 TEST_F(MatchGateTest, EveryReasonHasWordsOfItsOwn) {

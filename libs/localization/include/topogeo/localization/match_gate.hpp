@@ -14,6 +14,11 @@ namespace topogeo::localization {
 /// of sparse or cluttered scans.
 double doubt(const MatchResult& result);
 
+/// How well the second pose fits the maps, as a share of how well the result does; 0 without one.
+/// What odometry says of them does not count, because a false prediction speaks for the false pose.
+/// Only the combined form has odometry in it.
+double rivalry(const MatchTask& task, const MatchResult& result);
+
 /// "accepted", "ambiguous", "rejected".
 const char* to_string(Verdict verdict);
 
