@@ -13,6 +13,7 @@ namespace topogeo::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class EqualityTest : public testing::Test {
  protected:
@@ -54,6 +55,8 @@ TEST_P(EqualityByWorkersTest, Floor) {
   Program run(scratch_, "topogeo", run_words("run", GetParam()));
   ASSERT_EQ(run.wait(), 0) << run.err();
   expect_same_bytes("run");
+  EXPECT_THAT(run.out(), HasSubstr("search: "));
+  EXPECT_THAT(run.out(), Not(HasSubstr("fault of the localizer")));
   EXPECT_TRUE(run.services().empty());
 }
 

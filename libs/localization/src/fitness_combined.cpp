@@ -82,12 +82,14 @@ void CombinedFitness::bind(const Reference& reference, const MatchFeatures& quer
 }
 
 double CombinedFitness::at(const Pose2& T_reference_query, const SinCos& heading) const {
-  double maps = scan_.at(T_reference_query, heading);
-  if (!topological_.empty()) {
-    maps = kTopologicalShare * topological_.at(T_reference_query, heading) +
-           (1.0 - kTopologicalShare) * maps;
-  }
-  return maps * prior_(T_reference_query);
+  return of_maps(T_reference_query, heading) * prior_(T_reference_query);
+}
+
+double CombinedFitness::of_maps(const Pose2& T_reference_query, const SinCos& heading) const {
+  const double scan = scan_.at(T_reference_query, heading);
+  if (topological_.empty()) return scan;
+  return kTopologicalShare * topological_.at(T_reference_query, heading) +
+         (1.0 - kTopologicalShare) * scan;
 }
 
 }  // namespace topogeo::localization

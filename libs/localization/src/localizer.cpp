@@ -88,8 +88,8 @@ void Localizer::match_recent(std::uint32_t stop, const std::vector<UncertainPose
   }
   last_solutions_.clear();
   const std::vector<Answer> answers = run(tasks, EdgeKind::kSequential);
-  // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt, doubtful
-  // ones, with their wide covariance, still say more than it does.
+  // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
+  // uncertain ones, with their wide covariance, still say more than it does.
   const bool any =
       std::any_of(answers.begin(), answers.end(), [](const Answer& a) { return a.accepted; });
   if (!any) ++counts_.steps_in_doubt;

@@ -119,7 +119,10 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
     ++counts_.tasks;
     counts_.evaluations += result.evaluations;
     ++counts_.reasons[static_cast<std::size_t>(result.reason)];
-    if (!accepted && result.reason != Reason::kDoubtful) continue;
+    // Not believed, but not refuted either.
+    const bool uncertain =
+        result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution;
+    if (!accepted && !uncertain) continue;
     answers.push_back({{task.query_map_id, task.reference_map_id, kind,
                         geometry::inverse(result.T_reference_query),
                         geometry::inverse_covariance(result.T_reference_query, result.covariance)},

@@ -11,6 +11,7 @@
 #include "topogeo/localization/refinement.hpp"
 
 #include "match_evidence.hpp"
+#include "match_rivals.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -20,8 +21,8 @@ using geometry::Pose2;
 constexpr std::size_t kCachedReferences = 16;  // of about 150 kB
 constexpr std::size_t kRefined = 3;  // places that are refined before the winner is chosen
 
-// Refines the `starts` and takes the one with the largest fitness as the result's pose, and the
-// best of those that end elsewhere as its second.
+// Refines the `starts` and takes the one with the largest fitness as the result's pose. Its second
+// is the pose elsewhere that the maps allow best, whatever odometry says of it.
 void choose(const MatchContext& context, const std::vector<MatchSolution>& starts,
             MatchResult& result) {
   const PosePrior prior{context.task.T_reference_query, context.task.covariance.inverse()};
@@ -34,12 +35,18 @@ void choose(const MatchContext& context, const std::vector<MatchSolution>& start
     if (refined[i].fitness > refined[best].fitness) best = i;
   }
   result.T_reference_query = refined[best].T_reference_query;
+  result.second = strongest_rival(context, result.T_reference_query);
+  const CombinedFitness& combined = context.forms.combined();
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    if (refined[i].fitness > result.second.fitness &&
-        !same_place(refined[i].T_reference_query, result.T_reference_query)) {
-      result.second = refined[i];
-    }
+    const Pose2& T = refined[i].T_reference_query;
+    if (same_place(T, result.T_reference_query)) continue;
+    const double fitness = combined.of_maps(T, geometry::sincos(T.theta_rad));
+    if (fitness > result.second.fitness) result.second = {T, fitness};
   }
+  if (result.second.fitness <= 0.0) return;
+  // It is told like every other solution, by the form that was asked for, which may find nothing.
+  result.second.fitness = context.forms.chosen()(result.second.T_reference_query);
+  if (result.second.fitness <= 0.0) result.second = {};
 }
 
 }  // namespace

@@ -118,8 +118,8 @@ std::string faults_of_choice(const MatchResult& right) {
       return nth(i) + " is better than " + nth(i - 1);
     }
   }
+  // The second is the one that the maps allow best, so with odometry it may be the better one.
   if (right.second.fitness == 0.0) return {};
-  if (right.second.fitness > right.fitness) return "the second is better than the best";
   if (same_place(right.second.T_reference_query, right.T_reference_query)) {
     return "the second is the best one again";
   }

@@ -145,11 +145,17 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
 
 }  // namespace
 
+Eigen::Matrix3d information_at(const Reference& reference, const MatchFeatures& query,
+                               const Pose2& T_reference_query) {
+  const NormalEquations equations = linearize(reference, query, T_reference_query, kLastGate_m);
+  if (equations.points < kFewestPoints) return Eigen::Matrix3d::Zero();
+  return equations.hessian;
+}
+
 PoseEvidence evidence_at(const Reference& reference, const MatchFeatures& query,
                          const Pose2& T_reference_query) {
   PoseEvidence evidence;
-  const NormalEquations equations = linearize(reference, query, T_reference_query, kLastGate_m);
-  if (equations.points >= kFewestPoints) evidence.information = equations.hessian;
+  evidence.information = information_at(reference, query, T_reference_query);
   compare_views(reference, query, T_reference_query, evidence);
   return evidence;
 }

@@ -48,7 +48,8 @@ struct Pair {
   std::string world;
   Pose2 T_world_reference;
   Pose2 T_world_query;
-  double error_m;  ///< allowed; in a bare corridor what the prediction leaves
+  double error_m;     ///< allowed; in a bare corridor what the prediction leaves
+  bool bare = false;  ///< a bare corridor: half a metre on it looks the same
 };
 
 std::ostream& operator<<(std::ostream& out, const Pair& pair) {
@@ -76,8 +77,9 @@ TEST_P(TrueRelativePoseTest, IsFoundFromAPredictionThatIsOff) {
     EXPECT_EQ(result.status, MatchStatus::kSolved);
     EXPECT_LT(test::distance_m(result.T_reference_query, truth), pair.error_m);
     EXPECT_LT(test::turn_rad(result.T_reference_query, truth), 0.6 * kDegree);
-    EXPECT_EQ(result.verdict, Verdict::kAccepted)
-        << to_string(result.reason) << " " << doubt(result);
+    const bool believed = result.verdict == Verdict::kAccepted ||
+                          (pair.bare && result.verdict == Verdict::kAmbiguous);
+    EXPECT_TRUE(believed) << to_string(result.reason) << " " << doubt(result);
     const Pose2& T = result.T_reference_query;
     const Eigen::Vector3d error(T.x_m - truth.x_m, T.y_m - truth.y_m,
                                 geometry::wrap_angle(T.theta_rad - truth.theta_rad));
@@ -88,15 +90,14 @@ TEST_P(TrueRelativePoseTest, IsFoundFromAPredictionThatIsOff) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Places, TrueRelativePoseTest,
-                         testing::Values(Pair{"room", {1.0, 1.0, 0.2}, {1.6, 1.1, 0.5}, 0.04},
-                                         Pair{"room", {4.6, 3.0, 3.0}, {4.0, 2.9, -3.1}, 0.04},
-                                         Pair{"floor", {8.6, 1.2, 0.1}, {9.1, 1.2, 0.4}, 0.04},
-                                         Pair{"floor", {15.0, 10.5, 1.5}, {15.0, 11.3, 1.7}, 0.04},
-                                         Pair{"floor", {28.9, 9.0, 1.6}, {28.9, 9.8, 1.4}, 0.3}),
-                         [](const auto& place) {
-                           return place.param.world + std::to_string(place.index);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Places, TrueRelativePoseTest,
+    testing::Values(Pair{"room", {1.0, 1.0, 0.2}, {1.6, 1.1, 0.5}, 0.04},
+                    Pair{"room", {4.6, 3.0, 3.0}, {4.0, 2.9, -3.1}, 0.04},
+                    Pair{"floor", {8.6, 1.2, 0.1}, {9.1, 1.2, 0.4}, 0.04},
+                    Pair{"floor", {15.0, 10.5, 1.5}, {15.0, 11.3, 1.7}, 0.04},
+                    Pair{"floor", {28.9, 9.0, 1.6}, {28.9, 9.8, 1.4}, 0.3, true}),
+    [](const auto& place) { return place.param.world + std::to_string(place.index); });
 
 class MatcherTest : public testing::Test {
  protected:

@@ -90,6 +90,15 @@ TEST_F(MatcherVerifyTest, FindsNothingWrongWithRightResults) {
   EXPECT_GT(with_second, 0);
 }
 
+TEST_F(MatcherVerifyTest, ASearchTooNarrowForASecondPlaceHasNone) {
+  task_.half_width = {0.18, 0.18, 0.10};
+  for (task_.seed = 0; task_.seed < 10; ++task_.seed) {
+    const MatchResult result = worker_.solve(task_);
+    EXPECT_EQ(client_.verify(task_, result), "");
+    EXPECT_EQ(result.second.fitness, 0.0);
+  }
+}
+
 TEST_F(MatcherVerifyTest, FindsNothingWrongWithNothingInCommon) {
   task_.T_reference_query = {60.0, 0.0, 0.0};
   const MatchResult nothing = worker_.solve(task_);

@@ -67,6 +67,10 @@ class CombinedFitness : public Fitness {
   [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
                           const geometry::SinCos& heading) const override;
 
+  /// What the maps say of a pose; odometry does not count.
+  [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
+                               const geometry::SinCos& heading) const;
+
   /// The parts of it.
   [[nodiscard]] const TopologicalFitness& topological() const { return topological_; }
   [[nodiscard]] const ScanFitness& scan() const { return scan_; }

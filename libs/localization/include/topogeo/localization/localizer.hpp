@@ -55,7 +55,7 @@ struct LocalizerCounts {
   std::uint64_t evaluations = 0;
   std::array<std::uint64_t, kReasons> reasons{};  ///< index: Reason; kNone: accepted
   std::uint64_t steps_in_doubt =
-      0;  ///< no recent match was accepted; a doubtful one or odometry stood in
+      0;  ///< no recent match was accepted; an uncertain one or odometry stood in
   std::uint64_t unconfirmed_loops = 0;  ///< large corrections that no second loop agreed with
   std::uint64_t optimizations = 0;
   std::uint64_t failed_optimizations = 0;  ///< of those, without a usable result: poses kept

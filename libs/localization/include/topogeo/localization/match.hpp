@@ -48,7 +48,7 @@ struct GateConfig {
   double doubt_per_search_m =
       0.25;  ///< less is allowed for a wider search, where look-alikes are likelier
   double largest_mahalanobis2 = 25.0;  ///< between the result and the prediction (3 d.o.f.)
-  double largest_ambiguity = 0.95;  ///< fitness of the second best distinct solution over the best
+  double largest_ambiguity = 0.95;     ///< see rivalry()
   friend bool operator==(const GateConfig&, const GateConfig&) = default;
 };
 
@@ -96,7 +96,7 @@ enum class Reason : std::uint8_t {
   kFewInliers,
   kDoubtful,
   kImplausible,     ///< far from the prediction
-  kSecondSolution,  ///< as good as the best one; the reason of kAmbiguous
+  kSecondSolution,  ///< the maps allow it as well; the reason of kAmbiguous
 };
 
 inline constexpr std::size_t kReasons = 7;
@@ -120,7 +120,8 @@ struct MatchResult {
   double scan_fitness = 0.0;         ///< of the refined pose, without the prior, [0, 1]
   double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
   double fitness = 0.0;              ///< of the refined pose, [0, 1]
-  MatchSolution second;  ///< the second best distinct one after refinement; fitness 0: none
+  MatchSolution second;  ///< the pose elsewhere in the search space that the maps allow best,
+                         ///< whatever odometry says of it; fitness 0: none
   std::uint32_t evaluations = 0;
   std::uint64_t seed = 0;  ///< of the task
   Verdict verdict = Verdict::kRejected;

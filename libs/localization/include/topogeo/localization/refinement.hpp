@@ -29,6 +29,10 @@ struct PoseEvidence {
   double residual_rms_m = 0.0;  ///< of the inliers
 };
 
+/// PoseEvidence::information at a pose.
+Eigen::Matrix3d information_at(const Reference& reference, const MatchFeatures& query,
+                               const geometry::Pose2& T_reference_query);
+
 /// The evidence at a pose, which stays as it is: anyone with the two maps gets the same bits.
 PoseEvidence evidence_at(const Reference& reference, const MatchFeatures& query,
                          const geometry::Pose2& T_reference_query);
