@@ -25,8 +25,8 @@ class ServiceTable {
   /// The status of a service, or nullptr; the first one if there are several.
   [[nodiscard]] const msg::ServiceStatus* find(std::string_view service) const;
 
-  /// Counters of all services but search workers, which may serve other runs too, and but those that
-  /// grow without work (CPU time): as long as this does not change, nothing moves.
+  /// Counters of all services but search workers, which may serve other runs too, and but those
+  /// that grow without work (CPU time): as long as this does not change, nothing moves.
   [[nodiscard]] std::string progress_mark() const;
 
  private:
