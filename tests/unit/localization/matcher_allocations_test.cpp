@@ -1,8 +1,5 @@
 // Counts what a match costs in allocations: this program replaces operator new.
-#include <atomic>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,41 +9,13 @@
 #include "topogeo/localization/genetic_search_hypotheses.hpp"
 #include "topogeo/localization/matcher.hpp"
 
+#include "../counted_allocations.hpp"
 #include "simulated_maps.hpp"
-
-namespace {
-
-std::atomic<std::size_t> allocations{0};
-
-void* allocate(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc{};
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return allocate(size);
-}
-void* operator new[](std::size_t size) {
-  return allocate(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
 
 namespace topogeo::localization {
 namespace {
+
+using topogeo::test::allocations;
 
 class Allocations : public testing::Test {
  protected:
