@@ -98,7 +98,7 @@ class ServiceRun {
   /// The results are those of one process, and every task was answered.
   void expect_same_results();
   /// Prints what the localizer says of the longest time that it took to get over a worker; fails
-  /// if it never had to.
+  /// if it never had to or nothing but the middleware has noticed.
   void report_recovery();
 
  private:
