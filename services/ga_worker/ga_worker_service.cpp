@@ -1,7 +1,6 @@
 #include "ga_worker_service.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <stdexcept>
 
@@ -10,6 +9,7 @@
 #include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::ga_worker {
@@ -26,18 +26,6 @@ constexpr std::chrono::milliseconds kDrainQuiet{30};
 constexpr std::chrono::milliseconds kFarewell{200};
 /// A slot with less would make the features of maps again for nearly every task.
 constexpr std::size_t kLeastPerSlot_bytes = std::size_t{4} << 20U;
-
-std::string host_name() {
-  std::array<char, 65> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0) return "unknown";
-  return name.data();
-}
-
-std::int64_t wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 /// One half of the memory holds the local maps, the other what the slots make of them.
 std::size_t half_of_memory(const WorkerOptions& options) {
@@ -87,7 +75,7 @@ void GaWorkerService::fill_status() {
   messaging::set_header(status_, "", 0, 0);  // of no robot: it works for any
   messaging::set_text(status_.worker_id(), options_.worker_id, "worker_id");
   messaging::set_text(status_.name(), options_.name, "name");
-  messaging::set_text_cut(status_.host(), host_name());
+  messaging::set_text_cut(status_.host(), support::host_name());
   messaging::set_text(status_.version(), support::kVersion, "version");
   status_.process_id(static_cast<std::uint32_t>(::getpid()));
   status_.slots(options_.slots);
@@ -332,7 +320,7 @@ void GaWorkerService::publish_status() {
   std::erase_if(unsent_, [&](const Unsent& u) { return time - u.since > kClientPatience; });
   forget(clients_.take_silent(time - kClientPatience));
   measure_load(time);
-  status_.stamp_ns(wall_clock_ns());
+  status_.stamp_ns(support::wall_clock_ns());
   status_.uptime_s(std::chrono::duration<double>(time - start_).count());
   status_.tasks_in_hand(static_cast<std::uint32_t>(asked_.size()));
   status_.tasks_done(done_);

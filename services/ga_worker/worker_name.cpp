@@ -1,19 +1,17 @@
 #include "worker_name.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <random>
 #include <stdexcept>
 
 #include <spdlog/fmt/fmt.h>
-#include <unistd.h>
+
+#include "topogeo/support/host.hpp"
 
 namespace topogeo::ga_worker {
 
 namespace {
-
-constexpr std::size_t kLongestHostName = 64;  // of Linux
 
 // Quotes and percent signs mean something in a content filter, '#' ends the name in an id.
 bool is_allowed(char c) {
@@ -24,9 +22,7 @@ bool is_allowed(char c) {
 }  // namespace
 
 std::string default_name() {
-  std::array<char, kLongestHostName + 1> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0 || host[0] == '\0') return "worker";
-  std::string name(host.data());
+  std::string name = support::host_name();
   name.resize(std::min(name.size(), kLongestName));
   // A host's name is ASCII by rule; what is not would be cut in the middle of a character.
   std::replace_if(

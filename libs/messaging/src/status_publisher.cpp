@@ -1,7 +1,6 @@
 #include "topogeo/messaging/status_publisher.hpp"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -10,6 +9,7 @@
 #include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/support/host.hpp"
 
 namespace topogeo::messaging {
 
@@ -21,12 +21,6 @@ constexpr std::chrono::milliseconds kFarewell{200};
 constexpr std::string_view kOtherFaults = "other";
 constexpr std::size_t kMaxNameSize = 48;  // status.idl
 
-std::string host_name() {
-  std::array<char, 64> name{};
-  if (::gethostname(name.data(), name.size() - 1) != 0) return "unknown";
-  return name.data();
-}
-
 /// Topics where only the last sample of an instance counts: one that was lost has been replaced by
 /// a newer one before it could be sent.
 bool is_replaceable(const std::string& name) {
@@ -36,18 +30,12 @@ bool is_replaceable(const std::string& name) {
   });
 }
 
-std::int64_t wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 StatusPublisher::StatusPublisher(const Participant& participant, EventLoop& loop,
                                  const ServiceIdentity& identity)
     : loop_(loop), writer_(participant), start_(std::chrono::steady_clock::now()) {
-  const std::string host = host_name();
+  const std::string host = support::host_name();
   const std::string instance = identity.instance.empty()
                                    ? host.substr(0, 48) + "-" + std::to_string(::getpid())
                                    : identity.instance;
@@ -141,7 +129,7 @@ void StatusPublisher::on_event(const Event& event) {
 }
 
 void StatusPublisher::publish() {
-  status_.stamp_ns(wall_clock_ns());
+  status_.stamp_ns(support::wall_clock_ns());
   status_.uptime_s(
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
   status_.counters().clear();

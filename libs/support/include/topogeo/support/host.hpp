@@ -1,0 +1,15 @@
+// The machine that the program runs on, for display and for names.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace topogeo::support {
+
+/// 1 to 64 bytes; "unknown" when the system does not tell.
+std::string host_name();
+
+/// Since 1970. For display only: no result may depend on it.
+std::int64_t wall_clock_ns();
+
+}  // namespace topogeo::support

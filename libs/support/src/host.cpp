@@ -1,0 +1,22 @@
+#include "topogeo/support/host.hpp"
+
+#include <array>
+#include <chrono>
+
+#include <unistd.h>
+
+namespace topogeo::support {
+
+std::string host_name() {
+  std::array<char, 65> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return "unknown";
+  return name.data();
+}
+
+std::int64_t wall_clock_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace topogeo::support
