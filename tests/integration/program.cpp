@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,6 +44,24 @@ std::string test_name() {
     if (c == '/') c = '_';
   }
   return name;
+}
+
+// Tests run side by side, and a worker that serves every partition would serve a neighbour's. The
+// lock goes with the process, however that ends.
+int claim_domain() {
+  // The ports of higher domains overlap with those that the system gives to clients.
+  constexpr std::size_t kDomains = 100;
+  const std::size_t first = std::hash<std::string>{}(test_name()) % kDomains;
+  for (std::size_t i = 0; i < kDomains; ++i) {
+    const auto domain = static_cast<int>(1 + (first + i) % kDomains);
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("topogeo_test_domain_" + std::to_string(domain) + ".lock");
+    const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock < 0) continue;
+    if (::flock(lock, LOCK_EX | LOCK_NB) == 0) return domain;
+    ::close(lock);
+  }
+  throw std::runtime_error("no free DDS domain from 1 to 100 for a test");
 }
 
 }  // namespace
@@ -158,8 +177,8 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 std::string own_domain() {
-  // 1 to 100: the ports of higher domains overlap with those that the system gives to clients.
-  return std::to_string(1 + std::hash<std::string>{}(test_name()) % 100);
+  static const int domain = claim_domain();
+  return std::to_string(domain);
 }
 
 void use_udp_only() {
