@@ -1,7 +1,6 @@
 #include "localizer_service.hpp"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include <spdlog/spdlog.h>
@@ -10,6 +9,7 @@
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/host.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::localizer {
@@ -20,9 +20,8 @@ constexpr std::chrono::milliseconds kCountPeriod{250};
 
 /// Different for every process that ever ran, as far as workers can remember.
 std::string unique_client_id() {
-  std::array<char, 33> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host = {"unknown"};
-  std::string name(host.data());
+  constexpr std::size_t kLongestHost = 32;
+  std::string name = support::host_name().substr(0, kLongestHost);
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == '\'' || c == '"' || c == '%'; }, '-');
   const auto start = std::chrono::system_clock::now().time_since_epoch();
@@ -218,7 +217,7 @@ void LocalizerService::finish() {
   end.last_id(hashes_.empty() ? 0 : hashes_.size() - 1);
   end.version(version_);
   if (!service_.send(ends_out_, end, "stream end")) return;
-  const localization::LocalizerCounts& counts = localizer_.counts();
+  const localization::SlamCounts& counts = localizer_.counts();
   spdlog::info("{} stops, {} match tasks, {} loop closures", hashes_.size(), counts.tasks,
                sent_closures_.size());
   service_.status().set_state(msg::kServiceFinished);
@@ -251,7 +250,7 @@ void LocalizerService::publish(bool whole) {
 
 void LocalizerService::count() {
   messaging::StatusPublisher& status = service_.status();
-  const localization::LocalizerCounts& counts = localizer_.counts();
+  const localization::SlamCounts& counts = localizer_.counts();
   const auto set = [&status](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };

@@ -26,7 +26,7 @@ MapSender::MapSender(const messaging::Participant& participant, messaging::Event
       requests_, [this](const msg::MapRequest& request, const messaging::SampleInfo& info) {
         on_request(request, info);
       });
-  loop.add(copies_);
+  loop.add(copies_.writer());
 }
 
 void MapSender::add(std::shared_ptr<const topomap::LocalMap> map) {
@@ -59,40 +59,18 @@ bool MapSender::answer(const Pending& pending) {
     return true;
   }
   // A copy to a worker whose reader is not connected yet would be lost.
-  if (!readers_.contains(pending.participant)) return false;
+  if (!copies_.connected(pending.participant)) return false;
   msg::MapCopy copy;
   messaging::set_header(copy, map->robot_id, map->stamp_ns, sequence_);
   copy.worker_id(request.worker_id());
   copy.local_map(service::to_msg(*map));
-  addressed_[pending.participant].insert(request.worker_id().to_string());
-  if (!copies_.write(copy)) return false;
+  if (!copies_.write(copy, pending.participant)) return false;
   ++sequence_;
   return true;
 }
 
 void MapSender::on_event(const messaging::Event& event) {
-  if (event.topic != messaging::kMapCopy) return;
-  const service::ParticipantId participant = service::participant_of(event.peer);
-  if (event.kind == messaging::EventKind::kMatched) {
-    readers_.insert(participant);
-    tick();
-  } else if (event.kind == messaging::EventKind::kUnmatched) {
-    const auto found = readers_.find(participant);
-    if (found != readers_.end()) readers_.erase(found);
-    if (!readers_.contains(participant)) forget(participant);
-  }
-}
-
-// A writer has room for a bounded number of worker ids, and every worker that starts has a new one.
-void MapSender::forget(const service::ParticipantId& participant) {
-  const auto found = addressed_.find(participant);
-  if (found == addressed_.end()) return;
-  for (const std::string& worker_id : found->second) {
-    msg::MapCopy copy;
-    copy.worker_id(worker_id);
-    copies_.dispose(copy);
-  }
-  addressed_.erase(found);
+  if (copies_.follow(event) && event.kind == messaging::EventKind::kMatched) tick();
 }
 
 void MapSender::tick() {

@@ -8,17 +8,17 @@
 #include <list>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <string_view>
 
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
-#include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/service/participant_id.hpp"
 #include "topogeo/topomap/local_map.hpp"
+
+#include "worker_writer.hpp"
 
 namespace topogeo::localizer {
 
@@ -53,18 +53,15 @@ class MapSender {
 
   void on_request(const msg::MapRequest& request, const messaging::SampleInfo& info);
   void on_event(const messaging::Event& event);
-  void forget(const service::ParticipantId& participant);
   /// True when nothing more is to be done for the request.
   bool answer(const Pending& pending);
 
   FaultHandler on_fault_;
   messaging::Reader<msg::MapRequest> requests_;
-  messaging::Writer<msg::MapCopy> copies_;
+  WorkerWriter<msg::MapCopy> copies_;
   std::map<std::uint32_t, std::shared_ptr<const topomap::LocalMap>> maps_;  // by id
   std::map<std::uint32_t, std::uint64_t> hashes_;  // of those that were asked for
-  std::multiset<service::ParticipantId> readers_;  // of copies, connected
-  std::map<service::ParticipantId, std::set<std::string>> addressed_;  // ids that got copies
-  std::list<Pending> pending_;                                         // oldest first
+  std::list<Pending> pending_;                     // oldest first
   std::uint64_t sequence_ = 0;
 };
 

@@ -48,7 +48,7 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
       news_(teller(options_.tell)),
       statuses_(participant),
       results_(participant, {{}, {"client_id = %0", {"'" + options_.client_id + "'"}}}),
-      task_writer_(participant),
+      tasks_out_(participant),
       maps_(participant, loop, options_.client_id, on_fault_) {
   loop_.on_event([this](const messaging::Event& event) { on_event(event); });
   loop_.add<msg::WorkerStatus>(
@@ -63,7 +63,7 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
       results_, [this](const msg::MatchResult& message, const messaging::SampleInfo& info) {
         on_result(message, info);
       });
-  loop_.add(task_writer_);
+  loop_.add(tasks_out_.writer());
   timer_ = loop_.add_timer(kTick, [this] { on_tick(); });
 }
 
@@ -167,8 +167,7 @@ bool RemotePool::send(const TaskBoard::Assignment& assignment) {
   address.version = options_.version;
   address.config_fingerprint = options_.config_fingerprint;
   address.matcher_fingerprint = matcher_fingerprint_;
-  addressed_[registry_.owner(assignment.worker_id)].insert(assignment.worker_id);
-  return task_writer_.write(service::to_msg(task, address));
+  return tasks_out_.write(service::to_msg(task, address), registry_.owner(assignment.worker_id));
 }
 
 // --- the same work here
@@ -315,7 +314,7 @@ void RemotePool::on_status(const msg::WorkerStatus& status, const messaging::Sam
   if (verdict.fault) on_fault_(verdict.fault->reason, verdict.fault->detail);
   if (!verdict.usable) return;
   board_.worker_up(report.worker_id, status.draining() ? 0 : status.slots(), now());
-  board_.set_reachable(report.worker_id, task_readers_.contains(from));
+  board_.set_reachable(report.worker_id, tasks_out_.connected(from));
   go_on();
 }
 
@@ -331,7 +330,7 @@ void RemotePool::on_tick() {
 }
 
 void RemotePool::on_event(const messaging::Event& event) {
-  if (event.topic == messaging::kMatchTask) on_task_reader(event);
+  if (const auto participant = tasks_out_.follow(event)) on_task_reader(*participant);
   if (event.topic != messaging::kMatchResult || event.kind != messaging::EventKind::kInvalidSample)
     return;
   // An answer that breaks the wire contract has no task id that could be relied on.
@@ -342,32 +341,9 @@ void RemotePool::on_event(const messaging::Event& event) {
   go_on();
 }
 
-// A writer has room for a bounded number of worker ids, and every worker that starts has a new one.
-void RemotePool::forget(const service::ParticipantId& participant) {
-  const auto found = addressed_.find(participant);
-  if (found == addressed_.end()) return;
-  for (const std::string& worker_id : found->second) {
-    msg::MatchTask task;
-    task.worker_id(worker_id);
-    task_writer_.dispose(task);
-  }
-  addressed_.erase(found);
-}
-
-// A task to a worker whose reader is not connected yet would be lost, so the connections count.
-void RemotePool::on_task_reader(const messaging::Event& event) {
-  const service::ParticipantId participant = service::participant_of(event.peer);
-  if (event.kind == messaging::EventKind::kMatched) {
-    task_readers_.insert(participant);
-  } else if (event.kind == messaging::EventKind::kUnmatched) {
-    const auto found = task_readers_.find(participant);
-    if (found != task_readers_.end()) task_readers_.erase(found);
-    if (!task_readers_.contains(participant)) forget(participant);
-  } else {
-    return;
-  }
+void RemotePool::on_task_reader(const service::ParticipantId& participant) {
   for (const std::string& worker_id : registry_.workers_of(participant)) {
-    board_.set_reachable(worker_id, task_readers_.contains(participant));
+    board_.set_reachable(worker_id, tasks_out_.connected(participant));
   }
   go_on();
 }

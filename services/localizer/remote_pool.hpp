@@ -6,10 +6,8 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -21,7 +19,6 @@
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
-#include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/match.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/service/participant_id.hpp"
@@ -30,6 +27,7 @@
 #include "pool_news.hpp"
 #include "task_board.hpp"
 #include "worker_registry.hpp"
+#include "worker_writer.hpp"
 
 namespace topogeo::localizer {
 
@@ -85,8 +83,8 @@ class RemotePool : public localization::MatchPool {
   void on_tick();
   void drop(const std::string& worker_id);
   void on_event(const messaging::Event& event);
-  void on_task_reader(const messaging::Event& event);
-  void forget(const service::ParticipantId& participant);
+  /// Readers of tasks came to or went from a process.
+  void on_task_reader(const service::ParticipantId& participant);
   void on_result(const msg::MatchResult& message, const messaging::SampleInfo& info);
   void on_answer(const std::string& worker_id, const msg::MatchResult& message);
   void on_wrong(const std::string& worker_id, std::uint64_t task_id, const std::string& what);
@@ -119,10 +117,8 @@ class RemotePool : public localization::MatchPool {
   PoolNews news_;
   messaging::Reader<msg::WorkerStatus> statuses_;
   messaging::Reader<msg::MatchResult> results_;
-  messaging::Writer<msg::MatchTask> task_writer_;
+  WorkerWriter<msg::MatchTask> tasks_out_;
   MapSender maps_;
-  std::multiset<service::ParticipantId> task_readers_;                 // connected
-  std::map<service::ParticipantId, std::set<std::string>> addressed_;  // ids that got tasks
   localization::Matcher matcher_;  // holds the maps that it was needed for
   std::uint64_t sequence_ = 0;
   std::function<bool()> until_;

@@ -17,7 +17,6 @@
 
 #include "topogeo/localization/match.hpp"
 
-#include "identical.hpp"
 #include "recovery.hpp"
 #include "task_batch.hpp"
 #include "worker_table.hpp"

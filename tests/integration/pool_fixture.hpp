@@ -15,6 +15,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/localization/identical.hpp"
 #include "topogeo/localization/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"
@@ -233,7 +234,7 @@ class PoolTest : public ::testing::Test {
     ASSERT_EQ(results.size(), expected.size());
     std::size_t solved = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      EXPECT_TRUE(localizer::identical(results[i], expected[i])) << "task " << i;
+      EXPECT_TRUE(localization::identical(results[i], expected[i])) << "task " << i;
       if (expected[i].status == localization::MatchStatus::kSolved) ++solved;
     }
     EXPECT_GT(solved, expected.size() / 2) << "the tasks are not worth comparing";

@@ -23,7 +23,10 @@ bool Localizer::add(std::shared_ptr<const LocalMap> map) {
   append(std::move(map));
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   ++version_;
-  if (stop == 0) return false;
+  if (stop == 0) {
+    belief_ = {LocalizationState::kTracking, 1.0};
+    return false;
+  }
   match_recent(stop, graph_.relative_to(stop));
   graph_.place_last_pose();
   const std::vector<UncertainPose> relative = graph_.relative_to(stop);

@@ -1,11 +1,11 @@
 // Matcher::verify: is what a result says of its poses true?
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <string>
 
 #include "topogeo/localization/genetic_search.hpp"
+#include "topogeo/localization/identical.hpp"
 #include "topogeo/localization/matcher.hpp"
 
 #include "match_evidence.hpp"
@@ -14,15 +14,6 @@ namespace topogeo::localization {
 namespace {
 
 using geometry::Pose2;
-
-// Equal to the last bit: unlike ==, tells 0 from -0 and not a number from itself never.
-bool same(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-bool same(const Pose2& a, const Pose2& b) {
-  return same(a.x_m, b.x_m) && same(a.y_m, b.y_m) && same(a.theta_rad, b.theta_rad);
-}
 
 bool sane(const Pose2& T) {
   constexpr double kFarthest_m = 2e6;
@@ -72,15 +63,15 @@ std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
 // The first difference between what is said and what is right.
 std::string difference(const MatchResult& said, const MatchResult& right) {
   for (std::size_t i = 0; i < right.solutions.size(); ++i) {
-    if (!same(said.solutions[i].fitness, right.solutions[i].fitness)) {
+    if (!identical(said.solutions[i].fitness, right.solutions[i].fitness)) {
       return differs("the fitness of " + nth(i), said.solutions[i].fitness,
                      right.solutions[i].fitness);
     }
   }
-  if (!same(said.T_reference_query, right.T_reference_query)) {
+  if (!identical(said.T_reference_query, right.T_reference_query)) {
     return "there is a refined pose though no solution fits";
   }
-  if (!same(said.second.T_reference_query, right.second.T_reference_query)) {
+  if (!identical(said.second.T_reference_query, right.second.T_reference_query)) {
     return "there is a second pose without a fitness";
   }
   struct Number {
@@ -97,10 +88,11 @@ std::string difference(const MatchResult& said, const MatchResult& right) {
         Number{"the residual", said.residual_rms_m, right.residual_rms_m},
         Number{"the scan fitness", said.scan_fitness, right.scan_fitness},
         Number{"the topological fitness", said.topological_fitness, right.topological_fitness}}) {
-    if (!same(number.said, number.right)) return differs(number.name, number.said, number.right);
+    if (!identical(number.said, number.right))
+      return differs(number.name, number.said, number.right);
   }
   for (int i = 0; i < 9; ++i) {
-    if (!same(said.covariance(i), right.covariance(i))) {
+    if (!identical(said.covariance(i), right.covariance(i))) {
       return differs("element " + std::to_string(i) + " of the covariance", said.covariance(i),
                      right.covariance(i));
     }

@@ -40,7 +40,7 @@ void add_map(storage::Report& report, const storage::MapDocument& document) {
   }
 }
 
-void add_matches(storage::Report& report, const localization::LocalizerCounts& counts) {
+void add_matches(storage::Report& report, const localization::SlamCounts& counts) {
   report.matches_tried = counts.tasks;
   report.matches_accepted = counts.reasons[static_cast<std::size_t>(localization::Reason::kNone)];
   report.matches_rejected.clear();

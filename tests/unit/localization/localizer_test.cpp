@@ -38,7 +38,7 @@ const DrivenMaps& round_trip() {
 struct Outcome {
   topomap::Trajectory trajectory;
   std::vector<topomap::LoopClosure> closures;
-  LocalizerCounts counts;
+  SlamCounts counts;
   int corrections = 0;  // steps that moved earlier poses
 };
 

@@ -191,23 +191,5 @@ TEST_F(AuditTest, ItIsToldHowManyAnswersOfAnErringWorkerStand) {
   EXPECT_EQ(differences[0].unchecked, 3U) << "one of the four was compared";
 }
 
-TEST(Identical, OneBitMakesADifference) {
-  MatchResult one = answer_to(7);
-  one.solutions.resize(2);
-  const auto differs = [&](const auto& change) {
-    MatchResult other = one;
-    change(other);
-    return !identical(one, other);
-  };
-  EXPECT_FALSE(differs([](auto&) {}));
-  EXPECT_TRUE(differs([](auto& r) { r.covariance(2, 1) = -0.0; })) << "not even the sign of zero";
-  EXPECT_TRUE(differs([](auto& r) { r.second.T_reference_query.y_m = 1e-300; }));
-  EXPECT_TRUE(differs([](auto& r) { r.solutions[1].fitness = 1e-300; }));
-  EXPECT_TRUE(differs([](auto& r) { r.solutions.pop_back(); }));
-  EXPECT_TRUE(differs([](auto& r) { r.seed = 1; }));
-  EXPECT_TRUE(differs([](auto& r) { r.verdict = localization::Verdict::kAccepted; }));
-  EXPECT_TRUE(differs([](auto& r) { r.reason = localization::Reason::kDoubtful; }));
-}
-
 }  // namespace
 }  // namespace topogeo::localizer

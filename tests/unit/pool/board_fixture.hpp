@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/localization/identical.hpp"
+
 #include "task_board.hpp"
 
 namespace topogeo::localizer {

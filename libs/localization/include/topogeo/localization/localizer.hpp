@@ -19,6 +19,7 @@
 #include "topogeo/localization/match_features.hpp"
 #include "topogeo/localization/odometry_model.hpp"
 #include "topogeo/localization/pose_graph.hpp"
+#include "topogeo/localization/slam.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
@@ -50,34 +51,26 @@ struct LocalizerConfig {
 /// predicted: the search space and all settings. The caller names the maps and gives id and seed.
 MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_reference_query);
 
-struct LocalizerCounts {
-  std::uint64_t tasks = 0;
-  std::uint64_t evaluations = 0;
-  std::array<std::uint64_t, kReasons> reasons{};  ///< index: Reason; kNone: accepted
-  std::uint64_t steps_in_doubt =
-      0;  ///< no recent match was accepted; an uncertain one or odometry stood in
-  std::uint64_t unconfirmed_loops = 0;  ///< large corrections that no second loop agreed with
-  std::uint64_t optimizations = 0;
-  std::uint64_t failed_optimizations = 0;  ///< of those, without a usable result: poses kept
-  std::uint64_t removed_loops = 0;         ///< outvoted by the rest after optimisation
-};
-
-class Localizer {
+class Localizer : public Slam {
  public:
   /// The pool must outlive the localizer.
   Localizer(LocalizerConfig config, MatchPool& pool);
 
   /// One forward step. Maps must come in order of their ids, from 0, of one robot; throws
   /// std::invalid_argument otherwise. True when earlier poses were moved too.
-  bool add(std::shared_ptr<const topomap::LocalMap> map);
+  bool add(std::shared_ptr<const topomap::LocalMap> map) override;
 
   /// After the last map: matches all places that lie near each other by now and were not compared
   /// yet, and optimises, until nothing changes. Maps may follow all the same.
-  void finish();
+  void finish() override;
 
-  [[nodiscard]] topomap::Trajectory trajectory() const;
-  [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const;
-  [[nodiscard]] const LocalizerCounts& counts() const { return counts_; }
+  [[nodiscard]] topomap::Trajectory trajectory() const override;
+  [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override;
+  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
+    return decisions_;
+  }
+  [[nodiscard]] Belief belief() const override { return belief_; }
+  [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
 
  private:
   struct Stop {
@@ -137,7 +130,9 @@ class Localizer {
   std::uint64_t version_ = 0;
   std::uint64_t next_task_ = 0;
   std::uint32_t loops_since_optimization_ = 0;
-  LocalizerCounts counts_;
+  std::vector<LoopDecision> decisions_;
+  Belief belief_;
+  SlamCounts counts_;
 };
 
 }  // namespace topogeo::localization

@@ -25,9 +25,7 @@ class MappingRun {
   /// Works off the end of the log and gives the map. Call it once, after the last scan.
   storage::MapDocument finish();
 
-  [[nodiscard]] const localization::LocalizerCounts& match_counts() const {
-    return localizer_.counts();
-  }
+  [[nodiscard]] const localization::SlamCounts& match_counts() const { return localizer_.counts(); }
   /// "local_mapper", "localizer" and "map_store", as the services are called that do the same.
   [[nodiscard]] const std::vector<support::StageTime>& stages() const { return times_.stages(); }
 

@@ -21,7 +21,7 @@ void write_map_outputs(const std::filesystem::path& directory, const storage::Ma
 void add_map(storage::Report& report, const storage::MapDocument& document);
 
 /// Fills the match counts of a report.
-void add_matches(storage::Report& report, const localization::LocalizerCounts& counts);
+void add_matches(storage::Report& report, const localization::SlamCounts& counts);
 
 /// Fills what was skipped of the log.
 void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics);

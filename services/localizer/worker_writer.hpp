@@ -1,0 +1,73 @@
+// Writes messages that are addressed to workers: the worker's id is the key of the topic.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "topogeo/messaging/events.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/topics.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/service/participant_id.hpp"
+
+namespace topogeo::localizer {
+
+/// Knows which processes are connected, because a message to a worker whose reader is not would be
+/// lost. Forgets the ids of a process that is gone: a writer has room for a bounded number of them,
+/// and every worker that starts has a new one.
+template <class T>
+class WorkerWriter {
+ public:
+  explicit WorkerWriter(const messaging::Participant& participant) : writer_(participant) {}
+
+  /// To be added to the loop whose events are given to follow().
+  [[nodiscard]] const messaging::Writer<T>& writer() const { return writer_; }
+
+  /// A reader of the process is connected.
+  [[nodiscard]] bool connected(const service::ParticipantId& process) const {
+    return readers_.contains(process);
+  }
+
+  /// Sends to a worker of that process; returns and throws like Writer::write.
+  [[nodiscard]] bool write(const T& message, const service::ParticipantId& process) {
+    addressed_[process].insert(message.worker_id().to_string());
+    return writer_.write(message);
+  }
+
+  /// The process to which a reader of this writer came, or from which one went; nothing when the
+  /// event is about something else.
+  std::optional<service::ParticipantId> follow(const messaging::Event& event) {
+    if (event.topic != messaging::TopicTraits<T>::info().name) return {};
+    const service::ParticipantId process = service::participant_of(event.peer);
+    if (event.kind == messaging::EventKind::kMatched) {
+      readers_.insert(process);
+    } else if (event.kind == messaging::EventKind::kUnmatched) {
+      const auto found = readers_.find(process);
+      if (found != readers_.end()) readers_.erase(found);
+      if (!connected(process)) forget(process);
+    } else {
+      return {};
+    }
+    return process;
+  }
+
+ private:
+  void forget(const service::ParticipantId& process) {
+    const auto found = addressed_.find(process);
+    if (found == addressed_.end()) return;
+    for (const std::string& worker_id : found->second) {
+      T message;
+      message.worker_id(worker_id);
+      writer_.dispose(message);
+    }
+    addressed_.erase(found);
+  }
+
+  messaging::Writer<T> writer_;
+  std::multiset<service::ParticipantId> readers_;                      // a process may have several
+  std::map<service::ParticipantId, std::set<std::string>> addressed_;  // worker ids
+};
+
+}  // namespace topogeo::localizer
