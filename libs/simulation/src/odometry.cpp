@@ -18,10 +18,14 @@ geometry::Pose2 OdometryModel::advance(const geometry::Pose2& T_world_robot) {
         drift_.turn_sigma_rad_per_sqrt_rad * std::sqrt(turn_rad) * random_.normal();
     const double scale =
         distance_m > 0.0 ? 1.0 + drift_.range_scale_error + range_error_m / distance_m : 1.0;
-    const double heading_error_rad =
-        drift_.heading_drift_rad_per_m * distance_m + walk_rad + turn_error_rad;
+    const double heading_error_rad = drift_.heading_drift_rad_per_m * distance_m + walk_rad +
+                                     turn_error_rad + drift_.turn_scale_error * step.theta_rad;
+    const double shift_m = drift_.turn_shift_sigma_m_per_sqrt_rad * std::sqrt(turn_rad);
+    const double shift_x_m = shift_m * slip_random_.normal();
+    const double shift_y_m = shift_m * slip_random_.normal() +
+                             drift_.lateral_sigma_m_per_sqrt_m * root_m * slip_random_.normal();
     T_odom_robot_ =
-        T_odom_robot_ * geometry::Pose2{scale * step.x_m, scale * step.y_m,
+        T_odom_robot_ * geometry::Pose2{scale * step.x_m + shift_x_m, scale * step.y_m + shift_y_m,
                                         geometry::wrap_angle(step.theta_rad + heading_error_rad)};
   }
   T_world_last_ = T_world_robot;

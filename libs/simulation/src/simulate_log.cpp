@@ -1,10 +1,14 @@
 #include "topogeo/simulation/simulate_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "topogeo/simulation/people.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::simulation {
@@ -30,42 +34,141 @@ void check(const SimulationOptions& o) {
         "at most ten times bound_m");
   check(o.laser.dropout_probability >= 0.0 && o.laser.dropout_probability <= 1.0,
         "laser.dropout_probability", "[0, 1]");
+  for (std::size_t i = 0; i < o.kidnappings.size(); ++i) {
+    check(o.kidnappings[i].at_way_m >= (i > 0 ? o.kidnappings[i - 1].at_way_m : 0.0),
+          "kidnappings.at_way_m", "numbers >= 0 in ascending order");
+    check(o.kidnappings[i].to_way_m >= 0.0, "kidnappings.to_way_m", "a number >= 0");
+  }
+  for (const Blinding& blinding : o.blindings) {
+    check(blinding.way.from_m < blinding.way.to_m, "blindings.way", "from_m < to_m");
+    check(!blinding.reading_m || (*blinding.reading_m > 0.0 && std::isfinite(*blinding.reading_m)),
+          "blindings.reading_m", "a number > 0");
+  }
+}
+
+// The drive with its kidnappings: poses one tick apart, some of them after a jump.
+class Journey {
+ public:
+  Journey(const World& world, const SimulationOptions& options)
+      : poses_(drive(world.tour_m, options.drive)), kidnappings_(options.kidnappings) {
+    way_m_.push_back(0.0);
+    for (std::size_t i = 1; i < poses_.size(); ++i) {
+      const geometry::Pose2 step =
+          geometry::between(poses_[i - 1].T_world_robot, poses_[i].T_world_robot);
+      way_m_.push_back(way_m_.back() + step.position_m().norm());
+    }
+    for (const Kidnapping& kidnapping : kidnappings_) {
+      check(kidnapping.to_way_m <= way_m_.back(), "kidnappings.to_way_m",
+            "at most the way of the tour, " + std::to_string(way_m_.back()) + " m");
+    }
+  }
+
+  // One tick further; false at the end.
+  bool next() {
+    if (at_ + 1 >= poses_.size()) return false;
+    const double step_m = way_m_[at_ + 1] - way_m_[at_];
+    turned_rad_ =
+        std::fabs(geometry::between(T_world_robot(), poses_[at_ + 1].T_world_robot).theta_rad);
+    ++at_;
+    ++ticks_;
+    driven_m_ += step_m;
+    step_m_ = step_m;
+    carried_ = kidnapped_ < kidnappings_.size() && driven_m_ >= kidnappings_[kidnapped_].at_way_m;
+    if (carried_) {
+      T_world_left_ = T_world_robot();
+      const double to_m = kidnappings_[kidnapped_++].to_way_m;
+      const auto place = std::lower_bound(way_m_.begin(), way_m_.end(), to_m);
+      at_ = std::min(static_cast<std::size_t>(place - way_m_.begin()), poses_.size() - 1);
+    }
+    return true;
+  }
+
+  [[nodiscard]] const geometry::Pose2& T_world_robot() const { return poses_[at_].T_world_robot; }
+  // Where the robot was when it was carried away last.
+  [[nodiscard]] const geometry::Pose2& T_world_left() const { return T_world_left_; }
+  [[nodiscard]] bool at_end() const { return at_ + 1 >= poses_.size(); }
+  [[nodiscard]] double driven_m() const { return driven_m_; }
+  [[nodiscard]] double step_m() const { return step_m_; }
+  [[nodiscard]] double turned_rad() const { return turned_rad_; }
+  [[nodiscard]] bool carried() const { return carried_; }  // in the last tick, after its step
+  [[nodiscard]] std::int64_t time_ns() const { return ticks_ * poses_[1].time_ns; }
+
+ private:
+  std::vector<TimedPose> poses_;
+  std::vector<double> way_m_;  // of each pose
+  const std::vector<Kidnapping>& kidnappings_;
+  std::size_t kidnapped_ = 0;
+  std::size_t at_ = 0;
+  std::int64_t ticks_ = 0;
+  double driven_m_ = 0.0;
+  double step_m_ = 0.0;
+  double turned_rad_ = 0.0;
+  bool carried_ = false;
+  geometry::Pose2 T_world_left_;
+};
+
+std::vector<float> readings(const World& scene, const geometry::Pose2& T_world_robot,
+                            double driven_m, const SimulationOptions& options,
+                            support::Random& random) {
+  std::vector<float> ranges_m = measure(
+      raycast(scene, T_world_robot * options.T_robot_laser, options.beams), options.laser, random);
+  for (const Blinding& blinding : options.blindings) {
+    if (driven_m < blinding.way.from_m || driven_m >= blinding.way.to_m) continue;
+    const float reading_m =
+        blinding.reading_m ? static_cast<float>(*blinding.reading_m) : scan::Scan::kNoReturn;
+    std::fill(ranges_m.begin(), ranges_m.end(), reading_m);
+  }
+  return ranges_m;
+}
+
+void add_people(const People& people, const Eigen::Vector2d& laser_m, World& scene) {
+  constexpr double kNotSeen_m = 0.15;
+  for (const Circle& person : people.circles()) {
+    if ((person.center_m - laser_m).norm() < person.radius_m + kNotSeen_m) continue;
+    scene.circles.push_back(person);
+  }
 }
 
 }  // namespace
 
 SimulatedLog simulate_log(const World& world, const SimulationOptions& options) {
   check(options);
-  const std::vector<TimedPose> poses = drive(world.tour_m, options.drive);
+  Journey journey(world, options);
   // Separate seeds: a change to the laser leaves the odometry as it was, and the other way round.
   support::Random laser_random(support::derive_seed(options.seed, "laser", {}));
   OdometryModel odometry(options.odometry,
                          support::Random(support::derive_seed(options.seed, "odometry", {})));
+  People people(world, options.wanderers, options.seed);
   SimulatedLog log;
   double travelled_m = 0.0;
   double turned_rad = 0.0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const geometry::Pose2& T_world_robot = poses[i].T_world_robot;
-    if (i > 0) {
-      const geometry::Pose2 step = geometry::between(poses[i - 1].T_world_robot, T_world_robot);
-      travelled_m += step.position_m().norm();
-      turned_rad += std::fabs(step.theta_rad);
+  do {
+    travelled_m += journey.step_m();
+    turned_rad += journey.turned_rad();
+    if (journey.carried()) {
+      odometry.advance(journey.T_world_left());
+      odometry.carry(journey.T_world_robot());
     }
+    const bool first = log.scans.empty();
     const bool due = travelled_m >= options.scan_step_m || turned_rad >= options.scan_step_rad;
-    if (!due && i > 0 && i + 1 < poses.size()) continue;
+    if (!due && !first && !journey.at_end()) continue;
     travelled_m = 0.0;
     turned_rad = 0.0;
+    const geometry::Pose2& T_world_robot = journey.T_world_robot();
+    World scene = scene_at(world, journey.driven_m());
+    const double time_s = static_cast<double>(journey.time_ns()) * 1e-9;
+    people.walk(time_s, scene, T_world_robot.position_m());
+    add_people(people, (T_world_robot * options.T_robot_laser).position_m(), scene);
     scan::Scan scan;
     scan.sequence = log.scans.size();
-    scan.stamp_ns = options.start_stamp_ns + poses[i].time_ns;
+    scan.stamp_ns = options.start_stamp_ns + journey.time_ns();
     scan.angle_min_rad = options.beams.angle_min_rad;
     scan.angle_step_rad = options.beams.angle_step_rad;
-    scan.ranges_m =
-        measure(raycast(world, T_world_robot, options.beams), options.laser, laser_random);
+    scan.ranges_m = readings(scene, T_world_robot, journey.driven_m(), options, laser_random);
     scan.T_odom_robot = odometry.advance(T_world_robot);
     log.scans.push_back(std::move(scan));
     log.T_world_robot.push_back(T_world_robot);
-  }
+  } while (journey.next());
   return log;
 }
 

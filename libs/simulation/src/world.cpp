@@ -6,6 +6,20 @@
 
 namespace topogeo::simulation {
 
+World scene_at(const World& world, double way_m) {
+  World scene{world.name, world.segments, world.circles, {}, {}, {}};
+  for (const ChangingPart& part : world.changing) {
+    const bool inside =
+        std::any_of(part.present.begin(), part.present.end(), [way_m](const WayInterval& interval) {
+          return way_m >= interval.from_m && way_m < interval.to_m;
+        });
+    if (inside == part.otherwise) continue;
+    scene.segments.insert(scene.segments.end(), part.segments.begin(), part.segments.end());
+    scene.circles.insert(scene.circles.end(), part.circles.begin(), part.circles.end());
+  }
+  return scene;
+}
+
 double clearance_m(const World& world, const Eigen::Vector2d& point_m) {
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const Segment& segment : world.segments) {

@@ -20,6 +20,8 @@ constexpr double kMaxCoordinate_m = 1e5;
 struct Door {
   double begin_m;
   double end_m;
+  bool leaf;  // shut but for some parts of the way
+  std::vector<WayInterval> open;
 };
 
 class WorldParser {
@@ -27,8 +29,9 @@ class WorldParser {
   explicit WorldParser(const std::string& source) : source_(source) {}
 
   World parse(const YAML::Node& root) {
-    expect_keys(root, "the world",
-                {"name", "wall_thickness", "walls", "boxes", "columns", "segments", "tour"});
+    expect_keys(
+        root, "the world",
+        {"name", "wall_thickness", "walls", "boxes", "columns", "segments", "tour", "people"});
     if (const YAML::Node name = root["name"]) world_.name = text(name, "name");
     double thickness_m = 0.0;
     if (const YAML::Node node = root["wall_thickness"]) {
@@ -44,7 +47,8 @@ class WorldParser {
     for (const YAML::Node& node : list(root["tour"], "tour")) {
       world_.tour_m.push_back(point(node, "tour"));
     }
-    if (world_.segments.empty() && world_.circles.empty()) {
+    for (const YAML::Node& node : list(root["people"], "people")) add_person(node);
+    if (world_.segments.empty() && world_.circles.empty() && world_.changing.empty()) {
       fail(root, "the world", "walls, boxes, columns or segments", "none");
     }
     return std::move(world_);
@@ -88,13 +92,14 @@ class WorldParser {
     return node.Scalar();
   }
 
-  double number(const YAML::Node& node, std::string_view key, double low, double high) const {
+  double number(const YAML::Node& node, std::string_view key, double low, double high,
+                const char* unit = "m") const {
     double value = 0.0;
     const bool is_number =
         node.IsDefined() && node.IsScalar() && YAML::convert<double>::decode(node, value);
     if (!is_number || !(value >= low && value <= high)) {
       std::ostringstream range;
-      range << "a number in [" << low << ", " << high << "] m";
+      range << "a number in [" << low << ", " << high << "] " << unit;
       fail(node, key, range.str(), shown(node));
     }
     return value;
@@ -136,37 +141,77 @@ class WorldParser {
     world_.segments.push_back({a_m, b_m});
   }
 
-  void add_loop(std::initializer_list<Eigen::Vector2d> corners_m) {
+  static void add_loop(std::initializer_list<Eigen::Vector2d> corners_m,
+                       std::vector<Segment>& segments) {
     const Eigen::Vector2d* previous = corners_m.end() - 1;
     for (const Eigen::Vector2d& corner : corners_m) {
-      world_.segments.push_back({*previous, corner});
+      segments.push_back({*previous, corner});
       previous = &corner;
     }
   }
 
+  std::vector<WayInterval> intervals(const YAML::Node& node, std::string_view key) const {
+    std::vector<WayInterval> parts;
+    for (const YAML::Node& part : list(node, key)) {
+      if (!part.IsSequence() || part.size() != 2) {
+        fail(part, key, "parts of the way as [from, to]", shown(part));
+      }
+      const double from_m = number(part[0], key, 0.0, kMaxCoordinate_m);
+      const double to_m = number(part[1], key, 0.0, kMaxCoordinate_m);
+      if (!(from_m < to_m)) fail(part, key, "[from, to] with from < to", "from >= to");
+      parts.push_back({from_m, to_m});
+    }
+    return parts;
+  }
+
+  void add_person(const YAML::Node& node) {
+    expect_keys(node, "people", {"path", "speed", "radius", "start"});
+    Person person;
+    for (const YAML::Node& place : list(required(node, "path"), "path")) {
+      person.path_m.push_back(point(place, "path"));
+    }
+    if (person.path_m.empty()) fail(node, "path", "a point or more", "none");
+    if (node["speed"]) person.speed_m_per_s = number(node["speed"], "speed", 0.0, 10.0, "m/s");
+    if (node["radius"]) person.radius_m = number(node["radius"], "radius", 0.01, 2.0);
+    if (node["start"]) person.start_s = number(node["start"], "start", 0.0, 1e6, "s");
+    world_.people.push_back(std::move(person));
+  }
+
   void add_box(const YAML::Node& node) {
-    expect_keys(node, "boxes", {"from", "to"});
+    expect_keys(node, "boxes", {"from", "to", "present"});
     const Eigen::Vector2d a_m = point(required(node, "from"), "from");
     const Eigen::Vector2d b_m = point(required(node, "to"), "to");
     if (a_m.x() == b_m.x() || a_m.y() == b_m.y()) {
       fail(node, "boxes", "two corners that differ in x and y", "a box without area");
     }
-    add_loop({a_m, {b_m.x(), a_m.y()}, b_m, {a_m.x(), b_m.y()}});
+    const YAML::Node present = node["present"];
+    ChangingPart part;
+    add_loop({a_m, {b_m.x(), a_m.y()}, b_m, {a_m.x(), b_m.y()}},
+             present ? part.segments : world_.segments);
+    if (!present) return;
+    part.present = intervals(present, "present");
+    world_.changing.push_back(std::move(part));
   }
 
   void add_column(const YAML::Node& node) {
-    expect_keys(node, "columns", {"center", "radius"});
+    expect_keys(node, "columns", {"center", "radius", "present"});
     const Eigen::Vector2d center_m = point(required(node, "center"), "center");
-    world_.circles.push_back({center_m, number(required(node, "radius"), "radius", 0.01, 100.0)});
+    const Circle circle{center_m, number(required(node, "radius"), "radius", 0.01, 100.0)};
+    if (const YAML::Node present = node["present"]) {
+      world_.changing.push_back({{}, {circle}, intervals(present, "present"), false});
+    } else {
+      world_.circles.push_back(circle);
+    }
   }
 
   std::vector<Door> doors_of(const YAML::Node& wall, double length_m) const {
     std::vector<Door> doors;
     for (const YAML::Node& node : list(wall["doors"], "doors")) {
-      expect_keys(node, "doors", {"at", "width"});
+      expect_keys(node, "doors", {"at", "width", "open"});
       const double at_m = number(required(node, "at"), "at", 0.0, length_m);
       const double width_m = number(required(node, "width"), "width", 0.01, length_m);
-      const Door door{at_m - width_m / 2.0, at_m + width_m / 2.0};
+      const Door door{at_m - width_m / 2.0, at_m + width_m / 2.0, node["open"].IsDefined(),
+                      intervals(node["open"], "open")};
       const auto overlaps = [&](const Door& d) {
         return door.begin_m < d.end_m && d.begin_m < door.end_m;
       };
@@ -198,7 +243,7 @@ class WorldParser {
       const Eigen::Vector2d a_m = from_m + begin_m * along;
       const Eigen::Vector2d b_m = from_m + end_m * along;
       if (thickness_m > 0.0) {
-        add_loop({a_m - half, b_m - half, b_m + half, a_m + half});
+        add_loop({a_m - half, b_m - half, b_m + half, a_m + half}, world_.segments);
       } else {
         world_.segments.push_back({a_m, b_m});
       }
@@ -207,6 +252,9 @@ class WorldParser {
     for (const Door& door : doors_of(node, length_m)) {
       add_piece(begin_m, door.begin_m);
       begin_m = door.end_m;
+      if (!door.leaf) continue;
+      const Segment leaf{from_m + door.begin_m * along, from_m + door.end_m * along};
+      world_.changing.push_back({{leaf}, {}, door.open, true});
     }
     add_piece(begin_m, length_m);
   }

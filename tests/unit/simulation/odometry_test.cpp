@@ -74,5 +74,45 @@ TEST(Odometry, TurningOnTheSpotErrsInHeadingOnly) {
   EXPECT_NEAR(odometry.theta_rad, 1.0, 0.1);
 }
 
+TEST(Odometry, ATurnScaleIsTakenOfTheTurnWithItsSign) {
+  OdometryDrift drift = kPerfect;
+  drift.turn_scale_error = 0.1;
+  OdometryModel model(drift, support::Random(1));
+  model.advance({});
+  EXPECT_NEAR(model.advance({0.0, 0.0, 1.0}).theta_rad, 1.1, 1e-12);
+  EXPECT_NEAR(model.advance({0.0, 0.0, -1.0}).theta_rad, 1.1 - 2.2, 1e-12);
+}
+
+TEST(Odometry, SlipsGrowWithTheRootOfWayAndTurn) {
+  OdometryDrift drift = kPerfect;
+  drift.lateral_sigma_m_per_sqrt_m = 0.03;
+  drift.turn_shift_sigma_m_per_sqrt_rad = 0.02;
+  double across2 = 0.0;
+  double shift2 = 0.0;
+  constexpr int kRuns = 2000;
+  for (int run = 0; run < kRuns; ++run) {
+    OdometryModel model(drift, support::Random(static_cast<std::uint64_t>(run)));
+    model.advance({});
+    const geometry::Pose2 driven = model.advance({4.0, 0.0, 0.0});
+    EXPECT_EQ(driven.x_m, 4.0);
+    across2 += driven.y_m * driven.y_m;
+    const geometry::Pose2 turned = model.advance({4.0, 0.0, 1.0});
+    shift2 += (turned.x_m - driven.x_m) * (turned.x_m - driven.x_m);
+  }
+  EXPECT_NEAR(std::sqrt(across2 / kRuns), 0.06, 0.004);
+  EXPECT_NEAR(std::sqrt(shift2 / kRuns), 0.02, 0.0015);
+}
+
+TEST(Odometry, DoesNotNoticeThatItIsCarried) {
+  OdometryModel model(kPerfect, support::Random(1));
+  model.advance({});
+  model.advance({1.0, 0.0, 0.0});
+  model.carry({50.0, 20.0, 1.0});
+  const geometry::Pose2 odometry = model.advance({50.0, 20.0, 1.0});
+  EXPECT_NEAR(odometry.x_m, 1.0, 1e-12);
+  EXPECT_NEAR(odometry.y_m, 0.0, 1e-12);
+  EXPECT_NEAR(odometry.theta_rad, 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace topogeo::simulation

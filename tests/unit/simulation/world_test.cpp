@@ -90,7 +90,27 @@ INSTANTIATE_TEST_SUITE_P(
         BadWorld{"doors_overlap",
                  "walls:\n  - from: [0, 0]\n    to: [4, 0]\n    doors:\n"
                  "      - {at: 2, width: 0.9}\n      - {at: 2.5, width: 0.9}\n",
-                 ":6: doors: expected"}),
+                 ":6: doors: expected"},
+        BadWorld{
+            "open_order",
+            "walls:\n  - {from: [0, 0], to: [4, 0],\n     doors: [{at: 2, width: 1, open: [[5, "
+            "2]]}]}\n",
+            ":3: open: expected [from, to] with from < to"},
+        BadWorld{"present_one", "boxes:\n  - {from: [0, 0], to: [1, 1], present: [[5]]}\n",
+                 ":2: present: expected parts of the way"},
+        BadWorld{"present_negative",
+                 "columns:\n  - {center: [0, 0], radius: 1, present: [[-1, 2]]}\n",
+                 ":2: present: expected a number in [0,"},
+        BadWorld{"person_without_path", "segments: [[0, 0, 1, 1]]\npeople:\n  - {speed: 1}\n",
+                 ":3: path: expected a value"},
+        BadWorld{"person_nowhere", "segments: [[0, 0, 1, 1]]\npeople:\n  - {path: []}\n",
+                 ":3: path: expected a point or more"},
+        BadWorld{"person_flies",
+                 "segments: [[0, 0, 1, 1]]\npeople:\n  - {path: [[0, 0]], speed: 99}\n",
+                 ":3: speed: expected a number in [0, 10] m/s"},
+        BadWorld{"person_wings",
+                 "segments: [[0, 0, 1, 1]]\npeople:\n  - {path: [[0, 0]], wings: 2}\n",
+                 ":3: people: expected one of the keys"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(World, AMissingFileIsNamed) {

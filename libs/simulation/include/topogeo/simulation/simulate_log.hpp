@@ -1,8 +1,10 @@
 // A whole synthetic log with its truth: drive, ray casting, laser noise, odometry drift.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
@@ -14,6 +16,20 @@
 
 namespace topogeo::simulation {
 
+/// Somebody lifts the robot at one place of its tour and puts it down at another, where it drives
+/// on. Neither odometry nor the time notice.
+struct Kidnapping {
+  double at_way_m = 0.0;  ///< of the way driven
+  double to_way_m = 0.0;  ///< of the way of the whole tour; before or after
+};
+
+/// Scans on a part of the way driven that see nothing of the world.
+struct Blinding {
+  WayInterval way;
+  /// What every beam reads then; without it no beam has an echo.
+  std::optional<double> reading_m;
+};
+
 struct SimulationOptions {
   std::uint64_t seed = 1;
   double scan_step_m = 0.25;  ///< a scan after this much path; [0.01, 10]
@@ -23,6 +39,12 @@ struct SimulationOptions {
   BeamPattern beams{};
   LaserNoise laser{};
   OdometryDrift odometry{};
+  geometry::Pose2 T_robot_laser{};  ///< where the laser sits
+  /// People besides those of the world: they walk about at random, starting near the tour, each at
+  /// a speed of its own of 0.5 to 1.5 m/s, and turn away from walls and the robot.
+  std::size_t wanderers = 0;
+  std::vector<Kidnapping> kidnappings{};  ///< in the order of their at_way_m
+  std::vector<Blinding> blindings{};
 };
 
 struct SimulatedLog {
@@ -31,9 +53,10 @@ struct SimulatedLog {
 };
 
 /// Drives the tour of the world and scans on the way, the first time at its start, the last time at
-/// its end. The laser sits at the robot's origin. The result depends on the arguments alone, to the
-/// last bit. Throws std::invalid_argument for an option out of range or a world without a tour,
-/// std::runtime_error when the tour cannot be driven (see drive).
+/// its end. Nothing stops the robot: doors that are shut and people in its way are no obstacle, and
+/// a person within 0.15 m of the laser is left out of a scan. The result depends on the arguments
+/// alone, to the last bit. Throws std::invalid_argument for an option out of range or a world
+/// without a tour, std::runtime_error when the tour cannot be driven (see drive).
 SimulatedLog simulate_log(const World& world, const SimulationOptions& options);
 
 }  // namespace topogeo::simulation

@@ -9,6 +9,13 @@
 //   columns: [{center: [4, 4], radius: 0.3}]
 //   segments: [[0, 0, 1, 1]]      # single lines: x1, y1, x2, y2
 //   tour: [[1, 1], [6, 1]]        # way points of the drive
+// What changes while the robot drives:
+//   doors: [{at: 2.5, width: 0.9, open: [[0, 12.5], [40, 60]]}]   # closed but for these parts of
+//                                 # the way driven; without `open` it stands open for ever
+//   boxes: [{from: [1, 1], to: [2, 1.5], present: [[0, 30]]}]     # also of columns: there for
+//                                 # these parts of the way driven only
+//   people: [{path: [[1, 1], [6, 1]], speed: 1.2, radius: 0.2, start: 3}]   # walk the path to and
+//                                 # fro, m/s (0: stand), seconds after the start of the drive
 #pragma once
 
 #include <filesystem>
@@ -29,11 +36,37 @@ struct Circle {
   double radius_m;
 };
 
+/// Part of the way that the robot drives, metres from its start: [from, to).
+struct WayInterval {
+  double from_m = 0.0;
+  double to_m = 0.0;
+};
+
+/// Surfaces that are there while the robot is on certain parts of its way (a closed door, furniture
+/// that is moved).
+struct ChangingPart {
+  std::vector<Segment> segments{};
+  std::vector<Circle> circles{};
+  std::vector<WayInterval> present{};
+  bool otherwise = false;  ///< the surfaces are there outside of `present` instead: a door that is
+                           ///< open in these intervals
+};
+
+/// Somebody who walks along a path and back again, regardless of the robot.
+struct Person {
+  std::vector<Eigen::Vector2d> path_m{};  ///< one point: stands there
+  double speed_m_per_s = 1.2;
+  double radius_m = 0.2;
+  double start_s = 0.0;  ///< since the start of the drive; until then at the first point
+};
+
 struct World {
-  std::string name;
-  std::vector<Segment> segments;
-  std::vector<Circle> circles;
-  std::vector<Eigen::Vector2d> tour_m;
+  std::string name{};
+  std::vector<Segment> segments{};
+  std::vector<Circle> circles{};
+  std::vector<Eigen::Vector2d> tour_m{};
+  std::vector<ChangingPart> changing{};
+  std::vector<Person> people{};
 };
 
 /// Reads a world file. Throws std::runtime_error naming file, line, key and what was expected: an
@@ -44,7 +77,12 @@ World load_world(const std::filesystem::path& path);
 /// The same from text; `source` stands for the file in messages.
 World parse_world(const std::string& text, const std::string& source);
 
-/// Distance from a point to the nearest surface, metres; infinity in a world without surfaces.
+/// The surfaces that are there when the robot has driven `way_m`: those that never change and the
+/// present ones of those that do, without people.
+World scene_at(const World& world, double way_m);
+
+/// Distance from a point to the nearest surface, metres; infinity in a world without surfaces. What
+/// changes does not count: see scene_at.
 double clearance_m(const World& world, const Eigen::Vector2d& point_m);
 
 }  // namespace topogeo::simulation

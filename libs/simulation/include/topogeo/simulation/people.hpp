@@ -1,0 +1,46 @@
+// People who walk about while the robot drives: discs that the laser sees.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::simulation {
+
+/// Where a person who follows its path is at a time since the start of the drive.
+Eigen::Vector2d position_m(const Person& person, double time_s);
+
+/// The people of a world and `wanderers` more, who walk about at random.
+class People {
+ public:
+  /// The world must outlive this. Wanderers start near its tour, at least 3 m from its start if
+  /// there is such a place. The seed decides about their places, speeds and ways.
+  People(const World& world, std::size_t wanderers, std::uint64_t seed);
+
+  /// Lets them walk until `time_s`, which never goes back, in a scene (scene_at) with the robot.
+  void walk(double time_s, const World& scene, const Eigen::Vector2d& robot_m);
+
+  /// Everybody where they are now.
+  [[nodiscard]] std::vector<Circle> circles() const;
+
+ private:
+  struct Wanderer {
+    Eigen::Vector2d position_m;
+    Eigen::Vector2d direction;  // of unit length
+    double speed_m_per_s = 1.0;
+    support::Random random;
+  };
+  static void step(Wanderer& wanderer, const World& scene, const Eigen::Vector2d& robot_m);
+
+  const World& world_;
+  std::vector<Wanderer> wanderers_;
+  double time_s_ = 0.0;
+  std::uint64_t steps_ = 0;
+};
+
+}  // namespace topogeo::simulation
