@@ -61,6 +61,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
       ends_in_(service.participant()),
       segments_(service.participant()),
       closures_(service.participant()),
+      decisions_(service.participant()),
       poses_(service.participant()),
       ends_out_(service.participant()) {
   messaging::EventLoop& loop = service_.loop();
@@ -75,6 +76,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
                            });
   loop.add(segments_);
   loop.add(closures_);
+  loop.add(decisions_);
   loop.add(poses_);
   loop.add(ends_out_);
   loop.add_timer(kCountPeriod, [this] { count_pool(); });
@@ -135,7 +137,7 @@ void LocalizerService::send_pose() {
   service::LivePose live;
   live.stamp_ns = newest_.stamp_ns;
   live.sequence = newest_.sequence;
-  live.state = last_step_in_doubt_ ? msg::kPoseUncertain : msg::kPoseTracking;
+  live.belief = localizer_.belief();
   live.T_map_robot = pose.T_a_b;
   live.covariance = pose.covariance;
   live.local_map_id = last_stop_.local_map_id;
@@ -190,10 +192,8 @@ void LocalizerService::step(const MapPointer& map) {
   if (service_.status().state() != msg::kServiceRunning) {
     service_.status().set_state(msg::kServiceRunning);
   }
-  const std::uint64_t in_doubt = localizer_.counts().steps_in_doubt;
   hashes_.push_back(topomap::content_hash(*map));
   localizer_.add(map);
-  last_step_in_doubt_ = localizer_.counts().steps_in_doubt > in_doubt;
   last_map_ = map;
   if (map->stamp_ns >= newest_.stamp_ns) {
     newest_ = {map->stamp_ns, map->sequence, map->T_odom_robot};
@@ -238,12 +238,26 @@ void LocalizerService::publish(bool whole) {
         service::to_segment(trajectory, number, service_.robot_id(), segments_sent_++);
     if (!service_.send(segments_, segment, "trajectory")) throw Stopped();
   }
+  publish_decisions();
   std::vector<topomap::LoopClosure> closures = localizer_.loop_closures();
   if (!whole && same(closures, sent_closures_)) return;
   sent_closures_ = std::move(closures);
   const msg::LoopClosures message = service::to_msg(sent_closures_, version_, service_.robot_id(),
                                                     last_stop_.stamp_ns, closures_sent_++);
   if (!service_.send(closures_, message, "loop closures")) throw Stopped();
+}
+
+// Decisions only come to the end, so the last segment that was sent and what follows are news.
+void LocalizerService::publish_decisions() {
+  const std::vector<localization::LoopDecision>& decisions = localizer_.loop_decisions();
+  if (decisions.size() == decisions_published_) return;
+  const auto first = static_cast<std::uint32_t>(decisions_published_ / msg::kSegmentDecisions);
+  for (std::uint32_t i = first; i < service::decision_segment_count(decisions.size()); ++i) {
+    const msg::LoopDecisions segment = service::to_segment(
+        decisions, i, service_.robot_id(), last_stop_.stamp_ns, decision_segments_sent_++);
+    if (!service_.send(decisions_, segment, "loop decisions")) throw Stopped();
+  }
+  decisions_published_ = decisions.size();
 }
 
 // --- counters
@@ -264,6 +278,7 @@ void LocalizerService::count() {
     set(reason == localization::Reason::kNone ? name : "rejected: " + name, counts.reasons[i]);
   }
   set("loop_closures", sent_closures_.size());
+  set("loop_decisions", localizer_.loop_decisions().size());
   set("optimizations", counts.optimizations);
   set("failed_optimizations", counts.failed_optimizations);
   set("unconfirmed_loops", counts.unconfirmed_loops);

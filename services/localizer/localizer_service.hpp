@@ -1,5 +1,5 @@
-// Wires localization::Localizer to topics: local maps in, the corrected trajectory, closed loops
-// and the live pose out, with the matching done by RemotePool.
+// Wires localization::Localizer to topics: local maps in, the corrected trajectory, closed loops,
+// what was decided of each loop and the live pose out, with the matching done by RemotePool.
 #pragma once
 
 #include <chrono>
@@ -49,6 +49,7 @@ class LocalizerService {
   void step(const MapPointer& map);
   void finish();
   void publish(bool whole);
+  void publish_decisions();
   void count();
   void count_pool();
 
@@ -61,6 +62,7 @@ class LocalizerService {
   messaging::Reader<msg::StreamEnd> ends_in_;
   messaging::Writer<msg::TrajectorySegment> segments_;
   messaging::Writer<msg::LoopClosures> closures_;
+  messaging::Writer<msg::LoopDecisions> decisions_;
   messaging::Writer<msg::LivePose> poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
@@ -74,12 +76,13 @@ class LocalizerService {
     geometry::Pose2 T_odom_robot;
   };
   Newest newest_;  // odometry that came last
-  bool last_step_in_doubt_ = false;
   TrajectoryUpdates updates_;
   std::vector<topomap::LoopClosure> sent_closures_;
   std::uint64_t version_ = 0;
   std::uint64_t segments_sent_ = 0;
   std::uint64_t closures_sent_ = 0;
+  std::size_t decisions_published_ = 0;
+  std::uint64_t decision_segments_sent_ = 0;
   std::optional<std::uint64_t> maps_in_stream_;
   bool scheduled_ = false;
   bool waited_ = false;

@@ -23,6 +23,11 @@ const topomap::MapNode* find_node(const topomap::GlobalMap& map, std::uint32_t i
   return found == map.nodes.end() ? nullptr : &*found;
 }
 
+bool is_known(const service::LivePose& pose) {
+  return pose.belief.state == localization::LocalizationState::kTracking ||
+         pose.belief.state == localization::LocalizationState::kAmbiguous;
+}
+
 msg::Route no_route(msg::RouteStatus status, std::string_view why) {
   msg::Route route;
   route.status(status);
@@ -37,7 +42,7 @@ msg::Route answer(const msg::Goal& goal, const std::optional<topomap::GlobalMap>
                   const planning::PlanningConfig& config) {
   if (goal.kind() == msg::kGoalCancel) return no_route(msg::kRouteCancelled, "cancelled");
   if (!map) return no_route(msg::kRouteNoMap, "no map yet");
-  if (!pose || pose->state == msg::kPoseUnknown) {
+  if (!pose || !is_known(*pose)) {
     return no_route(msg::kRouteNoPose, "the robot's pose is not known");
   }
   Eigen::Vector2d target_m(goal.target().x_m(), goal.target().y_m());
@@ -108,7 +113,7 @@ void PlannerService::on_pose(const msg::LivePose& message) {
     service_.status().fault("invalid pose", error.what());
     return;
   }
-  if (goal_ && waits_for_pose_ && pose_->state != msg::kPoseUnknown) plan();
+  if (goal_ && waits_for_pose_ && is_known(*pose_)) plan();
 }
 
 void PlannerService::on_goal(const msg::Goal& message) {

@@ -97,6 +97,7 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   report.configuration = job.config.effective;
   pipeline::add_map(report, document);
   pipeline::add_matches(report, run.match_counts());
+  pipeline::add_loop_candidates(report, run.loop_decisions());
   pipeline::add_log(report, job.reader.statistics());
   return report;
 }

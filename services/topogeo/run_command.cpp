@@ -44,6 +44,7 @@ storage::Report make_report(const RunOptions& options, Job& job, const RunResult
   report.configuration = job.config.effective;
   pipeline::add_map(report, storage::read_map_file(options.job.out / "map.pb"));
   add_matches(report, result.services);
+  pipeline::add_loop_candidates(report, result.loop_decisions);
   while (job.reader.next()) {  // to learn what the gateway skipped
   }
   pipeline::add_log(report, job.reader.statistics());

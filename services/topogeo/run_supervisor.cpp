@@ -46,6 +46,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       participant_(join(options, partition)),
       status_reader_(participant_),
       end_reader_(participant_),
+      decision_reader_(participant_),
       signals_([this](int number) {
         signal_ = number;
         loop_.stop();
@@ -61,6 +62,10 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
         result_.finished = true;
         loop_.stop();
       });
+  loop_.add<msg::LoopDecisions>(
+      decision_reader_, [this](const msg::LoopDecisions& segment, const messaging::SampleInfo&) {
+        if (segment.robot_id() == options_.job.robot_id.c_str()) decisions_.add(segment);
+      });
   loop_.add_timer(kTick, [this] { tick(); });
 }
 
@@ -69,6 +74,7 @@ RunResult RunSupervisor::run() {
   ended_ = true;
   result_.signal_number = result_.finished ? 0 : signal_.load();
   finish_bar();
+  if (result_.finished) wait_for_decisions();
   stop_services();
   result_.times = services_.wait();
   return std::move(result_);
@@ -146,6 +152,27 @@ void RunSupervisor::say(const std::string& text) {
 void RunSupervisor::fail(const std::string& why) {
   if (result_.failure.empty()) result_.failure = why;
   loop_.stop();
+}
+
+// They were sent before the end of the stream, but on a topic of their own.
+void RunSupervisor::wait_for_decisions() {
+  const auto expected = [this] {
+    return static_cast<std::size_t>(counter(result_.services.find("localizer"), "loop_decisions"));
+  };
+  const auto finished = [this] {
+    const msg::ServiceStatus* localizer = result_.services.find("localizer");
+    return localizer == nullptr || localizer->state() == msg::kServiceFinished;
+  };
+  const double end_s = support::monotonic_s() + kStopTime_s;
+  while ((!finished() || decisions_.all().size() < expected()) && support::monotonic_s() < end_s) {
+    loop_.run_for(milliseconds(5));
+  }
+  result_.loop_decisions = decisions_.all();
+  if (result_.loop_decisions.size() != expected()) {
+    result_.finished = false;
+    fail(fmt::format("{} of {} loop decisions came from the localizer",
+                     result_.loop_decisions.size(), expected()));
+  }
 }
 
 void RunSupervisor::stop_services() {

@@ -7,12 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/localization/loop_decision.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/decision_assembly.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
@@ -28,6 +31,7 @@ struct RunResult {
   std::string failure;                    ///< why it did not finish, when no signal did that
   std::vector<support::StageTime> times;  ///< of each service
   ServiceTable services;                  ///< what they said last
+  std::vector<localization::LoopDecision> loop_decisions;  ///< all, when finished
 };
 
 class RunSupervisor {
@@ -48,6 +52,7 @@ class RunSupervisor {
   void finish_bar();
   void say(const std::string& text);
   void fail(const std::string& why);
+  void wait_for_decisions();
   void stop_services();
 
   RunOptions options_;
@@ -58,10 +63,12 @@ class RunSupervisor {
   bool bar_done_ = false;
   support::ProgressBar bar_;
   StallWatch stall_;
+  service::DecisionAssembly decisions_;
 
   messaging::Participant participant_;
   messaging::Reader<msg::ServiceStatus> status_reader_;
   messaging::Reader<msg::StreamEnd> end_reader_;
+  messaging::Reader<msg::LoopDecisions> decision_reader_;
   messaging::EventLoop loop_;
   std::atomic<int> signal_ = 0;
   messaging::SignalStop signals_;

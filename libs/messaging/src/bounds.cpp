@@ -117,7 +117,10 @@ Defect find_defect(const msg::ServiceStatus& message) {
 }
 
 Defect find_defect(const msg::LivePose& message) {
-  return Check(message).value("state", message.state(), msg::kPoseUncertain).defect();
+  return Check(message)
+      .value("state", message.state(), msg::kStateLost)
+      .value("mode", message.mode(), msg::kModeLocalization)
+      .defect();
 }
 
 Defect find_defect(const msg::TrajectorySegment& message) {
@@ -126,6 +129,24 @@ Defect find_defect(const msg::TrajectorySegment& message) {
 
 Defect find_defect(const msg::LoopClosures& message) {
   return Check(message).size("closures", message.closures().size(), msg::kMaxLoopClosures).defect();
+}
+
+Defect find_defect(const msg::LoopDecisions& message) {
+  Check check(message);
+  check.size("decisions", message.decisions().size(), msg::kSegmentDecisions);
+  for (const msg::LoopDecision& decision : message.decisions()) {
+    check.value("decisions.outcome", decision.outcome(), msg::kLoopOutvoted)
+        .value("decisions.reason", decision.reason(), msg::kReasonSecondSolution);
+  }
+  return check.defect();
+}
+
+Defect find_defect(const msg::LocalizationCommand& message) {
+  return Check(message).value("kind", message.kind(), msg::kCommandSwitchToMapping).defect();
+}
+
+Defect find_defect(const msg::LocalizationReply& message) {
+  return Check(message).defect();
 }
 
 Defect find_defect(const msg::MapElement& message) {

@@ -90,6 +90,9 @@ TOPOGEO_TOPIC(ServiceStatus, kServiceStatus, "status", registerstatusTypes)
 TOPOGEO_TOPIC(LivePose, kLivePose, "motion_live", registertrajectoryTypes)
 TOPOGEO_TOPIC(TrajectorySegment, kTrajectorySegment, "state", registertrajectoryTypes)
 TOPOGEO_TOPIC(LoopClosures, kLoopClosures, "state", registertrajectoryTypes)
+TOPOGEO_TOPIC(LoopDecisions, kLoopDecisions, "state", registertrajectoryTypes)
+TOPOGEO_TOPIC(LocalizationCommand, kLocalizationCommand, "request", registertrajectoryTypes)
+TOPOGEO_TOPIC(LocalizationReply, kLocalizationReply, "request", registertrajectoryTypes)
 TOPOGEO_TOPIC(MapElement, kMapElement, "state", registermap_updateTypes)
 TOPOGEO_TOPIC(Goal, kGoal, "state", registerplanningTypes)
 TOPOGEO_TOPIC(Route, kRoute, "state", registerplanningTypes)
@@ -98,16 +101,28 @@ TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command", registermotionTypes)
 #undef TOPOGEO_TOPIC
 
 std::span<const TopicInfo* const> all_topics() {
-  static const std::array<const TopicInfo*, 19> topics = {
-      &TopicTraits<msg::BaseStatus>::info(),    &TopicTraits<msg::Goal>::info(),
-      &TopicTraits<msg::LocalMap>::info(),      &TopicTraits<msg::LoopClosures>::info(),
-      &TopicTraits<msg::MapElement>::info(),    &TopicTraits<msg::MapCopy>::info(),
-      &TopicTraits<msg::MapRequest>::info(),    &TopicTraits<msg::MatchResult>::info(),
-      &TopicTraits<msg::MatchTask>::info(),     &TopicTraits<msg::MotionCommand>::info(),
-      &TopicTraits<msg::Odometry>::info(),      &TopicTraits<msg::LivePose>::info(),
-      &TopicTraits<msg::Route>::info(),         &TopicTraits<msg::Scan>::info(),
-      &TopicTraits<msg::ServiceStatus>::info(), &TopicTraits<msg::Sonar>::info(),
-      &TopicTraits<msg::StreamEnd>::info(),     &TopicTraits<msg::TrajectorySegment>::info(),
+  static const std::array<const TopicInfo*, 22> topics = {
+      &TopicTraits<msg::BaseStatus>::info(),
+      &TopicTraits<msg::Goal>::info(),
+      &TopicTraits<msg::LocalMap>::info(),
+      &TopicTraits<msg::LocalizationCommand>::info(),
+      &TopicTraits<msg::LocalizationReply>::info(),
+      &TopicTraits<msg::LoopClosures>::info(),
+      &TopicTraits<msg::LoopDecisions>::info(),
+      &TopicTraits<msg::MapElement>::info(),
+      &TopicTraits<msg::MapCopy>::info(),
+      &TopicTraits<msg::MapRequest>::info(),
+      &TopicTraits<msg::MatchResult>::info(),
+      &TopicTraits<msg::MatchTask>::info(),
+      &TopicTraits<msg::MotionCommand>::info(),
+      &TopicTraits<msg::Odometry>::info(),
+      &TopicTraits<msg::LivePose>::info(),
+      &TopicTraits<msg::Route>::info(),
+      &TopicTraits<msg::Scan>::info(),
+      &TopicTraits<msg::ServiceStatus>::info(),
+      &TopicTraits<msg::Sonar>::info(),
+      &TopicTraits<msg::StreamEnd>::info(),
+      &TopicTraits<msg::TrajectorySegment>::info(),
       &TopicTraits<msg::WorkerStatus>::info()};
   return topics;
 }

@@ -50,6 +50,18 @@ void add_matches(storage::Report& report, const localization::SlamCounts& counts
   }
 }
 
+void add_loop_candidates(storage::Report& report,
+                         std::span<const localization::LoopDecision> decisions) {
+  report.loop_candidates.clear();
+  report.loop_candidates.reserve(decisions.size());
+  for (const localization::LoopDecision& d : decisions) {
+    report.loop_candidates.push_back({d.step, d.earlier_id, d.later_id,
+                                      localization::to_string(d.outcome),
+                                      localization::to_string(d.reason), d.T_earlier_later,
+                                      d.correction_m, d.correction_rad, d.fitness});
+  }
+}
+
 void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics) {
   report.skipped_lines.clear();
   for (std::size_t i = 0; i < scan::kSkipReasonCount; ++i) {

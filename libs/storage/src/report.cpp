@@ -36,6 +36,24 @@ Json loop_closures(const std::vector<topomap::LoopClosure>& closures) {
   return json;
 }
 
+Json loop_candidates(const std::vector<LoopCandidate>& candidates) {
+  Json json = Json::array();
+  for (const LoopCandidate& c : candidates) {
+    json.push_back({{"decided_at_stop", c.step},
+                    {"earlier_stop", c.earlier_id},
+                    {"later_stop", c.later_id},
+                    {"outcome", c.outcome},
+                    {"match", c.reason},
+                    {"x_m", c.T_earlier_later.x_m},
+                    {"y_m", c.T_earlier_later.y_m},
+                    {"theta_rad", c.T_earlier_later.theta_rad},
+                    {"correction_m", c.correction_m},
+                    {"correction_rad", c.correction_rad},
+                    {"fitness", c.fitness}});
+  }
+  return json;
+}
+
 Json stages(const std::vector<support::StageTime>& times) {
   Json json = Json::object();
   for (const support::StageTime& t : times) {
@@ -62,12 +80,14 @@ std::string report_json(const Report& report) {
                     {"matches_tried", report.matches_tried},
                     {"matches_accepted", report.matches_accepted},
                     {"matches_rejected", counts(report.matches_rejected)},
-                    {"loop_closures", report.loop_closures.size()}};
+                    {"loop_closures", report.loop_closures.size()},
+                    {"loop_candidates", report.loop_candidates.size()}};
   json["distance_m"] = report.distance_m;
   json["wall_s"] = report.wall_s;
   json["cpu_s"] = report.cpu_s;
   json["stages"] = stages(report.stages);
   json["loop_closures"] = loop_closures(report.loop_closures);
+  json["loop_candidates"] = loop_candidates(report.loop_candidates);
   json["configuration"] = configuration(report.configuration);
   // A file name need not be valid UTF-8: what is not is replaced rather than refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -92,7 +92,9 @@ std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message) {
 msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id) {
   msg::LivePose out;
   messaging::set_header(out, robot_id, pose.stamp_ns, pose.sequence);
-  out.state(pose.state);
+  out.state(static_cast<msg::LocalizationState>(pose.belief.state));  // same values, see the IDL
+  out.confidence(pose.belief.confidence);
+  out.mode(pose.mode);
   out.T_map_robot(to_msg(pose.T_map_robot));
   out.covariance(to_msg(pose.covariance));
   out.local_map_id(pose.local_map_id);
@@ -101,10 +103,13 @@ msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id) {
 }
 
 LivePose from_msg(const msg::LivePose& message) {
-  check(message.state() <= msg::kPoseUncertain, "state", "0 to 2");
+  check(message.state() <= msg::kStateLost, "state", "0 to 3");
+  check(message.mode() <= msg::kModeLocalization, "mode", "0 or 1");
+  check(message.confidence() >= 0.0 && message.confidence() <= 1.0, "confidence", "0 to 1");
   return {message.stamp_ns(),
           message.sequence_number(),
-          message.state(),
+          {static_cast<localization::LocalizationState>(message.state()), message.confidence()},
+          message.mode(),
           from_msg(message.T_map_robot()),
           from_msg(message.covariance()),
           message.local_map_id(),

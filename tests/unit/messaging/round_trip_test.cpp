@@ -133,7 +133,9 @@ void fill(msg::ServiceStatus& status) {
 }
 
 void fill(msg::LivePose& live) {
-  live.state(msg::kPoseTracking);
+  live.state(msg::kStateLost);
+  live.confidence(0.25);
+  live.mode(msg::kModeLocalization);
   live.T_map_robot(pose(9.0));
   live.covariance(matrix());
   live.trajectory_version(12);
@@ -158,6 +160,36 @@ void fill(msg::LoopClosures& closures) {
   closure.later_id(200);
   closure.T_earlier_later(pose(0.5));
   closures.closures().assign(20, closure);
+}
+
+void fill(msg::LoopDecisions& decisions) {
+  decisions.segment(2);
+  decisions.total(3 * msg::kSegmentDecisions);
+  msg::LoopDecision decision;
+  decision.step(210);
+  decision.earlier_id(1);
+  decision.later_id(200);
+  decision.outcome(msg::kLoopOutvoted);
+  decision.reason(msg::kReasonFewInliers);
+  set_text(decision.explanation(), "outvoted: few inliers", "explanation");
+  decision.T_earlier_later(pose(0.5));
+  decision.correction_m(0.75);
+  decisions.decisions().assign(msg::kSegmentDecisions, decision);
+}
+
+void fill(msg::LocalizationCommand& command) {
+  command.request_id(7);
+  set_text(command.client_id(), "operator-1", "client_id");
+  command.kind(msg::kCommandSetPose);
+  command.T_map_robot(pose(2.0));
+  command.covariance(matrix());
+}
+
+void fill(msg::LocalizationReply& reply) {
+  reply.request_id(7);
+  set_text(reply.client_id(), "operator-1", "client_id");
+  reply.accepted(true);
+  set_text(reply.message(), "searching", "message");
 }
 
 void fill(msg::MapElement& element) {
@@ -194,6 +226,7 @@ using AllTypes =
     ::testing::Types<msg::Scan, msg::Odometry, msg::Sonar, msg::BaseStatus, msg::StreamEnd,
                      msg::LocalMap, msg::MatchTask, msg::MatchResult, msg::WorkerStatus,
                      msg::ServiceStatus, msg::LivePose, msg::TrajectorySegment, msg::LoopClosures,
+                     msg::LoopDecisions, msg::LocalizationCommand, msg::LocalizationReply,
                      msg::MapElement, msg::Goal, msg::Route, msg::MotionCommand>;
 TYPED_TEST_SUITE(RoundTrip, AllTypes);
 

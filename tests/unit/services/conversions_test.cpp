@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/service/decision_assembly.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
 
 #include "random_values.hpp"
@@ -144,17 +145,79 @@ TEST_P(Conversions, LoopClosuresAreExact) {
 }
 
 TEST_P(Conversions, LivePoseIsExact) {
-  const LivePose pose{any_i64(random_),  random_.next_u64(),  msg::kPoseUncertain,
-                      any_pose(random_), any_matrix(random_), any_u32(random_),
-                      random_.next_u64()};
+  const LivePose pose{
+      any_i64(random_),       random_.next_u64(), {localization::LocalizationState::kLost, 0.375},
+      msg::kModeLocalization, any_pose(random_),  any_matrix(random_),
+      any_u32(random_),       random_.next_u64()};
   const LivePose back = from_msg(to_msg(pose, "robot"));
   EXPECT_EQ(back.stamp_ns, pose.stamp_ns);
   EXPECT_EQ(back.sequence, pose.sequence);
-  EXPECT_EQ(back.state, pose.state);
+  EXPECT_EQ(back.belief.state, pose.belief.state);
+  EXPECT_EQ(back.belief.confidence, pose.belief.confidence);
+  EXPECT_EQ(back.mode, pose.mode);
   EXPECT_EQ(back.T_map_robot, pose.T_map_robot);
   EXPECT_EQ(back.covariance, pose.covariance);
   EXPECT_EQ(back.local_map_id, pose.local_map_id);
   EXPECT_EQ(back.trajectory_version, pose.trajectory_version);
+}
+
+TEST_P(Conversions, LoopDecisionsAreExactInSegments) {
+  std::vector<localization::LoopDecision> decisions;
+  for (std::uint32_t i = 0; i < 600; ++i) {
+    localization::LoopDecision decision;
+    decision.step = i + 2;
+    decision.earlier_id = i;
+    decision.later_id = i + 1;
+    decision.outcome =
+        static_cast<localization::LoopOutcome>(random_.below(localization::kLoopOutcomes));
+    decision.reason = static_cast<localization::Reason>(random_.below(localization::kReasons));
+    decision.T_earlier_later = any_pose(random_);
+    decision.correction_m = any_double(random_);
+    decision.correction_rad = any_double(random_);
+    decision.fitness = any_double(random_);
+    decisions.push_back(decision);
+  }
+  ASSERT_EQ(decision_segment_count(decisions.size()), 3U);
+  DecisionAssembly assembly;
+  for (const std::uint32_t segment : {2U, 0U, 1U}) {
+    const msg::LoopDecisions message = to_segment(decisions, segment, "robot", 6, segment);
+    EXPECT_EQ(message.total(), 600U);
+    EXPECT_EQ(message.decisions().front().explanation().to_string(),
+              localization::explanation(decisions[256 * segment]));
+    assembly.add(message);
+  }
+  const std::vector<localization::LoopDecision> back = assembly.all();
+  ASSERT_EQ(back.size(), decisions.size());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    EXPECT_EQ(back[i].step, decisions[i].step);
+    EXPECT_EQ(back[i].earlier_id, decisions[i].earlier_id);
+    EXPECT_EQ(back[i].later_id, decisions[i].later_id);
+    EXPECT_EQ(back[i].outcome, decisions[i].outcome);
+    EXPECT_EQ(back[i].reason, decisions[i].reason);
+    EXPECT_EQ(back[i].T_earlier_later, decisions[i].T_earlier_later);
+    EXPECT_EQ(back[i].correction_m, decisions[i].correction_m);
+    EXPECT_EQ(back[i].correction_rad, decisions[i].correction_rad);
+    EXPECT_EQ(back[i].fitness, decisions[i].fitness);
+  }
+  EXPECT_THROW(to_segment(decisions, 3, "robot", 6, 0), std::invalid_argument);
+  msg::LoopDecisions cut = to_segment(decisions, 0, "robot", 6, 0);
+  cut.decisions().pop_back();
+  EXPECT_THROW(from_msg(cut), std::invalid_argument);
+}
+
+TEST_P(Conversions, LocalizationCommandIsExactAndItsCovarianceIsChecked) {
+  LocalizationCommand command{random_.next_u64(), "operator-1", msg::kCommandSetPose,
+                              any_pose(random_), Eigen::Vector3d(0.25, 0.5, 0.1).asDiagonal()};
+  const LocalizationCommand back = from_msg(to_msg(command, "robot", 6, 7));
+  EXPECT_EQ(back.request_id, command.request_id);
+  EXPECT_EQ(back.client_id, command.client_id);
+  EXPECT_EQ(back.kind, command.kind);
+  EXPECT_EQ(back.T_map_robot, command.T_map_robot);
+  EXPECT_EQ(back.covariance, command.covariance);
+  command.covariance(2, 2) = 0.0;
+  EXPECT_THROW(from_msg(to_msg(command, "robot", 6, 7)), std::invalid_argument);
+  command.kind = msg::kCommandSearch;
+  EXPECT_NO_THROW(from_msg(to_msg(command, "robot", 6, 7)));
 }
 
 TEST_P(Conversions, GlobalMapIsExactInAnyOrderOfItsElements) {

@@ -22,7 +22,7 @@ topomap::GlobalMap one_branch() {
 
 service::LivePose pose_at(double x_m) {
   service::LivePose pose;
-  pose.state = msg::kPoseTracking;
+  pose.belief.state = localization::LocalizationState::kTracking;
   pose.T_map_robot = {x_m, 0.5, 0.0};
   return pose;
 }

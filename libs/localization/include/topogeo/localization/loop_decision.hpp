@@ -1,7 +1,9 @@
 // What was decided of a place that the robot may have come back to, and why.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/match.hpp"
@@ -33,5 +35,8 @@ struct LoopDecision {
   double correction_rad = 0.0;
   double fitness = 0.0;  ///< of the match, [0, 1]
 };
+
+/// Outcome and reason in words, as in reports: "accepted", "match not believed: few inliers", ...
+std::string explanation(const LoopDecision& decision);
 
 }  // namespace topogeo::localization

@@ -30,6 +30,9 @@ class ServiceStatus;
 class LivePose;
 class TrajectorySegment;
 class LoopClosures;
+class LoopDecisions;
+class LocalizationCommand;
+class LocalizationReply;
 class MapElement;
 class Goal;
 class Route;
@@ -38,25 +41,28 @@ class MotionCommand;
 
 namespace topogeo::messaging {
 
-inline constexpr std::string_view kScan = "topogeo/v3/scan";
-inline constexpr std::string_view kOdometry = "topogeo/v3/odometry";
-inline constexpr std::string_view kSonar = "topogeo/v3/sonar";
-inline constexpr std::string_view kBaseStatus = "topogeo/v3/base_status";
-inline constexpr std::string_view kStreamEnd = "topogeo/v3/stream_end";
-inline constexpr std::string_view kLocalMap = "topogeo/v3/local_map";
-inline constexpr std::string_view kMatchTask = "topogeo/v3/match_task";
-inline constexpr std::string_view kMatchResult = "topogeo/v3/match_result";
-inline constexpr std::string_view kMapRequest = "topogeo/v3/map_request";
-inline constexpr std::string_view kMapCopy = "topogeo/v3/map_copy";
-inline constexpr std::string_view kWorkerStatus = "topogeo/v3/worker_status";
-inline constexpr std::string_view kServiceStatus = "topogeo/v3/service_status";
-inline constexpr std::string_view kLivePose = "topogeo/v3/pose";
-inline constexpr std::string_view kTrajectorySegment = "topogeo/v3/trajectory";
-inline constexpr std::string_view kLoopClosures = "topogeo/v3/loop_closures";
-inline constexpr std::string_view kMapElement = "topogeo/v3/map";
-inline constexpr std::string_view kGoal = "topogeo/v3/goal";
-inline constexpr std::string_view kRoute = "topogeo/v3/route";
-inline constexpr std::string_view kMotionCommand = "topogeo/v3/motion_command";
+inline constexpr std::string_view kScan = "topogeo/v4/scan";
+inline constexpr std::string_view kOdometry = "topogeo/v4/odometry";
+inline constexpr std::string_view kSonar = "topogeo/v4/sonar";
+inline constexpr std::string_view kBaseStatus = "topogeo/v4/base_status";
+inline constexpr std::string_view kStreamEnd = "topogeo/v4/stream_end";
+inline constexpr std::string_view kLocalMap = "topogeo/v4/local_map";
+inline constexpr std::string_view kMatchTask = "topogeo/v4/match_task";
+inline constexpr std::string_view kMatchResult = "topogeo/v4/match_result";
+inline constexpr std::string_view kMapRequest = "topogeo/v4/map_request";
+inline constexpr std::string_view kMapCopy = "topogeo/v4/map_copy";
+inline constexpr std::string_view kWorkerStatus = "topogeo/v4/worker_status";
+inline constexpr std::string_view kServiceStatus = "topogeo/v4/service_status";
+inline constexpr std::string_view kLivePose = "topogeo/v4/pose";
+inline constexpr std::string_view kTrajectorySegment = "topogeo/v4/trajectory";
+inline constexpr std::string_view kLoopClosures = "topogeo/v4/loop_closures";
+inline constexpr std::string_view kLoopDecisions = "topogeo/v4/loop_decisions";
+inline constexpr std::string_view kLocalizationCommand = "topogeo/v4/localization_command";
+inline constexpr std::string_view kLocalizationReply = "topogeo/v4/localization_reply";
+inline constexpr std::string_view kMapElement = "topogeo/v4/map";
+inline constexpr std::string_view kGoal = "topogeo/v4/goal";
+inline constexpr std::string_view kRoute = "topogeo/v4/route";
+inline constexpr std::string_view kMotionCommand = "topogeo/v4/motion_command";
 
 /// Role of the sensor topics while a log is replayed: a slow reader slows the writer. Writer and
 /// readers of a run must agree on it.

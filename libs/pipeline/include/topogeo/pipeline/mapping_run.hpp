@@ -26,6 +26,9 @@ class MappingRun {
   storage::MapDocument finish();
 
   [[nodiscard]] const localization::SlamCounts& match_counts() const { return localizer_.counts(); }
+  [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {
+    return localizer_.loop_decisions();
+  }
   /// "local_mapper", "localizer" and "map_store", as the services are called that do the same.
   [[nodiscard]] const std::vector<support::StageTime>& stages() const { return times_.stages(); }
 

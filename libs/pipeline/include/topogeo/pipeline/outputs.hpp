@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
-#include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/loop_decision.hpp"
+#include "topogeo/localization/slam.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"
@@ -22,6 +24,10 @@ void add_map(storage::Report& report, const storage::MapDocument& document);
 
 /// Fills the match counts of a report.
 void add_matches(storage::Report& report, const localization::SlamCounts& counts);
+
+/// Fills the loop candidates of a report.
+void add_loop_candidates(storage::Report& report,
+                         std::span<const localization::LoopDecision> decisions);
 
 /// Fills what was skipped of the log.
 void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics);

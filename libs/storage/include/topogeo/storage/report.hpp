@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/support/config_schema.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -15,6 +16,19 @@ namespace topogeo::storage {
 
 /// How often each reason occurred, in the order in which they are to be listed.
 using ReasonCounts = std::vector<std::pair<std::string, std::uint64_t>>;
+
+/// A place that the robot may have come back to, and what was decided of it.
+struct LoopCandidate {
+  std::uint32_t step = 0;  ///< local map id of the stop at which it was decided
+  std::uint32_t earlier_id = 0;
+  std::uint32_t later_id = 0;
+  std::string outcome;  ///< "accepted" or why it was not taken
+  std::string reason;   ///< of the match: "accepted" or why it is not believed
+  geometry::Pose2 T_earlier_later;
+  double correction_m = 0.0;  ///< how far the match moves the later stop
+  double correction_rad = 0.0;
+  double fitness = 0.0;  ///< [0, 1]
+};
 
 struct Report {
   std::string command;  ///< "map" or "run"
@@ -33,7 +47,8 @@ struct Report {
   std::uint64_t matches_accepted = 0;
   ReasonCounts matches_rejected;
   std::vector<topomap::LoopClosure> loop_closures;
-  double distance_m = 0.0;  ///< along the corrected trajectory
+  std::vector<LoopCandidate> loop_candidates;  ///< in the order of the decisions
+  double distance_m = 0.0;                     ///< along the corrected trajectory
 
   double wall_s = 0.0;
   double cpu_s = 0.0;  ///< of all processes

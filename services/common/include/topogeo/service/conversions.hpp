@@ -15,6 +15,8 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/localization_state.hpp"
+#include "topogeo/localization/loop_decision.hpp"
 #include "topogeo/localization/match.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/map_update.h"
@@ -81,11 +83,35 @@ msg::LoopClosures to_msg(std::span<const topomap::LoopClosure> closures,
                          std::int64_t stamp_ns, std::uint64_t sequence_number);
 std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message);
 
+/// Number of segments that so many loop decisions have.
+std::uint32_t decision_segment_count(std::size_t decisions);
+/// Segment `segment` < decision_segment_count of all decisions so far.
+msg::LoopDecisions to_segment(std::span<const localization::LoopDecision> decisions,
+                              std::uint32_t segment, std::string_view robot_id,
+                              std::int64_t stamp_ns, std::uint64_t sequence_number);
+/// The decisions of one segment, checked: as many as `total` says.
+std::vector<localization::LoopDecision> from_msg(const msg::LoopDecisions& message);
+
+/// What a localizer is to do, as in msg::LocalizationCommand.
+struct LocalizationCommand {
+  std::uint64_t request_id = 0;
+  std::string client_id;
+  msg::LocalizationCommandKind kind = msg::kCommandSearch;
+  geometry::Pose2 T_map_robot;                           ///< kCommandSetPose
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< the same; in the map frame
+};
+
+msg::LocalizationCommand to_msg(const LocalizationCommand& command, std::string_view robot_id,
+                                std::int64_t stamp_ns, std::uint64_t sequence_number);
+/// Refuses a covariance that is not symmetric and positive definite where a pose is set.
+LocalizationCommand from_msg(const msg::LocalizationCommand& message);
+
 /// Pose of the robot now, as in msg::LivePose.
 struct LivePose {
   std::int64_t stamp_ns = 0;   ///< of the scan
   std::uint64_t sequence = 0;  ///< of the scan
-  msg::PoseState state = msg::kPoseUnknown;
+  localization::Belief belief;
+  msg::LocalizerMode mode = msg::kModeMapping;
   geometry::Pose2 T_map_robot;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
   std::uint32_t local_map_id = 0;                        ///< last stop

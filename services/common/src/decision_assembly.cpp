@@ -1,0 +1,26 @@
+#include "topogeo/service/decision_assembly.hpp"
+
+#include <utility>
+
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::service {
+
+void DecisionAssembly::add(const msg::LoopDecisions& message) {
+  std::vector<localization::LoopDecision> decisions = from_msg(message);
+  std::vector<localization::LoopDecision>& held = segments_[message.segment()];
+  if (decisions.size() > held.size()) held = std::move(decisions);
+}
+
+std::vector<localization::LoopDecision> DecisionAssembly::all() const {
+  std::vector<localization::LoopDecision> decisions;
+  std::uint32_t next = 0;
+  for (const auto& [segment, part] : segments_) {
+    if (segment != next++) break;
+    decisions.insert(decisions.end(), part.begin(), part.end());
+    if (part.size() < msg::kSegmentDecisions) break;
+  }
+  return decisions;
+}
+
+}  // namespace topogeo::service
