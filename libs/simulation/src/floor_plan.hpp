@@ -1,0 +1,59 @@
+// Draws rows of rooms, corridors and furniture into a world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::simulation {
+
+/// One side of a corridor, from `from` to `to`, axis-parallel; `out` is the unit vector away from
+/// the corridor.
+struct Side {
+  Eigen::Vector2d from_m;
+  Eigen::Vector2d to_m;
+  Eigen::Vector2d out;
+};
+
+class FloorPlan {
+ public:
+  explicit FloorPlan(World& world) : world_(world) {}
+
+  void line(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) const;
+  /// A box with one edge from `a` to `b`, `depth_m` deep along `out`; no line on that edge.
+  void box(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m, const Eigen::Vector2d& out,
+           double depth_m) const;
+
+  /// Rooms of 3 to 6 m along a side, `depth_m` deep, each with a door and furniture; now and then
+  /// something stands in the corridor. A side shorter than 3 m is a plain wall.
+  void rooms(const Side& side, double depth_m, support::Random& random) const;
+
+  /// A side without rooms behind it: a wall with shut doors, and things in the corridor.
+  void shut_doors(const Side& side, support::Random& random) const;
+
+  /// Furniture along the lower and upper wall of a hall, given by two of its corners, and a column;
+  /// the hall's walls are not drawn. Its middle line stays free.
+  void furnish(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m,
+               support::Random& random) const;
+
+ private:
+  struct Piece {
+    double from_m;
+    double to_m;
+    double door_m;  // its middle
+    bool open;
+  };
+  static std::vector<Piece> divide(double length_m, double open_share, support::Random& random);
+  void wall(const Side& side, const std::vector<Piece>& pieces) const;
+  void clutter(const Side& side, const std::vector<Piece>& pieces, support::Random& random) const;
+  void furniture(const Side& side, const Piece& piece, double depth_m,
+                 support::Random& random) const;
+
+  World& world_;
+};
+
+}  // namespace topogeo::simulation

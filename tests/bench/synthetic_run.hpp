@@ -1,0 +1,74 @@
+// One drive through a synthetic floor, mapped and compared with the truth.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/storage/map_document.hpp"
+
+namespace topogeo::bench {
+
+struct SyntheticFloor {
+  std::string name;
+  std::function<simulation::World(std::uint64_t seed)> draw;
+};
+
+/// The five floors of the synthetic table, in its order.
+const std::vector<SyntheticFloor>& synthetic_floors();
+
+/// The drive of a seed through a floor: a scan each 0.35 m or 10 degrees, odometry as of
+/// simulation::b21_odometry.
+simulation::SimulatedLog synthetic_drive(const simulation::World& world, std::uint64_t seed);
+
+/// An accepted loop closure that is off from the truth.
+struct FalseLoop {
+  std::uint32_t earlier_id = 0;
+  std::uint32_t later_id = 0;
+  double off_m = 0.0;
+  double off_rad = 0.0;
+  double apart_m = 0.0;  ///< of the two places in truth
+};
+
+struct SyntheticResult {
+  std::uint64_t seed = 0;
+  std::size_t scans = 0;
+  std::size_t stops = 0;
+  double way_m = 0.0;             ///< true
+  double odometry_rms_m = 0.0;    ///< after the best rigid alignment
+  double rms_m = 0.0;             ///< the same of the corrected poses
+  double largest_m = 0.0;         ///< error after the alignment
+  double rms_from_start_m = 0.0;  ///< the first pose is right, nothing else is aligned
+  double heading_rad = 0.0;       ///< mean absolute error after the alignment
+  double local_m = 0.0;           ///< rms error of a step between successive stops
+  double local_rad = 0.0;
+  double scale = 0.0;     ///< corrected way over true way between stops, less 1
+  std::size_t loops = 0;  ///< true returns, see count_loops
+  std::size_t loops_closed = 0;
+  std::size_t pieces = 0;  ///< returns cut into pieces of at most 10 m
+  std::size_t pieces_closed = 0;
+  std::size_t closures = 0;  ///< accepted in the end
+  std::vector<FalseLoop> false_loops;
+  double cpu_s = 0.0;
+};
+
+/// Maps a log and compares it with its truth. `document`, when given, takes the map.
+///
+/// A return is a stretch of 3 m or more on which the robot is within 1.5 m of a stop that it made
+/// 15 m of way or more earlier; it is closed when one of its stops is the later end of a right loop
+/// closure whose earlier end was 15 m of way before. A closure is false when it is off from the
+/// truth by more than 0.5 m or 10 degrees.
+SyntheticResult run_synthetic(const simulation::SimulatedLog& log, const pipeline::Config& config,
+                              storage::MapDocument* document = nullptr);
+
+/// Writes NAME.clf.gz and NAME.tum (the truth) into a folder.
+void save_log(const simulation::SimulatedLog& log, const std::filesystem::path& folder,
+              const std::string& name);
+
+}  // namespace topogeo::bench
