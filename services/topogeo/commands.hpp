@@ -16,5 +16,6 @@ void add_plan_command(CLI::App& app, int& exit_code);
 void add_dvl_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app, int& exit_code);
 void add_calibrate_odometry_command(CLI::App& app, int& exit_code);
+void add_compare_command(CLI::App& app, int& exit_code);
 
 }  // namespace topogeo::cli

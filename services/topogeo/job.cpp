@@ -38,8 +38,10 @@ Job read_inputs(const JobOptions& options) {
 }
 
 void print_error(std::ostream& out, const char* name, const pipeline::TrajectoryError& error) {
-  out << fmt::format("  {:<10} {:8.3f} m rms {:8.3f} m largest {:8.2f} deg heading\n", name,
+  out << fmt::format("  {:<10} {:8.3f} m rms {:8.3f} m largest {:8.2f} deg heading", name,
                      error.rms_m, error.largest_m, error.heading_rad * 180.0 / std::numbers::pi);
+  if (error.loop) out << fmt::format(" {:8.3f} m in loops", error.loop->mean_m);
+  out << '\n';
 }
 
 }  // namespace
@@ -103,7 +105,7 @@ Comparison compare(const std::filesystem::path& directory, const std::filesystem
 
 void print_comparison(std::ostream& out, const Comparison& comparison) {
   out << "position error after the best rigid alignment, over " << comparison.corrected.pairs
-      << " poses, and mean heading error:\n";
+      << " poses, and mean heading error (more: topogeo compare):\n";
   print_error(out, "odometry", comparison.odometry);
   print_error(out, "corrected", comparison.corrected);
 }

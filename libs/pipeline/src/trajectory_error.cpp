@@ -2,73 +2,202 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/geometry/pose2.hpp"
+
+#include "loop_pairs.hpp"
 
 namespace topogeo::pipeline {
 namespace {
 
+using geometry::Pose2;
 using topomap::StampedPose;
 
-std::int64_t apart_ns(const StampedPose& a, const StampedPose& b) {
-  return std::abs(a.stamp_ns - b.stamp_ns);
+constexpr std::int64_t kFarApart_ns = 30'000'000'000;
+
+std::vector<StampedPose> in_time_order(std::span<const StampedPose> poses) {
+  std::vector<StampedPose> sorted(poses.begin(), poses.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+  return sorted;
 }
 
-/// The pose nearest in time; `poses` is not empty.
-const StampedPose& nearest(std::span<const StampedPose> poses, const StampedPose& wanted) {
-  const auto after = std::lower_bound(
-      poses.begin(), poses.end(), wanted,
-      [](const StampedPose& a, const StampedPose& b) { return a.stamp_ns < b.stamp_ns; });
-  if (after == poses.end()) return poses.back();
-  if (after == poses.begin()) return *after;
-  return apart_ns(*(after - 1), wanted) <= apart_ns(*after, wanted) ? *(after - 1) : *after;
+/// The double nearest to a time in seconds: what other tools compare. Rounded by up to a quarter of
+/// a microsecond, which decides whether a pose at the very limit has a partner.
+double seconds(std::int64_t stamp_ns) {
+  return static_cast<double>(static_cast<long double>(stamp_ns) / 1e9L);
+}
+
+double apart_s(const StampedPose& pose, std::int64_t stamp_ns) {
+  return std::fabs(seconds(pose.stamp_ns) - seconds(stamp_ns));
+}
+
+/// The pose nearest to a time if it is near enough, of two equally near ones the earlier.
+const StampedPose* pose_at(std::span<const StampedPose> poses, std::int64_t stamp_ns,
+                           std::int64_t max_apart_ns) {
+  if (poses.empty()) return nullptr;
+  const auto after = std::upper_bound(
+      poses.begin(), poses.end(), stamp_ns,
+      [](std::int64_t stamp, const StampedPose& pose) { return stamp < pose.stamp_ns; });
+  const bool take_before =
+      after == poses.end() ||
+      (after != poses.begin() && apart_s(*(after - 1), stamp_ns) <= apart_s(*after, stamp_ns));
+  const StampedPose& nearest = take_before ? *(after - 1) : *after;
+  return apart_s(nearest, stamp_ns) <= seconds(max_apart_ns) ? &nearest : nullptr;
+}
+
+std::string time_of(std::span<const StampedPose> poses) {
+  if (poses.empty()) return "has no poses";
+  return fmt::format("covers {:.3f} to {:.3f} s",
+                     static_cast<double>(poses.front().stamp_ns) * 1e-9,
+                     static_cast<double>(poses.back().stamp_ns) * 1e-9);
+}
+
+/// Poses of both trajectories at the same times.
+struct Paired {
+  std::vector<Pose2> estimate;
+  std::vector<Pose2> reference;
+};
+
+Paired pair_by_time(std::span<const StampedPose> unsorted_estimate,
+                    std::span<const StampedPose> unsorted_reference, std::int64_t max_apart_ns) {
+  const std::vector<StampedPose> estimate = in_time_order(unsorted_estimate);
+  const std::vector<StampedPose> reference = in_time_order(unsorted_reference);
+  Paired paired;
+  for (const StampedPose& wanted : reference) {
+    const StampedPose* found = pose_at(estimate, wanted.stamp_ns, max_apart_ns);
+    if (found == nullptr) continue;
+    paired.estimate.push_back(found->pose);
+    paired.reference.push_back(wanted.pose);
+  }
+  if (paired.estimate.size() < 3) {
+    throw std::invalid_argument(fmt::format(
+        "only {} poses match in time (within {:g} s), expected at least 3: the estimate {}, the "
+        "reference {}",
+        paired.estimate.size(), static_cast<double>(max_apart_ns) * 1e-9, time_of(estimate),
+        time_of(reference)));
+  }
+  return paired;
+}
+
+Pose2 best_alignment(const Paired& paired) {
+  const auto n = static_cast<Eigen::Index>(paired.estimate.size());
+  Eigen::MatrixXd estimated_m(2, n);  // with rows fixed to 2 GCC warns inside of umeyama
+  Eigen::MatrixXd true_m(2, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    estimated_m.col(i) = paired.estimate[static_cast<std::size_t>(i)].position_m();
+    true_m.col(i) = paired.reference[static_cast<std::size_t>(i)].position_m();
+  }
+  const Eigen::MatrixXd T = Eigen::umeyama(estimated_m, true_m, false);
+  return {T(0, 2), T(1, 2), std::atan2(T(1, 0), T(0, 0))};
+}
+
+/// What the estimate of a relative pose errs by.
+struct PoseError {
+  double distance_m = 0.0;
+  double angle_rad = 0.0;  ///< >= 0
+};
+
+PoseError pose_error(const Pose2& estimate, const Pose2& truth) {
+  return {(estimate.position_m() - truth.position_m()).norm(),
+          std::fabs(geometry::wrap_angle(estimate.theta_rad - truth.theta_rad))};
+}
+
+RelativeError mean_error(const Paired& paired, std::span<const IndexPair> pairs) {
+  RelativeError mean;
+  for (const auto& [i, j] : pairs) {
+    const PoseError error = pose_error(geometry::between(paired.estimate[i], paired.estimate[j]),
+                                       geometry::between(paired.reference[i], paired.reference[j]));
+    mean.mean_m += error.distance_m;
+    mean.mean_rad += error.angle_rad;
+  }
+  mean.pairs = pairs.size();
+  mean.mean_m /= static_cast<double>(mean.pairs);
+  mean.mean_rad /= static_cast<double>(mean.pairs);
+  return mean;
+}
+
+std::optional<RelationSpread> spread(std::span<const PoseError> errors) {
+  if (errors.empty()) return std::nullopt;
+  const auto n = static_cast<double>(errors.size());
+  RelationSpread result;
+  result.pairs = errors.size();
+  for (const PoseError& error : errors) {
+    result.mean_m += error.distance_m;
+    result.mean_rad += error.angle_rad;
+  }
+  result.mean_m /= n;
+  result.mean_rad /= n;
+  double squared_m2 = 0.0;
+  double squared_rad2 = 0.0;
+  for (const PoseError& error : errors) {
+    squared_m2 += (error.distance_m - result.mean_m) * (error.distance_m - result.mean_m);
+    squared_rad2 += (error.angle_rad - result.mean_rad) * (error.angle_rad - result.mean_rad);
+  }
+  result.deviation_m = std::sqrt(squared_m2 / n);
+  result.deviation_rad = std::sqrt(squared_rad2 / n);
+  return result;
 }
 
 }  // namespace
 
 TrajectoryError trajectory_error(std::span<const StampedPose> estimate,
-                                 std::span<const StampedPose> truth, std::int64_t max_apart_ns) {
-  std::vector<std::pair<geometry::Pose2, geometry::Pose2>> pairs;  // estimate, truth
-  for (const StampedPose& t : truth) {
-    if (estimate.empty()) break;
-    const StampedPose& e = nearest(estimate, t);
-    if (apart_ns(e, t) <= max_apart_ns) pairs.emplace_back(e.pose, t.pose);
-  }
-  if (pairs.size() < 3) {
-    throw std::invalid_argument("only " + std::to_string(pairs.size()) +
-                                " poses match in time, expected at least 3");
-  }
-
-  const auto n = static_cast<Eigen::Index>(pairs.size());
-  Eigen::MatrixXd estimated_m(2, n);  // with rows fixed to 2 GCC warns inside of umeyama
-  Eigen::MatrixXd true_m(2, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& [e, t] = pairs[static_cast<std::size_t>(i)];
-    estimated_m.col(i) << e.x_m, e.y_m;
-    true_m.col(i) << t.x_m, t.y_m;
-  }
-  const Eigen::MatrixXd T = Eigen::umeyama(estimated_m, true_m, false);
-  const geometry::Pose2 T_truth_estimate{T(0, 2), T(1, 2), std::atan2(T(1, 0), T(0, 0))};
+                                 std::span<const StampedPose> reference,
+                                 std::int64_t max_apart_ns) {
+  const Paired paired = pair_by_time(estimate, reference, max_apart_ns);
+  const std::size_t count = paired.estimate.size();
+  const auto n = static_cast<double>(count);
+  const Pose2 T_reference_estimate = best_alignment(paired);
 
   TrajectoryError error;
-  error.pairs = pairs.size();
+  error.pairs = count;
+  error.matched = n / static_cast<double>(reference.size());
   double sum_m2 = 0.0;
-  for (const auto& [e, t] : pairs) {
-    const geometry::Pose2 aligned = T_truth_estimate * e;
-    const double error_m2 = (aligned.position_m() - t.position_m()).squaredNorm();
-    sum_m2 += error_m2;
-    error.largest_m = std::max(error.largest_m, std::sqrt(error_m2));
-    error.heading_rad += std::fabs(geometry::wrap_angle(aligned.theta_rad - t.theta_rad));
+  std::vector<IndexPair> steps;
+  for (std::size_t i = 0; i < count; ++i) {
+    const PoseError left =
+        pose_error(T_reference_estimate * paired.estimate[i], paired.reference[i]);
+    sum_m2 += left.distance_m * left.distance_m;
+    error.largest_m = std::max(error.largest_m, left.distance_m);
+    error.heading_rad += left.angle_rad / n;
+    if (i == 0) continue;
+    steps.emplace_back(i - 1, i);
+    error.path_m +=
+        (paired.reference[i].position_m() - paired.reference[i - 1].position_m()).norm();
   }
-  error.rms_m = std::sqrt(sum_m2 / static_cast<double>(n));
-  error.heading_rad /= static_cast<double>(n);
+  error.rms_m = std::sqrt(sum_m2 / n);
+  error.local = mean_error(paired, steps);
+  const std::vector<IndexPair> loops = loop_pairs(paired.reference);
+  if (!loops.empty()) error.loop = mean_error(paired, loops);
+  error.end_m = pose_error(geometry::between(paired.estimate.front(), paired.estimate.back()),
+                           geometry::between(paired.reference.front(), paired.reference.back()))
+                    .distance_m;
   return error;
+}
+
+RelationsError relations_error(std::span<const StampedPose> estimate,
+                               std::span<const storage::Relation> relations,
+                               std::int64_t max_apart_ns) {
+  const std::vector<StampedPose> poses = in_time_order(estimate);
+  std::vector<PoseError> all;
+  std::vector<PoseError> far;
+  for (const storage::Relation& relation : relations) {
+    const StampedPose* a = pose_at(poses, relation.stamp_a_ns, max_apart_ns);
+    const StampedPose* b = pose_at(poses, relation.stamp_b_ns, max_apart_ns);
+    if (a == nullptr || b == nullptr) continue;
+    all.push_back(pose_error(geometry::between(a->pose, b->pose), relation.T_a_b));
+    if (std::abs(relation.stamp_b_ns - relation.stamp_a_ns) > kFarApart_ns) {
+      far.push_back(all.back());
+    }
+  }
+  return {relations.size(), spread(all), spread(far)};
 }
 
 }  // namespace topogeo::pipeline

@@ -1,12 +1,8 @@
 #include "topogeo/storage/tum.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <stdexcept>
-#include <system_error>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -14,6 +10,7 @@
 #include "topogeo/support/atomic_file.hpp"
 
 #include "file_content.hpp"
+#include "text_fields.hpp"
 
 namespace topogeo::storage {
 namespace {
@@ -25,47 +22,6 @@ std::string fixed(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
   if (text.find_first_not_of("-0.") == std::string::npos && text.starts_with('-')) text.erase(0, 1);
   return text;
-}
-
-/// The next word, and the rest in `line`; empty at the end.
-std::string_view next_word(std::string_view& line) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const std::size_t start = std::min(line.find_first_not_of(kBlanks), line.size());
-  line.remove_prefix(start);
-  const std::string_view word = line.substr(0, std::min(line.find_first_of(kBlanks), line.size()));
-  line.remove_prefix(word.size());
-  return word;
-}
-
-bool all_digits(std::string_view text) {
-  return text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-std::optional<std::int64_t> parse_stamp(std::string_view word) {
-  const bool is_negative = word.starts_with('-');
-  if (is_negative) word.remove_prefix(1);
-  const std::size_t dot = std::min(word.find('.'), word.size());
-  const std::string_view whole = word.substr(0, dot);
-  std::string decimals(word.substr(std::min(dot + 1, word.size())));
-  if (whole.empty() || !all_digits(whole) || !all_digits(decimals)) return std::nullopt;
-  decimals.resize(9, '0');
-  std::int64_t seconds = 0;
-  std::int64_t ns = 0;
-  const auto [end, error] = std::from_chars(whole.data(), whole.data() + whole.size(), seconds);
-  std::from_chars(decimals.data(), decimals.data() + decimals.size(), ns);
-  constexpr std::int64_t kMaxSeconds = std::numeric_limits<std::int64_t>::max() / kNsPerSecond - 1;
-  if (error != std::errc{} || seconds > kMaxSeconds) return std::nullopt;
-  const std::int64_t stamp_ns = seconds * kNsPerSecond + ns;
-  return is_negative ? -stamp_ns : stamp_ns;
-}
-
-std::optional<double> parse_number(std::string_view word) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
 }
 
 /// Heading of a rotation given by a quaternion of any length above zero.
@@ -141,16 +97,10 @@ void write_trajectory_tum(const std::filesystem::path& path,
 std::vector<topomap::StampedPose> parse_trajectory_tum(std::string_view text,
                                                        const std::string& name) {
   std::vector<topomap::StampedPose> poses;
-  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.starts_with('#') || line.find_first_not_of(" \t\r") == std::string_view::npos) {
-      continue;
-    }
-    poses.push_back(parse_line(line, name + ":" + std::to_string(line_number)));
+  for_each_line(text, name, [&](std::string_view line, const std::string& where) {
+    poses.push_back(parse_line(line, where));
     poses.back().sequence = poses.size() - 1;
-  }
+  });
   return poses;
 }
 

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "loop_pairs.hpp"
+
 namespace topogeo::pipeline {
 namespace {
 
@@ -85,11 +87,144 @@ TEST(TrajectoryErrorTest, PairsByNearestTimeWithinTheLimit) {
   EXPECT_THROW((void)trajectory_error(estimate, truth, 39'000'000), std::invalid_argument);
 }
 
+TEST(TrajectoryErrorTest, TheOrderOfThePosesDoesNotMatter) {
+  const auto truth = poses(kCross);
+  const auto estimate = poses({{1.3, 0, 0}, {0, 1.1, 0.5}, {-1.3, 0, 1}, {0, -1.1, -0.5}});
+  const std::vector<StampedPose> backwards(estimate.rbegin(), estimate.rend());
+
+  const TrajectoryError error = trajectory_error(backwards, truth);
+
+  EXPECT_EQ(error.pairs, 4U);
+  EXPECT_EQ(error.end_m, trajectory_error(estimate, truth).end_m);
+}
+
+TEST(TrajectoryErrorTest, StepsEndAndShareOfAPathWorkedByHand) {
+  // Along x, 1 m a step; the estimate says 1.1 m in the first step and turns by 0.3 rad before the
+  // last, which therefore ends at (2.1 + cos 0.3, sin 0.3). The fifth pose has no partner.
+  const auto truth = poses({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {9, 9, 0}});
+  const double c = std::cos(0.3);
+  const double s = std::sin(0.3);
+  const auto estimate = poses({{0, 0, 0}, {1.1, 0, 0}, {2.1, 0, 0.3}, {2.1 + c, s, 0.3}});
+
+  const TrajectoryError error = trajectory_error(estimate, truth);
+
+  EXPECT_EQ(error.pairs, 4U);
+  EXPECT_DOUBLE_EQ(error.matched, 0.8);
+  EXPECT_NEAR(error.path_m, 3.0, 1e-12);
+  EXPECT_EQ(error.local.pairs, 3U);
+  EXPECT_NEAR(error.local.mean_m, 0.1 / 3.0, 1e-12);
+  EXPECT_NEAR(error.local.mean_rad, 0.3 / 3.0, 1e-12);
+  EXPECT_NEAR(error.end_m, std::hypot(2.1 + c - 3.0, s), 1e-12);
+  EXPECT_FALSE(error.loop);
+}
+
+TEST(TrajectoryErrorTest, LoopsAreWhereThePathComesBackAfterTwentyMetres) {
+  // 12 m out and back in steps of 1 m.
+  std::vector<Pose2> path;
+  for (int i = 0; i <= 24; ++i) path.push_back({i <= 12 ? i : 24.0 - i, 0, 0});
+  const auto truth = poses(path);
+  // Way apart j - i, distance |i - (24 - j)| = |i + j - 24|: over 20 and under 1.5 are
+  // (0,23), (0,24), (1,22), (1,23), (1,24), (2,23).
+  const std::size_t expected = 6;
+  // The estimate is shifted by 0.2 m across from pose 20 on: every such pair errs by that.
+  for (std::size_t i = 20; i < path.size(); ++i) path[i].y_m = 0.2;
+
+  const TrajectoryError error = trajectory_error(poses(path), truth);
+
+  ASSERT_TRUE(error.loop);
+  EXPECT_EQ(error.loop->pairs, expected);
+  EXPECT_NEAR(error.loop->mean_m, 0.2, 1e-12);
+  EXPECT_NEAR(error.loop->mean_rad, 0.0, 1e-12);
+}
+
+TEST(TrajectoryErrorTest, TheMessageForTooFewPairsNamesBothTimes) {
+  auto late = poses(kCross);
+  for (StampedPose& pose : late) pose.stamp_ns += 100 * kSecond_ns;
+  try {
+    (void)trajectory_error(late, poses(kCross));
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "only 0 poses match in time (within 0.05 s), expected at least 3: the estimate "
+                 "covers 100.000 to 103.000 s, the reference covers 0.000 to 3.000 s");
+  }
+}
+
 TEST(TrajectoryErrorTest, FewerThanThreePairsAreRefused) {
   const auto truth = poses(kCross);
   EXPECT_THROW((void)trajectory_error({}, truth), std::invalid_argument);
   EXPECT_THROW((void)trajectory_error(truth, {}), std::invalid_argument);
   EXPECT_THROW((void)trajectory_error(poses({{0, 0, 0}, {1, 0, 0}}), truth), std::invalid_argument);
+}
+
+TEST(RelationsErrorTest, MeanAndDeviationOfAllAndOfThoseFarApart) {
+  // One pose every 20 s along x, 1 m apart.
+  std::vector<StampedPose> estimate;
+  for (int i = 0; i < 4; ++i) {
+    estimate.push_back({static_cast<std::uint64_t>(i), 20 * i * kSecond_ns, {1.0 * i, 0, 0}});
+  }
+  const auto at = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
+  const std::vector<storage::Relation> relations = {
+      {at(0.0), at(20.0), {1.0, 0.1, 0.0}},       // errs by 0.1 m
+      {at(20.0), at(0.0), {-1.0, 0.0, 0.2}},      // backwards; errs by 0.2 rad
+      {at(0.0), at(60.0005), {3.0, -0.5, -0.4}},  // half a millisecond off; 0.5 m, 0.4 rad; far
+      {at(0.0), at(40.002), {7.0, 7.0, 0.0}},     // no pose within a millisecond
+  };
+
+  const RelationsError error = relations_error(estimate, relations);
+
+  EXPECT_EQ(error.given, 4U);
+  ASSERT_TRUE(error.all);
+  EXPECT_EQ(error.all->pairs, 3U);
+  EXPECT_NEAR(error.all->mean_m, 0.2, 1e-12);
+  EXPECT_NEAR(error.all->deviation_m, std::sqrt((0.01 + 0.04 + 0.09) / 3.0), 1e-12);
+  EXPECT_NEAR(error.all->mean_rad, 0.2, 1e-12);
+  EXPECT_NEAR(error.all->deviation_rad, std::sqrt((0.04 + 0.0 + 0.04) / 3.0), 1e-12);
+  ASSERT_TRUE(error.far);
+  EXPECT_EQ(error.far->pairs, 1U);
+  EXPECT_NEAR(error.far->mean_m, 0.5, 1e-12);
+  EXPECT_NEAR(error.far->deviation_m, 0.0, 1e-12);
+}
+
+TEST(RelationsErrorTest, WithoutUsableRelationsThereIsNoFigure) {
+  const std::vector<storage::Relation> relations = {{1, 900 * kSecond_ns, {}}};
+  EXPECT_FALSE(relations_error(poses(kCross), relations).all);
+  EXPECT_FALSE(relations_error({}, relations).far);
+  EXPECT_EQ(relations_error(poses(kCross), {}).given, 0U);
+}
+
+// Python: l = list(range(10)); random.Random(0).shuffle(l)
+TEST(LoopPairsTest, ShufflesAsPythonDoes) {
+  std::vector<IndexPair> pairs;
+  for (std::size_t i = 0; i < 10; ++i) pairs.emplace_back(i, i);
+  shuffle_as_python(pairs);
+  std::vector<std::size_t> order;
+  for (const IndexPair& pair : pairs) order.push_back(pair.first);
+  EXPECT_EQ(order, (std::vector<std::size_t>{7, 8, 1, 5, 3, 4, 2, 0, 9, 6}));
+}
+
+// The same of range(5000): its first elements, after numbers of the generator's second block.
+TEST(LoopPairsTest, ShufflesLongListsAsPythonDoes) {
+  std::vector<IndexPair> pairs;
+  for (std::size_t i = 0; i < 5000; ++i) pairs.emplace_back(i, i);
+  shuffle_as_python(pairs);
+  EXPECT_EQ(pairs[0].first, 2795U);
+  EXPECT_EQ(pairs[1].first, 4151U);
+  EXPECT_EQ(pairs[4999].first, 3155U);
+}
+
+TEST(LoopPairsTest, LongPathsAreThinnedOutAndAtMostTwoThousandPairsTaken) {
+  // On the spot, but for a walk of 30 m in the middle: every pose before with every one after.
+  std::vector<Pose2> path(400);
+  path[200] = {15, 0, 0};
+  EXPECT_EQ(loop_pairs(path).size(), 2000U);  // of 200 * 199
+  path.assign(1000, Pose2{});
+  path[500] = {15, 0, 0};
+  for (const auto& [i, j] : loop_pairs(path)) {
+    EXPECT_EQ(i % 2, 0U);
+    EXPECT_EQ((j - i) % 2, 1U);
+  }
+  EXPECT_TRUE(loop_pairs({}).empty());
 }
 
 }  // namespace

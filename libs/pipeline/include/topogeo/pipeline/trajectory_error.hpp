@@ -1,28 +1,65 @@
-// How far a trajectory is from the truth, as shared tools of this field measure it: poses paired by
-// time, then the best rigid alignment, then what is left over.
+// How far a trajectory is from a reference, by the measures that this field publishes: poses paired
+// by time, then what is left over after the best rigid alignment, and what relative poses err by.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "topogeo/storage/relations.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::pipeline {
 
+/// Mean error of relative poses.
+struct RelativeError {
+  double mean_m = 0.0;
+  double mean_rad = 0.0;
+  std::size_t pairs = 0;
+};
+
 struct TrajectoryError {
   std::size_t pairs = 0;     ///< poses compared
+  double matched = 0.0;      ///< share of the reference that has a partner, (0, 1]
+  double path_m = 0.0;       ///< way between the poses compared, by the reference
   double rms_m = 0.0;        ///< root of the mean squared distance after alignment
   double largest_m = 0.0;    ///< largest such distance
   double heading_rad = 0.0;  ///< mean absolute difference of headings after alignment
+  RelativeError local;       ///< from each pose to the next
+  /// Between poses that the reference puts within 1.5 m of each other although more than 20 m of
+  /// its way lie between them, at most 2000 pairs of them: small in a map that closes its loops.
+  /// Nothing if there are none.
+  std::optional<RelativeError> loop;
+  double end_m = 0.0;  ///< distance of the last poses when the first ones coincide
 };
 
-/// Pairs each pose of `truth` with the pose of `estimate` nearest in time, if they are at most
+/// Pairs each pose of `reference` with the pose of `estimate` nearest in time, if they are at most
 /// `max_apart_ns` apart, and turns and shifts the estimate (no scaling) so that the squared
-/// distances are least. Both in time order, each in a frame of its own. Throws
-/// std::invalid_argument when fewer than three poses pair.
+/// distances are least. Both in any order, each in a frame of its own. Throws std::invalid_argument
+/// when fewer than three poses pair, naming the times that both cover.
 TrajectoryError trajectory_error(std::span<const topomap::StampedPose> estimate,
-                                 std::span<const topomap::StampedPose> truth,
+                                 std::span<const topomap::StampedPose> reference,
                                  std::int64_t max_apart_ns = 50'000'000);
+
+/// Errors of relations: mean and standard deviation.
+struct RelationSpread {
+  double mean_m = 0.0;
+  double deviation_m = 0.0;
+  double mean_rad = 0.0;
+  double deviation_rad = 0.0;
+  std::size_t pairs = 0;
+};
+
+struct RelationsError {
+  std::size_t given = 0;              ///< relations, usable or not
+  std::optional<RelationSpread> all;  ///< of those whose two times the estimate has
+  std::optional<RelationSpread> far;  ///< of those among them whose times are over 30 s apart
+};
+
+/// Each end of a relation is the pose nearest in time, if that is at most `max_apart_ns` away.
+RelationsError relations_error(std::span<const topomap::StampedPose> estimate,
+                               std::span<const storage::Relation> relations,
+                               std::int64_t max_apart_ns = 1'000'000);
 
 }  // namespace topogeo::pipeline

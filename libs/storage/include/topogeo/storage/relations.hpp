@@ -1,0 +1,27 @@
+// Relations: relative poses of the robot that somebody has checked by hand, as text, the measure of
+// Burgard, Kuemmerle et al., "A comparison of SLAM algorithms based on a graph of relations".
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::storage {
+
+struct Relation {
+  std::int64_t stamp_a_ns = 0;
+  std::int64_t stamp_b_ns = 0;
+  geometry::Pose2 T_a_b;  ///< of the robot at `b` seen from where it was at `a`
+};
+
+/// Lines "t1 t2 x y z roll pitch yaw", metres, radians, seconds; empty ones and those that start
+/// with '#' are left out, z, roll and pitch are ignored. Throws std::runtime_error naming file and
+/// line.
+std::vector<Relation> read_relations(const std::filesystem::path& path);
+std::vector<Relation> parse_relations(std::string_view text, const std::string& name);
+
+}  // namespace topogeo::storage

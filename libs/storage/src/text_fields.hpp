@@ -1,0 +1,38 @@
+// Numbers in lines of text files, separated by blanks.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace topogeo::storage {
+
+/// The next word, and the rest in `line`; empty at the end.
+std::string_view next_word(std::string_view& line);
+
+/// Seconds such as "12.345678" or "-3" in nanoseconds, digit by digit; digits below 1 ns are cut
+/// off. Nothing for other texts and for times beyond the range of nanoseconds.
+std::optional<std::int64_t> parse_stamp(std::string_view word);
+
+/// A finite number that takes up the whole word.
+std::optional<double> parse_number(std::string_view word);
+
+/// Calls `use(line, where)` for each line that is neither blank nor a comment ('#'); `where` is
+/// "NAME:NUMBER".
+template <typename Use>
+void for_each_line(std::string_view text, const std::string& name, const Use& use) {
+  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.starts_with('#') || line.find_first_not_of(" \t\r") == std::string_view::npos) {
+      continue;
+    }
+    use(line, name + ":" + std::to_string(line_number));
+  }
+}
+
+}  // namespace topogeo::storage

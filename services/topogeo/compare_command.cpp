@@ -1,0 +1,180 @@
+// topogeo compare: how far a trajectory is from a reference.
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/pipeline/trajectory_error.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/relations.hpp"
+#include "topogeo/storage/tum.hpp"
+
+#include "commands.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using pipeline::RelationsError;
+using pipeline::RelationSpread;
+using pipeline::RelativeError;
+using pipeline::TrajectoryError;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+struct CompareOptions {
+  std::filesystem::path estimate;
+  std::filesystem::path reference;
+  std::optional<std::filesystem::path> relations;
+  double max_apart_s = 0.05;
+  bool json = false;
+};
+
+struct Figures {
+  TrajectoryError error;
+  std::optional<RelationsError> relations;
+};
+
+std::vector<topomap::StampedPose> read_poses(const std::filesystem::path& file) {
+  std::vector<topomap::StampedPose> poses = storage::read_trajectory_tum(file);
+  if (poses.empty()) throw std::runtime_error(file.string() + ": has no poses");
+  return poses;
+}
+
+Figures figures_of(const CompareOptions& options) {
+  try {
+    const std::vector<topomap::StampedPose> estimate = read_poses(options.estimate);
+    const std::vector<topomap::StampedPose> reference = read_poses(options.reference);
+    std::optional<RelationsError> relations;
+    if (options.relations) {
+      const auto given = storage::read_relations(*options.relations);
+      if (given.empty()) {
+        throw std::runtime_error(options.relations->string() + ": has no relations");
+      }
+      relations = pipeline::relations_error(estimate, given);
+    }
+    const auto max_apart_ns = static_cast<std::int64_t>(std::llround(options.max_apart_s * 1e9));
+    return {pipeline::trajectory_error(estimate, reference, max_apart_ns), relations};
+  } catch (const std::invalid_argument& error) {  // of trajectory_error, which knows no files
+    throw service::BadInputError(options.estimate.string() + " and " + options.reference.string() +
+                                 ": " + error.what());
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+std::string text(const RelativeError& error) {
+  return fmt::format("{:.3f} m {:.2f} deg over {} pairs", error.mean_m, kDegrees * error.mean_rad,
+                     error.pairs);
+}
+
+std::string text(const RelationSpread& error) {
+  return fmt::format("{:.4f} +- {:.4f} m  {:.3f} +- {:.3f} deg over {} pairs", error.mean_m,
+                     error.deviation_m, kDegrees * error.mean_rad, kDegrees * error.deviation_rad,
+                     error.pairs);
+}
+
+template <typename Error>
+std::string text(const std::optional<Error>& error) {
+  return error ? text(*error) : "none";
+}
+
+void print_text(const Figures& figures) {
+  const TrajectoryError& e = figures.error;
+  std::cout << fmt::format("matched {:.3f}  path {:.0f} m\n", e.matched, e.path_m)
+            << fmt::format("ate     {:.3f} m\n", e.rms_m)
+            << fmt::format("local   {}\n", text(e.local))
+            << fmt::format("loop    {}\n", text(e.loop))
+            << fmt::format("end     {:.3f} m\n", e.end_m);
+  if (!figures.relations) return;
+  std::cout << fmt::format("relations ({} in the file)\n", figures.relations->given)
+            << fmt::format("  all   {}\n", text(figures.relations->all))
+            << fmt::format("  far   {}\n", text(figures.relations->far));
+}
+
+nlohmann::ordered_json json(const RelativeError& error) {
+  return {{"m", error.mean_m}, {"deg", kDegrees * error.mean_rad}, {"pairs", error.pairs}};
+}
+
+nlohmann::ordered_json json(const RelationSpread& error) {
+  return {{"m", error.mean_m},
+          {"m_std", error.deviation_m},
+          {"deg", kDegrees * error.mean_rad},
+          {"deg_std", kDegrees * error.deviation_rad},
+          {"pairs", error.pairs}};
+}
+
+template <typename Error>
+nlohmann::ordered_json json(const std::optional<Error>& error) {
+  return error ? json(*error) : nlohmann::ordered_json(nullptr);
+}
+
+void print_json(const Figures& figures) {
+  const TrajectoryError& e = figures.error;
+  nlohmann::ordered_json all = {{"matched", e.matched}, {"ate", e.rms_m}, {"local", json(e.local)},
+                                {"loop", json(e.loop)}, {"end", e.end_m}, {"path", e.path_m}};
+  if (figures.relations) {
+    all["relations"] = {{"in_file", figures.relations->given},
+                        {"all", json(figures.relations->all)},
+                        {"far", json(figures.relations->far)}};
+  }
+  std::cout << all.dump() << '\n';
+}
+
+int compare_files(const CompareOptions& options) {
+  const Figures figures = figures_of(options);
+  if (options.json) {
+    print_json(figures);
+  } else {
+    print_text(figures);
+  }
+  return service::kOk;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("compare", "Tell how far a trajectory is from a reference trajectory");
+  auto options = std::make_shared<CompareOptions>();
+  command->add_option("ESTIMATE", options->estimate, "trajectory (TUM: t x y z qx qy qz qw)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("REFERENCE", options->reference, "trajectory to compare it with (TUM)")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--relations", options->relations,
+                   "hand-checked relative poses, lines `t1 t2 x y z roll pitch yaw`")
+      ->type_name("FILE");
+  command
+      ->add_option("--max-dt", options->max_apart_s,
+                   "largest time between two poses that are compared")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "print JSON, unrounded");
+  command->footer(
+      "What is printed (metres, degrees; both trajectories of the same point of the robot):\n"
+      "  matched    share of the reference poses that the estimate has, and the way between them\n"
+      "  ate        root mean square distance after the best rigid alignment\n"
+      "  local      mean error from each pose to the next\n"
+      "  loop       mean error between poses that are within 1.5 m of each other in the reference\n"
+      "             although more than 20 m of way lie between: small in a map that closes\n"
+      "  end        distance of the last poses when the first ones coincide\n"
+      "  relations  mean and standard deviation of the errors of the relations that the estimate\n"
+      "             has poses for (within 1 ms): all, and far: over 30 s apart\n"
+      "Example:\n"
+      "  topogeo compare out/trajectory.tum truth.tum");
+  command->callback([options, &exit_code] { exit_code = compare_files(*options); });
+}
+
+}  // namespace topogeo::cli
