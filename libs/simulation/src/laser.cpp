@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/scan/scan.hpp"
@@ -44,31 +45,70 @@ double distance_to(const Circle& circle, const Eigen::Vector2d& beam) {
   return along_m + half_m >= 0.0 ? along_m + half_m : kInfinity;
 }
 
+double distance_m(const Segment& segment) {
+  const Eigen::Vector2d along = segment.b_m - segment.a_m;
+  const double length2 = along.squaredNorm();
+  const double share =
+      length2 > 0.0 ? std::clamp(-segment.a_m.dot(along) / length2, 0.0, 1.0) : 0.0;
+  return (segment.a_m + share * along).norm();
+}
+
+// Calls `use` with every beam that can meet a segment, and with some more: two at each end of it,
+// or all where the sensor is as good as on it. So the angles need not be exact.
+template <typename Use>
+void for_beams_of(const Segment& segment, double heading_rad, const BeamPattern& beams,
+                  const Use& use) {
+  constexpr double kOnIt_m = 1e-3;
+  constexpr double kMargin = 2.0;  // beams
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  if (distance_m(segment) < kOnIt_m) {
+    for (std::size_t i = 0; i < beams.count; ++i) use(i);
+    return;
+  }
+  const double a_rad = std::atan2(segment.a_m.y(), segment.a_m.x());
+  const double b_rad = std::atan2(segment.b_m.y(), segment.b_m.x());
+  const double span_rad = geometry::wrap_angle(b_rad - a_rad);
+  const double first_rad = (span_rad >= 0.0 ? a_rad : b_rad) - heading_rad - beams.angle_min_rad;
+  const auto last_beam = static_cast<double>(beams.count - 1);
+  const double low = first_rad / beams.angle_step_rad;
+  const double turn = kTurn_rad / beams.angle_step_rad;
+  const double width = std::fabs(span_rad) / beams.angle_step_rad;
+  const double start = low - turn * std::ceil((low + width + kMargin) / turn);
+  for (double at = start; at - kMargin <= last_beam; at += turn) {
+    const double from = std::max(std::floor(at - kMargin), 0.0);
+    const double to = std::min(std::ceil(at + width + kMargin), last_beam);
+    for (double i = from; i <= to; i += 1.0) use(static_cast<std::size_t>(i));
+  }
+}
+
 }  // namespace
 
 std::vector<double> raycast(const World& world, const geometry::Pose2& T_world_laser,
                             const BeamPattern& beams) {
-  // Surfaces seen from the sensor, without those out of reach.
   const Eigen::Vector2d origin_m = T_world_laser.position_m();
-  World near;
-  for (const Segment& s : world.segments) {
-    if (clearance_m(World{{}, {s}, {}, {}}, origin_m) < beams.range_max_m) {
-      near.segments.push_back({s.a_m - origin_m, s.b_m - origin_m});
-    }
-  }
-  for (const Circle& c : world.circles) {
-    near.circles.push_back({c.center_m - origin_m, c.radius_m});
-  }
-  std::vector<double> ranges_m(beams.count);
+  std::vector<Eigen::Vector2d> directions;
   for (std::size_t i = 0; i < beams.count; ++i) {
     const double angle_rad = geometry::wrap_angle(T_world_laser.theta_rad + beams.angle_min_rad +
                                                   static_cast<double>(i) * beams.angle_step_rad);
     const geometry::SinCos direction = geometry::sincos(angle_rad);
-    const Eigen::Vector2d beam(direction.cos, direction.sin);
-    double nearest_m = kInfinity;
-    for (const Segment& s : near.segments) nearest_m = std::min(nearest_m, distance_to(s, beam));
-    for (const Circle& c : near.circles) nearest_m = std::min(nearest_m, distance_to(c, beam));
-    ranges_m[i] = nearest_m < beams.range_max_m ? nearest_m : kInfinity;
+    directions.emplace_back(direction.cos, direction.sin);
+  }
+  std::vector<double> ranges_m(beams.count, kInfinity);
+  for (const Segment& segment : world.segments) {
+    const Segment seen{segment.a_m - origin_m, segment.b_m - origin_m};
+    if (distance_m(seen) >= beams.range_max_m) continue;
+    for_beams_of(seen, T_world_laser.theta_rad, beams, [&](std::size_t i) {
+      ranges_m[i] = std::min(ranges_m[i], distance_to(seen, directions[i]));
+    });
+  }
+  for (const Circle& circle : world.circles) {
+    const Circle seen{circle.center_m - origin_m, circle.radius_m};
+    for (std::size_t i = 0; i < beams.count; ++i) {
+      ranges_m[i] = std::min(ranges_m[i], distance_to(seen, directions[i]));
+    }
+  }
+  for (double& range_m : ranges_m) {
+    if (range_m >= beams.range_max_m) range_m = kInfinity;
   }
   return ranges_m;
 }

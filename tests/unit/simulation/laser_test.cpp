@@ -44,6 +44,19 @@ TEST(Raycast, AgreesWithTheAnalyticBox) {
   }
 }
 
+TEST(Raycast, AgreesWithTheAnalyticBoxAllRoundAndMoreThanOnce) {
+  const World world = box_6x4();
+  // One turn and a half, from an angle that is no multiple of the step.
+  const BeamPattern beams{.angle_min_rad = -4.4, .angle_step_rad = 0.0137, .count = 688};
+  for (double theta = -3.1; theta < 3.1; theta += 0.37) {
+    const auto ranges_m = raycast(world, {4.9, 0.2, theta}, beams);
+    for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+      const double angle = theta - 4.4 + static_cast<double>(i) * 0.0137;
+      ASSERT_NEAR(ranges_m[i], box_oracle(4.9, 0.2, angle), 1e-9) << theta << " " << i;
+    }
+  }
+}
+
 TEST(Raycast, SeesTheNearSideOfAColumn) {
   const World world = parse_world("columns: [{center: [3, 0], radius: 0.5}]", "w");
   // Straight ahead, past the edge of the column (asin(0.5 / 3) = 9.59 degrees), and from inside.

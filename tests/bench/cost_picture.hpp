@@ -1,0 +1,20 @@
+// A picture of what each step costs along a log.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace topogeo::bench {
+
+struct StepCost {
+  double way_m = 0.0;  ///< driven so far
+  double cpu_ms = 0.0;
+};
+
+/// Dots for the steps, lines for median and 95th percentile of windows of 100, over the way; the
+/// cost on a logarithmic axis. PNG. Throws std::invalid_argument without steps, std::runtime_error
+/// when the file cannot be written.
+void draw_costs(const std::string& file, const std::string& title,
+                const std::vector<StepCost>& steps);
+
+}  // namespace topogeo::bench

@@ -1,0 +1,151 @@
+// Maps a long drive through a large synthetic floor and tells what each step costs against the
+// length of the log: a CSV file, a picture and a summary.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <sys/resource.h>
+
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/pipeline/trajectory_error.hpp"
+#include "topogeo/simulation/random_floors.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+#include "cost_picture.hpp"
+
+namespace {
+
+using namespace topogeo;
+
+struct Options {
+  double way_m = 2000.0;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;
+  std::string config_file;
+};
+
+// A scan each half metre or 45 degrees: 4,000 of them or a few more on 2 km.
+simulation::SimulatedLog drive(const Options& options) {
+  simulation::SimulationOptions simulation;
+  simulation.seed = options.seed;
+  simulation.scan_step_m = 0.52;
+  simulation.scan_step_rad = 45.0 * std::numbers::pi / 180.0;
+  simulation.odometry = simulation::b21_odometry(options.seed);
+  return simulation::simulate_log(simulation::large_floor(options.seed, options.way_m), simulation);
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) throw std::runtime_error("getrusage failed");
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+void tell(const char* what, const std::vector<bench::StepCost>& steps, std::size_t from,
+          std::size_t to) {
+  std::vector<double> costs_ms;
+  double sum_ms = 0.0;
+  for (std::size_t i = from; i < to; ++i) {
+    costs_ms.push_back(steps[i].cpu_ms);
+    sum_ms += steps[i].cpu_ms;
+  }
+  std::printf("%s: mean %.2f ms, median %.2f, 95 %% %.2f, 99 %% %.2f, most %.1f\n", what,
+              sum_ms / static_cast<double>(costs_ms.size()), quantile(costs_ms, 0.5),
+              quantile(costs_ms, 0.95), quantile(costs_ms, 0.99), quantile(costs_ms, 1.0));
+}
+
+void write_csv(const std::filesystem::path& file, const std::vector<bench::StepCost>& steps) {
+  std::ofstream out(file);
+  out << "scan,way_m,cpu_ms\n";
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    out << i << ',' << steps[i].way_m << ',' << steps[i].cpu_ms << '\n';
+  }
+  out.close();
+  if (!out) throw std::runtime_error(file.string() + ": cannot write");
+}
+
+void run(const Options& options) {
+  support::check_writable_directory(options.out);
+  const pipeline::Config config =
+      pipeline::load_config(options.config_file.empty()
+                                ? std::nullopt
+                                : std::optional<std::filesystem::path>(options.config_file))
+          .config;
+  const simulation::SimulatedLog log = drive(options);
+  const double memory_before_mb = peak_memory_mb();
+  pipeline::MappingRun mapping(config, "robot");
+  std::vector<bench::StepCost> steps;
+  std::vector<topomap::StampedPose> truth;
+  double way_m = 0.0;
+  const double start_s = support::process_cpu_s();
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    if (i > 0) {
+      way_m += (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm();
+    }
+    const double before_s = support::process_cpu_s();
+    mapping.add(log.scans[i]);
+    steps.push_back({way_m, (support::process_cpu_s() - before_s) * 1000.0});
+    truth.push_back({log.scans[i].sequence, log.scans[i].stamp_ns, log.T_world_robot[i]});
+  }
+  const double added_s = support::process_cpu_s();
+  const storage::MapDocument map = mapping.finish();
+  const double end_s = support::process_cpu_s();
+
+  const auto corrected = topomap::expand_trajectory(map.trajectory, map.local_maps);
+  const auto odometry = topomap::expand_odometry(map.local_maps);
+  std::printf("%zu scans, %zu stops, %.0f m, %zu loop closures\n", log.scans.size(),
+              map.local_maps.size(), way_m, map.loop_closures.size());
+  std::printf("CPU %.1f s, of which after the last scan %.1f s; memory %.0f MB (%.0f MB before)\n",
+              end_s - start_s, end_s - added_s, peak_memory_mb(), memory_before_mb);
+  for (const support::StageTime& stage : mapping.stages()) {
+    std::printf("  %s: %.1f s\n", stage.stage.c_str(), stage.cpu_s);
+  }
+  const std::size_t quarter = steps.size() / 4;
+  tell("first quarter of the log", steps, 0, quarter);
+  tell("last quarter of the log", steps, steps.size() - quarter, steps.size());
+  std::printf("rms error %.3f m corrected, %.1f m by odometry\n",
+              pipeline::trajectory_error(corrected, truth).rms_m,
+              pipeline::trajectory_error(odometry, truth).rms_m);
+  write_csv(options.out / "cost.csv", steps);
+  bench::draw_costs((options.out / "cost.png").string(), "Cost of a step along a synthetic log",
+                    steps);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"what a step costs along a long synthetic log; cost.csv and cost.png in a folder"};
+  Options options;
+  app.add_option("--out", options.out, "folder for the results")->required();
+  app.add_option("--way", options.way_m, "metres to drive")
+      ->capture_default_str()
+      ->check(CLI::Range(50.0, 20'000.0));
+  app.add_option("--seed", options.seed, "of the floor, the drive and the noise")
+      ->capture_default_str();
+  app.add_option("--config", options.config_file, "configuration file")->check(CLI::ExistingFile);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "topogeo_long_log: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
