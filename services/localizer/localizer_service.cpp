@@ -55,7 +55,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
             [&service](std::string_view reason, std::string_view detail) {
               service.status().fault(reason, detail);
             }),
-      localizer_(service.setup().config.config.localizer, pool_),
+      localizer_(localization::make_slam(service.setup().config.config.localizer, pool_)),
       maps_in_(service.participant()),
       odometry_(service.participant()),
       ends_in_(service.participant()),
@@ -137,7 +137,7 @@ void LocalizerService::send_pose() {
   service::LivePose live;
   live.stamp_ns = newest_.stamp_ns;
   live.sequence = newest_.sequence;
-  live.belief = localizer_.belief();
+  live.belief = localizer_->belief();
   live.T_map_robot = pose.T_a_b;
   live.covariance = pose.covariance;
   live.local_map_id = last_stop_.local_map_id;
@@ -193,7 +193,7 @@ void LocalizerService::step(const MapPointer& map) {
     service_.status().set_state(msg::kServiceRunning);
   }
   hashes_.push_back(topomap::content_hash(*map));
-  localizer_.add(map);
+  localizer_->add(map);
   last_map_ = map;
   if (map->stamp_ns >= newest_.stamp_ns) {
     newest_ = {map->stamp_ns, map->sequence, map->T_odom_robot};
@@ -205,7 +205,7 @@ void LocalizerService::step(const MapPointer& map) {
 
 void LocalizerService::finish() {
   service_.status().set_state(msg::kServiceRunning, "matching revisited places");
-  localizer_.finish();
+  localizer_->finish();
   finished_ = true;
   publish(true);
   send_pose();
@@ -217,7 +217,7 @@ void LocalizerService::finish() {
   end.last_id(hashes_.empty() ? 0 : hashes_.size() - 1);
   end.version(version_);
   if (!service_.send(ends_out_, end, "stream end")) return;
-  const localization::SlamCounts& counts = localizer_.counts();
+  const localization::SlamCounts& counts = localizer_->counts();
   spdlog::info("{} stops, {} match tasks, {} loop closures", hashes_.size(), counts.tasks,
                sent_closures_.size());
   service_.status().set_state(msg::kServiceFinished);
@@ -225,7 +225,7 @@ void LocalizerService::finish() {
 
 // Sends what has changed, or all of it, so that a reader has it whole in one version.
 void LocalizerService::publish(bool whole) {
-  const topomap::Trajectory trajectory = localizer_.trajectory();
+  const topomap::Trajectory trajectory = localizer_->trajectory();
   version_ = trajectory.version;
   if (!trajectory.stops.empty()) last_stop_ = trajectory.stops.back();
   std::vector<std::uint32_t> numbers = updates_.update(trajectory);
@@ -239,7 +239,7 @@ void LocalizerService::publish(bool whole) {
     if (!service_.send(segments_, segment, "trajectory")) throw Stopped();
   }
   publish_decisions();
-  std::vector<topomap::LoopClosure> closures = localizer_.loop_closures();
+  std::vector<topomap::LoopClosure> closures = localizer_->loop_closures();
   if (!whole && same(closures, sent_closures_)) return;
   sent_closures_ = std::move(closures);
   const msg::LoopClosures message = service::to_msg(sent_closures_, version_, service_.robot_id(),
@@ -249,7 +249,7 @@ void LocalizerService::publish(bool whole) {
 
 // Decisions only come to the end, so the last segment that was sent and what follows are news.
 void LocalizerService::publish_decisions() {
-  const std::vector<localization::LoopDecision>& decisions = localizer_.loop_decisions();
+  const std::vector<localization::LoopDecision>& decisions = localizer_->loop_decisions();
   if (decisions.size() == decisions_published_) return;
   const auto first = static_cast<std::uint32_t>(decisions_published_ / msg::kSegmentDecisions);
   for (std::uint32_t i = first; i < service::decision_segment_count(decisions.size()); ++i) {
@@ -264,7 +264,7 @@ void LocalizerService::publish_decisions() {
 
 void LocalizerService::count() {
   messaging::StatusPublisher& status = service_.status();
-  const localization::SlamCounts& counts = localizer_.counts();
+  const localization::SlamCounts& counts = localizer_->counts();
   const auto set = [&status](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };
@@ -278,7 +278,7 @@ void LocalizerService::count() {
     set(reason == localization::Reason::kNone ? name : "rejected: " + name, counts.reasons[i]);
   }
   set("loop_closures", sent_closures_.size());
-  set("loop_decisions", localizer_.loop_decisions().size());
+  set("loop_decisions", localizer_->loop_decisions().size());
   set("optimizations", counts.optimizations);
   set("failed_optimizations", counts.failed_optimizations);
   set("unconfirmed_loops", counts.unconfirmed_loops);

@@ -56,7 +56,7 @@ class LocalizerService {
   service::Service& service_;
   LocalizerOptions options_;
   RemotePool pool_;
-  localization::Localizer localizer_;
+  std::unique_ptr<localization::Slam> localizer_;
   messaging::Reader<msg::LocalMap> maps_in_;
   messaging::Reader<msg::Odometry> odometry_;
   messaging::Reader<msg::StreamEnd> ends_in_;

@@ -161,6 +161,11 @@ void describe_match(Config& c, ConfigSchema& schema) {
 
 void describe_localizer(Config& c, ConfigSchema& schema) {
   localization::LocalizerConfig& l = c.localizer;
+  schema.add("localizer.mode", &l.mode,
+             {{"graph", localization::LocalizerMode::kGraph},
+              {"thesis", localization::LocalizerMode::kThesis}},
+             "graph: a pose graph over all believed matches; thesis: the source's forward and "
+             "backward correction alone, for comparison");
   schema.add("localizer.seed", &l.seed, std::uint64_t{0}, ~std::uint64_t{0}, "",
              "of everything random; the same log, seed and configuration give the same bytes");
   schema.add("localizer.recent_way_m", &l.recent_way_m, 0.5, 1000.0, "m",

@@ -11,7 +11,7 @@ MappingRun::MappingRun(const Config& config, std::string robot_id)
     : config_(config),
       robot_id_(std::move(robot_id)),
       local_mapper_(config.local_mapper, robot_id_),
-      localizer_(config.localizer, pool_) {}
+      localizer_(localization::make_slam(config.localizer, pool_)) {}
 
 void MappingRun::add(const scan::Scan& scan) {
   std::optional<topomap::LocalMap> map;
@@ -25,21 +25,21 @@ void MappingRun::add(const scan::Scan& scan) {
 void MappingRun::localize(topomap::LocalMap map) {
   const auto scope = times_.measure("localizer");
   local_maps_.push_back(map);
-  localizer_.add(std::make_shared<const topomap::LocalMap>(std::move(map)));
+  localizer_->add(std::make_shared<const topomap::LocalMap>(std::move(map)));
 }
 
 storage::MapDocument MappingRun::finish() {
   if (std::optional<topomap::LocalMap> map = local_mapper_.finish()) localize(std::move(*map));
   {
     const auto scope = times_.measure("localizer");
-    localizer_.finish();
+    localizer_->finish();
   }
   storage::MapDocument document;
   document.robot_id = robot_id_;
   document.seed = config_.localizer.seed;
   document.local_maps = std::move(local_maps_);
-  document.trajectory = localizer_.trajectory();
-  document.loop_closures = localizer_.loop_closures();
+  document.trajectory = localizer_->trajectory();
+  document.loop_closures = localizer_->loop_closures();
   const auto scope = times_.measure("map_store");
   document.global_map = fuse(config_.global_map, document.local_maps, document.trajectory);
   return document;

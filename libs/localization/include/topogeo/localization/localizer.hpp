@@ -25,7 +25,13 @@
 
 namespace topogeo::localization {
 
+enum class LocalizerMode : std::uint8_t {
+  kGraph = 0,   ///< Localizer: a pose graph over all believed matches
+  kThesis = 1,  ///< ThesisLocalizer: the source's forward and backward correction alone
+};
+
 struct LocalizerConfig {
+  LocalizerMode mode = LocalizerMode::kGraph;  ///< which make_slam() makes
   std::uint64_t seed = 1;
   OdometryNoise odometry;
   GeneticParameters genetic;

@@ -15,6 +15,8 @@
 
 namespace topogeo::localization {
 
+struct LocalizerConfig;
+
 struct SlamCounts {
   std::uint64_t tasks = 0;
   std::uint64_t evaluations = 0;
@@ -52,5 +54,8 @@ class Slam {
   Slam(const Slam&) = default;
   Slam& operator=(const Slam&) = default;
 };
+
+/// The algorithm that `config.mode` names. The pool must outlive it.
+std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool);
 
 }  // namespace topogeo::localization

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,11 @@ class MappingRun {
   /// Works off the end of the log and gives the map. Call it once, after the last scan.
   storage::MapDocument finish();
 
-  [[nodiscard]] const localization::SlamCounts& match_counts() const { return localizer_.counts(); }
+  [[nodiscard]] const localization::SlamCounts& match_counts() const {
+    return localizer_->counts();
+  }
   [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {
-    return localizer_.loop_decisions();
+    return localizer_->loop_decisions();
   }
   /// "local_mapper", "localizer" and "map_store", as the services are called that do the same.
   [[nodiscard]] const std::vector<support::StageTime>& stages() const { return times_.stages(); }
@@ -39,7 +42,7 @@ class MappingRun {
   std::string robot_id_;
   localization::InProcessPool pool_;
   LocalMapper local_mapper_;
-  localization::Localizer localizer_;
+  std::unique_ptr<localization::Slam> localizer_;
   std::vector<topomap::LocalMap> local_maps_;
   support::StageTimes times_;
 };

@@ -1,0 +1,15 @@
+#include "topogeo/localization/slam.hpp"
+
+#include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/thesis_localizer.hpp"
+
+namespace topogeo::localization {
+
+std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool) {
+  if (config.mode == LocalizerMode::kThesis) {
+    return std::make_unique<ThesisLocalizer>(config, pool);
+  }
+  return std::make_unique<Localizer>(config, pool);
+}
+
+}  // namespace topogeo::localization
