@@ -27,7 +27,9 @@ void describe_local_map(Config& c, ConfigSchema& schema) {
   schema.add("stop.longest_track", &m.longest_track, 1U, 256U, "scans",
              "scans after which a stop is made even if the robot stands");
   schema.add("local_map.range_limit_m", &m.voronoi.range_limit_m, 0.5, 100.0, "m",
-             "readings beyond it are not used; 8 to 10 gives far richer maps than the source's 4");
+             "of the diagram; 8 to 10 gives far richer maps than the source's 4");
+  schema.add("local_map.points_range_m", &m.local_map.points_range_m, 0.5, 80.0, "m",
+             "readings beyond it are not matched; the far end of a corridor says where along it");
   schema.add("local_map.resolution_m", &m.voronoi.resolution_m, 0.01, 1.0, "m",
              "cell of the grid under the Voronoi diagram");
   schema.add("local_map.window_of_groups", &m.voronoi.window_of_groups,
@@ -208,7 +210,6 @@ void describe_global_map(Config& c, ConfigSchema& schema) {
 
 // Where one key stands for several variables.
 void share_values(Config& c) {
-  c.local_mapper.local_map.range_limit_m = c.local_mapper.voronoi.range_limit_m;
   c.local_mapper.voronoi.forward_rad = -c.local_mapper.T_robot_laser.theta_rad;
   c.local_mapper.tracker.odometry = c.localizer.odometry;
 }

@@ -70,7 +70,7 @@ LocalMap LocalMapper::make_stop(const scan::Scan& scan, const Pose2& T_stop_robo
 }
 
 std::vector<ScanPoint> LocalMapper::points_of(const scan::Scan& scan) const {
-  return topomap::scan_points(scan, config_.T_robot_laser, config_.local_map.range_limit_m);
+  return topomap::scan_points(scan, config_.T_robot_laser, config_.local_map.points_range_m);
 }
 
 }  // namespace topogeo::pipeline

@@ -297,7 +297,7 @@ void LocalMapBuilder::Work::build(const LocalVoronoiDiagram& diagram, const scan
   branches_.close();
   mark_main_graph(out);
   if (config_.remove_off_main_graph) remove_off_main_graph(out);
-  scan_points(scan, T_robot_laser, config_.range_limit_m, out.points);
+  scan_points(scan, T_robot_laser, config_.points_range_m, out.points);
 }
 
 void validate(const LocalMapConfig& config) {
@@ -308,7 +308,7 @@ void validate(const LocalMapConfig& config) {
                                 "]");
   };
   constexpr double kLongest_m = 1000.0;
-  check("range_limit_m", config.range_limit_m, kLongest_m);
+  check("points_range_m", config.points_range_m, kLongest_m);
   check("separated_m", config.separated_m, kLongest_m);
   check("largest_hidden_share", config.largest_hidden_share, 1.0);
   check("min_stretch_m", config.min_stretch_m, kLongest_m);

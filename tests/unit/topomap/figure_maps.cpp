@@ -34,7 +34,7 @@ std::string kind_name(topomap::NodeKind kind) {
 
 topomap::LocalMapConfig source_map_config() {
   topomap::LocalMapConfig config;
-  config.range_limit_m = 4.0;
+  config.points_range_m = 4.0;
   config.separated_m = 0.5;
   config.largest_hidden_share = 1.0;
   config.min_stretch_m = 0.2;

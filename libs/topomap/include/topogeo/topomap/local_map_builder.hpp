@@ -23,8 +23,9 @@
 namespace topogeo::topomap {
 
 struct LocalMapConfig {
-  /// Scan points up to this range are kept for matching, metres. The range limit of the diagram.
-  double range_limit_m = 10.0;
+  /// Scan points up to this range are kept for matching, metres. More than the diagram's: the far
+  /// end of a corridor is all that says how far along it the robot is.
+  double points_range_m = 50.0;
 
   /// Threshold of 5.5, metres: an outer branch ends before the first step longer than this, and two
   /// loose ends of the same base groups nearer than this belong to one graph. A traced branch has
