@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace topogeo::localization {
 
@@ -12,12 +13,12 @@ using topomap::LocalMap;
 
 namespace {
 
-constexpr std::uint32_t kLoopsBetweenOptimizations = 10;
-constexpr double kOutvoted = 30.0;  // squared Mahalanobis distance of a loop after optimisation
+constexpr double kWidening = 3.0;  // of the deviations, when nothing was found where odometry says
 
 }  // namespace
 
-Localizer::Localizer(LocalizerConfig config, MatchPool& pool) : config_(config), pool_(pool) {}
+Localizer::Localizer(LocalizerConfig config, MatchPool& pool, GraphOptimizer* optimizer)
+    : config_(config), pool_(pool), optimizer_(optimizer) {}
 
 bool Localizer::add(std::shared_ptr<const LocalMap> map) {
   append(std::move(map));
@@ -27,13 +28,13 @@ bool Localizer::add(std::shared_ptr<const LocalMap> map) {
     belief_ = {LocalizationState::kTracking, 1.0};
     return false;
   }
-  match_recent(stop, graph_.relative_to(stop));
+  const bool moved = finish_optimization(stop);
+  match_recent(stop);
   graph_.place_last_pose();
-  const std::vector<UncertainPose> relative = graph_.relative_to(stop);
-  stops_[stop].covariance = geometry::inverse_covariance(relative[0].T_a_b, relative[0].covariance);
-  if (!match_revisited(stop, relative)) return false;
-  optimize();
-  return true;
+  stops_[stop].covariance = covariance_in_map(stop);
+  match_revisited(stop);
+  start_optimization(stop);
+  return finish_optimization(stop) || moved;
 }
 
 void Localizer::append(std::shared_ptr<const LocalMap> map) {
@@ -65,7 +66,7 @@ void Localizer::append(std::shared_ptr<const LocalMap> map) {
     stop.way_m = previous.way_m + std::sqrt(odometry.T_a_b.position_m().squaredNorm());
     graph_.add_pose(graph_.poses().back() * odometry.T_a_b);
     // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
-    Eigen::Matrix3d covariance = odometry.covariance;
+    Eigen::Matrix3d covariance = odometry_.widened(odometry.covariance);
     covariance(0, 0) += 1e-4;
     covariance(1, 1) += 1e-4;
     covariance(2, 2) += 1e-5;
@@ -75,11 +76,42 @@ void Localizer::append(std::shared_ptr<const LocalMap> map) {
   stops_.push_back(std::move(stop));
 }
 
-void Localizer::match_recent(std::uint32_t stop, const std::vector<UncertainPose>& relative) {
+void Localizer::match_recent(std::uint32_t stop) {
+  const std::uint32_t first = first_recent(stop);
+  const std::vector<UncertainPose> relative =
+      graph_.relative_to(stop, {first, PoseGraph::kUnlimited});
+  std::vector<Answer> answers = run(recent_tasks(stop, relative, 1.0), EdgeKind::kSequential);
+  const auto any_accepted = [&answers] {
+    return std::any_of(answers.begin(), answers.end(), [](const Answer& a) { return a.accepted; });
+  };
+  if (!any_accepted()) {
+    // Odometry may be worse than it ever was: once more, in a wider space.
+    const std::vector<Answer> wider =
+        run(recent_tasks(stop, relative, kWidening), EdgeKind::kSequential);
+    const bool found =
+        std::any_of(wider.begin(), wider.end(), [](const Answer& a) { return a.accepted; });
+    if (found) answers = wider;
+  }
+  last_solutions_ = std::exchange(new_solutions_, {});
+  // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
+  // uncertain ones, with their wide covariance, still say more than it does.
+  const bool any = any_accepted();
+  if (!any) ++counts_.steps_in_doubt;
+  for (const Answer& answer : answers) {
+    if (answer.accepted || !any) graph_.add_edge(answer.edge);
+    if (answer.accepted && answer.edge.from + 1 == stop) watch_odometry(answer.edge);
+  }
+}
+
+std::vector<MatchTask> Localizer::recent_tasks(std::uint32_t stop,
+                                               const std::vector<UncertainPose>& relative,
+                                               double widening) {
   std::vector<MatchTask> tasks;
   const Pose2 T_previous_robot = stops_[stop].map->T_previous_robot;
   for (const Candidate& candidate : candidates(stop, relative, true, config_.recent_matches)) {
-    MatchTask task = make_task(stop, candidate.id, relative[candidate.id]);
+    UncertainPose prior = relative[candidate.id];
+    prior.covariance *= widening * widening;
+    MatchTask task = make_task(stop, candidate.id, prior);
     const Pose2 T_candidate_previous =
         geometry::between(graph_.poses()[candidate.id], graph_.poses()[stop - 1]);
     task.initial_individuals.push_back(geometry::inverse(T_candidate_previous * T_previous_robot));
@@ -89,111 +121,37 @@ void Localizer::match_recent(std::uint32_t stop, const std::vector<UncertainPose
     }
     tasks.push_back(std::move(task));
   }
-  last_solutions_.clear();
-  const std::vector<Answer> answers = run(tasks, EdgeKind::kSequential);
-  // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
-  // uncertain ones, with their wide covariance, still say more than it does.
-  const bool any =
-      std::any_of(answers.begin(), answers.end(), [](const Answer& a) { return a.accepted; });
-  if (!any) ++counts_.steps_in_doubt;
-  for (const Answer& answer : answers) {
-    if (answer.accepted || !any) graph_.add_edge(answer.edge);
-  }
+  return tasks;
 }
 
-bool Localizer::match_revisited(std::uint32_t stop, const std::vector<UncertainPose>& relative) {
+void Localizer::watch_odometry(const PoseGraphEdge& match) {
+  const LocalMap& map = *stops_[match.to].map;
+  const UncertainPose odometry =
+      odometry_between_stops(stops_[match.from].map->T_odom_robot, map, config_.odometry);
+  odometry_.add(odometry, {match.T_from_to, match.covariance});
+}
+
+void Localizer::match_revisited(std::uint32_t stop) {
+  const std::vector<UncertainPose> relative = graph_.relative_to(stop, searchable_reach());
   std::vector<MatchTask> tasks;
   for (const Candidate& candidate : candidates(stop, relative, false, config_.revisit_matches)) {
     tasks.push_back(make_task(stop, candidate.id, relative[candidate.id]));
   }
-  bool moved = false;
   for (const Answer& answer : run(tasks, EdgeKind::kRevisit)) {
-    if (answer.accepted) moved |= add_loop(answer.edge);
-  }
-  return moved;
-}
-
-// Takes a loop into the graph, or keeps it until another one agrees. True when it is time to
-// optimise.
-bool Localizer::add_loop(const PoseGraphEdge& edge) {
-  const Pose2 T_map_now = graph_.poses()[edge.to];
-  const Pose2 T_map_corrected = graph_.poses()[edge.from] * edge.T_from_to;
-  const auto apart = [this](const Pose2& a, const Pose2& b) {
-    return (a.position_m() - b.position_m()).squaredNorm() >
-               config_.unaided_correction_m * config_.unaided_correction_m ||
-           std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) >
-               config_.unaided_correction_rad;
-  };
-  ++loops_since_optimization_;
-  if (!apart(T_map_now, T_map_corrected)) {
-    graph_.add_edge(edge);
-    const double moved_m2 = (T_map_now.position_m() - T_map_corrected.position_m()).squaredNorm();
-    return moved_m2 > 0.01 || loops_since_optimization_ >= kLoopsBetweenOptimizations;
-  }
-  const Pose2 correction = T_map_corrected * geometry::inverse(T_map_now);
-  constexpr std::uint32_t kLongestWait = 12;  // stops
-  std::erase_if(pending_,
-                [&](const PendingLoop& loop) { return loop.edge.to + kLongestWait < edge.to; });
-  const auto agrees = [&](const PendingLoop& loop) {
-    return loop.edge.to != edge.to && !apart(loop.correction * T_map_now, T_map_corrected);
-  };
-  bool confirmed = false;
-  for (const PendingLoop& loop : pending_) {
-    if (!agrees(loop)) continue;
-    graph_.add_edge(loop.edge);
-    confirmed = true;
-  }
-  std::erase_if(pending_, agrees);
-  if (confirmed) {
-    graph_.add_edge(edge);
-    return true;
-  }
-  pending_.push_back({edge, correction});
-  compared_.erase({edge.from, edge.to});  // it is not in the graph, so it may be compared again
-  ++counts_.unconfirmed_loops;
-  return false;
-}
-
-void Localizer::finish() {
-  if (stops_.size() < 2) return;
-  optimize();
-  for (std::uint32_t pass = 0; pass < config_.final_passes; ++pass) {
-    if (match_all_revisits() == 0) break;
-    optimize();
+    if (answer.accepted) add_loop(answer);
   }
 }
 
-std::size_t Localizer::match_all_revisits() {
-  std::vector<MatchTask> tasks;
-  for (std::uint32_t stop = 1; stop < stops_.size(); ++stop) {
-    const std::vector<UncertainPose> relative = graph_.relative_to(stop);
-    for (const Candidate& candidate : candidates(stop, relative, false, config_.revisit_matches)) {
-      tasks.push_back(make_task(stop, candidate.id, relative[candidate.id]));
-    }
+// Along the best of the ways by which the matches and odometry of this step lead here.
+Eigen::Matrix3d Localizer::covariance_in_map(std::uint32_t stop) const {
+  std::optional<Eigen::Matrix3d> best;
+  for (const auto& [from, link] : graph_.links_to(stop)) {
+    const Eigen::Matrix3d covariance = geometry::compose_covariance(
+        graph_.poses()[from], stops_[from].covariance,
+        geometry::between(graph_.poses()[from], graph_.poses()[stop]), link);
+    if (!best || PoseGraph::path_cost(covariance) < PoseGraph::path_cost(*best)) best = covariance;
   }
-  const std::size_t before = graph_.edges().size();
-  pending_.clear();
-  for (const Answer& answer : run(tasks, EdgeKind::kRevisit)) {
-    if (answer.accepted) add_loop(answer.edge);
-  }
-  return graph_.edges().size() - before;
-}
-
-void Localizer::optimize() {
-  ++counts_.optimizations;
-  loops_since_optimization_ = 0;
-  if (!graph_.optimize().usable) {
-    ++counts_.failed_optimizations;
-    return;
-  }
-  const std::size_t removed = graph_.remove_edges(EdgeKind::kRevisit, kOutvoted);
-  if (removed > 0) {
-    counts_.removed_loops += removed;
-    graph_.optimize();
-  }
-  const std::vector<UncertainPose> relative = graph_.relative_to(0);
-  for (std::size_t i = 1; i < stops_.size(); ++i) stops_[i].covariance = relative[i].covariance;
-  ++version_;
+  return best.value();  // odometry always leads here
 }
 
 topomap::Trajectory Localizer::trajectory() const {

@@ -9,6 +9,12 @@ namespace topogeo::localization {
 
 using geometry::Pose2;
 
+namespace {
+
+constexpr double kFarthest_m = 20.0;  // stops further apart are not compared
+
+}  // namespace
+
 MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_reference_query) {
   MatchTask task;
   task.T_reference_query = T_reference_query.T_a_b;
@@ -30,10 +36,13 @@ std::vector<Localizer::Candidate> Localizer::candidates(std::uint32_t stop,
                                                         std::span<const UncertainPose> relative,
                                                         bool recent, std::uint32_t count) const {
   std::vector<Candidate> found;
-  for (std::uint32_t i = 0; i < stop; ++i) {
-    const bool is_recent = stops_[stop].way_m - stops_[i].way_m <= config_.recent_way_m;
-    if (is_recent != recent || !worth_comparing(i, stop, relative[i].T_a_b) ||
-        !searchable(relative[i])) {
+  const std::uint32_t middle = first_recent(stop);
+  const Pose2& T_map_robot = graph_.poses()[stop];
+  for (std::uint32_t i = recent ? middle : 0; i < (recent ? stop : middle); ++i) {
+    // In this order, because most stops of a long log are far away.
+    const Eigen::Vector2d apart_m = graph_.poses()[i].position_m() - T_map_robot.position_m();
+    if (apart_m.squaredNorm() > kFarthest_m * kFarthest_m || !searchable(relative[i]) ||
+        !worth_comparing(i, stop, relative[i].T_a_b)) {
       continue;
     }
     const double overlap = expected_overlap(stops_[stop], stops_[i], relative[i]);
@@ -71,6 +80,23 @@ bool Localizer::worth_comparing(std::uint32_t earlier, std::uint32_t later,
          std::fabs(geometry::wrap_angle(before.theta_rad - T_later_earlier.theta_rad)) > kMoved_rad;
 }
 
+// Stops from this one on are recent.
+std::uint32_t Localizer::first_recent(std::uint32_t stop) const {
+  std::uint32_t first = stop;
+  while (first > 0 && stops_[stop].way_m - stops_[first - 1].way_m <= config_.recent_way_m) --first;
+  return first;
+}
+
+// Beyond it no stop is searchable().
+PoseGraph::Reach Localizer::searchable_reach() const {
+  const Eigen::Vector3d unit = search_half_width(
+      Eigen::Matrix3d::Identity(), config_.search_probability, config_.search_heading_sigmas);
+  const Eigen::Vector3d sigma(config_.largest_half_width_m / unit.x(),
+                              config_.largest_half_width_m / unit.y(),
+                              config_.largest_half_width_rad / unit.z());
+  return {0, PoseGraph::path_cost(sigma.cwiseAbs2().asDiagonal())};
+}
+
 bool Localizer::searchable(const UncertainPose& T_reference_query) const {
   const Eigen::Vector3d half = search_half_width(
       T_reference_query.covariance, config_.search_probability, config_.search_heading_sigmas);
@@ -81,13 +107,15 @@ bool Localizer::searchable(const UncertainPose& T_reference_query) const {
 double Localizer::expected_overlap(const Stop& reference, const Stop& query,
                                    const UncertainPose& T_reference_query) const {
   if (query.outline_m.empty()) return 0.0;
-  constexpr double kFarthest_m = 20.0;
-  if (T_reference_query.T_a_b.position_m().squaredNorm() > kFarthest_m * kFarthest_m) return 0.0;
   const Eigen::Matrix3d& covariance = T_reference_query.covariance;
   const double tolerance_m = 0.5 + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
   std::size_t seen = 0;
-  for (const Eigen::Vector2d& point : query.outline_m) {
-    const auto view = reference.profile.view(T_reference_query.T_a_b * point, tolerance_m);
+  const Pose2& T = T_reference_query.T_a_b;
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
+  for (const Eigen::Vector2d& p : query.outline_m) {
+    const auto view = reference.profile.view(
+        {T.x_m + r.cos * p.x() - r.sin * p.y(), T.y_m + r.sin * p.x() + r.cos * p.y()},
+        tolerance_m);
     if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
   }
   return static_cast<double>(seen) / static_cast<double>(query.outline_m.size());
@@ -115,18 +143,22 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
     const MatchResult& result = results[i];
     const bool accepted = result.verdict == Verdict::kAccepted;
     compared_[{task.query_map_id, task.reference_map_id}] = {task.T_reference_query, accepted};
-    if (kind == EdgeKind::kSequential) last_solutions_[task.query_map_id] = result.solutions;
+    if (kind == EdgeKind::kSequential) new_solutions_[task.query_map_id] = result.solutions;
     ++counts_.tasks;
     counts_.evaluations += result.evaluations;
     ++counts_.reasons[static_cast<std::size_t>(result.reason)];
     // Not believed, but not refuted either.
     const bool uncertain =
         result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution;
-    if (!accepted && !uncertain) continue;
-    answers.push_back({{task.query_map_id, task.reference_map_id, kind,
-                        geometry::inverse(result.T_reference_query),
-                        geometry::inverse_covariance(result.T_reference_query, result.covariance)},
-                       accepted});
+    const bool solved = result.status == MatchStatus::kSolved;
+    const Pose2& T_later_earlier = solved ? result.T_reference_query : task.T_reference_query;
+    const PoseGraphEdge edge{task.query_map_id, task.reference_map_id, kind,
+                             geometry::inverse(T_later_earlier),
+                             geometry::inverse_covariance(T_later_earlier, result.covariance)};
+    if (kind == EdgeKind::kRevisit && !accepted) {
+      decide(edge, LoopOutcome::kGate, result.reason, result.fitness);
+    }
+    if (accepted || uncertain) answers.push_back({edge, accepted, result.fitness});
   }
   return answers;
 }

@@ -1,9 +1,12 @@
 #include "topogeo/localization/match_features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 #include "topogeo/geometry/portable_math.hpp"
 
@@ -77,6 +80,16 @@ SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t
   return {centre, normal, on_line};
 }
 
+// Finer where that costs little: a grid over a hall would take longer to fill than the match.
+double grid_cell_m(const std::vector<SurfacePoint>& points) {
+  constexpr double kFine_m = 0.10;
+  constexpr double kLargestFineExtent_m = 50.0;
+  if (points.empty()) return kFine_m;
+  Eigen::AlignedBox2d box;
+  for (const SurfacePoint& p : points) box.extend(p.position_m);
+  return box.sizes().maxCoeff() <= kLargestFineExtent_m ? kFine_m : 2.0 * kFine_m;
+}
+
 void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSample>& out) {
   const auto& points = branch.points;
   double since_m = MatchFeatures::kBranchSpacing_m;
@@ -111,13 +124,48 @@ BranchCurve whole_branch(const topomap::LocalBranch& branch) {
 
 }  // namespace
 
+// Looked up by the slope within the quadrant: a direction is asked for a thousand times in a match,
+// and half a degree needs no arc tangent.
+int RangeProfile::bin_of(const Eigen::Vector2d& p) {
+  constexpr int kPerQuadrant = 1024;
+  static const auto kBinOf = [] {
+    std::array<std::int16_t, 4 * kPerQuadrant> bins{};
+    for (int i = 0; i < 4 * kPerQuadrant; ++i) {
+      // The inverse of `turn` below, in the middle of the cell.
+      const double in_quadrant = (i % kPerQuadrant + 0.5) / kPerQuadrant;
+      double x = 1.0 - in_quadrant;
+      double y = in_quadrant;
+      for (int quadrant = i / kPerQuadrant; quadrant > 0; --quadrant) {
+        x = std::exchange(y, x);
+        x = -x;
+      }
+      const double turn = geometry::atan2(y, x) / (2.0 * std::numbers::pi);
+      bins.at(static_cast<std::size_t>(i)) =
+          static_cast<std::int16_t>(static_cast<int>((turn + 0.5) * kBins) % kBins);
+    }
+    return bins;
+  }();
+  const double ax = std::fabs(p.x());
+  const double ay = std::fabs(p.y());
+  if (ax + ay == 0.0) return kBins / 2;
+  const double slope = ay / (ax + ay);  // 0 on the x axis, 1 on the y axis
+  double turn = p.x() >= 0.0 ? slope : 2.0 - slope;
+  if (p.y() < 0.0) turn = 4.0 - turn;
+  const int cell = std::min(static_cast<int>(turn * kPerQuadrant), 4 * kPerQuadrant - 1);
+  return kBinOf[static_cast<std::size_t>(cell)];
+}
+
+Eigen::Vector2d RangeProfile::in_laser_frame(const Eigen::Vector2d& p) const {
+  return {T_laser_robot_.x_m + rotation_.cos * p.x() - rotation_.sin * p.y(),
+          T_laser_robot_.y_m + rotation_.sin * p.x() + rotation_.cos * p.y()};
+}
+
 RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_robot_laser)
-    : T_laser_robot_(geometry::inverse(T_robot_laser)), near_m_(kBins, 0.0F), far_m_(kBins, 0.0F) {
+    : T_laser_robot_(geometry::inverse(T_robot_laser)),
+      rotation_(geometry::sincos(T_laser_robot_.theta_rad)),
+      near_m_(kBins, 0.0F),
+      far_m_(kBins, 0.0F) {
   std::vector<float> range_m(kBins, 0.0F);
-  const auto bin_of = [](const Eigen::Vector2d& p) {
-    const double turn = geometry::atan2(p.y(), p.x()) / (2.0 * std::numbers::pi);
-    return static_cast<int>((turn + 0.5) * kBins) % kBins;
-  };
   const auto put = [&](int bin, double range) {
     float& cell = range_m[static_cast<std::size_t>(bin)];
     if (cell == 0.0F || range < cell) cell = static_cast<float>(range);
@@ -125,7 +173,7 @@ RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_rob
   int last_bin = -1;
   double last_range_m = 0.0;
   for (const ScanPoint& point : points) {
-    const Eigen::Vector2d p = T_laser_robot_ * Eigen::Vector2d(point.x_m, point.y_m);
+    const Eigen::Vector2d p = in_laser_frame({point.x_m, point.y_m});
     const double range = std::sqrt(p.squaredNorm());
     const int bin = bin_of(p);
     put(bin, range);
@@ -152,9 +200,8 @@ RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_rob
 RangeProfile::View RangeProfile::view(const Eigen::Vector2d& point_robot_m,
                                       double tolerance_m) const {
   if (near_m_.empty()) return View::kUnknown;  // made of no scan
-  const Eigen::Vector2d p = T_laser_robot_ * point_robot_m;
-  const double turn = geometry::atan2(p.y(), p.x()) / (2.0 * std::numbers::pi);
-  const auto bin = static_cast<std::size_t>(static_cast<int>((turn + 0.5) * kBins) % kBins);
+  const Eigen::Vector2d p = in_laser_frame(point_robot_m);
+  const auto bin = static_cast<std::size_t>(bin_of(p));
   const auto near = static_cast<double>(near_m_[bin]);
   if (near == 0.0) return View::kUnknown;
   const double range = std::sqrt(p.squaredNorm());
@@ -199,9 +246,9 @@ MatchFeatures extract_features(const topomap::LocalMap& map) {
 }
 
 Reference make_reference(MatchFeatures features) {
-  constexpr double kGridCell_m = 0.10;
   constexpr float kFarAway_m = 1e9F;
   Reference reference;
+  const double cell_m = grid_cell_m(features.surface);
   std::vector<Eigen::Vector2d> positions_m;
   positions_m.reserve(std::max(features.surface.size(), features.branches.size()));
   reference.surface_m.reserve(features.surface.size() + 1);
@@ -210,7 +257,7 @@ Reference make_reference(MatchFeatures features) {
     reference.surface_m.emplace_back(p.position_m.cast<float>());
   }
   reference.surface_m.emplace_back(kFarAway_m, kFarAway_m);
-  reference.surface_grid.build(positions_m, kGridCell_m, kReach_m);
+  reference.surface_grid.build(positions_m, cell_m, kReach_m);
   positions_m.clear();
   reference.branches.reserve(features.branches.size() + 1);
   for (const BranchSample& s : features.branches) {
@@ -220,7 +267,7 @@ Reference make_reference(MatchFeatures features) {
     reference.branches.push_back({p.x(), p.y(), d.x(), d.y(), static_cast<float>(s.clearance_m)});
   }
   reference.branches.push_back({kFarAway_m, kFarAway_m, 0.0F, 0.0F, 0.0F});
-  reference.branch_grid.build(positions_m, kGridCell_m, kReach_m);
+  reference.branch_grid.build(positions_m, cell_m, kReach_m);
   reference.features = std::move(features);
   return reference;
 }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include <Eigen/LU>
-#include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <boost/property_map/function_property_map.hpp>
 
 namespace topogeo::localization {
 namespace {
@@ -17,19 +19,34 @@ using geometry::Pose2;
 // One standard deviation of heading moves what is seen at this distance.
 constexpr double kLeverArm_m = 5.0;
 
-double path_cost(const Eigen::Matrix3d& c) {
-  return c(0, 0) + c(1, 1) + kLeverArm_m * kLeverArm_m * c(2, 2);
-}
+// Ends a search when all that was asked for has been reached.
+struct Enough {};
 
-struct Hop {
-  double cost = 0.0;
-  std::uint32_t link = 0;  // index into PoseGraph::links_
+class ReachVisitor : public boost::default_dijkstra_visitor {
+ public:
+  ReachVisitor(const std::vector<double>& cost, const PoseGraph::Reach& reach,
+               std::vector<std::uint32_t>& order)
+      : cost_(&cost), reach_(reach), order_(&order), wanted_(cost.size() - reach.first_stop) {}
+
+  template <class Graph>
+  void examine_vertex(std::size_t stop, const Graph& /*graph*/) {
+    if ((*cost_)[stop] > reach_.largest_cost) throw Enough();
+    order_->push_back(static_cast<std::uint32_t>(stop));
+    if (stop >= reach_.first_stop && --wanted_ == 0) throw Enough();
+  }
+
+ private:
+  const std::vector<double>* cost_;
+  PoseGraph::Reach reach_;
+  std::vector<std::uint32_t>* order_;  // of the stops reached, nearest first
+  std::size_t wanted_;
 };
 
 }  // namespace
 
 std::uint32_t PoseGraph::add_pose(const Pose2& T_map_robot) {
   poses_.push_back(T_map_robot);
+  boost::add_vertex(network_);
   return static_cast<std::uint32_t>(poses_.size() - 1);
 }
 
@@ -43,15 +60,29 @@ void PoseGraph::add_edge(const PoseGraphEdge& edge) {
 }
 
 void PoseGraph::add_to_link(const PoseGraphEdge& edge) {
-  const auto [found, fresh] = link_of_.try_emplace({edge.from, edge.to}, links_.size());
+  const auto next = static_cast<std::uint32_t>(links_.size());
+  const auto [found, fresh] = link_of_.try_emplace({edge.from, edge.to}, next);
   if (fresh) {
     Link& link = links_.emplace_back();
     link.from = edge.from;
     link.to = edge.to;
+    boost::add_edge(edge.from, edge.to, LinkIndex{next}, network_);
   }
   Link& link = links_[found->second];
   link.information += edge.covariance.inverse();
   link.covariance = link.information.inverse();
+  link.cost = path_cost(link.covariance);
+}
+
+std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseGraph::links_to(
+    std::uint32_t stop) const {
+  std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> found;
+  const auto [first, last] = boost::out_edges(stop, network_);
+  for (auto edge = first; edge != last; ++edge) {
+    const Link& link = links_[network_[*edge].value];
+    if (link.to == stop) found.emplace_back(link.from, link.covariance);
+  }
+  return found;
 }
 
 double PoseGraph::disagreement(const PoseGraphEdge& edge) const {
@@ -84,57 +115,83 @@ void PoseGraph::place_last_pose() {
   }
 }
 
-std::size_t PoseGraph::remove_edges(EdgeKind kind, double largest_disagreement) {
-  const std::size_t removed = std::erase_if(edges_, [&](const PoseGraphEdge& edge) {
-    return edge.kind == kind && disagreement(edge) > largest_disagreement;
-  });
-  if (removed > 0) {
-    links_.clear();
-    link_of_.clear();
-    for (const PoseGraphEdge& edge : edges_) add_to_link(edge);
-  }
+std::vector<PoseGraphEdge> PoseGraph::remove_edges(EdgeKind kind, double largest_disagreement) {
+  const auto kept =
+      std::stable_partition(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) {
+        return edge.kind != kind || disagreement(edge) <= largest_disagreement;
+      });
+  const std::vector<PoseGraphEdge> removed(kept, edges_.end());
+  edges_.erase(kept, edges_.end());
+  if (!removed.empty()) rebuild_links();
   return removed;
 }
 
-std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin) const {
-  using Graph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property, Hop,
-                                                   boost::no_property, std::uint32_t>;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
-  std::vector<Hop> hops;
-  ends.reserve(2 * links_.size());
-  hops.reserve(2 * links_.size());
-  for (std::uint32_t k = 0; k < links_.size(); ++k) {
-    const Hop hop{path_cost(links_[k].covariance), k};
-    ends.emplace_back(links_[k].from, links_[k].to);
-    ends.emplace_back(links_[k].to, links_[k].from);
-    hops.push_back(hop);
-    hops.push_back(hop);
-  }
-  const Graph graph(boost::edges_are_unsorted_multi_pass, ends.begin(), ends.end(), hops.begin(),
-                    static_cast<std::uint32_t>(poses_.size()));
-  std::vector<std::uint32_t> before(poses_.size());
-  std::vector<double> cost(poses_.size());
-  boost::dijkstra_shortest_paths(
-      graph, origin,
-      boost::predecessor_map(
-          boost::make_iterator_property_map(before.begin(), get(boost::vertex_index, graph)))
-          .distance_map(
-              boost::make_iterator_property_map(cost.begin(), get(boost::vertex_index, graph)))
-          .weight_map(get(&Hop::cost, graph)));
+void PoseGraph::remove_edges(EdgeKind kind, std::uint32_t from, std::uint32_t to) {
+  const std::size_t removed = std::erase_if(edges_, [&](const PoseGraphEdge& edge) {
+    return edge.kind == kind && edge.from == from && edge.to == to;
+  });
+  if (removed > 0) rebuild_links();
+}
 
-  // In order of cost every stop comes after the one before it on its path.
-  std::vector<std::uint32_t> order(poses_.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return cost[a] < cost[b]; });
+void PoseGraph::rebuild_links() {
+  links_.clear();
+  link_of_.clear();
+  network_.clear();
+  for (std::size_t i = 0; i < poses_.size(); ++i) boost::add_vertex(network_);
+  for (const PoseGraphEdge& edge : edges_) add_to_link(edge);
+}
+
+void PoseGraph::move(std::span<const Pose2> T_map_robot) {
+  if (T_map_robot.empty() || T_map_robot.size() > poses_.size()) {
+    throw std::invalid_argument("pose graph: " + std::to_string(T_map_robot.size()) +
+                                " poses for " + std::to_string(poses_.size()) + " stops");
+  }
+  const std::size_t last = T_map_robot.size() - 1;
+  const Pose2 T_last_map = geometry::inverse(poses_[last]);
+  std::copy(T_map_robot.begin(), T_map_robot.end(), poses_.begin());
+  for (std::size_t i = last + 1; i < poses_.size(); ++i) {
+    poses_[i] = poses_[last] * (T_last_map * poses_[i]);
+  }
+}
+
+double PoseGraph::path_cost(const Eigen::Matrix3d& c) {
+  return c(0, 0) + c(1, 1) + kLeverArm_m * kLeverArm_m * c(2, 2);
+}
+
+std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin, const Reach& reach) const {
+  std::vector<std::uint32_t> before(poses_.size());
+  for (std::uint32_t i = 0; i < before.size(); ++i) before[i] = i;
+  std::vector<double> cost(poses_.size(), std::numeric_limits<double>::max());
+  std::vector<boost::default_color_type> colour(poses_.size(), boost::white_color);
+  const auto index = boost::get(boost::vertex_index, network_);
+  const auto cost_of = [this](const Network::edge_descriptor& edge) {
+    return links_[network_[edge].value].cost;
+  };
+  cost[origin] = 0.0;
+  std::vector<std::uint32_t> order;
+  try {
+    boost::dijkstra_shortest_paths_no_init(
+        network_, origin, boost::make_iterator_property_map(before.begin(), index),
+        boost::make_iterator_property_map(cost.begin(), index),
+        boost::make_function_property_map<Network::edge_descriptor>(cost_of), index, std::less<>(),
+        boost::closed_plus<double>(), 0.0, ReachVisitor(cost, reach, order),
+        boost::make_iterator_property_map(colour.begin(), index));
+  } catch (const Enough&) {
+  }
   std::vector<UncertainPose> relative(poses_.size());
+  for (std::uint32_t stop = 0; stop < poses_.size(); ++stop) {
+    relative[stop].covariance = Eigen::Matrix3d::Identity() * kUnreached_m2;
+    if (stop < reach.first_stop) continue;
+    relative[stop].T_a_b = geometry::between(poses_[origin], poses_[stop]);
+  }
+  // Every stop comes after the one before it on its path.
   for (const std::uint32_t stop : order) {
     relative[stop].T_a_b = geometry::between(poses_[origin], poses_[stop]);
-    if (stop == origin) continue;
-    const std::uint32_t previous = before[stop];
-    if (previous == stop) {  // not connected
-      relative[stop].covariance = Eigen::Matrix3d::Identity() * 1e6;
+    if (stop == origin) {
+      relative[stop].covariance.setZero();
       continue;
     }
+    const std::uint32_t previous = before[stop];
     const Link& link = links_[link_of_.at(std::minmax(previous, stop))];
     const Pose2 T_previous_stop = geometry::between(poses_[previous], poses_[stop]);
     const Eigen::Matrix3d covariance =

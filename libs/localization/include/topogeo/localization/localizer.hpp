@@ -5,19 +5,26 @@
 // become edges of a pose graph, which real logs showed to be 3-10 times more accurate at no more
 // cost. Matches are handed to a MatchPool as independent tasks; all answers of one round are
 // awaited before any is used, so the result does not depend on who answered or when.
+//
+// A step moves the newest pose alone. What a closed loop does to the poses before is worked out
+// beside the steps (GraphOptimizer) and takes effect a fixed number of steps later, whenever it was
+// ready: a log gives the same poses however long that took.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "topogeo/localization/graph_optimization.hpp"
 #include "topogeo/localization/match.hpp"
 #include "topogeo/localization/match_features.hpp"
 #include "topogeo/localization/odometry_model.hpp"
+#include "topogeo/localization/odometry_monitor.hpp"
 #include "topogeo/localization/pose_graph.hpp"
 #include "topogeo/localization/slam.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -49,7 +56,8 @@ struct LocalizerConfig {
   double unaided_correction_m =
       0.6;  ///< a loop that moves the robot further needs a second one that agrees
   double unaided_correction_rad = 0.1;
-  std::uint32_t final_passes = 3;  ///< rounds of revisit matching when the log has ended
+  std::uint32_t optimization_delay = 2;  ///< steps from a closed loop to its effect on old poses
+  std::uint32_t final_passes = 3;        ///< rounds of revisit matching when the log has ended
   GateConfig gate;
 };
 
@@ -59,8 +67,9 @@ MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_refer
 
 class Localizer : public Slam {
  public:
-  /// The pool must outlive the localizer.
-  Localizer(LocalizerConfig config, MatchPool& pool);
+  /// The pool and the optimizer must outlive the localizer; without an optimizer the work is done
+  /// within the step at which it takes effect.
+  Localizer(LocalizerConfig config, MatchPool& pool, GraphOptimizer* optimizer = nullptr);
 
   /// One forward step. Maps must come in order of their ids, from 0, of one robot; throws
   /// std::invalid_argument otherwise. True when earlier poses were moved too.
@@ -96,18 +105,42 @@ class Localizer : public Slam {
   struct Answer {
     PoseGraphEdge edge;
     bool accepted = false;
+    double fitness = 0.0;
   };
+  /// A loop that moves the robot far, kept until another one agrees.
   struct PendingLoop {
     PoseGraphEdge edge;
     geometry::Pose2 correction;  // T_map_corrected * inverse(T_map_robot) at that time
   };
+  struct Correction {
+    geometry::Pose2 T_map_now;
+    geometry::Pose2 T_map_corrected;
+    [[nodiscard]] double way_m() const;
+    [[nodiscard]] double turn_rad() const;
+  };
 
   void append(std::shared_ptr<const topomap::LocalMap> map);
-  void match_recent(std::uint32_t stop, const std::vector<UncertainPose>& relative);
-  bool match_revisited(std::uint32_t stop, const std::vector<UncertainPose>& relative);
-  bool add_loop(const PoseGraphEdge& edge);
+  void match_recent(std::uint32_t stop);
+  std::vector<MatchTask> recent_tasks(std::uint32_t stop,
+                                      const std::vector<UncertainPose>& relative, double widening);
+  void watch_odometry(const PoseGraphEdge& match);
+  void match_revisited(std::uint32_t stop);
+  [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
+  [[nodiscard]] Eigen::Matrix3d covariance_in_map(std::uint32_t stop) const;
+
+  void add_loop(const Answer& answer);
+  [[nodiscard]] Correction correction_of(const PoseGraphEdge& edge) const;
+  [[nodiscard]] bool far(const Correction& correction) const;
+  bool confirm(const PoseGraphEdge& edge, const Correction& correction);
+  void decide(const PoseGraphEdge& edge, LoopOutcome outcome, Reason reason, double fitness);
+
+  void start_optimization(std::uint32_t stop);
+  bool finish_optimization(std::uint32_t stop);
+  void apply(const GraphSolution& solution);
+  void optimize_now();
   std::size_t match_all_revisits();
-  void optimize();
+  [[nodiscard]] PoseGraph::Reach searchable_reach() const;
+  [[nodiscard]] GraphOptimizer& optimizer() { return optimizer_ ? *optimizer_ : in_place_; }
 
   [[nodiscard]] std::vector<Candidate> candidates(std::uint32_t stop,
                                                   std::span<const UncertainPose> relative,
@@ -122,9 +155,15 @@ class Localizer : public Slam {
 
   LocalizerConfig config_;
   MatchPool& pool_;
+  GraphOptimizer* optimizer_ = nullptr;
+  InPlaceOptimizer in_place_;
   PoseGraph graph_;
   std::vector<Stop> stops_;
   std::vector<PendingLoop> pending_;
+  std::vector<PoseGraphEdge> new_loops_;  // closed, but poses and covariances are those before
+  std::optional<std::uint32_t> due_;      // step at which the running optimisation takes effect
+  std::size_t started_loops_ = 0;         // of those, in the running optimisation
+  bool optimization_wanted_ = false;
   struct Comparison {
     geometry::Pose2 T_later_earlier;  // as predicted then
     bool accepted = false;
@@ -133,9 +172,11 @@ class Localizer : public Slam {
   /// Of the sequential matches of the last stop, by the id of the older map: where a search for the
   /// next stop against the same map starts (spec A4).
   std::map<std::uint32_t, std::vector<MatchSolution>> last_solutions_;
+  std::map<std::uint32_t, std::vector<MatchSolution>> new_solutions_;  // of this stop
   std::uint64_t version_ = 0;
   std::uint64_t next_task_ = 0;
   std::uint32_t loops_since_optimization_ = 0;
+  OdometryMonitor odometry_;
   std::vector<LoopDecision> decisions_;
   Belief belief_;
   SlamCounts counts_;

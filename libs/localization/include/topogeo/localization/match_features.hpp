@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/nearest_point_grid.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -39,7 +40,11 @@ class RangeProfile {
 
  private:
   static constexpr int kBins = 720;  // half a degree
+  static int bin_of(const Eigen::Vector2d& point_laser_m);
+  [[nodiscard]] Eigen::Vector2d in_laser_frame(const Eigen::Vector2d& point_robot_m) const;
+
   geometry::Pose2 T_laser_robot_;
+  geometry::SinCos rotation_{0.0, 1.0};  // of T_laser_robot_
   std::vector<float>
       near_m_;  // smallest and largest range over a bin and its neighbours; 0: no reading
   std::vector<float> far_m_;
