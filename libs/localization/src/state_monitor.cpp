@@ -18,8 +18,8 @@ struct Logistic {
   double first;
   double second;
 };
-constexpr Logistic kMatchRight{6.0, -1.4, -2.0};     // doubt, rivalry
-constexpr Logistic kOdometryRight{4.0, -4.5, -0.2};  // contradiction, way in m
+constexpr Logistic kMatchRight{7.1, -2.2, 0.0};     // doubt, rivalry
+constexpr Logistic kOdometryRight{5.7, -8.5, 0.0};  // contradiction, way in m
 
 constexpr double kForeseen = 0.35;  // overlap from which on a match should show something in common
 constexpr std::size_t kFewPoints = 12;
@@ -27,7 +27,11 @@ constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = 0.087266463;
 constexpr double kLostBelow = 0.25;
 constexpr double kTrackingFrom = 0.5;
-constexpr double kFirmer = 0.05;  // difference of confidence that counts
+constexpr double kFirmer = 0.05;        // difference of confidence that counts
+constexpr double kDoubtfulShare = 0.3;  // matches that are not believed err together
+constexpr double kElsewhere = 30.0;     // what a place that fits better says, for each 1 of fitness
+constexpr double kMostConfident = 0.996;  // matches err together, however many agree
+constexpr std::uint32_t kOftenDoubted = 2;
 
 double value(const Logistic& l, double first, double second) {
   return 1.0 / (1.0 + geometry::exp(-(l.constant + l.first * first + l.second * second)));
@@ -132,10 +136,12 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
     }
     if (match.verdict != Verdict::kAccepted && !is_doubtful(match)) continue;
     believed |= match.verdict == Verdict::kAccepted;
-    supports.push_back({before_of(match), match_confidence(match)});
+    const bool accepted = match.verdict == Verdict::kAccepted;
+    supports.push_back(
+        {before_of(match), (accepted ? 1.0 : kDoubtfulShare) * match_confidence(match)});
   }
   if (restarted_) {
-    supports.push_back({1.0, *restarted_});
+    supports.push_back({1.0, lowered(*restarted_, contradiction(evidence))});
   } else {
     supports.push_back({confidence_.back(), odometry_confidence(evidence)});
   }
@@ -152,11 +158,15 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
     });
     confidence = std::max(confidence, lowered(support.before * (1.0 - all_wrong), against));
   }
+  confidence = std::min(confidence, kMostConfident);
+  const double elsewhere = geometry::exp(-kElsewhere * evidence.better_elsewhere);
+  confidence = confidence * elsewhere / (confidence * elsewhere + 1.0 - confidence);
   confidence_.push_back(confidence);
+  doubted_ = confidence < kLostBelow ? doubted_ + 1 : 0;
   const bool started = restarted_.has_value();
   restarted_.reset();
   belief_.confidence = confidence * covariance_confidence(evidence.covariance);
-  if (confidence < kLostBelow) {
+  if (doubted_ >= kOftenDoubted) {  // one bad scan proves nothing
     belief_.state = LocalizationState::kLost;
   } else if ((believed || started) && belief_.confidence >= kTrackingFrom) {
     belief_.state = LocalizationState::kTracking;

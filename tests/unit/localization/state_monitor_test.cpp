@@ -123,9 +123,22 @@ TEST(StateMonitor, AnInitialPoseRestartsIt) {
   for (int i = 0; i < 4; ++i) monitor.add(step({refuted(std::nullopt), refuted(std::nullopt)}));
   EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
   monitor.restart(0.9);
-  monitor.add(step({refuted(std::nullopt)}));
+  monitor.add(step({}));
   EXPECT_EQ(monitor.belief().state, LocalizationState::kTracking);
   EXPECT_NEAR(monitor.belief().confidence, 0.9, 0.05);
+  // A pose that the scan contradicts is not taken on trust.
+  monitor.restart(0.9);
+  for (int i = 0; i < 2; ++i) monitor.add(step({refuted(std::nullopt), refuted(std::nullopt)}));
+  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
+}
+
+TEST(StateMonitor, MatchesThatFitDoNotHelpWhereAnotherPlaceFitsMuchBetter) {
+  StateMonitor monitor;
+  drive(monitor, 5);
+  StepEvidence evidence = step({good(std::nullopt)});
+  evidence.better_elsewhere = 0.3;
+  for (int i = 0; i < 2; ++i) monitor.add(evidence);
+  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
 }
 
 TEST(StateMonitor, AMatchWithAStepToComeIsAnError) {

@@ -44,6 +44,9 @@ struct StepEvidence {
   std::vector<StepMatch> matches;
   std::size_t points = 0;  ///< of the scan; a laser that sees next to nothing proves nothing
   double way_m = 0.0;      ///< since the stop before
+  /// In a finished map: how much better the scan fits the best place elsewhere than the pose, as a
+  /// difference of GlobalPose::fitness; 0 when it does not, or nobody has looked.
+  double better_elsewhere = 0.0;
   /// Of the position (m^2) and heading (rad^2), relative to what the pose is to be right to: the
   /// map in a finished one, the stops that were matched while mapping.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -66,6 +69,7 @@ class StateMonitor {
  private:
   std::vector<double> confidence_;         // of each step that its pose is consistent with the map
   std::optional<double> restarted_ = 1.0;  // confidence of the next step
+  std::uint32_t doubted_ = 0;  // steps in succession that came out below kLostBelow
   Belief belief_;
 };
 

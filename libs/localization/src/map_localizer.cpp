@@ -1,0 +1,272 @@
+// The part of MapLocalizer that follows a robot whose pose is known.
+#include "topogeo/localization/map_localizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/match_gate.hpp"
+#include "topogeo/support/seed.hpp"
+
+#include "map_localizer_query.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+constexpr std::size_t kTrackingMatches = 3;
+constexpr double kFarthest_m = 12.0;  // stored stops further away are not compared
+constexpr double kGivenPoseRight = 0.9;
+constexpr double kHardlyDoubtful = 1.0;  // right matches mostly are below, wrong ones above
+
+/// A standing robot has no odometry error, but a prediction needs a covariance that can be
+/// inverted.
+Eigen::Matrix3d with_floor(Eigen::Matrix3d covariance) {
+  covariance(0, 0) += 1e-4;
+  covariance(1, 1) += 1e-4;
+  covariance(2, 2) += 1e-5;
+  return covariance;
+}
+
+UncertainPose compose(const UncertainPose& a, const UncertainPose& b) {
+  return {a.T_a_b * b.T_a_b,
+          geometry::compose_covariance(a.T_a_b, a.covariance, b.T_a_b, b.covariance)};
+}
+
+UncertainPose inverse(const UncertainPose& a) {
+  return {geometry::inverse(a.T_a_b), geometry::inverse_covariance(a.T_a_b, a.covariance)};
+}
+
+}  // namespace
+
+UncertainPose fused(const std::vector<UncertainPose>& measurements) {
+  UncertainPose best = measurements.front();
+  if (measurements.size() == 1) return best;
+  constexpr int kIterations = 3;  // only the headings are not linear
+  for (int i = 0; i < kIterations; ++i) {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    for (const UncertainPose& m : measurements) {
+      const Eigen::Matrix3d weight = m.covariance.inverse();
+      information += weight;
+      gradient += weight * geometry::difference(m.T_a_b, best.T_a_b);
+    }
+    best.covariance = information.inverse();
+    const Eigen::Vector3d step = best.covariance * gradient;
+    best.T_a_b = {best.T_a_b.x_m + step.x(), best.T_a_b.y_m + step.y(),
+                  geometry::wrap_angle(best.T_a_b.theta_rad + step.z())};
+  }
+  return best;
+}
+
+MapLocalizer::MapLocalizer(LocalizerConfig config, std::shared_ptr<const StoredMap> map,
+                           MatchPool& pool)
+    : config_(std::move(config)),
+      map_(std::move(map)),
+      pool_(pool),
+      global_({}, map_->maps, map_->trajectory) {
+  for (const topomap::LocalMap& local_map : map_->maps) {
+    hashes_.push_back(topomap::content_hash(local_map));
+    pool_.add_map(std::shared_ptr<const topomap::LocalMap>(map_, &local_map));
+  }
+}
+
+void MapLocalizer::add(const topomap::LocalMap& map) {
+  if (map.id != stops_.size()) {
+    throw std::invalid_argument("map localizer: local map " + std::to_string(map.id) +
+                                " came, expected " + std::to_string(stops_.size()));
+  }
+  Query query;
+  auto renumbered = std::make_shared<topomap::LocalMap>(map);
+  renumbered->id = first_id() + map.id;
+  query.map = renumbered;
+  query.hash = topomap::content_hash(*query.map);
+  pool_.add_map(query.map);
+  query.features = extract_scan_features(map.points, map.T_robot_laser);
+  query.profile = query.features.profile;
+  if (!stops_.empty()) {
+    query.odometry = odometry_between_stops(T_odom_last_, map, config_.odometry);
+    query.tracked = map.T_previous_robot;
+  }
+  query.odometry.covariance = with_floor(query.odometry.covariance);
+  query.way_m = std::sqrt(query.odometry.T_a_b.position_m().squaredNorm());
+  T_odom_last_ = map.T_odom_robot;
+  believed_ = 0;
+  last_step_.reset();
+  if (has_pose_) {
+    track(query);
+  } else {
+    search_step(query);
+  }
+  stops_.push_back({map.id, map.stamp_ns, pose_.T_a_b, pose_.covariance, belief_, believed_});
+}
+
+// Where the robot should be, what it should see there, and where that puts it.
+void MapLocalizer::track(const Query& query) {
+  pose_ = stops_.empty() ? pose_ : compose(pose_, query.odometry);
+  std::vector<MatchTask> tasks;
+  const std::vector<Candidate> chosen = candidates(query, pose_, kTrackingMatches);
+  for (const Candidate& candidate : chosen) {
+    MatchTask task = make_task(query, candidate.stop, pose_);
+    if (!stops_.empty()) {
+      const Pose2 T_map_tracked = stops_.back().T_map_robot * query.tracked;
+      task.initial_individuals.push_back(
+          geometry::between(T_map_tracked, global_.stops()[candidate.stop].T_map_robot));
+    }
+    tasks.push_back(std::move(task));
+  }
+  const std::vector<MatchResult> results = pool_.match(tasks);
+  StepEvidence evidence;
+  evidence.points = query.features.coarse_m.size();
+  evidence.way_m = query.way_m;
+  last_step_.emplace().predicted = pose_;
+  bool sure = false;
+  std::vector<UncertainPose> believed{pose_};
+  std::vector<UncertainPose> doubtful{pose_};
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const MatchResult& result = results[i];
+    count(result);
+    evidence.matches.push_back(step_match(tasks[i], result, chosen[i].overlap, std::nullopt));
+    last_step_->measured.push_back(measured(chosen[i].stop, result).T_a_b);
+    sure |= result.verdict == Verdict::kAccepted && doubt(result) < kHardlyDoubtful;
+    if (result.verdict == Verdict::kAccepted) {
+      believed.push_back(measured(chosen[i].stop, result));
+      ++believed_;
+    } else if (result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution) {
+      doubtful.push_back(measured(chosen[i].stop, result));
+    }
+  }
+  if (believed_ == 0) ++counts_.steps_in_doubt;
+  pose_ = fused(believed_ > 0 ? believed : doubtful);
+  evidence.covariance = pose_.covariance;
+  if (!sure) evidence.better_elsewhere = better_elsewhere(query);
+  last_step_->evidence = evidence;
+  belief_ = monitor_.add(evidence);
+  if (belief_.state != LocalizationState::kLost) return;
+  // This stop's scan is where the search begins.
+  has_pose_ = false;
+  hypotheses_.clear();
+  ++searches_;
+  propose(query);
+  weigh(query);
+}
+
+// How much better the scan fits another place of the map, if that is a place to be accepted. A
+// corridor looks like another one when nothing but the surroundings of a wrong pose is compared.
+double MapLocalizer::better_elsewhere(const Query& query) const {
+  const GlobalAnswer answer = global_.find(query.map->points, query.map->T_robot_laser);
+  if (answer.verdict != Verdict::kAccepted ||
+      same_global_place(answer.poses.front().T_map_robot, pose_.T_a_b)) {
+    return 0.0;
+  }
+  const double here = global_.fitness(query.features, pose_.T_a_b);
+  return std::max(0.0, answer.poses.front().fitness - here);
+}
+
+void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& covariance) {
+  pose_ = {T_map_robot, with_floor(covariance)};
+  has_pose_ = true;
+  hypotheses_.clear();
+  monitor_.restart(kGivenPoseRight);
+  belief_ = {LocalizationState::kAmbiguous,
+             kGivenPoseRight * covariance_confidence(pose_.covariance)};
+  if (!stops_.empty()) {
+    stops_.back().T_map_robot = pose_.T_a_b;
+    stops_.back().covariance = pose_.covariance;
+    stops_.back().belief = belief_;
+  }
+}
+
+void MapLocalizer::search() {
+  has_pose_ = false;
+  hypotheses_.clear();
+  ++searches_;
+  belief_ = {LocalizationState::kSearching, 0.0};
+}
+
+topomap::Trajectory MapLocalizer::trajectory() const {
+  topomap::Trajectory trajectory;
+  trajectory.version = stops_.size();
+  for (const LocalizedStop& stop : stops_) {
+    trajectory.stops.push_back({stop.id, stop.stamp_ns, stop.T_map_robot, stop.covariance});
+  }
+  return trajectory;
+}
+
+// The stored stops that have most in view of what the stop should see, no two of them next to each
+// other on the way.
+std::vector<MapLocalizer::Candidate> MapLocalizer::candidates(const Query& query,
+                                                              const UncertainPose& T_map_robot,
+                                                              std::size_t count) const {
+  const std::vector<Eigen::Vector2d>& points_m = query.features.coarse_m;
+  const std::size_t stride = std::max<std::size_t>(1, points_m.size() / 40);
+  const Eigen::Matrix3d& c = T_map_robot.covariance;
+  const double tolerance_m = 0.5 + 2.0 * std::sqrt(std::max(c(0, 0), c(1, 1)));
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < global_.stops().size(); ++i) {
+    const StoredStop& stop = global_.stops()[i];
+    const Pose2 T = geometry::between(stop.T_map_robot, T_map_robot.T_a_b);
+    if (T.position_m().squaredNorm() > kFarthest_m * kFarthest_m) continue;
+    const geometry::SinCos r = geometry::sincos(T.theta_rad);
+    std::size_t seen = 0;
+    std::size_t all = 0;
+    for (std::size_t k = 0; k < points_m.size(); k += stride, ++all) {
+      const Eigen::Vector2d& p = points_m[k];
+      const auto view = stop.profile.view(
+          {T.x_m + r.cos * p.x() - r.sin * p.y(), T.y_m + r.sin * p.x() + r.cos * p.y()},
+          tolerance_m);
+      if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
+    }
+    const double overlap = all == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(all);
+    if (overlap >= config_.smallest_expected_overlap) found.push_back({i, overlap});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.overlap > b.overlap; });
+  std::vector<Candidate> chosen;
+  for (const Candidate& candidate : found) {
+    if (chosen.size() == count) break;
+    const bool neighbour = std::any_of(chosen.begin(), chosen.end(), [&](const Candidate& other) {
+      return other.stop + 1 == candidate.stop || candidate.stop + 1 == other.stop;
+    });
+    if (!neighbour) chosen.push_back(candidate);
+  }
+  return chosen;
+}
+
+MatchTask MapLocalizer::make_task(const Query& query, std::size_t stop,
+                                  const UncertainPose& T_map_robot) {
+  const UncertainPose T_stored{global_.stops()[stop].T_map_robot, Eigen::Matrix3d::Zero()};
+  UncertainPose T_robot_stop = compose(inverse(T_map_robot), T_stored);
+  // A search space wider than the configuration allows is cut: the whole map is searched otherwise.
+  MatchTask task = match_task(config_, T_robot_stop);
+  task.half_width.x() = std::min(task.half_width.x(), config_.largest_half_width_m);
+  task.half_width.y() = std::min(task.half_width.y(), config_.largest_half_width_m);
+  task.task_id = next_task_++;
+  task.reference_map_id = query.map->id;
+  task.reference_hash = query.hash;
+  task.query_map_id = map_->maps[stop].id;
+  task.query_hash = hashes_[stop];
+  task.seed = support::derive_seed(config_.seed, query.map->robot_id,
+                                   {query.map->id, map_->maps[stop].id, task.task_id});
+  return task;
+}
+
+// T_map_robot by a match with a stored stop.
+UncertainPose MapLocalizer::measured(std::size_t stop, const MatchResult& result) const {
+  const UncertainPose T_stored{global_.stops()[stop].T_map_robot, Eigen::Matrix3d::Zero()};
+  return compose(T_stored, inverse(UncertainPose{result.T_reference_query, result.covariance}));
+}
+
+void MapLocalizer::count(const MatchResult& result) {
+  ++counts_.tasks;
+  counts_.evaluations += result.evaluations;
+  ++counts_.reasons[static_cast<std::size_t>(result.reason)];
+}
+
+}  // namespace topogeo::localization
