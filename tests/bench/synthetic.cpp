@@ -40,12 +40,14 @@ std::string file_name(const bench::SyntheticFloor& floor, std::uint64_t seed) {
 void tell(const std::string& floor, const SyntheticResult& r) {
   std::fprintf(stderr,
                "%s %2llu: rms %.3f m (from start %.3f, largest %.3f, odometry %.2f), heading %.2f "
-               "deg, step %.4f m %.3f deg, scale %+.4f, loops %zu/%zu, pieces %zu/%zu, closures "
+               "deg, step %.4f m %.3f deg, scale %+.4f (odometry %+.4f), loops %zu/%zu, pieces "
+               "%zu/%zu, closures "
                "%zu, false %zu, %zu stops, %.0f m, %.1f s\n",
                floor.c_str(), static_cast<unsigned long long>(r.seed), r.rms_m, r.rms_from_start_m,
                r.largest_m, r.odometry_rms_m, r.heading_rad / kDegree, r.local_m,
-               r.local_rad / kDegree, r.scale, r.loops_closed, r.loops, r.pieces_closed, r.pieces,
-               r.closures, r.false_loops.size(), r.stops, r.way_m, r.cpu_s);
+               r.local_rad / kDegree, r.scale, r.odometry_scale, r.loops_closed, r.loops,
+               r.pieces_closed, r.pieces, r.closures, r.false_loops.size(), r.stops, r.way_m,
+               r.cpu_s);
   for (const bench::FalseLoop& loop : r.false_loops) {
     std::fprintf(stderr, "    false loop %u - %u: off by %.2f m %.1f deg, places %.1f m apart\n",
                  loop.earlier_id, loop.later_id, loop.off_m, loop.off_rad / kDegree, loop.apart_m);

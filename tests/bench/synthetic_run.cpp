@@ -66,6 +66,7 @@ void compare_steps(const storage::MapDocument& document, const Stops& stops,
   double sum_m2 = 0.0;
   double sum_rad2 = 0.0;
   double way_m = 0.0;
+  double odometry_way_m = 0.0;
   double true_way_m = 0.0;
   for (std::size_t i = 1; i < stops.way_m.size(); ++i) {
     const geometry::Pose2 step = geometry::between(document.trajectory.stops[i - 1].T_map_robot,
@@ -76,12 +77,17 @@ void compare_steps(const storage::MapDocument& document, const Stops& stops,
     sum_m2 += off.head<2>().squaredNorm();
     sum_rad2 += off.z() * off.z();
     way_m += step.position_m().norm();
+    odometry_way_m += geometry::between(document.local_maps[i - 1].T_odom_robot,
+                                        document.local_maps[i].T_odom_robot)
+                          .position_m()
+                          .norm();
     true_way_m += truth.position_m().norm();
   }
   const auto steps = static_cast<double>(stops.way_m.size() - 1);
   result.local_m = std::sqrt(sum_m2 / steps);
   result.local_rad = std::sqrt(sum_rad2 / steps);
   result.scale = way_m / true_way_m - 1.0;
+  result.odometry_scale = odometry_way_m / true_way_m - 1.0;
 }
 
 bool seen_before(const Stops& stops, std::size_t stop) {

@@ -48,8 +48,9 @@ struct SyntheticResult {
   double heading_rad = 0.0;       ///< mean absolute error after the alignment
   double local_m = 0.0;           ///< rms error of a step between successive stops
   double local_rad = 0.0;
-  double scale = 0.0;     ///< corrected way over true way between stops, less 1
-  std::size_t loops = 0;  ///< true returns, see count_loops
+  double scale = 0.0;           ///< corrected way over true way between stops, less 1
+  double odometry_scale = 0.0;  ///< the same of odometry
+  std::size_t loops = 0;        ///< true returns, see count_loops
   std::size_t loops_closed = 0;
   std::size_t pieces = 0;  ///< returns cut into pieces of at most 10 m
   std::size_t pieces_closed = 0;
