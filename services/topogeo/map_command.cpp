@@ -13,6 +13,7 @@
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/pipeline/stages.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
@@ -102,7 +103,7 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   return report;
 }
 
-int map_log(const JobOptions& options) {
+int map_log(const JobOptions& options, bool stages) {
   const double start_s = support::monotonic_s();
   Interruption interruption;
   Job job = prepare(options);
@@ -121,6 +122,12 @@ int map_log(const JobOptions& options) {
   {
     const auto scope = times.measure("writing");
     pipeline::write_map_outputs(options.out, document, options.log.filename().string());
+    if (stages) {
+      std::cerr << "drawing the stages of the correction\n";
+      const Interruption::Immediate immediate(interruption);
+      pipeline::write_stage_pictures(options.out, job.config.config, document,
+                                     options.log.filename().string());
+    }
   }
 
   storage::Report report = make_report(job, run, document);
@@ -142,7 +149,11 @@ void add_map_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("map", "Map a log in one process, without DDS");
   auto options = std::make_shared<JobOptions>();
   add_log_options(*command, *options);
-  command->callback([options, &exit_code] { exit_code = map_log(*options); });
+  auto stages = std::make_shared<bool>(false);
+  command->add_flag("--stages", *stages,
+                    "also draw the map by odometry alone, after forward correction, with its "
+                    "cycles closed and at the end: stage_*.png");
+  command->callback([options, stages, &exit_code] { exit_code = map_log(*options, *stages); });
 }
 
 }  // namespace topogeo::cli

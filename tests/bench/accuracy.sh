@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Maps every log of a data folder with one process and prints how far odometry and the corrected
 # trajectory are from the reference, as the accuracy table of RESULTS.md.
-#   tests/bench/accuracy.sh EVALUATION_TOOL [DATA_FOLDER]
+#   tests/bench/accuracy.sh [--mode graph|thesis] EVALUATION_TOOL [DATA_FOLDER]
+# --mode maps with localizer.mode set so; default: the default configuration.
 # EVALUATION_TOOL compares two TUM trajectories and prints JSON (evaluate_trajectory.py).
 # DATA_FOLDER holds X.clf.gz, X.ref.tum and X.relations; default ../shared/data beside the project.
 # TOPOGEO names the executable; default build/bin/topogeo.
@@ -12,7 +13,14 @@ topogeo=${TOPOGEO:-$root/build/bin/topogeo}
 
 die() { printf 'accuracy: %s\n' "$*" >&2; exit 1; }
 
-if [ $# -lt 1 ] || [ $# -gt 2 ]; then die "usage: accuracy.sh EVALUATION_TOOL [DATA_FOLDER]"; fi
+mode=
+if [ "${1-}" = --mode ]; then
+  mode=${2-}
+  case $mode in graph | thesis) shift 2 ;; *) die "--mode '$mode': expected graph or thesis" ;; esac
+fi
+if [ $# -lt 1 ] || [ $# -gt 2 ]; then
+  die "usage: accuracy.sh [--mode graph|thesis] EVALUATION_TOOL [DATA_FOLDER]"
+fi
 tool=$1
 data=${2:-$root/../shared/data}
 [ -r "$tool" ] || die "cannot read the evaluation tool '$tool'"
@@ -23,6 +31,11 @@ logs=("$data"/*.clf.gz)
 
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+configuration=()
+if [ -n "$mode" ]; then
+  printf 'localizer:\n  mode: %s\n' "$mode" > "$out/config.yaml"
+  configuration=(--config "$out/config.yaml")
+fi
 
 # One row: log, which trajectory, then the figures of the tool's JSON.
 row() {
@@ -49,8 +62,9 @@ TIMEFORMAT='%1R / %1U'
 for log in "${logs[@]}"; do
   [ -r "${log%.clf.gz}.ref.tum" ] || continue
   folder=$out/$(basename "${log%.clf.gz}")
-  { time "$topogeo" map --log "$log" --out "$folder" > "$out/said" 2>&1; } 2> "$out/time" ||
+  { time "$topogeo" map --log "$log" --out "$folder" "${configuration[@]}" \
+    > "$out/said" 2>&1; } 2> "$out/time" ||
     { cat "$out/said" >&2; die "topogeo failed on '$log'"; }
   row "$log" odometry "$folder/odometry.tum" -
-  row "$log" corrected "$folder/trajectory.tum" "$(tail -n 1 "$out/time")"
+  row "$log" "${mode:-corrected}" "$folder/trajectory.tum" "$(tail -n 1 "$out/time")"
 done

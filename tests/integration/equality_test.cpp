@@ -1,6 +1,7 @@
 // A run of all services over DDS gives the bytes of a run in one process, whatever the number of
 // workers and whatever happens to them.
 #include <csignal>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -19,21 +20,25 @@ class EqualityTest : public testing::Test {
  protected:
   void map(const std::string& world) {
     write_log(world, log_);
-    Program program(scratch_, "topogeo", {"map", "--log", log_, "--out", scratch_ / "map"});
+    std::vector<std::string> words{"map", "--log", log_, "--out", scratch_ / "map"};
+    words.insert(words.end(), configuration_.begin(), configuration_.end());
+    Program program(scratch_, "topogeo", words);
     ASSERT_EQ(program.wait(), 0) << program.err();
     ASSERT_FALSE(read_file(scratch_ / "map" / "map.pb").empty());
   }
 
   std::vector<std::string> run_words(const std::string& out, int workers) {
-    return {"run",
-            "--log",
-            log_,
-            "--out",
-            scratch_ / out,
-            "--workers",
-            std::to_string(workers),
-            "--domain",
-            own_domain()};
+    std::vector<std::string> words{"run",
+                                   "--log",
+                                   log_,
+                                   "--out",
+                                   scratch_ / out,
+                                   "--workers",
+                                   std::to_string(workers),
+                                   "--domain",
+                                   own_domain()};
+    words.insert(words.end(), configuration_.begin(), configuration_.end());
+    return words;
   }
 
   void expect_same_bytes(const std::string& out) {
@@ -46,6 +51,7 @@ class EqualityTest : public testing::Test {
 
   Scratch scratch_;
   std::string log_ = scratch_ / "log.clf.gz";
+  std::vector<std::string> configuration_;  // words for both commands
 };
 
 class EqualityByWorkersTest : public EqualityTest, public testing::WithParamInterface<int> {};
@@ -103,6 +109,19 @@ TEST_F(EqualityTest, SecondRunReplacesTheResultsOfTheFirst) {
     Program run(scratch_, "topogeo", run_words("run", 1));
     ASSERT_EQ(run.wait(), 0) << run.err();
     expect_same_bytes("run");
+  }
+}
+
+// The source's own algorithm instead of the pose graph.
+TEST_F(EqualityTest, ModeThesis) {
+  std::ofstream(scratch_ / "thesis.yaml") << "localizer:\n  mode: thesis\n";
+  configuration_ = {"--config", scratch_ / "thesis.yaml"};
+  map("room");
+  for (const int workers : {0, 2}) {
+    const std::string out = "run" + std::to_string(workers);
+    Program run(scratch_, "topogeo", run_words(out, workers));
+    ASSERT_EQ(run.wait(), 0) << run.err();
+    expect_same_bytes(out);
   }
 }
 

@@ -34,6 +34,14 @@ bool ThesisLocalizer::close_cycles(std::uint32_t stop) {
     if (!close_cycle(stop, seen)) break;
     moved = true;
   }
+  // What did not close stays new to the next stop. Else its matches there would pass for forward
+  // ones and move the robot away from the poses that it came by.
+  const std::vector<std::uint32_t> fresh =
+      newly_seen(stops_[stop].overlaps, stops_[stop - 1].overlaps, stop - 1);
+  std::erase_if(stops_[stop].overlaps, [&](std::uint32_t id) {
+    return !recent(id, stop) && std::binary_search(fresh.begin(), fresh.end(), id) &&
+           store_.find(id, stop).empty();
+  });
   return moved;
 }
 

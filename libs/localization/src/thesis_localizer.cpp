@@ -218,7 +218,8 @@ void ThesisLocalizer::forward(std::uint32_t stop) {
   const std::vector<std::uint32_t> fresh =
       newly_seen(now.overlaps, stops_[stop - 1].overlaps, stop - 1);
   std::erase_if(with, [&](const Neighbour& n) {
-    return !recent(n.id, stop) && std::binary_search(fresh.begin(), fresh.end(), n.id);
+    return !recent(n.id, stop) &&
+           (config_.revisit_matches == 0 || std::binary_search(fresh.begin(), fresh.end(), n.id));
   });
   std::stable_sort(with.begin(), with.end(), [&](const Neighbour& a, const Neighbour& b) {
     const bool previous_a = a.id + 1 == stop;

@@ -63,7 +63,6 @@ TEST_F(ConfigTest, OneKeyReachesEveryVariableItStandsFor) {
                        << "odometry:\n  heading_rad2_per_m: 0.125\n";
   const Config config = load_config(file_).config;
   EXPECT_EQ(config.local_mapper.voronoi.range_limit_m, 6.5);
-  EXPECT_EQ(config.local_mapper.local_map.range_limit_m, 6.5);
   EXPECT_EQ(config.local_mapper.T_robot_laser.theta_rad, 0.25);
   EXPECT_EQ(config.local_mapper.voronoi.forward_rad, -0.25);
   EXPECT_EQ(config.localizer.odometry.heading_rad2_per_m, 0.125);
