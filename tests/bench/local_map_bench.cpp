@@ -28,7 +28,7 @@ void perceive(benchmark::State& state, double range_limit_m, double resolution_m
   config.range_limit_m = range_limit_m;
   config.resolution_m = resolution_m;
   topomap::LocalMapConfig map_config;
-  map_config.range_limit_m = range_limit_m;
+  map_config.points_range_m = range_limit_m;
   const scan::Scan scan = junction_scan();
   voronoi::LocalVoronoi voronoi{config};
   voronoi::LocalVoronoiDiagram diagram;

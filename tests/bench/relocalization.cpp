@@ -63,7 +63,7 @@ Row ask(const storage::MapDocument& map, const std::vector<Question>& questions,
   Row row;
   for (const Question& question : questions) {
     const auto points = topomap::scan_points(*question.scan, config.local_mapper.T_robot_laser,
-                                             config.local_mapper.local_map.range_limit_m);
+                                             config.local_mapper.local_map.points_range_m);
     const double start_s = support::process_cpu_s();
     const localization::GlobalAnswer answer =
         localizer.find(points, config.local_mapper.T_robot_laser);

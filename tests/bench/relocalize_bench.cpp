@@ -32,7 +32,8 @@ void relocalize_csail(benchmark::State& state) {
     run.add(*scan);
     constexpr std::size_t kEvery = 37;
     if (i % kEvery == 0) {
-      scans.push_back(topomap::scan_points(*scan, {}, config.local_mapper.local_map.range_limit_m));
+      scans.push_back(
+          topomap::scan_points(*scan, {}, config.local_mapper.local_map.points_range_m));
     }
   }
   const storage::MapDocument map = run.finish();
