@@ -11,8 +11,6 @@
 
 namespace topogeo::localization {
 
-using geometry::Pose2;
-
 namespace {
 
 [[noreturn]] void refuse(const std::string& what) {
