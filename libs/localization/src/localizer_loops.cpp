@@ -58,7 +58,8 @@ void Localizer::add_loop(const Answer& answer) {
     decide(edge, LoopOutcome::kUnconfirmed, Reason::kNone, answer.fitness);
     const Pose2 moved = correction.T_map_corrected * geometry::inverse(correction.T_map_now);
     pending_.push_back({edge, moved});
-    compared_.erase({edge.from, edge.to});  // it is not in the graph, so it may be compared again
+    stops_[edge.to].compared.erase(
+        edge.from);  // it is not in the graph, so it may be compared again
     ++counts_.unconfirmed_loops;
     return;
   }

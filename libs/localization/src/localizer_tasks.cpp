@@ -24,6 +24,8 @@ MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_refer
   const Eigen::Vector3d smallest(config.genetic.resolution_m, config.genetic.resolution_m,
                                  config.genetic.resolution_rad);
   task.half_width = half.cwiseMax(smallest);
+  task.half_width.x() = std::min(task.half_width.x(), config.largest_half_width_m);
+  task.half_width.y() = std::min(task.half_width.y(), config.largest_half_width_m);
   task.half_width.z() = std::min(task.half_width.z(), config.largest_half_width_rad);
   task.genetic = config.genetic;
   task.fitness_form = config.fitness_form;
@@ -41,16 +43,19 @@ std::vector<Localizer::Candidate> Localizer::candidates(std::uint32_t stop,
   for (std::uint32_t i = recent ? middle : 0; i < (recent ? stop : middle); ++i) {
     // In this order, because most stops of a long log are far away.
     const Eigen::Vector2d apart_m = graph_.poses()[i].position_m() - T_map_robot.position_m();
-    if (apart_m.squaredNorm() > kFarthest_m * kFarthest_m || !searchable(relative[i]) ||
-        !worth_comparing(i, stop, relative[i].T_a_b)) {
+    // The stop just before is worth a task in any case, however bad odometry is by now.
+    const bool always = recent && i + 1 == stop;
+    if (!always && (apart_m.squaredNorm() > kFarthest_m * kFarthest_m || !searchable(relative[i]) ||
+                    !worth_comparing(i, stop, relative[i].T_a_b))) {
       continue;
     }
-    const double overlap = expected_overlap(stops_[stop], stops_[i], relative[i]);
-    const bool always =
-        recent && i + 1 == stop;  // the stop just before is worth a task in any case
-    if (always || overlap >= config_.smallest_expected_overlap) {
-      found.push_back({i, always ? 2.0 : overlap});
+    if (always) {
+      found.push_back({i, 2.0});
+      continue;
     }
+    const double least = config_.smallest_expected_overlap;
+    const double overlap = expected_overlap(stops_[stop], stops_[i], relative[i], least);
+    if (overlap >= least) found.push_back({i, overlap});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Candidate& a, const Candidate& b) { return a.overlap > b.overlap; });
@@ -70,8 +75,8 @@ std::vector<Localizer::Candidate> Localizer::candidates(std::uint32_t stop,
 // A rejected pair gets another chance once an optimisation has changed what is expected of it.
 bool Localizer::worth_comparing(std::uint32_t earlier, std::uint32_t later,
                                 const Pose2& T_later_earlier) const {
-  const auto found = compared_.find({earlier, later});
-  if (found == compared_.end()) return true;
+  const auto found = stops_[later].compared.find(earlier);
+  if (found == stops_[later].compared.end()) return true;
   if (found->second.accepted) return false;
   constexpr double kMoved_m = 0.3;
   constexpr double kMoved_rad = 0.05;
@@ -105,20 +110,23 @@ bool Localizer::searchable(const UncertainPose& T_reference_query) const {
 }
 
 double Localizer::expected_overlap(const Stop& reference, const Stop& query,
-                                   const UncertainPose& T_reference_query) const {
+                                   const UncertainPose& T_reference_query, double least) const {
   if (query.outline_m.empty()) return 0.0;
   const Eigen::Matrix3d& covariance = T_reference_query.covariance;
   const double tolerance_m = 0.5 + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
-  std::size_t seen = 0;
+  const auto points = static_cast<double>(query.outline_m.size());
+  double unseen = 0.0;
   const Pose2& T = T_reference_query.T_a_b;
   const geometry::SinCos r = geometry::sincos(T.theta_rad);
   for (const Eigen::Vector2d& p : query.outline_m) {
     const auto view = reference.profile.view(
         {T.x_m + r.cos * p.x() - r.sin * p.y(), T.y_m + r.sin * p.x() + r.cos * p.y()},
         tolerance_m);
-    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
+    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) continue;
+    unseen += 1.0;
+    if (points - unseen < least * points) return 0.0;
   }
-  return static_cast<double>(seen) / static_cast<double>(query.outline_m.size());
+  return (points - unseen) / points;
 }
 
 MatchTask Localizer::make_task(std::uint32_t reference, std::uint32_t query,
@@ -142,7 +150,7 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
     const MatchTask& task = tasks[i];
     const MatchResult& result = results[i];
     const bool accepted = result.verdict == Verdict::kAccepted;
-    compared_[{task.query_map_id, task.reference_map_id}] = {task.T_reference_query, accepted};
+    stops_[task.reference_map_id].compared[task.query_map_id] = {task.T_reference_query, accepted};
     if (kind == EdgeKind::kSequential) new_solutions_[task.query_map_id] = result.solutions;
     ++counts_.tasks;
     counts_.evaluations += result.evaluations;

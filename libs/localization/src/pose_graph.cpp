@@ -25,8 +25,17 @@ struct Enough {};
 class ReachVisitor : public boost::default_dijkstra_visitor {
  public:
   ReachVisitor(const std::vector<double>& cost, const PoseGraph::Reach& reach,
-               std::vector<std::uint32_t>& order)
-      : cost_(&cost), reach_(reach), order_(&order), wanted_(cost.size() - reach.first_stop) {}
+               std::vector<std::uint32_t>& order, std::vector<std::uint32_t>& link_to)
+      : cost_(&cost),
+        reach_(reach),
+        order_(&order),
+        link_to_(&link_to),
+        wanted_(cost.size() - reach.first_stop) {}
+
+  template <class Edge, class Graph>
+  void edge_relaxed(const Edge& edge, const Graph& graph) {
+    (*link_to_)[boost::target(edge, graph)] = graph[edge].value;
+  }
 
   template <class Graph>
   void examine_vertex(std::size_t stop, const Graph& /*graph*/) {
@@ -38,7 +47,8 @@ class ReachVisitor : public boost::default_dijkstra_visitor {
  private:
   const std::vector<double>* cost_;
   PoseGraph::Reach reach_;
-  std::vector<std::uint32_t>* order_;  // of the stops reached, nearest first
+  std::vector<std::uint32_t>* order_;    // of the stops reached, nearest first
+  std::vector<std::uint32_t>* link_to_;  // by which each is reached
   std::size_t wanted_;
 };
 
@@ -159,8 +169,7 @@ double PoseGraph::path_cost(const Eigen::Matrix3d& c) {
 }
 
 std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin, const Reach& reach) const {
-  std::vector<std::uint32_t> before(poses_.size());
-  for (std::uint32_t i = 0; i < before.size(); ++i) before[i] = i;
+  std::vector<std::uint32_t> link_to(poses_.size());
   std::vector<double> cost(poses_.size(), std::numeric_limits<double>::max());
   std::vector<boost::default_color_type> colour(poses_.size(), boost::white_color);
   const auto index = boost::get(boost::vertex_index, network_);
@@ -171,10 +180,10 @@ std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin, const Re
   std::vector<std::uint32_t> order;
   try {
     boost::dijkstra_shortest_paths_no_init(
-        network_, origin, boost::make_iterator_property_map(before.begin(), index),
+        network_, origin, boost::dummy_property_map(),
         boost::make_iterator_property_map(cost.begin(), index),
         boost::make_function_property_map<Network::edge_descriptor>(cost_of), index, std::less<>(),
-        boost::closed_plus<double>(), 0.0, ReachVisitor(cost, reach, order),
+        boost::closed_plus<double>(), 0.0, ReachVisitor(cost, reach, order, link_to),
         boost::make_iterator_property_map(colour.begin(), index));
   } catch (const Enough&) {
   }
@@ -191,8 +200,8 @@ std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin, const Re
       relative[stop].covariance.setZero();
       continue;
     }
-    const std::uint32_t previous = before[stop];
-    const Link& link = links_[link_of_.at(std::minmax(previous, stop))];
+    const Link& link = links_[link_to[stop]];
+    const std::uint32_t previous = link.from == stop ? link.to : link.from;
     const Pose2 T_previous_stop = geometry::between(poses_[previous], poses_[stop]);
     const Eigen::Matrix3d covariance =
         link.from == previous

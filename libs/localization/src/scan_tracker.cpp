@@ -18,8 +18,13 @@ void ScanTracker::start(std::span<const ScanPoint> points, const Pose2& T_robot_
 }
 
 TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T_odom_robot) {
-  last_ = advance(last_, geometry::between(T_odom_last_, T_odom_robot), config_.odometry);
+  const UncertainPose before = last_;
+  const UncertainPose step =
+      advance({}, geometry::between(T_odom_last_, T_odom_robot), config_.odometry);
   T_odom_last_ = T_odom_robot;
+  last_ = {before.T_a_b * step.T_a_b,
+           geometry::compose_covariance(before.T_a_b, before.covariance, step.T_a_b,
+                                        monitor_.widened(step.covariance))};
   Eigen::Matrix3d covariance = last_.covariance;
   covariance(0, 0) += 1e-4;  // a standing robot: nothing new from odometry, but invertible
   covariance(1, 1) += 1e-4;
@@ -34,6 +39,12 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
                        refined.inliers >= config_.smallest_inliers &&
                        error.dot(prior.information * error) <= config_.largest_mahalanobis2;
   if (matched) {
+    const Eigen::Matrix3d of_step = geometry::compose_covariance(
+        before.T_a_b, Eigen::Matrix3d::Zero(), step.T_a_b, step.covariance);
+    if (refined.information.determinant() > 0.0) {
+      monitor_.add({last_.T_a_b, of_step},
+                   {T, refined.information.inverse() + before.covariance});
+    }
     last_.T_a_b = T;
     last_.covariance = (refined.information + prior.information).inverse();
   }

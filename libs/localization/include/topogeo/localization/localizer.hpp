@@ -88,6 +88,10 @@ class Localizer : public Slam {
   [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
 
  private:
+  struct Comparison {
+    geometry::Pose2 T_later_earlier;  // as predicted then
+    bool accepted = false;
+  };
   struct Stop {
     std::shared_ptr<const topomap::LocalMap> map;
     std::uint64_t hash = 0;
@@ -95,6 +99,7 @@ class Localizer : public Slam {
     RangeProfile profile;
     std::vector<Eigen::Vector2d> outline_m;  // some of its points, to foresee overlap
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    std::map<std::uint32_t, Comparison> compared;  // with earlier stops, by id
   };
   struct Candidate {
     std::uint32_t id = 0;
@@ -145,8 +150,9 @@ class Localizer : public Slam {
   [[nodiscard]] std::vector<Candidate> candidates(std::uint32_t stop,
                                                   std::span<const UncertainPose> relative,
                                                   bool recent, std::uint32_t count) const;
+  /// Share of the query's outline that the reference should see; 0 when that is below `least`.
   [[nodiscard]] double expected_overlap(const Stop& reference, const Stop& query,
-                                        const UncertainPose& T_reference_query) const;
+                                        const UncertainPose& T_reference_query, double least) const;
   [[nodiscard]] bool worth_comparing(std::uint32_t earlier, std::uint32_t later,
                                      const geometry::Pose2& T_later_earlier) const;
   [[nodiscard]] bool searchable(const UncertainPose& T_reference_query) const;
@@ -164,11 +170,6 @@ class Localizer : public Slam {
   std::optional<std::uint32_t> due_;      // step at which the running optimisation takes effect
   std::size_t started_loops_ = 0;         // of those, in the running optimisation
   bool optimization_wanted_ = false;
-  struct Comparison {
-    geometry::Pose2 T_later_earlier;  // as predicted then
-    bool accepted = false;
-  };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Comparison> compared_;  // (earlier, later)
   /// Of the sequential matches of the last stop, by the id of the older map: where a search for the
   /// next stop against the same map starts (spec A4).
   std::map<std::uint32_t, std::vector<MatchSolution>> last_solutions_;

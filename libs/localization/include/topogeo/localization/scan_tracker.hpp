@@ -7,6 +7,7 @@
 
 #include "topogeo/localization/fitness.hpp"
 #include "topogeo/localization/odometry_model.hpp"
+#include "topogeo/localization/odometry_monitor.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {
@@ -41,6 +42,7 @@ class ScanTracker {
   Reference stop_;
   UncertainPose last_;  // pose of the last scan in the frame of the stop
   geometry::Pose2 T_odom_last_;
+  OdometryMonitor monitor_;
 };
 
 }  // namespace topogeo::localization
