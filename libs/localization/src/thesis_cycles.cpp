@@ -17,6 +17,7 @@ bool ThesisLocalizer::close_cycles(std::uint32_t stop) {
     const std::vector<UncertainPose> relative = graph_.relative_to(stop);
     std::vector<Neighbour> seen = neighbours(stop, graph_.poses()[stop], relative);
     std::vector<std::uint32_t> overlaps;
+    overlaps.reserve(seen.size());
     for (const Neighbour& neighbour : seen) overlaps.push_back(neighbour.id);
     stops_[stop].overlaps = overlaps;
     const std::vector<std::uint32_t> fresh =

@@ -167,6 +167,7 @@ struct Line {
   }
   void add(std::uint32_t later, const std::vector<std::pair<double, double>>& step_and_fitness) {
     std::vector<RelativeSolution> found;
+    found.reserve(step_and_fitness.size());
     for (const auto& [step_m, fitness] : step_and_fitness) {
       found.push_back({{step_m, 0.0, 0.0}, covariance_of(0.05, 0.01), fitness});
     }
