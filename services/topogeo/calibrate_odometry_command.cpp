@@ -1,14 +1,12 @@
 // topogeo calibrate-odometry: how wrong the odometry of a robot is, from one of its logs.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,19 +14,14 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/localization/localizer.hpp"
-#include "topogeo/localization/matcher.hpp"
 #include "topogeo/localization/odometry_calibration.hpp"
 #include "topogeo/localization/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
-#include "topogeo/pipeline/local_mapper.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
-#include "topogeo/support/cpu_time.hpp"
-#include "topogeo/support/progress_bar.hpp"
 
+#include "calibration_log.hpp"
 #include "commands.hpp"
 #include "job.hpp"
 
@@ -38,10 +31,6 @@ namespace {
 using localization::LocalMaps;
 using localization::NoiseParameter;
 using localization::OdometryCalibration;
-
-/// Accepted matches for each stop, at most: enough that motions of one to six metres occur. Closing
-/// loops would cost as much again and says nothing of single steps.
-constexpr std::uint32_t kRecentMatches = 6;
 
 struct CalibrateOptions {
   std::filesystem::path log;
@@ -53,36 +42,27 @@ struct CalibrateOptions {
 /// All that is read before the work starts.
 struct Inputs {
   pipeline::LoadedConfig config;
-  scan::CarmenLogReader reader;
-  std::uint64_t laser_lines = 0;
+  OpenLog log;
   std::vector<topomap::StampedPose> reference;
 };
 
-Inputs read_inputs(const CalibrateOptions& options) {
-  pipeline::LoadedConfig config;
+std::vector<topomap::StampedPose> read_reference(const CalibrateOptions& options) {
+  if (!options.reference) return {};
   try {
-    config = pipeline::load_config(options.config);
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-  if (options.out) {
-    const auto directory = std::filesystem::absolute(*options.out).parent_path();
-    if (!std::filesystem::is_directory(directory)) {
-      throw std::runtime_error(options.out->string() + ": its directory does not exist");
-    }
-    support::check_writable_directory(directory);
-  }
-  try {
-    std::vector<topomap::StampedPose> reference;
-    if (options.reference) reference = storage::read_trajectory_tum(*options.reference);
+    auto reference = storage::read_trajectory_tum(*options.reference);
     std::stable_sort(reference.begin(), reference.end(),
                      [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
-    scan::CarmenLogReader reader(options.log, config.config.log);
-    return {std::move(config), std::move(reader), scan::count_scans(options.log),
-            std::move(reference)};
+    return reference;
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
+}
+
+Inputs read_inputs(const CalibrateOptions& options) {
+  pipeline::LoadedConfig config = load_for_calibration(options.config, options.out);
+  auto reference = read_reference(options);
+  OpenLog log = open_log(options.log, config.config.log);
+  return {std::move(config), std::move(log), std::move(reference)};
 }
 
 /// The motions of a log as measured, and what people should know of where they come from.
@@ -92,48 +72,9 @@ struct Measured {
   std::string yardstick;
 };
 
-class Bar {
- public:
-  Bar(const char* label, const char* unit)
-      : bar_(std::cerr, support::stderr_is_terminal(), label, unit),
-        start_s_(support::monotonic_s()) {}
-  void update(std::uint64_t done, std::uint64_t total) {
-    bar_.update(done, total, support::monotonic_s() - start_s_);
-    done_ = done;
-  }
-  void finish() { bar_.finish(done_, done_, support::monotonic_s() - start_s_); }
-
- private:
-  support::ProgressBar bar_;
-  double start_s_;
-  std::uint64_t done_ = 0;
-};
-
-/// Makes the local maps of the log and gives each to `use`.
-template <typename Use>
-LocalMaps make_maps(Inputs& inputs, const char* label, const Use& use) {
-  LocalMaps maps;
-  const auto take = [&](std::optional<topomap::LocalMap> map) {
-    if (!map) return;
-    maps.push_back(std::make_shared<const topomap::LocalMap>(std::move(*map)));
-    use(maps.back());
-  };
-  Bar bar(label, "scans");
-  pipeline::LocalMapper mapper(inputs.config.config.local_mapper, "robot");
-  std::uint64_t done = 0;
-  while (const std::optional<scan::Scan> scan = inputs.reader.next()) {
-    take(mapper.add(*scan));
-    bar.update(++done, inputs.laser_lines);
-  }
-  take(mapper.finish());
-  bar.finish();
-  tell_skipped(inputs.reader.statistics());
-  return maps;
-}
-
 Measured measure_by_reference(Inputs& inputs, const std::filesystem::path& reference) {
   Measured measured;
-  measured.maps = make_maps(inputs, "following", [](const auto&) {});
+  measured.maps = make_maps(inputs.config.config, inputs.log, "following", [](const auto&) {});
   const double longest_way_m = inputs.config.config.localizer.recent_way_m;
   measured.motions =
       localization::motions_from_reference(measured.maps, inputs.reference, longest_way_m);
@@ -147,24 +88,9 @@ Measured measure_by_reference(Inputs& inputs, const std::filesystem::path& refer
 }
 
 Measured measure_by_matches(Inputs& inputs) {
-  localization::LocalizerConfig config = inputs.config.config.localizer;
-  config.recent_matches = std::max(config.recent_matches, kRecentMatches);
-  config.revisit_matches = 0;
-  config.final_passes = 0;
-  localization::InProcessPool searching;
-  localization::RecordingPool pool(searching);
-  localization::Localizer localizer(config, pool);
-  Measured measured;
-  measured.maps = make_maps(inputs, "matching", [&](const auto& map) { localizer.add(map); });
-  localizer.finish();
-  const localization::MatchedMotions matched =
-      localization::motions_from_matches(measured.maps, pool.accepted(), localizer.trajectory());
-  measured.motions = matched.motions;
-  measured.yardstick = fmt::format(
-      "{} matches of stops up to {:g} m apart; left out: {} that the others contradict, {} that "
-      "the scans do not fix",
-      matched.motions.size(), config.recent_way_m, matched.contradicted, matched.unrefined);
-  return measured;
+  MatchedLog log = match_log(inputs.config.config, inputs.log);
+  return {std::move(log.maps), log.matched.motions,
+          describe_matches(inputs.config.config, log.matched)};
 }
 
 OdometryCalibration calibrate(const CalibrateOptions& options, const Inputs& inputs,
@@ -247,47 +173,24 @@ void print_systematic(std::ostream& out, const localization::SystematicErrors& e
   line("yaw", errors.yaw_rad, kDegrees, "degrees from laser.yaw_rad to where it looks");
 }
 
-void print_yaml(std::ostream& out, const localization::OdometryNoise& noise) {
-  out << "odometry:\n";
+std::string yaml_block(const localization::OdometryNoise& noise) {
+  std::string block = "odometry:\n";
   for (const NoiseParameter& parameter : localization::kOdometryParameters) {
-    out << "  " << parameter.key << ": " << digits(noise.*parameter.field) << '\n';
+    block += fmt::format("  {}: {}\n", parameter.key, digits(noise.*parameter.field));
   }
-}
-
-/// A configuration that `topogeo map` takes: that of --config with the values found, or them alone.
-std::string configuration(const CalibrateOptions& options,
-                          const localization::OdometryNoise& noise) {
-  std::ostringstream block;
-  block << "# Odometry of " << options.log.filename().string()
-        << ", by topogeo calibrate-odometry.\n";
-  print_yaml(block, noise);
-  if (!options.config) return block.str();
-  pipeline::Config config;
-  const support::ConfigSchema schema = pipeline::describe(config);
-  support::load_yaml_file(*options.config, schema);
-  support::load_yaml_text(block.str(), "the values found", schema);
-  std::ostringstream whole;
-  support::write_yaml(schema, whole);
-  return whole.str();
+  return block;
 }
 
 int calibrate_log(const CalibrateOptions& options) {
   Inputs inputs = read_inputs(options);
   const Measured measured = options.reference ? measure_by_reference(inputs, *options.reference)
                                               : measure_by_matches(inputs);
+  tell_skipped(inputs.log.reader.statistics());
   const OdometryCalibration found = calibrate(options, inputs, measured);
 
-  double way_m = 0.0;
-  double turn_rad = 0.0;
-  for (const auto& stretch : localization::odometry_stretches(measured.maps)) {
-    for (const geometry::Pose2& step : stretch) {
-      way_m += std::sqrt(step.position_m().squaredNorm());
-      turn_rad += std::fabs(step.theta_rad);
-    }
-  }
-  std::cout << fmt::format("{}: {} stops, {:.1f} m of way, {:.1f} rad of turn\n",
-                           options.log.filename().string(), measured.maps.size(), way_m, turn_rad)
-            << measured.yardstick << fmt::format("; {} outlying\n", found.outlying)
+  const std::string name = options.log.filename().string();
+  std::cout << fmt::format("{}: {}\n", name, describe_drive(measured.maps)) << measured.yardstick
+            << fmt::format("; {} outlying\n", found.outlying)
             << fmt::format("these measurements err {:.2f} times as much as they state\n\n",
                            found.measurement_scale);
   print_table(std::cout, inputs, found);
@@ -295,9 +198,12 @@ int calibrate_log(const CalibrateOptions& options) {
   std::cout << '\n';
   print_systematic(std::cout, found.systematic);
   std::cout << '\n';
-  print_yaml(std::cout, found.noise);
+  const std::string block = yaml_block(found.noise);
+  std::cout << block;
   if (options.out) {
-    support::write_file_atomically(*options.out, configuration(options, found.noise));
+    const std::string comment = "Odometry of " + name + ", by topogeo calibrate-odometry.";
+    support::write_file_atomically(*options.out,
+                                   configuration_with(block, comment, options.config));
     std::cout << "written to " << options.out->string() << '\n';
   }
   return service::kOk;

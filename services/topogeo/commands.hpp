@@ -15,6 +15,7 @@ void add_workers_command(CLI::App& app, int& exit_code);
 void add_plan_command(CLI::App& app, int& exit_code);
 void add_dvl_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app, int& exit_code);
+void add_calibrate_laser_command(CLI::App& app, int& exit_code);
 void add_calibrate_odometry_command(CLI::App& app, int& exit_code);
 void add_compare_command(CLI::App& app, int& exit_code);
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/relations.hpp"
@@ -34,6 +35,7 @@ struct CompareOptions {
   std::filesystem::path estimate;
   std::filesystem::path reference;
   std::optional<std::filesystem::path> relations;
+  std::optional<std::filesystem::path> config;  ///< for the mounting of the laser
   double max_apart_s = 0.05;
   bool json = false;
 };
@@ -43,6 +45,15 @@ struct Figures {
   std::optional<RelationsError> relations;
 };
 
+geometry::Pose2 laser_of(const std::optional<std::filesystem::path>& config) {
+  if (!config) return {};
+  try {
+    return pipeline::load_config(*config).config.local_mapper.T_robot_laser;
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
 std::vector<topomap::StampedPose> read_poses(const std::filesystem::path& file) {
   std::vector<topomap::StampedPose> poses = storage::read_trajectory_tum(file);
   if (poses.empty()) throw std::runtime_error(file.string() + ": has no poses");
@@ -50,8 +61,10 @@ std::vector<topomap::StampedPose> read_poses(const std::filesystem::path& file) 
 }
 
 Figures figures_of(const CompareOptions& options) {
+  const geometry::Pose2 T_robot_laser = laser_of(options.config);
   try {
-    const std::vector<topomap::StampedPose> estimate = read_poses(options.estimate);
+    std::vector<topomap::StampedPose> estimate = read_poses(options.estimate);
+    for (topomap::StampedPose& pose : estimate) pose.pose = pose.pose * T_robot_laser;
     const std::vector<topomap::StampedPose> reference = read_poses(options.reference);
     std::optional<RelationsError> relations;
     if (options.relations) {
@@ -161,9 +174,18 @@ void add_compare_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, 3600.0))
       ->type_name("SECONDS")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--config", options->config,
+          "configuration (YAML): the reference is of the laser, which it says where it sits")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "print JSON, unrounded");
   command->footer(
-      "What is printed (metres, degrees; both trajectories of the same point of the robot):\n"
+      "Both trajectories must be of the same point of the robot. topogeo writes poses of the "
+      "point\n"
+      "that odometry speaks of; many references are of the laser: where laser.x_m, y_m or yaw_rad\n"
+      "are configured, name that configuration with --config to compare the poses of the laser.\n"
+      "What is printed (metres, degrees):\n"
       "  matched    share of the reference poses that the estimate has, and the way between them\n"
       "  ate        root mean square distance after the best rigid alignment\n"
       "  local      mean error from each pose to the next\n"

@@ -93,6 +93,22 @@ TEST_F(CompareTest, TheLargestTimeApartCanBeSet) {
   EXPECT_EQ(compare({estimate_, reference_, "--max-dt", "-1"}), 2);
 }
 
+TEST_F(CompareTest, AConfigurationMovesTheEstimateToTheLaser) {
+  // The robot turns about its own origin, the laser 0.4 m in front of it goes round a circle.
+  std::ofstream(estimate_) << "10 0 0 0 0 0 0 1\n11 0 0 0 0 0 0.707106781 0.707106781\n"
+                              "12 0 0 0 0 0 1 0\n";
+  std::ofstream(reference_) << "10 0.4 0 0 0 0 0 1\n11 0 0.4 0 0 0 0.707106781 0.707106781\n"
+                               "12 -0.4 0 0 0 0 1 0\n";
+  std::ofstream(scratch_ / "laser.yaml") << "laser: {x_m: 0.4}\n";
+  ASSERT_EQ(compare({estimate_, reference_}), 0) << err_;
+  EXPECT_THAT(out_, testing::Not(HasSubstr("ate     0.000 m")));
+  ASSERT_EQ(compare({estimate_, reference_, "--config", scratch_ / "laser.yaml"}), 0) << err_;
+  EXPECT_THAT(out_, HasSubstr("ate     0.000 m"));
+  EXPECT_THAT(out_, HasSubstr("end     0.000 m"));
+  std::ofstream(scratch_ / "laser.yaml") << "laser: {x_m: 40}\n";
+  EXPECT_EQ(compare({estimate_, reference_, "--config", scratch_ / "laser.yaml"}), 2);
+}
+
 TEST_F(CompareTest, UnusableFilesAreToldWithTheirLine) {
   const auto refused = [&](const std::vector<std::string>& words, const std::string& message) {
     EXPECT_EQ(compare(words), 3) << out_;

@@ -8,6 +8,8 @@
 
 #include <sys/types.h>
 
+#include "topogeo/simulation/simulate_log.hpp"
+
 namespace topogeo::test {
 
 /// A directory of its own for each test, removed at the end.
@@ -75,6 +77,7 @@ void use_udp_only();
 
 /// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
 void write_log(const std::string& world, const std::filesystem::path& log,
-               const std::filesystem::path& truth = {});
+               const std::filesystem::path& truth = {},
+               const simulation::SimulationOptions& options = {});
 
 }  // namespace topogeo::test

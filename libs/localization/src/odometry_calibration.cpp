@@ -171,6 +171,20 @@ SystematicErrors systematic_errors(const Fits& fits) {
   return {of(0), of(1), of(2), of(3), of(4), of(5)};
 }
 
+/// Of (ahead, left, yaw), over the resamples.
+Eigen::Matrix3d mounting_covariance(const Fits& fits) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const NoiseFit& fit : fits.resampled) mean += fit.systematic.tail<3>();
+  const auto count = static_cast<double>(fits.resampled.size());
+  mean /= count;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const NoiseFit& fit : fits.resampled) {
+    const Eigen::Vector3d off = fit.systematic.tail<3>() - mean;
+    sum += off * off.transpose();
+  }
+  return sum / std::max(1.0, count - 1.0);
+}
+
 }  // namespace
 
 OdometryCalibration calibrate_odometry(
@@ -217,6 +231,10 @@ OdometryCalibration calibrate_odometry(
     result.noise.*parameter.field = found.as_is.value;
   }
   result.systematic = systematic_errors(corrected);
+  result.mounting_covariance = mounting_covariance(corrected);
+  result.mounting_likelihood_covariance =
+      systematic_covariance(full, corrected.terms, corrected.weights, corrected.best)
+          .bottomRightCorner<3, 3>();
   result.motions = motions.size();
   result.outlying =
       static_cast<std::size_t>(std::count(as_is.weights.begin(), as_is.weights.end(), 0.0));

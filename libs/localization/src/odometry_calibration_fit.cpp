@@ -134,13 +134,18 @@ NoiseFit maximize(const FitModel& model, std::span<const MotionTerms> motions,
   return likelihood->at(x.data());
 }
 
-// The most likely systematic errors, the noise being known: generalised least squares.
-SystematicVector systematic_errors(const FitModel& model, std::span<const MotionTerms> motions,
-                                   std::span<const double> weights, const NoiseFit& fit) {
-  using Information = Eigen::Matrix<double, kSystematicErrors, kSystematicErrors>;
-  // So that what nothing speaks of stays at 0; with a real error of 1 there is no odometry.
-  Information information = Information::Identity();
+// Normal equations of the systematic errors, the noise being known: generalised least squares.
+struct NormalEquations {
+  // Starts at 1, so that what nothing speaks of stays at 0; with a real error of 1 there is no
+  // odometry.
+  Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> information =
+      Eigen::Matrix<double, kSystematicErrors, kSystematicErrors>::Identity();
   SystematicVector sum = SystematicVector::Zero();
+};
+
+NormalEquations normal_equations(const FitModel& model, std::span<const MotionTerms> motions,
+                                 std::span<const double> weights, const NoiseFit& fit) {
+  NormalEquations equations;
   SystematicVector mask;
   for (int i = 0; i < kSystematicErrors; ++i) {
     mask[i] = model.systematic[static_cast<std::size_t>(i)] ? 1.0 : 0.0;
@@ -151,10 +156,10 @@ SystematicVector systematic_errors(const FitModel& model, std::span<const Motion
         motions[n].systematic * mask.asDiagonal();
     const Eigen::Matrix<double, kSystematicErrors, 3> weighted =
         weights[n] * by_error.transpose() * covariance(motions[n], fit).inverse();
-    information += weighted * by_error;
-    sum += weighted * motions[n].residual;
+    equations.information += weighted * by_error;
+    equations.sum += weighted * motions[n].residual;
   }
-  return information.ldlt().solve(sum);
+  return equations;
 }
 
 NoiseFit fit_both(const FitModel& model, std::span<const MotionTerms> motions,
@@ -162,7 +167,10 @@ NoiseFit fit_both(const FitModel& model, std::span<const MotionTerms> motions,
   const bool any = std::any_of(model.systematic.begin(), model.systematic.end(), std::identity{});
   constexpr int kRounds = 3;  // noise and systematic errors depend little on each other
   for (int round = 0; round < (any ? kRounds : 1); ++round) {
-    if (any) fit.systematic = systematic_errors(model, motions, weights, fit);
+    if (any) {
+      const NormalEquations equations = normal_equations(model, motions, weights, fit);
+      fit.systematic = equations.information.ldlt().solve(equations.sum);
+    }
     fit = maximize(model, motions, weights, fit, freedom);
   }
   return fit;
@@ -274,6 +282,12 @@ NoiseFit fit_robustly(const FitModel& model, std::span<const MotionTerms> motion
     fit = fit_noise(model, motions, weights, fit);
   }
   return fit;
+}
+
+Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> systematic_covariance(
+    const FitModel& model, std::span<const MotionTerms> motions, std::span<const double> weights,
+    const NoiseFit& fit) {
+  return normal_equations(model, motions, weights, fit).information.inverse();
 }
 
 double upper_width(const FitModel& model, std::span<const MotionTerms> motions,

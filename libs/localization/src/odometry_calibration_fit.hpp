@@ -52,6 +52,12 @@ NoiseFit fit_robustly(const FitModel& model, std::span<const MotionTerms> motion
                       double largest_mahalanobis2, const NoiseFit& start,
                       std::vector<double>& weights);
 
+/// Covariance of the systematic errors of a fit, the noise being known. What the model has not or
+/// nothing speaks of has the variance 1.
+Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> systematic_covariance(
+    const FitModel& model, std::span<const MotionTerms> motions, std::span<const double> weights,
+    const NoiseFit& fit);
+
 /// How much larger than in `fit` a parameter may be before the data, counted as
 /// `independent_motions`, speak against it as they do against one standard deviation.
 double upper_width(const FitModel& model, std::span<const MotionTerms> motions,

@@ -98,6 +98,11 @@ struct OdometryCalibration {
   OdometryNoise noise;  ///< the `as_is` values
   std::array<NoiseEstimate, kNoiseParameters> parameters;
   SystematicErrors systematic;
+  /// Covariance of `systematic`'s (ahead, left, yaw), m and rad: by the bootstrap, and by the
+  /// likelihood alone. The second is close to 1 where the log says nothing, which the first cannot
+  /// tell: without anything to go by all resamples agree on 0.
+  Eigen::Matrix3d mounting_covariance = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d mounting_likelihood_covariance = Eigen::Matrix3d::Identity();
   std::size_t motions = 0;         ///< used
   std::size_t outlying = 0;        ///< left out of the `as_is` fit
   double measurement_scale = 1.0;  ///< estimated over stated deviations of the measurements

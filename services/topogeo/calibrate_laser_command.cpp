@@ -1,0 +1,184 @@
+// topogeo calibrate-laser: where the laser sits on a robot, from one of its logs.
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/localization/laser_calibration.hpp"
+#include "topogeo/localization/odometry_calibration_samples.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/atomic_file.hpp"
+
+#include "calibration_log.hpp"
+#include "commands.hpp"
+#include "job.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using geometry::Pose2;
+using localization::LaserCalibration;
+using localization::MountingEstimate;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+struct CalibrateLaserOptions {
+  std::filesystem::path log;
+  std::optional<std::filesystem::path> config;
+  std::optional<std::filesystem::path> out;
+};
+
+/// A laser that is not where it is taken to be moves otherwise than odometry says: these variances,
+/// as of a decimetre for each radian of turn and each metre of way, let matches be found all the
+/// same.
+constexpr double kTurnShift_m2_per_rad = 0.02;
+constexpr double kSideways_m2_per_m = 0.01;
+
+pipeline::Config searching_widely(pipeline::Config config, const Pose2& T_robot_laser) {
+  config.local_mapper.T_robot_laser = T_robot_laser;
+  config.local_mapper.voronoi.forward_rad = -T_robot_laser.theta_rad;
+  for (auto* noise : {&config.localizer.odometry, &config.local_mapper.tracker.odometry}) {
+    noise->translation_m2_per_rad = std::max(noise->translation_m2_per_rad, kTurnShift_m2_per_rad);
+    noise->lateral_m2_per_m = std::max(noise->lateral_m2_per_m, kSideways_m2_per_m);
+  }
+  return config;
+}
+
+/// What was found, and from what.
+struct Found {
+  MatchedLog log;
+  LaserCalibration laser;
+};
+
+Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Config& config,
+                     bool first) {
+  OpenLog log = open_log(options.log, config.log);
+  Found found;
+  found.log = match_log(config, log);
+  if (first) tell_skipped(log.reader.statistics());
+  localization::OdometryCalibrationConfig fitting;
+  fitting.fallback = config.localizer.odometry;
+  fitting.seed = config.localizer.seed;
+  try {
+    Bar bar("refitting", "fits");
+    found.laser = localization::calibrate_laser(
+        localization::odometry_stretches(found.log.maps), found.log.matched.motions,
+        config.local_mapper.T_robot_laser, fitting,
+        [&](std::size_t done, std::size_t total) { bar.update(done, total); });
+    bar.finish();
+  } catch (const std::runtime_error& error) {
+    throw service::BadInputError(options.log.string() + ": " + error.what());
+  }
+  return found;
+}
+
+/// Scans are matched again with the mounting found, until that changes no more: with a wrong
+/// mounting the best matches, those of long ways and large turns, are not found.
+Found calibrate(const CalibrateLaserOptions& options, const pipeline::Config& config) {
+  constexpr int kMostRounds = 6;
+  constexpr double kSmallShift_m = 0.003;
+  constexpr double kSmallShift_rad = 0.002;
+  Pose2 T_robot_laser = config.local_mapper.T_robot_laser;
+  for (int round = 1;; ++round) {
+    Found found = calibrate_once(options, searching_widely(config, T_robot_laser), round == 1);
+    const Eigen::Vector3d shift = geometry::difference(found.laser.T_robot_laser(), T_robot_laser);
+    T_robot_laser = found.laser.T_robot_laser();
+    const bool settled =
+        shift.head<2>().norm() < std::max(kSmallShift_m, found.laser.x_m.spread) &&
+        std::fabs(shift.z()) < std::max(kSmallShift_rad, found.laser.yaw_rad.spread);
+    if (settled || round == kMostRounds) return found;
+  }
+}
+
+std::string why_unknown(std::size_t stretches, const char* what, double spread, const char* unit) {
+  if (stretches < localization::kFewestStretches) {
+    return fmt::format("only {} stretches have {}, {} are needed", stretches, what,
+                       localization::kFewestStretches);
+  }
+  return fmt::format("it leaves +- {:.2g} {}", spread, unit);
+}
+
+void print_part(const char* name, const MountingEstimate& part, double factor, const char* unit,
+                std::size_t stretches, const char* what) {
+  if (part.known) {
+    std::cout << fmt::format("  {:<5}{:>+8.3f} +- {:<6.3f} {}\n", name, factor * part.value,
+                             factor * part.spread, unit);
+    return;
+  }
+  std::cout << fmt::format("  {:<5} not observable in this log: {}; {:+.3f} {} is kept\n", name,
+                           why_unknown(stretches, what, factor * part.spread, unit),
+                           factor * part.value, unit);
+}
+
+std::string yaml_block(const LaserCalibration& laser) {
+  return fmt::format("laser:\n  x_m: {:.4f}\n  y_m: {:.4f}\n  yaw_rad: {:.5f}\n", laser.x_m.value,
+                     laser.y_m.value, laser.yaw_rad.value);
+}
+
+int calibrate_log(const CalibrateLaserOptions& options) {
+  const pipeline::LoadedConfig config = load_for_calibration(options.config, options.out);
+  const Found found = calibrate(options, config.config);
+  const LaserCalibration& laser = found.laser;
+  const std::string name = options.log.filename().string();
+  std::cout << fmt::format("{}: {}\n", name, describe_drive(found.log.maps))
+            << describe_matches(config.config, found.log.matched)
+            << fmt::format("; {} outlying\n\n", laser.outlying)
+            << "the laser, seen from the point of the robot that its odometry speaks of:\n";
+  constexpr const char* kTurn = "0.2 rad of turn";
+  print_part("x", laser.x_m, 1.0, "m forward", laser.with_turn, kTurn);
+  print_part("y", laser.y_m, 1.0, "m to the left", laser.with_turn, kTurn);
+  print_part("yaw", laser.yaw_rad, kDegrees, "degrees counter-clockwise", laser.with_way,
+             "0.2 m of way");
+  const std::string block = yaml_block(laser);
+  std::cout << '\n' << block;
+  if (options.out) {
+    const std::string comment = "Laser of " + name + ", by topogeo calibrate-laser.";
+    support::write_file_atomically(*options.out,
+                                   configuration_with(block, comment, options.config));
+    std::cout << "written to " << options.out->string() << '\n';
+  }
+  if (laser.x_m.known || laser.y_m.known || laser.yaw_rad.known) return service::kOk;
+  std::cerr << "topogeo: " << options.log.string() << ": nothing of the mounting is observable\n";
+  return service::kBadInput;
+}
+
+}  // namespace
+
+void add_calibrate_laser_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("calibrate-laser",
+                                         "Estimate from a log where the laser sits on its robot");
+  auto options = std::make_shared<CalibrateLaserOptions>();
+  command->add_option("LOG", options->log, "CARMEN log, plain or gzip")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--config", options->config,
+                   "configuration (YAML); its laser section is where the search starts")
+      ->type_name("FILE");
+  command
+      ->add_option("--out", options->out,
+                   "configuration to write with the values found; with --config all of its values")
+      ->type_name("FILE");
+  command->footer(
+      "Turns show x and y, straight ways show yaw: drive some minutes with both, turning to both\n"
+      "sides, through rooms. A part that the log does not show is left as it is configured. The\n"
+      "search finds mountings within about 0.3 m and 15 degrees of the configured one.\n"
+      "Poses are then those of the point that odometry speaks of, no longer of the laser.\n"
+      "Example:\n"
+      "  topogeo calibrate-laser drive.clf.gz --out robot.yaml\n"
+      "  topogeo map --log drive.clf.gz --config robot.yaml --out map");
+  command->callback([options, &exit_code] { exit_code = calibrate_log(*options); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,68 @@
+// What the calibrating commands share: a log as local maps with matches between recent stops.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "topogeo/localization/odometry_calibration_samples.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/support/progress_bar.hpp"
+
+namespace topogeo::cli {
+
+/// The configuration of the file or the defaults; tries out whether `out`, if any, can be written.
+/// Throws service::UsageError and std::runtime_error for these two.
+pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
+                                            const std::optional<std::filesystem::path>& out);
+
+/// A log before its first scan.
+struct OpenLog {
+  scan::CarmenLogReader reader;
+  std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
+};
+/// Throws service::BadInputError.
+OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options);
+
+/// A progress bar on stderr, if that is a terminal, else a line that says what is done.
+class Bar {
+ public:
+  Bar(const char* label, const char* unit);
+  void update(std::uint64_t done, std::uint64_t total);
+  void finish();
+
+ private:
+  support::ProgressBar bar_;
+  double start_s_;
+  std::uint64_t done_ = 0;
+};
+
+/// Makes the local maps of the log and gives each to `use`.
+localization::LocalMaps make_maps(
+    const pipeline::Config& config, OpenLog& log, const char* label,
+    const std::function<void(const std::shared_ptr<const topomap::LocalMap>&)>& use);
+
+struct MatchedLog {
+  localization::LocalMaps maps;
+  localization::MatchedMotions matched;
+};
+/// Makes the local maps and matches each with some of the recent ones. Closing loops would cost as
+/// much again and says nothing of single steps.
+MatchedLog match_log(const pipeline::Config& config, OpenLog& log);
+
+/// "52 stops, 41.3 m of way, 30.2 rad of turn".
+std::string describe_drive(const localization::LocalMaps& maps);
+/// "312 matches of stops up to 6 m apart; left out: 3 that ..."
+std::string describe_matches(const pipeline::Config& config,
+                             const localization::MatchedMotions& matched);
+
+/// A configuration that `topogeo map` takes: the block alone after a comment, or with `config` all
+/// of its values with those of the block in place. Throws std::runtime_error naming file and line.
+std::string configuration_with(const std::string& block, const std::string& comment,
+                               const std::optional<std::filesystem::path>& config);
+
+}  // namespace topogeo::cli
