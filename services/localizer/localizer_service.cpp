@@ -8,7 +8,9 @@
 
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/version.hpp"
 
@@ -39,6 +41,17 @@ RemotePoolOptions pool_options(const service::Service& service) {
   return options;
 }
 
+ActiveSlam make_slam(const service::Service& service, const LocalizerOptions& options,
+                     localization::MatchPool& pool) {
+  const localization::LocalizerConfig& config = service.setup().config.config.localizer;
+  if (!options.map) return {config, pool};
+  try {
+    return {config, pool, pipeline::load_stored_map(*options.map), options.initial_pose};
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
 bool same(const std::vector<topomap::LoopClosure>& a, const std::vector<topomap::LoopClosure>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
     return x.earlier_id == y.earlier_id && x.later_id == y.later_id &&
@@ -55,7 +68,8 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
             [&service](std::string_view reason, std::string_view detail) {
               service.status().fault(reason, detail);
             }),
-      localizer_(localization::make_slam(service.setup().config.config.localizer, pool_)),
+      localizer_(make_slam(service, options, pool_)),
+      commands_(service, [this] { schedule(); }),
       maps_in_(service.participant()),
       odometry_(service.participant()),
       ends_in_(service.participant()),
@@ -138,6 +152,7 @@ void LocalizerService::send_pose() {
   live.stamp_ns = newest_.stamp_ns;
   live.sequence = newest_.sequence;
   live.belief = localizer_->belief();
+  live.mode = localizer_.map_localizer() != nullptr ? msg::kModeLocalization : msg::kModeMapping;
   live.T_map_robot = pose.T_a_b;
   live.covariance = pose.covariance;
   live.local_map_id = last_stop_.local_map_id;
@@ -159,11 +174,13 @@ void LocalizerService::schedule() {
 void LocalizerService::work() {
   try {
     if (!waited_) wait_for_workers();
+    carry_out_commands();
     while (!queue_.empty() && queue_.begin()->first == hashes_.size()) {
       if (service::Service::stopping()) throw Stopped();
       const MapPointer map = queue_.begin()->second;
       queue_.erase(queue_.begin());
       step(map);
+      carry_out_commands();
     }
     if (!finished_ && maps_in_stream_ && hashes_.size() >= *maps_in_stream_) finish();
   } catch (const Stopped& stopped) {
@@ -195,6 +212,7 @@ void LocalizerService::step(const MapPointer& map) {
   hashes_.push_back(topomap::content_hash(*map));
   localizer_->add(map);
   last_map_ = map;
+  if (localizer_.map_localizer() == nullptr) maps_.push_back(map);
   if (map->stamp_ns >= newest_.stamp_ns) {
     newest_ = {map->stamp_ns, map->sequence, map->T_odom_robot};
   }
@@ -204,8 +222,14 @@ void LocalizerService::step(const MapPointer& map) {
 }
 
 void LocalizerService::finish() {
-  service_.status().set_state(msg::kServiceRunning, "matching revisited places");
+  const bool maps = localizer_.map_localizer() == nullptr;
+  service_.status().set_state(msg::kServiceRunning,
+                              maps ? "matching revisited places" : "localizing");
   localizer_->finish();
+  if (!maps && options_.csv) {
+    support::write_file_atomically(*options_.csv,
+                                   pipeline::localization_csv(localizer_.map_localizer()->stops()));
+  }
   finished_ = true;
   publish(true);
   send_pose();
@@ -213,8 +237,9 @@ void LocalizerService::finish() {
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stop_.stamp_ns, 0);
   messaging::set_text(end.stage(), "localizer", "stage");
-  end.count(hashes_.size());
-  end.last_id(hashes_.empty() ? 0 : hashes_.size() - 1);
+  const std::size_t stops = localizer_.frozen() ? maps_.size() : hashes_.size();
+  end.count(stops);
+  end.last_id(stops == 0 ? 0 : stops - 1);
   end.version(version_);
   if (!service_.send(ends_out_, end, "stream end")) return;
   const localization::SlamCounts& counts = localizer_->counts();
@@ -226,6 +251,10 @@ void LocalizerService::finish() {
 // Sends what has changed, or all of it, so that a reader has it whole in one version.
 void LocalizerService::publish(bool whole) {
   const topomap::Trajectory trajectory = localizer_->trajectory();
+  if (localizer_.frozen()) {  // what was published is final
+    if (!trajectory.stops.empty()) last_stop_ = trajectory.stops.back();
+    return;
+  }
   version_ = trajectory.version;
   if (!trajectory.stops.empty()) last_stop_ = trajectory.stops.back();
   std::vector<std::uint32_t> numbers = updates_.update(trajectory);
@@ -284,6 +313,9 @@ void LocalizerService::count() {
   set("unconfirmed_loops", counts.unconfirmed_loops);
   set("removed_loops", counts.removed_loops);
   set("steps_in_doubt", counts.steps_in_doubt);
+  if (const auto* in_map = localizer_.map_localizer()) {
+    for (const auto& [name, value] : pipeline::localization_counts(*in_map)) set(name, value);
+  }
   count_pool();
 }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,14 +21,19 @@
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
 
+#include "active_slam.hpp"
+#include "command_desk.hpp"
 #include "remote_pool.hpp"
 #include "trajectory_updates.hpp"
 
 namespace topogeo::localizer {
 
 struct LocalizerOptions {
-  std::uint32_t wait_workers = 0;  ///< workers to wait for before the first step
-  double wait_s = 5.0;             ///< at most so long, > 0
+  std::uint32_t wait_workers = 0;               ///< workers to wait for before the first step
+  double wait_s = 5.0;                          ///< at most so long, > 0
+  std::optional<std::filesystem::path> map;     ///< to localize in; none: a map is made
+  std::optional<geometry::Pose2> initial_pose;  ///< in that map; none: it is searched for
+  std::optional<std::filesystem::path> csv;     ///< where localization.csv is written at the end
 };
 
 /// Lives in the loop of its service.
@@ -46,6 +52,9 @@ class LocalizerService {
   void schedule();
   void work();
   void wait_for_workers();
+  void carry_out_commands();
+  CommandDesk::Answer carry_out(const service::LocalizationCommand& command);
+  CommandDesk::Answer set_pose(const service::LocalizationCommand& command);
   void step(const MapPointer& map);
   void finish();
   void publish(bool whole);
@@ -56,7 +65,8 @@ class LocalizerService {
   service::Service& service_;
   LocalizerOptions options_;
   RemotePool pool_;
-  std::unique_ptr<localization::Slam> localizer_;
+  ActiveSlam localizer_;
+  CommandDesk commands_;
   messaging::Reader<msg::LocalMap> maps_in_;
   messaging::Reader<msg::Odometry> odometry_;
   messaging::Reader<msg::StreamEnd> ends_in_;
@@ -68,6 +78,7 @@ class LocalizerService {
 
   std::map<std::uint32_t, MapPointer> queue_;  // not yet worked on, by id
   std::vector<std::uint64_t> hashes_;          // of those worked on; index: id
+  std::vector<MapPointer> maps_;               // those that became part of the map; index: id
   MapPointer last_map_;
   topomap::StopPose last_stop_;
   struct Newest {

@@ -1,6 +1,10 @@
 // Corrects the pose of every stop by matching its local map against earlier ones.
+#include <stdexcept>
+#include <string>
+
 #include <CLI/CLI.hpp>
 
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -9,6 +13,7 @@
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
   localizer::LocalizerOptions options;
+  std::string initial_pose;
   return service::run_service(
       argc, argv, "localizer", "Corrects the trajectory by matching local maps.",
       [&](CLI::App& app) {
@@ -19,8 +24,23 @@ int main(int argc, char** argv) {
         app.add_option("--wait-seconds", options.wait_s, "how long to wait for them at most")
             ->check(CLI::Range(0.0, kLongestWait_s))
             ->capture_default_str();
+        CLI::Option* map =
+            app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
+                ->type_name("FILE");
+        app.add_option("--initial-pose", initial_pose,
+                       "where the robot is in it, m and degrees (default: it is searched for)")
+            ->needs(map)
+            ->type_name("X,Y,DEG");
+        app.add_option("--csv", options.csv, "write pose and state of each stop there at the end")
+            ->needs(map)
+            ->type_name("FILE");
       },
       [&](const service::Setup& setup) {
+        try {
+          if (!initial_pose.empty()) options.initial_pose = pipeline::parse_pose(initial_pose);
+        } catch (const std::invalid_argument& error) {
+          throw service::UsageError(error.what());
+        }
         service::Service service(setup);
         const localizer::LocalizerService localizer(service, options);
         service.run();

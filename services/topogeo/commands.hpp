@@ -9,6 +9,8 @@ namespace topogeo::cli {
 
 void add_run_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);
+void add_localize_command(CLI::App& app, int& exit_code);
+void add_localizer_command(CLI::App& app, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);
 void add_status_command(CLI::App& app, int& exit_code);
 void add_workers_command(CLI::App& app, int& exit_code);

@@ -31,10 +31,22 @@ Job read_inputs(const JobOptions& options) {
     if (options.reference) (void)storage::read_trajectory_tum(*options.reference);
     scan::CarmenLogReader reader(options.log, config.config.log);
     const std::uint64_t laser_lines = scan::count_scans(options.log);
-    return {options, std::move(config), std::move(reader), laser_lines};
+    std::shared_ptr<const localization::StoredMap> map;
+    if (options.map) map = pipeline::load_stored_map(*options.map);
+    return {options, std::move(config), std::move(reader), std::move(map), laser_lines};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
+}
+
+/// How the stops of a drive in a finished map went; empty for a mapping.
+std::string localization_line(const storage::Report& report) {
+  if (report.localization.empty()) return {};
+  std::string line = "localization:";
+  for (const auto& [state, count] : report.localization) {
+    line += fmt::format("{} {} {}", line.back() == ':' ? "" : ",", count, state);
+  }
+  return line + "\n";
 }
 
 void print_error(std::ostream& out, const char* name, const pipeline::TrajectoryError& error) {
@@ -68,6 +80,25 @@ void add_log_options(CLI::App& app, JobOptions& options) {
       ->type_name("FILE");
 }
 
+void add_map_options(CLI::App& app, JobOptions& options, bool required) {
+  CLI::Option* map =
+      app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
+          ->type_name("FILE");
+  if (required) map->required();
+  app.add_option("--initial-pose", options.initial_pose,
+                 "where in that map the log starts, m and degrees (default: it is searched for)")
+      ->check([](const std::string& text) -> std::string {
+        try {
+          static_cast<void>(pipeline::parse_pose(text));
+          return {};
+        } catch (const std::invalid_argument& error) {
+          return error.what();
+        }
+      })
+      ->needs(map)
+      ->type_name("X,Y,DEG");
+}
+
 Job prepare(const JobOptions& options) {
   Job job = read_inputs(options);
   support::check_writable_directory(options.out);
@@ -91,6 +122,7 @@ void print_summary(std::ostream& out, const storage::Report& report,
                      report.stops, report.distance_m, report.loop_closures.size())
       << fmt::format("map: {} nodes, {} branches; {} of {} matches accepted\n", report.nodes,
                      report.branches, report.matches_accepted, report.matches_tried)
+      << localization_line(report)
       << fmt::format("time: {:.1f} s, CPU {:.1f} s\n", report.wall_s, report.cpu_s) << "results in "
       << directory.string() << ", picture " << (directory / "map.png").string() << '\n';
 }

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include <CLI/App.hpp>
 
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/storage/report.hpp"
@@ -22,6 +24,8 @@ struct JobOptions {
   std::optional<std::filesystem::path> config;
   std::string robot_id = "robot";
   std::optional<std::filesystem::path> reference;  ///< trajectory to compare with
+  std::optional<std::filesystem::path> map;        ///< to localize in; none: a map is made
+  std::optional<std::string> initial_pose;         ///< "x,y,degrees" in it
 };
 
 /// Adds --config and --robot, which every mapping command has.
@@ -29,10 +33,14 @@ void add_common_options(CLI::App& app, JobOptions& options);
 /// Adds --log, --out and --reference as well.
 void add_log_options(CLI::App& app, JobOptions& options);
 
+/// Adds --map and --initial-pose.
+void add_map_options(CLI::App& app, JobOptions& options, bool required);
+
 struct Job {
   JobOptions options;
   pipeline::LoadedConfig config;
-  scan::CarmenLogReader reader;   ///< before its first scan
+  scan::CarmenLogReader reader;                        ///< before its first scan
+  std::shared_ptr<const localization::StoredMap> map;  ///< of JobOptions::map
   std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
 };
 

@@ -24,6 +24,8 @@ int run(int argc, const char* const* argv) {
       "130 stopped by Ctrl-C. `topogeo COMMAND --help` tells more.");
   cli::add_run_command(app, exit_code);
   cli::add_map_command(app, exit_code);
+  cli::add_localize_command(app, exit_code);
+  cli::add_localizer_command(app, exit_code);
   cli::add_demo_command(app, exit_code);
   cli::add_status_command(app, exit_code);
   cli::add_workers_command(app, exit_code);

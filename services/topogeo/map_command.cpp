@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/outputs.hpp"
 #include "topogeo/pipeline/stages.hpp"
+#include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
@@ -93,27 +95,40 @@ bool add_scans(Job& job, pipeline::MappingRun& run, support::StageTimes& times,
 storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
                             const storage::MapDocument& document) {
   storage::Report report;
-  report.command = "map";
+  report.command = run.map_localizer() != nullptr ? "localize" : "map";
   report.log = job.options.log.filename().string();
   report.configuration = job.config.effective;
   pipeline::add_map(report, document);
   pipeline::add_matches(report, run.match_counts());
   pipeline::add_loop_candidates(report, run.loop_decisions());
   pipeline::add_log(report, job.reader.statistics());
+  if (run.map_localizer() != nullptr) {
+    report.localization = pipeline::localization_counts(*run.map_localizer());
+  }
   return report;
+}
+
+std::unique_ptr<pipeline::MappingRun> make_run(const Job& job) {
+  const JobOptions& options = job.options;
+  if (!job.map) return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id);
+  std::optional<geometry::Pose2> initial_pose;
+  if (options.initial_pose) initial_pose = pipeline::parse_pose(*options.initial_pose);
+  return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id, job.map,
+                                                initial_pose);
 }
 
 int map_log(const JobOptions& options, bool stages) {
   const double start_s = support::monotonic_s();
   Interruption interruption;
   Job job = prepare(options);
-  pipeline::MappingRun run(job.config.config, options.robot_id);
+  const std::unique_ptr<pipeline::MappingRun> made = make_run(job);
+  pipeline::MappingRun& run = *made;
   support::StageTimes times;
   if (!add_scans(job, run, times, interruption)) return kSignalBase + interruption.received();
   tell_skipped(job.reader.statistics());
 
   if (interruption.received() != 0) return kSignalBase + interruption.received();
-  std::cerr << "matching revisited places\n";
+  if (!job.map) std::cerr << "matching revisited places\n";
   storage::MapDocument document;
   {
     const Interruption::Immediate immediate(interruption);
@@ -122,6 +137,10 @@ int map_log(const JobOptions& options, bool stages) {
   {
     const auto scope = times.measure("writing");
     pipeline::write_map_outputs(options.out, document, options.log.filename().string());
+    if (run.map_localizer() != nullptr) {
+      support::write_file_atomically(options.out / "localization.csv",
+                                     pipeline::localization_csv(run.map_localizer()->stops()));
+    }
     if (stages) {
       std::cerr << "drawing the stages of the correction\n";
       const Interruption::Immediate immediate(interruption);
@@ -154,6 +173,15 @@ void add_map_command(CLI::App& app, int& exit_code) {
                     "also draw the map by odometry alone, after forward correction, with its "
                     "cycles closed and at the end: stage_*.png");
   command->callback([options, stages, &exit_code] { exit_code = map_log(*options, *stages); });
+}
+
+void add_localize_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("localize", "Find and follow the robot of a log in a stored map");
+  auto options = std::make_shared<JobOptions>();
+  add_log_options(*command, *options);
+  add_map_options(*command, *options, true);
+  command->callback([options, &exit_code] { exit_code = map_log(*options, false); });
 }
 
 }  // namespace topogeo::cli

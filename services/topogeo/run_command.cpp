@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "topogeo/localization/localization_state.hpp"
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/pipeline/outputs.hpp"
 #include "topogeo/service/replay_rate.hpp"
@@ -36,6 +37,18 @@ void add_matches(storage::Report& report, const ServiceTable& services) {
   }
 }
 
+/// Stops by state and searches, under the names that pipeline::localization_counts gives them.
+void add_localization(storage::Report& report, const ServiceTable& services) {
+  const msg::ServiceStatus* localizer = services.find("localizer");
+  const auto add = [&](const std::string& name) {
+    report.localization.emplace_back(name, static_cast<std::uint64_t>(counter(localizer, name)));
+  };
+  for (std::size_t i = 0; i < localization::kLocalizationStates; ++i) {
+    add(localization::to_string(static_cast<localization::LocalizationState>(i)));
+  }
+  add("searches");
+}
+
 storage::Report make_report(const RunOptions& options, Job& job, const RunResult& result) {
   storage::Report report;
   report.command = "run";
@@ -48,6 +61,7 @@ storage::Report make_report(const RunOptions& options, Job& job, const RunResult
   while (job.reader.next()) {  // to learn what the gateway skipped
   }
   pipeline::add_log(report, job.reader.statistics());
+  if (options.job.map) add_localization(report, result.services);
   report.stages = result.times;
   for (const support::StageTime& time : result.times) report.cpu_s += time.cpu_s;
   report.cpu_s += support::process_cpu_s();
@@ -136,6 +150,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Map a log with all services as processes on DDS");
   auto options = std::make_shared<RunOptions>();
   add_log_options(*command, options->job);
+  add_map_options(*command, options->job, false);
   add_run_options(*command, *options);
   command->callback([options, &exit_code] { exit_code = run_log(*options); });
 }

@@ -28,6 +28,17 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
+/// What makes a localizer follow the robot in a stored map.
+Words map_arguments(const RunOptions& options) {
+  if (!options.job.map) return {};
+  Words words = {"--map", options.job.map->string(), "--csv",
+                 (options.job.out / "localization.csv").string()};
+  if (options.job.initial_pose) {
+    words.push_back("--initial-pose=" + *options.job.initial_pose);
+  }
+  return words;
+}
+
 bool is_worker(const std::string& name) {
   return name.starts_with(kWorker);
 }
@@ -44,9 +55,11 @@ ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partiti
   start("map_store", "map_store",
         common + Words{"--out", out, "--title", options.job.log.filename().string()});
   start("planner", "planner", common);
-  start("localizer", "localizer",
-        common + Words{"--wait-workers",
-                       std::to_string(options.wait_workers.value_or(options.workers))});
+  start(
+      "localizer", "localizer",
+      common +
+          Words{"--wait-workers", std::to_string(options.wait_workers.value_or(options.workers))} +
+          map_arguments(options));
   start("local_mapper", "local_mapper", common + Words{"--replay"});
   for (std::uint32_t i = 1; i <= options.workers; ++i) {
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);

@@ -192,7 +192,7 @@ Outcome run(std::uint64_t seed, Calibration& calibration, Samples& samples) {
     }
     const auto map = mapper.add(second.scans[i]);
     if (!map) continue;
-    localizer.add(*map);
+    localizer.add(std::make_shared<const topomap::LocalMap>(*map));
     const localization::Belief belief = localizer.belief();
     const Pose2 here = truth(second.T_world_robot[i]);
     const bool right = is_right(localizer.stops().back().T_map_robot, here);

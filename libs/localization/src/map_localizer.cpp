@@ -66,33 +66,37 @@ UncertainPose fused(const std::vector<UncertainPose>& measurements) {
 }
 
 MapLocalizer::MapLocalizer(LocalizerConfig config, std::shared_ptr<const StoredMap> map,
-                           MatchPool& pool)
+                           MatchPool& pool, std::uint32_t first_drive_id)
     : config_(std::move(config)),
       map_(std::move(map)),
       pool_(pool),
-      global_({}, map_->maps, map_->trajectory) {
+      global_({}, map_->maps, map_->trajectory),
+      first_drive_id_(first_drive_id) {
   for (const topomap::LocalMap& local_map : map_->maps) {
     hashes_.push_back(topomap::content_hash(local_map));
     pool_.add_map(std::shared_ptr<const topomap::LocalMap>(map_, &local_map));
   }
 }
 
-void MapLocalizer::add(const topomap::LocalMap& map) {
-  if (map.id != stops_.size()) {
+bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> added) {
+  const topomap::LocalMap& map = *added;
+  const auto step = static_cast<std::uint32_t>(stops_.size());
+  if (map.id != first_drive_id_ + step) {
     throw std::invalid_argument("map localizer: local map " + std::to_string(map.id) +
-                                " came, expected " + std::to_string(stops_.size()));
+                                " came, expected " + std::to_string(first_drive_id_ + step));
   }
   Query query;
   auto renumbered = std::make_shared<topomap::LocalMap>(map);
-  renumbered->id = first_id() + map.id;
+  renumbered->id = first_id() + step;
   query.map = renumbered;
   query.hash = topomap::content_hash(*query.map);
   pool_.add_map(query.map);
   query.features = extract_scan_features(map.points, map.T_robot_laser);
   query.profile = query.features.profile;
-  if (!stops_.empty()) {
-    query.odometry = odometry_between_stops(T_odom_last_, map, config_.odometry);
+  if (T_odom_last_) {
+    query.odometry = odometry_between_stops(*T_odom_last_, map, config_.odometry);
     query.tracked = map.T_previous_robot;
+    query.follows = true;
   }
   query.odometry.covariance = with_floor(query.odometry.covariance);
   query.way_m = std::sqrt(query.odometry.T_a_b.position_m().squaredNorm());
@@ -105,17 +109,19 @@ void MapLocalizer::add(const topomap::LocalMap& map) {
     search_step(query);
   }
   stops_.push_back({map.id, map.stamp_ns, pose_.T_a_b, pose_.covariance, belief_, believed_});
+  return false;
 }
 
 // Where the robot should be, what it should see there, and where that puts it.
 void MapLocalizer::track(const Query& query) {
-  pose_ = stops_.empty() ? pose_ : compose(pose_, query.odometry);
+  const Pose2 T_map_last = pose_.T_a_b;
+  if (query.follows) pose_ = compose(pose_, query.odometry);
   std::vector<MatchTask> tasks;
   const std::vector<Candidate> chosen = candidates(query, pose_, kTrackingMatches);
   for (const Candidate& candidate : chosen) {
     MatchTask task = make_task(query, candidate.stop, pose_);
-    if (!stops_.empty()) {
-      const Pose2 T_map_tracked = stops_.back().T_map_robot * query.tracked;
+    if (query.follows) {
+      const Pose2 T_map_tracked = T_map_last * query.tracked;
       task.initial_individuals.push_back(
           geometry::between(T_map_tracked, global_.stops()[candidate.stop].T_map_robot));
     }
@@ -181,6 +187,15 @@ void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& cov
     stops_.back().covariance = pose_.covariance;
     stops_.back().belief = belief_;
   }
+}
+
+void MapLocalizer::start_after(const topomap::LocalMap& map, const Pose2& T_map_robot) {
+  constexpr double kSigma_m = 0.1;
+  constexpr double kSigma_rad = 0.03;
+  set_pose(T_map_robot,
+           Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
+               .asDiagonal());
+  T_odom_last_ = map.T_odom_robot;
 }
 
 void MapLocalizer::search() {

@@ -16,6 +16,7 @@ struct MapLocalizer::Query {
   RangeProfile profile;
   UncertainPose odometry;   // since the last stop
   geometry::Pose2 tracked;  // the same by the scan tracker
+  bool follows = false;     // there was a stop before
   double way_m = 0.0;
 };
 

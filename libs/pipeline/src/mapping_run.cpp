@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
 namespace topogeo::pipeline {
@@ -12,6 +13,19 @@ MappingRun::MappingRun(const Config& config, std::string robot_id)
       robot_id_(std::move(robot_id)),
       local_mapper_(config.local_mapper, robot_id_),
       localizer_(localization::make_slam(config.localizer, pool_)) {}
+
+MappingRun::MappingRun(const Config& config, std::string robot_id,
+                       std::shared_ptr<const localization::StoredMap> map,
+                       const std::optional<geometry::Pose2>& initial_pose)
+    : config_(config),
+      robot_id_(std::move(robot_id)),
+      local_mapper_(config.local_mapper, robot_id_) {
+  auto localizer =
+      std::make_unique<localization::MapLocalizer>(config.localizer, std::move(map), pool_);
+  if (initial_pose) localizer->set_pose(*initial_pose, given_pose_covariance());
+  map_localizer_ = localizer.get();
+  localizer_ = std::move(localizer);
+}
 
 void MappingRun::add(const scan::Scan& scan) {
   std::optional<topomap::LocalMap> map;

@@ -46,7 +46,7 @@ class MapLocalizerTest : public ::testing::Test {
     map.T_odom_robot = T_odom_;
     map.T_previous_robot = T_step;
     map.track.clear();
-    localizer.add(map);
+    localizer.add(std::make_shared<const topomap::LocalMap>(map));
   }
   void follow(MapLocalizer& localizer, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
@@ -122,7 +122,7 @@ TEST_F(MapLocalizerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
     blind.id = static_cast<std::uint32_t>(localizer.stops().size());
     T_odom_ = T_odom_ * Pose2{0.1, 0.0, 0.0};
     blind.T_odom_robot = T_odom_;
-    localizer.add(blind);
+    localizer.add(std::make_shared<const topomap::LocalMap>(blind));
   }
   EXPECT_FALSE(localizer.belief().state == LocalizationState::kTracking);
   EXPECT_LT(localizer.belief().confidence, 0.3);
@@ -136,7 +136,7 @@ TEST_F(MapLocalizerTest, InAnotherBuildingItNeverTracks) {
   const test::DrivenMaps other = test::drive(test::world("room"), {});
   MapLocalizer localizer = make();
   for (std::size_t i = 0; i < std::min<std::size_t>(other.maps.size(), 20); ++i) {
-    localizer.add(*other.maps[i]);
+    localizer.add(other.maps[i]);
     EXPECT_NE(localizer.belief().state, LocalizationState::kTracking) << i;
   }
 }
@@ -164,7 +164,7 @@ TEST_F(MapLocalizerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
 
 TEST_F(MapLocalizerTest, AMapOutOfTurnIsAnError) {
   MapLocalizer localizer = make();
-  EXPECT_THROW(localizer.add(*drive_->maps[1]), std::invalid_argument);
+  EXPECT_THROW(localizer.add(drive_->maps[1]), std::invalid_argument);
 }
 
 TEST(Fused, IsTheWeightedMean) {

@@ -22,6 +22,7 @@
 #include "topogeo/localization/localizer.hpp"
 #include "topogeo/localization/match.hpp"
 #include "topogeo/localization/odometry_model.hpp"
+#include "topogeo/localization/slam.hpp"
 #include "topogeo/localization/state_monitor.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -51,27 +52,41 @@ struct TrackedStep {
   std::vector<geometry::Pose2> measured;  ///< T_map_robot by each of the matches
 };
 
-class MapLocalizer {
+class MapLocalizer : public Slam {
  public:
-  /// Starts without a pose. The pool must outlive the localizer. Throws like GlobalLocalizer.
-  MapLocalizer(LocalizerConfig config, std::shared_ptr<const StoredMap> map, MatchPool& pool);
+  /// Starts without a pose. The pool must outlive the localizer. `first_drive_id` is the id of the
+  /// first local map of the drive. Throws like GlobalLocalizer.
+  MapLocalizer(LocalizerConfig config, std::shared_ptr<const StoredMap> map, MatchPool& pool,
+               std::uint32_t first_drive_id = 0);
 
-  /// The next stop of the drive; ids count from 0. Throws std::invalid_argument otherwise. In the
-  /// pool and in tasks the map has the id that follows those of the stored maps.
-  void add(const topomap::LocalMap& map);
+  /// The next stop of the drive; ids count on from the first. Throws std::invalid_argument
+  /// otherwise. In the pool and in tasks the map has the id that follows those of the stored maps.
+  /// False: no earlier pose moves.
+  bool add(std::shared_ptr<const topomap::LocalMap> map) override;
+  /// Nothing is left to be done after the last map.
+  void finish() override {}
 
   /// The robot is there, at its last stop or, before the first one, at that. Ends a search.
   void set_pose(const geometry::Pose2& T_map_robot, const Eigen::Matrix3d& covariance);
+
+  /// The robot goes on from a stop of its own that is no stop of this drive: the last one of the
+  /// map, when that has just been made. Before the first stop.
+  void start_after(const topomap::LocalMap& map, const geometry::Pose2& T_map_robot);
 
   /// Forgets the pose and searches the whole map from the next stop on.
   void search();
 
   /// All stops so far.
   [[nodiscard]] const std::vector<LocalizedStop>& stops() const { return stops_; }
-  /// The same as a trajectory in the frame of the map; indices are the ids of the drive.
-  [[nodiscard]] topomap::Trajectory trajectory() const;
-  [[nodiscard]] Belief belief() const { return belief_; }
-  [[nodiscard]] const SlamCounts& counts() const { return counts_; }
+  /// The same as a trajectory in the frame of the map.
+  [[nodiscard]] topomap::Trajectory trajectory() const override;
+  /// None: the map stays as it is.
+  [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override { return {}; }
+  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
+    return no_decisions_;
+  }
+  [[nodiscard]] Belief belief() const override { return belief_; }
+  [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
   /// Of the last stop; nothing when that was searched for.
   [[nodiscard]] const std::optional<TrackedStep>& last_step() const { return last_step_; }
   [[nodiscard]] std::size_t searches() const { return searches_; }
@@ -119,13 +134,15 @@ class MapLocalizer {
   UncertainPose pose_;  // T_map_robot at the last stop
   bool has_pose_ = false;
   std::vector<Hypothesis> hypotheses_;
-  geometry::Pose2 T_odom_last_;
+  std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
   std::vector<LocalizedStop> stops_;
   std::optional<TrackedStep> last_step_;
   Belief belief_;
   std::uint32_t believed_ = 0;  // matches of the step in hand
   std::uint64_t next_task_ = 0;
   std::size_t searches_ = 0;
+  std::uint32_t first_drive_id_ = 0;
+  std::vector<LoopDecision> no_decisions_;
   SlamCounts counts_;
 };
 

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/map_localizer.hpp"
 #include "topogeo/localization/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
@@ -19,6 +21,11 @@ namespace topogeo::pipeline {
 class MappingRun {
  public:
   MappingRun(const Config& config, std::string robot_id);
+  /// Localizes in a finished map instead; the document is then what this drive saw, at its place in
+  /// the frame of that map. Without an initial pose it searches. Throws like MapLocalizer.
+  MappingRun(const Config& config, std::string robot_id,
+             std::shared_ptr<const localization::StoredMap> map,
+             const std::optional<geometry::Pose2>& initial_pose);
 
   /// Takes the next scan, in time order.
   void add(const scan::Scan& scan);
@@ -29,6 +36,8 @@ class MappingRun {
   [[nodiscard]] const localization::SlamCounts& match_counts() const {
     return localizer_->counts();
   }
+  /// Null unless it localizes in a finished map.
+  [[nodiscard]] const localization::MapLocalizer* map_localizer() const { return map_localizer_; }
   [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {
     return localizer_->loop_decisions();
   }
@@ -43,6 +52,7 @@ class MappingRun {
   localization::InProcessPool pool_;
   LocalMapper local_mapper_;
   std::unique_ptr<localization::Slam> localizer_;
+  localization::MapLocalizer* map_localizer_ = nullptr;  // localizer_, if it is one
   std::vector<topomap::LocalMap> local_maps_;
   support::StageTimes times_;
 };

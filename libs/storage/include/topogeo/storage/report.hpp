@@ -48,7 +48,8 @@ struct Report {
   ReasonCounts matches_rejected;
   std::vector<topomap::LoopClosure> loop_closures;
   std::vector<LoopCandidate> loop_candidates;  ///< in the order of the decisions
-  double distance_m = 0.0;                     ///< along the corrected trajectory
+  ReasonCounts localization;  ///< of a drive in a finished map: stops by state; empty: a mapping
+  double distance_m = 0.0;    ///< along the corrected trajectory
 
   double wall_s = 0.0;
   double cpu_s = 0.0;  ///< of all processes

@@ -1,0 +1,34 @@
+// What localizing in a stored map needs and leaves behind beside what mapping does.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/map_localizer.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/storage/report.hpp"
+
+namespace topogeo::pipeline {
+
+/// "x,y,degrees" in the map frame. Throws std::invalid_argument naming what is wrong.
+geometry::Pose2 parse_pose(const std::string& text);
+
+/// How well a pose that somebody gives is known: 0.3 m and 10 degrees.
+Eigen::Matrix3d given_pose_covariance();
+
+/// The local maps and poses of a map file. Throws std::runtime_error naming the file when it cannot
+/// be read or has no stop that saw anything.
+std::shared_ptr<const localization::StoredMap> load_stored_map(const std::filesystem::path& file);
+
+/// The text of localization.csv: a line for each stop with pose, state, confidence and standard
+/// deviations; the same bytes for the same stops.
+std::string localization_csv(std::span<const localization::LocalizedStop> stops);
+
+/// Stops by state, and searches, as they stand in reports.
+storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer);
+
+}  // namespace topogeo::pipeline

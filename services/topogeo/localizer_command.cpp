@@ -1,0 +1,132 @@
+// topogeo localizer: tells a running localizer what to do, and what it answers.
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "commands.hpp"
+#include "domain_view.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using std::chrono::milliseconds;
+
+struct Request {
+  DomainView view;
+  std::string robot_id = "robot";
+  std::string pose;
+  std::string mode;
+  double wait_s = 5.0;
+};
+
+/// Sends the command and waits for its answer, which is printed. Throws std::runtime_error when
+/// nobody answers.
+int send(const Request& request, service::LocalizationCommand command) {
+  command.client_id = support::host_name().substr(0, 32) + "-" + std::to_string(::getpid());
+  command.request_id = std::random_device{}();
+  const messaging::Participant participant = join(request.view, "topogeo/localizer");
+  messaging::Writer<msg::LocalizationCommand> commands(participant);
+  messaging::Reader<msg::LocalizationReply> replies(participant);
+  const milliseconds patience(static_cast<std::int64_t>(1000.0 * request.wait_s));
+  if (!commands.wait_for_matched(1, patience) || !replies.wait_for_matched(1, patience)) {
+    throw std::runtime_error(nothing_alive(request.view, "localizer"));
+  }
+  if (!commands.write(service::to_msg(command, request.robot_id, 0, 0))) {
+    throw std::runtime_error("the command could not be sent");
+  }
+  std::optional<msg::LocalizationReply> reply;
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (!reply && std::chrono::steady_clock::now() < end) {
+    if (!replies.wait_for_data(milliseconds(100))) continue;
+    replies.take([&](const msg::LocalizationReply& message, const messaging::SampleInfo& info) {
+      if (info.valid && message.request_id() == command.request_id &&
+          message.client_id() == command.client_id.c_str()) {
+        reply = message;
+      }
+    });
+  }
+  if (!reply) {
+    throw std::runtime_error("no localizer of robot '" + request.robot_id + "' answered within " +
+                             std::to_string(patience.count()) + " ms");
+  }
+  (reply->accepted() ? std::cout : std::cerr)
+      << (reply->accepted() ? "accepted: " : "topogeo: refused: ") << reply->message().c_str()
+      << '\n';
+  return reply->accepted() ? service::kOk : service::kFailure;
+}
+
+void add_request_options(CLI::App& app, Request& request) {
+  app.add_option("--robot,--robot-id", request.robot_id, "whose localizer")->capture_default_str();
+  app.add_option("--domain", request.view.domain, "DDS domain")
+      ->check(CLI::Range(0U, 232U))
+      ->capture_default_str();
+  app.add_option("--partition", request.view.partition, "only in this partition; *: all")
+      ->capture_default_str();
+  app.add_option("--profiles", request.view.profiles_file,
+                 "QoS profiles instead of the built-in ones")
+      ->type_name("FILE");
+  constexpr double kLongestWait_s = 3600.0;
+  app.add_option("--wait-seconds", request.wait_s, "how long to wait for the answer")
+      ->check(CLI::Range(0.1, kLongestWait_s))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_localizer_command(CLI::App& app, int& exit_code) {
+  CLI::App* group = app.add_subcommand("localizer", "Tell a running localizer what to do");
+  group->require_subcommand(1);
+  auto request = std::make_shared<Request>();
+
+  CLI::App* set_pose = group->add_subcommand("set-pose", "The robot is there");
+  set_pose->add_option("pose", request->pose, "x,y,degrees in the map")->required();
+  add_request_options(*set_pose, *request);
+  set_pose->callback([request, &exit_code] {
+    service::LocalizationCommand command;
+    command.kind = msg::kCommandSetPose;
+    try {
+      command.T_map_robot = pipeline::parse_pose(request->pose);
+    } catch (const std::invalid_argument& error) {
+      throw service::UsageError(error.what());
+    }
+    command.covariance = pipeline::given_pose_covariance();
+    exit_code = send(*request, command);
+  });
+
+  CLI::App* search = group->add_subcommand("search", "Forget the pose, search the whole map");
+  add_request_options(*search, *request);
+  search->callback([request, &exit_code] {
+    service::LocalizationCommand command;
+    command.kind = msg::kCommandSearch;
+    exit_code = send(*request, command);
+  });
+
+  CLI::App* mode = group->add_subcommand("mode", "Map, or localize in the map as it is");
+  mode->add_option("mode", request->mode, "mapping or localization")
+      ->required()
+      ->check(CLI::IsMember({"mapping", "localization"}));
+  add_request_options(*mode, *request);
+  mode->callback([request, &exit_code] {
+    service::LocalizationCommand command;
+    command.kind = request->mode == "mapping" ? msg::kCommandSwitchToMapping
+                                              : msg::kCommandSwitchToLocalization;
+    exit_code = send(*request, command);
+  });
+}
+
+}  // namespace topogeo::cli
