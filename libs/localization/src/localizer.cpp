@@ -24,8 +24,9 @@ bool Localizer::add(std::shared_ptr<const LocalMap> map) {
   append(std::move(map));
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   ++version_;
+  step_matches_.clear();
   if (stop == 0) {
-    belief_ = {LocalizationState::kTracking, 1.0};
+    believe(stop);
     return false;
   }
   const bool moved = finish_optimization(stop);
@@ -33,6 +34,7 @@ bool Localizer::add(std::shared_ptr<const LocalMap> map) {
   graph_.place_last_pose();
   stops_[stop].covariance = covariance_in_map(stop);
   match_revisited(stop);
+  believe(stop);
   start_optimization(stop);
   return finish_optimization(stop) || moved;
 }
@@ -86,11 +88,16 @@ void Localizer::match_recent(std::uint32_t stop) {
   };
   if (!any_accepted()) {
     // Odometry may be worse than it ever was: once more, in a wider space.
+    const std::vector<StepMatch> seen = std::exchange(step_matches_, {});
     const std::vector<Answer> wider =
         run(recent_tasks(stop, relative, kWidening), EdgeKind::kSequential);
     const bool found =
         std::any_of(wider.begin(), wider.end(), [](const Answer& a) { return a.accepted; });
-    if (found) answers = wider;
+    if (found) {
+      answers = wider;
+    } else {
+      step_matches_ = seen;
+    }
   }
   last_solutions_ = std::exchange(new_solutions_, {});
   // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
@@ -140,6 +147,24 @@ void Localizer::match_revisited(std::uint32_t stop) {
   for (const Answer& answer : run(tasks, EdgeKind::kRevisit)) {
     if (answer.accepted) add_loop(answer);
   }
+}
+
+void Localizer::believe(std::uint32_t stop) {
+  StepEvidence evidence;
+  evidence.matches = step_matches_;
+  evidence.points = stops_[stop].map->points.size();
+  if (stop > 0) {
+    evidence.way_m = stops_[stop].way_m - stops_[stop - 1].way_m;
+    // By the stop that this one is known best from.
+    std::optional<Eigen::Matrix3d> best;
+    for (const auto& [from, covariance] : graph_.links_to(stop)) {
+      if (!best || PoseGraph::path_cost(covariance) < PoseGraph::path_cost(*best)) {
+        best = covariance;
+      }
+    }
+    evidence.covariance = best.value();  // odometry always leads here
+  }
+  monitor_.add(evidence);
 }
 
 // Along the best of the ways by which the matches and odometry of this step lead here.

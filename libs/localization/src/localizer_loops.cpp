@@ -2,8 +2,10 @@
 // what they do to the poses.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "topogeo/localization/backward_correction.hpp"
 #include "topogeo/localization/localizer.hpp"
 
 namespace topogeo::localization {
@@ -14,6 +16,8 @@ namespace {
 
 constexpr std::uint32_t kLoopsBetweenOptimizations = 10;
 constexpr double kNoticeable_m = 0.1;  // a correction worth an optimisation of its own
+constexpr double kMoved_m = 0.1;  // by an optimisation after the end: worth another look around
+constexpr double kMoved_rad = 0.02;
 constexpr std::uint32_t kLongestWait =
     12;  // stops until a loop that nothing agreed with is dropped
 
@@ -49,6 +53,10 @@ void Localizer::add_loop(const Answer& answer) {
   const PoseGraphEdge& edge = answer.edge;
   const Correction correction = correction_of(edge);
   if (far(correction)) {
+    if (!closes(answer)) {
+      decide(edge, LoopOutcome::kNoClosing, Reason::kNone, answer.fitness);
+      return;
+    }
     if (confirm(edge, correction)) {
       decide(edge, LoopOutcome::kAccepted, Reason::kNone, answer.fitness);
       new_loops_.push_back(edge);
@@ -72,6 +80,20 @@ void Localizer::add_loop(const Answer& answer) {
   }
   graph_.add_edge(edge);  // it agrees with the poses as they are
   if (loops_since_optimization_ >= kLoopsBetweenOptimizations) optimization_wanted_ = true;
+}
+
+// True when the steps of the way between the two stops can be bent to meet the loop.
+bool Localizer::closes(const Answer& answer) const {
+  std::vector<LoopStep> steps;
+  for (std::uint32_t stop = answer.edge.from + 1; stop <= answer.edge.to; ++stop) {
+    for (const auto& [from, covariance] : graph_.links_to(stop)) {
+      if (from + 1 != stop) continue;
+      const Pose2 T_before_stop = geometry::between(graph_.poses()[from], graph_.poses()[stop]);
+      steps.push_back({{T_before_stop, covariance, 1.0}});
+    }
+  }
+  return check_closing(steps, {answer.edge.T_from_to, answer.edge.covariance, answer.fitness})
+      .consistent;
 }
 
 // True when a loop of another stop moves the robot to the same place; that one is taken in too.
@@ -151,10 +173,24 @@ void Localizer::apply(const GraphSolution& solution) {
 void Localizer::finish() {
   if (stops_.size() < 2) return;
   optimize_now();
+  std::vector<std::uint32_t> again(stops_.size() - 1);
+  std::iota(again.begin(), again.end(), 1U);
   for (std::uint32_t pass = 0; pass < config_.final_passes; ++pass) {
-    if (match_all_revisits() == 0) break;
+    if (match_revisits_of(again) == 0) break;
+    const std::vector<Pose2> before = graph_.poses();
     optimize_now();
+    again = moved_since(before);
   }
+}
+
+// Only these can have come near to others.
+std::vector<std::uint32_t> Localizer::moved_since(const std::vector<Pose2>& before) const {
+  std::vector<std::uint32_t> moved;
+  for (std::uint32_t stop = 1; stop < stops_.size(); ++stop) {
+    const Correction correction{before[stop], graph_.poses()[stop]};
+    if (correction.way_m() > kMoved_m || correction.turn_rad() > kMoved_rad) moved.push_back(stop);
+  }
+  return moved;
 }
 
 void Localizer::optimize_now() {
@@ -170,9 +206,9 @@ void Localizer::optimize_now() {
 }
 
 // Returns how many loops were closed.
-std::size_t Localizer::match_all_revisits() {
+std::size_t Localizer::match_revisits_of(std::span<const std::uint32_t> stops) {
   std::vector<MatchTask> tasks;
-  for (std::uint32_t stop = 1; stop < stops_.size(); ++stop) {
+  for (const std::uint32_t stop : stops) {
     const std::vector<UncertainPose> relative = graph_.relative_to(stop, searchable_reach());
     for (const Candidate& candidate : candidates(stop, relative, false, config_.revisit_matches)) {
       tasks.push_back(make_task(stop, candidate.id, relative[candidate.id]));

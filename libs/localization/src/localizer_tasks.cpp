@@ -158,6 +158,10 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
     // Not believed, but not refuted either.
     const bool uncertain =
         result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution;
+    const double foreseen =
+        expected_overlap(stops_[task.reference_map_id], stops_[task.query_map_id],
+                         {task.T_reference_query, task.covariance}, 0.0);
+    step_matches_.push_back(step_match(task, result, foreseen, task.query_map_id));
     const bool solved = result.status == MatchStatus::kSolved;
     const Pose2& T_later_earlier = solved ? result.T_reference_query : task.T_reference_query;
     const PoseGraphEdge edge{task.query_map_id, task.reference_map_id, kind,

@@ -1,10 +1,15 @@
 #include "topogeo/localization/localizer.hpp"
 
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <memory>
+#include <set>
 #include <span>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -133,6 +138,85 @@ TEST(LocalizerTest, WithoutRevisitsNoLoopIsClosed) {
   const Outcome outcome = localize(round_trip().maps, config);
   EXPECT_TRUE(outcome.closures.empty());
   EXPECT_EQ(outcome.corrections, 0);
+}
+
+TEST(LocalizerTest, AStepWithoutALoopTouchesNothingOld) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  topomap::Trajectory before;
+  int untouched = 0;
+  for (const auto& map : round_trip().maps) {
+    const bool moved = localizer.add(map);
+    topomap::Trajectory after = localizer.trajectory();
+    for (std::size_t i = 0; !moved && i < before.stops.size(); ++i) {
+      ASSERT_EQ(after.stops[i].T_map_robot, before.stops[i].T_map_robot) << i;
+      ASSERT_EQ(after.stops[i].covariance, before.stops[i].covariance) << i;
+    }
+    untouched += moved ? 0 : 1;
+    before = std::move(after);
+  }
+  EXPECT_GT(untouched, 60);
+}
+
+// Works on the job in a thread of its own and is done sooner or later.
+class LateOptimizer : public GraphOptimizer {
+ public:
+  void start(GraphProblem problem) override {
+    ++jobs;
+    const std::chrono::milliseconds nap((jobs % 3) * 15);
+    job_ = std::async(std::launch::async, [problem = std::move(problem), nap] {
+      std::this_thread::sleep_for(nap);
+      return solve(problem);
+    });
+  }
+  GraphSolution fetch() override { return job_.get(); }
+  int jobs = 0;
+
+ private:
+  std::future<GraphSolution> job_;
+};
+
+TEST(LocalizerTest, HowLongTheOptimizationTakesDoesNotMatter) {
+  LateOptimizer late;
+  InProcessPool pool;
+  Localizer localizer({}, pool, &late);
+  Outcome outcome;
+  for (const auto& map : round_trip().maps) outcome.corrections += localizer.add(map) ? 1 : 0;
+  localizer.finish();
+  outcome.trajectory = localizer.trajectory();
+  outcome.closures = localizer.loop_closures();
+  outcome.counts = localizer.counts();
+  EXPECT_GT(late.jobs, 3);
+  expect_same(outcome, localize(round_trip().maps));
+}
+
+TEST(LocalizerTest, EveryLoopIsExplained) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  for (const auto& map : round_trip().maps) localizer.add(map);
+  localizer.finish();
+  std::set<std::pair<std::uint32_t, std::uint32_t>> standing;
+  std::size_t refused = 0;
+  for (const LoopDecision& decision : localizer.loop_decisions()) {
+    const std::pair loop{decision.earlier_id, decision.later_id};
+    EXPECT_LT(decision.earlier_id, decision.later_id);
+    EXPECT_LE(decision.later_id, decision.step);
+    if (decision.outcome == LoopOutcome::kAccepted) {
+      EXPECT_EQ(decision.reason, Reason::kNone);
+      standing.insert(loop);
+    } else if (decision.outcome == LoopOutcome::kOutvoted) {
+      standing.erase(loop);
+    } else {
+      ++refused;
+      EXPECT_EQ(decision.outcome == LoopOutcome::kGate, decision.reason != Reason::kNone);
+    }
+  }
+  EXPECT_GT(refused, 0U);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> closed;
+  for (const topomap::LoopClosure& loop : localizer.loop_closures()) {
+    closed.emplace(loop.earlier_id, loop.later_id);
+  }
+  EXPECT_EQ(standing, closed);
 }
 
 // Answers every batch backwards, each task on one of two matchers that take turns.

@@ -27,6 +27,7 @@
 #include "topogeo/localization/odometry_monitor.hpp"
 #include "topogeo/localization/pose_graph.hpp"
 #include "topogeo/localization/slam.hpp"
+#include "topogeo/localization/state_monitor.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
@@ -48,7 +49,7 @@ struct LocalizerConfig {
   double search_heading_sigmas = 3.0;
   double largest_half_width_m =
       3.0;  ///< of a search space; beyond it a match waits for a better prediction
-  double largest_half_width_rad = 1.0;
+  double largest_half_width_rad = 3.1;
   double recent_way_m = 6.0;  ///< stops up to this much way ago are recent, older ones revisited
   std::uint32_t recent_matches = 3;         ///< tasks per step against recent stops
   std::uint32_t revisit_matches = 3;        ///< tasks per step against older stops
@@ -84,7 +85,7 @@ class Localizer : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return decisions_;
   }
-  [[nodiscard]] Belief belief() const override { return belief_; }
+  [[nodiscard]] Belief belief() const override { return monitor_.belief(); }
   [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
 
  private:
@@ -137,13 +138,17 @@ class Localizer : public Slam {
   [[nodiscard]] Correction correction_of(const PoseGraphEdge& edge) const;
   [[nodiscard]] bool far(const Correction& correction) const;
   bool confirm(const PoseGraphEdge& edge, const Correction& correction);
+  [[nodiscard]] bool closes(const Answer& answer) const;
+  void believe(std::uint32_t stop);
   void decide(const PoseGraphEdge& edge, LoopOutcome outcome, Reason reason, double fitness);
 
   void start_optimization(std::uint32_t stop);
   bool finish_optimization(std::uint32_t stop);
   void apply(const GraphSolution& solution);
   void optimize_now();
-  std::size_t match_all_revisits();
+  std::size_t match_revisits_of(std::span<const std::uint32_t> stops);
+  [[nodiscard]] std::vector<std::uint32_t> moved_since(
+      const std::vector<geometry::Pose2>& before) const;
   [[nodiscard]] PoseGraph::Reach searchable_reach() const;
   [[nodiscard]] GraphOptimizer& optimizer() { return optimizer_ ? *optimizer_ : in_place_; }
 
@@ -179,7 +184,8 @@ class Localizer : public Slam {
   std::uint32_t loops_since_optimization_ = 0;
   OdometryMonitor odometry_;
   std::vector<LoopDecision> decisions_;
-  Belief belief_;
+  StateMonitor monitor_;
+  std::vector<StepMatch> step_matches_;  // of this stop
   SlamCounts counts_;
 };
 
