@@ -9,7 +9,7 @@
 namespace topogeo::localizer {
 
 ActiveSlam::ActiveSlam(const localization::LocalizerConfig& config, localization::MatchPool& pool)
-    : config_(config), pool_(pool), current_(localization::make_slam(config, pool)) {}
+    : config_(config), pool_(pool), current_(localization::make_slam(config, pool, &optimizer_)) {}
 
 ActiveSlam::ActiveSlam(const localization::LocalizerConfig& config, localization::MatchPool& pool,
                        std::shared_ptr<const localization::StoredMap> map,

@@ -12,6 +12,8 @@
 #include "topogeo/localization/map_localizer.hpp"
 #include "topogeo/localization/slam.hpp"
 
+#include "background_optimizer.hpp"
+
 namespace topogeo::localizer {
 
 class ActiveSlam {
@@ -41,6 +43,7 @@ class ActiveSlam {
  private:
   localization::LocalizerConfig config_;
   localization::MatchPool& pool_;
+  BackgroundOptimizer optimizer_;
   std::unique_ptr<localization::Slam> current_;
   std::unique_ptr<localization::Slam> frozen_;
   localization::MapLocalizer* map_localizer_ = nullptr;

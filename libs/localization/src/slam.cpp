@@ -5,11 +5,12 @@
 
 namespace topogeo::localization {
 
-std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool) {
+std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
+                                GraphOptimizer* optimizer) {
   if (config.mode == LocalizerMode::kThesis) {
     return std::make_unique<ThesisLocalizer>(config, pool);
   }
-  return std::make_unique<Localizer>(config, pool);
+  return std::make_unique<Localizer>(config, pool, optimizer);
 }
 
 }  // namespace topogeo::localization

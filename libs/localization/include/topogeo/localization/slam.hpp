@@ -55,7 +55,11 @@ class Slam {
   Slam& operator=(const Slam&) = default;
 };
 
-/// The algorithm that `config.mode` names. The pool must outlive it.
-std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool);
+class GraphOptimizer;
+
+/// The algorithm that `config.mode` names. The pool and the optimizer (see Localizer) must outlive
+/// it.
+std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
+                                GraphOptimizer* optimizer = nullptr);
 
 }  // namespace topogeo::localization

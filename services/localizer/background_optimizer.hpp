@@ -1,0 +1,28 @@
+// Optimises in a thread of its own, so that stops and live poses go on meanwhile.
+#pragma once
+
+#include <future>
+#include <stdexcept>
+#include <utility>
+
+#include "topogeo/localization/graph_optimization.hpp"
+
+namespace topogeo::localizer {
+
+class BackgroundOptimizer : public localization::GraphOptimizer {
+ public:
+  void start(localization::GraphProblem problem) override {
+    if (job_.valid()) throw std::logic_error("optimizer: the job before was not fetched");
+    job_ = std::async(std::launch::async,
+                      [problem = std::move(problem)] { return localization::solve(problem); });
+  }
+  localization::GraphSolution fetch() override {
+    if (!job_.valid()) throw std::logic_error("optimizer: nothing was started");
+    return job_.get();
+  }
+
+ private:
+  std::future<localization::GraphSolution> job_;  // its end is awaited when this goes
+};
+
+}  // namespace topogeo::localizer
