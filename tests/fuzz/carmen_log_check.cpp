@@ -107,7 +107,7 @@ voronoi::VoronoiConfig coarse() {
 
 topomap::LocalMap map_of(const scan::Scan& scan, voronoi::LocalVoronoi& diagrams) {
   topomap::LocalMapConfig config;
-  config.range_limit_m = diagrams.config().range_limit_m;
+  config.points_range_m = diagrams.config().range_limit_m;
   topomap::LocalMap map;
   topomap::build_local_map(diagrams.compute(scan), scan, {}, config, map);
   return map;
