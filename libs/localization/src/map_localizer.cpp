@@ -67,7 +67,7 @@ UncertainPose fused(const std::vector<UncertainPose>& measurements) {
 
 MapLocalizer::MapLocalizer(LocalizerConfig config, std::shared_ptr<const StoredMap> map,
                            MatchPool& pool, std::uint32_t first_drive_id)
-    : config_(std::move(config)),
+    : config_(config),
       map_(std::move(map)),
       pool_(pool),
       global_({}, map_->maps, map_->trajectory),

@@ -129,7 +129,7 @@ BranchCurve whole_branch(const topomap::LocalBranch& branch) {
 int RangeProfile::bin_of(const Eigen::Vector2d& p) {
   constexpr int kPerQuadrant = 1024;
   static const auto kBinOf = [] {
-    std::array<std::int16_t, 4 * kPerQuadrant> bins{};
+    std::array<std::int16_t, std::size_t{4} * kPerQuadrant> bins{};
     for (int i = 0; i < 4 * kPerQuadrant; ++i) {
       // The inverse of `turn` below, in the middle of the cell.
       const double in_quadrant = (i % kPerQuadrant + 0.5) / kPerQuadrant;

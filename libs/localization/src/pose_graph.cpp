@@ -130,7 +130,7 @@ std::vector<PoseGraphEdge> PoseGraph::remove_edges(EdgeKind kind, double largest
       std::stable_partition(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) {
         return edge.kind != kind || disagreement(edge) <= largest_disagreement;
       });
-  const std::vector<PoseGraphEdge> removed(kept, edges_.end());
+  std::vector<PoseGraphEdge> removed(kept, edges_.end());
   edges_.erase(kept, edges_.end());
   if (!removed.empty()) rebuild_links();
   return removed;

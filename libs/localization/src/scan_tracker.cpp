@@ -42,8 +42,7 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
     const Eigen::Matrix3d of_step = geometry::compose_covariance(
         before.T_a_b, Eigen::Matrix3d::Zero(), step.T_a_b, step.covariance);
     if (refined.information.determinant() > 0.0) {
-      monitor_.add({last_.T_a_b, of_step},
-                   {T, refined.information.inverse() + before.covariance});
+      monitor_.add({last_.T_a_b, of_step}, {T, refined.information.inverse() + before.covariance});
     }
     last_.T_a_b = T;
     last_.covariance = (refined.information + prior.information).inverse();

@@ -281,16 +281,16 @@ TEST(LocalMapBuilder, PointsAreTheReadingsUpToTheLimitInBeamOrder) {
   scan::Scan scan;
   scan.angle_min_rad = 0.0;
   scan.angle_step_rad = M_PI / 2.0;
-  scan.ranges_m = {2.0F, scan::Scan::kNoReturn, 11.0F};
+  scan.ranges_m = {2.0F, scan::Scan::kNoReturn, 51.0F};
   LocalMap map;
   map.points.resize(5);
   build_local_map({}, scan, {0.5, 0.0, 0.0}, {}, map);
   ASSERT_EQ(map.points.size(), 1U);
   EXPECT_FLOAT_EQ(map.points[0].x_m, 2.5F);
-  scan.ranges_m[2] = 9.0F;
+  scan.ranges_m[2] = 49.0F;
   build_local_map({}, scan, {}, {}, map);
   ASSERT_EQ(map.points.size(), 2U);
-  EXPECT_FLOAT_EQ(map.points[1].x_m, -9.0F);
+  EXPECT_FLOAT_EQ(map.points[1].x_m, -49.0F);
 }
 
 TEST(LocalMapBuilder, RandomScenesGiveWellFormedMapsAndTheSameHashTwice) {

@@ -17,9 +17,9 @@ namespace topogeo::localization {
 /// - lateral_m2_per_m: carpets push the robot sideways, which its wheels do not measure.
 /// - translation_m2_per_rad: a turn moves a robot that does not turn exactly about the point that
 ///   its odometry speaks of.
-/// The defaults are several times what poor wheels do at random, because the errors of real ones are
-/// systematic: 3 % of the way, the same in every step, add up as no random error does.
-/// `topogeo calibrate-odometry` finds the values of a robot from a log (odometry_calibration.hpp).
+/// The defaults are several times what poor wheels do at random, because the errors of real ones
+/// are systematic: 3 % of the way, the same in every step, add up as no random error does. `topogeo
+/// calibrate-odometry` finds the values of a robot from a log (odometry_calibration.hpp).
 struct OdometryNoise {
   double translation_m2_per_m = 0.02;     ///< along the motion
   double translation_m2_per_rad = 0.016;  ///< in x and y, per turn: also an unknown laser offset

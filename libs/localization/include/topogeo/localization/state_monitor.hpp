@@ -69,7 +69,7 @@ class StateMonitor {
  private:
   std::vector<double> confidence_;         // of each step that its pose is consistent with the map
   std::optional<double> restarted_ = 1.0;  // confidence of the next step
-  std::uint32_t doubted_ = 0;  // steps in succession that came out below kLostBelow
+  std::uint32_t doubted_ = 0;              // steps in succession that came out below kLostBelow
   Belief belief_;
 };
 
