@@ -9,7 +9,7 @@ namespace topogeo::localizer {
 void LocalizerService::carry_out_commands() {
   commands_.carry_out(
       [this](const service::LocalizationCommand& command) {
-        const CommandDesk::Answer answer = carry_out(command);
+        CommandDesk::Answer answer = carry_out(command);
         send_pose();
         return answer;
       },

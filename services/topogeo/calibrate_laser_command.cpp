@@ -42,15 +42,15 @@ struct CalibrateLaserOptions {
 /// A laser that is not where it is taken to be moves otherwise than odometry says: these variances,
 /// as of a decimetre for each radian of turn and each metre of way, let matches be found all the
 /// same.
-constexpr double kTurnShift_m2_per_rad = 0.02;
-constexpr double kSideways_m2_per_m = 0.01;
+constexpr double kTurnShiftVariance = 0.02;  // m2/rad
+constexpr double kSidewaysVariance = 0.01;   // m2/m
 
 pipeline::Config searching_widely(pipeline::Config config, const Pose2& T_robot_laser) {
   config.local_mapper.T_robot_laser = T_robot_laser;
   config.local_mapper.voronoi.forward_rad = -T_robot_laser.theta_rad;
   for (auto* noise : {&config.localizer.odometry, &config.local_mapper.tracker.odometry}) {
-    noise->translation_m2_per_rad = std::max(noise->translation_m2_per_rad, kTurnShift_m2_per_rad);
-    noise->lateral_m2_per_m = std::max(noise->lateral_m2_per_m, kSideways_m2_per_m);
+    noise->translation_m2_per_rad = std::max(noise->translation_m2_per_rad, kTurnShiftVariance);
+    noise->lateral_m2_per_m = std::max(noise->lateral_m2_per_m, kSidewaysVariance);
   }
   return config;
 }
