@@ -44,7 +44,8 @@ KernelGrid::KernelGrid(std::span<const Eigen::Vector2d> points_m, double cell_m,
       for (int x = std::max(0, c - reach); x <= std::min(columns_ - 1, c + reach); ++x) {
         const double u = (centre_m(x, y) - p).squaredNorm() / (width_m * width_m);
         if (u >= 1.0) continue;
-        const auto value = static_cast<std::uint8_t>(std::lround(kFullValue * (1.0 - u) * (1.0 - u)));
+        const auto value =
+            static_cast<std::uint8_t>(std::lround(kFullValue * (1.0 - u) * (1.0 - u)));
         std::uint8_t& cell =
             cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
                    static_cast<std::size_t>(x)];
