@@ -160,8 +160,10 @@ TEST(TrajectoryErrorTest, FewerThanThreePairsAreRefused) {
 TEST(RelationsErrorTest, MeanAndDeviationOfAllAndOfThoseFarApart) {
   // One pose every 20 s along x, 1 m apart.
   std::vector<StampedPose> estimate;
-  for (int i = 0; i < 4; ++i) {
-    estimate.push_back({static_cast<std::uint64_t>(i), 20 * i * kSecond_ns, {1.0 * i, 0, 0}});
+  estimate.reserve(4);
+  for (std::int64_t i = 0; i < 4; ++i) {
+    estimate.push_back(
+        {static_cast<std::uint64_t>(i), 20 * i * kSecond_ns, {static_cast<double>(i), 0, 0}});
   }
   const auto at = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
   const std::vector<storage::Relation> relations = {
@@ -199,6 +201,7 @@ TEST(LoopPairsTest, ShufflesAsPythonDoes) {
   for (std::size_t i = 0; i < 10; ++i) pairs.emplace_back(i, i);
   shuffle_as_python(pairs);
   std::vector<std::size_t> order;
+  order.reserve(pairs.size());
   for (const IndexPair& pair : pairs) order.push_back(pair.first);
   EXPECT_EQ(order, (std::vector<std::size_t>{7, 8, 1, 5, 3, 4, 2, 0, 9, 6}));
 }

@@ -183,7 +183,7 @@ TEST_P(Conversions, LoopDecisionsAreExactInSegments) {
     const msg::LoopDecisions message = to_segment(decisions, segment, "robot", 6, segment);
     EXPECT_EQ(message.total(), 600U);
     EXPECT_EQ(message.decisions().front().explanation().to_string(),
-              localization::explanation(decisions[256 * segment]));
+              localization::explanation(decisions[std::size_t{256} * segment]));
     assembly.add(message);
   }
   const std::vector<localization::LoopDecision> back = assembly.all();
