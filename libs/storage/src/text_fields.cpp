@@ -3,7 +3,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <system_error>
+
+#include <spdlog/fmt/fmt.h>
 
 namespace topogeo::storage {
 namespace {
@@ -50,6 +53,30 @@ std::optional<double> parse_number(std::string_view word) {
     return std::nullopt;
   }
   return value;
+}
+
+std::int64_t take_stamp(std::string_view& line, const std::string& where, const char* name) {
+  const std::string_view word = next_word(line);
+  const auto stamp_ns = parse_stamp(word);
+  if (stamp_ns) return *stamp_ns;
+  throw std::runtime_error(
+      fmt::format("{}: {} '{}': expected seconds such as 12.345678", where, name, word));
+}
+
+void take_numbers(std::string_view line, const std::string& where,
+                  std::span<const char* const> names, const char* all, std::span<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string_view word = next_word(line);
+    const auto value = parse_number(word);
+    if (!value) {
+      throw std::runtime_error(
+          fmt::format("{}: {} '{}': expected a number, 8 on a line", where, names[i], word));
+    }
+    values[i] = *value;
+  }
+  if (!next_word(line).empty()) {
+    throw std::runtime_error(fmt::format("{}: more than the 8 numbers {}", where, all));
+  }
 }
 
 }  // namespace topogeo::storage

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,16 @@ std::optional<std::int64_t> parse_stamp(std::string_view word);
 
 /// A finite number that takes up the whole word.
 std::optional<double> parse_number(std::string_view word);
+
+/// The stamp of that name at the start of the line, and the rest in `line`; ns. Throws
+/// std::runtime_error naming `where` and the name.
+std::int64_t take_stamp(std::string_view& line, const std::string& where, const char* name);
+
+/// The finite numbers that the rest of a line of 8 consists of, one into each of `values`, named in
+/// errors by `names` (as many). `all`: the names of all 8 fields. Throws std::runtime_error naming
+/// `where` and the field.
+void take_numbers(std::string_view line, const std::string& where,
+                  std::span<const char* const> names, const char* all, std::span<double> values);
 
 /// Calls `use(line, where)` for each line that is neither blank nor a comment ('#'); `where` is
 /// "NAME:NUMBER".

@@ -31,25 +31,9 @@ double heading_rad(double qx, double qy, double qz, double qw) {
 
 topomap::StampedPose parse_line(std::string_view line, const std::string& where) {
   static constexpr std::array<const char*, 7> kNames{"x", "y", "z", "qx", "qy", "qz", "qw"};
-  const std::string_view stamp_word = next_word(line);
-  const auto stamp_ns = parse_stamp(stamp_word);
-  if (!stamp_ns) {
-    throw std::runtime_error(
-        fmt::format("{}: stamp '{}': expected seconds such as 12.345678", where, stamp_word));
-  }
+  const std::int64_t stamp_ns = take_stamp(line, where, "stamp");
   std::array<double, 7> values{};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::string_view word = next_word(line);
-    const auto value = parse_number(word);
-    if (!value) {
-      throw std::runtime_error(
-          fmt::format("{}: {} '{}': expected a number, 8 on a line", where, kNames.at(i), word));
-    }
-    values.at(i) = *value;
-  }
-  if (!next_word(line).empty()) {
-    throw std::runtime_error(where + ": more than the 8 numbers t x y z qx qy qz qw");
-  }
+  take_numbers(line, where, kNames, "t x y z qx qy qz qw", values);
   const auto [x, y, z, qx, qy, qz, qw] = values;
   static_cast<void>(z);
   const double norm = qx * qx + qy * qy + qz * qz + qw * qw;
@@ -57,7 +41,7 @@ topomap::StampedPose parse_line(std::string_view line, const std::string& where)
     throw std::runtime_error(
         fmt::format("{}: quaternion of squared length {}: expected 1", where, norm));
   }
-  return {0, *stamp_ns, {x, y, heading_rad(qx, qy, qz, qw)}};
+  return {0, stamp_ns, {x, y, heading_rad(qx, qy, qz, qw)}};
 }
 
 }  // namespace
