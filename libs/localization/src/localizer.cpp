@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "topogeo/localization/expected_overlap.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -24,40 +26,29 @@ bool Localizer::add(std::shared_ptr<const LocalMap> map) {
   append(std::move(map));
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   ++version_;
-  step_matches_.clear();
   if (stop == 0) {
-    believe(stop);
+    believe(stop, {});
     return false;
   }
   const bool moved = finish_optimization(stop);
-  match_recent(stop);
+  std::vector<StepMatch> evidence;
+  match_recent(stop, evidence);
   graph_.place_last_pose();
   stops_[stop].covariance = covariance_in_map(stop);
-  match_revisited(stop);
-  believe(stop);
+  match_revisited(stop, evidence);
+  believe(stop, std::move(evidence));
   start_optimization(stop);
   return finish_optimization(stop) || moved;
 }
 
 void Localizer::append(std::shared_ptr<const LocalMap> map) {
-  if (map->id != stops_.size()) {
-    throw std::invalid_argument("localizer: local map " + std::to_string(map->id) +
-                                " came, expected " + std::to_string(stops_.size()));
-  }
-  if (!stops_.empty() && map->robot_id != stops_.front().map->robot_id) {
-    throw std::invalid_argument("localizer: local map " + std::to_string(map->id) +
-                                " is of robot '" + map->robot_id + "', expected '" +
-                                stops_.front().map->robot_id + "'");
-  }
+  check_next(*map, stops_.size(), stops_.empty() ? nullptr : stops_.front().map.get());
   pool_.add_map(map);
   Stop stop;
   stop.hash = topomap::content_hash(*map);
   MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
   stop.profile = std::move(features.profile);
-  const std::size_t stride = std::max<std::size_t>(1, features.coarse_m.size() / 40);
-  for (std::size_t i = 0; i < features.coarse_m.size(); i += stride) {
-    stop.outline_m.push_back(features.coarse_m[i]);
-  }
+  stop.outline_m = outline_of(features.coarse_m);
   if (stops_.empty()) {
     graph_.add_pose(Pose2{});
   } else {
@@ -68,41 +59,36 @@ void Localizer::append(std::shared_ptr<const LocalMap> map) {
     stop.way_m = previous.way_m + std::sqrt(odometry.T_a_b.position_m().squaredNorm());
     graph_.add_pose(graph_.poses().back() * odometry.T_a_b);
     // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
-    Eigen::Matrix3d covariance = odometry_.widened(odometry.covariance);
-    covariance(0, 0) += 1e-4;
-    covariance(1, 1) += 1e-4;
-    covariance(2, 2) += 1e-5;
-    graph_.add_edge({id - 1, id, EdgeKind::kOdometry, odometry.T_a_b, covariance});
+    graph_.add_edge({id - 1, id, EdgeKind::kOdometry, odometry.T_a_b,
+                     invertible(odometry_.widened(odometry.covariance))});
   }
   stop.map = std::move(map);
   stops_.push_back(std::move(stop));
 }
 
-void Localizer::match_recent(std::uint32_t stop) {
+void Localizer::match_recent(std::uint32_t stop, std::vector<StepMatch>& evidence) {
   const std::uint32_t first = first_recent(stop);
   const std::vector<UncertainPose> relative =
       graph_.relative_to(stop, {first, PoseGraph::kUnlimited});
-  std::vector<Answer> answers = run(recent_tasks(stop, relative, 1.0), EdgeKind::kSequential);
-  const auto any_accepted = [&answers] {
-    return std::any_of(answers.begin(), answers.end(), [](const Answer& a) { return a.accepted; });
+  std::vector<Answer> answers =
+      run(recent_tasks(stop, relative, 1.0), EdgeKind::kSequential, &evidence);
+  const auto any_accepted = [](const std::vector<Answer>& given) {
+    return std::any_of(given.begin(), given.end(), [](const Answer& a) { return a.accepted; });
   };
-  if (!any_accepted()) {
+  if (!any_accepted(answers)) {
     // Odometry may be worse than it ever was: once more, in a wider space.
-    const std::vector<StepMatch> seen = std::exchange(step_matches_, {});
-    const std::vector<Answer> wider =
-        run(recent_tasks(stop, relative, kWidening), EdgeKind::kSequential);
-    const bool found =
-        std::any_of(wider.begin(), wider.end(), [](const Answer& a) { return a.accepted; });
-    if (found) {
-      answers = wider;
-    } else {
-      step_matches_ = seen;
+    std::vector<StepMatch> wider_evidence;
+    std::vector<Answer> wider =
+        run(recent_tasks(stop, relative, kWidening), EdgeKind::kSequential, &wider_evidence);
+    if (any_accepted(wider)) {
+      answers = std::move(wider);
+      evidence = std::move(wider_evidence);
     }
   }
   last_solutions_ = std::exchange(new_solutions_, {});
   // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
   // uncertain ones, with their wide covariance, still say more than it does.
-  const bool any = any_accepted();
+  const bool any = any_accepted(answers);
   if (!any) ++counts_.steps_in_doubt;
   for (const Answer& answer : answers) {
     if (answer.accepted || !any) graph_.add_edge(answer.edge);
@@ -138,20 +124,20 @@ void Localizer::watch_odometry(const PoseGraphEdge& match) {
   odometry_.add(odometry, {match.T_from_to, match.covariance});
 }
 
-void Localizer::match_revisited(std::uint32_t stop) {
+void Localizer::match_revisited(std::uint32_t stop, std::vector<StepMatch>& evidence) {
   const std::vector<UncertainPose> relative = graph_.relative_to(stop, searchable_reach());
   std::vector<MatchTask> tasks;
   for (const Candidate& candidate : candidates(stop, relative, false, config_.revisit_matches)) {
     tasks.push_back(make_task(stop, candidate.id, relative[candidate.id]));
   }
-  for (const Answer& answer : run(tasks, EdgeKind::kRevisit)) {
+  for (const Answer& answer : run(tasks, EdgeKind::kRevisit, &evidence)) {
     if (answer.accepted) add_loop(answer);
   }
 }
 
-void Localizer::believe(std::uint32_t stop) {
+void Localizer::believe(std::uint32_t stop, std::vector<StepMatch> matches) {
   StepEvidence evidence;
-  evidence.matches = step_matches_;
+  evidence.matches = std::move(matches);
   evidence.points = stops_[stop].map->points.size();
   if (stop > 0) {
     evidence.way_m = stops_[stop].way_m - stops_[stop - 1].way_m;

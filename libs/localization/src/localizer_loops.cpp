@@ -155,8 +155,8 @@ void Localizer::apply(const GraphSolution& solution) {
     return;
   }
   graph_.move(solution.T_map_robot);
+  graph_.remove_edges(solution.outvoted);
   for (const PoseGraphEdge& edge : solution.outvoted) {
-    graph_.remove_edges(EdgeKind::kRevisit, edge.from, edge.to);
     decide(edge, LoopOutcome::kOutvoted, Reason::kNone, 0.0);
     ++counts_.removed_loops;
   }
@@ -216,7 +216,7 @@ std::size_t Localizer::match_revisits_of(std::span<const std::uint32_t> stops) {
   }
   const std::size_t before = graph_.edges().size() + new_loops_.size();
   pending_.clear();
-  for (const Answer& answer : run(tasks, EdgeKind::kRevisit)) {
+  for (const Answer& answer : run(tasks, EdgeKind::kRevisit, nullptr)) {
     if (answer.accepted) add_loop(answer);
   }
   return graph_.edges().size() + new_loops_.size() - before;

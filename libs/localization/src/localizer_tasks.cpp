@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "topogeo/localization/expected_overlap.hpp"
 #include "topogeo/localization/localizer.hpp"
 #include "topogeo/support/seed.hpp"
 
@@ -54,7 +55,8 @@ std::vector<Localizer::Candidate> Localizer::candidates(std::uint32_t stop,
       continue;
     }
     const double least = config_.smallest_expected_overlap;
-    const double overlap = expected_overlap(stops_[stop], stops_[i], relative[i], least);
+    const double overlap =
+        expected_overlap(stops_[stop].profile, stops_[i].outline_m, relative[i], least);
     if (overlap >= least) found.push_back({i, overlap});
   }
   std::stable_sort(found.begin(), found.end(),
@@ -109,26 +111,6 @@ bool Localizer::searchable(const UncertainPose& T_reference_query) const {
          half.z() <= config_.largest_half_width_rad;
 }
 
-double Localizer::expected_overlap(const Stop& reference, const Stop& query,
-                                   const UncertainPose& T_reference_query, double least) const {
-  if (query.outline_m.empty()) return 0.0;
-  const Eigen::Matrix3d& covariance = T_reference_query.covariance;
-  const double tolerance_m = 0.5 + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
-  const auto points = static_cast<double>(query.outline_m.size());
-  double unseen = 0.0;
-  const Pose2& T = T_reference_query.T_a_b;
-  const geometry::SinCos r = geometry::sincos(T.theta_rad);
-  for (const Eigen::Vector2d& p : query.outline_m) {
-    const auto view = reference.profile.view(
-        {T.x_m + r.cos * p.x() - r.sin * p.y(), T.y_m + r.sin * p.x() + r.cos * p.y()},
-        tolerance_m);
-    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) continue;
-    unseen += 1.0;
-    if (points - unseen < least * points) return 0.0;
-  }
-  return (points - unseen) / points;
-}
-
 MatchTask Localizer::make_task(std::uint32_t reference, std::uint32_t query,
                                const UncertainPose& prior) {
   MatchTask task = match_task(config_, prior);
@@ -142,7 +124,8 @@ MatchTask Localizer::make_task(std::uint32_t reference, std::uint32_t query,
   return task;
 }
 
-std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& tasks, EdgeKind kind) {
+std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& tasks, EdgeKind kind,
+                                              std::vector<StepMatch>* evidence) {
   std::vector<Answer> answers;
   if (tasks.empty()) return answers;
   const std::vector<MatchResult> results = pool_.match(tasks);
@@ -158,10 +141,12 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
     // Not believed, but not refuted either.
     const bool uncertain =
         result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution;
-    const double foreseen =
-        expected_overlap(stops_[task.reference_map_id], stops_[task.query_map_id],
-                         {task.T_reference_query, task.covariance}, 0.0);
-    step_matches_.push_back(step_match(task, result, foreseen, task.query_map_id));
+    if (evidence != nullptr) {
+      const double foreseen = expected_overlap(stops_[task.reference_map_id].profile,
+                                               stops_[task.query_map_id].outline_m,
+                                               {task.T_reference_query, task.covariance});
+      evidence->push_back(step_match(task, result, foreseen, task.query_map_id));
+    }
     const bool solved = result.status == MatchStatus::kSolved;
     const Pose2& T_later_earlier = solved ? result.T_reference_query : task.T_reference_query;
     const PoseGraphEdge edge{task.query_map_id, task.reference_map_id, kind,

@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/expected_overlap.hpp"
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/support/seed.hpp"
 
@@ -24,15 +25,6 @@ constexpr std::size_t kTrackingMatches = 3;
 constexpr double kFarthest_m = 12.0;  // stored stops further away are not compared
 constexpr double kGivenPoseRight = 0.9;
 constexpr double kHardlyDoubtful = 1.0;  // right matches mostly are below, wrong ones above
-
-/// A standing robot has no odometry error, but a prediction needs a covariance that can be
-/// inverted.
-Eigen::Matrix3d with_floor(Eigen::Matrix3d covariance) {
-  covariance(0, 0) += 1e-4;
-  covariance(1, 1) += 1e-4;
-  covariance(2, 2) += 1e-5;
-  return covariance;
-}
 
 UncertainPose compose(const UncertainPose& a, const UncertainPose& b) {
   return {a.T_a_b * b.T_a_b,
@@ -98,7 +90,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> added) {
     query.tracked = map.T_previous_robot;
     query.follows = true;
   }
-  query.odometry.covariance = with_floor(query.odometry.covariance);
+  query.odometry.covariance = invertible(query.odometry.covariance);
   query.way_m = std::sqrt(query.odometry.T_a_b.position_m().squaredNorm());
   T_odom_last_ = map.T_odom_robot;
   believed_ = 0;
@@ -176,7 +168,7 @@ double MapLocalizer::better_elsewhere(const Query& query) const {
 }
 
 void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& covariance) {
-  pose_ = {T_map_robot, with_floor(covariance)};
+  pose_ = {T_map_robot, invertible(covariance)};
   has_pose_ = true;
   hypotheses_.clear();
   monitor_.restart(kGivenPoseRight);
@@ -219,26 +211,13 @@ topomap::Trajectory MapLocalizer::trajectory() const {
 std::vector<MapLocalizer::Candidate> MapLocalizer::candidates(const Query& query,
                                                               const UncertainPose& T_map_robot,
                                                               std::size_t count) const {
-  const std::vector<Eigen::Vector2d>& points_m = query.features.coarse_m;
-  const std::size_t stride = std::max<std::size_t>(1, points_m.size() / 40);
-  const Eigen::Matrix3d& c = T_map_robot.covariance;
-  const double tolerance_m = 0.5 + 2.0 * std::sqrt(std::max(c(0, 0), c(1, 1)));
+  const std::vector<Eigen::Vector2d> outline_m = outline_of(query.features.coarse_m);
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < global_.stops().size(); ++i) {
     const StoredStop& stop = global_.stops()[i];
     const Pose2 T = geometry::between(stop.T_map_robot, T_map_robot.T_a_b);
     if (T.position_m().squaredNorm() > kFarthest_m * kFarthest_m) continue;
-    const geometry::SinCos r = geometry::sincos(T.theta_rad);
-    std::size_t seen = 0;
-    std::size_t all = 0;
-    for (std::size_t k = 0; k < points_m.size(); k += stride, ++all) {
-      const Eigen::Vector2d& p = points_m[k];
-      const auto view = stop.profile.view(
-          {T.x_m + r.cos * p.x() - r.sin * p.y(), T.y_m + r.sin * p.x() + r.cos * p.y()},
-          tolerance_m);
-      if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
-    }
-    const double overlap = all == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(all);
+    const double overlap = expected_overlap(stop.profile, outline_m, {T, T_map_robot.covariance});
     if (overlap >= config_.smallest_expected_overlap) found.push_back({i, overlap});
   }
   std::stable_sort(found.begin(), found.end(),

@@ -37,6 +37,13 @@ UncertainPose odometry_between_stops(const Pose2& T_odom_previous, const topomap
   return advance(sum, geometry::between(T_odom_before, map.T_odom_robot), noise);
 }
 
+Eigen::Matrix3d invertible(Eigen::Matrix3d covariance) {
+  covariance(0, 0) += 1e-4;
+  covariance(1, 1) += 1e-4;
+  covariance(2, 2) += 1e-5;
+  return covariance;
+}
+
 Eigen::Vector3d search_half_width(const Eigen::Matrix3d& covariance, double probability,
                                   double heading_sigmas) {
   const double k = std::sqrt(ellipse_k2(probability));

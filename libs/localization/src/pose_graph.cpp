@@ -136,9 +136,11 @@ std::vector<PoseGraphEdge> PoseGraph::remove_edges(EdgeKind kind, double largest
   return removed;
 }
 
-void PoseGraph::remove_edges(EdgeKind kind, std::uint32_t from, std::uint32_t to) {
+void PoseGraph::remove_edges(std::span<const PoseGraphEdge> like) {
   const std::size_t removed = std::erase_if(edges_, [&](const PoseGraphEdge& edge) {
-    return edge.kind == kind && edge.from == from && edge.to == to;
+    return std::any_of(like.begin(), like.end(), [&](const PoseGraphEdge& other) {
+      return edge.kind == other.kind && edge.from == other.from && edge.to == other.to;
+    });
   });
   if (removed > 0) rebuild_links();
 }

@@ -25,11 +25,7 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
   last_ = {before.T_a_b * step.T_a_b,
            geometry::compose_covariance(before.T_a_b, before.covariance, step.T_a_b,
                                         monitor_.widened(step.covariance))};
-  Eigen::Matrix3d covariance = last_.covariance;
-  covariance(0, 0) += 1e-4;  // a standing robot: nothing new from odometry, but invertible
-  covariance(1, 1) += 1e-4;
-  covariance(2, 2) += 1e-5;
-  const PosePrior prior{last_.T_a_b, covariance.inverse()};
+  const PosePrior prior{last_.T_a_b, invertible(last_.covariance).inverse()};
   const MatchFeatures features = extract_scan_features(points, T_robot_laser_);
   const Refinement refined = refine(stop_, features, last_.T_a_b, prior);
   const Pose2& T = refined.T_reference_query;

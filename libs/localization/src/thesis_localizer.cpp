@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "topogeo/localization/expected_overlap.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {
@@ -14,32 +15,9 @@ using topomap::LocalMap;
 
 namespace {
 
-constexpr std::size_t kOutlinePoints = 40;
-
-// A standing robot has no odometry error, but an uncertainty has to be inverted.
-UncertainPose with_floor(UncertainPose odometry) {
-  odometry.covariance(0, 0) += 1e-4;
-  odometry.covariance(1, 1) += 1e-4;
-  odometry.covariance(2, 2) += 1e-5;
-  return odometry;
-}
-
 bool may_be_right(const MatchResult& result) {
   return result.verdict == Verdict::kAccepted || result.reason == Reason::kDoubtful ||
          result.reason == Reason::kSecondSolution;
-}
-
-// Share of the outline of a map that another one sees, at a pose that is not known exactly.
-double expected_overlap(const RangeProfile& profile, std::span<const Eigen::Vector2d> outline_m,
-                        const UncertainPose& pose) {
-  if (outline_m.empty()) return 0.0;
-  const double tolerance_m =
-      0.5 + 2.0 * std::sqrt(std::max(pose.covariance(0, 0), pose.covariance(1, 1)));
-  const auto seen = std::count_if(outline_m.begin(), outline_m.end(), [&](const auto& point) {
-    const auto view = profile.view(pose.T_a_b * point, tolerance_m);
-    return view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface;
-  });
-  return static_cast<double>(seen) / static_cast<double>(outline_m.size());
 }
 
 }  // namespace
@@ -65,29 +43,19 @@ bool ThesisLocalizer::add(std::shared_ptr<const LocalMap> map) {
 }
 
 void ThesisLocalizer::append(std::shared_ptr<const LocalMap> map) {
-  if (map->id != stops_.size()) {
-    throw std::invalid_argument("localizer: local map " + std::to_string(map->id) +
-                                " came, expected " + std::to_string(stops_.size()));
-  }
-  if (!stops_.empty() && map->robot_id != stops_.front().map->robot_id) {
-    throw std::invalid_argument("localizer: local map " + std::to_string(map->id) +
-                                " is of robot '" + map->robot_id + "', expected '" +
-                                stops_.front().map->robot_id + "'");
-  }
+  check_next(*map, stops_.size(), stops_.empty() ? nullptr : stops_.front().map.get());
   pool_.add_map(map);
   Stop stop;
   stop.hash = topomap::content_hash(*map);
   stop.view = field_of_view(*map);
   MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
   stop.profile = std::move(features.profile);
-  const std::size_t stride = std::max<std::size_t>(1, features.coarse_m.size() / kOutlinePoints);
-  for (std::size_t i = 0; i < features.coarse_m.size(); i += stride) {
-    stop.outline_m.push_back(features.coarse_m[i]);
-  }
+  stop.outline_m = outline_of(features.coarse_m);
   if (!stops_.empty()) {
     const Stop& previous = stops_.back();
     stop.T_previous_this =
-        with_floor(odometry_between_stops(previous.map->T_odom_robot, *map, config_.odometry));
+        odometry_between_stops(previous.map->T_odom_robot, *map, config_.odometry);
+    stop.T_previous_this.covariance = invertible(stop.T_previous_this.covariance);
     stop.way_m = previous.way_m + std::sqrt(stop.T_previous_this.T_a_b.position_m().squaredNorm());
   }
   stop.map = std::move(map);

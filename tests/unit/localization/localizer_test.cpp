@@ -24,21 +24,7 @@ namespace {
 
 using geometry::Pose2;
 using test::DrivenMaps;
-
-// Once round the floor and 10 m on: 110 m of corridors, of which the last see the first again.
-const DrivenMaps& round_trip() {
-  static const DrivenMaps driven = test::drive(test::world("floor"), {{1.3, 1.2},
-                                                                      {15.0, 1.15},
-                                                                      {28.9, 1.2},
-                                                                      {28.9, 9.0},
-                                                                      {28.8, 18.7},
-                                                                      {15.0, 18.8},
-                                                                      {1.3, 18.8},
-                                                                      {1.3, 9.6},
-                                                                      {1.3, 1.2},
-                                                                      {11.0, 1.15}});
-  return driven;
-}
+using test::round_trip;
 
 struct Outcome {
   topomap::Trajectory trajectory;

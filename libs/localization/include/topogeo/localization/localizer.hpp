@@ -126,11 +126,11 @@ class Localizer : public Slam {
   };
 
   void append(std::shared_ptr<const topomap::LocalMap> map);
-  void match_recent(std::uint32_t stop);
+  void match_recent(std::uint32_t stop, std::vector<StepMatch>& evidence);
   std::vector<MatchTask> recent_tasks(std::uint32_t stop,
                                       const std::vector<UncertainPose>& relative, double widening);
   void watch_odometry(const PoseGraphEdge& match);
-  void match_revisited(std::uint32_t stop);
+  void match_revisited(std::uint32_t stop, std::vector<StepMatch>& evidence);
   [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
   [[nodiscard]] Eigen::Matrix3d covariance_in_map(std::uint32_t stop) const;
 
@@ -139,7 +139,7 @@ class Localizer : public Slam {
   [[nodiscard]] bool far(const Correction& correction) const;
   bool confirm(const PoseGraphEdge& edge, const Correction& correction);
   [[nodiscard]] bool closes(const Answer& answer) const;
-  void believe(std::uint32_t stop);
+  void believe(std::uint32_t stop, std::vector<StepMatch> matches);
   void decide(const PoseGraphEdge& edge, LoopOutcome outcome, Reason reason, double fitness);
 
   void start_optimization(std::uint32_t stop);
@@ -155,14 +155,13 @@ class Localizer : public Slam {
   [[nodiscard]] std::vector<Candidate> candidates(std::uint32_t stop,
                                                   std::span<const UncertainPose> relative,
                                                   bool recent, std::uint32_t count) const;
-  /// Share of the query's outline that the reference should see; 0 when that is below `least`.
-  [[nodiscard]] double expected_overlap(const Stop& reference, const Stop& query,
-                                        const UncertainPose& T_reference_query, double least) const;
   [[nodiscard]] bool worth_comparing(std::uint32_t earlier, std::uint32_t later,
                                      const geometry::Pose2& T_later_earlier) const;
   [[nodiscard]] bool searchable(const UncertainPose& T_reference_query) const;
   MatchTask make_task(std::uint32_t reference, std::uint32_t query, const UncertainPose& prior);
-  std::vector<Answer> run(const std::vector<MatchTask>& tasks, EdgeKind kind);
+  /// What came of the tasks; and, where wanted, what each says of the pose of this stop.
+  std::vector<Answer> run(const std::vector<MatchTask>& tasks, EdgeKind kind,
+                          std::vector<StepMatch>* evidence);
 
   LocalizerConfig config_;
   MatchPool& pool_;
@@ -185,7 +184,6 @@ class Localizer : public Slam {
   OdometryMonitor odometry_;
   std::vector<LoopDecision> decisions_;
   StateMonitor monitor_;
-  std::vector<StepMatch> step_matches_;  // of this stop
   SlamCounts counts_;
 };
 

@@ -43,6 +43,10 @@ UncertainPose advance(const UncertainPose& from, const geometry::Pose2& T_before
 UncertainPose odometry_between_stops(const geometry::Pose2& T_odom_previous,
                                      const topomap::LocalMap& map, const OdometryNoise& noise);
 
+/// The covariance with a centimetre and a fifth of a degree more: a standing robot has no odometry
+/// error, but what weighs or searches by a covariance has to invert it.
+Eigen::Matrix3d invertible(Eigen::Matrix3d covariance);
+
 /// Half-widths (m, m, rad) of the rectangle around the error ellipse of the given probability
 /// (6.22; error_ellipse.hpp) and of `heading_sigmas` standard deviations of heading (6.23).
 /// 0 < probability < 1.

@@ -71,8 +71,8 @@ class PoseGraph {
 
   /// Removes edges of a kind whose disagreement exceeds the limit; returns them.
   std::vector<PoseGraphEdge> remove_edges(EdgeKind kind, double largest_disagreement);
-  /// Removes all edges of a kind between two stops.
-  void remove_edges(EdgeKind kind, std::uint32_t from, std::uint32_t to);
+  /// Removes all edges that are of the same kind between the same stops as one of these.
+  void remove_edges(std::span<const PoseGraphEdge> like);
 
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   /// How far a search along the graph goes.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -54,6 +55,10 @@ class Slam {
   Slam(const Slam&) = default;
   Slam& operator=(const Slam&) = default;
 };
+
+/// That `map` is the next one of the robot: throws std::invalid_argument unless its id is `next_id`
+/// and its robot that of `first`, if there is one before it.
+void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap::LocalMap* first);
 
 class GraphOptimizer;
 
