@@ -1,0 +1,37 @@
+// An emulated device at the other end of a serial line: bytes in, bytes out, no port and no clock of
+// its own. See devices/serial_driver.hpp for the host's end.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "topogeo/devices/serial_driver.hpp"
+
+namespace topogeo::simulation {
+
+/// Times are nanoseconds of the simulated world's clock, which never goes back.
+class SerialDevice {
+ public:
+  SerialDevice() = default;
+  SerialDevice(const SerialDevice&) = delete;
+  SerialDevice& operator=(const SerialDevice&) = delete;
+  SerialDevice(SerialDevice&&) = delete;
+  SerialDevice& operator=(SerialDevice&&) = delete;
+  virtual ~SerialDevice() = default;
+
+  /// Bytes that the host wrote with its port set to `host`. A device whose own settings differ
+  /// understands nothing of them.
+  virtual void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
+                       std::int64_t now_ns) = 0;
+  /// Does what is due by now (measuring, reports, watchdog, restart).
+  virtual void tick(std::int64_t now_ns) = 0;
+  /// When `tick` is to be called at the latest.
+  [[nodiscard]] virtual std::int64_t due_ns() const = 0;
+  /// What left the device's end of the line by now at its own rate, each byte once. What the device
+  /// sends while the host's port is set otherwise reaches the host as other bytes.
+  [[nodiscard]] virtual std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
+                                                              std::int64_t now_ns) = 0;
+};
+
+}  // namespace topogeo::simulation
