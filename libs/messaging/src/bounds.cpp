@@ -55,6 +55,17 @@ Defect find_defect(const msg::Sonar& message) {
 }
 
 Defect find_defect(const msg::BaseStatus& message) {
+  return Check(message).value("state", message.state(), msg::kBaseMotorsOff).defect();
+}
+
+Defect find_defect(const msg::LaserStatus& message) {
+  return Check(message)
+      .size("drops", message.drops().size(), msg::kMaxFaultKinds)
+      .value("state", message.state(), msg::kLaserFault)
+      .defect();
+}
+
+Defect find_defect(const msg::GroundTruth& message) {
   return Check(message).defect();
 }
 
@@ -171,6 +182,10 @@ Defect find_defect(const msg::Route& message) {
 
 Defect find_defect(const msg::MotionCommand& message) {
   return Check(message).defect();
+}
+
+Defect find_defect(const msg::BaseCommand& message) {
+  return Check(message).value("kind", message.kind(), msg::kBaseSetLimits).defect();
 }
 
 }  // namespace topogeo::messaging

@@ -23,6 +23,8 @@ Defect find_defect(const msg::Scan& message);
 Defect find_defect(const msg::Odometry& message);
 Defect find_defect(const msg::Sonar& message);
 Defect find_defect(const msg::BaseStatus& message);
+Defect find_defect(const msg::LaserStatus& message);
+Defect find_defect(const msg::GroundTruth& message);
 Defect find_defect(const msg::StreamEnd& message);
 Defect find_defect(const msg::LocalMap& message);
 Defect find_defect(const msg::MatchTask& message);
@@ -41,5 +43,6 @@ Defect find_defect(const msg::MapElement& message);
 Defect find_defect(const msg::Goal& message);
 Defect find_defect(const msg::Route& message);
 Defect find_defect(const msg::MotionCommand& message);
+Defect find_defect(const msg::BaseCommand& message);
 
 }  // namespace topogeo::messaging

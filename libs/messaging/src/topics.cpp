@@ -79,6 +79,8 @@ TOPOGEO_TOPIC(Scan, kScan, "sensor_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(Odometry, kOdometry, "motion_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(Sonar, kSonar, "sensor_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(BaseStatus, kBaseStatus, "sensor_live", registersensorTypes, kReplayRole)
+TOPOGEO_TOPIC(LaserStatus, kLaserStatus, "sensor_live", registersensorTypes, kReplayRole)
+TOPOGEO_TOPIC(GroundTruth, kGroundTruth, "motion_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state", registerstreamTypes)
 TOPOGEO_TOPIC(LocalMap, kLocalMap, "state", registerlocal_mapTypes)
 TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes, {}, "worker_id")
@@ -97,13 +99,17 @@ TOPOGEO_TOPIC(MapElement, kMapElement, "state", registermap_updateTypes)
 TOPOGEO_TOPIC(Goal, kGoal, "state", registerplanningTypes)
 TOPOGEO_TOPIC(Route, kRoute, "state", registerplanningTypes)
 TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command", registermotionTypes)
+TOPOGEO_TOPIC(BaseCommand, kBaseCommand, "request", registermotionTypes)
 
 #undef TOPOGEO_TOPIC
 
 std::span<const TopicInfo* const> all_topics() {
-  static const std::array<const TopicInfo*, 22> topics = {
+  static const std::array<const TopicInfo*, 25> topics = {
+      &TopicTraits<msg::BaseCommand>::info(),
       &TopicTraits<msg::BaseStatus>::info(),
       &TopicTraits<msg::Goal>::info(),
+      &TopicTraits<msg::GroundTruth>::info(),
+      &TopicTraits<msg::LaserStatus>::info(),
       &TopicTraits<msg::LocalMap>::info(),
       &TopicTraits<msg::LocalizationCommand>::info(),
       &TopicTraits<msg::LocalizationReply>::info(),

@@ -47,9 +47,30 @@ void fill(msg::Sonar& sonar) {
 }
 
 void fill(msg::BaseStatus& status) {
+  status.state(msg::kBaseBumped);
   status.battery_v(47.5F);
-  status.emergency_stop(true);
-  set_text(status.message(), "bumper pressed", "message");
+  status.battery_low(true);
+  status.bumpers(0x8001);
+  set_text(status.reason(), "bumper pressed", "reason");
+}
+
+void fill(msg::LaserStatus& status) {
+  status.state(msg::kLaserFault);
+  status.baud(500'000);
+  status.contaminated(true);
+  status.dazzled_beams(3);
+  msg::FaultCount drop;
+  set_text(drop.reason(), "bad checksum", "reason");
+  drop.count(1'000'000'007);
+  status.drops().assign(msg::kMaxFaultKinds, drop);
+  set_text(status.reason(), "dirty window", "reason");
+}
+
+void fill(msg::GroundTruth& truth) {
+  truth.T_world_robot(pose(7.0));
+  truth.linear_mps(0.4);
+  truth.touching(true);
+  truth.collisions(3);
 }
 
 void fill(msg::StreamEnd& end) {
@@ -219,15 +240,23 @@ void fill(msg::MotionCommand& command) {
   command.valid_for_s(0.2);
 }
 
+void fill(msg::BaseCommand& command) {
+  command.kind(msg::kBaseSetLimits);
+  command.largest_linear_mps(0.5);
+  command.angular_acceleration_radps2(1.5);
+  set_text(command.client_id(), "operator", "client_id");
+}
+
 template <class T>
 class RoundTrip : public TwoParticipants {};
 
 using AllTypes =
-    ::testing::Types<msg::Scan, msg::Odometry, msg::Sonar, msg::BaseStatus, msg::StreamEnd,
-                     msg::LocalMap, msg::MatchTask, msg::MatchResult, msg::WorkerStatus,
-                     msg::ServiceStatus, msg::LivePose, msg::TrajectorySegment, msg::LoopClosures,
-                     msg::LoopDecisions, msg::LocalizationCommand, msg::LocalizationReply,
-                     msg::MapElement, msg::Goal, msg::Route, msg::MotionCommand>;
+    ::testing::Types<msg::Scan, msg::Odometry, msg::Sonar, msg::BaseStatus, msg::LaserStatus,
+                     msg::GroundTruth, msg::StreamEnd, msg::LocalMap, msg::MatchTask,
+                     msg::MatchResult, msg::WorkerStatus, msg::ServiceStatus, msg::LivePose,
+                     msg::TrajectorySegment, msg::LoopClosures, msg::LoopDecisions,
+                     msg::LocalizationCommand, msg::LocalizationReply, msg::MapElement, msg::Goal,
+                     msg::Route, msg::MotionCommand, msg::BaseCommand>;
 TYPED_TEST_SUITE(RoundTrip, AllTypes);
 
 TYPED_TEST(RoundTrip, ArrivesUnchanged) {

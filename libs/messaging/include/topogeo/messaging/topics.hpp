@@ -19,6 +19,8 @@ class Scan;
 class Odometry;
 class Sonar;
 class BaseStatus;
+class LaserStatus;
+class GroundTruth;
 class StreamEnd;
 class LocalMap;
 class MatchTask;
@@ -37,32 +39,36 @@ class MapElement;
 class Goal;
 class Route;
 class MotionCommand;
+class BaseCommand;
 }  // namespace topogeo::msg
 
 namespace topogeo::messaging {
 
-inline constexpr std::string_view kScan = "topogeo/v4/scan";
-inline constexpr std::string_view kOdometry = "topogeo/v4/odometry";
-inline constexpr std::string_view kSonar = "topogeo/v4/sonar";
-inline constexpr std::string_view kBaseStatus = "topogeo/v4/base_status";
-inline constexpr std::string_view kStreamEnd = "topogeo/v4/stream_end";
-inline constexpr std::string_view kLocalMap = "topogeo/v4/local_map";
-inline constexpr std::string_view kMatchTask = "topogeo/v4/match_task";
-inline constexpr std::string_view kMatchResult = "topogeo/v4/match_result";
-inline constexpr std::string_view kMapRequest = "topogeo/v4/map_request";
-inline constexpr std::string_view kMapCopy = "topogeo/v4/map_copy";
-inline constexpr std::string_view kWorkerStatus = "topogeo/v4/worker_status";
-inline constexpr std::string_view kServiceStatus = "topogeo/v4/service_status";
-inline constexpr std::string_view kLivePose = "topogeo/v4/pose";
-inline constexpr std::string_view kTrajectorySegment = "topogeo/v4/trajectory";
-inline constexpr std::string_view kLoopClosures = "topogeo/v4/loop_closures";
-inline constexpr std::string_view kLoopDecisions = "topogeo/v4/loop_decisions";
-inline constexpr std::string_view kLocalizationCommand = "topogeo/v4/localization_command";
-inline constexpr std::string_view kLocalizationReply = "topogeo/v4/localization_reply";
-inline constexpr std::string_view kMapElement = "topogeo/v4/map";
-inline constexpr std::string_view kGoal = "topogeo/v4/goal";
-inline constexpr std::string_view kRoute = "topogeo/v4/route";
-inline constexpr std::string_view kMotionCommand = "topogeo/v4/motion_command";
+inline constexpr std::string_view kScan = "topogeo/v5/scan";
+inline constexpr std::string_view kOdometry = "topogeo/v5/odometry";
+inline constexpr std::string_view kSonar = "topogeo/v5/sonar";
+inline constexpr std::string_view kBaseStatus = "topogeo/v5/base_status";
+inline constexpr std::string_view kLaserStatus = "topogeo/v5/laser_status";
+inline constexpr std::string_view kGroundTruth = "topogeo/v5/ground_truth";
+inline constexpr std::string_view kStreamEnd = "topogeo/v5/stream_end";
+inline constexpr std::string_view kLocalMap = "topogeo/v5/local_map";
+inline constexpr std::string_view kMatchTask = "topogeo/v5/match_task";
+inline constexpr std::string_view kMatchResult = "topogeo/v5/match_result";
+inline constexpr std::string_view kMapRequest = "topogeo/v5/map_request";
+inline constexpr std::string_view kMapCopy = "topogeo/v5/map_copy";
+inline constexpr std::string_view kWorkerStatus = "topogeo/v5/worker_status";
+inline constexpr std::string_view kServiceStatus = "topogeo/v5/service_status";
+inline constexpr std::string_view kLivePose = "topogeo/v5/pose";
+inline constexpr std::string_view kTrajectorySegment = "topogeo/v5/trajectory";
+inline constexpr std::string_view kLoopClosures = "topogeo/v5/loop_closures";
+inline constexpr std::string_view kLoopDecisions = "topogeo/v5/loop_decisions";
+inline constexpr std::string_view kLocalizationCommand = "topogeo/v5/localization_command";
+inline constexpr std::string_view kLocalizationReply = "topogeo/v5/localization_reply";
+inline constexpr std::string_view kMapElement = "topogeo/v5/map";
+inline constexpr std::string_view kGoal = "topogeo/v5/goal";
+inline constexpr std::string_view kRoute = "topogeo/v5/route";
+inline constexpr std::string_view kMotionCommand = "topogeo/v5/motion_command";
+inline constexpr std::string_view kBaseCommand = "topogeo/v5/base_command";
 
 /// Role of the sensor topics while a log is replayed: a slow reader slows the writer. Writer and
 /// readers of a run must agree on it.
