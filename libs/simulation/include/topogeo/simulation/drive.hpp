@@ -1,23 +1,15 @@
-// A smooth drive along way points: the robot follows a point that runs ahead of it on the path
-// (pure pursuit), slows down to turn, and turns on the spot where the path folds back.
+// A smooth drive along way points that nothing stops.
 #pragma once
 
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/simulation/tour_follower.hpp"
 
 namespace topogeo::simulation {
-
-struct DriveOptions {
-  double speed_m_per_s = 0.9;                               ///< at most; (0, 10]
-  double turn_rad_per_s = 60.0 * std::numbers::pi / 180.0;  ///< at most; (0, 10]
-  double acceleration_m_per_s2 = 0.5;                       ///< (0, 10]
-  double lookahead_m = 0.4;  ///< distance of the point ahead; corners are cut by less; [0.05, 5]
-};
 
 struct TimedPose {
   std::int64_t time_ns;  ///< since the start of the drive

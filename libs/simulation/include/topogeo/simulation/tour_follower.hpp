@@ -1,0 +1,65 @@
+// Pure pursuit: follows a path by a point that runs ahead of the robot on it, slows down to turn
+// and before obstacles, and turns on the spot where the path folds back.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::simulation {
+
+/// How a base that drives and turns is told to move.
+struct Velocity {
+  double linear_m_per_s = 0.0;     ///< along x of the robot
+  double angular_rad_per_s = 0.0;  ///< counter-clockwise
+  friend bool operator==(const Velocity&, const Velocity&) = default;
+};
+
+struct DriveOptions {
+  double speed_m_per_s = 0.9;                               ///< at most; (0, 10]
+  double turn_rad_per_s = 60.0 * std::numbers::pi / 180.0;  ///< at most; (0, 10]
+  double acceleration_m_per_s2 = 0.5;                       ///< (0, 10]
+  double lookahead_m = 0.4;  ///< distance of the point ahead; corners are cut by less; [0.05, 5]
+  double keep_off_m = 0.1;   ///< of obstacles ahead, where the robot is told of them; [0, 5]
+};
+
+class TourFollower {
+ public:
+  /// Throws std::invalid_argument when an option is out of range or there are fewer than two
+  /// different way points in succession.
+  TourFollower(const std::vector<Eigen::Vector2d>& tour_m, const DriveOptions& options);
+
+  /// At the first way point, heading for the second.
+  [[nodiscard]] geometry::Pose2 start() const;
+
+  /// What to do for the next `dt_s` (> 0) at this pose; nothing when the end is reached. The speed
+  /// grows with the acceleration of the options and falls at once: braking on a curve would carry
+  /// the robot off the path. `free_ahead_m` is how far it could go straight on before it touches
+  /// something: it slows down in time to stop keep_off_m before that, and waits there.
+  std::optional<Velocity> next(const geometry::Pose2& T_world_robot, double dt_s,
+                               double free_ahead_m = std::numeric_limits<double>::infinity());
+
+  /// Of the path, from the point ahead to the end.
+  [[nodiscard]] double rest_m() const;
+
+ private:
+  // The point that runs ahead of the robot.
+  void run_ahead(const Eigen::Vector2d& robot_m);
+  [[nodiscard]] Eigen::Vector2d ahead_m() const;
+  [[nodiscard]] bool ahead_at_end() const { return next_ == path_m_.size(); }
+
+  DriveOptions options_;
+  std::vector<Eigen::Vector2d> path_m_;
+  std::size_t next_ = 1;  // the point ahead is on the way from path_m_[next_ - 1] to it
+  double along_m_ = 0.0;  // on that way
+  double rest_m_ = 0.0;
+  double speed_m_per_s_ = 0.0;
+};
+
+}  // namespace topogeo::simulation
