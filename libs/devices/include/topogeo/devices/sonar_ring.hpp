@@ -1,0 +1,27 @@
+// Where the sonars of a robot sit and where they look.
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::devices {
+
+/// One transducer; it looks along x of its own frame.
+struct SonarMount {
+  geometry::Pose2 T_robot_sonar{};
+  double half_cone_rad = 15.0 * std::numbers::pi / 180.0;  ///< half of the opening angle, > 0
+};
+
+/// MACONDO's six: two to the front, two to the left, two to the right. The source says only which
+/// way they look; the mounting is that of a round body of 26 cm, the pairs 20 cm apart.
+std::vector<SonarMount> macondo_sonars();
+
+inline constexpr double kB21Radius_m = 0.267;
+
+/// The 24 of a B21: one every 15 degrees at the radius of its body, counter-clockwise from the
+/// first one left of ahead.
+std::vector<SonarMount> b21_sonars();
+
+}  // namespace topogeo::devices
