@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kWandererRadius_m = 0.2;
 constexpr double kStep_s = 0.1;
+constexpr double kFromRobot_m = 0.8;  // who yields or wanders keeps off it
 
 Eigen::Vector2d any_direction(support::Random& random) {
   const double angle_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
@@ -50,7 +51,8 @@ Eigen::Vector2d position_m(const Person& person, double time_s) {
   return path_m.back();
 }
 
-People::People(const World& world, std::size_t wanderers, std::uint64_t seed) : world_(world) {
+People::People(const World& world, std::size_t wanderers, std::uint64_t seed)
+    : world_(world), waited_s_(world.people.size(), 0.0) {
   for (std::size_t i = 0; i < wanderers && !world.tour_m.empty(); ++i) {
     support::Random random(support::derive_seed(seed, "people", {i}));
     Eigen::Vector2d place_m = place_on(world.tour_m, random);
@@ -67,7 +69,6 @@ People::People(const World& world, std::size_t wanderers, std::uint64_t seed) : 
 
 void People::step(Wanderer& wanderer, const World& scene, const Eigen::Vector2d& robot_m) {
   constexpr double kFromWalls_m = kWandererRadius_m + 0.1;
-  constexpr double kFromRobot_m = 0.8;
   constexpr double kNewMind = 0.01;  // of somebody who walks on another way all of a sudden
   const Eigen::Vector2d next_m =
       wanderer.position_m + wanderer.direction * (wanderer.speed_m_per_s * kStep_s);
@@ -83,17 +84,31 @@ void People::step(Wanderer& wanderer, const World& scene, const Eigen::Vector2d&
   if (!from_walls || !from_robot || other_mind) wanderer.direction = any_direction(wanderer.random);
 }
 
+void People::yield(std::size_t person, const Eigen::Vector2d& robot_m) {
+  const Person& walker = world_.people[person];
+  const double at_s = static_cast<double>(steps_) * kStep_s - waited_s_[person];
+  const double now_m = (position_m(walker, at_s) - robot_m).norm();
+  const double next_m = (position_m(walker, at_s + kStep_s) - robot_m).norm();
+  if (next_m < kFromRobot_m && next_m < now_m) waited_s_[person] += kStep_s;
+}
+
 void People::walk(double time_s, const World& scene, const Eigen::Vector2d& robot_m) {
   time_s_ = time_s;
   for (; static_cast<double>(steps_ + 1) * kStep_s <= time_s; ++steps_) {
     for (Wanderer& wanderer : wanderers_) step(wanderer, scene, robot_m);
+    for (std::size_t i = 0; i < world_.people.size(); ++i) {
+      if (world_.people[i].yields) yield(i, robot_m);
+    }
   }
 }
 
 std::vector<Circle> People::circles() const {
   std::vector<Circle> all;
-  for (const Person& person : world_.people) {
-    all.push_back({position_m(person, time_s_), person.radius_m});
+  for (std::size_t i = 0; i < world_.people.size(); ++i) {
+    const Person& person = world_.people[i];
+    const double at_s =
+        person.yields ? static_cast<double>(steps_) * kStep_s - waited_s_[i] : time_s_;
+    all.push_back({position_m(person, at_s), person.radius_m});
   }
   for (const Wanderer& wanderer : wanderers_) {
     all.push_back({wanderer.position_m, kWandererRadius_m});

@@ -91,6 +91,7 @@ class Journey {
   [[nodiscard]] double step_m() const { return step_m_; }
   [[nodiscard]] double turned_rad() const { return turned_rad_; }
   [[nodiscard]] bool carried() const { return carried_; }  // in the last tick, after its step
+  [[nodiscard]] double end_s() const { return static_cast<double>(poses_.back().time_ns) * 1e-9; }
   [[nodiscard]] std::int64_t time_ns() const { return ticks_ * poses_[1].time_ns; }
 
  private:
@@ -131,9 +132,10 @@ void add_people(const People& people, const Eigen::Vector2d& laser_m, World& sce
 
 }  // namespace
 
-SimulatedLog simulate_log(const World& world, const SimulationOptions& options) {
+SimulatedLog simulate_log(const World& given_world, const SimulationOptions& options) {
   check(options);
-  Journey journey(world, options);
+  Journey journey(given_world, options);
+  const World world = draw_changes(given_world, options.seed, journey.end_s());
   // Separate seeds: a change to the laser leaves the odometry as it was, and the other way round.
   support::Random laser_random(support::derive_seed(options.seed, "laser", {}));
   OdometryModel odometry(options.odometry,
@@ -155,8 +157,8 @@ SimulatedLog simulate_log(const World& world, const SimulationOptions& options) 
     travelled_m = 0.0;
     turned_rad = 0.0;
     const geometry::Pose2& T_world_robot = journey.T_world_robot();
-    World scene = scene_at(world, journey.driven_m());
     const double time_s = static_cast<double>(journey.time_ns()) * 1e-9;
+    World scene = scene_at(world, journey.driven_m(), time_s);
     people.walk(time_s, scene, T_world_robot.position_m());
     add_people(people, (T_world_robot * options.T_robot_laser).position_m(), scene);
     scan::Scan scan;

@@ -4,20 +4,65 @@
 #include <cmath>
 #include <limits>
 
+#include "topogeo/support/random.hpp"
+#include "topogeo/support/seed.hpp"
+
 namespace topogeo::simulation {
 
-World scene_at(const World& world, double way_m) {
+namespace {
+
+bool is_there(const ChangingPart& part, double way_m, double time_s) {
+  const bool by_way =
+      std::any_of(part.present.begin(), part.present.end(), [way_m](const WayInterval& interval) {
+        return way_m >= interval.from_m && way_m < interval.to_m;
+      });
+  const bool by_time = std::any_of(part.present_s.begin(), part.present_s.end(),
+                                   [time_s](const TimeInterval& interval) {
+                                     return time_s >= interval.from_s && time_s < interval.to_s;
+                                   });
+  return (by_way || by_time) != part.otherwise;
+}
+
+}  // namespace
+
+std::vector<bool> present_parts(const World& world, double way_m, double time_s) {
+  std::vector<bool> present;
+  present.reserve(world.changing.size());
+  for (const ChangingPart& part : world.changing) present.push_back(is_there(part, way_m, time_s));
+  return present;
+}
+
+World scene_at(const World& world, double way_m, double time_s) {
   World scene{world.name, world.segments, world.circles, {}, {}, {}};
-  for (const ChangingPart& part : world.changing) {
-    const bool inside =
-        std::any_of(part.present.begin(), part.present.end(), [way_m](const WayInterval& interval) {
-          return way_m >= interval.from_m && way_m < interval.to_m;
-        });
-    if (inside == part.otherwise) continue;
+  const std::vector<bool> present = present_parts(world, way_m, time_s);
+  for (std::size_t i = 0; i < present.size(); ++i) {
+    if (!present[i]) continue;
+    const ChangingPart& part = world.changing[i];
     scene.segments.insert(scene.segments.end(), part.segments.begin(), part.segments.end());
     scene.circles.insert(scene.circles.end(), part.circles.begin(), part.circles.end());
   }
   return scene;
+}
+
+World draw_changes(World world, std::uint64_t seed, double until_s) {
+  for (std::size_t i = 0; i < world.changing.size(); ++i) {
+    ChangingPart& part = world.changing[i];
+    if (!part.random) continue;
+    support::Random random(support::derive_seed(seed, "changes", {i}));
+    const auto draw_s = [&random](double mean_s) { return mean_s * random.uniform(0.5, 1.5); };
+    // It starts anywhere in one of the two turns.
+    const RandomTurns& turns = *part.random;
+    double at_s = -random.uniform() * (turns.inside_s + turns.outside_s);
+    while (at_s < until_s) {
+      const double end_s = at_s + draw_s(turns.inside_s);
+      if (end_s > 0.0) {
+        part.present_s.push_back({std::max(at_s, 0.0), std::min(end_s, until_s)});
+      }
+      at_s = end_s + draw_s(turns.outside_s);
+    }
+    part.random.reset();
+  }
+  return world;
 }
 
 double clearance_m(const World& world, const Eigen::Vector2d& point_m) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -20,8 +21,8 @@ constexpr double kMaxCoordinate_m = 1e5;
 struct Door {
   double begin_m;
   double end_m;
-  bool leaf;  // shut but for some parts of the way
-  std::vector<WayInterval> open;
+  bool leaf;          // shut but for some of the time
+  ChangingPart open;  // when, without surfaces
 };
 
 class WorldParser {
@@ -150,22 +151,48 @@ class WorldParser {
     }
   }
 
-  std::vector<WayInterval> intervals(const YAML::Node& node, std::string_view key) const {
-    std::vector<WayInterval> parts;
+  // Calls `add` with the ends of each part.
+  template <typename Add>
+  void for_intervals(const YAML::Node& node, std::string_view key, const char* unit,
+                     const Add& add) const {
     for (const YAML::Node& part : list(node, key)) {
       if (!part.IsSequence() || part.size() != 2) {
-        fail(part, key, "parts of the way as [from, to]", shown(part));
+        fail(part, key, "parts of the way or the time as [from, to]", shown(part));
       }
-      const double from_m = number(part[0], key, 0.0, kMaxCoordinate_m);
-      const double to_m = number(part[1], key, 0.0, kMaxCoordinate_m);
-      if (!(from_m < to_m)) fail(part, key, "[from, to] with from < to", "from >= to");
-      parts.push_back({from_m, to_m});
+      const double from = number(part[0], key, 0.0, kMaxCoordinate_m, unit);
+      const double to = number(part[1], key, 0.0, kMaxCoordinate_m, unit);
+      if (!(from < to)) fail(part, key, "[from, to] with from < to", "from >= to");
+      add(from, to);
     }
-    return parts;
+  }
+
+  // When something is there or open; nothing when that does not change. `word` is "present" or
+  // "open".
+  std::optional<ChangingPart> changes(const YAML::Node& node, const std::string& word) const {
+    ChangingPart part;
+    const YAML::Node way = node[word];
+    const YAML::Node time = node[word + "_s"];
+    const YAML::Node random = node["random"];
+    if (!way && !time && !random) return std::nullopt;
+    for_intervals(way, word, "m", [&](double from_m, double to_m) {
+      part.present.push_back({from_m, to_m});
+    });
+    for_intervals(time, word + "_s", "s", [&](double from_s, double to_s) {
+      part.present_s.push_back({from_s, to_s});
+    });
+    if (random) {
+      if (!random.IsSequence() || random.size() != 2) {
+        fail(random, "random", "two mean times as [" + word + ", not]", shown(random));
+      }
+      constexpr double kShortest_s = 0.1;
+      part.random = RandomTurns{number(random[0], "random", kShortest_s, kMaxCoordinate_m, "s"),
+                                number(random[1], "random", kShortest_s, kMaxCoordinate_m, "s")};
+    }
+    return part;
   }
 
   void add_person(const YAML::Node& node) {
-    expect_keys(node, "people", {"path", "speed", "radius", "start"});
+    expect_keys(node, "people", {"path", "speed", "radius", "start", "yields"});
     Person person;
     for (const YAML::Node& place : list(required(node, "path"), "path")) {
       person.path_m.push_back(point(place, "path"));
@@ -174,31 +201,34 @@ class WorldParser {
     if (node["speed"]) person.speed_m_per_s = number(node["speed"], "speed", 0.0, 10.0, "m/s");
     if (node["radius"]) person.radius_m = number(node["radius"], "radius", 0.01, 2.0);
     if (node["start"]) person.start_s = number(node["start"], "start", 0.0, 1e6, "s");
+    if (const YAML::Node yields = node["yields"]) {
+      if (!yields.IsScalar() || !YAML::convert<bool>::decode(yields, person.yields)) {
+        fail(yields, "yields", "true or false", shown(yields));
+      }
+    }
     world_.people.push_back(std::move(person));
   }
 
   void add_box(const YAML::Node& node) {
-    expect_keys(node, "boxes", {"from", "to", "present"});
+    expect_keys(node, "boxes", {"from", "to", "present", "present_s", "random"});
     const Eigen::Vector2d a_m = point(required(node, "from"), "from");
     const Eigen::Vector2d b_m = point(required(node, "to"), "to");
     if (a_m.x() == b_m.x() || a_m.y() == b_m.y()) {
       fail(node, "boxes", "two corners that differ in x and y", "a box without area");
     }
-    const YAML::Node present = node["present"];
-    ChangingPart part;
+    std::optional<ChangingPart> part = changes(node, "present");
     add_loop({a_m, {b_m.x(), a_m.y()}, b_m, {a_m.x(), b_m.y()}},
-             present ? part.segments : world_.segments);
-    if (!present) return;
-    part.present = intervals(present, "present");
-    world_.changing.push_back(std::move(part));
+             part ? part->segments : world_.segments);
+    if (part) world_.changing.push_back(std::move(*part));
   }
 
   void add_column(const YAML::Node& node) {
-    expect_keys(node, "columns", {"center", "radius", "present"});
+    expect_keys(node, "columns", {"center", "radius", "present", "present_s", "random"});
     const Eigen::Vector2d center_m = point(required(node, "center"), "center");
     const Circle circle{center_m, number(required(node, "radius"), "radius", 0.01, 100.0)};
-    if (const YAML::Node present = node["present"]) {
-      world_.changing.push_back({{}, {circle}, intervals(present, "present"), false});
+    if (std::optional<ChangingPart> part = changes(node, "present")) {
+      part->circles.push_back(circle);
+      world_.changing.push_back(std::move(*part));
     } else {
       world_.circles.push_back(circle);
     }
@@ -207,11 +237,12 @@ class WorldParser {
   std::vector<Door> doors_of(const YAML::Node& wall, double length_m) const {
     std::vector<Door> doors;
     for (const YAML::Node& node : list(wall["doors"], "doors")) {
-      expect_keys(node, "doors", {"at", "width", "open"});
+      expect_keys(node, "doors", {"at", "width", "open", "open_s", "random"});
       const double at_m = number(required(node, "at"), "at", 0.0, length_m);
       const double width_m = number(required(node, "width"), "width", 0.01, length_m);
-      const Door door{at_m - width_m / 2.0, at_m + width_m / 2.0, node["open"].IsDefined(),
-                      intervals(node["open"], "open")};
+      const std::optional<ChangingPart> open = changes(node, "open");
+      const Door door{at_m - width_m / 2.0, at_m + width_m / 2.0, open.has_value(),
+                      open.value_or(ChangingPart{})};
       const auto overlaps = [&](const Door& d) {
         return door.begin_m < d.end_m && d.begin_m < door.end_m;
       };
@@ -253,8 +284,10 @@ class WorldParser {
       add_piece(begin_m, door.begin_m);
       begin_m = door.end_m;
       if (!door.leaf) continue;
-      const Segment leaf{from_m + door.begin_m * along, from_m + door.end_m * along};
-      world_.changing.push_back({{leaf}, {}, door.open, true});
+      ChangingPart part = door.open;
+      part.segments.push_back({from_m + door.begin_m * along, from_m + door.end_m * along});
+      part.otherwise = true;
+      world_.changing.push_back(std::move(part));
     }
     add_piece(begin_m, length_m);
   }

@@ -57,6 +57,46 @@ TEST(ChangingWorld, FurnitureIsThereForItsIntervals) {
   EXPECT_EQ(scene_at(world, 5.0).circles.size(), 1U);
 }
 
+TEST(ChangingWorld, DoorsAndFurnitureChangeWithTheTimeToo) {
+  const World world = parse_world(
+      "walls: [{from: [0, 0], to: [4, 0], doors: [{at: 2, width: 1, open: [[5, 6]], "
+      "open_s: [[10, 20]]}]}]\n"
+      "columns: [{center: [9, 0], radius: 0.5, present_s: [[3, 4]]}]\n",
+      "w");
+  EXPECT_EQ(scene_at(world, 0.0, 9.9).segments.size(), 3U);
+  EXPECT_EQ(scene_at(world, 0.0, 10.0).segments.size(), 2U);
+  EXPECT_EQ(scene_at(world, 5.5, 0.0).segments.size(), 2U);
+  EXPECT_EQ(scene_at(world, 0.0, 20.0).segments.size(), 3U);
+  EXPECT_EQ(scene_at(world, 0.0, 3.5).circles.size(), 1U);
+  EXPECT_EQ(scene_at(world, 0.0, 4.0).circles.size(), 0U);
+  EXPECT_EQ(present_parts(world, 5.5, 3.5), (std::vector<bool>{false, true}));
+}
+
+TEST(ChangingWorld, RandomDoorsOpenAndShutByTurns) {
+  const World world = parse_world(
+      "walls: [{from: [0, 0], to: [4, 0], doors: [{at: 2, width: 1, random: [20, 10]}]}]\n", "w");
+  EXPECT_EQ(scene_at(world, 0.0, 50.0).segments.size(), 3U);  // not drawn yet
+  const World drawn = draw_changes(world, 3, 10000.0);
+  int open = 0;
+  int changes = 0;
+  bool before = true;
+  for (int second = 0; second < 10000; ++second) {
+    const bool now = scene_at(drawn, 0.0, second).segments.size() == 2U;
+    open += now ? 1 : 0;
+    changes += now != before ? 1 : 0;
+    before = now;
+  }
+  EXPECT_NEAR(open, 10000 * 2 / 3, 400);
+  EXPECT_NEAR(changes, 2 * 10000 / 30, 60);
+  const auto first = [](const World& w) { return w.changing[0].present_s.front().to_s; };
+  EXPECT_EQ(first(drawn), first(draw_changes(world, 3, 10000.0)));
+  EXPECT_NE(first(drawn), first(draw_changes(world, 4, 10000.0)));
+  EXPECT_THROW(parse_world("boxes: [{from: [0, 0], to: [1, 1], random: [0, 1]}]", "w"),
+               std::runtime_error);
+  EXPECT_THROW(parse_world("boxes: [{from: [0, 0], to: [1, 1], random: 3}]", "w"),
+               std::runtime_error);
+}
+
 TEST(ChangingWorld, TheLaserSeesTheDoorAsItIs) {
   const World world = parse_world(kCorridor, "w");
   const SimulatedLog log = simulate_log(world, exact());

@@ -12,7 +12,8 @@
 
 namespace topogeo::simulation {
 
-/// Where a person who follows its path is at a time since the start of the drive.
+/// Where a person who follows its path is at a time since the start of the drive, if nobody makes
+/// it wait.
 Eigen::Vector2d position_m(const Person& person, double time_s);
 
 /// The people of a world and `wanderers` more, who walk about at random.
@@ -39,6 +40,10 @@ class People {
 
   const World& world_;
   std::vector<Wanderer> wanderers_;
+  // Lets somebody who yields walk from step `steps_` to the next one, or wait.
+  void yield(std::size_t person, const Eigen::Vector2d& robot_m);
+
+  std::vector<double> waited_s_;  // by the people of the world
   double time_s_ = 0.0;
   std::uint64_t steps_ = 0;
 };

@@ -14,11 +14,20 @@
 //                                 # the way driven; without `open` it stands open for ever
 //   boxes: [{from: [1, 1], to: [2, 1.5], present: [[0, 30]]}]     # also of columns: there for
 //                                 # these parts of the way driven only
-//   people: [{path: [[1, 1], [6, 1]], speed: 1.2, radius: 0.2, start: 3}]   # walk the path to and
-//                                 # fro, m/s (0: stand), seconds after the start of the drive
+//   open_s: [[5, 20]], present_s: [[5, 20]]   # the same in seconds since the start; what is open
+//   or
+//                                 # there by the way or by the time is so
+//   random: [20, 10]              # also: on the average so many seconds open (present) and so many
+//                                 # shut (absent), by turns, as a seed draws them (draw_changes)
+//   people: [{path: [[1, 1], [6, 1]], speed: 1.2, radius: 0.2, start: 3, yields: true}]   # walk
+//   the
+//                                 # path to and fro, m/s (0: stand), seconds after the start of the
+//                                 # drive; who yields waits for the robot to leave the way
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,14 +51,28 @@ struct WayInterval {
   double to_m = 0.0;
 };
 
-/// Surfaces that are there while the robot is on certain parts of its way (a closed door, furniture
-/// that is moved).
+/// Seconds since the start of the drive: [from, to).
+struct TimeInterval {
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
+/// Mean times of something that changes by turns; each one lasts from half to one and a half of it.
+struct RandomTurns {
+  double inside_s = 0.0;   ///< present, or open for a door; > 0
+  double outside_s = 0.0;  ///< absent, or shut for a door; > 0
+};
+
+/// Surfaces that are there while the robot is on certain parts of its way or at certain times (a
+/// closed door, furniture that is moved).
 struct ChangingPart {
   std::vector<Segment> segments{};
   std::vector<Circle> circles{};
   std::vector<WayInterval> present{};
-  bool otherwise = false;  ///< the surfaces are there outside of `present` instead: a door that is
-                           ///< open in these intervals
+  bool otherwise = false;  ///< the surfaces are there outside of `present` and `present_s` instead:
+                           ///< a door that is open in these intervals
+  std::vector<TimeInterval> present_s{};
+  std::optional<RandomTurns> random{};  ///< see draw_changes
 };
 
 /// Somebody who walks along a path and back again, regardless of the robot.
@@ -58,6 +81,7 @@ struct Person {
   double speed_m_per_s = 1.2;
   double radius_m = 0.2;
   double start_s = 0.0;  ///< since the start of the drive; until then at the first point
+  bool yields = false;   ///< stands still where the next step would bring it too near to the robot
 };
 
 struct World {
@@ -77,9 +101,16 @@ World load_world(const std::filesystem::path& path);
 /// The same from text; `source` stands for the file in messages.
 World parse_world(const std::string& text, const std::string& source);
 
-/// The surfaces that are there when the robot has driven `way_m`: those that never change and the
-/// present ones of those that do, without people.
-World scene_at(const World& world, double way_m);
+/// The surfaces that are there when the robot has driven `way_m` and `time_s` have passed: those
+/// that never change and the present ones of those that do, without people.
+World scene_at(const World& world, double way_m, double time_s = 0.0);
+
+/// Which of world.changing are there then.
+std::vector<bool> present_parts(const World& world, double way_m, double time_s);
+
+/// The world with times drawn for what changes at random, up to `until_s`; before, and after that
+/// time, a random part is absent or shut.
+World draw_changes(World world, std::uint64_t seed, double until_s);
 
 /// Distance from a point to the nearest surface, metres; infinity in a world without surfaces. What
 /// changes does not count: see scene_at.

@@ -1,0 +1,30 @@
+// A disc that moves through a world: how far it gets before it touches something.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "topogeo/simulation/world.hpp"
+
+namespace topogeo::simulation {
+
+struct FreeWay {
+  double way_m = 0.0;  ///< at most the length asked for
+  /// The point of the surface that the disc touches then; nothing when the whole way is free.
+  std::optional<Eigen::Vector2d> contact_m{};
+};
+
+/// The way of a disc from `from_m` along `direction` (of unit length), at most `length_m` (>= 0).
+/// Columns and people are solid. A surface that the disc touches or overlaps already (a door has
+/// shut on it) stops it at once if the move would bring it nearer and lets it go otherwise. What
+/// changes does not count: see scene_at.
+FreeWay free_way(const World& scene, const Eigen::Vector2d& from_m,
+                 const Eigen::Vector2d& direction, double length_m, double radius_m);
+
+/// The point nearest to the disc's centre of all that overlaps the disc by more than 0.1 mm; nothing
+/// if nothing does.
+std::optional<Eigen::Vector2d> overlap_m(const World& scene, const Eigen::Vector2d& center_m,
+                                         double radius_m);
+
+}  // namespace topogeo::simulation

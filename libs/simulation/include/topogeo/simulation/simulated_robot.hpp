@@ -1,0 +1,138 @@
+// A robot that velocities drive through a world: it collides, slips and counts its wheels' turns
+// with errors, sees by laser and hears by sonar. A step costs microseconds, so that whole series of
+// drives run in one process. The same arguments and calls give the same results to the last bit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/simulation/laser.hpp"
+#include "topogeo/simulation/odometry.hpp"
+#include "topogeo/simulation/people.hpp"
+#include "topogeo/simulation/sonar.hpp"
+#include "topogeo/simulation/tour_follower.hpp"
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::simulation {
+
+/// Now and then the wheels find less hold for a while.
+struct Slip {
+  double per_m = 0.0;       ///< how often begins a slippery stretch, on the average; [0, 10]
+  double length_m = 0.1;    ///< of such a stretch, as the wheels roll; (0, 10]
+  double lost_share = 0.5;  ///< of the way rolled there; [0, 1]
+};
+
+struct RobotOptions {
+  std::uint64_t seed = 1;
+  /// Nothing: at the start of the world's tour, heading along it.
+  std::optional<geometry::Pose2> T_world_start{};
+  double radius_m = 0.267;  ///< of its round body; (0, 5]
+  double acceleration_m_per_s2 = std::numeric_limits<double>::infinity();            ///< > 0
+  double angular_acceleration_rad_per_s2 = std::numeric_limits<double>::infinity();  ///< > 0
+  /// What its wheels count. Slipping sideways (lateral and turn_shift) moves the robot, which the
+  /// wheels do not notice.
+  OdometryDrift odometry{};
+  Slip slip{};
+  BeamPattern beams{};
+  LaserNoise laser{};
+  geometry::Pose2 T_robot_laser{};
+  std::vector<Sonar> sonars = b21_sonars();
+  SonarNoise sonar{};
+  std::size_t wanderers = 0;      ///< people besides those of the world, see People
+  double changes_until_s = 3600;  ///< see draw_changes
+};
+
+/// What the wheels counted: forward and counter-clockwise.
+struct EncoderStep {
+  double forward_m = 0.0;
+  double turn_rad = 0.0;
+};
+
+class SimulatedRobot {
+ public:
+  /// Throws std::invalid_argument for an option out of range, a world without a tour where no start
+  /// is given, and a start where the robot overlaps something.
+  SimulatedRobot(World world, const RobotOptions& options);
+  SimulatedRobot(const SimulatedRobot&) = delete;
+  SimulatedRobot& operator=(const SimulatedRobot&) = delete;
+
+  /// Drives for `dt_s` (>= 0, worked off in pieces of at most 20 ms) as told. A contact stops the
+  /// way ahead, not a turn nor the way back. Throws std::invalid_argument for a velocity or time
+  /// that is no finite number.
+  EncoderStep step(const Velocity& command, double dt_s);
+
+  /// Somebody lifts it and puts it down there; its wheels do not notice.
+  void carry(const geometry::Pose2& T_world_robot);
+
+  [[nodiscard]] const geometry::Pose2& T_world_robot() const { return T_world_robot_; }
+  /// What the encoder steps add up to, from the identity on: each step goes half its turn, then
+  /// forward, then the other half.
+  [[nodiscard]] const geometry::Pose2& T_odom_robot() const { return T_odom_robot_; }
+  /// Of the wheels, now.
+  [[nodiscard]] const Velocity& velocity() const { return velocity_; }
+  [[nodiscard]] double time_s() const { return time_s_; }
+  [[nodiscard]] double way_m() const { return way_m_; }  ///< rolled, there and back
+
+  /// Readings of the laser here and now, one per beam; scan::Scan::kNoReturn for none.
+  std::vector<float> scan();
+  /// The same without noise; infinity for none.
+  [[nodiscard]] std::vector<double> exact_scan_m() const;
+  /// Readings of the sonars here and now; scan::Scan::kNoReturn for none.
+  std::vector<float> sonar();
+
+  /// In which direction from its heading it touches what has stopped it or has run into it, until
+  /// it moves away; nothing: nowhere.
+  [[nodiscard]] std::optional<double> bumped_rad() const;
+  /// How often its own motion has ended at something.
+  [[nodiscard]] std::uint64_t collisions() const { return collisions_; }
+  /// How often a person or a door has run into it.
+  [[nodiscard]] std::uint64_t run_into() const { return run_into_; }
+  /// How far it could go straight on before it touches something, at most `limit_m`.
+  [[nodiscard]] double free_ahead_m(double limit_m) const;
+
+  /// Everything that is there now, people included.
+  [[nodiscard]] World scene() const;
+  [[nodiscard]] const RobotOptions& options() const { return options_; }
+
+ private:
+  EncoderStep advance(const Velocity& command, double dt_s);
+  /// The share of the way `displacement_m` that is free.
+  double go(const Eigen::Vector2d& displacement_m);
+  double lost_share(double rolled_m);
+  EncoderStep count(double rolled_m, double turned_rad);
+  void change_world();
+  void look_for_overlap();
+
+  RobotOptions options_;
+  World world_;
+  World scene_;  // without people
+  World people_scene_;
+  std::vector<bool> present_;
+  People people_;
+  support::Random laser_random_;
+  support::Random sonar_random_;
+  support::Random slip_random_;
+  OdometryModel odometry_;
+
+  geometry::Pose2 T_world_robot_;
+  geometry::Pose2 T_start_wheels_;  // where the wheels have rolled, without slip
+  geometry::Pose2 T_odom_last_;     // what the odometry model said last
+  geometry::Pose2 T_odom_robot_;
+  Velocity velocity_;
+  double time_s_ = 0.0;
+  double way_m_ = 0.0;
+  double slippery_m_ = 0.0;     // still to come of a slippery stretch
+  double surely_free_m_ = 0.0;  // any way of this length touches nothing of scene_
+  std::optional<Eigen::Vector2d> contact_m_;
+  std::uint64_t collisions_ = 0;
+  std::uint64_t run_into_ = 0;
+  bool stopped_ = false;     // the last piece of motion ended at something
+  bool overlapped_ = false;  // something stands in the robot
+};
+
+}  // namespace topogeo::simulation

@@ -1,0 +1,51 @@
+// Sonars: each hears the nearest surface within its cone.
+#pragma once
+
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/simulation/world.hpp"
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::simulation {
+
+struct Sonar {
+  geometry::Pose2 T_robot_sonar{};                         ///< it looks along its x
+  double half_cone_rad = 15.0 * std::numbers::pi / 180.0;  ///< (0, pi/2)
+};
+
+/// MACONDO's six: two to the front and two to each side of the robot.
+std::vector<Sonar> macondo_sonars();
+/// The 24 of a B21, one every 15 degrees, counter-clockwise from the first one left of ahead.
+std::vector<Sonar> b21_sonars();
+
+/// The nearest surface in a cone.
+struct Echo {
+  double range_m = std::numeric_limits<double>::infinity();  ///< infinity: none in range
+  double incidence_rad =
+      0.0;  ///< between the way of the sound and the surface's normal; 0: an edge
+};
+
+/// Exact; `range_max_m`: what is as far or farther is not heard. What changes does not count: see
+/// scene_at.
+Echo echo(const World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
+          double range_max_m);
+
+struct SonarNoise {
+  double sigma_m = 0.02;       ///< standard deviation; >= 0
+  double resolution_m = 0.01;  ///< readings are multiples of this; 0: not rounded
+  double range_min_m = 0.15;   ///< nearer surfaces read this; >= 0
+  double range_max_m = 5.0;    ///< > range_min_m
+  /// Smooth surfaces that the sound meets more obliquely than this throw it elsewhere,
+  double specular_from_rad = 25.0 * std::numbers::pi / 180.0;
+  double specular_loss_probability = 0.0;  ///< with this probability; [0, 1]
+};
+
+/// Readings of a ring; scan::Scan::kNoReturn where nothing is heard. Uses the same count of random
+/// numbers for every round.
+std::vector<float> measure(const std::vector<Echo>& echoes, const SonarNoise& noise,
+                           support::Random& random);
+
+}  // namespace topogeo::simulation

@@ -1,0 +1,130 @@
+#include "topogeo/simulation/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace topogeo::simulation {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kTouch_m = 1e-9;    // nearer than this to touching is touching
+constexpr double kOverlap_m = 1e-4;  // less is what touching comes to by rounding
+// A move along a wall is none towards it, whatever rounding says.
+constexpr double kSidelong = 1e-6;
+
+Eigen::Vector2d nearest_m(const Segment& segment, const Eigen::Vector2d& point_m) {
+  const Eigen::Vector2d along = segment.b_m - segment.a_m;
+  const double length2 = along.squaredNorm();
+  const double share =
+      length2 > 0.0 ? std::clamp((point_m - segment.a_m).dot(along) / length2, 0.0, 1.0) : 0.0;
+  return segment.a_m + share * along;
+}
+
+// Way until a point on its way along `direction` is `radius_m` away from `center_m`, from outside.
+double way_to_circle(const Eigen::Vector2d& center_m, double radius_m,
+                     const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d to_m = center_m - from_m;
+  const double along_m = to_m.dot(direction);
+  if (along_m <= 0.0) return kInfinity;
+  // Brushing past it is no contact, nor is what rounding makes of that.
+  const double beside_m = (to_m - along_m * direction).norm();
+  if (beside_m >= radius_m - kTouch_m) return kInfinity;
+  return std::max(along_m - std::sqrt(radius_m * radius_m - beside_m * beside_m), 0.0);
+}
+
+// The same for a segment, from a point more than `radius_m` away from it.
+double way_to_segment(const Segment& segment, double radius_m, const Eigen::Vector2d& from_m,
+                      const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d span_m = segment.b_m - segment.a_m;
+  const double length_m = span_m.norm();
+  if (length_m > 0.0) {
+    const Eigen::Vector2d along = span_m / length_m;
+    const Eigen::Vector2d normal(-along.y(), along.x());
+    const double beside_m = normal.dot(from_m - segment.a_m);
+    const double approach = normal.dot(direction) * (beside_m > 0.0 ? -1.0 : 1.0);
+    if (std::fabs(beside_m) > radius_m && approach > 0.0) {
+      const double way_m = (std::fabs(beside_m) - radius_m) / approach;
+      const double at_m = along.dot(from_m + way_m * direction - segment.a_m);
+      if (at_m >= 0.0 && at_m <= length_m) return way_m;
+    }
+  }
+  return std::min(way_to_circle(segment.a_m, radius_m, from_m, direction),
+                  way_to_circle(segment.b_m, radius_m, from_m, direction));
+}
+
+class Way {
+ public:
+  Way(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, double length_m)
+      : from_m_(from_m), direction_(direction), free_{length_m, std::nullopt} {}
+
+  [[nodiscard]] const FreeWay& free() const { return free_; }
+
+  // Whether the surface with this nearest point, `room_m` away from the disc, is out of reach or
+  // decides already: touched, or overlapped.
+  bool settled(const Eigen::Vector2d& nearest, double room_m) {
+    if (room_m >= free_.way_m + kTouch_m) return true;
+    if (room_m > kTouch_m) return false;
+    const Eigen::Vector2d to_m = nearest - from_m_;
+    // From a point on the surface itself any move is a move away.
+    if (to_m.dot(direction_) > kSidelong * to_m.norm()) stop(0.0, nearest);
+    return true;
+  }
+
+  void stop(double way_m, const Eigen::Vector2d& contact_m) {
+    if (way_m >= free_.way_m && free_.contact_m) return;
+    free_ = {way_m, contact_m};
+  }
+
+ private:
+  const Eigen::Vector2d& from_m_;
+  const Eigen::Vector2d& direction_;
+  FreeWay free_;
+};
+
+}  // namespace
+
+FreeWay free_way(const World& scene, const Eigen::Vector2d& from_m,
+                 const Eigen::Vector2d& direction, double length_m, double radius_m) {
+  Way way(from_m, direction, length_m);
+  for (const Segment& segment : scene.segments) {
+    const Eigen::Vector2d nearest = nearest_m(segment, from_m);
+    if (way.settled(nearest, (nearest - from_m).norm() - radius_m)) continue;
+    const double way_m = way_to_segment(segment, radius_m, from_m, direction);
+    if (way_m < way.free().way_m) {
+      way.stop(way_m, nearest_m(segment, from_m + way_m * direction));
+    }
+  }
+  for (const Circle& circle : scene.circles) {
+    const double apart_m = (circle.center_m - from_m).norm();
+    if (way.settled(circle.center_m, apart_m - circle.radius_m - radius_m)) continue;
+    const double way_m =
+        way_to_circle(circle.center_m, circle.radius_m + radius_m, from_m, direction);
+    if (way_m >= way.free().way_m) continue;
+    const Eigen::Vector2d there_m = from_m + way_m * direction;
+    const Eigen::Vector2d out = (there_m - circle.center_m).normalized();
+    way.stop(way_m, circle.center_m + circle.radius_m * out);
+  }
+  return way.free();
+}
+
+std::optional<Eigen::Vector2d> overlap_m(const World& scene, const Eigen::Vector2d& center_m,
+                                         double radius_m) {
+  std::optional<Eigen::Vector2d> found;
+  double least_m = radius_m - kOverlap_m;
+  const auto look = [&](const Eigen::Vector2d& nearest, double apart_m) {
+    if (apart_m >= least_m) return;
+    least_m = apart_m;
+    found = nearest;
+  };
+  for (const Segment& segment : scene.segments) {
+    const Eigen::Vector2d nearest = nearest_m(segment, center_m);
+    look(nearest, (nearest - center_m).norm());
+  }
+  for (const Circle& circle : scene.circles) {
+    look(circle.center_m, (circle.center_m - center_m).norm() - circle.radius_m);
+  }
+  return found;
+}
+
+}  // namespace topogeo::simulation

@@ -1,0 +1,251 @@
+#include "topogeo/simulation/simulated_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/simulation/contact.hpp"
+#include "topogeo/support/seed.hpp"
+
+namespace topogeo::simulation {
+namespace {
+
+constexpr double kPiece_s = 0.02;
+
+void check(bool ok, const char* name, const char* expected) {
+  if (!ok) throw std::invalid_argument(std::string(name) + ": expected " + expected);
+}
+
+RobotOptions checked(const World& world, RobotOptions o) {
+  check(o.radius_m > 0.0 && o.radius_m <= 5.0, "radius_m", "(0, 5] m");
+  check(o.acceleration_m_per_s2 > 0.0, "acceleration_m_per_s2", "a number > 0");
+  check(o.angular_acceleration_rad_per_s2 > 0.0, "angular_acceleration_rad_per_s2", "a number > 0");
+  check(o.slip.per_m >= 0.0 && o.slip.per_m <= 10.0, "slip.per_m", "[0, 10]");
+  check(o.slip.length_m > 0.0 && o.slip.length_m <= 10.0, "slip.length_m", "(0, 10] m");
+  check(o.slip.lost_share >= 0.0 && o.slip.lost_share <= 1.0, "slip.lost_share", "[0, 1]");
+  check(o.beams.count >= 2 && o.beams.count <= 2048, "beams.count", "[2, 2048]");
+  check(o.beams.angle_step_rad > 0.0 && o.beams.range_max_m > 0.0, "beams",
+        "angle_step_rad and range_max_m > 0");
+  for (const Sonar& sonar : o.sonars) {
+    check(sonar.half_cone_rad > 0.0 && sonar.half_cone_rad < std::numbers::pi / 2.0,
+          "sonars.half_cone_rad", "(0, pi/2)");
+  }
+  check(o.sonar.sigma_m >= 0.0 && o.sonar.resolution_m >= 0.0 && o.sonar.range_min_m >= 0.0 &&
+            o.sonar.range_max_m > o.sonar.range_min_m,
+        "sonar", "sigma_m, resolution_m and range_min_m >= 0, range_max_m > range_min_m");
+  if (!o.T_world_start) o.T_world_start = TourFollower(world.tour_m, {}).start();
+  return o;
+}
+
+// Sideways slip moves the robot itself.
+OdometryDrift of_wheels(OdometryDrift drift) {
+  drift.lateral_sigma_m_per_sqrt_m = 0.0;
+  drift.turn_shift_sigma_m_per_sqrt_rad = 0.0;
+  return drift;
+}
+
+support::Random random_for(const RobotOptions& options, const char* what) {
+  return support::Random(support::derive_seed(options.seed, what, {}));
+}
+
+double towards(double now, double wanted, double largest_change) {
+  return now + std::clamp(wanted - now, -largest_change, largest_change);
+}
+
+// Half the turn, the way, the other half.
+geometry::Pose2 arc(double forward_m, double turn_rad) {
+  const geometry::SinCos half = geometry::sincos(turn_rad / 2.0);
+  return {forward_m * half.cos, forward_m * half.sin, geometry::wrap_angle(turn_rad)};
+}
+
+}  // namespace
+
+SimulatedRobot::SimulatedRobot(World world, const RobotOptions& options)
+    : options_(checked(world, options)),
+      world_(draw_changes(std::move(world), options.seed, options.changes_until_s)),
+      people_(world_, options.wanderers, options.seed),
+      laser_random_(random_for(options, "laser")),
+      sonar_random_(random_for(options, "sonar")),
+      slip_random_(random_for(options, "slip")),
+      odometry_(of_wheels(options.odometry), random_for(options, "odometry")),
+      T_world_robot_(*options_.T_world_start) {
+  odometry_.advance(T_start_wheels_);
+  change_world();
+  if (overlapped_) {
+    throw std::invalid_argument(world_.name + ": the robot overlaps something at its start, (" +
+                                std::to_string(T_world_robot_.x_m) + ", " +
+                                std::to_string(T_world_robot_.y_m) + ")");
+  }
+}
+
+EncoderStep SimulatedRobot::step(const Velocity& command, double dt_s) {
+  check(std::isfinite(command.linear_m_per_s) && std::isfinite(command.angular_rad_per_s),
+        "velocity", "finite numbers");
+  check(std::isfinite(dt_s) && dt_s >= 0.0, "dt_s", "a number >= 0");
+  // A little more than a whole number of pieces is rounding.
+  const double pieces = std::max(1.0, std::ceil(dt_s / kPiece_s - 1e-6));
+  EncoderStep sum;
+  for (double i = 0.0; i < pieces; i += 1.0) {
+    const EncoderStep piece = advance(command, dt_s / pieces);
+    sum.forward_m += piece.forward_m;
+    sum.turn_rad += piece.turn_rad;
+  }
+  return sum;
+}
+
+EncoderStep SimulatedRobot::advance(const Velocity& command, double dt_s) {
+  velocity_.linear_m_per_s = towards(velocity_.linear_m_per_s, command.linear_m_per_s,
+                                     options_.acceleration_m_per_s2 * dt_s);
+  velocity_.angular_rad_per_s = towards(velocity_.angular_rad_per_s, command.angular_rad_per_s,
+                                        options_.angular_acceleration_rad_per_s2 * dt_s);
+  const double rolled_m = velocity_.linear_m_per_s * dt_s;
+  const double turned_rad = velocity_.angular_rad_per_s * dt_s;
+
+  // All numbers are drawn in every piece, so that one option leaves the others' slips as they were.
+  const double aside_m = options_.odometry.lateral_sigma_m_per_sqrt_m *
+                         std::sqrt(std::fabs(rolled_m)) * slip_random_.normal();
+  const double shift_m =
+      options_.odometry.turn_shift_sigma_m_per_sqrt_rad * std::sqrt(std::fabs(turned_rad));
+  const double shift_x_m = shift_m * slip_random_.normal();
+  const double shift_y_m = shift_m * slip_random_.normal();
+  const double forward_m = rolled_m * (1.0 - lost_share(std::fabs(rolled_m)));
+
+  const geometry::SinCos heading = geometry::sincos(T_world_robot_.theta_rad + turned_rad / 2.0);
+  const Eigen::Vector2d wanted_m(forward_m + shift_x_m, aside_m + shift_y_m);
+  const double share = go({heading.cos * wanted_m.x() - heading.sin * wanted_m.y(),
+                           heading.sin * wanted_m.x() + heading.cos * wanted_m.y()});
+  T_world_robot_.theta_rad = geometry::wrap_angle(T_world_robot_.theta_rad + turned_rad);
+  if (share < 1.0) velocity_.linear_m_per_s = 0.0;
+  way_m_ += std::fabs(rolled_m) * share;
+  time_s_ += dt_s;
+  change_world();
+  return count(rolled_m * share, turned_rad);
+}
+
+double SimulatedRobot::go(const Eigen::Vector2d& displacement_m) {
+  const double length_m = displacement_m.norm();
+  if (length_m == 0.0) return 1.0;
+  const Eigen::Vector2d from_m = T_world_robot_.position_m();
+  const Eigen::Vector2d direction = displacement_m / length_m;
+  FreeWay way{length_m, {}};
+  if (length_m > surely_free_m_) {
+    surely_free_m_ = std::max(clearance_m(scene_, from_m) - options_.radius_m, 0.0);
+    if (length_m > surely_free_m_) {
+      way = free_way(scene_, from_m, direction, length_m, options_.radius_m);
+    }
+  }
+  const FreeWay among_people =
+      free_way(people_scene_, from_m, direction, way.way_m, options_.radius_m);
+  if (among_people.contact_m) way = among_people;
+  T_world_robot_.x_m += direction.x() * way.way_m;
+  T_world_robot_.y_m += direction.y() * way.way_m;
+  surely_free_m_ -= way.way_m;
+  if (way.contact_m && !stopped_) ++collisions_;
+  contact_m_ = way.contact_m;
+  stopped_ = way.contact_m.has_value();
+  return way.contact_m ? way.way_m / length_m : 1.0;
+}
+
+double SimulatedRobot::lost_share(double rolled_m) {
+  const bool begins = slip_random_.uniform() < options_.slip.per_m * rolled_m;
+  if (slippery_m_ <= 0.0 && begins) slippery_m_ = options_.slip.length_m;
+  if (slippery_m_ <= 0.0) return 0.0;
+  slippery_m_ -= rolled_m;
+  return options_.slip.lost_share;
+}
+
+EncoderStep SimulatedRobot::count(double rolled_m, double turned_rad) {
+  T_start_wheels_ = T_start_wheels_ * arc(rolled_m, turned_rad);
+  const geometry::Pose2 T_odom_now = odometry_.advance(T_start_wheels_);
+  const geometry::Pose2 step = geometry::between(T_odom_last_, T_odom_now);
+  T_odom_last_ = T_odom_now;
+  const geometry::SinCos half = geometry::sincos(step.theta_rad / 2.0);
+  const EncoderStep counted{step.x_m * half.cos + step.y_m * half.sin, step.theta_rad};
+  T_odom_robot_ = T_odom_robot_ * arc(counted.forward_m, counted.turn_rad);
+  return counted;
+}
+
+void SimulatedRobot::carry(const geometry::Pose2& T_world_robot) {
+  T_world_robot_ = T_world_robot;
+  surely_free_m_ = 0.0;
+  stopped_ = false;
+  contact_m_.reset();
+  look_for_overlap();
+}
+
+void SimulatedRobot::change_world() {
+  std::vector<bool> present = present_parts(world_, way_m_, time_s_);
+  if (present != present_ || scene_.segments.size() + scene_.circles.size() == 0) {
+    scene_ = scene_at(world_, way_m_, time_s_);
+    present_ = std::move(present);
+    surely_free_m_ = 0.0;
+  }
+  people_.walk(time_s_, scene_, T_world_robot_.position_m());
+  people_scene_.circles = people_.circles();
+  look_for_overlap();
+}
+
+void SimulatedRobot::look_for_overlap() {
+  const Eigen::Vector2d here_m = T_world_robot_.position_m();
+  std::optional<Eigen::Vector2d> contact_m = overlap_m(people_scene_, here_m, options_.radius_m);
+  if (!contact_m && surely_free_m_ <= 0.0) {
+    contact_m = overlap_m(scene_, here_m, options_.radius_m);
+  }
+  if (contact_m && !overlapped_) ++run_into_;
+  if (contact_m || !stopped_) contact_m_ = contact_m;
+  overlapped_ = contact_m.has_value();
+}
+
+std::optional<double> SimulatedRobot::bumped_rad() const {
+  if (!contact_m_) return std::nullopt;
+  const Eigen::Vector2d there_m = geometry::inverse(T_world_robot_) * *contact_m_;
+  return geometry::atan2(there_m.y(), there_m.x());
+}
+
+double SimulatedRobot::free_ahead_m(double limit_m) const {
+  const geometry::SinCos heading = geometry::sincos(T_world_robot_.theta_rad);
+  const Eigen::Vector2d direction(heading.cos, heading.sin);
+  const Eigen::Vector2d from_m = T_world_robot_.position_m();
+  const double way_m = free_way(scene_, from_m, direction, limit_m, options_.radius_m).way_m;
+  return free_way(people_scene_, from_m, direction, way_m, options_.radius_m).way_m;
+}
+
+World SimulatedRobot::scene() const {
+  World all = scene_;
+  all.circles.insert(all.circles.end(), people_scene_.circles.begin(), people_scene_.circles.end());
+  return all;
+}
+
+std::vector<double> SimulatedRobot::exact_scan_m() const {
+  const geometry::Pose2 T_world_laser = T_world_robot_ * options_.T_robot_laser;
+  std::vector<double> ranges_m = raycast(scene_, T_world_laser, options_.beams);
+  if (people_scene_.circles.empty()) return ranges_m;
+  const std::vector<double> people_m = raycast(people_scene_, T_world_laser, options_.beams);
+  for (std::size_t i = 0; i < ranges_m.size(); ++i)
+    ranges_m[i] = std::min(ranges_m[i], people_m[i]);
+  return ranges_m;
+}
+
+std::vector<float> SimulatedRobot::scan() {
+  return measure(exact_scan_m(), options_.laser, laser_random_);
+}
+
+std::vector<float> SimulatedRobot::sonar() {
+  std::vector<Echo> echoes;
+  echoes.reserve(options_.sonars.size());
+  for (const Sonar& sonar : options_.sonars) {
+    const geometry::Pose2 T_world_sonar = T_world_robot_ * sonar.T_robot_sonar;
+    const Echo surface =
+        echo(scene_, T_world_sonar, sonar.half_cone_rad, options_.sonar.range_max_m);
+    const Echo person =
+        echo(people_scene_, T_world_sonar, sonar.half_cone_rad, options_.sonar.range_max_m);
+    echoes.push_back(person.range_m < surface.range_m ? person : surface);
+  }
+  return measure(echoes, options_.sonar, sonar_random_);
+}
+
+}  // namespace topogeo::simulation

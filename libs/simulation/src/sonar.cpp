@@ -1,0 +1,136 @@
+#include "topogeo/simulation/sonar.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/scan/scan.hpp"
+
+namespace topogeo::simulation {
+namespace {
+
+constexpr double kQuarter_rad = std::numbers::pi / 2.0;
+
+// A cone with its apex at the origin, looking along x.
+class Cone {
+ public:
+  Cone(double half_rad, double range_max_m) : edge_(geometry::sincos(half_rad)) {
+    echo_limit_m_ = range_max_m;
+  }
+
+  [[nodiscard]] const Echo& nearest() const { return nearest_; }
+
+  void hear(const Segment& segment) {
+    // The part of the segment between the two edges: shares [first, last] of it.
+    double first = 0.0;
+    double last = 1.0;
+    for (const double side : {1.0, -1.0}) {
+      const double a_in_m = edge_.sin * segment.a_m.x() - side * edge_.cos * segment.a_m.y();
+      const double b_in_m = edge_.sin * segment.b_m.x() - side * edge_.cos * segment.b_m.y();
+      if (a_in_m < 0.0 && b_in_m < 0.0) return;
+      if (a_in_m < 0.0) first = std::max(first, a_in_m / (a_in_m - b_in_m));
+      if (b_in_m < 0.0) last = std::min(last, a_in_m / (a_in_m - b_in_m));
+    }
+    if (first > last) return;
+    const Eigen::Vector2d along = segment.b_m - segment.a_m;
+    const double length2 = along.squaredNorm();
+    const double foot = length2 > 0.0 ? -segment.a_m.dot(along) / length2 : 0.0;
+    const double share = std::clamp(foot, first, last);
+    const Eigen::Vector2d point_m = segment.a_m + share * along;
+    const bool edge = share == 0.0 || share == 1.0;
+    hear(point_m, edge ? point_m : Eigen::Vector2d(-along.y(), along.x()));
+  }
+
+  void hear(const Circle& circle) {
+    const Eigen::Vector2d& center_m = circle.center_m;
+    const double apart_m = center_m.norm();
+    if (apart_m <= circle.radius_m) return hear({0.0, 0.0}, {1.0, 0.0});
+    const Eigen::Vector2d edge(edge_.cos, center_m.y() >= 0.0 ? edge_.sin : -edge_.sin);
+    const bool inside = edge_.sin * center_m.x() - edge_.cos * std::fabs(center_m.y()) >= 0.0;
+    if (inside) return hear(center_m * (1.0 - circle.radius_m / apart_m), center_m);
+    // The nearest part of its outline that reaches into the cone lies on the cone's edge.
+    const double along_m = edge.dot(center_m);
+    const double half2 =
+        circle.radius_m * circle.radius_m - (center_m - along_m * edge).squaredNorm();
+    if (along_m <= 0.0 || half2 < 0.0) return;
+    const Eigen::Vector2d point_m = (along_m - std::sqrt(half2)) * edge;
+    hear(point_m, center_m - point_m);
+  }
+
+ private:
+  void hear(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal) {
+    const double range_m = point_m.norm();
+    if (range_m >= echo_limit_m_ || range_m >= nearest_.range_m) return;
+    const double beside = std::fabs(point_m.x() * normal.y() - point_m.y() * normal.x());
+    nearest_ = {range_m, geometry::atan2(beside, std::fabs(point_m.dot(normal)))};
+  }
+
+  geometry::SinCos edge_;
+  double echo_limit_m_;
+  Echo nearest_;
+};
+
+}  // namespace
+
+std::vector<Sonar> macondo_sonars() {
+  constexpr double kAhead_m = 0.24;
+  constexpr double kBeside_m = 0.1;
+  return {{{kAhead_m, kBeside_m, 0.0}},
+          {{kAhead_m, -kBeside_m, 0.0}},
+          {{kBeside_m, kAhead_m, kQuarter_rad}},
+          {{-kBeside_m, kAhead_m, kQuarter_rad}},
+          {{kBeside_m, -kAhead_m, -kQuarter_rad}},
+          {{-kBeside_m, -kAhead_m, -kQuarter_rad}}};
+}
+
+std::vector<Sonar> b21_sonars() {
+  constexpr int kSonars = 24;
+  constexpr double kFromCenter_m = 0.25;
+  std::vector<Sonar> sonars;
+  sonars.reserve(kSonars);
+  for (int i = 0; i < kSonars; ++i) {
+    const double angle_rad =
+        geometry::wrap_angle((static_cast<double>(i) + 0.5) * 2.0 * std::numbers::pi / kSonars);
+    const geometry::SinCos direction = geometry::sincos(angle_rad);
+    sonars.push_back({{kFromCenter_m * direction.cos, kFromCenter_m * direction.sin, angle_rad}});
+  }
+  return sonars;
+}
+
+Echo echo(const World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
+          double range_max_m) {
+  const geometry::Pose2 T_sonar_world = geometry::inverse(T_world_sonar);
+  const geometry::SinCos turn = geometry::sincos(T_sonar_world.theta_rad);
+  const auto seen = [&](const Eigen::Vector2d& point_m) {
+    return Eigen::Vector2d(T_sonar_world.x_m + turn.cos * point_m.x() - turn.sin * point_m.y(),
+                           T_sonar_world.y_m + turn.sin * point_m.x() + turn.cos * point_m.y());
+  };
+  Cone cone(half_cone_rad, range_max_m);
+  for (const Segment& segment : scene.segments) cone.hear({seen(segment.a_m), seen(segment.b_m)});
+  for (const Circle& circle : scene.circles) cone.hear({seen(circle.center_m), circle.radius_m});
+  return cone.nearest();
+}
+
+std::vector<float> measure(const std::vector<Echo>& echoes, const SonarNoise& noise,
+                           support::Random& random) {
+  std::vector<float> readings_m;
+  readings_m.reserve(echoes.size());
+  for (const Echo& heard : echoes) {
+    const bool lost = random.uniform() < noise.specular_loss_probability &&
+                      heard.incidence_rad > noise.specular_from_rad;
+    const double error_m = noise.sigma_m * random.normal();
+    if (lost || heard.range_m >= noise.range_max_m) {
+      readings_m.push_back(scan::Scan::kNoReturn);
+      continue;
+    }
+    double reading_m = heard.range_m + error_m;
+    if (noise.resolution_m > 0.0) {
+      reading_m = std::floor(reading_m / noise.resolution_m + 0.5) * noise.resolution_m;
+    }
+    readings_m.push_back(
+        static_cast<float>(std::clamp(reading_m, noise.range_min_m, noise.range_max_m)));
+  }
+  return readings_m;
+}
+
+}  // namespace topogeo::simulation
