@@ -1,0 +1,96 @@
+#include "serial_line.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace topogeo::sensor_gateway {
+
+SerialLine::SerialLine(messaging::EventLoop& loop, devices::SerialDriver& driver,
+                       const PortOptions& options, AfterHandler after)
+    : loop_(loop),
+      driver_(driver),
+      after_(std::move(after)),
+      self_(std::make_shared<SerialLine*>(this)) {
+  // The loop outlives the port and its thread; this line may not outlive what was posted.
+  port_ = std::make_unique<SerialPort>(options, [&event_loop = loop, self = self_](PortNews news) {
+    event_loop.post([self, news = std::move(news)] {
+      if (*self != nullptr) (*self)->on_news(news);
+    });
+  });
+}
+
+SerialLine::~SerialLine() {
+  *self_ = nullptr;
+  if (timer_armed_) loop_.cancel_timer(timer_);
+}
+
+std::int64_t SerialLine::now_ns() {
+  last_ns_ = std::max(last_ns_, steady_now_ns());
+  return last_ns_;
+}
+
+void SerialLine::on_news(const PortNews& news) {
+  last_ns_ = std::max(last_ns_, news.stamp_ns);
+  switch (news.kind) {
+    case PortNews::Kind::kOpened:
+      open_ = true;
+      why_closed_.clear();
+      epoch_opened_ = news.epoch;
+      ++statistics_.opened;
+      driver_.opened(last_ns_);
+      break;
+    case PortNews::Kind::kNotOpened:
+      why_closed_ = news.why;
+      ++statistics_.not_opened;
+      break;
+    case PortNews::Kind::kLost:
+      open_ = false;
+      why_closed_ = news.why;
+      ++statistics_.lost;
+      driver_.lost(last_ns_);
+      break;
+    case PortNews::Kind::kBytes:
+      statistics_.bytes_in += news.bytes.size();
+      if (news.epoch != port_->epoch()) {
+        statistics_.bytes_stale += news.bytes.size();
+        return;
+      }
+      driver_.receive(news.bytes, last_ns_);
+      break;
+  }
+  after(last_ns_);
+}
+
+void SerialLine::after(std::int64_t now_ns) {
+  if (after_) after_(now_ns);
+  carry_out();
+}
+
+void SerialLine::carry_out() {
+  std::vector<devices::LineOrder> orders = driver_.take_orders();
+  if (!orders.empty() && open_) port_->write(std::move(orders), epoch_opened_);
+  arm();
+}
+
+void SerialLine::tick() {
+  timer_armed_ = false;
+  const std::int64_t now = now_ns();
+  if (now >= driver_.due_ns()) driver_.tick(now);
+  after(now);
+}
+
+void SerialLine::arm() {
+  const std::int64_t due_ns = driver_.due_ns();
+  if (timer_armed_ && due_ns == timer_due_ns_) return;
+  if (timer_armed_) loop_.cancel_timer(timer_);
+  timer_armed_ = due_ns != std::numeric_limits<std::int64_t>::max();
+  if (!timer_armed_) return;
+  timer_due_ns_ = due_ns;
+  const std::int64_t wait_ns = std::max<std::int64_t>(0, due_ns - now_ns());
+  timer_ = loop_.call_after(std::chrono::nanoseconds(wait_ns), [this] { tick(); });
+}
+
+}  // namespace topogeo::sensor_gateway
