@@ -1,0 +1,67 @@
+// Scans from the measured values of a SICK PLS or LMS, and which of those are not to be believed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "topogeo/devices/pls_messages.hpp"
+#include "topogeo/devices/pls_settings.hpp"
+#include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/devices/sick_telegram.hpp"
+
+namespace topogeo::devices {
+
+struct PlsScan {
+  /// The middle of the mirror's sweep, on the clock of the driver; strictly increasing.
+  std::int64_t stamp_ns = 0;
+  double angle_min_rad = 0.0;   ///< of the first beam, the rightmost, in the laser frame
+  double angle_step_rad = 0.0;  ///< counter-clockwise, > 0
+  std::vector<float> ranges_m;  ///< one per beam; 0: no return
+  PlsHealth health{};           ///< polluted: the window is dirty
+  std::size_t dazzled = 0;      ///< readings with glaring light
+  bool warning_field = false;   ///< a reading lies in the sensor's warning field
+  bool protective_field = false;
+};
+
+/// Scans that were received whole and are not handed on.
+struct PlsScanDrops {
+  std::uint64_t beam_count = 0;  ///< not one of 361, 181, 180 (180 deg) and 401, 201, 101 (100 deg)
+  std::uint64_t interlaced = 0;  ///< part of a scan of an LMS at 0.25 deg
+  std::uint64_t implausible = 0;   ///< by the sensor's own word
+  std::uint64_t sensor_error = 0;  ///< the sensor reports an error or a fatal error
+  std::uint64_t stuck = 0;         ///< the same bytes again and again
+  bool operator==(const PlsScanDrops&) const = default;
+};
+
+class PlsScanMaker {
+ public:
+  /// Keeps a reference to `settings`.
+  explicit PlsScanMaker(const PlsSettings& settings) : settings_(settings) {}
+
+  /// The scan of a telegram with measured values that came over `line`, or nothing if it is to be
+  /// dropped.
+  [[nodiscard]] std::optional<PlsScan> make(const PlsMeasuredValues& values,
+                                            const SickTelegram& telegram, const LineSettings& line);
+
+  /// The next scan is not compared with the last one: another sensor may have sent that.
+  void forget() { last_.clear(); }
+
+  [[nodiscard]] const PlsScanDrops& drops() const { return drops_; }
+  /// Whether the last scan was dropped as stuck.
+  [[nodiscard]] bool stuck() const { return stuck_; }
+
+ private:
+  [[nodiscard]] bool is_stuck(const PlsMeasuredValues& values, std::size_t returns);
+  [[nodiscard]] std::int64_t stamp(const SickTelegram& telegram, const LineSettings& line) const;
+
+  const PlsSettings& settings_;
+  PlsScanDrops drops_;
+  std::vector<std::uint8_t> last_;
+  int identical_ = 0;
+  bool stuck_ = false;
+  std::optional<std::int64_t> last_stamp_ns_;
+};
+
+}  // namespace topogeo::devices
