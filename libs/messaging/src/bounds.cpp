@@ -65,10 +65,6 @@ Defect find_defect(const msg::LaserStatus& message) {
       .defect();
 }
 
-Defect find_defect(const msg::GroundTruth& message) {
-  return Check(message).defect();
-}
-
 Defect find_defect(const msg::StreamEnd& message) {
   return Check(message).defect();
 }
@@ -186,6 +182,17 @@ Defect find_defect(const msg::MotionCommand& message) {
 
 Defect find_defect(const msg::BaseCommand& message) {
   return Check(message).value("kind", message.kind(), msg::kBaseSetLimits).defect();
+}
+
+Defect find_defect(const msg::GroundTruth& message) {
+  return Check(message).defect();
+}
+
+Defect find_defect(const msg::SimulatorCommand& message) {
+  return Check(message)
+      .value("fault", message.fault(), msg::kSimulatedEmergencyStop)
+      .value("device", message.device(), msg::kSimulatedBase)
+      .defect();
 }
 
 }  // namespace topogeo::messaging

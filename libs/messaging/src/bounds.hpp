@@ -10,6 +10,7 @@
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
+#include "topogeo/msg/simulation.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
@@ -24,7 +25,6 @@ Defect find_defect(const msg::Odometry& message);
 Defect find_defect(const msg::Sonar& message);
 Defect find_defect(const msg::BaseStatus& message);
 Defect find_defect(const msg::LaserStatus& message);
-Defect find_defect(const msg::GroundTruth& message);
 Defect find_defect(const msg::StreamEnd& message);
 Defect find_defect(const msg::LocalMap& message);
 Defect find_defect(const msg::MatchTask& message);
@@ -44,5 +44,7 @@ Defect find_defect(const msg::Goal& message);
 Defect find_defect(const msg::Route& message);
 Defect find_defect(const msg::MotionCommand& message);
 Defect find_defect(const msg::BaseCommand& message);
+Defect find_defect(const msg::GroundTruth& message);
+Defect find_defect(const msg::SimulatorCommand& message);
 
 }  // namespace topogeo::messaging

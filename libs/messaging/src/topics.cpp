@@ -16,6 +16,8 @@
 #include "topogeo/msg/planningTypeObject.h"
 #include "topogeo/msg/sensorPubSubTypes.h"
 #include "topogeo/msg/sensorTypeObject.h"
+#include "topogeo/msg/simulationPubSubTypes.h"
+#include "topogeo/msg/simulationTypeObject.h"
 #include "topogeo/msg/statusPubSubTypes.h"
 #include "topogeo/msg/statusTypeObject.h"
 #include "topogeo/msg/streamPubSubTypes.h"
@@ -80,7 +82,6 @@ TOPOGEO_TOPIC(Odometry, kOdometry, "motion_live", registersensorTypes, kReplayRo
 TOPOGEO_TOPIC(Sonar, kSonar, "sensor_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(BaseStatus, kBaseStatus, "sensor_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(LaserStatus, kLaserStatus, "sensor_live", registersensorTypes, kReplayRole)
-TOPOGEO_TOPIC(GroundTruth, kGroundTruth, "motion_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state", registerstreamTypes)
 TOPOGEO_TOPIC(LocalMap, kLocalMap, "state", registerlocal_mapTypes)
 TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes, {}, "worker_id")
@@ -100,11 +101,13 @@ TOPOGEO_TOPIC(Goal, kGoal, "state", registerplanningTypes)
 TOPOGEO_TOPIC(Route, kRoute, "state", registerplanningTypes)
 TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command", registermotionTypes)
 TOPOGEO_TOPIC(BaseCommand, kBaseCommand, "request", registermotionTypes)
+TOPOGEO_TOPIC(GroundTruth, kGroundTruth, "motion_live", registersimulationTypes)
+TOPOGEO_TOPIC(SimulatorCommand, kSimulatorCommand, "request", registersimulationTypes)
 
 #undef TOPOGEO_TOPIC
 
 std::span<const TopicInfo* const> all_topics() {
-  static const std::array<const TopicInfo*, 25> topics = {
+  static const std::array<const TopicInfo*, 26> topics = {
       &TopicTraits<msg::BaseCommand>::info(),
       &TopicTraits<msg::BaseStatus>::info(),
       &TopicTraits<msg::Goal>::info(),
@@ -126,6 +129,7 @@ std::span<const TopicInfo* const> all_topics() {
       &TopicTraits<msg::Route>::info(),
       &TopicTraits<msg::Scan>::info(),
       &TopicTraits<msg::ServiceStatus>::info(),
+      &TopicTraits<msg::SimulatorCommand>::info(),
       &TopicTraits<msg::Sonar>::info(),
       &TopicTraits<msg::StreamEnd>::info(),
       &TopicTraits<msg::TrajectorySegment>::info(),

@@ -30,7 +30,7 @@ RobotOptions checked(const World& world, RobotOptions o) {
   check(o.beams.count >= 2 && o.beams.count <= 2048, "beams.count", "[2, 2048]");
   check(o.beams.angle_step_rad > 0.0 && o.beams.range_max_m > 0.0, "beams",
         "angle_step_rad and range_max_m > 0");
-  for (const Sonar& sonar : o.sonars) {
+  for (const devices::SonarMount& sonar : o.sonars) {
     check(sonar.half_cone_rad > 0.0 && sonar.half_cone_rad < std::numbers::pi / 2.0,
           "sonars.half_cone_rad", "(0, pi/2)");
   }
@@ -237,7 +237,7 @@ std::vector<float> SimulatedRobot::scan() {
 std::vector<float> SimulatedRobot::sonar() {
   std::vector<Echo> echoes;
   echoes.reserve(options_.sonars.size());
-  for (const Sonar& sonar : options_.sonars) {
+  for (const devices::SonarMount& sonar : options_.sonars) {
     const geometry::Pose2 T_world_sonar = T_world_robot_ * sonar.T_robot_sonar;
     const Echo surface =
         echo(scene_, T_world_sonar, sonar.half_cone_rad, options_.sonar.range_max_m);

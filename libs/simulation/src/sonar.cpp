@@ -9,8 +9,6 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr double kQuarter_rad = std::numbers::pi / 2.0;
-
 // A cone with its apex at the origin, looking along x.
 class Cone {
  public:
@@ -71,31 +69,6 @@ class Cone {
 };
 
 }  // namespace
-
-std::vector<Sonar> macondo_sonars() {
-  constexpr double kAhead_m = 0.24;
-  constexpr double kBeside_m = 0.1;
-  return {{{kAhead_m, kBeside_m, 0.0}},
-          {{kAhead_m, -kBeside_m, 0.0}},
-          {{kBeside_m, kAhead_m, kQuarter_rad}},
-          {{-kBeside_m, kAhead_m, kQuarter_rad}},
-          {{kBeside_m, -kAhead_m, -kQuarter_rad}},
-          {{-kBeside_m, -kAhead_m, -kQuarter_rad}}};
-}
-
-std::vector<Sonar> b21_sonars() {
-  constexpr int kSonars = 24;
-  constexpr double kFromCenter_m = 0.25;
-  std::vector<Sonar> sonars;
-  sonars.reserve(kSonars);
-  for (int i = 0; i < kSonars; ++i) {
-    const double angle_rad =
-        geometry::wrap_angle((static_cast<double>(i) + 0.5) * 2.0 * std::numbers::pi / kSonars);
-    const geometry::SinCos direction = geometry::sincos(angle_rad);
-    sonars.push_back({{kFromCenter_m * direction.cos, kFromCenter_m * direction.sin, angle_rad}});
-  }
-  return sonars;
-}
 
 Echo echo(const World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
           double range_max_m) {

@@ -21,6 +21,7 @@
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
+#include "topogeo/msg/simulation.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"

@@ -73,6 +73,13 @@ void fill(msg::GroundTruth& truth) {
   truth.collisions(3);
 }
 
+void fill(msg::SimulatorCommand& command) {
+  command.fault(msg::kSimulatedJoystick);
+  command.device(msg::kSimulatedBase);
+  command.duration_s(2.5);
+  set_text(command.client_id(), "tester", "client_id");
+}
+
 void fill(msg::StreamEnd& end) {
   set_text(end.stage(), "local_mapper", "stage");
   end.count(17);
@@ -256,7 +263,7 @@ using AllTypes =
                      msg::MatchResult, msg::WorkerStatus, msg::ServiceStatus, msg::LivePose,
                      msg::TrajectorySegment, msg::LoopClosures, msg::LoopDecisions,
                      msg::LocalizationCommand, msg::LocalizationReply, msg::MapElement, msg::Goal,
-                     msg::Route, msg::MotionCommand, msg::BaseCommand>;
+                     msg::Route, msg::MotionCommand, msg::BaseCommand, msg::SimulatorCommand>;
 TYPED_TEST_SUITE(RoundTrip, AllTypes);
 
 TYPED_TEST(RoundTrip, ArrivesUnchanged) {

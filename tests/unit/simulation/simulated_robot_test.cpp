@@ -163,7 +163,7 @@ TEST(SimulatedRobot, SeesWhatIsThere) {
   const auto heard_m = listener.sonar();
   ASSERT_EQ(heard_m.size(), options.sonars.size());
   for (std::size_t i = 0; i < heard_m.size(); ++i) {
-    const Sonar& sonar = options.sonars[i];
+    const devices::SonarMount& sonar = options.sonars[i];
     const Echo exact = echo(scene, listener.T_world_robot() * sonar.T_robot_sonar,
                             sonar.half_cone_rad, quiet.range_max_m);
     if (std::isinf(exact.range_m)) continue;

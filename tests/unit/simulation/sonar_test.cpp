@@ -101,20 +101,5 @@ TEST(Measure, SmoothWallsThrowObliqueSoundElsewhere) {
   EXPECT_EQ(readings_m[1], scan::Scan::kNoReturn);
 }
 
-TEST(Rings, LookWhereTheyShould) {
-  const auto macondo = macondo_sonars();
-  ASSERT_EQ(macondo.size(), 6U);
-  EXPECT_EQ(std::count_if(macondo.begin(), macondo.end(),
-                          [](const Sonar& s) { return s.T_robot_sonar.theta_rad == 0.0; }),
-            2);
-  const auto b21 = b21_sonars();
-  ASSERT_EQ(b21.size(), 24U);
-  for (std::size_t i = 0; i < b21.size(); ++i) {
-    const double turn_rad = geometry::wrap_angle(b21[(i + 1) % 24].T_robot_sonar.theta_rad -
-                                                 b21[i].T_robot_sonar.theta_rad);
-    EXPECT_NEAR(turn_rad, 15.0 * kDegree, 1e-12);
-  }
-}
-
 }  // namespace
 }  // namespace topogeo::simulation

@@ -20,7 +20,6 @@ class Odometry;
 class Sonar;
 class BaseStatus;
 class LaserStatus;
-class GroundTruth;
 class StreamEnd;
 class LocalMap;
 class MatchTask;
@@ -40,6 +39,8 @@ class Goal;
 class Route;
 class MotionCommand;
 class BaseCommand;
+class GroundTruth;
+class SimulatorCommand;
 }  // namespace topogeo::msg
 
 namespace topogeo::messaging {
@@ -49,7 +50,6 @@ inline constexpr std::string_view kOdometry = "topogeo/v5/odometry";
 inline constexpr std::string_view kSonar = "topogeo/v5/sonar";
 inline constexpr std::string_view kBaseStatus = "topogeo/v5/base_status";
 inline constexpr std::string_view kLaserStatus = "topogeo/v5/laser_status";
-inline constexpr std::string_view kGroundTruth = "topogeo/v5/ground_truth";
 inline constexpr std::string_view kStreamEnd = "topogeo/v5/stream_end";
 inline constexpr std::string_view kLocalMap = "topogeo/v5/local_map";
 inline constexpr std::string_view kMatchTask = "topogeo/v5/match_task";
@@ -69,6 +69,8 @@ inline constexpr std::string_view kGoal = "topogeo/v5/goal";
 inline constexpr std::string_view kRoute = "topogeo/v5/route";
 inline constexpr std::string_view kMotionCommand = "topogeo/v5/motion_command";
 inline constexpr std::string_view kBaseCommand = "topogeo/v5/base_command";
+inline constexpr std::string_view kGroundTruth = "topogeo/v5/ground_truth";
+inline constexpr std::string_view kSimulatorCommand = "topogeo/v5/simulator_command";
 
 /// Role of the sensor topics while a log is replayed: a slow reader slows the writer. Writer and
 /// readers of a run must agree on it.

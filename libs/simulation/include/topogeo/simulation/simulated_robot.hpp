@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "topogeo/devices/sonar_ring.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/simulation/laser.hpp"
 #include "topogeo/simulation/odometry.hpp"
@@ -31,7 +32,7 @@ struct RobotOptions {
   std::uint64_t seed = 1;
   /// Nothing: at the start of the world's tour, heading along it.
   std::optional<geometry::Pose2> T_world_start{};
-  double radius_m = 0.267;  ///< of its round body; (0, 5]
+  double radius_m = devices::kB21Radius_m;  ///< of its round body; (0, 5]
   double acceleration_m_per_s2 = std::numeric_limits<double>::infinity();            ///< > 0
   double angular_acceleration_rad_per_s2 = std::numeric_limits<double>::infinity();  ///< > 0
   /// What its wheels count. Slipping sideways (lateral and turn_shift) moves the robot, which the
@@ -41,7 +42,7 @@ struct RobotOptions {
   BeamPattern beams{};
   LaserNoise laser{};
   geometry::Pose2 T_robot_laser{};
-  std::vector<Sonar> sonars = b21_sonars();
+  std::vector<devices::SonarMount> sonars = devices::b21_sonars();
   SonarNoise sonar{};
   std::size_t wanderers = 0;      ///< people besides those of the world, see People
   double changes_until_s = 3600;  ///< see draw_changes

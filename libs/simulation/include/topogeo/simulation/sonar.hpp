@@ -1,4 +1,4 @@
-// Sonars: each hears the nearest surface within its cone.
+// Sonars: each hears the nearest surface within its cone. Where they sit: devices/sonar_ring.hpp.
 #pragma once
 
 #include <limits>
@@ -10,16 +10,6 @@
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::simulation {
-
-struct Sonar {
-  geometry::Pose2 T_robot_sonar{};                         ///< it looks along its x
-  double half_cone_rad = 15.0 * std::numbers::pi / 180.0;  ///< (0, pi/2)
-};
-
-/// MACONDO's six: two to the front and two to each side of the robot.
-std::vector<Sonar> macondo_sonars();
-/// The 24 of a B21, one every 15 degrees, counter-clockwise from the first one left of ahead.
-std::vector<Sonar> b21_sonars();
 
 /// The nearest surface in a cone.
 struct Echo {
