@@ -196,6 +196,9 @@ void PlsDriver::run(std::int64_t now_ns) {
 void PlsDriver::watch_run(std::int64_t now_ns) {
   if (now_ns >= last_scan_ns_ + silence_ns()) {
     ++status_.counters.silences;
+    // It may have restarted without being heard, and may follow to another rate now.
+    failed_switches_ = 0;
+    fallback_.clear();
     start_search("no scan for " + std::to_string(silence_ns() / 1'000'000) + " ms", now_ns);
     return;
   }

@@ -1,0 +1,143 @@
+// A SICK PLS laser, or an LMS-2xx at its defaults, at the other end of a serial line, byte for
+// byte: telegrams, acknowledgements, installation mode, change of the rate, scans at the pace that
+// mirror and line allow, restarts, and whatever goes wrong with such a sensor, on demand.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "topogeo/devices/pls_messages.hpp"
+#include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/devices/sick_telegram.hpp"
+#include "topogeo/simulation/serial_device.hpp"
+#include "topogeo/simulation/serial_output.hpp"
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::simulation {
+
+struct PlsEmulatorSettings {
+  /// The line after power-on; without parity the sensor is an LMS.
+  devices::LineSettings power_on{9600, devices::Parity::kEven};
+  std::string password = "SICK_PLS";
+  std::string power_on_text = "PLS 200-313;emulated";
+  std::string software = "P 01.23";  ///< seven characters
+  std::vector<devices::PlsError> errors{};
+  std::int64_t ack_delay_ns = 10'000'000;    ///< from a command's end to ACK; at most 40 ms
+  std::int64_t reply_delay_ns = 2'000'000;   ///< from ACK to the reply
+  std::int64_t start_up_ns = 9'000'000'000;  ///< from power-on to the power-on telegram
+  std::int64_t mirror_period_ns = 40'000'000;
+  std::int64_t sweep_to_send_ns = 10'000'000;  ///< from the middle of the sweep to the first byte
+  std::uint16_t no_return_code = 8191;
+  std::uint64_t seed = 1;  ///< of where faults strike
+};
+
+/// Faults that strike the next telegrams.
+enum class PlsFault {
+  kBadCrc,            ///< a bit of the telegram changes on its way
+  kTruncated,         ///< the telegram ends early
+  kGarbage,           ///< random bytes before the telegram
+  kStuckScan,         ///< a scan is sent again instead of a new one
+  kIgnoreBaudSwitch,  ///< a change of the rate is confirmed but not made
+};
+inline constexpr std::size_t kPlsFaults = 5;
+
+class PlsEmulator final : public SerialDevice {
+ public:
+  /// Ranges in metres at a time, one per beam from the right, 361 or another number that the sensor
+  /// knows; 0 or not finite: no return.
+  using Ranges = std::function<std::vector<float>(std::int64_t now_ns)>;
+
+  /// A sensor that was switched on long before `now_ns` and waits for commands. Throws
+  /// std::invalid_argument when a setting makes no sense.
+  PlsEmulator(PlsEmulatorSettings settings, Ranges ranges, std::int64_t now_ns = 0);
+
+  void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
+               std::int64_t now_ns) override;
+  void tick(std::int64_t now_ns) override;
+  [[nodiscard]] std::int64_t due_ns() const override;
+  [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
+                                                      std::int64_t now_ns) override;
+
+  // What happens to the sensor from outside.
+  void switch_off();
+  /// Switches on, or off and on again: silence for the time of the start-up, then the power-on
+  /// telegram at the rate after power-on.
+  void switch_on(std::int64_t now_ns);
+  /// Leaves the sensor as an earlier program may have: at this rate, and streaming or not.
+  void set_up(std::uint32_t baud, bool streaming, std::int64_t now_ns);
+  /// The byte at the end of every telegram: pollution and errors, for example.
+  void set_status(std::uint8_t status) { status_ = status; }
+
+  // Faults.
+  /// Strikes the next `count` telegrams, scans or changes of the rate that the fault can strike.
+  void inject(PlsFault fault, int count);
+  /// Neither sends nor hears anything for this time; what is on its way is cut.
+  void fall_silent(std::int64_t duration_ns, std::int64_t now_ns);
+  /// How often the fault is still to strike.
+  [[nodiscard]] int pending(PlsFault fault) const;
+  /// When the last telegram that a fault struck has left the line, or the silence ended.
+  [[nodiscard]] std::int64_t fault_end_ns() const { return fault_end_ns_; }
+
+  [[nodiscard]] const devices::LineSettings& line() const { return line_; }
+  [[nodiscard]] bool streaming() const { return mode_ == Mode::kStream; }
+  [[nodiscard]] std::uint64_t scans_sent() const { return scans_sent_; }
+
+ private:
+  enum class Power { kOff, kStarting, kOn };
+  enum class Mode { kOnRequest, kStream, kInstallation };
+  /// What follows when a reply has left.
+  struct Change {
+    std::int64_t at_ns = 0;
+    std::optional<Mode> mode{};
+    std::optional<std::uint32_t> baud{};
+    bool restart = false;
+  };
+  struct Reply {
+    std::uint8_t code = 0;
+    std::vector<std::uint8_t> data{};
+    Change then{};
+  };
+
+  void obey(const devices::SickTelegram& command, std::int64_t now_ns);
+  [[nodiscard]] Reply answer(const devices::SickTelegram& command);
+  [[nodiscard]] Reply change_mode(std::span<const std::uint8_t> data);
+  [[nodiscard]] Reply change_rate(std::uint32_t baud);
+  [[nodiscard]] std::vector<std::uint8_t> status_report() const;
+  [[nodiscard]] std::vector<std::uint8_t> error_list() const;
+  void apply(const Change& change, std::int64_t now_ns);
+  void finish_start_up(std::int64_t now_ns);
+  void measure(std::int64_t now_ns);
+  [[nodiscard]] std::vector<std::uint8_t> scan_data(std::int64_t now_ns);
+  std::int64_t send_telegram(std::vector<std::uint8_t> telegram, std::int64_t start_ns);
+  [[nodiscard]] bool strikes(PlsFault fault);
+  [[nodiscard]] bool silent(std::int64_t now_ns) const { return now_ns < silent_until_ns_; }
+
+  PlsEmulatorSettings settings_;
+  Ranges ranges_;
+  devices::LineSettings line_;
+  devices::SickDecoder decoder_;
+  SerialOutput output_;
+  support::Random random_;
+  Power power_ = Power::kOn;
+  Mode mode_ = Mode::kOnRequest;
+  bool rate_is_permanent_ = false;
+  std::uint8_t status_ = 0;
+  std::int64_t mirror_ns_ = 0;                 ///< a time at which the mirror was in mid-sweep
+  std::int64_t start_up_end_ns_ = 0;           ///< while starting
+  std::int64_t busy_until_ns_ = 0;             ///< commands before are not heard
+  std::optional<Change> change_;               ///< awaits its time
+  std::optional<std::int64_t> measure_at_ns_;  ///< the next scan
+  std::vector<std::uint8_t> last_scan_;
+  std::array<int, kPlsFaults> pending_{};
+  std::int64_t silent_until_ns_ = 0;
+  std::int64_t fault_end_ns_ = 0;
+  std::uint64_t scans_sent_ = 0;
+};
+
+}  // namespace topogeo::simulation
