@@ -33,6 +33,7 @@ TourFollower::TourFollower(const std::vector<Eigen::Vector2d>& tour_m, const Dri
   check("turn_rad_per_s", options.turn_rad_per_s, 0.01, 10.0);
   check("acceleration_m_per_s2", options.acceleration_m_per_s2, 0.01, 10.0);
   check("lookahead_m", options.lookahead_m, 0.05, 5.0);
+  check("turn_gain_per_s", options.turn_gain_per_s, 0.01, 10.0);
   check("keep_off_m", options.keep_off_m, 0.0, 5.0);
   for (const Eigen::Vector2d& point_m : tour_m) {
     if (path_m_.empty() || point_m != path_m_.back()) path_m_.push_back(point_m);
@@ -91,9 +92,8 @@ std::optional<Velocity> TourFollower::next(const geometry::Pose2& T_world_robot,
   const double room_m = std::max(free_ahead_m - options_.keep_off_m, 0.0);
   wanted_m_per_s = std::min(wanted_m_per_s, std::sqrt(acceleration * room_m));
   speed_m_per_s_ = std::min(speed_m_per_s_ + acceleration * dt_s, wanted_m_per_s);
-  constexpr double kTurnGain_per_s = 3.0;
-  return Velocity{speed_m_per_s_, std::clamp(kTurnGain_per_s * error_rad, -options_.turn_rad_per_s,
-                                             options_.turn_rad_per_s)};
+  return Velocity{speed_m_per_s_, std::clamp(options_.turn_gain_per_s * error_rad,
+                                             -options_.turn_rad_per_s, options_.turn_rad_per_s)};
 }
 
 }  // namespace topogeo::simulation

@@ -26,7 +26,10 @@ struct DriveOptions {
   double turn_rad_per_s = 60.0 * std::numbers::pi / 180.0;  ///< at most; (0, 10]
   double acceleration_m_per_s2 = 0.5;                       ///< (0, 10]
   double lookahead_m = 0.4;  ///< distance of the point ahead; corners are cut by less; [0.05, 5]
-  double keep_off_m = 0.1;   ///< of obstacles ahead, where the robot is told of them; [0, 5]
+  /// Turns by this much of the error of its heading a second; (0, 10]. Less for a base that obeys
+  /// late: over one half of the delay's inverse it swings about its way.
+  double turn_gain_per_s = 3.0;
+  double keep_off_m = 0.1;  ///< of obstacles ahead, where the robot is told of them; [0, 5]
 };
 
 class TourFollower {
