@@ -1,0 +1,106 @@
+// What a base was told to do and what it still has to be told: velocities and relative moves as
+// commands of the MCP, each sent only when it changes something.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "topogeo/devices/base_settings.hpp"
+#include "topogeo/devices/mcp_protocol.hpp"
+#include "topogeo/devices/mcp_units.hpp"
+
+namespace topogeo::devices {
+
+/// Along x of the robot and counter-clockwise.
+struct BaseVelocity {
+  double linear_mps = 0.0;
+  double angular_radps = 0.0;
+  bool operator==(const BaseVelocity&) const = default;
+};
+
+/// The commands by which the two axes differ.
+struct BaseAxisCommands {
+  McpCommand velocity, acceleration, halt, plus, minus, far_plus, far_minus;
+};
+
+/// One motor's axis, in its own counts.
+class BaseAxis {
+ public:
+  explicit BaseAxis(const BaseAxisCommands& commands) : commands_(commands) {}
+
+  void want_speed(std::int64_t counts_per_s);
+  /// A move by `counts` with at most `counts_per_s`; it is sent once.
+  void want_distance(std::int64_t counts, std::int64_t counts_per_s);
+  void want_acceleration(std::int64_t counts_per_s2);
+  /// The base may have forgotten what it was told.
+  void forget();
+  /// The base may have missed the last run or halt.
+  void forget_run() { told_ = Run::kUnknown; }
+  /// A relative move that is wanted was told.
+  [[nodiscard]] bool distance_told() const { return told_ == Run::kFar; }
+  [[nodiscard]] bool moves() const { return wanted_ != Run::kHalt; }
+
+  /// The command that halts, if it has to be told.
+  std::optional<McpOrder> next_halt();
+  /// The next command to tell, if any; it counts as told.
+  std::optional<McpOrder> next();
+  /// The acceleration, whether or not it was told before.
+  [[nodiscard]] McpOrder acceleration() const;
+
+ private:
+  enum class Run : std::uint8_t { kUnknown, kHalt, kPlus, kMinus, kFar };
+
+  BaseAxisCommands commands_;
+  Run wanted_ = Run::kHalt;
+  std::uint32_t speed_ = 0;
+  std::int64_t distance_ = 0;
+  std::uint32_t acceleration_ = 1;
+  Run told_ = Run::kUnknown;
+  std::optional<std::uint32_t> told_speed_{};
+  std::optional<std::uint32_t> told_acceleration_{};
+};
+
+class BaseMotion {
+ public:
+  BaseMotion(const McpUnits& units, const BaseLimits& limits);
+
+  /// Speeds beyond the limits are cut down to them, both by the same factor: the robot keeps to the
+  /// curve.
+  void want_velocity(const BaseVelocity& velocity);
+  void want_distance(double distance_m);
+  void want_turn(double angle_rad);
+  void want_halt() { want_velocity({}); }
+  /// Holds for what is wanted from now on, accelerations at once.
+  void set_limits(const BaseLimits& limits);
+  [[nodiscard]] const BaseLimits& limits() const { return limits_; }
+  /// The base may have forgotten what it was told: all of it is told again.
+  void forget();
+  /// The base does not do what was told last, which is told again; speeds and accelerations are
+  /// not.
+  void forget_run();
+
+  /// Halts first, then settings before what they are for.
+  std::optional<McpOrder> next();
+  std::optional<McpOrder> next_halt();
+  /// Accelerations again, first of one axis, then of the other: the base may have missed them.
+  McpOrder repeat_acceleration();
+
+  [[nodiscard]] bool moves() const { return translation_.moves() || rotation_.moves(); }
+  [[nodiscard]] bool translates() const { return translation_.moves(); }
+  [[nodiscard]] bool rotates() const { return rotation_.moves(); }
+  /// A relative move is wanted and everything about it was told.
+  [[nodiscard]] bool relative_told() const;
+  /// What the base makes of what is wanted; for a relative move its highest speed.
+  [[nodiscard]] const BaseVelocity& aim() const { return aim_; }
+
+ private:
+  McpUnits units_;
+  BaseLimits limits_;
+  BaseAxis translation_;
+  BaseAxis rotation_;
+  BaseVelocity aim_{};
+  bool repeat_rotation_ = false;
+};
+
+}  // namespace topogeo::devices

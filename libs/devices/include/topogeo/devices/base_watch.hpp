@@ -1,0 +1,74 @@
+// Whether a base moves as it was told: motion that nobody commanded is the joystick, motion that
+// was commanded and does not come about is the emergency stop. No message of the base says either.
+#pragma once
+
+#include <cstdint>
+
+#include "topogeo/devices/base_motion.hpp"
+#include "topogeo/devices/base_settings.hpp"
+#include "topogeo/devices/mcp_protocol.hpp"
+#include "topogeo/devices/mcp_units.hpp"
+
+namespace topogeo::devices {
+
+/// The speeds of one axis that commands account for: from the least to the largest of those that
+/// hold and, while the base gets from one to the other, of those before. A base may always be
+/// slower.
+class SpeedRange {
+ public:
+  /// Reached with `acceleration` (> 0), which begins after `lag_ns` at the latest.
+  void aim_at(double speed, double acceleration, std::int64_t lag_ns, std::int64_t now_ns);
+  /// How far beyond the range a speed is; 0 within.
+  double excess(double speed, std::int64_t now_ns);
+  [[nodiscard]] bool settled(std::int64_t now_ns) const { return now_ns >= settled_ns_; }
+
+ private:
+  double aim_ = 0.0;
+  double least_ = 0.0;
+  double largest_ = 0.0;
+  std::int64_t settled_ns_ = 0;
+};
+
+class BaseWatch {
+ public:
+  BaseWatch(const McpUnits& units, const BaseSettings& settings);
+
+  /// What the base is told from now on.
+  void aim_at(const BaseVelocity& velocity, const BaseLimits& limits, std::int64_t now_ns);
+  /// The base started anew; `now_ns`: what moves for a while afterwards was commanded before.
+  void restart(std::int64_t now_ns);
+  void take(const McpReport& report, const BaseMotion& motion, std::int64_t now_ns);
+
+  /// Of the last report.
+  [[nodiscard]] bool stands() const { return stands_; }
+  /// A motor brakes.
+  [[nodiscard]] bool slows_down() const { return slows_down_; }
+  /// A motor is without power because it was told so or because of an error.
+  [[nodiscard]] bool limp() const { return limp_; }
+  /// Somebody drives it by joystick; holds until it has stood for a second.
+  [[nodiscard]] bool joystick() const { return joystick_; }
+  /// It was told to move and does not for as many reports as settings.stalled_reports.
+  [[nodiscard]] bool stalled() const { return stalls_ >= settings_.stalled_reports; }
+  /// It should have begun or ended to move long since: a command was lost.
+  [[nodiscard]] bool disobeys() const { return disobeys_; }
+  /// Reports since it began to stand.
+  [[nodiscard]] unsigned reports_standing() const { return reports_standing_; }
+
+ private:
+  McpUnits units_;
+  BaseSettings settings_;
+  std::int64_t period_ns_;
+  SpeedRange linear_;
+  SpeedRange angular_;
+  bool stands_ = true;
+  bool slows_down_ = false;
+  bool limp_ = false;
+  bool joystick_ = false;
+  bool disobeys_ = false;
+  unsigned stalls_ = 0;
+  unsigned uncommanded_ = 0;
+  unsigned reports_standing_ = 0;
+  std::int64_t moved_ns_ = 0;  // when motion was last seen
+};
+
+}  // namespace topogeo::devices

@@ -1,0 +1,98 @@
+#include "topogeo/devices/base_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace topogeo::devices {
+namespace {
+
+/// From a command to its effect in a report, apart from the acceleration: writing it, a report on
+/// its way, motors that lag.
+constexpr std::int64_t kLag_ns = 300'000'000;
+constexpr std::int64_t kJoystickRest_ns = 1'000'000'000;
+constexpr unsigned kUncommandedReports = 2;
+
+bool stalls(std::uint16_t status, bool told, bool stands) {
+  return told && stands && phase_of(status) == McpPhase::kAccelerate;
+}
+
+/// Phases of a motor that has ended what it was told, or never began.
+bool rests(std::uint16_t status) {
+  const McpPhase phase = phase_of(status);
+  return phase == McpPhase::kStop || phase == McpPhase::kHalt || phase == McpPhase::kLimp;
+}
+
+}  // namespace
+
+void SpeedRange::aim_at(double speed, double acceleration, std::int64_t lag_ns,
+                        std::int64_t now_ns) {
+  (void)excess(speed, now_ns);
+  if (speed == aim_) return;
+  aim_ = speed;
+  least_ = std::min(least_, speed);
+  largest_ = std::max(largest_, speed);
+  const double change_s = (largest_ - least_) / acceleration;
+  settled_ns_ = std::max(settled_ns_, now_ns + lag_ns + static_cast<std::int64_t>(1e9 * change_s));
+}
+
+double SpeedRange::excess(double speed, std::int64_t now_ns) {
+  if (settled(now_ns)) {
+    least_ = std::min(0.0, aim_);
+    largest_ = std::max(0.0, aim_);
+  }
+  return std::max({0.0, least_ - speed, speed - largest_});
+}
+
+BaseWatch::BaseWatch(const McpUnits& units, const BaseSettings& settings)
+    : units_(units), settings_(settings), period_ns_(ticks_ns(report_period_ticks(settings))) {}
+
+void BaseWatch::aim_at(const BaseVelocity& velocity, const BaseLimits& limits,
+                       std::int64_t now_ns) {
+  if (velocity == BaseVelocity{}) stalls_ = 0;
+  const std::int64_t lag_ns = kLag_ns + 2 * period_ns_;
+  linear_.aim_at(velocity.linear_mps, limits.linear_mps2, lag_ns, now_ns);
+  angular_.aim_at(velocity.angular_radps, limits.angular_radps2, lag_ns, now_ns);
+}
+
+void BaseWatch::restart(std::int64_t now_ns) {
+  const BaseLimits& limits = settings_.limits;
+  for (const double sign : {1.0, -1.0, 0.0}) {
+    aim_at({sign * limits.linear_mps, sign * limits.angular_radps}, limits, now_ns);
+  }
+  stalls_ = 0;
+  uncommanded_ = 0;
+  disobeys_ = false;
+  joystick_ = false;
+}
+
+void BaseWatch::take(const McpReport& report, const BaseMotion& motion, std::int64_t now_ns) {
+  const double linear_mps = units_.linear_mps(report);
+  const double angular_radps = units_.angular_radps(report);
+  const bool linear_stands = std::abs(linear_mps) <= settings_.standstill_mps;
+  const bool angular_stands = std::abs(angular_radps) <= settings_.standstill_radps;
+  const std::uint16_t translate = report.word(McpField::kTranslateStatus);
+  const std::uint16_t rotate = report.word(McpField::kRotateStatus);
+
+  stands_ = linear_stands && angular_stands;
+  reports_standing_ = stands_ ? reports_standing_ + 1 : 0;
+  if (!stands_) moved_ns_ = now_ns;
+  slows_down_ =
+      phase_of(translate) == McpPhase::kDecelerate || phase_of(rotate) == McpPhase::kDecelerate;
+  limp_ = phase_of(translate) == McpPhase::kLimp || phase_of(rotate) == McpPhase::kLimp;
+
+  const bool stalled = stalls(translate, motion.translates(), linear_stands) ||
+                       stalls(rotate, motion.rotates(), angular_stands);
+  stalls_ = stalled ? stalls_ + 1 : 0;
+
+  const bool uncommanded = linear_.excess(linear_mps, now_ns) > settings_.uncommanded_mps ||
+                           angular_.excess(angular_radps, now_ns) > settings_.uncommanded_radps;
+  uncommanded_ = uncommanded ? uncommanded_ + 1 : 0;
+  if (uncommanded_ >= kUncommandedReports) joystick_ = true;
+  if (joystick_ && now_ns - moved_ns_ > kJoystickRest_ns) joystick_ = false;
+
+  const bool settled = linear_.settled(now_ns) && angular_.settled(now_ns);
+  disobeys_ = settled && ((motion.translates() && linear_stands && rests(translate)) ||
+                          (motion.rotates() && angular_stands && rests(rotate)));
+}
+
+}  // namespace topogeo::devices

@@ -1,0 +1,157 @@
+// An RWI B21 base behind its serial line: both dialects of the controller (MCP), the motors'
+// motion, the reports, the watchdog, the joystick, the emergency stop, and faults on demand. What
+// the wheels really do, the world decides: see commanded_velocity() and moved().
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/devices/mcp_ascii.hpp"
+#include "topogeo/devices/mcp_protocol.hpp"
+#include "topogeo/devices/mcp_units.hpp"
+#include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/simulation/mcp_axis.hpp"
+#include "topogeo/simulation/serial_device.hpp"
+#include "topogeo/simulation/serial_output.hpp"
+#include "topogeo/simulation/tour_follower.hpp"
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::simulation {
+
+struct McpEmulatorSettings {
+  devices::LineSettings line{};
+  devices::McpCalibration calibration{};
+  /// From power-on until it understands anything.
+  std::int64_t start_up_ns = 2'000'000'000;
+  /// Of its lines and numbers in the ASCII dialect.
+  devices::McpAsciiForm form{};
+  /// Puts a `*` before its answers.
+  bool prompt = false;
+  /// Repeats what it hears until HD, or, as nobody knows, for ever.
+  bool echo_at_start = true;
+  bool echo_can_be_switched_off = true;
+  /// On expiry of the watchdog the motors go limp; otherwise they halt.
+  bool watchdog_limps = false;
+  std::uint32_t clock_at_start = 0;
+  double clock_drift_ppm = 0.0;  ///< its seconds are so much shorter than ours
+  double battery_v = 48.2;
+  std::uint64_t seed = 1;  ///< of where faults hit
+};
+
+class McpEmulator final : public SerialDevice {
+ public:
+  /// Switched on at `now_ns`. Throws std::invalid_argument for a calibration that cannot be.
+  explicit McpEmulator(const McpEmulatorSettings& settings, std::int64_t now_ns = 0);
+
+  // SerialDevice.
+  void receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
+               std::int64_t now_ns) override;
+  void tick(std::int64_t now_ns) override;
+  [[nodiscard]] std::int64_t due_ns() const override;
+  [[nodiscard]] std::vector<std::uint8_t> take_output(const devices::LineSettings& host,
+                                                      std::int64_t now_ns) override;
+
+  // The world's side.
+  /// How its motors turn the wheels since the last tick; robot frame.
+  [[nodiscard]] Velocity commanded_velocity() const;
+  /// What the encoders of the wheels saw in the last `time_s`: forward and counter-clockwise.
+  void moved(double forward_m, double turn_rad, double time_s);
+  /// All that the encoders saw since it was made, each step half its turn, forward, the other half.
+  [[nodiscard]] const geometry::Pose2& T_start_robot() const { return T_start_robot_; }
+  /// Bits of the switches that are pressed.
+  void press_bumpers(std::uint16_t pressed, std::int64_t now_ns);
+
+  // The operator's side.
+  /// Without effect while the host has switched the joystick off. Both 0: let go.
+  void take_joystick(const Velocity& velocity);
+  /// The motors lose their power.
+  void press_emergency_stop() { power_ = false; }
+  void release_emergency_stop() { power_ = true; }
+  void set_battery(double battery_v, std::int64_t now_ns);
+  /// A servo error: the translation motor goes limp until it is told something new.
+  void fail_motor(std::int64_t now_ns);
+
+  // Faults.
+  void restart(std::int64_t now_ns);
+  void set_silent(bool silent) { silent_ = silent; }
+  void set_echo(bool echo) { echo_ = echo; }
+  /// One bit of each of the next reports is wrong; in the binary dialect it may be the checksum's.
+  void corrupt_reports(unsigned reports) { corrupt_ = reports; }
+  /// The next reports end somewhere in the middle.
+  void truncate_reports(unsigned reports) { truncate_ = reports; }
+  /// Sends bytes that mean nothing.
+  void send_garbage(std::size_t bytes, std::int64_t now_ns);
+
+  // What the tests look at.
+  [[nodiscard]] bool ready() const { return ready_; }
+  [[nodiscard]] bool binary() const { return binary_; }
+  [[nodiscard]] bool echoes() const { return echo_; }
+  [[nodiscard]] const std::vector<devices::McpOrder>& heard() const { return heard_; }
+  void forget_heard() { heard_.clear(); }
+  [[nodiscard]] std::uint64_t reports() const { return reports_; }
+
+ private:
+  void power_on(std::int64_t now_ns);
+  void hear_ascii(std::uint8_t byte, std::int64_t now_ns);
+  void hear_binary(std::uint8_t byte, std::int64_t now_ns);
+  void hear_line(std::int64_t now_ns);
+  void execute(const devices::McpOrder& order, std::int64_t now_ns);
+  bool execute_motion(const devices::McpOrder& order);
+  void answer(devices::McpCommand command, std::uint32_t value, std::int64_t now_ns);
+  void say(std::string_view ascii, const std::vector<std::uint8_t>& binary, std::int64_t now_ns);
+  void send(std::vector<std::uint8_t> bytes, std::int64_t now_ns);
+  void send_line(std::string line, std::int64_t now_ns);
+  void send_report(devices::McpCommand kind, std::uint32_t mask, std::int64_t now_ns);
+  void damage(std::vector<std::uint8_t>& report);
+  [[nodiscard]] devices::McpReport report(std::uint32_t mask, std::int64_t now_ns) const;
+  [[nodiscard]] std::uint32_t clock(std::int64_t now_ns) const;
+  void move_motors(std::int64_t now_ns);
+  void expire_watchdog(std::int64_t now_ns);
+
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+  McpEmulatorSettings settings_;
+  devices::McpUnits units_;
+  support::Random random_;
+  SerialOutput output_;
+
+  bool ready_ = false;
+  std::int64_t on_ns_ = 0;     // switched on
+  std::int64_t moved_ns_ = 0;  // the motors are as of then
+  bool binary_ = false;
+  bool echo_ = true;
+  std::string line_;
+  std::vector<std::uint8_t> packet_;
+  unsigned zeros_ = 0;
+  bool synchronised_ = false;
+  std::vector<devices::McpOrder> heard_;
+
+  std::uint32_t mask_ = 0;
+  std::int64_t period_ns_ = 0;
+  std::int64_t report_ns_ = kNever;
+  std::int64_t watchdog_ns_ = kNever;
+  bool joystick_off_ = false;
+  bool stop_on_bump_ = true;
+  std::uint16_t bumpers_ = 0;
+  double battery_v_ = 0.0;
+  bool power_ = true;
+  McpAxis translation_;
+  McpAxis rotation_;
+  geometry::Pose2 T_base_robot_{};  // registers
+  double heading_rad_ = 0.0;        // the same, not wrapped
+  geometry::Pose2 T_start_robot_{};
+
+  bool silent_ = false;
+  unsigned corrupt_ = 0;
+  unsigned truncate_ = 0;
+  std::uint64_t reports_ = 0;
+};
+
+}  // namespace topogeo::simulation
