@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "topogeo/localization/expected_overlap.hpp"
 #include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/refinement.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {
@@ -148,7 +151,10 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
       evidence->push_back(step_match(task, result, foreseen, task.query_map_id));
     }
     const bool solved = result.status == MatchStatus::kSolved;
-    const Pose2& T_later_earlier = solved ? result.T_reference_query : task.T_reference_query;
+    const Pose2 T_later_earlier =
+        solved ? without_prior(result.T_reference_query, result.covariance,
+                               {task.T_reference_query, task.covariance.inverse()})
+               : task.T_reference_query;
     const PoseGraphEdge edge{task.query_map_id, task.reference_map_id, kind,
                              geometry::inverse(T_later_earlier),
                              geometry::inverse_covariance(T_later_earlier, result.covariance)};

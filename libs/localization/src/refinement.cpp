@@ -184,6 +184,21 @@ Alignment align(const Reference& reference, const MatchFeatures& query, const Po
   return result;
 }
 
+Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
+                    const PosePrior& prior) {
+  constexpr double kFarthest_m = 0.3;
+  constexpr double kFarthest_rad = 0.05;
+  const Eigen::Vector3d pull =
+      prior.information * geometry::difference(T_aligned, prior.T_reference_query);
+  const Eigen::Vector3d step = covariance * pull;
+  if (std::fabs(step.x()) > kFarthest_m || std::fabs(step.y()) > kFarthest_m ||
+      std::fabs(step.z()) > kFarthest_rad) {
+    return T_aligned;
+  }
+  return {T_aligned.x_m + step.x(), T_aligned.y_m + step.y(),
+          geometry::wrap_angle(T_aligned.theta_rad + step.z())};
+}
+
 Refinement refine(const Reference& reference, const MatchFeatures& query,
                   const Pose2& T_first_guess, const PosePrior& prior) {
   const Alignment aligned = align(reference, query, T_first_guess, prior);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "hand_scenes.hpp"
@@ -115,6 +116,40 @@ std::vector<double> residuals(const Reference& reference, const MatchFeatures& q
     out.push_back(other.normal.dot(T * point.position_m - other.position_m));
   }
   return out;
+}
+
+TEST(RefinementTest, TakesThePullOfThePriorOutAgain) {
+  // Scans that want z, a prior that wants p: where they balance, H (T - z) + P (T - p) = 0.
+  Eigen::Matrix3d H;
+  H << 900, 40, -15, 40, 400, 30, -15, 30, 2500;
+  const Eigen::Matrix3d P = Eigen::Vector3d(200, 300, 800).asDiagonal();
+  const Eigen::Vector3d z(1.00, 2.00, 0.300);
+  const Eigen::Vector3d p(1.12, 1.91, 0.328);
+  const Eigen::Vector3d T = (H + P).inverse() * (H * z + P * p);
+  const Pose2 found = without_prior({T.x(), T.y(), T.z()}, H.inverse(), {{p.x(), p.y(), p.z()}, P});
+  EXPECT_NEAR(found.x_m, z.x(), 1e-12);
+  EXPECT_NEAR(found.y_m, z.y(), 1e-12);
+  EXPECT_NEAR(found.theta_rad, z.z(), 1e-12);
+}
+
+TEST(RefinementTest, WithoutPriorComesBackToWhatTheScansSay) {
+  const Reference reference = make_reference(test::features_at(test::l_room(), {}));
+  const Pose2 truth{0.4, -0.3, 0.3};
+  const MatchFeatures query = test::features_at(test::l_room(), truth);
+  const PosePrior prior{{0.45, -0.26, 0.31}, Eigen::Vector3d(4e3, 4e3, 4e4).asDiagonal()};
+  const Refinement pulled = refine(reference, query, prior.T_reference_query, prior);
+  const Pose2 scans = without_prior(pulled.T_reference_query, pulled.information.inverse(), prior);
+  EXPECT_GT(test::distance_m(pulled.T_reference_query, truth), 0.005);
+  EXPECT_LT(test::distance_m(scans, truth),
+            0.5 * test::distance_m(pulled.T_reference_query, truth));
+}
+
+// Along a corridor the scans say next to nothing: what they "want" there is not to be believed.
+TEST(RefinementTest, WithoutPriorDoesNotGoFar) {
+  const PosePrior prior{{0.2, 0.0, 0.0}, Eigen::Vector3d(100, 100, 100).asDiagonal()};
+  const Pose2 aligned{0.1, 0.0, 0.0};
+  const Eigen::Matrix3d covariance = Eigen::Vector3d(0.1, 1e-4, 1e-5).asDiagonal();
+  EXPECT_EQ(without_prior(aligned, covariance, prior), aligned);
 }
 
 // The Hessian of the data term against numeric derivatives of the residuals: in a scene without

@@ -49,6 +49,13 @@ struct Alignment {
 Alignment align(const Reference& reference, const MatchFeatures& query,
                 const geometry::Pose2& T_first_guess, const PosePrior& prior);
 
+/// What the scans alone say: align() ends where scans and prior balance, so whoever uses the prior
+/// as a measurement of its own would count it twice. `covariance` is that of the scans at
+/// T_aligned. One Newton step away from the prior, which is exact as long as the scans' information
+/// stays the same on the way; a step beyond 0.3 m or 0.05 rad is not taken.
+geometry::Pose2 without_prior(const geometry::Pose2& T_aligned, const Eigen::Matrix3d& covariance,
+                              const PosePrior& prior);
+
 /// A refined pose and the evidence for it.
 struct Refinement : PoseEvidence {
   geometry::Pose2 T_reference_query;
