@@ -23,6 +23,7 @@ constexpr std::int64_t kProbesPerSilence = 20;
 /// So many questions without any answer, and the base is set up all the same: it may not answer in
 /// the dialect that it is in.
 constexpr unsigned kProbesPerStart = 5;
+constexpr std::string_view kProbeAnswer = "BV";
 constexpr double kBelievedBattery_v = 100.0;  // and from 1 V on
 
 std::int64_t nanoseconds(double seconds) {
@@ -124,6 +125,7 @@ void BaseDriver::probe(std::int64_t now_ns) {
   phase_until_ns_ = now_ns + std::clamp((now_ns - heard_ns_) / kProbesPerSilence, kShortestProbe_ns,
                                         kLongestProbe_ns);
   ++probes_;
+  probe_answer_.clear();
   // Any base that has just been switched on speaks ASCII.
   write(Write{{{}, bytes_of("\rBV\r")}, nanoseconds(settings_.write_gap_s), false}, now_ns);
 }
@@ -135,9 +137,18 @@ void BaseDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_n
   for (const McpMessage& message : messages) {
     std::visit([&](const auto& content) { take(content, now_ns); }, message);
   }
-  // Something is there that did not send reports, or none that go on from those before.
-  if (phase_ == Phase::kProbing) start(now_ns);
+  if (phase_ == Phase::kProbing && answered(bytes)) start(now_ns);
   tick(now_ns);
+}
+
+/// A base that answers in ASCII has to be set up. In the binary dialect any other byte may begin a
+/// report, which would say that nothing has to be done.
+bool BaseDriver::answered(std::span<const std::uint8_t> bytes) {
+  if (settings_.dialect == BaseDialect::kAscii) return true;
+  probe_answer_.append(bytes.begin(), bytes.end());
+  if (probe_answer_.find(kProbeAnswer) != std::string::npos) return true;
+  probe_answer_.erase(0, probe_answer_.size() - std::min<std::size_t>(probe_answer_.size(), 1));
+  return false;
 }
 
 void BaseDriver::take(const McpReport& report, std::int64_t now_ns) {

@@ -117,6 +117,7 @@ class BaseDriver final : public SerialDriver {
 
   void start(std::int64_t now_ns);
   void probe(std::int64_t now_ns);
+  [[nodiscard]] bool answered(std::span<const std::uint8_t> bytes);
   void run(std::int64_t now_ns);
   void go_offline(std::string reason, std::int64_t now_ns);
 
@@ -157,6 +158,7 @@ class BaseDriver final : public SerialDriver {
   std::int64_t deaf_until_ns_ = 0;
   std::int64_t phase_until_ns_ = 0;  // of kWaiting and kProbing
   unsigned probes_ = 0;
+  std::string probe_answer_{};  // the end of what came since the last question
   std::int64_t heard_ns_ = 0;    // when the last usable report came
   std::int64_t refresh_ns_ = 0;  // when the watchdog is due
   std::int64_t battery_ns_ = 0;  // when the battery is to be asked

@@ -1,0 +1,481 @@
+// The driver of the base against the emulated base, on a simulated clock: start-up, motion,
+// odometry, and everything that has to make the robot stand.
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base_on_line.hpp"
+
+namespace topogeo::devices {
+namespace {
+
+using simulation::McpEmulatorSettings;
+using testing::Contains;
+using testing::Not;
+
+constexpr double kPi = std::numbers::pi;
+
+struct Way {
+  BaseDialect dialect;
+  std::uint32_t baud;
+};
+std::string name_of(const testing::TestParamInfo<Way>& info) {
+  return (info.param.dialect == BaseDialect::kAscii ? "Ascii" : "Binary") +
+         std::to_string(info.param.baud);
+}
+BaseSettings settings_of(const Way& way) {
+  BaseSettings settings;
+  settings.dialect = way.dialect;
+  settings.line.baud = way.baud;
+  return settings;
+}
+
+class BaseDriverOn : public testing::TestWithParam<Way> {
+ protected:
+  BaseSettings settings() const { return settings_of(GetParam()); }
+  double period_s() const { return 1e-9 * static_cast<double>(period_ns()); }
+  std::int64_t period_ns() const { return ticks_ns(report_period_ticks(settings())); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Dialects, BaseDriverOn,
+                         testing::Values(Way{BaseDialect::kAscii, 9600},
+                                         Way{BaseDialect::kAscii, 38400},
+                                         Way{BaseDialect::kBinary, 9600},
+                                         Way{BaseDialect::kBinary, 38400}),
+                         name_of);
+
+TEST_P(BaseDriverOn, StartsTheBaseUp) {
+  BaseOnLine all(settings());
+  EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
+  ASSERT_TRUE(all.start(4 * kSecond));
+  const auto& heard = all.base.mcp.heard();
+  EXPECT_THAT(heard, Contains(McpOrder{McpCommand::kJoystickOff, 1}));
+  EXPECT_THAT(heard, Contains(McpOrder{McpCommand::kWatchdog, 256}));
+  EXPECT_EQ(all.base.mcp.binary(), GetParam().dialect == BaseDialect::kBinary);
+  EXPECT_TRUE(all.base.mcp.binary() || !all.base.mcp.echoes());
+  const auto position = [&](McpCommand command) {
+    return std::ranges::find(heard, command, &McpOrder::command) - heard.begin();
+  };
+  EXPECT_LT(position(McpCommand::kReportMask), position(McpCommand::kReportPeriod));
+  EXPECT_EQ(all.driver.status().reason, "");
+  EXPECT_TRUE(all.driver.status().commands_taken);
+}
+
+TEST_P(BaseDriverOn, KeepsTheWatchdogFedAndReportsComing) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  const BaseStatus before = all.driver.status();
+  all.pass(30 * kSecond);
+  const double reports = static_cast<double>(all.driver.status().reports - before.reports);
+  EXPECT_NEAR(reports, 30.0 / period_s(), 2.0);
+  EXPECT_EQ(all.driver.status().watchdog_expirations, 0U);
+  EXPECT_EQ(all.driver.status().starts, before.starts);
+  EXPECT_EQ(all.driver.status().drops, before.drops);
+  EXPECT_DOUBLE_EQ(all.driver.status().battery_v, 48.2);
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+}
+
+TEST_P(BaseDriverOn, DrivesAsCommandedAndSaysWhereItIs) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 5 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+  EXPECT_NEAR(all.base.mcp.commanded_velocity().linear_m_per_s, 0.3, 1e-4);
+  all.drive(0.2, 0.5, 5 * kSecond);
+  EXPECT_NEAR(all.base.mcp.commanded_velocity().angular_rad_per_s, 0.5, 0.01);
+  all.drive(-0.2, -0.3, 5 * kSecond);
+  EXPECT_NEAR(all.base.mcp.commanded_velocity().linear_m_per_s, -0.2, 1e-4);
+  EXPECT_NEAR(all.base.mcp.commanded_velocity().angular_rad_per_s, -0.3, 0.01);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+  all.drive(0.0, 0.0, 3 * kSecond);
+  EXPECT_TRUE(all.base.stands());
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+  EXPECT_GT(all.T_odom_robot.position_m().norm(), 1.0);
+  EXPECT_LT(all.worst_m, 0.02);    // two units of the base's registers
+  EXPECT_LT(all.worst_rad, 0.02);  // three
+  EXPECT_EQ(all.stamps_back, 0U);
+  EXPECT_EQ(all.stamps_ahead, 0U);
+}
+
+TEST_P(BaseDriverOn, SaysOnlyWhatChanges) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  all.base.mcp.forget_heard();
+  all.drive(0.3, 0.0, 2 * kSecond);
+  for (const McpOrder& order : all.base.mcp.heard()) {
+    EXPECT_NE(order.command, McpCommand::kTranslatePlus);
+    EXPECT_NE(order.command, McpCommand::kTranslateVelocity);
+    EXPECT_NE(order.command, McpCommand::kRotateHalt);
+  }
+}
+
+TEST_P(BaseDriverOn, AdvancesAndTurnsByAnAmount) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  const auto done = [&] { return all.driver.primitive_done(); };
+  const auto soon_ns = [&] { return all.line.now_ns() + 60 * kSecond; };
+  ASSERT_TRUE(all.driver.advance(1.5, soon_ns(), all.line.now_ns()));
+  ASSERT_TRUE(all.pass_until(20 * kSecond, done));
+  EXPECT_NEAR(all.base.mcp.T_start_robot().x_m, 1.5, 0.005);
+  ASSERT_TRUE(all.driver.turn(kPi / 2, soon_ns(), all.line.now_ns()));
+  ASSERT_TRUE(all.pass_until(20 * kSecond, done));
+  EXPECT_NEAR(all.base.mcp.T_start_robot().theta_rad, kPi / 2, 0.02);
+  ASSERT_TRUE(all.driver.advance(-0.5, soon_ns(), all.line.now_ns()));
+  ASSERT_TRUE(all.pass_until(20 * kSecond, done));
+  EXPECT_NEAR(all.base.mcp.T_start_robot().y_m, -0.5, 0.02);
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+  // Two that are the same are two.
+  ASSERT_TRUE(all.driver.advance(0.25, soon_ns(), all.line.now_ns()));
+  ASSERT_TRUE(all.pass_until(20 * kSecond, done));
+  ASSERT_TRUE(all.driver.advance(0.25, soon_ns(), all.line.now_ns()));
+  ASSERT_TRUE(all.pass_until(20 * kSecond, done));
+  EXPECT_NEAR(all.base.mcp.T_start_robot().y_m, 0.0, 0.02);
+  EXPECT_LT(all.worst_m, 0.02);
+}
+
+TEST_P(BaseDriverOn, AMoveEndsWhenItIsNoLongerValid) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  ASSERT_TRUE(all.driver.advance(5.0, all.line.now_ns() + 2 * kSecond, all.line.now_ns()));
+  EXPECT_TRUE(all.pass_until(4 * kSecond, [&] { return all.driver.primitive_done(); }));
+  all.pass(2 * kSecond);
+  EXPECT_TRUE(all.base.stands());
+  EXPECT_LT(all.base.mcp.T_start_robot().x_m, 1.5);
+}
+
+TEST_P(BaseDriverOn, HaltsWhenCommandsCease) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.4, 0.2, 3 * kSecond);
+  all.base.mcp.forget_heard();
+  const std::int64_t last_ns = all.line.now_ns() - kSecond / 10;
+  const auto halted = [&] {
+    const auto& heard = all.base.mcp.heard();
+    return std::ranges::count(heard, McpOrder{McpCommand::kTranslateHalt}) > 0 &&
+           std::ranges::count(heard, McpOrder{McpCommand::kRotateHalt}) > 0;
+  };
+  ASSERT_TRUE(all.pass_until(kSecond, halted));
+  EXPECT_NEAR(static_cast<double>(all.line.now_ns() - last_ns), 0.53e9, 0.03e9);
+  all.pass(3 * kSecond);
+  EXPECT_TRUE(all.base.stands());
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+  all.drive(0.4, 0.0, 2 * kSecond);
+  EXPECT_FALSE(all.base.stands());
+}
+
+TEST_P(BaseDriverOn, TheBaseStopsByItselfWhenTheDriverIsGone) {
+  for (const bool limps : {false, true}) {
+    BaseOnLine all(settings(), {.watchdog_limps = limps});
+    ASSERT_TRUE(all.start());
+    all.drive(0.4, 0.2, 3 * kSecond);
+    ASSERT_FALSE(all.base.stands());
+    all.line.unplug();
+    all.pass(3 * kSecond);
+    EXPECT_TRUE(all.base.stands());
+    EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
+    EXPECT_FALSE(all.driver.status().commands_taken);
+    EXPECT_FALSE(all.driver.command(0.4, 0.2, all.line.now_ns() + kSecond, all.line.now_ns()));
+    ASSERT_TRUE(all.start());
+    all.pass(2 * kSecond);
+    EXPECT_TRUE(all.base.stands());
+    all.drive(0.4, 0.2, 2 * kSecond);
+    EXPECT_FALSE(all.base.stands());
+    EXPECT_LT(all.worst_m, 0.02);
+    EXPECT_EQ(all.stamps_back, 0U);
+  }
+}
+
+/// The driver's own words do not reach the base, its reports do reach the driver.
+TEST_P(BaseDriverOn, SaysThatTheWatchdogExpired) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  all.base.mcp.receive({}, settings().line, all.line.now_ns());
+  // Somebody else at the line sets a watchdog that is too short.
+  std::vector<std::uint8_t> bytes;
+  const McpOrder order{McpCommand::kWatchdog, 2};
+  if (GetParam().dialect == BaseDialect::kAscii) {
+    append_ascii(order, bytes);
+  } else {
+    const McpPacket packet = binary_packet(order);
+    bytes.assign(packet.begin(), packet.end());
+  }
+  all.base.mcp.receive(bytes, settings().line, all.line.now_ns());
+  ASSERT_TRUE(all.pass_until(
+      kSecond, [&] { return all.driver.status().state == BaseState::kWatchdogExpired; }));
+  EXPECT_NE(all.driver.status().reason, "");
+  all.pass(2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kWatchdogExpired);
+  EXPECT_TRUE(all.base.stands());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+  EXPECT_FALSE(all.base.stands());
+  EXPECT_EQ(all.driver.status().watchdog_expirations, 1U);
+}
+
+TEST_P(BaseDriverOn, TheEmergencyStopHaltsAndTheRobotDoesNotJumpWhenPowerReturns) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.4, 0.0, 3 * kSecond);
+  all.base.mcp.forget_heard();
+  all.base.mcp.press_emergency_stop();
+  all.drive(0.4, 0.0, 2 * kSecond);  // whoever commands goes on
+  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
+  EXPECT_FALSE(all.driver.status().commands_taken);
+  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt}));
+  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kRotateHalt}));
+  all.base.mcp.release_emergency_stop();
+  const geometry::Pose2 before = all.base.mcp.T_start_robot();
+  all.drive(0.4, 0.0, 3 * kSecond);
+  EXPECT_EQ(all.base.mcp.T_start_robot(), before);
+  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
+  all.driver.reset_stop(all.line.now_ns());
+  all.pass(2 * kSecond);
+  EXPECT_EQ(all.base.mcp.T_start_robot(), before);
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+  all.drive(0.4, 0.0, 3 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+  EXPECT_LT(all.worst_m, 0.02);
+}
+
+TEST_P(BaseDriverOn, AStartWithThePowerOffIsAnEmergencyStop) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.base.mcp.press_emergency_stop();
+  all.drive(0.0, 0.5, 2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
+  all.driver.reset_stop(all.line.now_ns());
+  all.drive(0.0, 0.5, 2 * kSecond);  // it is still pressed
+  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
+}
+
+TEST_P(BaseDriverOn, TheJoystickTakesOverAndIsLeftAlone) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.2, 0.0, 3 * kSecond);
+  all.base.mcp.forget_heard();
+  for (int i = 0; i < 20; ++i) {  // held against whatever the base is told
+    all.base.mcp.take_joystick({-0.3, 0.4});
+    all.drive(0.2, 0.0, kSecond / 10);
+  }
+  EXPECT_EQ(all.driver.status().state, BaseState::kJoystick);
+  EXPECT_FALSE(all.driver.status().commands_taken);
+  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt}));
+  all.base.mcp.take_joystick({});
+  all.drive(0.2, 0.0, kSecond);
+  EXPECT_TRUE(all.base.stands());
+  all.pass(3 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+  all.drive(0.2, 0.0, 2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+  EXPECT_LT(all.worst_m, 0.02);
+}
+
+TEST_P(BaseDriverOn, AJoystickThatIsSwitchedOffDoesNothing) {
+  BaseSettings without = settings();
+  without.joystick_allowed = false;
+  BaseOnLine all(without);
+  ASSERT_TRUE(all.start());
+  all.base.mcp.take_joystick({0.3, 0.4});
+  all.pass(2 * kSecond);
+  EXPECT_TRUE(all.base.stands());
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+}
+
+TEST_P(BaseDriverOn, ABumpStopsAndTheWayBackIsFreeToWhoeverNoticed) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  all.base.mcp.press_bumpers(0x0008, all.line.now_ns());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kBumped);
+  EXPECT_EQ(all.driver.status().bumpers, 0x0008);
+  EXPECT_FALSE(all.driver.status().commands_taken);
+  EXPECT_TRUE(all.base.stands());
+  all.drive(0.0, 0.0, kSecond);
+  EXPECT_TRUE(all.driver.status().commands_taken);
+  all.drive(-0.2, 0.0, kSecond);
+  EXPECT_LT(all.base.mcp.commanded_velocity().linear_m_per_s, -0.1);
+  EXPECT_EQ(all.driver.status().state, BaseState::kBumped);
+  all.base.mcp.press_bumpers(0, all.line.now_ns());
+  all.drive(-0.2, 0.0, kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+}
+
+TEST_P(BaseDriverOn, HaltHoldsUntilReset) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  all.driver.halt(all.line.now_ns());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kHalted);
+  EXPECT_TRUE(all.base.stands());
+  all.driver.reset_stop(all.line.now_ns());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+}
+
+TEST_P(BaseDriverOn, LimitsHoldAtOnceAndNeverExceedTheSettings) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(2.0, 0.0, 3 * kSecond);
+  EXPECT_NEAR(all.base.mcp.commanded_velocity().linear_m_per_s, 0.5, 1e-4);
+  all.driver.set_limits({.linear_mps = 0.2, .linear_mps2 = 9.0}, all.line.now_ns());
+  EXPECT_DOUBLE_EQ(all.driver.limits().linear_mps2, 0.5);
+  all.drive(2.0, 0.0, 3 * kSecond);
+  EXPECT_NEAR(all.base.mcp.commanded_velocity().linear_m_per_s, 0.2, 1e-4);
+  all.drive(0.3, 0.5, 3 * kSecond);  // on the same curve
+  EXPECT_NEAR(all.base.mcp.commanded_velocity().angular_rad_per_s, 0.5 * 2.0 / 3.0, 0.01);
+  EXPECT_THROW(all.driver.set_limits({.angular_radps = 0.0}, all.line.now_ns()),
+               std::invalid_argument);
+}
+
+TEST_P(BaseDriverOn, AMotorFaultIsSaidAndAcknowledged) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  all.base.mcp.forget_heard();
+  all.base.mcp.fail_motor(all.line.now_ns());
+  all.pass(2 * kSecond);
+  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kAcknowledge, 0}));
+  EXPECT_TRUE(all.base.stands());
+}
+
+TEST_P(BaseDriverOn, ALowBatteryIsSaid) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.pass(kSecond);
+  EXPECT_FALSE(all.driver.status().battery_low);
+  all.base.mcp.set_battery(43.0, all.line.now_ns());
+  all.pass(kSecond);
+  EXPECT_TRUE(all.driver.status().battery_low);
+  all.pass(11 * kSecond);
+  EXPECT_DOUBLE_EQ(all.driver.status().battery_v, 43.0);
+}
+
+TEST_P(BaseDriverOn, ARestartedBaseIsSetUpAgainAndThePoseGoesOn) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.3, 5 * kSecond);
+  all.drive(0.0, 0.0, 2 * kSecond);
+  const geometry::Pose2 before = all.T_odom_robot;
+  all.base.mcp.restart(all.line.now_ns());
+  all.pass(kSecond);
+  EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
+  const std::uint64_t odometries = all.odometries;
+  // Its start-up time of 2 s and another second.
+  EXPECT_TRUE(
+      all.pass_until(2 * kSecond, [&] { return all.driver.status().state == BaseState::kReady; }));
+  all.pass(kSecond);
+  EXPECT_GT(all.odometries, odometries);
+  EXPECT_EQ(all.driver.status().restarts, 1U);
+  EXPECT_LT(geometry::difference(all.T_odom_robot, before).norm(), 0.02);
+  all.drive(0.3, 0.0, 5 * kSecond);
+  EXPECT_LT(all.worst_m, 0.03);
+  EXPECT_EQ(all.stamps_back, 0U);
+}
+
+TEST_P(BaseDriverOn, ASilentBaseIsOfflineUntilItsNextReport) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.0, 2 * kSecond);
+  for (const std::int64_t silence_ns : {kSecond, 7 * kSecond, 100 * kSecond}) {
+    all.base.mcp.set_silent(true);
+    all.drive(0.3, 0.0, silence_ns);
+    EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
+    EXPECT_TRUE(silence_ns < 2 * kSecond || all.base.stands());
+    all.base.mcp.set_silent(false);
+    const std::uint64_t before = all.odometries;
+    all.pass(2 * period_ns() + 60 * kMs);
+    EXPECT_GT(all.odometries, before) << silence_ns;
+    EXPECT_TRUE(all.pass_until(2 * kSecond, [&] { return all.driver.status().commands_taken; }));
+    all.drive(0.3, 0.0, 2 * kSecond);
+    EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
+  }
+  EXPECT_LT(all.worst_m, 0.03);
+  EXPECT_EQ(all.stamps_back, 0U);
+  EXPECT_EQ(all.driver.status().restarts, 0U);
+}
+
+TEST_P(BaseDriverOn, AClockThatWrapsAndDriftsDoesNotShow) {
+  BaseOnLine all(settings(), {.clock_at_start = 0xFFFFFFFF - 256 * 20, .clock_drift_ppm = 200.0});
+  ASSERT_TRUE(all.start());
+  const McpDrops before = all.driver.status().drops;
+  for (int i = 0; i < 60; ++i) all.drive(i % 2 == 0 ? 0.3 : -0.3, 0.2, kSecond);
+  EXPECT_EQ(all.driver.status().restarts, 0U);
+  EXPECT_EQ(all.driver.status().drops, before);
+  EXPECT_LT(all.worst_m, 0.02);
+}
+
+TEST(BaseDriver, GoesOnWithABaseThatEchoesForEverPromptsAndWritesCapitals) {
+  BaseOnLine all({}, {.form = {.line_end = "\r", .upper_case = true},
+                      .prompt = true,
+                      .echo_can_be_switched_off = false});
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.2, 20 * kSecond);
+  all.pass(2 * kSecond);
+  EXPECT_GT(all.driver.status().echoes, 20U);
+  EXPECT_GT(static_cast<double>(all.driver.status().reports), 0.8 * 22 / 0.125);
+  EXPECT_LT(all.worst_m, 0.02);
+  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
+  EXPECT_DOUBLE_EQ(all.driver.status().battery_v, 48.2);
+}
+
+TEST(BaseDriver, StaysOfflineOnALineWithOtherSettings) {
+  BaseSettings settings;
+  BaseOnLine all(settings);
+  settings.line.baud = 38400;
+  BaseDriver fast(settings);
+  SimulatedLine line(fast, all.base);
+  line.plug_in();
+  line.run_for(60 * kSecond);
+  EXPECT_EQ(fast.status().state, BaseState::kOffline);
+  EXPECT_EQ(fast.status().reason, "the base does not answer");
+  EXPECT_TRUE(fast.take_odometry().empty());
+  EXPECT_GT(fast.status().starts, 3U);
+}
+
+TEST(BaseDriver, TakesABaseThatIsInTheBinaryDialectAlready) {
+  BaseSettings settings;
+  settings.dialect = BaseDialect::kBinary;
+  BaseOnLine all(settings);
+  ASSERT_TRUE(all.start());
+  BaseDriver second(settings);
+  SimulatedLine line(second, all.base, all.line.now_ns());
+  line.plug_in();
+  EXPECT_TRUE(
+      line.run_until(3 * kSecond, [&] { return second.status().state == BaseState::kReady; }));
+}
+
+TEST(BaseDriver, RefusesSettingsOutOfRange) {
+  const auto refuses = [](auto change) {
+    BaseSettings settings;
+    change(settings);
+    EXPECT_THROW(BaseDriver{settings}, std::invalid_argument);
+  };
+  refuses([](BaseSettings& s) { s.watchdog_s = 0.0; });
+  refuses([](BaseSettings& s) { s.watchdog_s = 256.0; });
+  refuses([](BaseSettings& s) { s.command_timeout_s = 0.6; });
+  refuses([](BaseSettings& s) { s.limits.linear_mps = std::nan(""); });
+  refuses([](BaseSettings& s) { s.line.baud = 0; });
+  refuses([](BaseSettings& s) { s.report_mask = 2; });
+  refuses([](BaseSettings& s) { s.calibration.counts_per_m = -1.0; });
+  refuses([](BaseSettings& s) { s.stalled_reports = 1; });
+}
+
+TEST(BaseDriver, RefusesCommandsThatAreNoNumbers) {
+  BaseDriver driver({});
+  EXPECT_THROW((void)driver.command(std::nan(""), 0, 1, 0), std::invalid_argument);
+  EXPECT_THROW((void)driver.advance(std::numeric_limits<double>::infinity(), 1, 0),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace topogeo::devices

@@ -1,0 +1,158 @@
+// A driver and an emulated base at the two ends of a simulated line, wheels on good ground between
+// them, and what the driver says of the way compared with where the wheels have been.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "topogeo/devices/base_driver.hpp"
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/simulation/mcp_emulator.hpp"
+#include "topogeo/simulation/serial_device.hpp"
+
+#include "simulated_line.hpp"
+
+namespace topogeo::devices {
+
+inline constexpr std::int64_t kMs = 1'000'000;
+inline constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// The emulated base with wheels that do what the motors do, and a memory of where they were when.
+class RollingBase final : public simulation::SerialDevice {
+ public:
+  explicit RollingBase(const simulation::McpEmulatorSettings& settings) : mcp(settings) {}
+
+  void receive(std::span<const std::uint8_t> bytes, const LineSettings& host,
+               std::int64_t now_ns) override {
+    roll(now_ns);
+    mcp.receive(bytes, host, now_ns);
+  }
+  void tick(std::int64_t now_ns) override { roll(now_ns); }
+  [[nodiscard]] std::int64_t due_ns() const override {
+    return std::min(mcp.due_ns(), rolled_ns_ + kStep_ns);
+  }
+  [[nodiscard]] std::vector<std::uint8_t> take_output(const LineSettings& host,
+                                                      std::int64_t now_ns) override {
+    return mcp.take_output(host, now_ns);
+  }
+
+  /// Where the wheels were, between the two nearest times that are known.
+  [[nodiscard]] geometry::Pose2 at(std::int64_t stamp_ns) const {
+    const auto after = std::ranges::lower_bound(way_, stamp_ns, {}, &Place::first);
+    if (after == way_.begin()) return way_.front().second;
+    if (after == way_.end()) return way_.back().second;
+    const auto before = std::prev(after);
+    const double share = static_cast<double>(stamp_ns - before->first) /
+                         static_cast<double>(after->first - before->first);
+    const Eigen::Vector3d step = geometry::difference(after->second, before->second);
+    const geometry::Pose2& from = before->second;
+    return {from.x_m + share * step.x(), from.y_m + share * step.y(),
+            geometry::wrap_angle(from.theta_rad + share * step.z())};
+  }
+  /// Forgets all but the last two seconds.
+  void trim() {
+    const auto keep = std::ranges::lower_bound(way_, rolled_ns_ - 2 * kSecond, {}, &Place::first);
+    way_.erase(way_.begin(), keep);
+  }
+  [[nodiscard]] bool stands() const {
+    const simulation::Velocity velocity = mcp.commanded_velocity();
+    return velocity.linear_m_per_s == 0.0 && velocity.angular_rad_per_s == 0.0;
+  }
+
+  simulation::McpEmulator mcp;
+
+ private:
+  using Place = std::pair<std::int64_t, geometry::Pose2>;
+  static constexpr std::int64_t kStep_ns = 5 * kMs;
+
+  void roll(std::int64_t now_ns) {
+    const double dt_s = 1e-9 * static_cast<double>(now_ns - rolled_ns_);
+    const simulation::Velocity velocity = mcp.commanded_velocity();
+    if (dt_s > 0.0) {
+      mcp.moved(velocity.linear_m_per_s * dt_s, velocity.angular_rad_per_s * dt_s, dt_s);
+    }
+    rolled_ns_ = now_ns;
+    mcp.tick(now_ns);
+    if (way_.empty() || now_ns > way_.back().first) way_.emplace_back(now_ns, mcp.T_start_robot());
+  }
+
+  std::vector<Place> way_;
+  std::int64_t rolled_ns_ = 0;
+};
+
+/// Both with the same line settings and calibration.
+struct BaseOnLine {
+  explicit BaseOnLine(const BaseSettings& settings, simulation::McpEmulatorSettings emulated = {})
+      : base(matched(settings, emulated)), driver(settings), line(driver, base) {}
+
+  static simulation::McpEmulatorSettings matched(const BaseSettings& settings,
+                                                 simulation::McpEmulatorSettings emulated) {
+    emulated.line = settings.line;
+    emulated.calibration = settings.calibration;
+    return emulated;
+  }
+
+  /// Lets time pass with commands as from a navigator, ten a second (none: silence), and compares.
+  void drive(double linear_mps, double angular_radps, std::int64_t duration_ns) {
+    for (std::int64_t end_ns = line.now_ns() + duration_ns; line.now_ns() < end_ns;) {
+      (void)driver.command(linear_mps, angular_radps, line.now_ns() + kSecond / 2, line.now_ns());
+      pass(std::min(kSecond / 10, end_ns - line.now_ns()));
+    }
+  }
+  void pass(std::int64_t duration_ns) {
+    line.run_for(duration_ns);
+    compare();
+  }
+  bool pass_until(std::int64_t limit_ns, const auto& done) {
+    const bool reached = line.run_until(limit_ns, done);
+    compare();
+    return reached;
+  }
+  /// Starts the driver up. False unless it is ready within `limit_ns`.
+  bool start(std::int64_t limit_ns = 10 * kSecond) {
+    line.plug_in();
+    return pass_until(limit_ns, [this] { return driver.status().state == BaseState::kReady; });
+  }
+
+  /// Takes the odometry and compares it with where the wheels were at its stamps.
+  void compare() {
+    for (const BaseOdometry& odometry : driver.take_odometry()) {
+      if (last_stamp_ns >= odometry.stamp_ns) ++stamps_back;
+      if (odometry.stamp_ns > line.now_ns()) ++stamps_ahead;
+      last_stamp_ns = odometry.stamp_ns;
+      ++odometries;
+      const geometry::Pose2 T_start_robot = base.at(odometry.stamp_ns);
+      if (odometries == 1) T_odom_start = odometry.T_odom_robot * geometry::inverse(T_start_robot);
+      const Eigen::Vector3d error =
+          geometry::difference(odometry.T_odom_robot, T_odom_start * T_start_robot);
+      worst_m = std::max(worst_m, error.head<2>().norm());
+      worst_rad = std::max(worst_rad, std::abs(error.z()));
+      T_odom_robot = odometry.T_odom_robot;
+    }
+    base.trim();
+  }
+  /// From here on compared with where the wheels are now: after motion that nobody could see.
+  void compare_anew() {
+    compare();
+    odometries = 0;
+  }
+
+  RollingBase base;
+  BaseDriver driver;
+  SimulatedLine line;
+  std::uint64_t odometries = 0;
+  std::uint64_t stamps_back = 0;
+  std::uint64_t stamps_ahead = 0;
+  std::int64_t last_stamp_ns = -1;
+  double worst_m = 0.0;
+  double worst_rad = 0.0;
+  geometry::Pose2 T_odom_start{};
+  geometry::Pose2 T_odom_robot{};
+};
+
+}  // namespace topogeo::devices
