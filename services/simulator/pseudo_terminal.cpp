@@ -1,0 +1,108 @@
+#include "pseudo_terminal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fcntl.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): posix_openpt is not in <cstdlib>
+#include <termios.h>
+#include <unistd.h>
+
+namespace topogeo::simulator {
+namespace {
+
+constexpr std::array<std::pair<speed_t, std::uint32_t>, 9> kRates = {{{B1200, 1200},
+                                                                      {B2400, 2400},
+                                                                      {B4800, 4800},
+                                                                      {B9600, 9600},
+                                                                      {B19200, 19200},
+                                                                      {B38400, 38400},
+                                                                      {B57600, 57600},
+                                                                      {B115200, 115200},
+                                                                      {B500000, 500000}}};
+
+std::runtime_error failure(const std::filesystem::path& link, const std::string& what) {
+  return std::runtime_error(link.string() + ": " + what + ": " + std::strerror(errno));
+}
+
+/// As a serial port is before anybody has set it: bytes as they are, no echo, 9600 baud.
+bool make_raw(int terminal) {
+  termios settings{};
+  if (::tcgetattr(terminal, &settings) != 0) return false;
+  ::cfmakeraw(&settings);
+  ::cfsetispeed(&settings, B9600);
+  ::cfsetospeed(&settings, B9600);
+  return ::tcsetattr(terminal, TCSANOW, &settings) == 0;
+}
+
+}  // namespace
+
+PseudoTerminal::PseudoTerminal(std::filesystem::path link) : link_(std::move(link)) {}
+
+PseudoTerminal::~PseudoTerminal() {
+  unplug();
+}
+
+void PseudoTerminal::plug() {
+  if (plugged()) return;
+  if (std::filesystem::is_symlink(link_)) {
+    std::filesystem::remove(link_);
+  } else if (std::filesystem::exists(link_)) {
+    throw std::runtime_error(link_.string() + ": expected nothing or a link, found something else");
+  }
+  device_end_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  std::array<char, 128> name{};
+  if (device_end_ < 0 || ::grantpt(device_end_) != 0 || ::unlockpt(device_end_) != 0 ||
+      ::ptsname_r(device_end_, name.data(), name.size()) != 0) {
+    throw failure(link_, "cannot make a pseudo-terminal");
+  }
+  host_end_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (host_end_ < 0 || !make_raw(host_end_)) throw failure(link_, "cannot set a pseudo-terminal");
+  std::error_code error;
+  std::filesystem::create_symlink(name.data(), link_, error);
+  if (error)
+    throw std::runtime_error(link_.string() + ": cannot make the link: " + error.message());
+}
+
+void PseudoTerminal::unplug() {
+  if (device_end_ < 0) return;
+  std::error_code ignored;
+  if (host_end_ >= 0 && std::filesystem::is_symlink(link_, ignored)) {
+    std::filesystem::remove(link_, ignored);
+  }
+  if (host_end_ >= 0) ::close(host_end_);
+  ::close(device_end_);
+  host_end_ = -1;
+  device_end_ = -1;
+}
+
+devices::LineSettings PseudoTerminal::host(devices::Parity parity) const {
+  termios settings{};
+  devices::LineSettings host{0, parity};
+  if (::tcgetattr(device_end_, &settings) != 0) return host;
+  const speed_t speed = ::cfgetospeed(&settings);
+  for (const auto& [constant, baud] : kRates) {
+    if (constant == speed) host.baud = baud;
+  }
+  return host;
+}
+
+std::vector<std::uint8_t> PseudoTerminal::receive() const {
+  std::vector<std::uint8_t> bytes(4096);
+  const ssize_t got = ::read(device_end_, bytes.data(), bytes.size());
+  bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return bytes;
+}
+
+std::size_t PseudoTerminal::send(std::span<const std::uint8_t> bytes) const {
+  if (bytes.empty()) return 0;
+  const ssize_t sent = ::write(device_end_, bytes.data(), bytes.size());
+  return bytes.size() - (sent > 0 ? static_cast<std::size_t>(sent) : 0);
+}
+
+}  // namespace topogeo::simulator

@@ -1,0 +1,84 @@
+#include "simulated_devices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace topogeo::simulator {
+namespace {
+
+// The world moves on in pieces of this length, or shorter ones where a device has something to do.
+constexpr std::int64_t kPiece_ns = 5'000'000;
+constexpr devices::Parity kLaserParity = devices::Parity::kEven;
+
+simulation::PlsEmulatorSettings laser_settings(std::uint64_t seed) {
+  simulation::PlsEmulatorSettings settings;
+  settings.power_on.parity = kLaserParity;
+  settings.seed = seed;
+  return settings;
+}
+
+simulation::McpEmulatorSettings base_settings(const DeviceOptions& options) {
+  simulation::McpEmulatorSettings settings;
+  settings.line = {options.base_baud, devices::Parity::kNone};
+  settings.seed = options.robot.seed;
+  return settings;
+}
+
+}  // namespace
+
+std::uint16_t bumper_bits(double direction_rad) {
+  constexpr int kSwitches = 16;
+  const double turn = direction_rad / (2.0 * std::numbers::pi);  // -0.5 ... 0.5
+  const int which = static_cast<int>(std::floor((turn + 1.0) * kSwitches)) % kSwitches;
+  return static_cast<std::uint16_t>(1U << static_cast<unsigned>(which));
+}
+
+SimulatedDevices::SimulatedDevices(simulation::World world, const DeviceOptions& options)
+    : robot_(std::move(world), options.robot),
+      laser_(laser_settings(options.robot.seed), [this](std::int64_t) { return robot_.scan(); }),
+      base_(base_settings(options)),
+      laser_port_(options.laser_port),
+      base_port_(options.base_port) {
+  laser_port_.plug();
+  base_port_.plug();
+}
+
+void SimulatedDevices::run_until(std::int64_t now_ns) {
+  exchange(laser_, laser_port_, kLaserParity);
+  exchange(base_, base_port_, devices::Parity::kNone);
+  while (now_ns_ < now_ns) {
+    const std::int64_t due_ns = std::min(laser_.due_ns(), base_.due_ns());
+    advance(std::min({now_ns, now_ns_ + kPiece_ns, std::max(due_ns, now_ns_ + 1)}));
+  }
+  exchange(laser_, laser_port_, kLaserParity);
+  exchange(base_, base_port_, devices::Parity::kNone);
+}
+
+void SimulatedDevices::advance(std::int64_t to_ns) {
+  const double piece_s = static_cast<double>(to_ns - now_ns_) * 1e-9;
+  const simulation::EncoderStep wheels = robot_.step(base_.commanded_velocity(), piece_s);
+  now_ns_ = to_ns;
+  base_.moved(wheels.forward_m, wheels.turn_rad, piece_s);
+  const std::optional<double> bumped_rad = robot_.bumped_rad();
+  base_.press_bumpers(bumped_rad ? bumper_bits(*bumped_rad) : std::uint16_t{0}, now_ns_);
+  base_.tick(now_ns_);
+  laser_.tick(now_ns_);
+}
+
+void SimulatedDevices::exchange(simulation::SerialDevice& device, const PseudoTerminal& port,
+                                devices::Parity parity) {
+  if (!port.plugged()) {  // what the device sends now goes nowhere
+    static_cast<void>(device.take_output({}, now_ns_));
+    return;
+  }
+  const devices::LineSettings host = port.host(parity);
+  if (host.baud == 0) return;
+  const std::vector<std::uint8_t> heard = port.receive();
+  if (!heard.empty()) device.receive(heard, host, now_ns_);
+  bytes_lost_ += port.send(device.take_output(host, now_ns_));
+}
+
+}  // namespace topogeo::simulator

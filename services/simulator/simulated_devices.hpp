@@ -1,0 +1,65 @@
+// A world with a robot in it whose laser and base speak over serial lines, on the world's clock.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "topogeo/simulation/mcp_emulator.hpp"
+#include "topogeo/simulation/pls_emulator.hpp"
+#include "topogeo/simulation/simulated_robot.hpp"
+#include "topogeo/simulation/world.hpp"
+
+#include "pseudo_terminal.hpp"
+
+namespace topogeo::simulator {
+
+enum class Device { kLaser, kBase };
+
+struct DeviceOptions {
+  std::filesystem::path laser_port;  ///< link to make
+  std::filesystem::path base_port;
+  std::uint32_t base_baud = 9600;
+  simulation::RobotOptions robot;
+};
+
+/// All times are nanoseconds of the world's clock and never go back.
+class SimulatedDevices {
+ public:
+  /// The devices are switched on at 0, their ports are there. Throws like SimulatedRobot,
+  /// PseudoTerminal::plug and the emulators.
+  SimulatedDevices(simulation::World world, const DeviceOptions& options);
+
+  /// Lets the world and the devices run until `now_ns` and exchanges bytes with the ports.
+  void run_until(std::int64_t now_ns);
+
+  [[nodiscard]] simulation::SimulatedRobot& robot() { return robot_; }
+  [[nodiscard]] simulation::PlsEmulator& laser() { return laser_; }
+  [[nodiscard]] simulation::McpEmulator& base() { return base_; }
+  [[nodiscard]] PseudoTerminal& port(Device device) {
+    return device == Device::kLaser ? laser_port_ : base_port_;
+  }
+  [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
+  /// Bytes of the devices that nobody has read in time.
+  [[nodiscard]] std::uint64_t bytes_lost() const { return bytes_lost_; }
+
+ private:
+  void advance(std::int64_t to_ns);
+  void exchange(simulation::SerialDevice& device, const PseudoTerminal& port,
+                devices::Parity parity);
+
+  simulation::SimulatedRobot robot_;
+  simulation::PlsEmulator laser_;
+  simulation::McpEmulator base_;
+  PseudoTerminal laser_port_;
+  PseudoTerminal base_port_;
+  std::int64_t now_ns_ = 0;
+  std::uint64_t bytes_lost_ = 0;
+};
+
+/// Bits of the base's sixteen bumper switches, counter-clockwise from ahead, that something at
+/// `direction_rad` from the heading presses.
+std::uint16_t bumper_bits(double direction_rad);
+
+}  // namespace topogeo::simulator

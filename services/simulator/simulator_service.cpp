@@ -1,0 +1,139 @@
+#include "simulator_service.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::simulator {
+namespace {
+
+constexpr std::chrono::milliseconds kTick{1};
+constexpr std::int64_t kTruthPeriod_ns = 20'000'000;
+constexpr std::int64_t kSonarPeriod_ns = 100'000'000;
+constexpr std::int64_t kStatePeriod_ns = 1'000'000'000;
+/// Where the machine leaves this process without time for longer, the world's clock stands still
+/// for the rest: a robot that runs on blindly would hit something.
+constexpr std::chrono::milliseconds kLatest{200};
+constexpr double kLookAhead_m = 5.0;
+
+std::int64_t nanoseconds(std::chrono::nanoseconds duration) {
+  return duration.count();
+}
+
+}  // namespace
+
+SimulatorService::SimulatorService(service::Service& service, simulation::World world,
+                                   const SimulatorOptions& options)
+    : service_(service),
+      time_factor_(options.time_factor),
+      devices_(std::move(world), options.devices),
+      faults_(devices_),
+      truth_(service.participant()),
+      sonar_(service.participant()),
+      commands_(service.participant()),
+      start_(Clock::now()),
+      start_stamp_ns_(nanoseconds(std::chrono::system_clock::now().time_since_epoch())) {
+  service_.loop().add(truth_);
+  service_.loop().add(sonar_);
+  service_.loop().add<msg::SimulatorCommand>(
+      commands_, [this](const msg::SimulatorCommand& command, const messaging::SampleInfo&) {
+        if (service_.is_own(command)) on_command(command);
+      });
+  service_.loop().add_timer(kTick, [this] { tick(); });
+  service_.status().set_state(msg::kServiceRunning,
+                              "laser at " + options.devices.laser_port.string() + ", base at " +
+                                  options.devices.base_port.string());
+}
+
+std::int64_t SimulatorService::stamp_ns() const {
+  return start_stamp_ns_ + std::llround(static_cast<double>(devices_.now_ns()) / time_factor_);
+}
+
+void SimulatorService::tick() {
+  auto passed = Clock::now() - start_;
+  const auto done =
+      std::chrono::nanoseconds(std::llround(static_cast<double>(devices_.now_ns()) / time_factor_));
+  if (const auto late = passed - done - kLatest; late.count() > 0) {
+    service_.status().add_to_counter("stood_still_s", std::chrono::duration<double>(late).count());
+    start_ += late;
+    start_stamp_ns_ += nanoseconds(late);
+    passed -= late;
+  }
+  devices_.run_until(std::llround(static_cast<double>(nanoseconds(passed)) * time_factor_));
+  faults_.tick();
+  const std::int64_t now_ns = devices_.now_ns();
+  if (now_ns >= truth_due_ns_) {
+    truth_due_ns_ = now_ns - now_ns % kTruthPeriod_ns + kTruthPeriod_ns;
+    publish_truth();
+  }
+  if (now_ns >= sonar_due_ns_) {
+    sonar_due_ns_ = now_ns - now_ns % kSonarPeriod_ns + kSonarPeriod_ns;
+    publish_sonar();
+  }
+  if (now_ns >= state_due_ns_) {
+    state_due_ns_ = now_ns + kStatePeriod_ns;
+    tell_state();
+  }
+}
+
+void SimulatorService::publish_truth() {
+  const simulation::SimulatedRobot& robot = devices_.robot();
+  msg::GroundTruth truth;
+  messaging::set_header(truth, service_.robot_id(), stamp_ns(), truths_++);
+  truth.time_s(static_cast<double>(devices_.now_ns()) * 1e-9);
+  truth.T_world_robot(service::to_msg(robot.T_world_robot()));
+  truth.linear_mps(robot.velocity().linear_m_per_s);
+  truth.angular_radps(robot.velocity().angular_rad_per_s);
+  truth.free_ahead_m(robot.free_ahead_m(kLookAhead_m));
+  truth.touching(robot.bumped_rad().has_value());
+  truth.touching_rad(robot.bumped_rad().value_or(0.0));
+  truth.collisions(robot.collisions());
+  truth.run_into(robot.run_into());
+  if (!truth_.write(truth)) service_.status().fault("send blocked", "ground truth");
+}
+
+void SimulatorService::publish_sonar() {
+  simulation::SimulatedRobot& robot = devices_.robot();
+  const std::vector<float> readings_m = robot.sonar();
+  msg::Sonar round;
+  messaging::set_header(round, service_.robot_id(), stamp_ns(), rounds_++);
+  for (std::size_t i = 0; i < readings_m.size(); ++i) {
+    const devices::SonarMount& mount = robot.options().sonars[i];
+    msg::SonarEcho echo;
+    echo.T_robot_sonar(service::to_msg(mount.T_robot_sonar));
+    echo.range_m(readings_m[i]);
+    echo.half_cone_rad(static_cast<float>(mount.half_cone_rad));
+    round.echoes().push_back(echo);
+  }
+  if (!sonar_.write(round)) service_.status().fault("send blocked", "sonar");
+}
+
+void SimulatorService::tell_state() {
+  messaging::StatusPublisher& status = service_.status();
+  simulation::SimulatedRobot& robot = devices_.robot();
+  status.set_counter("time_s", robot.time_s());
+  status.set_counter("way_m", robot.way_m());
+  status.set_counter("collisions", static_cast<double>(robot.collisions()));
+  status.set_counter("run_into", static_cast<double>(robot.run_into()));
+  status.set_counter("laser_scans", static_cast<double>(devices_.laser().scans_sent()));
+  status.set_counter("base_reports", static_cast<double>(devices_.base().reports()));
+  status.set_counter("bytes_lost", static_cast<double>(devices_.bytes_lost()));
+}
+
+void SimulatorService::on_command(const msg::SimulatorCommand& command) {
+  try {
+    const Fault fault = fault_from_msg(command);
+    spdlog::info("{}, as {} wants it", describe(fault), command.client_id().c_str());
+    faults_.begin(fault);
+    service_.status().add_to_counter("faults_made");
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("unusable command", error.what());
+  }
+}
+
+}  // namespace topogeo::simulator

@@ -1,0 +1,59 @@
+// A simulated robot on DDS and serial ports: paces the world, says where the robot really is and
+// what its sonars hear, and takes faults.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/simulation.h"
+#include "topogeo/service/service.hpp"
+
+#include "fault_desk.hpp"
+#include "simulated_devices.hpp"
+
+namespace topogeo::simulator {
+
+struct SimulatorOptions {
+  DeviceOptions devices;
+  double time_factor = 1.0;  ///< world time over real time, > 0
+};
+
+/// Lives in the loop of its service. The sonars of a B21 are on a bus of their own, not on the
+/// line of the base: their echoes go out directly.
+class SimulatorService {
+ public:
+  /// Throws like SimulatedDevices.
+  SimulatorService(service::Service& service, simulation::World world,
+                   const SimulatorOptions& options);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void tick();
+  void publish_truth();
+  void publish_sonar();
+  void tell_state();
+  void on_command(const msg::SimulatorCommand& command);
+  /// The stamp of what happens in the world now.
+  [[nodiscard]] std::int64_t stamp_ns() const;
+
+  service::Service& service_;
+  double time_factor_;
+  SimulatedDevices devices_;
+  FaultDesk faults_;
+  messaging::Writer<msg::GroundTruth> truth_;
+  messaging::Writer<msg::Sonar> sonar_;
+  messaging::Reader<msg::SimulatorCommand> commands_;
+  Clock::time_point start_;        // when the world's clock was 0, moved on by what it was late
+  std::int64_t start_stamp_ns_;    // of that, since the epoch
+  std::int64_t truth_due_ns_ = 0;  // in the world, and the next two
+  std::int64_t sonar_due_ns_ = 0;
+  std::int64_t state_due_ns_ = 0;
+  std::uint64_t truths_ = 0;
+  std::uint64_t rounds_ = 0;
+};
+
+}  // namespace topogeo::simulator
