@@ -48,8 +48,7 @@ void PlsDriver::opened(std::int64_t now_ns) {
   line_ = known_.value_or(power_on_line());
   decoder_.clear();
   orders_.push_back({line_, {}});
-  start_search("the port was opened", now_ns);
-  if (configured_) try_candidate(*known_, true, now_ns);
+  start_search("the port was opened", configured_, now_ns);
 }
 
 void PlsDriver::lost(std::int64_t /*now_ns*/) {
@@ -79,7 +78,8 @@ void PlsDriver::tick(std::int64_t now_ns) {
   }
   if (phase_ == Phase::kSearch) watch_search(now_ns);
   if (phase_ == Phase::kRun) watch_run(now_ns);
-  if (phase_ == Phase::kPause && now_ns >= wait_until_ns_) start_search(status_.reason, now_ns);
+  if (phase_ == Phase::kPause && now_ns >= wait_until_ns_)
+    start_search(status_.reason, false, now_ns);
   if (phase_ == Phase::kSettle && now_ns >= wait_until_ns_) start_phase(Phase::kProve, now_ns);
 }
 
@@ -153,7 +153,7 @@ void PlsDriver::handle_telegram(const SickTelegram& telegram, std::int64_t now_n
     found(telegram, now_ns);
   } else if (telegram.code == pls_reply::kReset) {
     configured_ = false;
-    start_search("the sensor restarts", now_ns);
+    start_search("the sensor restarts", false, now_ns);
   } else {
     if (telegram.code == pls_reply::kMeasuredValues) handle_scan(telegram, now_ns);
     handle_reply(telegram, now_ns);

@@ -31,13 +31,15 @@ LineSettings PlsDriver::power_on_line() const {
   return {settings_.power_on_baud, known_ ? known_->parity : settings_.parities.front()};
 }
 
-void PlsDriver::start_search(const std::string& reason, std::int64_t now_ns) {
+/// `listen_first`: at the line that the sensor was heard at last, before anything is asked.
+void PlsDriver::start_search(const std::string& reason, bool listen_first, std::int64_t now_ns) {
   exchange_.stop();
   const bool failed = std::max(failed_searches_, failed_setups_) >= settings_.searches_until_failed;
   enter(Phase::kSearch, failed ? PlsState::kFailed : PlsState::kDetecting, reason);
   plan_search();
+  if (listen_first && known_) candidates_.insert(candidates_.begin(), *known_);
   candidate_ = 0;
-  try_candidate(candidates_.front(), false, now_ns);
+  try_candidate(candidates_.front(), listen_first && known_, now_ns);
 }
 
 /// A sensor that was heard before is most likely where it was, or at the rate after power-on if it
@@ -100,8 +102,7 @@ void PlsDriver::watch_for_stream(std::int64_t now_ns) {
   if (phase_ == Phase::kSearch && known_ && line_ != *known_) {
     try_candidate(*known_, true, now_ns);
   } else if (phase_ == Phase::kPause) {
-    start_search(status_.reason, now_ns);
-    if (known_) try_candidate(*known_, true, now_ns);
+    start_search(status_.reason, true, now_ns);
   }
 }
 
@@ -119,7 +120,9 @@ void PlsDriver::pause(const std::string& reason, int failures, std::int64_t now_
 /// A telegram proves the settings of the line.
 void PlsDriver::found(const SickTelegram& telegram, std::int64_t now_ns) {
   const bool probed = phase_ == Phase::kSearch && !listen_only_;
-  const bool resumed = configured_ && known_ == line_ && settings_.output == PlsOutput::kContinuous;
+  // A probe stops the stream, whatever comes before its answer.
+  const bool resumed =
+      !probed && configured_ && known_ == line_ && settings_.output == PlsOutput::kContinuous;
   if (known_ && known_->parity != line_.parity) maker_.forget();
   known_ = line_;
   failed_searches_ = 0;

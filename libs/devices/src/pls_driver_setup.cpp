@@ -158,7 +158,8 @@ void PlsDriver::after_prove(std::int64_t now_ns) {
   }
   ++failed_switches_;
   ++status_.counters.switches_not_followed;
-  start_search("the sensor did not follow to " + std::to_string(settings_.baud) + " baud", now_ns);
+  start_search("the sensor did not follow to " + std::to_string(settings_.baud) + " baud", false,
+               now_ns);
 }
 
 void PlsDriver::after_monitor(std::int64_t now_ns) {
@@ -178,7 +179,7 @@ void PlsDriver::after_request(std::int64_t now_ns) {
 /// The first time it may have been a disturbance; after that the sensor gets a rest.
 void PlsDriver::give_up(const std::string& reason, std::int64_t now_ns) {
   if (++failed_setups_ == 1) {
-    start_search(reason, now_ns);
+    start_search(reason, false, now_ns);
   } else {
     pause(reason, failed_setups_, now_ns);
   }
@@ -199,7 +200,7 @@ void PlsDriver::watch_run(std::int64_t now_ns) {
     // It may have restarted without being heard, and may follow to another rate now.
     failed_switches_ = 0;
     fallback_.clear();
-    start_search("no scan for " + std::to_string(silence_ns() / 1'000'000) + " ms", now_ns);
+    start_search("no scan for " + std::to_string(silence_ns() / 1'000'000) + " ms", false, now_ns);
     return;
   }
   const bool on_request = settings_.output == PlsOutput::kOnRequest;

@@ -290,7 +290,7 @@ std::int64_t PlsEmulator::send_telegram(std::vector<std::uint8_t> telegram, std:
     struck = true;
     std::vector<std::uint8_t> garbage(1 + random_.below(kMostGarbage_bytes));
     for (std::uint8_t& byte : garbage) byte = static_cast<std::uint8_t>(random_.below(256));
-    telegram.insert(telegram.begin(), garbage.begin(), garbage.end());
+    telegram.insert(telegram.end(), garbage.begin(), garbage.end());
   }
   const std::int64_t free_ns = output_.send(std::move(telegram), line_, start_ns);
   if (struck) fault_end_ns_ = std::max(fault_end_ns_, free_ns);

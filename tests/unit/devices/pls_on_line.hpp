@@ -77,7 +77,11 @@ class PlsOnLine {
   /// The port hands bytes on when its time is over, so a stamp can be late by that.
   static constexpr std::int64_t kStampError_ns = SimulatedLine::kReadPeriod_ns + 50'000;
 
+  /// Scans are handed on soon after they were measured, so older ones need not be remembered.
+  static constexpr std::size_t kRemembered = 500;
+
   std::vector<float> measure(std::int64_t now_ns) {
+    if (measured_.size() > kRemembered) measured_.erase(measured_.begin());
     std::vector<float>& ranges_m = measured_[now_ns];
     if (still && !last_.empty()) {
       ranges_m = last_;

@@ -101,7 +101,7 @@ class PlsDriver final : public SerialDriver {
   void handle_reply(const SickTelegram& telegram, std::int64_t now_ns);
   void note(const SickTelegram& telegram);
 
-  void start_search(const std::string& reason, std::int64_t now_ns);
+  void start_search(const std::string& reason, bool listen_first, std::int64_t now_ns);
   void plan_search();
   void try_candidate(const LineSettings& line, bool listen_only, std::int64_t now_ns);
   void next_candidate(std::int64_t now_ns);

@@ -41,7 +41,7 @@ struct PlsEmulatorSettings {
 enum class PlsFault {
   kBadCrc,            ///< a bit of the telegram changes on its way
   kTruncated,         ///< the telegram ends early
-  kGarbage,           ///< random bytes before the telegram
+  kGarbage,           ///< random bytes after the telegram
   kStuckScan,         ///< a scan is sent again instead of a new one
   kIgnoreBaudSwitch,  ///< a change of the rate is confirmed but not made
 };
