@@ -44,6 +44,7 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
                        scan::CarmenLogReader reader, std::uint64_t scans_total)
     : service_(service),
       options_(options),
+      readers_(options.readers.value_or(1)),
       reader_(std::move(reader)),
       pace_(options.rate),
       scans_(service.participant(), messaging::kReplayRole),
@@ -55,12 +56,12 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
   service_.status().set_counter("scans_sent", 0.0);
   service_.status().set_counter("scans_total", static_cast<double>(scans_total));
   service_.status().set_state(msg::kServiceWaiting,
-                              "for " + std::to_string(options_.readers) + " readers of scans");
+                              "for " + std::to_string(readers_) + " readers of scans");
   wait_for_readers();
 }
 
 void LogGateway::wait_for_readers() {
-  if (scans_.matched() < options_.readers) {
+  if (scans_.matched() < readers_) {
     service_.loop().call_after(kPoll, [this] { wait_for_readers(); });
     return;
   }

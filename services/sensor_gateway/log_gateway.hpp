@@ -18,8 +18,8 @@ namespace topogeo::sensor_gateway {
 
 struct GatewayOptions {
   std::filesystem::path log;
-  service::ReplayRate rate;  ///< empty: lossless
-  int readers = 1;           ///< scan readers to wait for before the first scan, >= 0
+  service::ReplayRate rate;    ///< empty: lossless
+  std::optional<int> readers;  ///< scan readers to wait for before the first scan, >= 0; none: 1
   bool exit_at_end = false;
 };
 
@@ -45,6 +45,7 @@ class LogGateway {
 
   service::Service& service_;
   GatewayOptions options_;
+  int readers_;
   scan::CarmenLogReader reader_;
   ReplayPace pace_;
   messaging::Writer<msg::Scan> scans_;

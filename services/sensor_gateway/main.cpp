@@ -1,4 +1,6 @@
-// Gives the scans and odometry of a robot. Today's source is a log in CARMEN's format.
+// Gives the scans and odometry of a robot, from its devices or from a log in CARMEN's format.
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -8,11 +10,20 @@
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
+#include "device_config.hpp"
+#include "device_gateway.hpp"
 #include "log_gateway.hpp"
 
 namespace {
 
 using namespace topogeo;  // NOLINT(google-build-using-namespace)
+
+struct Options {
+  sensor_gateway::GatewayOptions replay;
+  std::filesystem::path devices;
+  std::optional<std::string> laser_port;
+  std::optional<std::string> base_port;
+};
 
 struct OpenLog {
   scan::CarmenLogReader reader;
@@ -27,35 +38,75 @@ OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions
   }
 }
 
+sensor_gateway::DeviceConfig load_devices(const Options& options) {
+  try {
+    return sensor_gateway::load_devices(options.devices, options.laser_port, options.base_port);
+  } catch (const std::runtime_error& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
+void add_options_to(CLI::App& app, Options& options) {
+  CLI::Option_group* source = app.add_option_group("source", "where scans and odometry come from");
+  CLI::Option* log =
+      source->add_option("--log", options.replay.log, "log in CARMEN's format, plain or gzip");
+  CLI::Option* devices =
+      source->add_option("--devices", options.devices,
+                         "ports and kinds of the devices (YAML), see `topogeo config --devices`");
+  source->require_option(1);
+  app.add_option_function<std::string>(
+         "--rate",
+         [&](const std::string& text) {
+           try {
+             options.replay.rate = service::parse_rate(text);
+           } catch (const std::invalid_argument& error) {
+             throw CLI::ValidationError("--rate", error.what());
+           }
+         },
+         "of a log: realtime, lossless (as fast as the readers take it) or a factor of real time")
+      ->needs(log)
+      ->default_str("lossless");
+  app.add_option("--readers", options.replay.readers,
+                 "readers of scans to wait for; 0: do not wait")
+      ->check(CLI::Range(0, 100))
+      ->default_str("1 for a log, 0 for devices");
+  app.add_flag("--exit-at-end", options.replay.exit_at_end, "end when the log has ended")
+      ->needs(log);
+  app.add_option("--laser-port", options.laser_port, "instead of the one in the file")
+      ->needs(devices);
+  app.add_option("--base-port", options.base_port, "instead of the one in the file")
+      ->needs(devices);
+}
+
+void replay(const service::Setup& setup, const sensor_gateway::GatewayOptions& options) {
+  OpenLog log = open_log(options.log, setup.config.config.log);
+  service::Service service(setup);
+  const sensor_gateway::LogGateway gateway(service, options, std::move(log.reader),
+                                           log.scans_total);
+  service.run();
+}
+
+void work_with_devices(const service::Setup& setup, const Options& options) {
+  const sensor_gateway::DeviceConfig config = load_devices(options);
+  service::Service service(setup);
+  sensor_gateway::DeviceGateway gateway(service, config, options.replay.readers.value_or(0));
+  service.run();
+  gateway.finish();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  sensor_gateway::GatewayOptions options;
-  const auto add_options = [&](CLI::App& app) {
-    app.add_option("--log", options.log, "log in CARMEN's format, plain or gzip")->required();
-    app.add_option_function<std::string>(
-           "--rate",
-           [&](const std::string& text) {
-             try {
-               options.rate = service::parse_rate(text);
-             } catch (const std::invalid_argument& error) {
-               throw CLI::ValidationError("--rate", error.what());
-             }
-           },
-           "realtime, lossless (as fast as the readers take it) or a factor of real time")
-        ->default_str("lossless");
-    app.add_option("--readers", options.readers, "readers of scans to wait for; 0: do not wait")
-        ->check(CLI::Range(0, 100))
-        ->capture_default_str();
-    app.add_flag("--exit-at-end", options.exit_at_end, "end when the log has ended");
-  };
-  return service::run_service(argc, argv, "sensor_gateway",
-                              "Replays the scans and odometry of a log.", add_options,
-                              [&](const service::Setup& setup) {
-                                OpenLog log = open_log(options.log, setup.config.config.log);
-                                service::Service service(setup);
-                                const sensor_gateway::LogGateway gateway(
-                                    service, options, std::move(log.reader), log.scans_total);
-                                service.run();
-                              });
+  Options options;
+  return service::run_service(
+      argc, argv, "sensor_gateway",
+      "Gives the scans and odometry of a robot's devices, or those of a log, and drives its base.",
+      [&](CLI::App& app) { add_options_to(app, options); },
+      [&](const service::Setup& setup) {
+        if (options.devices.empty()) {
+          replay(setup, options.replay);
+        } else {
+          work_with_devices(setup, options);
+        }
+      });
 }

@@ -1,0 +1,208 @@
+#include "base_desk.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::sensor_gateway {
+
+using std::chrono::milliseconds;
+
+namespace {
+
+constexpr milliseconds kStatusPeriod{500};
+constexpr milliseconds kLongestStop{500};
+constexpr milliseconds kStopPoll{10};
+constexpr double kLongestCommand_s = 0.5;
+
+msg::BaseState to_msg(devices::BaseState state) {
+  switch (state) {
+    case devices::BaseState::kReady:
+      return msg::kBaseReady;
+    case devices::BaseState::kMoving:
+      return msg::kBaseMoving;
+    case devices::BaseState::kStarting:
+      return msg::kBaseStarting;
+    case devices::BaseState::kEmergencyStop:
+      return msg::kBaseEmergencyStop;
+    case devices::BaseState::kHalted:
+      return msg::kBaseHalted;
+    case devices::BaseState::kWatchdogExpired:
+      return msg::kBaseWatchdogExpired;
+    case devices::BaseState::kBumped:
+      return msg::kBaseBumped;
+    case devices::BaseState::kJoystick:
+      return msg::kBaseJoystick;
+    case devices::BaseState::kMotorsOff:
+      return msg::kBaseMotorsOff;
+    case devices::BaseState::kOffline:
+      break;
+  }
+  return msg::kBaseOffline;
+}
+
+}  // namespace
+
+BaseDesk::BaseDesk(service::Service& service, const DeviceConfig& config, const HostTime& time,
+                   std::function<void(const OdometrySample&)> on_odometry)
+    : service_(service),
+      time_(time),
+      on_odometry_(std::move(on_odometry)),
+      driver_(config.base),
+      odometry_(service.participant()),
+      statuses_(service.participant()),
+      motion_commands_(service.participant()),
+      base_commands_(service.participant()),
+      line_(service.loop(), driver_, PortOptions{config.base_port},
+            [this](std::int64_t now_ns) { after_driver(now_ns); }) {
+  messaging::EventLoop& loop = service_.loop();
+  loop.add(odometry_);
+  loop.add(statuses_);
+  loop.add<msg::MotionCommand>(
+      motion_commands_, [this](const msg::MotionCommand& command, const messaging::SampleInfo&) {
+        if (service_.is_own(command)) on_command(command);
+      });
+  loop.add<msg::BaseCommand>(base_commands_,
+                             [this](const msg::BaseCommand& command, const messaging::SampleInfo&) {
+                               if (service_.is_own(command)) on_command(command);
+                             });
+  timer_ = loop.add_timer(kStatusPeriod, [this] { publish_status(); });
+}
+
+BaseDesk::~BaseDesk() {
+  service_.loop().cancel_timer(timer_);
+}
+
+void BaseDesk::after_driver(std::int64_t) {
+  for (const devices::BaseOdometry& sample : driver_.take_odometry()) {
+    msg::Odometry message;
+    messaging::set_header(message, service_.robot_id(), time_.stamp_ns(sample.stamp_ns),
+                          odometry_sent_);
+    message.T_odom_robot(service::to_msg(sample.T_odom_robot));
+    message.linear_mps(sample.linear_mps);
+    message.angular_radps(sample.angular_radps);
+    if (odometry_.write(message)) {
+      ++odometry_sent_;
+    } else {
+      service_.status().fault("send blocked", "odometry");
+    }
+    on_odometry_({sample.stamp_ns, sample.T_odom_robot, sample.linear_mps, sample.angular_radps});
+  }
+  if (driver_.status().state != told_state_ || ready() != told_ready_) publish_status();
+}
+
+void BaseDesk::on_command(const msg::MotionCommand& command) {
+  const double valid_s = std::min(command.valid_for_s(), kLongestCommand_s);
+  if (!std::isfinite(command.linear_mps()) || !std::isfinite(command.angular_radps()) ||
+      !(valid_s > 0.0)) {
+    service_.status().fault("invalid motion command",
+                            std::to_string(command.sequence_number()) + ": " +
+                                std::to_string(command.linear_mps()) + " m/s, " +
+                                std::to_string(command.angular_radps()) + " rad/s for " +
+                                std::to_string(command.valid_for_s()) + " s");
+    return;
+  }
+  const std::int64_t now_ns = line_.now_ns();
+  const bool taken = driver_.command(command.linear_mps(), command.angular_radps(),
+                                     now_ns + std::llround(valid_s * 1e9), now_ns);
+  ++(taken ? commands_ : refused_);
+  line_.carry_out();
+  after_driver(now_ns);
+}
+
+void BaseDesk::on_command(const msg::BaseCommand& command) {
+  const std::int64_t now_ns = line_.now_ns();
+  const std::string client = command.client_id().c_str();
+  switch (command.kind()) {
+    case msg::kBaseHalt:
+      spdlog::warn("halted by {}", client);
+      driver_.halt(now_ns);
+      break;
+    case msg::kBaseReset:
+      spdlog::warn("{} says that the base may move again", client);
+      driver_.reset_stop(now_ns);
+      break;
+    case msg::kBaseSetLimits:
+      try {
+        driver_.set_limits(
+            {command.largest_linear_mps(), command.largest_angular_radps(),
+             command.linear_acceleration_mps2(), command.angular_acceleration_radps2()},
+            now_ns);
+      } catch (const std::invalid_argument& error) {
+        service_.status().fault("invalid limits", client + ": " + error.what());
+      }
+      break;
+  }
+  line_.carry_out();
+  after_driver(now_ns);
+}
+
+std::string BaseDesk::describe() const {
+  const devices::BaseStatus& status = driver_.status();
+  const std::string name(devices::base_state_name(status.state));
+  if (!line_.why_closed().empty()) return name + ": " + line_.why_closed();
+  return status.reason.empty() ? name : name + ": " + status.reason;
+}
+
+void BaseDesk::publish_status() {
+  const devices::BaseStatus& status = driver_.status();
+  told_state_ = status.state;
+  told_ready_ = ready();
+  msg::BaseStatus message;
+  messaging::set_header(message, service_.robot_id(), time_.stamp_ns(line_.now_ns()),
+                        statuses_sent_);
+  message.state(to_msg(status.state));
+  messaging::set_text_cut(message.reason(),
+                          !line_.why_closed().empty() ? line_.why_closed() : status.reason);
+  message.commands_taken(status.commands_taken);
+  message.battery_v(static_cast<float>(status.battery_v));
+  message.battery_low(status.battery_low);
+  message.bumpers(status.bumpers);
+  if (statuses_.write(message)) {
+    ++statuses_sent_;
+  } else {
+    service_.status().fault("send blocked", "base status");
+  }
+}
+
+void BaseDesk::count() {
+  messaging::StatusPublisher& status = service_.status();
+  const devices::BaseStatus& base = driver_.status();
+  const auto set = [&](const std::string& name, std::uint64_t value) {
+    status.set_counter(name, static_cast<double>(value));
+  };
+  set("odometry_sent", odometry_sent_);
+  set("motion_commands", commands_);
+  set("motion_commands_refused", refused_);
+  set("base_port_opened", line_.statistics().opened);
+  set("base_starts", base.starts);
+  set("base_watchdog_expirations", base.watchdog_expirations);
+  for (std::size_t i = 0; i < devices::kMcpDropKinds; ++i) {
+    if (base.drops[i] == 0) continue;
+    set("dropped: base " + std::string(devices::drop_name(static_cast<devices::McpDrop>(i))),
+        base.drops[i]);
+  }
+}
+
+void BaseDesk::stop() {
+  if (std::exchange(stopped_, true) || !line_.is_open()) return;
+  driver_.halt(line_.now_ns());
+  line_.carry_out();
+  const auto end = std::chrono::steady_clock::now() + kLongestStop;
+  while (line_.is_open() && driver_.status().state != devices::BaseState::kHalted &&
+         std::chrono::steady_clock::now() < end) {
+    service_.loop().run_for(kStopPoll);
+  }
+  if (!line_.wait_written(kLongestStop)) {
+    service_.status().fault("halt not sent", line_.why_closed());
+  }
+}
+
+}  // namespace topogeo::sensor_gateway

@@ -1,0 +1,288 @@
+#include "device_config.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace topogeo::sensor_gateway {
+
+using devices::BaseDialect;
+using devices::McpChecksum;
+using devices::Parity;
+using devices::PlsOutput;
+using support::ConfigSchema;
+using Laser = DeviceFile::Laser;
+
+namespace {
+
+std::int64_t nanoseconds(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+double seconds(std::int64_t nanoseconds) {
+  return static_cast<double>(nanoseconds) * 1e-9;
+}
+
+std::string join(const std::vector<std::uint32_t>& numbers) {
+  std::string text;
+  for (const std::uint32_t number : numbers) {
+    if (!text.empty()) text += ' ';
+    text += std::to_string(number);
+  }
+  return text;
+}
+
+std::vector<std::uint32_t> parse_bauds(const std::string& text) {
+  std::vector<std::uint32_t> bauds;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    std::uint32_t baud = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), baud);
+    if (error != std::errc() || end != word.data() + word.size()) {
+      throw std::invalid_argument("key 'laser.detection_bauds' = '" + text +
+                                  "': expected baud rates separated by blanks");
+    }
+    bauds.push_back(baud);
+  }
+  return bauds;
+}
+
+void describe_laser_line(ConfigSchema& schema, Laser& laser) {
+  schema.add("laser.port", &laser.port,
+             "serial port of the laser, for example /dev/ttyUSB0; empty: there is no laser");
+  schema.add("laser.baud", &laser.settings.baud, 9600U, 500'000U, "baud",
+             "rate to work at: 9600, 19200, 38400 or 500000, which needs an RS-422 line; a PLS "
+             "gives 1.2, 2.4, 4.8 or 25 scans a second with them");
+  schema.add(
+      "laser.kind", &laser.kind,
+      {{"detect", Laser::Kind::kDetect}, {"pls", Laser::Kind::kPls}, {"lms", Laser::Kind::kLms}},
+      "a PLS has even parity, an LMS none; naming it makes finding it twice as fast");
+  schema.add("laser.output", &laser.settings.output,
+             {{"continuous", PlsOutput::kContinuous}, {"on_request", PlsOutput::kOnRequest}},
+             "whether the laser sends scan after scan or is asked for each");
+  schema.add("laser.password", &laser.settings.password_pls,
+             "of the installation mode of a PLS, eight characters; owners may have changed it");
+  schema.add("laser.password_lms", &laser.settings.password_lms, "the same of an LMS");
+  schema.add("laser.power_on_baud", &laser.settings.power_on_baud, 9600U, 500'000U, "baud",
+             "rate after the laser is switched on, unless its owner made another one permanent");
+  schema.add("laser.detection_bauds", &laser.detection_bauds,
+             "rates to look for the laser at, in this order");
+}
+
+void describe_laser_times(ConfigSchema& schema, Laser& laser) {
+  schema.add("laser.ack_timeout_s", &laser.ack_timeout_s, 0.001, 10.0, "s",
+             "from a command to its acknowledgement; 0.04 s by one source");
+  schema.add("laser.reply_timeout_s", &laser.reply_timeout_s, 0.01, 60.0, "s",
+             "from there to the reply to a change of mode; sources wait 2.5 to 20 s");
+  schema.add("laser.baud_reply_timeout_s", &laser.baud_reply_timeout_s, 0.01, 60.0, "s",
+             "the same for a change of the rate, after which the line changes in any case");
+  schema.add("laser.settle_s", &laser.settle_s, 0.001, 10.0, "s",
+             "rest after a change of the rate; sources wait 0.25 to 5 s");
+  schema.add("laser.byte_gap_s", &laser.byte_gap_s, 0.001, 1.0, "s",
+             "silence within a telegram that ends it; more for adapters that deliver in bursts");
+  schema.add("laser.shortest_silence_s", &laser.shortest_silence_s, 0.1, 60.0, "s",
+             "without a scan for so long, and for four scan periods, the laser is looked for anew");
+  schema.add("laser.scan_period_s", &laser.scan_period_s, 0.005, 1.0, "s",
+             "one turn of the mirror; 25 turns a second by one source");
+  schema.add("laser.sweep_to_send_s", &laser.sweep_to_send_s, 0.0, 1.0, "s",
+             "from the middle of the sweep to the first byte of its telegram; shifts all stamps, "
+             "so measure it by turning the robot on the spot");
+}
+
+void describe_laser_scans(ConfigSchema& schema, Laser& laser) {
+  schema.add("laser.range_max_m", &laser.settings.range_max_m, 1.0, 100.0, "m",
+             "readings from here on are no return");
+  schema.add("laser.first_no_return_code", &laser.first_no_return_code, 1U, 8192U, "",
+             "the same for the number that the laser sends, whatever its unit; 8192: none");
+  schema.add("laser.dazzled_is_no_return", &laser.settings.dazzled_is_no_return,
+             "whether a reading that met glaring light is no return or counts by its distance");
+  schema.add("laser.drop_implausible", &laser.settings.drop_implausible,
+             "drop scans that the laser itself calls implausible");
+  schema.add("laser.drop_at_error", &laser.settings.drop_at_error,
+             "drop scans while the laser reports an error or a fatal error");
+  schema.add("laser.stuck_scans", &laser.settings.stuck_scans, 0, 10'000, "",
+             "from so many identical scans in a row on they are dropped, as the laser hangs or is "
+             "covered; 0: never");
+  schema.add("laser.stuck_returns", &laser.stuck_returns, 0U, 2048U, "",
+             "scans with fewer returns may repeat, as there is nothing to see");
+}
+
+void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::BaseSettings& s = base.settings;
+  schema.add("base.port", &base.port,
+             "serial port of the base; empty: there is none, and the odometry says that the robot "
+             "stands still");
+  schema.add("base.baud", &s.line.baud, 1200U, 500'000U, "baud",
+             "rate of the line; 9600 in most sources, 38400 for one B21");
+  schema.add("base.parity", &s.line.parity,
+             {{"none", Parity::kNone}, {"even", Parity::kEven}, {"odd", Parity::kOdd}},
+             "of the line");
+  schema.add("base.dialect", &s.dialect,
+             {{"ascii", BaseDialect::kAscii}, {"binary", BaseDialect::kBinary}},
+             "text commands or the direct mode, which reports more often on a slow line");
+  schema.add(
+      "base.checksum", &s.checksum,
+      {{"learn", McpChecksum::kLearn}, {"drop", McpChecksum::kDrop}, {"warn", McpChecksum::kWarn}},
+      "what to do with binary messages whose check byte is wrong; its rule is from one "
+      "source, so learn drops them only once three messages had the right one");
+  schema.add("base.report_mask", &base.report_mask, 0U, 0xFFFF'FFFFU, "",
+             "fields of the status reports, a bit for each");
+  schema.add("base.report_period_s", &s.report_period_s, 0.0, 2.0, "s",
+             "between two reports; 0: as short as the line allows");
+  schema.add("base.write_gap_s", &s.write_gap_s, 0.0, 1.0, "s",
+             "between two commands; one source says that the base loses what follows sooner");
+  schema.add("base.direct_mode_wait_s", &s.direct_mode_wait_s, 0.0, 5.0, "s",
+             "from asking for the direct mode to its first packet");
+  schema.add("base.silence_s", &s.silence_s, 0.05, 60.0, "s",
+             "without a report for so long, and for four periods, the base is offline");
+}
+
+void describe_base_units(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::McpCalibration& c = base.settings.calibration;
+  schema.add("base.counts_per_m", &c.counts_per_m, 1000.0, 1e6, "1/m",
+             "encoder counts of a metre: 28120 for a B21, 25630 for a B21b, 27300 to 54820 in "
+             "other sources. Measure it before the first drive: twice the number is twice the "
+             "speed");
+  schema.add("base.position_units_per_m", &c.position_units_per_m, 0.0, 1e6, "1/m",
+             "units of the position in a metre; 0: counts_per_m / 256");
+  schema.add("base.rotation_counts_per_turn", &c.rotation_counts_per_turn, 16.0, 1e6, "",
+             "rotation counts of a whole turn");
+  schema.add("base.clockwise_positive", &c.clockwise_positive,
+             "the base counts rotation clockwise, as a B21 does; other RWI bases do not");
+  schema.add("base.reversed", &c.reversed, "forward of the base is backward of the robot");
+}
+
+void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::BaseSettings& s = base.settings;
+  schema.add("base.largest_linear_mps", &s.limits.linear_mps, 0.01, 2.0, "m/s",
+             "faster motion commands are cut to it");
+  schema.add("base.largest_angular_radps", &s.limits.angular_radps, 0.01, 6.0, "rad/s",
+             "the same for rotation");
+  schema.add("base.linear_acceleration_mps2", &s.limits.linear_mps2, 0.01, 5.0, "m/s^2",
+             "of starting and stopping; the base stops no sooner than this allows");
+  schema.add("base.angular_acceleration_radps2", &s.limits.angular_radps2, 0.01, 20.0, "rad/s^2",
+             "the same for rotation");
+  schema.add("base.torque", &base.torque, -1, 255, "",
+             "torque limit of the motors; 20 is said to be a good one; -1: left as it is");
+  schema.add("base.watchdog_s", &s.watchdog_s, 0.1, 255.0, "s",
+             "the base stops by itself when it has heard nothing for so long");
+  schema.add("base.command_timeout_s", &s.command_timeout_s, 0.05, 0.5, "s",
+             "a motion command holds no longer than this");
+  schema.add("base.joystick_allowed", &s.joystick_allowed,
+             "leave the joystick in use; without it an operator has to push the robot");
+  schema.add("base.stop_on_bump", &s.stop_on_bump, "the base stops by itself when it bumps");
+  schema.add("base.error_delay_ticks", &base.error_delay_ticks, 0U, 65535U, "1/256 s",
+             "from an error of the motors to their shutdown");
+}
+
+void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::BaseSettings& s = base.settings;
+  schema.add("base.stalled_reports", &s.stalled_reports, 2U, 100U, "",
+             "so many reports in a row of acceleration without motion are an emergency stop, for "
+             "which no message is known");
+  schema.add("base.standstill_mps", &s.standstill_mps, 0.0, 0.5, "m/s", "slower is standstill");
+  schema.add("base.standstill_radps", &s.standstill_radps, 0.0, 1.0, "rad/s",
+             "the same for rotation");
+  schema.add("base.uncommanded_mps", &s.uncommanded_mps, 0.005, 2.0, "m/s",
+             "faster by this than commanded is motion by the joystick");
+  schema.add("base.uncommanded_radps", &s.uncommanded_radps, 0.01, 6.0, "rad/s",
+             "the same for rotation");
+  schema.add("base.battery_period_s", &s.battery_period_s, 1.0, 3600.0, "s",
+             "between two questions for the voltage");
+  schema.add("base.battery_low_v", &s.battery_low_v, 0.0, 100.0, "V",
+             "the battery is low below it; 44 for a B21");
+}
+
+}  // namespace
+
+DeviceFile::DeviceFile() {
+  const devices::PlsSettings& l = laser.settings;
+  laser.detection_bauds = join(l.detection_bauds);
+  laser.ack_timeout_s = seconds(l.ack_timeout_ns);
+  laser.reply_timeout_s = seconds(l.reply_timeout_ns);
+  laser.baud_reply_timeout_s = seconds(l.baud_reply_timeout_ns);
+  laser.settle_s = seconds(l.settle_ns);
+  laser.byte_gap_s = seconds(l.byte_gap_ns);
+  laser.shortest_silence_s = seconds(l.shortest_silence_ns);
+  laser.scan_period_s = seconds(l.scan_period_ns);
+  laser.sweep_to_send_s = seconds(l.sweep_to_send_ns);
+  laser.first_no_return_code = l.first_no_return_code;
+  laser.stuck_returns = static_cast<std::uint32_t>(l.stuck_returns);
+  base.report_mask = base.settings.report_mask;
+  base.error_delay_ticks = base.settings.error_delay_ticks;
+  if (base.settings.torque) base.torque = *base.settings.torque;
+}
+
+ConfigSchema describe(DeviceFile& file) {
+  ConfigSchema schema;
+  describe_laser_line(schema, file.laser);
+  describe_laser_scans(schema, file.laser);
+  describe_laser_times(schema, file.laser);
+  describe_base_line(schema, file.base);
+  describe_base_units(schema, file.base);
+  describe_base_motion(schema, file.base);
+  describe_base_states(schema, file.base);
+  schema.add(
+      "odometry.wait_s", &file.odometry_wait_s, 0.0, 1.0, "s",
+      "a scan waits so long, at most, for the odometry after it. 0: it is published at once, "
+      "with the last odometry carried on by its speeds");
+  schema.add("odometry.longest_extrapolation_s", &file.longest_extrapolation_s, 0.0, 5.0, "s",
+             "a scan later than this after the last odometry is dropped");
+  return schema;
+}
+
+DeviceConfig to_config(const DeviceFile& file) {
+  DeviceConfig config;
+  config.laser_port = file.laser.port;
+  config.base_port = file.base.port;
+  devices::PlsSettings& laser = config.laser = file.laser.settings;
+  laser.detection_bauds = parse_bauds(file.laser.detection_bauds);
+  if (file.laser.kind == Laser::Kind::kPls) laser.parities = {Parity::kEven};
+  if (file.laser.kind == Laser::Kind::kLms) laser.parities = {Parity::kNone};
+  laser.ack_timeout_ns = nanoseconds(file.laser.ack_timeout_s);
+  laser.reply_timeout_ns = nanoseconds(file.laser.reply_timeout_s);
+  laser.baud_reply_timeout_ns = nanoseconds(file.laser.baud_reply_timeout_s);
+  laser.settle_ns = nanoseconds(file.laser.settle_s);
+  laser.byte_gap_ns = nanoseconds(file.laser.byte_gap_s);
+  laser.shortest_silence_ns = nanoseconds(file.laser.shortest_silence_s);
+  laser.scan_period_ns = nanoseconds(file.laser.scan_period_s);
+  laser.sweep_to_send_ns = nanoseconds(file.laser.sweep_to_send_s);
+  laser.first_no_return_code = static_cast<std::uint16_t>(file.laser.first_no_return_code);
+  laser.stuck_returns = file.laser.stuck_returns;
+  devices::BaseSettings& base = config.base = file.base.settings;
+  base.report_mask = file.base.report_mask;
+  base.error_delay_ticks = static_cast<std::uint16_t>(file.base.error_delay_ticks);
+  base.torque.reset();
+  if (file.base.torque >= 0) base.torque = static_cast<std::uint8_t>(file.base.torque);
+  config.odometry_wait_ns = nanoseconds(file.odometry_wait_s);
+  config.longest_extrapolation_ns = nanoseconds(file.longest_extrapolation_s);
+  laser.check();
+  check(base);
+  if (config.laser_port.empty() && config.base_port.empty()) {
+    throw std::invalid_argument(
+        "keys 'laser.port' and 'base.port': expected at least one port, got none");
+  }
+  if (config.laser_port == config.base_port) {
+    throw std::invalid_argument("key 'base.port' = '" + config.base_port +
+                                "': expected another port than that of the laser");
+  }
+  return config;
+}
+
+DeviceConfig load_devices(const std::filesystem::path& path,
+                          const std::optional<std::string>& laser_port,
+                          const std::optional<std::string>& base_port) {
+  DeviceFile file;
+  support::load_yaml_file(path, describe(file));
+  file.laser.port = laser_port.value_or(file.laser.port);
+  file.base.port = base_port.value_or(file.base.port);
+  try {
+    return to_config(file);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace topogeo::sensor_gateway

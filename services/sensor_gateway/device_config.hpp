@@ -1,0 +1,68 @@
+// The devices of a robot: which ports they are at and how they are spoken to.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "topogeo/devices/base_settings.hpp"
+#include "topogeo/devices/pls_settings.hpp"
+#include "topogeo/support/config_schema.hpp"
+
+namespace topogeo::sensor_gateway {
+
+/// As in the file; a device without a port does not exist.
+struct DeviceFile {
+  struct Laser {
+    std::string port;
+    devices::PlsSettings settings;
+    std::string detection_bauds;  ///< numbers separated by blanks
+    enum class Kind { kDetect, kPls, kLms } kind = Kind::kDetect;
+    double ack_timeout_s = 0.0;  ///< this and the rest: in nanoseconds in `settings`
+    double reply_timeout_s = 0.0;
+    double baud_reply_timeout_s = 0.0;
+    double settle_s = 0.0;
+    double byte_gap_s = 0.0;
+    double shortest_silence_s = 0.0;
+    double scan_period_s = 0.0;
+    double sweep_to_send_s = 0.0;
+    std::uint32_t first_no_return_code = 0;
+    std::uint32_t stuck_returns = 0;
+  } laser;
+  struct Base {
+    std::string port;
+    devices::BaseSettings settings;
+    std::uint32_t report_mask = 0;
+    std::uint32_t error_delay_ticks = 0;
+    std::int32_t torque = -1;  ///< negative: left as it is
+  } base;
+  double odometry_wait_s = 0.0;
+  double longest_extrapolation_s = 0.5;
+
+  DeviceFile();
+};
+
+/// Declares every key with its variable in `file`, its range, unit and reason.
+support::ConfigSchema describe(DeviceFile& file);
+
+/// What a gateway works with.
+struct DeviceConfig {
+  std::string laser_port;  ///< empty: there is none
+  devices::PlsSettings laser;
+  std::string base_port;  ///< empty: there is none
+  devices::BaseSettings base;
+  std::int64_t odometry_wait_ns = 0;
+  std::int64_t longest_extrapolation_ns = 0;
+};
+
+/// Throws std::invalid_argument naming the key whose value is wrong.
+DeviceConfig to_config(const DeviceFile& file);
+
+/// The devices of a file, some of them at other ports than it says. Throws std::runtime_error
+/// naming file, and line and key where it can.
+DeviceConfig load_devices(const std::filesystem::path& path,
+                          const std::optional<std::string>& laser_port = {},
+                          const std::optional<std::string>& base_port = {});
+
+}  // namespace topogeo::sensor_gateway

@@ -1,0 +1,131 @@
+#include "device_gateway.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::sensor_gateway {
+
+using std::chrono::milliseconds;
+
+namespace {
+
+constexpr milliseconds kPoll{20};
+constexpr milliseconds kStatePeriod{250};
+constexpr milliseconds kLastWords{2000};  // for readers to have what was published
+
+ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config) {
+  ScanGateOptions options;
+  options.has_base = !config.base_port.empty();
+  options.odometry_wait_ns = config.odometry_wait_ns;
+  options.longest_extrapolation_ns = config.longest_extrapolation_ns;
+  options.range_max_m = service.setup().config.config.log.range_max_m;
+  return options;
+}
+
+}  // namespace
+
+DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& config, int readers)
+    : service_(service),
+      readers_(readers),
+      gate_(gate_options(service, config)),
+      scans_(service.participant()),
+      stream_end_(service.participant()) {
+  service_.loop().add(scans_);
+  service_.loop().add(stream_end_);
+  service_.status().set_counter("scans_sent", 0.0);
+  if (config.base_port.empty()) {
+    spdlog::warn("there is no base: the odometry says that the robot stands still");
+  } else {
+    base_.emplace(service_, config, time_, [this](const OdometrySample& sample) {
+      gate_.add(sample);
+      release(steady_now_ns());
+    });
+  }
+  if (!config.laser_port.empty()) {
+    laser_.emplace(service_, config, time_, gate_,
+                   [this](std::int64_t now_ns) { release(now_ns); });
+  }
+  timer_ = service_.loop().add_timer(kStatePeriod, [this] { tell_state(); });
+  tell_state();
+  wait_for_readers();
+}
+
+DeviceGateway::~DeviceGateway() {
+  service_.loop().cancel_timer(timer_);
+  service_.loop().cancel_timer(release_timer_);
+}
+
+void DeviceGateway::wait_for_readers() {
+  if (scans_.matched() < readers_) {
+    service_.loop().call_after(kPoll, [this] { wait_for_readers(); });
+    return;
+  }
+  gate_.open();
+}
+
+void DeviceGateway::release(std::int64_t now_ns) {
+  for (const scan::Scan& scan : gate_.take(now_ns)) publish(scan);
+  service_.loop().cancel_timer(release_timer_);
+  if (gate_.due_ns() == std::numeric_limits<std::int64_t>::max()) return;
+  release_timer_ = service_.loop().call_after(
+      std::chrono::nanoseconds(std::max<std::int64_t>(0, gate_.due_ns() - now_ns)),
+      [this] { release(steady_now_ns()); });
+}
+
+void DeviceGateway::publish(const scan::Scan& scan) {
+  msg::Scan message = service::to_msg(scan, service_.robot_id());
+  message.stamp_ns(time_.stamp_ns(scan.stamp_ns));
+  if (!scans_.write(message)) {
+    service_.status().fault("send blocked", "scan " + std::to_string(scan.sequence));
+    return;
+  }
+  last_stamp_ns_ = message.stamp_ns();
+  ++sent_;
+}
+
+void DeviceGateway::tell_state() {
+  std::string text;
+  bool running = true;
+  if (laser_) {
+    laser_->count();
+    running = running && laser_->running();
+    text += "laser " + laser_->describe();
+  }
+  if (base_) {
+    base_->count();
+    running = running && base_->ready();
+    text += (text.empty() ? "base " : "; base ") + base_->describe();
+  }
+  messaging::StatusPublisher& status = service_.status();
+  const msg::ServiceState state = running ? msg::kServiceRunning : msg::kServiceWaiting;
+  if (text == told_ && state == status.state()) return;
+  told_ = text;
+  spdlog::info("{}", text);
+  status.set_state(state, text);
+}
+
+void DeviceGateway::finish() {
+  if (base_) base_->stop();
+  tell_state();
+  if (!scans_.wait_for_acknowledgments(kLastWords)) {
+    service_.status().fault("readers lack scans", "at the end");
+  }
+  msg::StreamEnd end;
+  messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
+  messaging::set_text(end.stage(), "gateway", "stage");
+  end.count(gate_.scans());
+  end.last_id(gate_.scans() == 0 ? 0 : gate_.scans() - 1);
+  if (!stream_end_.write(end) || !stream_end_.wait_for_acknowledgments(kLastWords)) {
+    service_.status().fault("readers lack the stream end", "at the end");
+  }
+  spdlog::info("{} scans published", sent_);
+}
+
+}  // namespace topogeo::sensor_gateway

@@ -1,0 +1,58 @@
+// Gives the scans, odometry and states of real devices, and drives the base.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/service/service.hpp"
+
+#include "base_desk.hpp"
+#include "device_config.hpp"
+#include "host_time.hpp"
+#include "laser_desk.hpp"
+#include "scan_gate.hpp"
+
+namespace topogeo::sensor_gateway {
+
+/// Lives in the loop of its service.
+class DeviceGateway {
+ public:
+  /// Scans are numbered and published from when `readers` of them are there.
+  DeviceGateway(service::Service& service, const DeviceConfig& config, int readers);
+  DeviceGateway(const DeviceGateway&) = delete;
+  DeviceGateway& operator=(const DeviceGateway&) = delete;
+  DeviceGateway(DeviceGateway&&) = delete;
+  DeviceGateway& operator=(DeviceGateway&&) = delete;
+  ~DeviceGateway();
+
+  /// After the loop: halts the base, waits until the readers have what was published and says that
+  /// it was all.
+  void finish();
+
+ private:
+  void wait_for_readers();
+  /// Publishes what can leave by now.
+  void release(std::int64_t now_ns);
+  void publish(const scan::Scan& scan);
+  void tell_state();
+
+  service::Service& service_;
+  HostTime time_;
+  int readers_;
+  ScanGate gate_;
+  messaging::Writer<msg::Scan> scans_;
+  messaging::Writer<msg::StreamEnd> stream_end_;
+  std::int64_t last_stamp_ns_ = 0;
+  std::uint64_t sent_ = 0;
+  std::string told_;                 // as the state of the service
+  std::uint64_t timer_ = 0;          // of tell_state
+  std::uint64_t release_timer_ = 0;  // while scans wait for odometry
+  std::optional<BaseDesk> base_;
+  std::optional<LaserDesk> laser_;
+};
+
+}  // namespace topogeo::sensor_gateway

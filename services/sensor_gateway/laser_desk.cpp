@@ -1,0 +1,176 @@
+#include "laser_desk.hpp"
+
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "topogeo/messaging/message.hpp"
+
+namespace topogeo::sensor_gateway {
+
+namespace {
+
+constexpr std::chrono::milliseconds kStatusPeriod{500};
+constexpr std::int64_t kRateWindow_ns = 4'000'000'000;
+
+/// What was dropped, by reason, in words that are the same everywhere.
+std::vector<std::pair<std::string, std::uint64_t>> drops_of(const devices::PlsCounters& counters,
+                                                            const LineStatistics& line,
+                                                            const ScanGate& gate) {
+  std::vector<std::pair<std::string, std::uint64_t>> drops = {
+      {"bad checksum", counters.line.bad_crc},
+      {"implausible length", counters.line.implausible_length},
+      {"truncated telegram", counters.line.truncated},
+      {"noise bytes", counters.line.noise_bytes},
+      {"echoes", counters.line.echoes},
+      {"bytes before a change of the line", line.bytes_stale},
+      {"unexpected number of beams", counters.scan_drops.beam_count},
+      {"interlaced scan", counters.scan_drops.interlaced},
+      {"implausible scan", counters.scan_drops.implausible},
+      {"laser reports an error", counters.scan_drops.sensor_error},
+      {"stuck scan", counters.scan_drops.stuck},
+      {"scan while being set up", counters.unsolicited}};
+  for (std::size_t i = 0; i < kScanDrops; ++i) {
+    const auto drop = static_cast<ScanDrop>(i);
+    drops.emplace_back(describe(drop), gate.dropped(drop));
+  }
+  return drops;
+}
+
+std::string_view name(msg::LaserState state) {
+  switch (state) {
+    case msg::kLaserRunning:
+      return "running";
+    case msg::kLaserStarting:
+      return "starting";
+    case msg::kLaserFault:
+      return "fault";
+    case msg::kLaserOffline:
+      break;
+  }
+  return "offline";
+}
+
+}  // namespace
+
+LaserDesk::LaserDesk(service::Service& service, const DeviceConfig& config, const HostTime& time,
+                     ScanGate& gate, std::function<void(std::int64_t)> on_scans)
+    : service_(service),
+      time_(time),
+      gate_(gate),
+      on_scans_(std::move(on_scans)),
+      driver_(config.laser),
+      statuses_(service.participant()),
+      line_(service.loop(), driver_, PortOptions{config.laser_port},
+            [this](std::int64_t now_ns) { after_driver(now_ns); }) {
+  service_.loop().add(statuses_);
+  timer_ = service_.loop().add_timer(kStatusPeriod, [this] { publish_status(); });
+}
+
+LaserDesk::~LaserDesk() {
+  service_.loop().cancel_timer(timer_);
+}
+
+void LaserDesk::after_driver(std::int64_t now_ns) {
+  std::vector<devices::PlsScan> scans = driver_.take_scans();
+  for (devices::PlsScan& scan : scans) {
+    beams_ = static_cast<std::uint32_t>(scan.ranges_m.size());
+    dazzled_ = static_cast<std::uint32_t>(scan.dazzled);
+    warning_field_ = scan.warning_field;
+    protective_field_ = scan.protective_field;
+    recent_ns_.push_back(now_ns);
+    gate_.add(std::move(scan), now_ns);
+  }
+  if (!scans.empty()) on_scans_(now_ns);
+  if (state(driver_.status()) != told_state_) publish_status();
+}
+
+bool LaserDesk::running() const {
+  return state(driver_.status()) == msg::kLaserRunning;
+}
+
+msg::LaserState LaserDesk::state(const devices::PlsStatus& status) const {
+  switch (status.state) {
+    case devices::PlsState::kDetecting:
+    case devices::PlsState::kConfiguring:
+      return msg::kLaserStarting;
+    case devices::PlsState::kRunning:
+      return reason(status).empty() ? msg::kLaserRunning : msg::kLaserFault;
+    case devices::PlsState::kOffline:
+    case devices::PlsState::kFailed:
+      break;
+  }
+  return msg::kLaserOffline;
+}
+
+std::string LaserDesk::reason(const devices::PlsStatus& status) const {
+  if (!line_.why_closed().empty()) return line_.why_closed();
+  if (status.state != devices::PlsState::kRunning) return status.reason;
+  if (status.stuck) return "the same scan again and again";
+  if (status.health.implausible) return "the laser calls its measurements implausible";
+  if (status.health.severity >= devices::PlsSeverity::kError) return "the laser reports an error";
+  return {};
+}
+
+std::string LaserDesk::describe() const {
+  const devices::PlsStatus status = driver_.status();
+  const std::string why = reason(status);
+  const std::string text(name(state(status)));
+  return why.empty() ? text : text + ": " + why;
+}
+
+void LaserDesk::publish_status() {
+  const devices::PlsStatus status = driver_.status();
+  const std::int64_t now_ns = line_.now_ns();
+  while (!recent_ns_.empty() && recent_ns_.front() < now_ns - kRateWindow_ns) {
+    recent_ns_.pop_front();
+  }
+  const msg::LaserState state_now = state(status);
+  told_state_ = state_now;
+  msg::LaserStatus message;
+  messaging::set_header(message, service_.robot_id(), time_.stamp_ns(now_ns), statuses_sent_);
+  message.state(state_now);
+  messaging::set_text_cut(message.reason(), reason(status));
+  message.baud(line_.is_open() ? status.line.baud : 0);
+  message.beams(beams_);
+  message.contaminated(status.health.polluted);
+  message.implausible(status.health.implausible);
+  message.error_level(static_cast<std::uint16_t>(status.health.severity));
+  message.dazzled_beams(dazzled_);
+  message.warning_field(warning_field_);
+  message.protective_field(protective_field_);
+  message.scans(gate_.scans());
+  message.scans_per_s(static_cast<double>(recent_ns_.size()) * 1e9 /
+                      static_cast<double>(kRateWindow_ns));
+  for (const auto& [drop, count] : drops_of(status.counters, line_.statistics(), gate_)) {
+    if (count == 0) continue;
+    msg::FaultCount entry;
+    messaging::set_text(entry.reason(), drop, "reason");
+    entry.count(count);
+    message.drops().push_back(entry);
+  }
+  if (statuses_.write(message)) {
+    ++statuses_sent_;
+  } else {
+    service_.status().fault("send blocked", "laser status");
+  }
+}
+
+void LaserDesk::count() {
+  messaging::StatusPublisher& publisher = service_.status();
+  const devices::PlsStatus status = driver_.status();
+  const auto set = [&](const std::string& counter, std::uint64_t value) {
+    publisher.set_counter(counter, static_cast<double>(value));
+  };
+  set("scans_sent", gate_.scans());
+  set("scans_with_extrapolated_odometry", gate_.extrapolated());
+  set("beams", beams_);
+  set("laser_baud", status.line.baud);
+  set("laser_port_opened", line_.statistics().opened);
+  set("laser_searches", status.counters.searches);
+  for (const auto& [drop, count] : drops_of(status.counters, line_.statistics(), gate_)) {
+    if (count > 0) set("dropped: " + drop, count);
+  }
+}
+
+}  // namespace topogeo::sensor_gateway

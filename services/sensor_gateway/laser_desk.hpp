@@ -1,0 +1,63 @@
+// The laser of the robot: its line, its scans and its state.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+
+#include "topogeo/devices/pls_driver.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/service/service.hpp"
+
+#include "device_config.hpp"
+#include "host_time.hpp"
+#include "scan_gate.hpp"
+#include "serial_line.hpp"
+
+namespace topogeo::sensor_gateway {
+
+/// Lives in the loop of its service.
+class LaserDesk {
+ public:
+  /// `gate` gets the scans and `on_scans` hears that it did.
+  LaserDesk(service::Service& service, const DeviceConfig& config, const HostTime& time,
+            ScanGate& gate, std::function<void(std::int64_t now_ns)> on_scans);
+  LaserDesk(const LaserDesk&) = delete;
+  LaserDesk& operator=(const LaserDesk&) = delete;
+  LaserDesk(LaserDesk&&) = delete;
+  LaserDesk& operator=(LaserDesk&&) = delete;
+  ~LaserDesk();
+
+  [[nodiscard]] bool running() const;
+  /// A few words for people: "running", or the state and why.
+  [[nodiscard]] std::string describe() const;
+  /// Sets the counters of the service's status.
+  void count();
+
+ private:
+  void after_driver(std::int64_t now_ns);
+  void publish_status();
+  [[nodiscard]] msg::LaserState state(const devices::PlsStatus& status) const;
+  [[nodiscard]] std::string reason(const devices::PlsStatus& status) const;
+
+  service::Service& service_;
+  const HostTime& time_;
+  ScanGate& gate_;
+  std::function<void(std::int64_t)> on_scans_;
+  devices::PlsDriver driver_;
+  messaging::Writer<msg::LaserStatus> statuses_;
+  std::uint64_t statuses_sent_ = 0;
+  msg::LaserState told_state_ = msg::kLaserOffline;
+  std::uint32_t beams_ = 0;
+  std::uint32_t dazzled_ = 0;
+  bool warning_field_ = false;
+  bool protective_field_ = false;
+  std::deque<std::int64_t> recent_ns_;  // when the last scans came
+  std::uint64_t timer_ = 0;
+  SerialLine line_;
+};
+
+}  // namespace topogeo::sensor_gateway

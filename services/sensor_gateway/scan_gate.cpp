@@ -1,0 +1,82 @@
+#include "scan_gate.hpp"
+
+#include <utility>
+
+namespace topogeo::sensor_gateway {
+
+std::string_view describe(ScanDrop drop) {
+  switch (drop) {
+    case ScanDrop::kNoReader:
+      return "no reader yet";
+    case ScanDrop::kNoOdometry:
+      return "no odometry";
+    case ScanDrop::kTime:
+      return "time not increasing";
+    case ScanDrop::kGeometry:
+      return "other beam geometry";
+  }
+  return "unknown";
+}
+
+void ScanGate::add(devices::PlsScan scan, std::int64_t now_ns) {
+  if (!open_) {
+    drop(ScanDrop::kNoReader);
+    return;
+  }
+  waiting_.push_back({std::move(scan), now_ns + options_.odometry_wait_ns});
+}
+
+std::vector<scan::Scan> ScanGate::take(std::int64_t now_ns) {
+  std::vector<scan::Scan> scans;
+  while (!waiting_.empty()) {
+    Waiting& first = waiting_.front();
+    const bool bracketed =
+        !options_.has_base || (track_.last_ns() && *track_.last_ns() >= first.scan.stamp_ns);
+    if (!bracketed && now_ns < first.due_ns) break;
+    if (std::optional<scan::Scan> scan = finish(std::move(first.scan))) {
+      scans.push_back(*std::move(scan));
+    }
+    waiting_.pop_front();
+  }
+  return scans;
+}
+
+std::int64_t ScanGate::due_ns() const {
+  return waiting_.empty() ? std::numeric_limits<std::int64_t>::max() : waiting_.front().due_ns;
+}
+
+std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {
+  const Geometry geometry{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()};
+  if (scan.stamp_ns <= last_stamp_ns_) {
+    drop(ScanDrop::kTime);
+    return std::nullopt;
+  }
+  if (geometry_ && geometry != *geometry_) {
+    drop(ScanDrop::kGeometry);
+    return std::nullopt;
+  }
+  scan::Scan out;
+  if (options_.has_base) {
+    const std::optional<OdometryTrack::Answer> answer = track_.at(scan.stamp_ns);
+    if (!answer) {
+      drop(ScanDrop::kNoOdometry);
+      return std::nullopt;
+    }
+    if (answer->extrapolated) ++extrapolated_;
+    out.T_odom_robot = answer->T_odom_robot;
+  }
+  geometry_ = geometry;
+  last_stamp_ns_ = scan.stamp_ns;
+  out.sequence = next_sequence_++;
+  out.stamp_ns = scan.stamp_ns;
+  out.angle_min_rad = scan.angle_min_rad;
+  out.angle_step_rad = scan.angle_step_rad;
+  out.ranges_m = std::move(scan.ranges_m);
+  const auto limit_m = static_cast<float>(options_.range_max_m);
+  for (float& range_m : out.ranges_m) {
+    if (range_m >= limit_m) range_m = scan::Scan::kNoReturn;
+  }
+  return out;
+}
+
+}  // namespace topogeo::sensor_gateway

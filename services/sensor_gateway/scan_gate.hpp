@@ -1,0 +1,87 @@
+// Puts scans and odometry together: numbers and stamps scans, gives each the odometry at its time,
+// and counts those that cannot be used.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/devices/pls_scan.hpp"
+#include "topogeo/scan/scan.hpp"
+
+#include "odometry_track.hpp"
+
+namespace topogeo::sensor_gateway {
+
+/// Why a scan that the laser gave was not published.
+enum class ScanDrop : std::uint8_t {
+  kNoReader,    ///< nobody listens yet
+  kNoOdometry,  ///< before the first, or too long after the last
+  kTime,        ///< not after the scan before it
+  kGeometry     ///< other beams than the first scan
+};
+inline constexpr std::size_t kScanDrops = 4;
+/// A few words for people.
+std::string_view describe(ScanDrop drop);
+
+struct ScanGateOptions {
+  bool has_base = true;                       ///< false: the odometry is always the identity
+  std::int64_t odometry_wait_ns = 0;          ///< for odometry after a scan, at most; >= 0
+  std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
+  double range_max_m = 49.9;  ///< ranges from here on are no return, as when a log is read
+};
+
+/// All times are of one steady clock; it needs not be the one of the stamps that leave.
+class ScanGate {
+ public:
+  explicit ScanGate(const ScanGateOptions& options)
+      : options_(options), track_(options.longest_extrapolation_ns) {}
+
+  /// Nothing leaves before this is set.
+  void open() { open_ = true; }
+  void add(devices::PlsScan scan, std::int64_t now_ns);
+  void add(const OdometrySample& sample) { track_.add(sample); }
+
+  /// The scans that can leave by now, in order, stamped by the same clock as `now_ns`.
+  std::vector<scan::Scan> take(std::int64_t now_ns);
+  /// When `take` has something at the latest; the largest number while nothing waits.
+  [[nodiscard]] std::int64_t due_ns() const;
+
+  [[nodiscard]] std::uint64_t scans() const { return next_sequence_; }
+  [[nodiscard]] std::uint64_t extrapolated() const { return extrapolated_; }
+  [[nodiscard]] std::uint64_t dropped(ScanDrop drop) const {
+    return drops_[static_cast<std::size_t>(drop)];
+  }
+
+ private:
+  struct Waiting {
+    devices::PlsScan scan;
+    std::int64_t due_ns = 0;
+  };
+  struct Geometry {
+    double angle_min_rad = 0.0;
+    double angle_step_rad = 0.0;
+    std::size_t beams = 0;
+    friend bool operator==(const Geometry&, const Geometry&) = default;
+  };
+
+  std::optional<scan::Scan> finish(devices::PlsScan&& scan);
+  void drop(ScanDrop reason) { ++drops_[static_cast<std::size_t>(reason)]; }
+
+  ScanGateOptions options_;
+  OdometryTrack track_;
+  bool open_ = false;
+  std::deque<Waiting> waiting_;
+  std::optional<Geometry> geometry_;
+  std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t next_sequence_ = 0;
+  std::uint64_t extrapolated_ = 0;
+  std::array<std::uint64_t, kScanDrops> drops_{};
+};
+
+}  // namespace topogeo::sensor_gateway
