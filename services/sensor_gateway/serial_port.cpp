@@ -16,6 +16,8 @@
 #include <linux/serial.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <termios.h>
 
 namespace topogeo::sensor_gateway {
@@ -30,6 +32,17 @@ namespace {
 /// Longer than the longest telegram takes at 9600 baud.
 constexpr milliseconds kLongestDrain{2000};
 constexpr milliseconds kDrainPoll{1};
+
+/// These have no parity and refuse every other than none; whatever is at their far end does
+/// without.
+bool is_pseudo_terminal(int fd) {
+  constexpr unsigned kFirstMajor = 136;  // of the Unix98 ones, see devices.txt of Linux
+  constexpr unsigned kLastMajor = 143;
+  struct stat status {};
+  if (::fstat(fd, &status) != 0 || !S_ISCHR(status.st_mode)) return false;
+  const unsigned number = major(status.st_rdev);
+  return number >= kFirstMajor && number <= kLastMajor;
+}
 
 asio::serial_port_base::parity::type asio_parity(devices::Parity parity) {
   switch (parity) {
@@ -217,6 +230,7 @@ void SerialPort::Impl::change(const devices::LineSettings& settings) {
   port_.set_option(asio::serial_port_base::baud_rate(settings.baud), error);
   if (!error) {
     port_.set_option(asio::serial_port_base::parity(asio_parity(settings.parity)), error);
+    if (error && is_pseudo_terminal(port_.native_handle())) error = {};
   }
   if (error) {
     lose("refuses " + std::to_string(settings.baud) + " baud: " + error.message());
