@@ -12,6 +12,8 @@
 
 #include <zlib.h>
 
+#include "topogeo/scan/carmen_log_reader.hpp"
+
 namespace topogeo::scan {
 namespace {
 
@@ -32,19 +34,31 @@ void append_stamp(std::string& text, std::int64_t stamp_ns) {
   text += nanoseconds;
 }
 
+/// What a ROBOTLASER1 line has before its readings; its laser type 0 is a SICK LMS.
+void append_geometry(std::string& text, const Scan& scan) {
+  text += "ROBOTLASER1 0";
+  append(text, scan.angle_min_rad);
+  append(text, scan.angle_step_rad * static_cast<double>(scan.ranges_m.size() - 1));
+  append(text, scan.angle_step_rad);
+  append(text, CarmenLogWriter::kNoReturnWritten_m);
+  text += " 0.01 0";  // accuracy in metres, no remission
+}
+
 void check(const Scan& scan) {
-  constexpr double kTolerance_rad = 1e-9;
-  if (scan.ranges_m.size() < 2) {
-    throw std::invalid_argument("ranges_m: expected 2 or more ranges, got " +
+  static_assert(CarmenLogReader::kMaxBeams == 2048, "named in a message below");
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi + 0.01;
+  constexpr double kFinest_rad = 1e-5;
+  if (scan.ranges_m.size() < 2 || scan.ranges_m.size() > CarmenLogReader::kMaxBeams) {
+    throw std::invalid_argument("ranges_m: expected 2 to 2048 ranges, got " +
                                 std::to_string(scan.ranges_m.size()));
   }
-  const double step_rad = flaser_angle_step_rad(scan.ranges_m.size());
-  if (std::fabs(scan.angle_min_rad + std::numbers::pi / 2.0) > kTolerance_rad ||
-      std::fabs(scan.angle_step_rad - step_rad) > kTolerance_rad) {
+  const double view_rad = scan.angle_step_rad * static_cast<double>(scan.ranges_m.size() - 1);
+  if (!(std::fabs(scan.angle_min_rad) <= kTurn_rad) || !(scan.angle_step_rad >= kFinest_rad) ||
+      !(view_rad <= kTurn_rad)) {
     throw std::invalid_argument(
-        "angle_min_rad, angle_step_rad: expected the 180 degrees of a FLASER line (-1.570796, " +
-        std::to_string(step_rad) + "), got " + std::to_string(scan.angle_min_rad) + ", " +
-        std::to_string(scan.angle_step_rad));
+        "angle_min_rad, angle_step_rad: expected a step of 0.00001 or more, all within one turn, "
+        "got " +
+        std::to_string(scan.angle_min_rad) + ", " + std::to_string(scan.angle_step_rad));
   }
   if (scan.stamp_ns < 0) {
     throw std::invalid_argument("stamp_ns: expected a number >= 0, got " +
@@ -105,17 +119,27 @@ CarmenLogWriter& CarmenLogWriter::operator=(CarmenLogWriter&&) noexcept = defaul
 
 void CarmenLogWriter::write(const Scan& scan) {
   check(scan);
-  std::string line = "FLASER";
+  // To the last bit, so that what is read back is what was written.
+  const bool flaser = scan.angle_min_rad == -std::numbers::pi / 2.0 &&
+                      scan.angle_step_rad == flaser_angle_step_rad(scan.ranges_m.size());
+  std::string line;
+  if (flaser) {
+    line += "FLASER";
+  } else {
+    append_geometry(line, scan);
+  }
   append(line, scan.ranges_m.size());
   for (const float range_m : scan.ranges_m) {
     append(line, range_m == Scan::kNoReturn ? kNoReturnWritten_m : range_m);
   }
+  if (!flaser) line += " 0";  // remission values
   // The laser's pose, then the robot's: the laser sits at the robot's origin.
   for (int i = 0; i < 2; ++i) {
     append(line, scan.T_odom_robot.x_m);
     append(line, scan.T_odom_robot.y_m);
     append(line, scan.T_odom_robot.theta_rad);
   }
+  if (!flaser) line += " 0 0 0 0 0";  // speeds, distances of safety and turn axis: unknown
   append_stamp(line, scan.stamp_ns);
   line += " topogeo";
   append_stamp(line, scan.stamp_ns);

@@ -56,7 +56,45 @@ TEST_F(LogFiles, TheNameDecidesAboutCompression) {
   EXPECT_EQ(content_of(path("w.clf.gz")).substr(0, 2), "\x1f\x8b");
 }
 
-TEST_F(LogFiles, WhatFlaserCannotHoldIsRefused) {
+TEST_F(LogFiles, OtherBeamsThanThoseOfFlaserAreReadBackExactly) {
+  struct Beams {
+    double angle_min_rad;
+    double angle_step_rad;
+    std::size_t count;
+  };
+  const double degree_rad = std::numbers::pi / 180.0;
+  // 100 degrees of an LMS, 180 degrees a bit of rounding off FLASER's, a whole turn.
+  for (const Beams& beams : {Beams{-50.0 * degree_rad, 0.25 * degree_rad, 401},
+                             Beams{-90.0 * degree_rad, std::nextafter(0.5 * degree_rad, 1.0), 361},
+                             Beams{-std::numbers::pi, degree_rad, 361}}) {
+    std::vector<Scan> written;
+    CarmenLogWriter writer(path("w.clf"));
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      written.push_back(example(i, beams.count));
+      written.back().angle_min_rad = beams.angle_min_rad;
+      written.back().angle_step_rad = beams.angle_step_rad;
+      writer.write(written.back());
+    }
+    writer.close();
+    EXPECT_THAT(content_of(path("w.clf")), HasSubstr("\nROBOTLASER1 0 "));
+    CarmenLogReader reader(path("w.clf"));
+    const auto scans = read_all(reader);
+    ASSERT_EQ(scans.size(), 3U) << reader.statistics().summary();
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(scans[i].stamp_ns, written[i].stamp_ns);
+      EXPECT_EQ(scans[i].angle_min_rad, beams.angle_min_rad);
+      EXPECT_EQ(scans[i].angle_step_rad, beams.angle_step_rad);
+      EXPECT_EQ(scans[i].T_odom_robot, written[i].T_odom_robot);
+      // Up to the 49.9 m of the reader's options.
+      for (std::size_t b = 0; b < beams.count; ++b) {
+        const float range_m = written[i].ranges_m[b];
+        EXPECT_EQ(scans[i].ranges_m[b], range_m >= 49.9F ? Scan::kNoReturn : range_m);
+      }
+    }
+  }
+}
+
+TEST_F(LogFiles, WhatNoLineCanHoldIsRefused) {
   CarmenLogWriter writer(path("w.clf"));
   const auto refused = [&](auto change) {
     Scan scan = example(0, 180);
@@ -64,8 +102,10 @@ TEST_F(LogFiles, WhatFlaserCannotHoldIsRefused) {
     EXPECT_THROW(writer.write(scan), std::invalid_argument);
   };
   refused([](Scan& s) { s.ranges_m.clear(); });
-  refused([](Scan& s) { s.angle_min_rad = -2.0; });
-  refused([](Scan& s) { s.angle_step_rad *= 0.5; });
+  refused([](Scan& s) { s.ranges_m.assign(CarmenLogReader::kMaxBeams + 1, 1.0F); });
+  refused([](Scan& s) { s.angle_min_rad = -7.0; });
+  refused([](Scan& s) { s.angle_step_rad = 0.0; });
+  refused([](Scan& s) { s.angle_step_rad *= 3.0; });
   refused([](Scan& s) { s.stamp_ns = -1; });
   refused([](Scan& s) { s.ranges_m[5] = -1.0F; });
   refused([](Scan& s) { s.ranges_m[5] = std::numeric_limits<float>::quiet_NaN(); });

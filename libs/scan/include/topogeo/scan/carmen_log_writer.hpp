@@ -1,4 +1,4 @@
-// Writes laser scans as FLASER lines of a CARMEN text log.
+// Writes laser scans as FLASER or ROBOTLASER1 lines of a CARMEN text log.
 #pragma once
 
 #include <filesystem>
@@ -25,9 +25,10 @@ class CarmenLogWriter {
   CarmenLogWriter(const CarmenLogWriter&) = delete;
   CarmenLogWriter& operator=(const CarmenLogWriter&) = delete;
 
-  /// Appends one scan; all numbers are written with as many digits as reading back exactly needs.
-  /// Throws std::invalid_argument when FLASER cannot hold the scan (it has no geometry of its own:
-  /// from -90 degrees over 180, see flaser_angle_step_rad; ranges finite and >= 0, stamp >= 0),
+  /// Appends one scan, as a FLASER line when its beams are those of such a line (from -90 degrees
+  /// over 180, see flaser_angle_step_rad), else as a ROBOTLASER1 line; all numbers are written with
+  /// as many digits as reading back exactly needs. Throws std::invalid_argument for a scan that no
+  /// line can hold (2 to 2048 ranges, finite and >= 0, within one turn; stamp >= 0),
   /// std::runtime_error when writing fails.
   void write(const Scan& scan);
 
