@@ -28,4 +28,9 @@ std::size_t check_carmen_log(std::string_view bytes);
 /// after writing and reading. Returns how many of the two were read. Throws BrokenPromise.
 std::size_t check_map_file(std::string_view bytes);
 
+/// Takes `bytes` as what came over the line of a SICK laser, through the decoder, cut in several
+/// ways, and through the driver. Returns how many telegrams the decoder found. Throws
+/// BrokenPromise.
+std::size_t check_sick_decoder(std::string_view bytes);
+
 }  // namespace topogeo::fuzz

@@ -50,6 +50,10 @@ TEST(FuzzSeeds, MapFilesPass) {
   expect_all_pass("map_file", [](const std::string& bytes) { check_map_file(bytes); });
 }
 
+TEST(FuzzSeeds, LaserBytesPass) {
+  expect_all_pass("sick_decoder", [](const std::string& bytes) { check_sick_decoder(bytes); });
+}
+
 // The checks are worth something only where the inputs reach the code behind the reader.
 TEST(FuzzSeeds, ReachTheMaps) {
   const auto maps = [](const char* name) {
@@ -61,6 +65,16 @@ TEST(FuzzSeeds, ReachTheMaps) {
   EXPECT_EQ(maps("nothing_usable"), 0U);
   EXPECT_EQ(check_map_file(content(seeds("map_file") / "whole_file")), 2U);
   EXPECT_EQ(check_map_file(content(seeds("map_file") / "body")), 1U);
+}
+
+TEST(FuzzSeeds, ReachTheTelegrams) {
+  const auto telegrams = [](const char* name) {
+    return check_sick_decoder(content(seeds("sick_decoder") / name));
+  };
+  EXPECT_EQ(telegrams("start_up"), 8U);
+  EXPECT_EQ(telegrams("late"), 1U);
+  EXPECT_EQ(telegrams("false_header"), 2U);
+  EXPECT_EQ(telegrams("commands"), 0U);
 }
 
 }  // namespace
