@@ -143,88 +143,129 @@ void collect(const localization::TrackedStep& step, const Pose2& truth, Samples&
        (step.predicted.T_a_b.position_m() - truth.position_m()).norm() < 1.0});
 }
 
-Outcome run(std::uint64_t seed, Calibration& calibration, Samples& samples) {
-  const simulation::World world = floor_of(seed);
-  const pipeline::Config config;
-  const simulation::SimulatedLog first = simulation::simulate_log(world, options_of(seed));
-  pipeline::MappingRun mapping(config, "robot");
-  for (const scan::Scan& scan : first.scans) mapping.add(scan);
-  storage::MapDocument document = mapping.finish();
+/// A floor that was mapped in one drive.
+struct MappedFloor {
+  simulation::World world;
+  simulation::SimulatedLog drive;
+  std::shared_ptr<const localization::StoredMap> map;
   TruthInMap truth;
-  for (const topomap::StopPose& stop : document.trajectory.stops) {
-    truth.T_map_stop.push_back(stop.T_map_robot);
-    truth.T_world_stop.push_back(
-        first.T_world_robot[document.local_maps[stop.local_map_id].sequence]);
-  }
+};
 
+MappedFloor map_floor(std::uint64_t seed, const pipeline::Config& config) {
+  MappedFloor floor{floor_of(seed), {}, {}, {}};
+  floor.drive = simulation::simulate_log(floor.world, options_of(seed));
+  pipeline::MappingRun mapping(config, "robot");
+  for (const scan::Scan& scan : floor.drive.scans) mapping.add(scan);
+  storage::MapDocument document = mapping.finish();
+  for (const topomap::StopPose& stop : document.trajectory.stops) {
+    floor.truth.T_map_stop.push_back(stop.T_map_robot);
+    floor.truth.T_world_stop.push_back(
+        floor.drive.T_world_robot[document.local_maps[stop.local_map_id].sequence]);
+  }
+  auto stored = std::make_shared<localization::StoredMap>();
+  stored->maps = std::move(document.local_maps);
+  stored->trajectory = document.trajectory;
+  floor.map = std::move(stored);
+  return floor;
+}
+
+/// Another drive on the floor, on which the robot is put down elsewhere.
+simulation::SimulatedLog drive_and_kidnap(const MappedFloor& floor, std::uint64_t seed) {
   simulation::SimulationOptions options = options_of(seed + 1'000'000);
   support::Random random(seed);
-  const double way_m = way_of(first);
+  const double way_m = way_of(floor.drive);
   const double at_m = way_m * (0.25 + 0.25 * random.uniform());
   double to_m = 0.0;
   do {
     to_m = way_m * (0.05 + 0.75 * random.uniform());
-  } while ((place_at(first, at_m) - place_at(first, to_m)).norm() < kLeastJump_m);
+  } while ((place_at(floor.drive, at_m) - place_at(floor.drive, to_m)).norm() < kLeastJump_m);
   options.kidnappings = {{at_m, to_m}};
-  const simulation::SimulatedLog second = simulation::simulate_log(world, options);
+  return simulation::simulate_log(floor.world, options);
+}
 
-  const auto stored = std::make_shared<localization::StoredMap>();
-  stored->maps = std::move(document.local_maps);
-  stored->trajectory = document.trajectory;
-  localization::InProcessPool pool;
-  localization::MapLocalizer localizer(config.localizer, stored, pool);
-  localizer.set_pose(truth(second.T_world_robot.front()),
-                     Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());
-  pipeline::LocalMapper mapper(config.local_mapper, "robot");
+bool is_known(LocalizationState state) {
+  return state == LocalizationState::kTracking || state == LocalizationState::kAmbiguous;
+}
 
-  Outcome outcome;
-  int stops_since = 0;
-  double way_since_m = 0.0;
-  for (std::size_t i = 0; i < second.scans.size(); ++i) {
-    if (i > 0) {
-      const double step_m =
-          (second.T_world_robot[i].position_m() - second.T_world_robot[i - 1].position_m()).norm();
-      if (step_m > 0.5 * kLeastJump_m) {
-        outcome.jumped = true;
-      } else if (outcome.jumped) {
-        way_since_m += step_m;
-      }
-    }
-    const auto map = mapper.add(second.scans[i]);
-    if (!map) continue;
-    localizer.add(std::make_shared<const topomap::LocalMap>(*map));
-    const localization::Belief belief = localizer.belief();
-    const Pose2 here = truth(second.T_world_robot[i]);
-    const bool right = is_right(localizer.stops().back().T_map_robot, here);
-    if (localizer.last_step()) collect(*localizer.last_step(), here, samples);
-    const bool known = belief.state == LocalizationState::kTracking ||
-                       belief.state == LocalizationState::kAmbiguous;
-    if (known) {
-      const auto bin = std::min<std::size_t>(9, static_cast<std::size_t>(belief.confidence * 10.0));
-      ++calibration.stops[bin];
-      calibration.right[bin] += right ? 1 : 0;
-      calibration.told[bin] += belief.confidence;
-    }
-    if (belief.state == LocalizationState::kTracking) {
-      ++calibration.tracking;
-      calibration.tracking_wrong += right ? 0 : 1;
-    }
-    if (!outcome.jumped) {
-      ++outcome.stops_before;
-      outcome.lost_before += known ? 0 : 1;
-      continue;
-    }
-    ++stops_since;
-    if (!known && outcome.stops_until_lost < 0) outcome.stops_until_lost = stops_since;
-    if (outcome.stops_until_lost < 0) continue;
-    if (belief.state != LocalizationState::kTracking || outcome.way_until_right_m >= 0.0) continue;
-    if (right) {
-      outcome.way_until_right_m = way_since_m;
-    } else {
-      outcome.recovered_wrong = true;
+/// Tells the outcome of one run from what the localizer says at each stop.
+class Watch {
+ public:
+  void add_way(double step_m) {
+    if (step_m > 0.5 * kLeastJump_m) {
+      outcome_.jumped = true;
+    } else if (outcome_.jumped) {
+      way_since_m_ += step_m;
     }
   }
-  return outcome;
+
+  void add_stop(LocalizationState state, bool right) {
+    if (!outcome_.jumped) {
+      ++outcome_.stops_before;
+      outcome_.lost_before += is_known(state) ? 0 : 1;
+      return;
+    }
+    ++stops_since_;
+    if (!is_known(state) && outcome_.stops_until_lost < 0) {
+      outcome_.stops_until_lost = stops_since_;
+    }
+    if (outcome_.stops_until_lost < 0 || state != LocalizationState::kTracking ||
+        outcome_.way_until_right_m >= 0.0) {
+      return;
+    }
+    if (right) {
+      outcome_.way_until_right_m = way_since_m_;
+    } else {
+      outcome_.recovered_wrong = true;
+    }
+  }
+
+  [[nodiscard]] const Outcome& outcome() const { return outcome_; }
+
+ private:
+  Outcome outcome_;
+  int stops_since_ = 0;
+  double way_since_m_ = 0.0;
+};
+
+void count(const localization::Belief& belief, bool right, Calibration& calibration) {
+  if (is_known(belief.state)) {
+    const auto bin = std::min<std::size_t>(9, static_cast<std::size_t>(belief.confidence * 10.0));
+    ++calibration.stops[bin];
+    calibration.right[bin] += right ? 1 : 0;
+    calibration.told[bin] += belief.confidence;
+  }
+  if (belief.state == LocalizationState::kTracking) {
+    ++calibration.tracking;
+    calibration.tracking_wrong += right ? 0 : 1;
+  }
+}
+
+Outcome run(std::uint64_t seed, Calibration& calibration, Samples& samples) {
+  const pipeline::Config config;
+  const MappedFloor floor = map_floor(seed, config);
+  const simulation::SimulatedLog drive = drive_and_kidnap(floor, seed);
+  localization::InProcessPool pool;
+  localization::MapLocalizer localizer(config.localizer, floor.map, pool);
+  localizer.set_pose(floor.truth(drive.T_world_robot.front()),
+                     Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal());
+  pipeline::LocalMapper mapper(config.local_mapper, "robot");
+  Watch watch;
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    const Pose2& T_world_robot = drive.T_world_robot[i];
+    if (i > 0) {
+      watch.add_way((T_world_robot.position_m() - drive.T_world_robot[i - 1].position_m()).norm());
+    }
+    const auto map = mapper.add(drive.scans[i]);
+    if (!map) continue;
+    localizer.add(std::make_shared<const topomap::LocalMap>(*map));
+    const Pose2 here = floor.truth(T_world_robot);
+    const bool right = is_right(localizer.stops().back().T_map_robot, here);
+    if (localizer.last_step()) collect(*localizer.last_step(), here, samples);
+    const localization::Belief belief = localizer.belief();
+    count(belief, right, calibration);
+    watch.add_stop(belief.state, right);
+  }
+  return watch.outcome();
 }
 
 /// Newton's method, with a small penalty that keeps the weights finite.
