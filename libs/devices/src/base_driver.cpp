@@ -20,10 +20,9 @@ constexpr std::int64_t kFirstReportLag_ns = 100'000'000;
 constexpr std::int64_t kShortestProbe_ns = 200'000'000;
 constexpr std::int64_t kLongestProbe_ns = 5'000'000'000;
 constexpr std::int64_t kProbesPerSilence = 20;
-/// So many questions without any answer, and the base is set up all the same: it may not answer in
-/// the dialect that it is in.
-constexpr unsigned kProbesPerStart = 5;
-constexpr std::string_view kProbeAnswer = "BV";
+/// A base that has not answered for so long is set up all the same: it may not understand the
+/// question. Not sooner, because that makes the reports of one that has just come back start anew.
+constexpr std::int64_t kBlindStart_ns = 15 * kSecond_ns;
 constexpr double kBelievedBattery_v = 100.0;  // and from 1 V on
 
 std::int64_t nanoseconds(double seconds) {
@@ -61,9 +60,10 @@ BaseDriver::BaseDriver(const BaseSettings& settings)
 void BaseDriver::opened(std::int64_t now_ns) {
   offline_reason_.clear();
   orders_.clear();
+  phase_ = Phase::kClosed;
   heard_ns_ = now_ns;
   free_ns_ = now_ns;
-  deaf_until_ns_ = now_ns;
+  std::visit([](auto& decoder) { decoder.reset(); }, decoder_);
   start(now_ns);
   tick(now_ns);
 }
@@ -78,11 +78,12 @@ void BaseDriver::lost(std::int64_t now_ns) {
 
 /// Says everything that the base has to know, from the settings of the line on.
 void BaseDriver::start(std::int64_t now_ns) {
+  reconnects_ = phase_ == Phase::kProbing;
   phase_ = Phase::kStarting;
   ++status_.starts;
-  probes_ = 0;
+  started_ns_ = now_ns;
+  answered_ = false;
   script_.clear();
-  std::visit([](auto& decoder) { decoder.reset(); }, decoder_);
   motion_.want_halt();
   motion_.forget();
   watch_.restart(now_ns);
@@ -91,11 +92,10 @@ void BaseDriver::start(std::int64_t now_ns) {
   const bool binary = settings_.dialect == BaseDialect::kBinary;
   // The line may hold the start of a command already.
   script_.push_back({{settings_.line, bytes_of(binary ? "\rBE FFFF\rDM\r" : "\r")},
-                     binary ? nanoseconds(settings_.direct_mode_wait_s) : gap_ns,
-                     binary});
-  if (binary) script_.push_back({{{}, std::vector<std::uint8_t>(kMcpSyncZeros)}, gap_ns, false});
+                     binary ? nanoseconds(settings_.direct_mode_wait_s) : gap_ns});
+  if (binary) script_.push_back({{{}, std::vector<std::uint8_t>(kMcpSyncZeros)}, gap_ns});
   for (const McpOrder& order : set_up_orders(settings_)) {
-    Write write{{}, gap_ns, false};
+    Write write{{}, gap_ns};
     if (binary) {
       const McpPacket packet = binary_packet(order);
       write.order.bytes.assign(packet.begin(), packet.end());
@@ -124,14 +124,13 @@ void BaseDriver::probe(std::int64_t now_ns) {
   phase_ = Phase::kProbing;
   phase_until_ns_ = now_ns + std::clamp((now_ns - heard_ns_) / kProbesPerSilence, kShortestProbe_ns,
                                         kLongestProbe_ns);
-  ++probes_;
   probe_answer_.clear();
   // Any base that has just been switched on speaks ASCII.
-  write(Write{{{}, bytes_of("\rBV\r")}, nanoseconds(settings_.write_gap_s), false}, now_ns);
+  write(Write{{{}, bytes_of("\rBV\r")}, nanoseconds(settings_.write_gap_s)}, now_ns);
 }
 
 void BaseDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
-  if (phase_ == Phase::kClosed || bytes.empty() || now_ns < deaf_until_ns_) return;
+  if (phase_ == Phase::kClosed || bytes.empty()) return;
   std::vector<McpMessage> messages;
   std::visit([&](auto& decoder) { decoder.decode(bytes, messages); }, decoder_);
   for (const McpMessage& message : messages) {
@@ -141,13 +140,13 @@ void BaseDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_n
   tick(now_ns);
 }
 
-/// A base that answers in ASCII has to be set up. In the binary dialect any other byte may begin a
-/// report, which would say that nothing has to be done.
+/// A base that echoes, or speaks ASCII though it should not, was switched on anew. Anything else
+/// may begin a report, which would say that nothing has to be done.
 bool BaseDriver::answered(std::span<const std::uint8_t> bytes) {
-  if (settings_.dialect == BaseDialect::kAscii) return true;
+  const std::string_view sign = settings_.dialect == BaseDialect::kAscii ? "BV\r" : "BV";
   probe_answer_.append(bytes.begin(), bytes.end());
-  if (probe_answer_.find(kProbeAnswer) != std::string::npos) return true;
-  probe_answer_.erase(0, probe_answer_.size() - std::min<std::size_t>(probe_answer_.size(), 1));
+  if (probe_answer_.find(sign) != std::string::npos) return true;
+  probe_answer_.erase(0, probe_answer_.size() - std::min(probe_answer_.size(), sign.size() - 1));
   return false;
 }
 
@@ -171,13 +170,14 @@ void BaseDriver::take(const McpReport& report, std::int64_t now_ns) {
     motion_.forget();
     watch_.restart(now_ns);
   }
-  if (phase_ == Phase::kProbing && !restarted) {
+  const bool again = phase_ == Phase::kProbing || (phase_ == Phase::kStarting && reconnects_);
+  if (again && !restarted) {
     // It was silent and goes on as before: no need to set it up again. It may be in the middle of
     // our question.
+    script_.clear();
     if (settings_.dialect == BaseDialect::kBinary) {
-      script_.push_back({{{}, std::vector<std::uint8_t>(kMcpSyncZeros)},
-                         nanoseconds(settings_.write_gap_s),
-                         false});
+      script_.push_back(
+          {{{}, std::vector<std::uint8_t>(kMcpSyncZeros)}, nanoseconds(settings_.write_gap_s)});
     }
     motion_.forget();
     watch_.restart(now_ns);
@@ -226,10 +226,10 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
       break;
     case McpEventKind::kLostSync:
       // What we said last was not understood, whatever it was.
+      answered_ = true;
       if (phase_ != Phase::kRunning) break;
-      script_.push_front({{{}, std::vector<std::uint8_t>(kMcpSyncZeros)},
-                          nanoseconds(settings_.write_gap_s),
-                          false});
+      script_.push_front(
+          {{{}, std::vector<std::uint8_t>(kMcpSyncZeros)}, nanoseconds(settings_.write_gap_s)});
       motion_.forget();
       refresh_ns_ = now_ns;
       break;
@@ -239,6 +239,8 @@ void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
 }
 
 void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
+  // Unless reports follow, too, it is set up when the next question would be due.
+  answered_ = true;
   if (answer.command != McpCommand::kBatteryVoltage) return;
   const double battery_v = 0.1 * answer.value;
   if (battery_v < 1.0 || battery_v > kBelievedBattery_v) return;
@@ -274,7 +276,7 @@ void BaseDriver::check_time_outs(std::int64_t now_ns) {
     probe(now_ns);
   }
   if (phase_ == Phase::kProbing && now_ns >= phase_until_ns_) {
-    if (probes_ >= kProbesPerStart) {
+    if (answered_ || now_ns >= started_ns_ + kBlindStart_ns) {
       start(now_ns);
     } else {
       probe(now_ns);
@@ -356,7 +358,7 @@ std::optional<McpOrder> BaseDriver::next_order(std::int64_t now_ns) {
 }
 
 void BaseDriver::write(const McpOrder& order, std::int64_t now_ns) {
-  Write write_order{{}, nanoseconds(settings_.write_gap_s), false};
+  Write write_order{{}, nanoseconds(settings_.write_gap_s)};
   if (settings_.dialect == BaseDialect::kBinary) {
     const McpPacket packet = binary_packet(order);
     write_order.order.bytes.assign(packet.begin(), packet.end());
@@ -368,9 +370,7 @@ void BaseDriver::write(const McpOrder& order, std::int64_t now_ns) {
 
 void BaseDriver::write(Write next, std::int64_t now_ns) {
   const std::int64_t line_ns = line_time_ns(next.order.bytes.size(), settings_.line);
-  free_ns_ = std::max(free_ns_, now_ns) +
-             (next.deaf ? line_ns + next.pause_ns : std::max(line_ns, next.pause_ns));
-  if (next.deaf) deaf_until_ns_ = free_ns_;
+  free_ns_ = std::max(free_ns_, now_ns) + std::max(line_ns, next.pause_ns);
   orders_.push_back(std::move(next.order));
   more_to_say_ = true;
 }

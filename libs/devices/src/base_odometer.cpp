@@ -13,7 +13,7 @@ constexpr std::int64_t kSlewDivisor = 50;  // 2 %
 constexpr std::int64_t kEarliest_ns = 25'000'000;
 /// A host that was busy for longer than this takes the base for restarted.
 constexpr std::int64_t kLatest_ns = 3'000'000'000;
-constexpr std::int64_t kPause_ns = 500'000'000;
+constexpr std::int64_t kPause_ns = 1'000'000'000;
 constexpr double kFastest_mps = 2.5;  // what 16 bits of encoder counts can say, and a little
 /// A device's clock is not more wrong than one part in this.
 constexpr std::int64_t kDriftDivisor = 1000;
@@ -22,7 +22,15 @@ constexpr std::int64_t kSettled_ns = 2'000'000'000;
 /// What the pose may move beyond the speeds of two reports: their registers are coarse.
 constexpr double kMargin_m = 0.03;
 constexpr double kMargin_rad = 0.03;
-constexpr double kSpeedMargin = 1.3;
+constexpr std::int64_t kFreshMargin_ns = 1'000'000'000;
+/// After so many reports in succession whose ways do not fit their speeds or whose clocks
+/// do not fit ours, neither is believed any more.
+constexpr unsigned kManyDoubts = 4;
+/// Reports' speeds may be so wrong, as a share,
+constexpr double kSpeedDoubt = 0.5;
+/// and change so fast within a report period without a trace in them.
+constexpr double kHardest_mps2 = 2.0;
+constexpr double kHardest_radps2 = 4.0;
 
 }  // namespace
 
@@ -66,31 +74,49 @@ std::int64_t DeviceClock::map(std::int64_t device_ns, std::int64_t arrival_ns) {
 BaseOdometer::BaseOdometer(const BaseSettings& settings)
     : units_(settings.calibration), tracker_(units_), host_clock_(report_line_time_ns(settings)) {}
 
+/// Without a checksum one wrong digit would move the robot. Its way has to fit the speeds that the
+/// two reports tell, or in any case `loosely` what a base can do.
 bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
-                                   std::int64_t elapsed_ns) const {
+                                   std::int64_t elapsed_ns, bool loosely) const {
   McpPoseTracker tracker(units_);
   const geometry::Pose2 T_base_from = tracker.track(from);
   const geometry::Pose2 moved = geometry::between(T_base_from, tracker.track(to));
   const double elapsed_s = 1e-9 * static_cast<double>(elapsed_ns);
-  const double linear_mps =
-      std::max(std::abs(units_.linear_mps(from)), std::abs(units_.linear_mps(to)));
-  const double angular_radps =
-      std::max(std::abs(units_.angular_radps(from)), std::abs(units_.angular_radps(to)));
-  // In a pause the robot may have moved and stopped again.
-  const bool pause = elapsed_ns > kPause_ns;
-  const double largest_m =
-      kMargin_m + (pause ? kFastest_mps : kSpeedMargin * linear_mps) * elapsed_s;
-  const double largest_rad = kMargin_rad + kSpeedMargin * angular_radps * elapsed_s;
-  return moved.position_m().norm() <= largest_m &&
-         (pause || std::abs(moved.theta_rad) <= largest_rad);
+  if (loosely || elapsed_ns > kPause_ns) {  // in a pause it may have moved and stopped again
+    return moved.position_m().norm() <= kMargin_m + kFastest_mps * elapsed_s;
+  }
+  const auto fits = [elapsed_s](double way, double speed_from, double speed_to, double acceleration,
+                                double margin) {
+    const double speed = std::max(std::abs(speed_from), std::abs(speed_to));
+    const double doubt =
+        kSpeedDoubt * speed + std::abs(speed_to - speed_from) / 2 + acceleration * elapsed_s / 4;
+    return std::abs(way - elapsed_s * (speed_from + speed_to) / 2) <= margin + doubt * elapsed_s;
+  };
+  const geometry::Pose2 half_turn{0.0, 0.0, -0.5 * moved.theta_rad};
+  const Eigen::Vector2d way_m = half_turn * moved.position_m();
+  return fits(way_m.x(), units_.linear_mps(from), units_.linear_mps(to), kHardest_mps2,
+              kMargin_m) &&
+         std::abs(way_m.y()) <= kMargin_m &&
+         fits(moved.theta_rad, units_.angular_radps(from), units_.angular_radps(to),
+              kHardest_radps2, kMargin_rad);
 }
 
-bool BaseOdometer::follows(const McpReport& report, std::int64_t arrival_ns) const {
+/// The base's clock has gone on since the last report as ours did.
+bool BaseOdometer::clock_follows(const McpReport& report, std::int64_t arrival_ns) const {
   const std::int64_t elapsed_ns = base_clock_.since_last_ns(report.wide(McpField::kClock));
   if (elapsed_ns <= 0) return false;
   const std::int64_t late_ns = host_clock_.lateness_ns(base_ns_ + elapsed_ns, arrival_ns);
-  return late_ns >= -kEarliest_ns - elapsed_ns / kDriftDivisor && late_ns <= kLatest_ns &&
-         moved_plausibly(last_->report, report, elapsed_ns);
+  return late_ns >= -kEarliest_ns - elapsed_ns / kDriftDivisor && late_ns <= kLatest_ns;
+}
+
+bool BaseOdometer::follows_doubted(const McpReport& report, std::int64_t arrival_ns) const {
+  if (!doubted_) return false;
+  const auto ticks = static_cast<std::int32_t>(report.wide(McpField::kClock) -
+                                               doubted_->report.wide(McpField::kClock));
+  const std::int64_t elapsed_ns = ticks_ns(ticks);
+  const std::int64_t arrived_ns = arrival_ns - doubted_->arrival_ns;
+  return elapsed_ns > 0 && std::abs(elapsed_ns - arrived_ns) < kLatest_ns &&
+         moved_plausibly(doubted_->report, report, elapsed_ns, doubts_ >= kManyDoubts);
 }
 
 /// The base's registers begin anew; the robot stands where it was.
@@ -107,6 +133,7 @@ BaseOdometry BaseOdometer::accept(const McpReport& report, std::int64_t arrival_
   T_odom_robot_ = T_odom_base_ * tracker_.track(report);
   last_ = Reference{report, arrival_ns};
   doubted_.reset();
+  doubts_ = 0;
   return {host_clock_.map(base_ns_, arrival_ns), T_odom_robot_, units_.linear_mps(report),
           units_.angular_radps(report)};
 }
@@ -116,19 +143,24 @@ BaseOdometer::Result BaseOdometer::take(const McpReport& report, std::int64_t ar
     start_from(report);
     return {Verdict::kGood, accept(report, arrival_ns)};
   }
-  if (follows(report, arrival_ns)) return {Verdict::kGood, accept(report, arrival_ns)};
-  if (doubted_) {
-    const auto ticks = static_cast<std::int32_t>(report.wide(McpField::kClock) -
-                                                 doubted_->report.wide(McpField::kClock));
-    const std::int64_t elapsed_ns = ticks_ns(ticks);
-    const std::int64_t arrived_ns = arrival_ns - doubted_->arrival_ns;
-    if (elapsed_ns > 0 && std::abs(elapsed_ns - arrived_ns) < kLatest_ns &&
-        moved_plausibly(doubted_->report, report, elapsed_ns)) {
+  const bool clock_goes_on = clock_follows(report, arrival_ns);
+  const std::int64_t elapsed_ns = base_clock_.since_last_ns(report.wide(McpField::kClock));
+  if (clock_goes_on && moved_plausibly(last_->report, report, elapsed_ns, false)) {
+    return {Verdict::kGood, accept(report, arrival_ns)};
+  }
+  if (follows_doubted(report, arrival_ns)) {
+    // While its clock goes on the registers are the same ones: it was the last report that erred.
+    if (clock_goes_on) return {Verdict::kGood, accept(report, arrival_ns)};
+    // A base that was switched on since then has a clock that began then.
+    const bool fresh =
+        ticks_ns(report.wide(McpField::kClock)) <= arrival_ns - last_->arrival_ns + kFreshMargin_ns;
+    if (fresh || doubts_ >= kManyDoubts) {
       start_from(doubted_->report);
       return {Verdict::kRestarted, accept(report, arrival_ns)};
     }
   }
   doubted_ = Reference{report, arrival_ns};
+  ++doubts_;
   return {Verdict::kImplausible, {}};
 }
 

@@ -24,6 +24,8 @@ constexpr double kOrigin = 0x8000;
 constexpr double kLowBattery_v = 44.0;
 /// While motors turn, ticks are due so often that speeds are smooth.
 constexpr std::int64_t kMotorStep_ns = 10'000'000;
+/// A report that is cut keeps so many bytes and loses three times as many.
+constexpr std::size_t kLeastCut = 4;
 /// A report that would wait longer than this for the line is left out.
 constexpr std::int64_t kBacklog_ns = 50'000'000;
 
@@ -248,7 +250,7 @@ void McpEmulator::damage(std::vector<std::uint8_t>& report) {
   }
   if (truncate_ > 0) {
     --truncate_;
-    report.resize(random_.below(report.size()));
+    report.resize(kLeastCut + random_.below(report.size() - 4 * kLeastCut));
   }
 }
 

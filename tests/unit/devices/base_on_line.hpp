@@ -87,8 +87,12 @@ class RollingBase final : public simulation::SerialDevice {
 
 /// Both with the same line settings and calibration.
 struct BaseOnLine {
-  explicit BaseOnLine(const BaseSettings& settings, simulation::McpEmulatorSettings emulated = {})
-      : base(matched(settings, emulated)), driver(settings), line(driver, base) {}
+  explicit BaseOnLine(const BaseSettings& base_settings,
+                      simulation::McpEmulatorSettings emulated = {})
+      : settings(base_settings),
+        base(matched(base_settings, emulated)),
+        driver(base_settings),
+        line(driver, base) {}
 
   static simulation::McpEmulatorSettings matched(const BaseSettings& settings,
                                                  simulation::McpEmulatorSettings emulated) {
@@ -119,6 +123,15 @@ struct BaseOnLine {
     return pass_until(limit_ns, [this] { return driver.status().state == BaseState::kReady; });
   }
 
+  /// Lets time pass until the next odometry.
+  bool pass_to_odometry(std::int64_t limit_ns) {
+    const std::uint64_t before = all_odometries;
+    return line.run_until(limit_ns, [&] {
+      compare();
+      return all_odometries > before;
+    });
+  }
+
   /// Takes the odometry and compares it with where the wheels were at its stamps.
   void compare() {
     for (const BaseOdometry& odometry : driver.take_odometry()) {
@@ -126,10 +139,12 @@ struct BaseOnLine {
       if (odometry.stamp_ns > line.now_ns()) ++stamps_ahead;
       last_stamp_ns = odometry.stamp_ns;
       ++odometries;
+      ++all_odometries;
       const geometry::Pose2 T_start_robot = base.at(odometry.stamp_ns);
       if (odometries == 1) T_odom_start = odometry.T_odom_robot * geometry::inverse(T_start_robot);
       const Eigen::Vector3d error =
           geometry::difference(odometry.T_odom_robot, T_odom_start * T_start_robot);
+      if (error.head<2>().norm() > right_m || std::abs(error.z()) > right_rad) ++wrong;
       worst_m = std::max(worst_m, error.head<2>().norm());
       worst_rad = std::max(worst_rad, std::abs(error.z()));
       T_odom_robot = odometry.T_odom_robot;
@@ -142,13 +157,18 @@ struct BaseOnLine {
     odometries = 0;
   }
 
+  BaseSettings settings;
   RollingBase base;
   BaseDriver driver;
   SimulatedLine line;
-  std::uint64_t odometries = 0;
+  std::uint64_t odometries = 0;  ///< since the comparison began
+  std::uint64_t all_odometries = 0;
   std::uint64_t stamps_back = 0;
   std::uint64_t stamps_ahead = 0;
   std::int64_t last_stamp_ns = -1;
+  double right_m = 0.03;  ///< odometry that is farther off is wrong
+  double right_rad = 0.03;
+  std::uint64_t wrong = 0;
   double worst_m = 0.0;
   double worst_rad = 0.0;
   geometry::Pose2 T_odom_start{};

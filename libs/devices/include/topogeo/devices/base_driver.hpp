@@ -108,7 +108,6 @@ class BaseDriver final : public SerialDriver {
   struct Write {
     LineOrder order{};
     std::int64_t pause_ns = 0;  ///< to the next, in any case
-    bool deaf = false;          ///< what comes in this pause is thrown away
   };
   struct Primitive {
     std::int64_t until_ns = 0;
@@ -154,11 +153,12 @@ class BaseDriver final : public SerialDriver {
   Phase phase_ = Phase::kClosed;
   std::deque<Write> script_{};
   std::vector<LineOrder> orders_{};
-  std::int64_t free_ns_ = 0;  // when the next thing may be written
-  std::int64_t deaf_until_ns_ = 0;
+  std::int64_t free_ns_ = 0;         // when the next thing may be written
   std::int64_t phase_until_ns_ = 0;  // of kWaiting and kProbing
-  unsigned probes_ = 0;
-  std::string probe_answer_{};  // the end of what came since the last question
+  bool reconnects_ = false;          // kStarting after a silence
+  bool answered_ = false;            // something did, since the last start
+  std::int64_t started_ns_ = 0;
+  std::string probe_answer_{};   // the end of what came since the last question
   std::int64_t heard_ns_ = 0;    // when the last usable report came
   std::int64_t refresh_ns_ = 0;  // when the watchdog is due
   std::int64_t battery_ns_ = 0;  // when the battery is to be asked

@@ -58,7 +58,7 @@ class BaseOdometer {
   enum class Verdict : std::uint8_t {
     kGood,
     kImplausible,  ///< no base can have sent it after the one before
-    kRestarted     ///< the second in succession that goes on from another start; usable
+    kRestarted     ///< the second in succession with another clock; usable
   };
   struct Result {
     Verdict verdict = Verdict::kGood;
@@ -72,9 +72,10 @@ class BaseOdometer {
     McpReport report{};
     std::int64_t arrival_ns = 0;
   };
-  [[nodiscard]] bool follows(const McpReport& report, std::int64_t arrival_ns) const;
+  [[nodiscard]] bool clock_follows(const McpReport& report, std::int64_t arrival_ns) const;
+  [[nodiscard]] bool follows_doubted(const McpReport& report, std::int64_t arrival_ns) const;
   [[nodiscard]] bool moved_plausibly(const McpReport& from, const McpReport& to,
-                                     std::int64_t elapsed_ns) const;
+                                     std::int64_t elapsed_ns, bool loosely) const;
   BaseOdometry accept(const McpReport& report, std::int64_t arrival_ns);
   void start_from(const McpReport& report);
 
@@ -84,6 +85,7 @@ class BaseOdometer {
   DeviceClock host_clock_;
   std::optional<Reference> last_{};     // accepted
   std::optional<Reference> doubted_{};  // since then
+  unsigned doubts_ = 0;
   std::int64_t base_ns_ = 0;
   geometry::Pose2 T_odom_base_{};
   geometry::Pose2 T_odom_robot_{};
