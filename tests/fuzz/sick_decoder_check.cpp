@@ -55,9 +55,9 @@ void check_found(std::span<const std::uint8_t> bytes, const std::vector<Bytes>& 
   auto rest = bytes.begin();
   for (const Bytes& event : found) {
     if (event.size() == 1) continue;
-    const auto [start, end] = std::ranges::search(std::ranges::subrange(rest, bytes.end()), event);
+    const auto start = std::search(rest, bytes.end(), event.begin(), event.end());
     require(start != bytes.end(), "a telegram stands in the stream, behind the one before");
-    rest = end;
+    rest = start + static_cast<std::ptrdiff_t>(event.size());
   }
 }
 
