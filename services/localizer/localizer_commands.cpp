@@ -27,20 +27,37 @@ CommandDesk::Answer LocalizerService::carry_out(const service::LocalizationComma
       localizer_.map_localizer()->search();
       return {true, "searches the whole map from the next stop on"};
     case msg::kCommandSwitchToLocalization:
-      if (!maps) return {false, "it localizes in a finished map already"};
-      if (finished_) return {false, "the log has ended"};
-      try {
-        if (maps_.empty()) return {false, "there is no map yet"};
-        localizer_.freeze(maps_);
-      } catch (const std::exception& error) {
-        return {false, error.what()};
-      }
-      return {true, "the map of " + std::to_string(maps_.size()) + " stops stays as it is"};
+      return stop_mapping();
     case msg::kCommandSwitchToMapping:
-      if (maps) return {false, "it makes a map already"};
-      return {false, "a finished map is not continued"};
+      return resume_mapping();
   }
   return {false, "unknown command"};
+}
+
+CommandDesk::Answer LocalizerService::stop_mapping() {
+  if (!localizer_.mapping()) return {false, "it localizes in a finished map already"};
+  if (finished_) return {false, "the log has ended"};
+  if (stops_in_map() == 0) return {false, "there is no map yet"};
+  try {
+    localizer_.session()->stop_mapping();
+  } catch (const std::exception& error) {
+    return {false, error.what()};
+  }
+  return {true, "the map of " + std::to_string(stops_in_map()) + " stops stays as it is"};
+}
+
+CommandDesk::Answer LocalizerService::resume_mapping() {
+  if (localizer_.mapping()) return {false, "it makes a map already"};
+  if (localizer_.session() == nullptr) {
+    return {false, "the map was given with --map to stay as it is; start with --continue"};
+  }
+  if (finished_) return {false, "the log has ended"};
+  try {
+    localizer_.session()->resume_mapping();
+  } catch (const std::exception& error) {
+    return {false, error.what()};
+  }
+  return {true, "new stops extend the map of " + std::to_string(stops_in_map()) + " stops"};
 }
 
 // The pose is that of now; the localizer wants that of the last stop.

@@ -43,10 +43,17 @@ RemotePoolOptions pool_options(const service::Service& service) {
 
 ActiveSlam make_slam(const service::Service& service, const LocalizerOptions& options,
                      localization::MatchPool& pool) {
-  const localization::LocalizerConfig& config = service.setup().config.config.localizer;
-  if (!options.map) return {config, pool};
+  const pipeline::Config& config = service.setup().config.config;
+  if (!options.map && !options.continued) return {config.localizer, pool};
   try {
-    return {config, pool, pipeline::load_stored_map(*options.map), options.initial_pose};
+    if (options.map) {
+      return {config.localizer, pool, pipeline::load_stored_map(*options.map),
+              ActiveSlam::Use::kLocalize, options.initial_pose};
+    }
+    const auto document =
+        pipeline::load_map_to_continue(*options.continued, config, service.robot_id());
+    return {config.localizer, pool, pipeline::stored_map(*document), ActiveSlam::Use::kContinue,
+            options.initial_pose};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
@@ -152,10 +159,10 @@ void LocalizerService::send_pose() {
   live.stamp_ns = newest_.stamp_ns;
   live.sequence = newest_.sequence;
   live.belief = localizer_->belief();
-  live.mode = localizer_.map_localizer() != nullptr ? msg::kModeLocalization : msg::kModeMapping;
+  live.mode = localizer_.mapping() ? msg::kModeMapping : msg::kModeLocalization;
   live.T_map_robot = pose.T_a_b;
   live.covariance = pose.covariance;
-  live.local_map_id = last_stop_.local_map_id;
+  live.local_map_id = last_stop_.source_id;
   live.trajectory_version = version_;
   // One that cannot be sent now is old by the time it could.
   if (!poses_.write(service::to_msg(live, service_.robot_id()))) {
@@ -212,7 +219,6 @@ void LocalizerService::step(const MapPointer& map) {
   hashes_.push_back(topomap::content_hash(*map));
   localizer_->add(map);
   last_map_ = map;
-  if (localizer_.map_localizer() == nullptr) maps_.push_back(map);
   if (map->stamp_ns >= newest_.stamp_ns) {
     newest_ = {map->stamp_ns, map->sequence, map->T_odom_robot};
   }
@@ -221,12 +227,16 @@ void LocalizerService::step(const MapPointer& map) {
   count();
 }
 
+std::size_t LocalizerService::stops_in_map() const {
+  return localizer_.session() != nullptr ? localizer_.session()->maps().size() : hashes_.size();
+}
+
 void LocalizerService::finish() {
-  const bool maps = localizer_.map_localizer() == nullptr;
-  service_.status().set_state(msg::kServiceRunning,
-                              maps ? "matching revisited places" : "localizing");
+  service_.status().set_state(msg::kServiceRunning, localizer_.map_localizer() == nullptr
+                                                        ? "matching revisited places"
+                                                        : "localizing");
   localizer_->finish();
-  if (!maps && options_.csv) {
+  if (options_.csv && localizer_.session() == nullptr) {
     support::write_file_atomically(*options_.csv,
                                    pipeline::localization_csv(localizer_.map_localizer()->stops()));
   }
@@ -237,7 +247,7 @@ void LocalizerService::finish() {
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stop_.stamp_ns, 0);
   messaging::set_text(end.stage(), "localizer", "stage");
-  const std::size_t stops = localizer_.frozen() ? maps_.size() : hashes_.size();
+  const std::size_t stops = stops_in_map();
   end.count(stops);
   end.last_id(stops == 0 ? 0 : stops - 1);
   end.version(version_);
@@ -245,18 +255,19 @@ void LocalizerService::finish() {
   const localization::SlamCounts& counts = localizer_->counts();
   spdlog::info("{} stops, {} match tasks, {} loop closures", hashes_.size(), counts.tasks,
                sent_closures_.size());
-  service_.status().set_state(msg::kServiceFinished);
+  std::string message;
+  if (localizer_.session() != nullptr) {
+    message = pipeline::continuation_message(*localizer_.session());
+    if (!message.empty()) spdlog::warn("{}", message);
+  }
+  service_.status().set_state(msg::kServiceFinished, message);
 }
 
 // Sends what has changed, or all of it, so that a reader has it whole in one version.
 void LocalizerService::publish(bool whole) {
   const topomap::Trajectory trajectory = localizer_->trajectory();
-  if (localizer_.frozen()) {  // what was published is final
-    if (!trajectory.stops.empty()) last_stop_ = trajectory.stops.back();
-    return;
-  }
   version_ = trajectory.version;
-  if (!trajectory.stops.empty()) last_stop_ = trajectory.stops.back();
+  if (const auto last = localizer_.last_stop()) last_stop_ = *last;
   std::vector<std::uint32_t> numbers = updates_.update(trajectory);
   if (whole) {
     numbers.resize(service::segment_count(trajectory.stops.size()));
@@ -313,6 +324,12 @@ void LocalizerService::count() {
   set("unconfirmed_loops", counts.unconfirmed_loops);
   set("removed_loops", counts.removed_loops);
   set("steps_in_doubt", counts.steps_in_doubt);
+  if (const localization::MappingSession* session = localizer_.session()) {
+    if (options_.continued) {
+      for (const auto& [name, value] : pipeline::continuation_counts(*session)) set(name, value);
+    }
+    set("stops_in_map", stops_in_map());
+  }
   if (const auto* in_map = localizer_.map_localizer()) {
     for (const auto& [name, value] : pipeline::localization_counts(*in_map)) set(name, value);
   }

@@ -29,11 +29,12 @@
 namespace topogeo::localizer {
 
 struct LocalizerOptions {
-  std::uint32_t wait_workers = 0;               ///< workers to wait for before the first step
-  double wait_s = 5.0;                          ///< at most so long, > 0
-  std::optional<std::filesystem::path> map;     ///< to localize in; none: a map is made
-  std::optional<geometry::Pose2> initial_pose;  ///< in that map; none: it is searched for
-  std::optional<std::filesystem::path> csv;     ///< where localization.csv is written at the end
+  std::uint32_t wait_workers = 0;                  ///< workers to wait for before the first step
+  double wait_s = 5.0;                             ///< at most so long, > 0
+  std::optional<std::filesystem::path> map;        ///< to localize in; none: a map is made
+  std::optional<std::filesystem::path> continued;  ///< map to extend; none: one is begun
+  std::optional<geometry::Pose2> initial_pose;     ///< in either; none: it is searched for
+  std::optional<std::filesystem::path> csv;        ///< where localization.csv is written at the end
 };
 
 /// Lives in the loop of its service.
@@ -47,6 +48,7 @@ class LocalizerService {
   void on_map(const msg::LocalMap& message);
   void on_odometry(const msg::Odometry& message);
   void send_pose();
+  [[nodiscard]] std::size_t stops_in_map() const;
   void on_stream_end(const msg::StreamEnd& message);
   /// Has the work done outside of message handlers, which the pool needs.
   void schedule();
@@ -55,6 +57,8 @@ class LocalizerService {
   void carry_out_commands();
   CommandDesk::Answer carry_out(const service::LocalizationCommand& command);
   CommandDesk::Answer set_pose(const service::LocalizationCommand& command);
+  CommandDesk::Answer stop_mapping();
+  CommandDesk::Answer resume_mapping();
   void step(const MapPointer& map);
   void finish();
   void publish(bool whole);
@@ -78,7 +82,6 @@ class LocalizerService {
 
   std::map<std::uint32_t, MapPointer> queue_;  // not yet worked on, by id
   std::vector<std::uint64_t> hashes_;          // of those worked on; index: id
-  std::vector<MapPointer> maps_;               // those that became part of the map; index: id
   MapPointer last_map_;
   topomap::StopPose last_stop_;
   struct Newest {

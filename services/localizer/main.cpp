@@ -27,9 +27,12 @@ int main(int argc, char** argv) {
         CLI::Option* map =
             app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
                 ->type_name("FILE");
+        map->excludes(
+            app.add_option("--continue", options.continued,
+                           "map.pb to extend: the robot finds its place in it, then maps on")
+                ->type_name("FILE"));
         app.add_option("--initial-pose", initial_pose,
                        "where the robot is in it, m and degrees (default: it is searched for)")
-            ->needs(map)
             ->type_name("X,Y,DEG");
         app.add_option("--csv", options.csv, "write pose and state of each stop there at the end")
             ->needs(map)
@@ -37,6 +40,9 @@ int main(int argc, char** argv) {
       },
       [&](const service::Setup& setup) {
         try {
+          if (!initial_pose.empty() && !options.map && !options.continued) {
+            throw service::UsageError("--initial-pose: expected with --map or --continue");
+          }
           if (!initial_pose.empty()) options.initial_pose = pipeline::parse_pose(initial_pose);
         } catch (const std::invalid_argument& error) {
           throw service::UsageError(error.what());

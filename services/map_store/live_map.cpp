@@ -27,7 +27,7 @@ bool LiveMap::step(std::span<const topomap::LocalMap> maps,
   const std::size_t next = used_.size();
   if (next >= std::min(maps.size(), stops.size())) return false;
   used_.push_back(stops[next].T_map_robot);
-  builder_.integrate(maps[next], stops[next].T_map_robot);
+  if (stops[next].located) builder_.integrate(maps[next], stops[next].T_map_robot);
   return true;
 }
 

@@ -1,33 +1,54 @@
 #include "map_input.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "topogeo/service/conversions.hpp"
 
 namespace topogeo::map_store {
 
+MapInput::MapInput(std::vector<topomap::LocalMap> stored)
+    : local_maps_(std::move(stored)), stored_(local_maps_.size()) {}
+
 MapInput::Arrival MapInput::add(topomap::LocalMap map) {
-  const topomap::LocalMap* held = nullptr;
-  if (map.id < local_maps_.size()) {
-    held = &local_maps_[map.id];
-  } else if (const auto found = waiting_.find(map.id); found != waiting_.end()) {
-    held = &found->second;
-  }
-  if (held != nullptr) {
-    const bool same = held->sequence == map.sequence &&
-                      topomap::content_hash(*held) == topomap::content_hash(map);
-    return same ? Arrival::kKnown : Arrival::kDifferent;
-  }
-  waiting_.emplace(map.id, std::move(map));
-  while (!waiting_.empty() && waiting_.begin()->first == local_maps_.size()) {
-    local_maps_.push_back(std::move(waiting_.extract(waiting_.begin()).mapped()));
-  }
+  const Arrived arrived{map.sequence, topomap::content_hash(map)};
+  const auto [held, fresh] = arrived_.try_emplace(map.id, arrived);
+  if (!fresh) return held->second == arrived ? Arrival::kKnown : Arrival::kDifferent;
+  const std::uint32_t id = map.id;
+  waiting_.emplace(id, std::move(map));
+  extend();
   return Arrival::kNew;
 }
 
 void MapInput::add(const msg::TrajectorySegment& message) {
+  check_sources(message);
   trajectory_.add(message);
+  extend();
+}
+
+void MapInput::check_sources(const msg::TrajectorySegment& message) const {
+  for (const msg::StopPose& stop : message.stops()) {
+    const bool stored = stop.source_id() == topomap::kStoredSource;
+    if (stored == (stop.local_map_id() < stored_)) continue;
+    throw std::invalid_argument("stop " + std::to_string(stop.local_map_id()) + " is " +
+                                (stored ? "" : "not ") + "of a stored map, expected the first " +
+                                std::to_string(stored_) +
+                                " to be: localizer and map store need the same --continue");
+  }
+}
+
+void MapInput::extend() {
+  while (const topomap::StopPose* stop = trajectory_.stop(local_maps_.size())) {
+    const auto found = waiting_.find(stop->source_id);
+    if (found == waiting_.end()) return;
+    const auto id = static_cast<std::uint32_t>(local_maps_.size());
+    const bool follows = last_source_ ? *last_source_ + 1 == stop->source_id : stored_ == 0;
+    last_source_ = stop->source_id;
+    local_maps_.push_back(
+        topomap::numbered(std::move(waiting_.extract(found).mapped()), id, id > 0 && !follows));
+  }
 }
 
 void MapInput::add(const msg::LoopClosures& message) {

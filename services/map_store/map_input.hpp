@@ -17,6 +17,9 @@ namespace topogeo::map_store {
 
 class MapInput {
  public:
+  /// `stored` are the local maps of a map that is continued.
+  explicit MapInput(std::vector<topomap::LocalMap> stored = {});
+
   enum class Arrival : std::uint8_t {
     kNew,
     kKnown,     ///< the same map came before
@@ -25,15 +28,16 @@ class MapInput {
   Arrival add(topomap::LocalMap map);
 
   /// Older segments and closures than those held are passed over. They throw std::invalid_argument
-  /// like service::from_msg.
+  /// like service::from_msg, and when the first stops are not those of the stored map, or others
+  /// are said to be.
   void add(const msg::TrajectorySegment& message);
   void add(const msg::LoopClosures& message);
   /// The end of the localizer's stream; the last one counts.
   void set_end(const msg::StreamEnd& message) { end_ = message; }
 
-  /// Local maps without gaps from id 0.
+  /// Local maps of the stops of the trajectory, without gaps, numbered as it numbers them.
   [[nodiscard]] const std::vector<topomap::LocalMap>& local_maps() const { return local_maps_; }
-  /// Maps that wait for one before them.
+  /// Maps that came and that the trajectory does not have, or not yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   /// The newest trajectory, as far as it can be used: stops without gaps whose maps are here.
   [[nodiscard]] topomap::Trajectory newest_trajectory() const;
@@ -46,8 +50,21 @@ class MapInput {
   [[nodiscard]] std::optional<topomap::Trajectory> final_trajectory() const;
 
  private:
+  /// What tells a map from another one of its id.
+  struct Arrived {
+    std::uint64_t sequence = 0;
+    std::uint64_t content_hash = 0;
+    bool operator==(const Arrived&) const = default;
+  };
+  void check_sources(const msg::TrajectorySegment& message) const;
+  /// Takes in the maps that the trajectory names and that are here.
+  void extend();
+
   std::vector<topomap::LocalMap> local_maps_;
-  std::map<std::uint32_t, topomap::LocalMap> waiting_;
+  std::size_t stored_ = 0;                              // of them, from the stored map
+  std::optional<std::uint32_t> last_source_;            // of the last of them that is not
+  std::map<std::uint32_t, Arrived> arrived_;            // by id as sent
+  std::map<std::uint32_t, topomap::LocalMap> waiting_;  // by id as sent
   service::TrajectoryAssembly trajectory_;
   std::vector<topomap::LoopClosure> closures_;
   std::optional<std::uint64_t> closures_version_;

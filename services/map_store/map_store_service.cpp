@@ -33,6 +33,8 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
     : service_(service),
       options_(std::move(options)),
       database_(std::move(database)),
+      input_(options_.continued ? options_.continued->local_maps
+                                : std::vector<topomap::LocalMap>{}),
       live_map_(service.setup().config.config.global_map),
       updates_(service.robot_id()),
       local_maps_(service.participant()),
@@ -166,7 +168,9 @@ void MapStoreService::finish_if_complete() {
   }
 }
 
-void MapStoreService::finish(const topomap::Trajectory& trajectory) {
+storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& trajectory) const {
+  const auto& before = options_.continued;
+  if (before && before->trajectory.stops.size() == trajectory.stops.size()) return *before;
   const pipeline::Config& config = service_.setup().config.config;
   storage::MapDocument document;
   document.robot_id = service_.robot_id();
@@ -175,6 +179,11 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   document.trajectory = trajectory;
   document.loop_closures = input_.usable_closures();
   document.global_map = pipeline::fuse(config.global_map, document.local_maps, trajectory);
+  return document;
+}
+
+void MapStoreService::finish(const topomap::Trajectory& trajectory) {
+  const storage::MapDocument document = final_document(trajectory);
   publish(document.global_map);
   stored_version_ = 0;  // the closures of this version may have come after its poses were stored
   if (!store()) throw std::runtime_error("the database could not be brought up to date");

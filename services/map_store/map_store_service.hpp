@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "topogeo/messaging/reader.hpp"
@@ -13,6 +14,7 @@
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
 #include "topogeo/storage/map_database.hpp"
+#include "topogeo/storage/map_document.hpp"
 
 #include "element_updates.hpp"
 #include "live_map.hpp"
@@ -22,8 +24,9 @@ namespace topogeo::map_store {
 
 struct MapStoreOptions {
   std::filesystem::path directory;
-  std::filesystem::path database;  ///< empty: map.sqlite in the directory
-  std::string title;               ///< of the pictures
+  std::filesystem::path database;                         ///< empty: map.sqlite in the directory
+  std::string title;                                      ///< of the pictures
+  std::shared_ptr<const storage::MapDocument> continued;  ///< map that is extended; null: none
 };
 
 /// Lives in the loop of its service.
@@ -46,6 +49,8 @@ class MapStoreService {
   void work_on_live_map();
   void publish(const topomap::GlobalMap& map);
   void finish_if_complete();
+  /// The map; as it was when it was to be continued and nothing came to it.
+  [[nodiscard]] storage::MapDocument final_document(const topomap::Trajectory& trajectory) const;
   void finish(const topomap::Trajectory& trajectory);
   void count();
 

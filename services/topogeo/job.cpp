@@ -1,5 +1,6 @@
 #include "job.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <numbers>
@@ -27,13 +28,22 @@ pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
 
 Job read_inputs(const JobOptions& options) {
   pipeline::LoadedConfig config = load(options.config);
+  if (options.continued && config.config.localizer.mode != localization::LocalizerMode::kGraph) {
+    throw service::UsageError("--continue: expected localizer.mode graph in the configuration");
+  }
   try {
     if (options.reference) (void)storage::read_trajectory_tum(*options.reference);
     scan::CarmenLogReader reader(options.log, config.config.log);
     const std::uint64_t laser_lines = scan::count_scans(options.log);
     std::shared_ptr<const localization::StoredMap> map;
     if (options.map) map = pipeline::load_stored_map(*options.map);
-    return {options, std::move(config), std::move(reader), std::move(map), laser_lines};
+    std::shared_ptr<const storage::MapDocument> continued;
+    if (options.continued) {
+      continued =
+          pipeline::load_map_to_continue(*options.continued, config.config, options.robot_id);
+    }
+    return {options,        std::move(config),    std::move(reader),
+            std::move(map), std::move(continued), laser_lines};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
@@ -45,6 +55,18 @@ std::string localization_line(const storage::Report& report) {
   std::string line = "localization:";
   for (const auto& [state, count] : report.localization) {
     line += fmt::format("{} {} {}", line.back() == ':' ? "" : ",", count, state);
+  }
+  return line + "\n";
+}
+
+/// What became of a map that was continued; empty otherwise.
+std::string continuation_line(const storage::Report& report) {
+  if (report.continuation.empty()) return {};
+  std::string line = "continued map:";
+  for (const auto& [name, count] : report.continuation) {
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    line += fmt::format("{} {} {}", line.back() == ':' ? "" : ",", count, words);
   }
   return line + "\n";
 }
@@ -80,11 +102,21 @@ void add_log_options(CLI::App& app, JobOptions& options) {
       ->type_name("FILE");
 }
 
-void add_map_options(CLI::App& app, JobOptions& options, bool required) {
-  CLI::Option* map =
-      app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
-          ->type_name("FILE");
-  if (required) map->required();
+void add_map_options(CLI::App& app, JobOptions& options, StoredMapUse use) {
+  CLI::Option* map = nullptr;
+  if (use != StoredMapUse::kContinue) {
+    map = app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
+              ->type_name("FILE");
+  }
+  if (use == StoredMapUse::kLocalize) map->required();
+  if (use != StoredMapUse::kLocalize) {
+    CLI::Option* continued =
+        app.add_option("--continue", options.continued,
+                       "map.pb to extend: the robot finds its place in it, then maps on; the file "
+                       "stays as it is, the whole map is in --out")
+            ->type_name("FILE");
+    if (map != nullptr) map->excludes(continued);
+  }
   app.add_option("--initial-pose", options.initial_pose,
                  "where in that map the log starts, m and degrees (default: it is searched for)")
       ->check([](const std::string& text) -> std::string {
@@ -95,11 +127,13 @@ void add_map_options(CLI::App& app, JobOptions& options, bool required) {
           return error.what();
         }
       })
-      ->needs(map)
       ->type_name("X,Y,DEG");
 }
 
 Job prepare(const JobOptions& options) {
+  if (options.initial_pose && !options.map && !options.continued) {
+    throw service::UsageError("--initial-pose: expected with a stored map, --map or --continue");
+  }
   Job job = read_inputs(options);
   support::check_writable_directory(options.out);
   return job;
@@ -122,7 +156,7 @@ void print_summary(std::ostream& out, const storage::Report& report,
                      report.stops, report.distance_m, report.loop_closures.size())
       << fmt::format("map: {} nodes, {} branches; {} of {} matches accepted\n", report.nodes,
                      report.branches, report.matches_accepted, report.matches_tried)
-      << localization_line(report)
+      << localization_line(report) << continuation_line(report)
       << fmt::format("time: {:.1f} s, CPU {:.1f} s\n", report.wall_s, report.cpu_s) << "results in "
       << directory.string() << ", picture " << (directory / "map.png").string() << '\n';
 }

@@ -25,7 +25,8 @@ struct JobOptions {
   std::string robot_id = "robot";
   std::optional<std::filesystem::path> reference;  ///< trajectory to compare with
   std::optional<std::filesystem::path> map;        ///< to localize in; none: a map is made
-  std::optional<std::string> initial_pose;         ///< "x,y,degrees" in it
+  std::optional<std::filesystem::path> continued;  ///< map to extend; none: one is begun
+  std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either
 };
 
 /// Adds --config and --robot, which every mapping command has.
@@ -33,14 +34,22 @@ void add_common_options(CLI::App& app, JobOptions& options);
 /// Adds --log, --out and --reference as well.
 void add_log_options(CLI::App& app, JobOptions& options);
 
-/// Adds --map and --initial-pose.
-void add_map_options(CLI::App& app, JobOptions& options, bool required);
+/// Which options on stored maps a command has.
+enum class StoredMapUse : std::uint8_t {
+  kLocalize,  ///< --map, which is required
+  kContinue,  ///< --continue
+  kEither,    ///< both, one of which may be given
+};
+
+/// Adds them and --initial-pose.
+void add_map_options(CLI::App& app, JobOptions& options, StoredMapUse use);
 
 struct Job {
   JobOptions options;
   pipeline::LoadedConfig config;
-  scan::CarmenLogReader reader;                        ///< before its first scan
-  std::shared_ptr<const localization::StoredMap> map;  ///< of JobOptions::map
+  scan::CarmenLogReader reader;                           ///< before its first scan
+  std::shared_ptr<const localization::StoredMap> map;     ///< of JobOptions::map
+  std::shared_ptr<const storage::MapDocument> continued;  ///< of JobOptions::continued
   std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
 };
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -105,16 +106,28 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   if (run.map_localizer() != nullptr) {
     report.localization = pipeline::localization_counts(*run.map_localizer());
   }
+  if (job.continued) report.continuation = pipeline::continuation_counts(*run.session());
   return report;
 }
 
 std::unique_ptr<pipeline::MappingRun> make_run(const Job& job) {
   const JobOptions& options = job.options;
-  if (!job.map) return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id);
   std::optional<geometry::Pose2> initial_pose;
   if (options.initial_pose) initial_pose = pipeline::parse_pose(*options.initial_pose);
+  if (job.continued) {
+    return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id,
+                                                  job.continued, initial_pose);
+  }
+  if (!job.map) return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id);
   return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id, job.map,
                                                 initial_pose);
+}
+
+/// Says on stderr why stops are not in the map; nothing when all are or none was to be.
+void tell_unmapped(const localization::MappingSession* session) {
+  if (session == nullptr) return;
+  const std::string message = pipeline::continuation_message(*session);
+  if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
 }
 
 int map_log(const JobOptions& options, bool stages) {
@@ -134,6 +147,7 @@ int map_log(const JobOptions& options, bool stages) {
     const Interruption::Immediate immediate(interruption);
     document = run.finish();
   }
+  tell_unmapped(run.session());
   {
     const auto scope = times.measure("writing");
     pipeline::write_map_outputs(options.out, document, options.log.filename().string());
@@ -168,10 +182,13 @@ void add_map_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("map", "Map a log in one process, without DDS");
   auto options = std::make_shared<JobOptions>();
   add_log_options(*command, *options);
+  add_map_options(*command, *options, StoredMapUse::kContinue);
   auto stages = std::make_shared<bool>(false);
-  command->add_flag("--stages", *stages,
-                    "also draw the map by odometry alone, after forward correction, with its "
-                    "cycles closed and at the end: stage_*.png");
+  command
+      ->add_flag("--stages", *stages,
+                 "also draw the map by odometry alone, after forward correction, with its "
+                 "cycles closed and at the end: stage_*.png")
+      ->excludes("--continue");
   command->callback([options, stages, &exit_code] { exit_code = map_log(*options, *stages); });
 }
 
@@ -180,7 +197,7 @@ void add_localize_command(CLI::App& app, int& exit_code) {
       app.add_subcommand("localize", "Find and follow the robot of a log in a stored map");
   auto options = std::make_shared<JobOptions>();
   add_log_options(*command, *options);
-  add_map_options(*command, *options, true);
+  add_map_options(*command, *options, StoredMapUse::kLocalize);
   command->callback([options, &exit_code] { exit_code = map_log(*options, false); });
 }
 

@@ -49,6 +49,16 @@ void add_localization(storage::Report& report, const ServiceTable& services) {
   add("searches");
 }
 
+/// Stops of a continued map, under the names that pipeline::continuation_counts gives them.
+void add_continuation(storage::Report& report, const ServiceTable& services) {
+  const msg::ServiceStatus* localizer = services.find("localizer");
+  for (const char* name : {"stored_stops", "added_stops", "unmapped_stops"}) {
+    report.continuation.emplace_back(name, static_cast<std::uint64_t>(counter(localizer, name)));
+  }
+  const std::string message = localizer == nullptr ? "" : localizer->message().to_string();
+  if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
+}
+
 storage::Report make_report(const RunOptions& options, Job& job, const RunResult& result) {
   storage::Report report;
   report.command = "run";
@@ -62,6 +72,7 @@ storage::Report make_report(const RunOptions& options, Job& job, const RunResult
   }
   pipeline::add_log(report, job.reader.statistics());
   if (options.job.map) add_localization(report, result.services);
+  if (options.job.continued) add_continuation(report, result.services);
   report.stages = result.times;
   for (const support::StageTime& time : result.times) report.cpu_s += time.cpu_s;
   report.cpu_s += support::process_cpu_s();
@@ -150,7 +161,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Map a log with all services as processes on DDS");
   auto options = std::make_shared<RunOptions>();
   add_log_options(*command, options->job);
-  add_map_options(*command, options->job, false);
+  add_map_options(*command, options->job, StoredMapUse::kEither);
   add_run_options(*command, *options);
   command->callback([options, &exit_code] { exit_code = run_log(*options); });
 }

@@ -28,11 +28,19 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
-/// What makes a localizer follow the robot in a stored map.
+/// What makes a map store extend a stored map.
+Words continue_arguments(const RunOptions& options) {
+  if (!options.job.continued) return {};
+  return {"--continue", options.job.continued->string()};
+}
+
+/// What makes a localizer follow the robot in a stored map, or extend it.
 Words map_arguments(const RunOptions& options) {
-  if (!options.job.map) return {};
-  Words words = {"--map", options.job.map->string(), "--csv",
-                 (options.job.out / "localization.csv").string()};
+  Words words = continue_arguments(options);
+  if (options.job.map) {
+    words = {"--map", options.job.map->string(), "--csv",
+             (options.job.out / "localization.csv").string()};
+  }
   if (options.job.initial_pose) {
     words.push_back("--initial-pose=" + *options.job.initial_pose);
   }
@@ -53,7 +61,8 @@ ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partiti
   const std::string out = options.job.out.string();
   const std::string log = options.job.log.string();
   start("map_store", "map_store",
-        common + Words{"--out", out, "--title", options.job.log.filename().string()});
+        common + Words{"--out", out, "--title", options.job.log.filename().string()} +
+            continue_arguments(options));
   start("planner", "planner", common);
   start(
       "localizer", "localizer",

@@ -67,7 +67,7 @@ TEST_F(LocalizeTest, CommandsAreAcceptedOrRefusedWithTheReason) {
   EXPECT_EQ(search.wait(), 0) << search.err();
   Program mapping(scratch_, "topogeo", ask({"mode", "mapping"}));
   EXPECT_EQ(mapping.wait(), 1);
-  EXPECT_THAT(mapping.err(), HasSubstr("refused: a finished map is not continued"));
+  EXPECT_THAT(mapping.err(), HasSubstr("refused: the map was given with --map to stay as it is"));
 }
 
 TEST_F(LocalizeTest, AWrongFileAPoseThatIsNoneAndNobodyThereAreOneLineErrors) {

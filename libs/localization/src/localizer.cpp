@@ -41,28 +41,37 @@ bool Localizer::add(std::shared_ptr<const LocalMap> map) {
   return finish_optimization(stop) || moved;
 }
 
-void Localizer::append(std::shared_ptr<const LocalMap> map) {
-  check_next(*map, stops_.size(), stops_.empty() ? nullptr : stops_.front().map.get());
-  pool_.add_map(map);
+Localizer::Stop Localizer::described(std::shared_ptr<const LocalMap> map) {
   Stop stop;
   stop.hash = topomap::content_hash(*map);
   MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
   stop.profile = std::move(features.profile);
   stop.outline_m = outline_of(features.coarse_m);
+  stop.map = std::move(map);
+  return stop;
+}
+
+void Localizer::append(std::shared_ptr<const LocalMap> map) {
+  check_next(*map, stops_.size(), stops_.empty() ? nullptr : stops_.front().map.get());
+  pool_.add_map(map);
+  Stop stop = described(std::move(map));
   if (stops_.empty()) {
     graph_.add_pose(Pose2{});
   } else {
     const Stop& previous = stops_.back();
-    const UncertainPose odometry =
-        odometry_between_stops(previous.map->T_odom_robot, *map, config_.odometry);
+    const bool gap = gap_.has_value();
+    const UncertainPose step =
+        gap ? *std::exchange(gap_, std::nullopt)
+            : odometry_between_stops(previous.map->T_odom_robot, *stop.map, config_.odometry);
     const auto id = static_cast<std::uint32_t>(stops_.size());
-    stop.way_m = previous.way_m + std::sqrt(odometry.T_a_b.position_m().squaredNorm());
-    graph_.add_pose(graph_.poses().back() * odometry.T_a_b);
+    // No stop from before a gap is a recent one.
+    stop.way_m = previous.way_m + (gap ? 2.0 * config_.recent_way_m
+                                       : std::sqrt(step.T_a_b.position_m().squaredNorm()));
+    graph_.add_pose(graph_.poses().back() * step.T_a_b);
     // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
-    graph_.add_edge({id - 1, id, EdgeKind::kOdometry, odometry.T_a_b,
-                     invertible(odometry_.widened(odometry.covariance))});
+    graph_.add_edge({id - 1, id, EdgeKind::kOdometry, step.T_a_b,
+                     invertible(gap ? step.covariance : odometry_.widened(step.covariance))});
   }
-  stop.map = std::move(map);
   stops_.push_back(std::move(stop));
 }
 
@@ -170,8 +179,8 @@ topomap::Trajectory Localizer::trajectory() const {
   trajectory.version = version_;
   trajectory.stops.reserve(stops_.size());
   for (std::size_t i = 0; i < stops_.size(); ++i) {
-    trajectory.stops.push_back(
-        {stops_[i].map->id, stops_[i].map->stamp_ns, graph_.poses()[i], stops_[i].covariance});
+    trajectory.stops.push_back({stops_[i].map->id, stops_[i].map->stamp_ns, graph_.poses()[i],
+                                stops_[i].covariance, stops_[i].map->id});
   }
   return trajectory;
 }

@@ -173,8 +173,11 @@ void Localizer::apply(const GraphSolution& solution) {
 void Localizer::finish() {
   if (stops_.size() < 2) return;
   optimize_now();
-  std::vector<std::uint32_t> again(stops_.size() - 1);
-  std::iota(again.begin(), again.end(), 1U);
+  // Stops of a stored map were compared with each other when it was made.
+  const std::size_t first = std::max<std::size_t>(1, stored_stops_);
+  if (first >= stops_.size()) return;
+  std::vector<std::uint32_t> again(stops_.size() - first);
+  std::iota(again.begin(), again.end(), static_cast<std::uint32_t>(first));
   for (std::uint32_t pass = 0; pass < config_.final_passes; ++pass) {
     if (match_revisits_of(again) == 0) break;
     const std::vector<Pose2> before = graph_.poses();

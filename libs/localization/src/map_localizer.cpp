@@ -26,15 +26,6 @@ constexpr double kFarthest_m = 12.0;  // stored stops further away are not compa
 constexpr double kGivenPoseRight = 0.9;
 constexpr double kHardlyDoubtful = 1.0;  // right matches mostly are below, wrong ones above
 
-UncertainPose compose(const UncertainPose& a, const UncertainPose& b) {
-  return {a.T_a_b * b.T_a_b,
-          geometry::compose_covariance(a.T_a_b, a.covariance, b.T_a_b, b.covariance)};
-}
-
-UncertainPose inverse(const UncertainPose& a) {
-  return {geometry::inverse(a.T_a_b), geometry::inverse_covariance(a.T_a_b, a.covariance)};
-}
-
 }  // namespace
 
 UncertainPose fused(const std::vector<UncertainPose>& measurements) {
@@ -135,6 +126,9 @@ void MapLocalizer::track(const Query& query) {
     sure |= result.verdict == Verdict::kAccepted && doubt(result) < kHardlyDoubtful;
     if (result.verdict == Verdict::kAccepted) {
       believed.push_back(measured(chosen[i].stop, result));
+      last_step_->believed.push_back(
+          {static_cast<std::uint32_t>(chosen[i].stop),
+           inverse(UncertainPose{result.T_reference_query, result.covariance}), result.fitness});
       ++believed_;
     } else if (result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution) {
       doubtful.push_back(measured(chosen[i].stop, result));
@@ -201,7 +195,8 @@ topomap::Trajectory MapLocalizer::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = stops_.size();
   for (const LocalizedStop& stop : stops_) {
-    trajectory.stops.push_back({stop.id, stop.stamp_ns, stop.T_map_robot, stop.covariance});
+    trajectory.stops.push_back({stop.id, stop.stamp_ns, stop.T_map_robot, stop.covariance, stop.id,
+                                located(stop.belief.state)});
   }
   return trajectory;
 }

@@ -8,6 +8,15 @@ namespace topogeo::localization {
 
 using geometry::Pose2;
 
+UncertainPose compose(const UncertainPose& a, const UncertainPose& b) {
+  return {a.T_a_b * b.T_a_b,
+          geometry::compose_covariance(a.T_a_b, a.covariance, b.T_a_b, b.covariance)};
+}
+
+UncertainPose inverse(const UncertainPose& a) {
+  return {geometry::inverse(a.T_a_b), geometry::inverse_covariance(a.T_a_b, a.covariance)};
+}
+
 UncertainPose advance(const UncertainPose& from, const Pose2& T_before_after,
                       const OdometryNoise& noise) {
   const double way_m =

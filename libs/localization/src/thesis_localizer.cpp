@@ -161,7 +161,8 @@ topomap::Trajectory ThesisLocalizer::trajectory() const {
   trajectory.version = version_;
   for (std::size_t i = 0; i < stops_.size(); ++i) {
     const LocalMap& map = *stops_[i].map;
-    trajectory.stops.push_back({map.id, map.stamp_ns, graph_.poses()[i], stops_[i].covariance});
+    trajectory.stops.push_back(
+        {map.id, map.stamp_ns, graph_.poses()[i], stops_[i].covariance, map.id});
   }
   return trajectory;
 }

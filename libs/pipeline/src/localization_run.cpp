@@ -45,16 +45,72 @@ Eigen::Matrix3d given_pose_covariance() {
       .asDiagonal();
 }
 
-std::shared_ptr<const localization::StoredMap> load_stored_map(const std::filesystem::path& file) {
+namespace {
+
+/// A map file as far as its stops have poses.
+storage::MapDocument load_usable_map(const std::filesystem::path& file) {
   storage::MapDocument document = storage::read_map_file(file);
-  const auto map = std::make_shared<localization::StoredMap>();
-  map->maps = std::move(document.local_maps);
-  map->trajectory = std::move(document.trajectory);
-  map->maps.resize(map->trajectory.stops.size());
-  for (const topomap::LocalMap& local_map : map->maps) {
-    if (!local_map.points.empty()) return map;
+  document.local_maps.resize(document.trajectory.stops.size());
+  for (const topomap::StopPose& stop : document.trajectory.stops) {
+    if (stop.located) continue;
+    throw std::runtime_error(fmt::format(
+        "{}: stop {} has no place in the map; expected a map, not a drive localized in one",
+        file.string(), stop.local_map_id));
+  }
+  for (const topomap::LocalMap& local_map : document.local_maps) {
+    if (!local_map.points.empty()) return document;
   }
   throw std::runtime_error(file.string() + ": the map has no stop that saw anything");
+}
+
+std::string mounting_text(const geometry::Pose2& T_robot_laser) {
+  return fmt::format("{:.4f},{:.4f} m, {:.4f} rad", T_robot_laser.x_m, T_robot_laser.y_m,
+                     T_robot_laser.theta_rad);
+}
+
+}  // namespace
+
+std::shared_ptr<const localization::StoredMap> load_stored_map(const std::filesystem::path& file) {
+  return stored_map(load_usable_map(file));
+}
+
+std::shared_ptr<const localization::StoredMap> stored_map(const storage::MapDocument& document) {
+  return std::make_shared<const localization::StoredMap>(
+      localization::StoredMap{document.local_maps, document.trajectory, document.loop_closures});
+}
+
+std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::filesystem::path& file,
+                                                                 const Config& config,
+                                                                 const std::string& robot_id) {
+  const auto document = std::make_shared<const storage::MapDocument>(load_usable_map(file));
+  if (document->robot_id != robot_id) {
+    throw std::runtime_error(fmt::format("{}: the map is of robot '{}', expected '{}' (--robot)",
+                                         file.string(), document->robot_id, robot_id));
+  }
+  const geometry::Pose2& expected = config.local_mapper.T_robot_laser;
+  for (const topomap::LocalMap& map : document->local_maps) {
+    if (map.T_robot_laser == expected) continue;
+    throw std::runtime_error(fmt::format(
+        "{}: made with the laser at {}, expected {} as in the configuration (laser.x_m, laser.y_m, "
+        "laser.yaw_rad)",
+        file.string(), mounting_text(map.T_robot_laser), mounting_text(expected)));
+  }
+  return document;
+}
+
+storage::ReasonCounts continuation_counts(const localization::MappingSession& session) {
+  return {{"stored_stops", session.stored_stops()},
+          {"added_stops", session.maps().size() - session.stored_stops()},
+          {"unmapped_stops", session.unmapped_stops()}};
+}
+
+std::string continuation_message(const localization::MappingSession& session) {
+  const std::size_t waiting = session.waiting_stops();
+  if (waiting == 0) return {};
+  const bool grew = session.maps().size() > session.stored_stops();
+  return fmt::format("the robot did not find its place in the map ({}): {} stops are not mapped{}",
+                     localization::to_string(session.belief().state), waiting,
+                     grew ? "" : ", the map is as it was");
 }
 
 std::string localization_csv(std::span<const localization::LocalizedStop> stops) {

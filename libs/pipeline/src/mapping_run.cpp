@@ -1,5 +1,6 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -11,8 +12,26 @@ namespace topogeo::pipeline {
 MappingRun::MappingRun(const Config& config, std::string robot_id)
     : config_(config),
       robot_id_(std::move(robot_id)),
+      local_mapper_(config.local_mapper, robot_id_) {
+  auto session = std::make_unique<localization::MappingSession>(config.localizer, pool_);
+  session_ = session.get();
+  localizer_ = std::move(session);
+}
+
+MappingRun::MappingRun(const Config& config, std::string robot_id,
+                       std::shared_ptr<const storage::MapDocument> map,
+                       const std::optional<geometry::Pose2>& initial_pose)
+    : config_(config),
+      robot_id_(std::move(robot_id)),
       local_mapper_(config.local_mapper, robot_id_),
-      localizer_(localization::make_slam(config.localizer, pool_)) {}
+      continued_(std::move(map)) {
+  std::optional<localization::UncertainPose> initial;
+  if (initial_pose) initial = {*initial_pose, given_pose_covariance()};
+  auto session = std::make_unique<localization::MappingSession>(config.localizer, pool_, nullptr,
+                                                                stored_map(*continued_), initial);
+  session_ = session.get();
+  localizer_ = std::move(session);
+}
 
 MappingRun::MappingRun(const Config& config, std::string robot_id,
                        std::shared_ptr<const localization::StoredMap> map,
@@ -38,7 +57,7 @@ void MappingRun::add(const scan::Scan& scan) {
 
 void MappingRun::localize(topomap::LocalMap map) {
   const auto scope = times_.measure("localizer");
-  local_maps_.push_back(map);
+  if (session_ == nullptr) local_maps_.push_back(map);
   localizer_->add(std::make_shared<const topomap::LocalMap>(std::move(map)));
 }
 
@@ -48,10 +67,14 @@ storage::MapDocument MappingRun::finish() {
     const auto scope = times_.measure("localizer");
     localizer_->finish();
   }
+  if (continued_ && session_->maps().size() == session_->stored_stops()) return *continued_;
   storage::MapDocument document;
   document.robot_id = robot_id_;
   document.seed = config_.localizer.seed;
   document.local_maps = std::move(local_maps_);
+  if (session_ != nullptr) {
+    for (const auto& map : session_->maps()) document.local_maps.push_back(*map);
+  }
   document.trajectory = localizer_->trajectory();
   document.loop_closures = localizer_->loop_closures();
   const auto scope = times_.measure("map_store");
@@ -63,7 +86,15 @@ topomap::GlobalMap fuse(const topomap::GlobalMapConfig& config,
                         const std::vector<topomap::LocalMap>& local_maps,
                         const topomap::Trajectory& trajectory) {
   topomap::GlobalMapBuilder builder(config);
-  builder.rebuild(local_maps, trajectory.stops);
+  const auto known = [](const topomap::StopPose& stop) { return stop.located; };
+  if (std::all_of(trajectory.stops.begin(), trajectory.stops.end(), known)) {
+    builder.rebuild(local_maps, trajectory.stops);
+    return builder.snapshot(trajectory.version);
+  }
+  for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
+    const topomap::StopPose& stop = trajectory.stops[i];
+    if (stop.located) builder.integrate(local_maps.at(i), stop.T_map_robot);
+  }
   return builder.snapshot(trajectory.version);
 }
 

@@ -1,6 +1,7 @@
 #include "topogeo/pipeline/outputs.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/render/map_picture.hpp"
@@ -10,16 +11,37 @@
 
 namespace topogeo::pipeline {
 
+namespace {
+
+/// The stops whose place is known.
+struct LocatedStops {
+  std::vector<topomap::LocalMap> maps;
+  std::vector<topomap::StopPose> stops;
+};
+
+LocatedStops located_stops(const storage::MapDocument& document) {
+  LocatedStops out;
+  for (std::size_t i = 0; i < document.trajectory.stops.size(); ++i) {
+    if (!document.trajectory.stops[i].located) continue;
+    out.maps.push_back(document.local_maps[i]);
+    out.stops.push_back(document.trajectory.stops[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
 void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
                        const std::string& title) {
   const auto corrected = topomap::expand_trajectory(document.trajectory, document.local_maps);
-  const auto odometry = topomap::expand_odometry(document.local_maps);
+  const auto odometry = topomap::expand_odometry(document.trajectory, document.local_maps);
   storage::write_trajectory_tum(directory / "trajectory.tum", corrected);
   storage::write_trajectory_tum(directory / "odometry.tum", odometry);
   storage::write_map_file(directory / "map.pb", document);
-  const render::MapPicture picture{
-      document.local_maps,    document.trajectory.stops, odometry, corrected,
-      document.loop_closures, &document.global_map,      title};
+  const LocatedStops located = located_stops(document);
+  const render::MapPicture picture{located.maps, located.stops,          odometry,
+                                   corrected,    document.loop_closures, &document.global_map,
+                                   title};
   render::draw_map_svg(directory / "map.svg", picture);
   render::draw_map_png(directory / "map.png", picture);
 }

@@ -147,6 +147,7 @@ void to_proto(const topomap::LocalMap& map, proto::LocalMap* out) {
     to_proto(scan.T_stop_robot, tracked->mutable_t_stop_robot());
     tracked->set_matched(scan.matched);
   }
+  out->set_starts_drive(map.starts_drive);
 }
 
 topomap::LocalMap from_proto(const proto::LocalMap& in) {
@@ -175,6 +176,7 @@ topomap::LocalMap from_proto(const proto::LocalMap& in) {
   for (const proto::TrackedScan& scan : in.track()) {
     map.track.push_back(tracked_scan_from_proto(scan));
   }
+  map.starts_drive = in.starts_drive();
   return map;
 }
 
@@ -185,6 +187,7 @@ void to_proto(const topomap::StopPose& stop, proto::StopPose* out) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) out->add_covariance(stop.covariance(row, column));
   }
+  out->set_not_located(!stop.located);
 }
 
 topomap::StopPose from_proto(const proto::StopPose& in) {
@@ -197,6 +200,7 @@ topomap::StopPose from_proto(const proto::StopPose& in) {
   for (int i = 0; i < 9; ++i) {
     stop.covariance(i / 3, i % 3) = finite(in.covariance(i), "covariance of a stop");
   }
+  stop.located = !in.not_located();
   return stop;
 }
 

@@ -83,6 +83,7 @@ std::string report_json(const Report& report) {
                     {"loop_closures", report.loop_closures.size()},
                     {"loop_candidates", report.loop_candidates.size()}};
   if (!report.localization.empty()) json["localization"] = counts(report.localization);
+  if (!report.continuation.empty()) json["continuation"] = counts(report.continuation);
   json["distance_m"] = report.distance_m;
   json["wall_s"] = report.wall_s;
   json["cpu_s"] = report.cpu_s;

@@ -44,7 +44,7 @@ void DrivenWay::add(const LocalMap& map, const geometry::Pose2& T_map_robot) {
   VisitedStop stop;
   stop.map_id = map.id;
   stop.T_map_robot = T_map_robot;
-  stop.follows = !stops_.empty() && stops_.back().map_id + 1 == map.id;
+  stop.follows = !stops_.empty() && stops_.back().map_id + 1 == map.id && !map.starts_drive;
   if (stop.follows) {
     for (const TrackedScan& scan : map.track) {
       stop.way_m.push_back(stops_.back().T_map_robot * scan.T_stop_robot.position_m());

@@ -14,8 +14,8 @@ namespace topogeo::topomap {
 struct VisitedStop {
   std::uint32_t map_id = 0;
   geometry::Pose2 T_map_robot;
-  /// Its map has the id after that of the stop before it in DrivenWay::stops, so the robot drove
-  /// from there to here.
+  /// Its map has the id after that of the stop before it in DrivenWay::stops and is of the same
+  /// drive, so the robot drove from there to here.
   bool follows = false;
   std::vector<Eigen::Vector2d> way_m;  ///< tracked scans since that stop, map frame
   std::vector<ScanPoint> points;       ///< of its scan, robot frame

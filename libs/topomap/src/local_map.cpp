@@ -63,4 +63,14 @@ std::uint64_t content_hash(const LocalMap& map) {
   return hash.value();
 }
 
+LocalMap numbered(LocalMap map, std::uint32_t id, bool starts_drive) {
+  map.id = id;
+  if (starts_drive) {
+    map.starts_drive = true;
+    map.track.clear();
+    map.T_previous_robot = {};
+  }
+  return map;
+}
+
 }  // namespace topogeo::topomap

@@ -30,6 +30,8 @@ msg::TrajectorySegment to_segment(const topomap::Trajectory& trajectory, std::ui
     check(stop.local_map_id == i, "stops.local_map_id", "the index in the trajectory");
     msg::StopPose pose;
     pose.local_map_id(stop.local_map_id);
+    pose.source_id(stop.source_id);
+    pose.located(stop.located);
     pose.stamp_ns(stop.stamp_ns);
     pose.T_map_robot(to_msg(stop.T_map_robot));
     pose.covariance(to_msg(stop.covariance));
@@ -58,7 +60,7 @@ std::vector<topomap::StopPose> from_msg(const msg::TrajectorySegment& message) {
   for (const msg::StopPose& pose : message.stops()) {
     check(pose.local_map_id() == begin + out.size(), "stops.local_map_id", "consecutive ids");
     out.push_back({pose.local_map_id(), pose.stamp_ns(), from_msg(pose.T_map_robot()),
-                   from_msg(pose.covariance())});
+                   from_msg(pose.covariance()), pose.source_id(), pose.located()});
   }
   return out;
 }

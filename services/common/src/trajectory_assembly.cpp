@@ -24,6 +24,13 @@ topomap::Trajectory TrajectoryAssembly::newest() const {
   return out;
 }
 
+const topomap::StopPose* TrajectoryAssembly::stop(std::size_t number) const {
+  const auto held = segments_.find(static_cast<std::uint32_t>(number / msg::kSegmentStops));
+  if (held == segments_.end()) return nullptr;
+  const std::size_t index = number % msg::kSegmentStops;
+  return index < held->second.stops.size() ? &held->second.stops[index] : nullptr;
+}
+
 std::optional<topomap::Trajectory> TrajectoryAssembly::whole(std::uint64_t version) const {
   topomap::Trajectory out;
   out.version = version;

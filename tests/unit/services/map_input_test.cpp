@@ -21,6 +21,7 @@ class Input : public testing::Test {
     }
     trajectory_ = any_trajectory(random_, 3);
     trajectory_.version = 8;
+    for (topomap::StopPose& stop : trajectory_.stops) stop.source_id = stop.local_map_id;
     end_.count(3);
     end_.version(8);
   }
@@ -37,6 +38,7 @@ class Input : public testing::Test {
 };
 
 TEST_F(Input, LocalMapsWaitForTheOnesBefore) {
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   EXPECT_EQ(input_.add(maps_[2]), Arrival::kNew);
   EXPECT_EQ(input_.add(maps_[1]), Arrival::kNew);
   EXPECT_TRUE(input_.local_maps().empty());
@@ -54,7 +56,41 @@ TEST_F(Input, SecondMapOfAnIdIsKnownOrDifferent) {
   topomap::LocalMap other = maps_[0];
   other.points[0].x_m += 1.0F;
   EXPECT_EQ(input_.add(other), Arrival::kDifferent);
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   EXPECT_TRUE(input_.local_maps()[0] == maps_[0]);
+}
+
+TEST_F(Input, TakesInWhatTheTrajectoryNamesAndNumbersItAsThatDoes) {
+  trajectory_.stops.resize(2);
+  trajectory_.stops[1].source_id = 2;  // the stop between is in no map
+  for (const auto& map : maps_) input_.add(map);
+  EXPECT_TRUE(input_.local_maps().empty());
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  ASSERT_EQ(input_.local_maps().size(), 2U);
+  EXPECT_TRUE(input_.local_maps()[1] == topomap::numbered(maps_[2], 1, true));
+  EXPECT_EQ(input_.waiting(), 1U);
+}
+
+TEST_F(Input, ExtendsAStoredMap) {
+  input_ = MapInput({maps_[0], maps_[1]});
+  trajectory_.stops[0].source_id = topomap::kStoredSource;
+  trajectory_.stops[1].source_id = topomap::kStoredSource;
+  trajectory_.stops[2].source_id = 0;
+  topomap::LocalMap first = maps_[2];
+  first.id = 0;
+  input_.add(first);
+  EXPECT_EQ(input_.local_maps().size(), 2U);
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  ASSERT_EQ(input_.local_maps().size(), 3U);
+  EXPECT_TRUE(input_.local_maps()[2] == topomap::numbered(maps_[2], 2, true));
+}
+
+TEST_F(Input, RefusesATrajectoryOfAnotherStoredMap) {
+  trajectory_.stops[0].source_id = topomap::kStoredSource;
+  const msg::TrajectorySegment segment = service::to_segment(trajectory_, 0, "robot", 0);
+  EXPECT_THROW(input_.add(segment), std::invalid_argument);
+  input_ = MapInput({maps_[0], maps_[1]});
+  EXPECT_THROW(input_.add(segment), std::invalid_argument);
 }
 
 TEST_F(Input, TrajectoryReachesAsFarAsTheLocalMaps) {

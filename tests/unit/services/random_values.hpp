@@ -115,7 +115,9 @@ inline topomap::Trajectory any_trajectory(support::Random& random, std::uint32_t
   topomap::Trajectory out;
   out.version = random.next_u64();
   for (std::uint32_t i = 0; i < stops; ++i) {
-    out.stops.push_back({i, any_i64(random), any_pose(random), any_matrix(random)});
+    out.stops.push_back({i, any_i64(random), any_pose(random), any_matrix(random),
+                         static_cast<std::uint32_t>(random.next_u64()),
+                         random.next_u64() % 2 == 0});
   }
   return out;
 }
@@ -168,11 +170,12 @@ inline bool operator==(const LocalMap& a, const LocalMap& b) {
          a.stamp_ns == b.stamp_ns && a.T_odom_robot == b.T_odom_robot &&
          a.T_previous_robot == b.T_previous_robot && a.T_robot_laser == b.T_robot_laser &&
          a.nodes == b.nodes && a.branches == b.branches && a.points == b.points &&
-         a.track == b.track;
+         a.track == b.track && a.starts_drive == b.starts_drive;
 }
 inline bool operator==(const StopPose& a, const StopPose& b) {
   return a.local_map_id == b.local_map_id && a.stamp_ns == b.stamp_ns &&
-         a.T_map_robot == b.T_map_robot && a.covariance == b.covariance;
+         a.T_map_robot == b.T_map_robot && a.covariance == b.covariance &&
+         a.source_id == b.source_id && a.located == b.located;
 }
 inline bool operator==(const Trajectory& a, const Trajectory& b) {
   return a.version == b.version && a.stops == b.stops;

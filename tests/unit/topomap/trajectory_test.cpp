@@ -67,6 +67,29 @@ TEST(ExpandTrajectory, OfNothingIsNothing) {
   EXPECT_TRUE(expand_odometry({}).empty());
 }
 
+TEST(ExpandTrajectory, LeavesOutStopsThatAreNotLocatedAndTheScansAfterThem) {
+  Trajectory trajectory;
+  trajectory.stops.resize(3);
+  trajectory.stops[1].located = false;
+  const std::vector<StampedPose> poses = expand_trajectory(trajectory, three_stops());
+  ASSERT_EQ(poses.size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(poses[i].sequence, i);
+  EXPECT_EQ(poses[3].sequence, 5U);
+}
+
+TEST(ExpandOdometry, BeginsEachLaterDriveWhereTheTrajectoryHasIt) {
+  std::vector<LocalMap> maps = three_stops();
+  maps[2].starts_drive = true;
+  maps[2].track.clear();
+  Trajectory trajectory;
+  trajectory.stops.resize(3);
+  trajectory.stops[2].T_map_robot = {7, 8, kQuarter};
+  const std::vector<StampedPose> poses = expand_odometry(trajectory, maps);
+  ASSERT_EQ(poses.size(), 5U);
+  expect_pose(poses[3].pose, 1.5, 0, 0);
+  expect_pose(poses[4].pose, 7, 8, kQuarter);
+}
+
 TEST(ExpandOdometry, StartsAtTheIdentityAndKeepsTheDrift) {
   const std::vector<StampedPose> poses = expand_odometry(three_stops());
   ASSERT_EQ(poses.size(), 6U);

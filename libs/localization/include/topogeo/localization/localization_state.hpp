@@ -18,6 +18,11 @@ inline constexpr std::size_t kLocalizationStates = 4;
 /// "TRACKING", "AMBIGUOUS", "SEARCHING", "LOST".
 const char* to_string(LocalizationState state);
 
+/// Whether a pose in this state means anything.
+inline bool located(LocalizationState state) {
+  return state == LocalizationState::kTracking || state == LocalizationState::kAmbiguous;
+}
+
 struct Belief {
   LocalizationState state = LocalizationState::kSearching;
   double confidence = 0.0;  ///< probability that the pose is right (0.3 m, 5 degrees), [0, 1]

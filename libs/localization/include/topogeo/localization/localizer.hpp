@@ -28,6 +28,7 @@
 #include "topogeo/localization/pose_graph.hpp"
 #include "topogeo/localization/slam.hpp"
 #include "topogeo/localization/state_monitor.hpp"
+#include "topogeo/localization/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
@@ -71,6 +72,24 @@ class Localizer : public Slam {
   /// The pool and the optimizer must outlive the localizer; without an optimizer the work is done
   /// within the step at which it takes effect.
   Localizer(LocalizerConfig config, MatchPool& pool, GraphOptimizer* optimizer = nullptr);
+
+  /// Goes on with a stored map: its stops are the first, in its frame. A drive becomes part of it
+  /// through join(). Throws std::invalid_argument when the map has no stops or the ids of its local
+  /// maps are not their indices.
+  Localizer(LocalizerConfig config, MatchPool& pool, GraphOptimizer* optimizer,
+            const std::shared_ptr<const StoredMap>& stored);
+
+  /// A drive to which no odometry leads from the last stop has found itself in the map: its stops
+  /// so far, numbered on from those of the map, and matches of the last of them, at least one,
+  /// which are right with this probability. The stops are mapped like others and placed by the
+  /// matches, backwards from the last. Throws std::invalid_argument without stops or matches and
+  /// like add().
+  void join(std::span<const std::shared_ptr<const topomap::LocalMap>> drive,
+            std::span<const StoredMatch> matches_of_last, double confidence);
+
+  /// Numbers its tasks on from there; numbers are not to come twice in one pool.
+  void number_tasks_from(std::uint64_t next_task) { next_task_ = next_task; }
+  [[nodiscard]] std::uint64_t next_task() const { return next_task_; }
 
   /// One forward step. Maps must come in order of their ids, from 0, of one robot; throws
   /// std::invalid_argument otherwise. True when earlier poses were moved too.
@@ -125,7 +144,14 @@ class Localizer : public Slam {
     [[nodiscard]] double turn_rad() const;
   };
 
+  [[nodiscard]] static Stop described(std::shared_ptr<const topomap::LocalMap> map);
   void append(std::shared_ptr<const topomap::LocalMap> map);
+  void restore(const StoredMap& stored, const std::shared_ptr<const topomap::LocalMap>& map);
+  [[nodiscard]] UncertainPose way_to(
+      std::span<const std::shared_ptr<const topomap::LocalMap>> drive,
+      std::span<const StoredMatch> matches_of_last) const;
+  void add_missing(std::span<const StoredMatch> matches_of_last);
+  void settle();
   void match_recent(std::uint32_t stop, std::vector<StepMatch>& evidence);
   std::vector<MatchTask> recent_tasks(std::uint32_t stop,
                                       const std::vector<UncertainPose>& relative, double widening);
@@ -174,6 +200,8 @@ class Localizer : public Slam {
   std::optional<std::uint32_t> due_;      // step at which the running optimisation takes effect
   std::size_t started_loops_ = 0;         // of those, in the running optimisation
   bool optimization_wanted_ = false;
+  std::size_t stored_stops_ = 0;      // that were there before the first own one
+  std::optional<UncertainPose> gap_;  // to the next stop, where no odometry leads to it
   /// Of the sequential matches of the last stop, by the id of the older map: where a search for the
   /// next stop against the same map starts (spec A4).
   std::map<std::uint32_t, std::vector<MatchSolution>> last_solutions_;

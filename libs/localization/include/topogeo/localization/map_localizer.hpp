@@ -24,16 +24,11 @@
 #include "topogeo/localization/odometry_model.hpp"
 #include "topogeo/localization/slam.hpp"
 #include "topogeo/localization/state_monitor.hpp"
+#include "topogeo/localization/stored_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
-
-/// A finished map: local maps and where they are. `maps[i]` is of `trajectory.stops[i]`.
-struct StoredMap {
-  std::vector<topomap::LocalMap> maps;
-  topomap::Trajectory trajectory;
-};
 
 /// What is known at one stop of the drive.
 struct LocalizedStop {
@@ -50,6 +45,7 @@ struct TrackedStep {
   UncertainPose predicted;  ///< T_map_robot by odometry from the stop before
   StepEvidence evidence;
   std::vector<geometry::Pose2> measured;  ///< T_map_robot by each of the matches
+  std::vector<StoredMatch> believed;      ///< the accepted ones of them
 };
 
 class MapLocalizer : public Slam {
@@ -72,6 +68,10 @@ class MapLocalizer : public Slam {
   /// The robot goes on from a stop of its own that is no stop of this drive: the last one of the
   /// map, when that has just been made. Before the first stop.
   void start_after(const topomap::LocalMap& map, const geometry::Pose2& T_map_robot);
+
+  /// Numbers its tasks on from there; numbers are not to come twice in one pool.
+  void number_tasks_from(std::uint64_t next_task) { next_task_ = next_task; }
+  [[nodiscard]] std::uint64_t next_task() const { return next_task_; }
 
   /// Forgets the pose and searches the whole map from the next stop on.
   void search();

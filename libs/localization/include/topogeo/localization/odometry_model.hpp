@@ -34,6 +34,11 @@ struct UncertainPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
+/// T_a_c and its covariance, of two that know nothing of each other's errors.
+UncertainPose compose(const UncertainPose& T_a_b, const UncertainPose& T_b_c);
+/// T_b_a.
+UncertainPose inverse(const UncertainPose& T_a_b);
+
 /// Adds one step of odometry to a relative pose (6.4, 6.6, 6.7).
 UncertainPose advance(const UncertainPose& from, const geometry::Pose2& T_before_after,
                       const OdometryNoise& noise);

@@ -9,7 +9,9 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/map_localizer.hpp"
+#include "topogeo/localization/mapping_session.hpp"
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"
 
 namespace topogeo::pipeline {
@@ -23,6 +25,23 @@ Eigen::Matrix3d given_pose_covariance();
 /// The local maps and poses of a map file. Throws std::runtime_error naming the file when it cannot
 /// be read or has no stop that saw anything.
 std::shared_ptr<const localization::StoredMap> load_stored_map(const std::filesystem::path& file);
+
+/// The map of a document as it is localized in and continued.
+std::shared_ptr<const localization::StoredMap> stored_map(const storage::MapDocument& document);
+
+/// A map file that this robot is to continue. Throws std::runtime_error naming the file when it
+/// cannot be read, has no stop that saw anything or stops without a place, is of another robot, or
+/// was made with the laser elsewhere on the robot than the configuration says.
+std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::filesystem::path& file,
+                                                                 const Config& config,
+                                                                 const std::string& robot_id);
+
+/// What became of a stored map and of the stops of a drive that continues it: "stored_stops",
+/// "added_stops" and "unmapped_stops", as they stand in reports.
+storage::ReasonCounts continuation_counts(const localization::MappingSession& session);
+
+/// Why stops of a drive are not in the map, for people; empty when all are.
+std::string continuation_message(const localization::MappingSession& session);
 
 /// The text of localization.csv: a line for each stop with pose, state, confidence and standard
 /// deviations; the same bytes for the same stops.

@@ -9,6 +9,7 @@
 
 #include "topogeo/localization/localizer.hpp"
 #include "topogeo/localization/map_localizer.hpp"
+#include "topogeo/localization/mapping_session.hpp"
 #include "topogeo/localization/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
@@ -27,6 +28,13 @@ class MappingRun {
              std::shared_ptr<const localization::StoredMap> map,
              const std::optional<geometry::Pose2>& initial_pose);
 
+  /// Continues a map: its stops are the first of the document, which is the map as it was when the
+  /// robot does not find its place in it. Without an initial pose it searches. Throws like
+  /// MappingSession.
+  MappingRun(const Config& config, std::string robot_id,
+             std::shared_ptr<const storage::MapDocument> map,
+             const std::optional<geometry::Pose2>& initial_pose);
+
   /// Takes the next scan, in time order.
   void add(const scan::Scan& scan);
 
@@ -36,6 +44,8 @@ class MappingRun {
   [[nodiscard]] const localization::SlamCounts& match_counts() const {
     return localizer_->counts();
   }
+  /// Null when it localizes in a finished map.
+  [[nodiscard]] const localization::MappingSession* session() const { return session_; }
   /// Null unless it localizes in a finished map.
   [[nodiscard]] const localization::MapLocalizer* map_localizer() const { return map_localizer_; }
   [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {
@@ -53,11 +63,14 @@ class MappingRun {
   LocalMapper local_mapper_;
   std::unique_ptr<localization::Slam> localizer_;
   localization::MapLocalizer* map_localizer_ = nullptr;  // localizer_, if it is one
-  std::vector<topomap::LocalMap> local_maps_;
+  localization::MappingSession* session_ = nullptr;      // localizer_, if it is one
+  std::shared_ptr<const storage::MapDocument> continued_;
+  std::vector<topomap::LocalMap> local_maps_;  // of a drive in a finished map
   support::StageTimes times_;
 };
 
-/// The global map of local maps at their poses: what map_store keeps.
+/// The global map of local maps at their poses, those left out that are not located: what map_store
+/// keeps.
 topomap::GlobalMap fuse(const topomap::GlobalMapConfig& config,
                         const std::vector<topomap::LocalMap>& local_maps,
                         const topomap::Trajectory& trajectory);

@@ -14,8 +14,9 @@
 namespace topogeo::pipeline {
 
 /// Writes trajectory.tum, odometry.tum, map.pb, map.svg and map.png into an existing directory,
-/// each whole or not at all. The first two and map.pb are the same bytes for the same log, seed and
-/// configuration. Throws std::runtime_error naming the file.
+/// each whole or not at all. Stops that are not located are in odometry.tum and map.pb alone. The
+/// first two and map.pb are the same bytes for the same log, seed and configuration. Throws
+/// std::runtime_error naming the file.
 void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
                        const std::string& title);
 

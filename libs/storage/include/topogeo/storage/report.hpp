@@ -49,6 +49,7 @@ struct Report {
   std::vector<topomap::LoopClosure> loop_closures;
   std::vector<LoopCandidate> loop_candidates;  ///< in the order of the decisions
   ReasonCounts localization;  ///< of a drive in a finished map: stops by state; empty: a mapping
+  ReasonCounts continuation;  ///< of a map that was continued: its stops; empty: it was not
   double distance_m = 0.0;    ///< along the corrected trajectory
 
   double wall_s = 0.0;

@@ -79,10 +79,17 @@ struct LocalMap {
   std::vector<ScanPoint>
       points;  ///< of the stop's scan, in beam order, nearer than the range limit
   std::vector<TrackedScan> track;  ///< scans between the previous stop and this one, in time order
+  /// Of a map of several drives: the first stop of a later one. Neither odometry nor `track` leads
+  /// here from the stop before.
+  bool starts_drive = false;
 };
 
 /// 64-bit FNV-1a hash of everything that a match can depend on (id, points, nodes, branches,
 /// mounting), so that a worker can tell that it holds the map that a task means.
 std::uint64_t content_hash(const LocalMap& map);
+
+/// The map as the stop of this number of a map of several drives; `starts_drive`: the first of a
+/// later one.
+LocalMap numbered(LocalMap map, std::uint32_t id, bool starts_drive);
 
 }  // namespace topogeo::topomap

@@ -19,7 +19,13 @@ struct StopPose {
   geometry::Pose2 T_map_robot;
   Eigen::Matrix3d covariance =
       Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the map frame, m and rad
+  /// While the robot drives: the id that its local mapper gave the local map. Not stored.
+  std::uint32_t source_id = 0;
+  bool located = true;  ///< false: nobody knew where the robot was, the pose means nothing
 };
+
+/// Source of a stop that was in the map before this drive.
+inline constexpr std::uint32_t kStoredSource = 0xffffffffU;
 
 struct Trajectory {
   std::uint64_t version = 0;    ///< grows with every change
@@ -41,12 +47,17 @@ struct StampedPose {
 };
 
 /// One corrected pose (T_map_robot) for each scan in time order: stops as in `trajectory`, the
-/// scans between moved rigidly with the stop before them. `maps[i]` is the map of
-/// `trajectory.stops[i]`.
+/// scans between moved rigidly with the stop before them. Stops that are not located are left out,
+/// and the scans that follow them. `maps[i]` is the map of `trajectory.stops[i]`.
 std::vector<StampedPose> expand_trajectory(const Trajectory& trajectory,
                                            std::span<const LocalMap> maps);
 
-/// The odometry poses (T_odom_robot) of the same scans, moved so that the first is the identity.
+/// The odometry poses (T_odom_robot) of all scans, moved so that the first is the identity and the
+/// first of each later drive is where `trajectory` has it. `maps[i]` is the map of
+/// `trajectory.stops[i]`.
+std::vector<StampedPose> expand_odometry(const Trajectory& trajectory,
+                                         std::span<const LocalMap> maps);
+/// The same for maps of one drive.
 std::vector<StampedPose> expand_odometry(std::span<const LocalMap> maps);
 
 }  // namespace topogeo::topomap

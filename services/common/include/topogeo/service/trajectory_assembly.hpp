@@ -25,6 +25,9 @@ class TrajectoryAssembly {
   /// versions may stand side by side; `version` is the newest.
   [[nodiscard]] topomap::Trajectory newest() const;
 
+  /// The newest pose of one stop; null until it has come.
+  [[nodiscard]] const topomap::StopPose* stop(std::size_t number) const;
+
   /// The trajectory of exactly this version, if every segment of it is here.
   [[nodiscard]] std::optional<topomap::Trajectory> whole(std::uint64_t version) const;
 
