@@ -28,9 +28,8 @@ constexpr std::int64_t kFreshMargin_ns = 1'000'000'000;
 constexpr unsigned kManyDoubts = 4;
 /// Reports' speeds may be so wrong, as a share,
 constexpr double kSpeedDoubt = 0.5;
-/// and change so fast within a report period without a trace in them.
-constexpr double kHardest_mps2 = 2.0;
-constexpr double kHardest_radps2 = 4.0;
+/// and change so many times as fast as the base is told to change them.
+constexpr double kHaste = 2.0;
 
 }  // namespace
 
@@ -72,7 +71,10 @@ std::int64_t DeviceClock::map(std::int64_t device_ns, std::int64_t arrival_ns) {
 }
 
 BaseOdometer::BaseOdometer(const BaseSettings& settings)
-    : units_(settings.calibration), tracker_(units_), host_clock_(report_line_time_ns(settings)) {}
+    : units_(settings.calibration),
+      limits_(settings.limits),
+      tracker_(units_),
+      host_clock_(report_line_time_ns(settings)) {}
 
 /// Without a checksum one wrong digit would move the robot. Its way has to fit the speeds that the
 /// two reports tell, or in any case `loosely` what a base can do.
@@ -94,11 +96,11 @@ bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
   };
   const geometry::Pose2 half_turn{0.0, 0.0, -0.5 * moved.theta_rad};
   const Eigen::Vector2d way_m = half_turn * moved.position_m();
-  return fits(way_m.x(), units_.linear_mps(from), units_.linear_mps(to), kHardest_mps2,
-              kMargin_m) &&
+  return fits(way_m.x(), units_.linear_mps(from), units_.linear_mps(to),
+              kHaste * limits_.linear_mps2, kMargin_m) &&
          std::abs(way_m.y()) <= kMargin_m &&
          fits(moved.theta_rad, units_.angular_radps(from), units_.angular_radps(to),
-              kHardest_radps2, kMargin_rad);
+              kHaste * limits_.angular_radps2, kMargin_rad);
 }
 
 /// The base's clock has gone on since the last report as ours did.

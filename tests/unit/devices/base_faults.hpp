@@ -27,6 +27,7 @@ struct BaseFaultResult {
   std::size_t unsafe = 0;     ///< times that the robot moved when it should not have
   std::int64_t worst_recovery_ns = 0;  ///< from the fault's end to the next odometry handed on
   double worst_m = 0.0;                ///< error of the odometry
+  double worst_rad = 0.0;
 };
 
 struct BaseFaultLine {

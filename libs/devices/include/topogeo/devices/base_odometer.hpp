@@ -80,6 +80,7 @@ class BaseOdometer {
   void start_from(const McpReport& report);
 
   McpUnits units_;
+  BaseLimits limits_;
   McpPoseTracker tracker_;
   McpClock base_clock_;
   DeviceClock host_clock_;
