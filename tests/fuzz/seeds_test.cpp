@@ -54,6 +54,10 @@ TEST(FuzzSeeds, LaserBytesPass) {
   expect_all_pass("sick_decoder", [](const std::string& bytes) { check_sick_decoder(bytes); });
 }
 
+TEST(FuzzSeeds, BaseBytesPass) {
+  expect_all_pass("mcp_decoder", [](const std::string& bytes) { check_mcp_decoder(bytes); });
+}
+
 // The checks are worth something only where the inputs reach the code behind the reader.
 TEST(FuzzSeeds, ReachTheMaps) {
   const auto maps = [](const char* name) {
@@ -65,6 +69,16 @@ TEST(FuzzSeeds, ReachTheMaps) {
   EXPECT_EQ(maps("nothing_usable"), 0U);
   EXPECT_EQ(check_map_file(content(seeds("map_file") / "whole_file")), 2U);
   EXPECT_EQ(check_map_file(content(seeds("map_file") / "body")), 1U);
+}
+
+TEST(FuzzSeeds, ReachTheReports) {
+  const auto messages = [](const char* name) {
+    return check_mcp_decoder(content(seeds("mcp_decoder") / name));
+  };
+  EXPECT_EQ(messages("ascii"), 15U);
+  EXPECT_EQ(messages("binary"), 7U);
+  EXPECT_EQ(messages("ascii_bad"), 1U);
+  EXPECT_EQ(messages("binary_bad"), 2U);
 }
 
 TEST(FuzzSeeds, ReachTheTelegrams) {
