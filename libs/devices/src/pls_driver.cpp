@@ -94,7 +94,7 @@ std::int64_t PlsDriver::due_ns() const {
     case Phase::kSettle:
       return std::min(due_ns, wait_until_ns_);
     case Phase::kRun:
-      due_ns = std::min(due_ns, last_scan_ns_ + silence_ns());
+      due_ns = std::min(due_ns, silent_at_ns());
       if (settings_.output == PlsOutput::kOnRequest && !exchange_.open()) {
         due_ns = std::min(due_ns, wait_until_ns_);
       }

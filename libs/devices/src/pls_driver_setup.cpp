@@ -194,13 +194,21 @@ void PlsDriver::run(std::int64_t now_ns) {
   watch_run(now_ns);
 }
 
+/// A sensor whose scans come damaged is heard all the same, and is waited for three times as long.
+std::int64_t PlsDriver::silent_at_ns() const {
+  const std::int64_t heard_until_ns =
+      std::min(last_byte_ns_ + settings_.detection_quiet_ns, last_scan_ns_ + 3 * silence_ns());
+  return std::max(last_scan_ns_ + silence_ns(), heard_until_ns);
+}
+
 void PlsDriver::watch_run(std::int64_t now_ns) {
-  if (now_ns >= last_scan_ns_ + silence_ns()) {
+  if (now_ns >= silent_at_ns()) {
     ++status_.counters.silences;
     // It may have restarted without being heard, and may follow to another rate now.
     failed_switches_ = 0;
     fallback_.clear();
-    start_search("no scan for " + std::to_string(silence_ns() / 1'000'000) + " ms", false, now_ns);
+    start_search("no scan for " + std::to_string((now_ns - last_scan_ns_) / 1'000'000) + " ms",
+                 false, now_ns);
     return;
   }
   const bool on_request = settings_.output == PlsOutput::kOnRequest;

@@ -250,9 +250,12 @@ void PlsEmulator::finish_start_up(std::int64_t now_ns) {
 /// in a stream plans the next one: with the mirror's next turn, or when the line will be free.
 void PlsEmulator::measure(std::int64_t now_ns) {
   const std::int64_t planned_ns = *std::exchange(measure_at_ns_, std::nullopt);
+  const int stuck_before = pending(PlsFault::kStuckScan);
   const std::int64_t free_ns = send_telegram(
       devices::sick_reply(devices::pls_reply::kMeasuredValues, scan_data(now_ns), status_),
       now_ns + settings_.sweep_to_send_ns);
+  if (pending(PlsFault::kStuckScan) != stuck_before)
+    fault_end_ns_ = std::max(fault_end_ns_, free_ns);
   if (!silent(now_ns)) ++scans_sent_;
   if (mode_ != Mode::kStream) return;
   const std::int64_t turn_ns = planned_ns + settings_.mirror_period_ns;
@@ -260,10 +263,7 @@ void PlsEmulator::measure(std::int64_t now_ns) {
 }
 
 std::vector<std::uint8_t> PlsEmulator::scan_data(std::int64_t now_ns) {
-  if (!last_scan_.empty() && strikes(PlsFault::kStuckScan)) {
-    fault_end_ns_ = std::max(fault_end_ns_, now_ns);
-    return last_scan_;
-  }
+  if (!last_scan_.empty() && strikes(PlsFault::kStuckScan)) return last_scan_;
   const std::vector<float> ranges_m = ranges_(now_ns);
   std::vector<std::uint8_t> data;
   put_word(data, ranges_m.size());

@@ -105,9 +105,6 @@ std::uint64_t line_drops(const PlsStatus& status) {
 std::uint64_t bad_crc(const PlsStatus& status) {
   return status.counters.line.bad_crc;
 }
-std::uint64_t cut(const PlsStatus& status) {
-  return status.counters.line.truncated + status.counters.line.noise_bytes;
-}
 std::uint64_t noise(const PlsStatus& status) {
   const SickCounters& line = status.counters.line;
   return line.noise_bytes + line.implausible_length + line.truncated + line.acks + line.naks;
@@ -134,7 +131,8 @@ std::vector<Fault> faults(std::int64_t scan_period_ns) {
   const std::int64_t patience_ns = std::max(kSecond_ns, 4 * scan_period_ns);
   return {
       {"bad CRC", "bad_crc", bad_crc, struck_by(PlsFault::kBadCrc, 5), 0},
-      {"truncated telegram", "truncated, noise_bytes", cut, struck_by(PlsFault::kTruncated, 5), 0},
+      {"truncated telegram", "truncated, bad_crc, implausible_length, noise_bytes", line_drops,
+       struck_by(PlsFault::kTruncated, 5), 0},
       {"garbage between telegrams", "noise_bytes, implausible_length, truncated, acks, naks", noise,
        struck_by(PlsFault::kGarbage, 5), 0},
       {"a bit flipped anywhere", "bad_crc, truncated, implausible_length, noise_bytes", line_drops,

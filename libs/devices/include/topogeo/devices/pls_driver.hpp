@@ -133,6 +133,7 @@ class PlsDriver final : public SerialDriver {
   [[nodiscard]] std::uint64_t drops() const;
   [[nodiscard]] std::int64_t scan_time_ns() const;
   [[nodiscard]] std::int64_t silence_ns() const;
+  [[nodiscard]] std::int64_t silent_at_ns() const;
 
   PlsSettings settings_;
   SickDecoder decoder_;
