@@ -1,0 +1,130 @@
+// The perceptual model: what the sensors would measure at every place of the window, and how well
+// that fits what they do measure (spec B3).
+//
+// A virtual reading counts the cells from the sensor to the nearest obstacle: the distance from
+// where the sensor is to the near side of the first obstacle cell on a ray; the shortest of several
+// rays across the cone. The robot stands in every cell of the window at the same place within the
+// cell as expected, so a ray crosses the same pattern of cells from everywhere and a row of the
+// window is tested with one or two words: the test holds it against rays cast one by one, the
+// benchmark markov/21 has what it costs.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/markov/obstacle_cells.hpp"
+#include "topogeo/markov/range_sensor.hpp"
+
+namespace topogeo::markov {
+
+/// Probability from the mean absolute difference d of the compared readings, scale s (not
+/// normalized). The source only says that it falls when the difference grows.
+enum class PerceptualFormula {
+  kExponential,  ///< exp(-d / s)
+  kInverse,      ///< 1 / (1 + d / s)
+  kLinear,       ///< max(0, 1 - d / s)
+};
+
+/// Up to this expected distance (and beyond that of the band before) a reading is that reliable.
+struct ReliabilityBand {
+  double up_to_m = 0.0;
+  double reliability = 0.0;
+};
+
+struct SonarModelConfig {
+  /// Virtual and real readings beyond are taken for this. Not below the last band.
+  double max_range_m = 5.0;
+  /// Rays across a cone that is not 0, edges included; odd, so that one is the axis.
+  int rays_per_cone = 5;
+  /// Ascending; beyond the last the reliability is 0.
+  std::vector<ReliabilityBand> bands = {{2.5, 1.0}, {5.0, 0.25}};
+  PerceptualFormula formula = PerceptualFormula::kExponential;
+  double scale_m = 0.05;
+  /// A larger difference counts as this much, so that one sensor that meets a person or no echo
+  /// does not outvote the others.
+  double difference_cap_m = 0.5;
+  /// Weighs each difference by the reliability of its reading. The source does not: there
+  /// reliability decides only how much the whole vector counts.
+  bool weigh_by_reliability = false;
+};
+
+/// Throws std::invalid_argument naming the field: max_range_m not in [0.5, 20], rays_per_cone not
+/// odd or not in [1, 31], bands empty, not ascending, beyond max_range_m or with a reliability not
+/// in [0, 1], scale_m not in [0.001, 10], difference_cap_m not in [0.01, 20].
+void validate(const SonarModelConfig& config);
+
+/// Throws std::invalid_argument naming the sensor: none or more than 1,000, a mount not finite or
+/// more than 5 m off the robot, half_cone_rad not in [0, pi/2].
+void validate(std::span<const RangeSensor> sensors);
+
+/// Reliability of a reading by the distance that is expected, metres (infinity: nothing in range).
+double reliability_of(const SonarModelConfig& config, double expected_m);
+
+/// What the readings say about the window.
+struct PerceptualMatch {
+  int compared = 0;          ///< readings that there were
+  double reliability = 0.0;  ///< mean over all sensors; a sensor without a reading has 0
+  /// Smallest mean absolute difference of any free cell, metres; infinity if nothing was compared.
+  double best_difference_m = 0.0;
+  /// True if the probabilities say anything: a reading was compared and some free cell is possible.
+  bool informative = false;
+};
+
+/// A work space that is reused.
+class SonarModel {
+ public:
+  /// Throws std::invalid_argument as the two validate().
+  SonarModel(std::vector<RangeSensor> sensors, const SonarModelConfig& config);
+
+  [[nodiscard]] std::size_t sensors() const { return sensors_.size(); }
+
+  /// Computes the virtual readings of the window of `size` cells (odd, 5..101) around the cell of
+  /// `T_map_robot`, for its free cells and for the middle one.
+  void look_around(const ObstacleCells& map, const geometry::Pose2& T_map_robot, int size);
+
+  /// Virtual reading at an offset from the middle of the window that was looked around in, metres;
+  /// infinity if there is nothing within max_range_m or the cell is not free. Outside the map there
+  /// is nothing. `offset` is within the window.
+  [[nodiscard]] double virtual_m(std::size_t sensor, Cell offset) const;
+
+  /// Compares the readings (one per sensor, metres, scan::Scan::kNoReturn for none) with the
+  /// virtual ones and writes the probability of every cell of the window, which sum to one; all
+  /// zero if they say nothing. Reliability goes by the middle of the window. Throws
+  /// std::invalid_argument naming the sensor: another number of readings, one that is negative or
+  /// not finite.
+  PerceptualMatch compare(std::span<const float> ranges_m, std::span<double> probabilities);
+
+ private:
+  /// A cell that a ray crosses: offset from the cell of the robot, where the ray enters it.
+  struct Crossing {
+    int x;
+    int y;
+    double distance_m;
+  };
+
+  void take_surroundings(const ObstacleCells& map, Cell centre, double reach_m);
+  void follow_ray(const Eigen::Vector2d& start_cells, double bearing_rad);
+  void cast(std::span<double> readings);
+  [[nodiscard]] std::uint64_t surroundings_bits(int x, int y) const;
+  double add_differences(std::span<const float> ranges_m, PerceptualMatch& match);
+  [[nodiscard]] double probability_of(double difference_m) const;
+
+  SonarModelConfig config_;
+  std::vector<RangeSensor> sensors_;
+  int size_ = 0;
+  double cell_m_ = 0.0;
+  std::vector<RowBits> free_;
+  std::vector<RowBits> asked_;  ///< the free cells and the middle one
+  /// Obstacles of the window and as far around it as the sensors reach, rows of words.
+  int margin_ = 0;
+  int words_a_row_ = 0;
+  std::vector<std::uint64_t> surroundings_;
+  std::vector<Crossing> crossings_;
+  std::vector<RowBits> open_;        ///< cells whose ray is still on its way
+  std::vector<double> virtual_m_;    ///< sensor after sensor, row after row
+  std::vector<double> differences_;  ///< of each cell, over the compared readings
+};
+
+}  // namespace topogeo::markov

@@ -1,0 +1,80 @@
+// The movement model: what each motion primitive does to the probabilities (spec B3, figs. 4-7).
+//
+// A transition matrix says how likely the robot is to end so many cells off the place where the
+// primitive should have brought it. It is held as the source prints it, with the motion from left
+// to right: rows across the motion, the upper row to the left of the robot; columns along it. Its
+// middle is the expected place, so the window moves with the robot and the matrix only spreads.
+//
+// The source prints a matrix for an advance of one cell, none for the turns, and not how a longer
+// primitive spreads more. Here a matrix stands for a step of known length; a primitive of several
+// steps applies it as often, and the rest of a step in proportion (see part_of).
+#pragma once
+
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "topogeo/markov/belief_grid.hpp"
+
+namespace topogeo::markov {
+
+struct TransitionMatrix {
+  int rows = 0;                ///< odd
+  int columns = 0;             ///< odd
+  std::vector<double> values;  ///< rows x columns, the upper row first
+};
+
+/// Fig. 6, an advance. It sums to 0.9961: the source rounds. Nothing here makes it sum to one; the
+/// localizer normalizes the state after each update.
+TransitionMatrix macondo_advance();
+
+/// Of a quarter turn on the spot: 0.9 to stay, 0.02 for each neighbour, 0.005 for each diagonal
+/// one. The source has no figures for its turns.
+TransitionMatrix quarter_turn();
+
+/// Which way the arrow of fig. 6 points, which cannot be read in the source.
+enum class ArrowSense {
+  kRight,  ///< the right column is ahead of the robot: it rather goes too far
+  kLeft,   ///< the right column is behind it: it rather slips
+};
+
+struct TransitionModel {
+  TransitionMatrix advance = macondo_advance();
+  TransitionMatrix left = quarter_turn();
+  TransitionMatrix right = quarter_turn();
+  ArrowSense sense = ArrowSense::kRight;
+  /// Length and angle of the step that a matrix stands for; 0: the matrix is applied once for
+  /// a primitive, however long it is.
+  double advance_step_m = 0.10;
+  double turn_step_rad = 0.5 * std::numbers::pi;
+};
+
+/// Throws std::invalid_argument naming the field: sides of a matrix not odd or not in [1, 21],
+/// values of another number, negative or not finite, a sum not in [0.1, 1.01], a step that is
+/// neither 0 nor in [0.01, 100] m or [0.01, 6.3] rad.
+void validate(const TransitionModel& model);
+
+/// One cell of a matrix turned into the axes of the map.
+struct Tap {
+  Cell offset;
+  double probability = 0.0;
+};
+
+/// The matrix turned to the heading of the motion (radians, counter-clockwise from x of the map,
+/// |heading_rad| <= 1e5), its cells that are not zero, row after row. Multiples of 90 degrees move
+/// the values exactly. At other angles each value is shared among the four cells around its turned
+/// place in bilinear proportion, which keeps the sum and the mean displacement and adds at most a
+/// quarter of a squared cell to the variance along x and along y.
+std::vector<Tap> turned(const TransitionMatrix& matrix, ArrowSense sense, double heading_rad);
+
+/// The taps for a part of a step, 0 < part <= 1: that part of the probabilities, the rest staying
+/// where it is.
+std::vector<Tap> part_of(const std::vector<Tap>& taps, double part);
+
+/// One movement update: begins an update of the grid and spreads every cell of the previous state
+/// by the taps; cells that are not in `free` (free_cells_of_window of the grid's centre) get zero.
+/// Nothing is normalized: what is missing in the returned sum left the window, went into obstacles
+/// or was never in the matrix.
+double spread(std::span<const Tap> taps, std::span<const RowBits> free, BeliefGrid& grid);
+
+}  // namespace topogeo::markov

@@ -1,0 +1,163 @@
+#include "topogeo/markov/transition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+namespace topogeo::markov {
+namespace {
+
+void check(const std::string& field, double value, double low, double high) {
+  if (std::isfinite(value) && value >= low && value <= high) return;
+  throw std::invalid_argument("TransitionModel." + field + " is " + std::to_string(value) +
+                              ", must be in [" + std::to_string(low) + ", " + std::to_string(high) +
+                              "]");
+}
+
+void check_side(const std::string& field, int side) {
+  check(field, side, 1, 21);
+  if (side % 2 == 0) {
+    throw std::invalid_argument("TransitionModel." + field + " is " + std::to_string(side) +
+                                ", must be odd");
+  }
+}
+
+void check_matrix(const std::string& name, const TransitionMatrix& matrix) {
+  check_side(name + ".rows", matrix.rows);
+  check_side(name + ".columns", matrix.columns);
+  const auto cells = static_cast<std::size_t>(matrix.rows * matrix.columns);
+  if (matrix.values.size() != cells) {
+    throw std::invalid_argument("TransitionModel." + name + " has " +
+                                std::to_string(matrix.values.size()) + " values, must have " +
+                                std::to_string(cells));
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < cells; ++i) {
+    check(name + ".values[" + std::to_string(i) + "]", matrix.values[i], 0.0, 1.01);
+    sum += matrix.values[i];
+  }
+  check(name + ": sum of values", sum, 0.1, 1.01);
+}
+
+/// Values on a square of cells around the expected place, from which the taps are read off.
+class TapSquare {
+ public:
+  explicit TapSquare(int half)
+      : half_(half), values_(static_cast<std::size_t>((2 * half + 1) * (2 * half + 1)), 0.0) {}
+
+  void add(Cell offset, double probability) {
+    values_[static_cast<std::size_t>((offset.y + half_) * (2 * half_ + 1) + offset.x + half_)] +=
+        probability;
+  }
+
+  void share(double x, double y, double probability) {
+    const double left = std::floor(x);
+    const double low = std::floor(y);
+    const double right_part = x - left;
+    const double high_part = y - low;
+    const Cell corner{static_cast<int>(left), static_cast<int>(low)};
+    add(corner, probability * (1.0 - right_part) * (1.0 - high_part));
+    add({corner.x + 1, corner.y}, probability * right_part * (1.0 - high_part));
+    add({corner.x, corner.y + 1}, probability * (1.0 - right_part) * high_part);
+    add({corner.x + 1, corner.y + 1}, probability * right_part * high_part);
+  }
+
+  [[nodiscard]] std::vector<Tap> taps() const {
+    std::vector<Tap> taps;
+    std::size_t i = 0;
+    for (int y = -half_; y <= half_; ++y) {
+      for (int x = -half_; x <= half_; ++x, ++i) {
+        if (values_[i] > 0.0) taps.push_back({{x, y}, values_[i]});
+      }
+    }
+    return taps;
+  }
+
+ private:
+  int half_;
+  std::vector<double> values_;
+};
+
+/// A cell (ahead, left) of the robot after quarter turns counter-clockwise.
+Cell quarter_turned(Cell cell, int quarters) {
+  for (int i = 0; i < quarters; ++i) cell = {-cell.y, cell.x};
+  return cell;
+}
+
+}  // namespace
+
+TransitionMatrix macondo_advance() {
+  return {3, 3, {0.0, 0.0625, 0.0078, 0.0, 0.7929, 0.0625, 0.0, 0.0625, 0.0078}};
+}
+
+TransitionMatrix quarter_turn() {
+  return {3, 3, {0.005, 0.02, 0.005, 0.02, 0.9, 0.02, 0.005, 0.02, 0.005}};
+}
+
+void validate(const TransitionModel& model) {
+  check_matrix("advance", model.advance);
+  check_matrix("left", model.left);
+  check_matrix("right", model.right);
+  if (model.advance_step_m != 0.0) check("advance_step_m", model.advance_step_m, 0.01, 100.0);
+  if (model.turn_step_rad != 0.0) check("turn_step_rad", model.turn_step_rad, 0.01, 6.3);
+}
+
+std::vector<Tap> turned(const TransitionMatrix& matrix, ArrowSense sense, double heading_rad) {
+  constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
+  constexpr double kSame_rad = 1e-9;  // what turning by quarters many times leaves as an error
+  const double quarters = std::round(heading_rad / kQuarter_rad);
+  const bool exact = std::abs(heading_rad - quarters * kQuarter_rad) < kSame_rad;
+  const int quarters_in_turn = (static_cast<int>(quarters) % 4 + 4) % 4;
+  const geometry::SinCos direction = geometry::sincos(heading_rad);
+
+  // A turned cell is at most half_rows + half_columns away, shared with the next one.
+  TapSquare square{matrix.rows / 2 + matrix.columns / 2 + 1};
+  std::size_t i = 0;
+  for (int row = 0; row < matrix.rows; ++row) {
+    for (int column = 0; column < matrix.columns; ++column, ++i) {
+      const int right = column - matrix.columns / 2;
+      const Cell cell{sense == ArrowSense::kRight ? right : -right, matrix.rows / 2 - row};
+      if (matrix.values[i] == 0.0) continue;
+      if (exact) {
+        square.add(quarter_turned(cell, quarters_in_turn), matrix.values[i]);
+      } else {
+        square.share(cell.x * direction.cos - cell.y * direction.sin,
+                     cell.x * direction.sin + cell.y * direction.cos, matrix.values[i]);
+      }
+    }
+  }
+  return square.taps();
+}
+
+std::vector<Tap> part_of(const std::vector<Tap>& taps, double part) {
+  std::vector<Tap> result = taps;
+  for (Tap& tap : result) tap.probability *= part;
+  if (part < 1.0) result.push_back({{0, 0}, 1.0 - part});
+  return result;
+}
+
+double spread(std::span<const Tap> taps, std::span<const RowBits> free, BeliefGrid& grid) {
+  grid.begin_update();
+  const std::span<const double> from = grid.previous();
+  const std::span<double> to = grid.current();
+  const int size = grid.size();
+  for (const Tap& tap : taps) {
+    // From here on x and y are those of the cell that the probability comes from.
+    const auto [dx, dy] = tap.offset;
+    const int first_x = std::max(0, -dx);
+    const int end_x = size - std::max(0, dx);
+    for (int y = std::max(0, -dy); y < size - std::max(0, dy); ++y) {
+      const double* source = from.data() + static_cast<std::ptrdiff_t>(y) * size;
+      double* target = to.data() + static_cast<std::ptrdiff_t>(y + dy) * size + dx;
+      for (int x = first_x; x < end_x; ++x) target[x] += tap.probability * source[x];
+    }
+  }
+  grid.keep_only(free);
+  return grid.sum();
+}
+
+}  // namespace topogeo::markov
