@@ -23,6 +23,8 @@ constexpr std::int64_t kSettled_ns = 2'000'000'000;
 constexpr double kMargin_m = 0.03;
 constexpr double kMargin_rad = 0.03;
 constexpr std::int64_t kFreshMargin_ns = 1'000'000'000;
+/// The same bit may be wrong twice.
+constexpr unsigned kFewDoubts = 2;
 /// After so many reports in succession whose ways do not fit their speeds or whose clocks
 /// do not fit ours, neither is believed any more.
 constexpr unsigned kManyDoubts = 4;
@@ -152,11 +154,13 @@ BaseOdometer::Result BaseOdometer::take(const McpReport& report, std::int64_t ar
   }
   if (follows_doubted(report, arrival_ns)) {
     // While its clock goes on the registers are the same ones: it was the last report that erred.
-    if (clock_goes_on) return {Verdict::kGood, accept(report, arrival_ns)};
+    if (clock_goes_on && doubts_ >= kFewDoubts) {
+      return {Verdict::kGood, accept(report, arrival_ns)};
+    }
     // A base that was switched on since then has a clock that began then.
     const bool fresh =
         ticks_ns(report.wide(McpField::kClock)) <= arrival_ns - last_->arrival_ns + kFreshMargin_ns;
-    if (fresh || doubts_ >= kManyDoubts) {
+    if (!clock_goes_on && (fresh || doubts_ >= kManyDoubts)) {
       start_from(doubted_->report);
       return {Verdict::kRestarted, accept(report, arrival_ns)};
     }

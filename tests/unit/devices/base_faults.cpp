@@ -214,12 +214,24 @@ std::int64_t joystick(Scene& scene) {
   return scene.all.line.now_ns();
 }
 
+BaseSettings settings_for(const BaseFaultLine& line) {
+  BaseSettings settings;
+  settings.dialect = line.dialect;
+  settings.line.baud = line.baud;
+  return settings;
+}
+
+std::int64_t period_ns(const BaseFaultLine& line) {
+  return ticks_ns(report_period_ticks(settings_for(line)));
+}
+
 std::vector<Fault> faults(const BaseFaultLine& line) {
   const bool ascii = line.dialect == BaseDialect::kAscii;
-  // There is no checksum: for one report a wrong digit passes as far as the robot may have driven.
+  // There is no checksum: for one report a wrong digit passes as far as the robot may have driven,
+  // and those after it are doubted first.
   std::vector<Fault> all{
-      {"a bit of a report wrong", ascii ? "" : "drops", ascii ? anything : drops, corrupt, 0,
-       ascii ? 0.4 : 0.03},
+      {"a bit of a report wrong", ascii ? "" : "drops", ascii ? anything : drops, corrupt,
+       ascii ? 3 * period_ns(line) : 0, ascii ? 0.4 : 0.03},
       {"truncated report", "drops", drops, truncate},
       {"garbage", "drops", drops, garbage},
       {"silence below the limit", "", anything, short_silence},
@@ -233,17 +245,6 @@ std::vector<Fault> faults(const BaseFaultLine& line) {
   };
   if (ascii) all.push_back({"echo on", "echoes", echoes, echo_on});
   return all;
-}
-
-BaseSettings settings_for(const BaseFaultLine& line) {
-  BaseSettings settings;
-  settings.dialect = line.dialect;
-  settings.line.baud = line.baud;
-  return settings;
-}
-
-std::int64_t period_ns(const BaseFaultLine& line) {
-  return ticks_ns(report_period_ticks(settings_for(line)));
 }
 
 }  // namespace
