@@ -48,14 +48,14 @@ void decode(benchmark::State& state, std::size_t part, std::uint64_t most_cm, st
     telegrams = decoder.counters().telegrams;
   }
   if (telegrams != kScans - (late > 0 ? 1 : 0)) state.SkipWithError("telegrams are missing");
-  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * stream.size()));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(stream.size()));
 }
 
 void check_word(benchmark::State& state) {
   support::Random random(1);
   const std::vector<std::uint8_t> telegram = scan(random, 5000);
   for (auto _ : state) benchmark::DoNotOptimize(devices::sick_crc(telegram));
-  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * telegram.size()));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(telegram.size()));
 }
 
 }  // namespace

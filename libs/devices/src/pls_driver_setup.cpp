@@ -58,8 +58,8 @@ void PlsDriver::ask(std::vector<std::uint8_t> command, std::int64_t now_ns) {
   // The scan that is being sent, and the next that is ready, may come before the answer.
   if (phase_ == Phase::kStop) limits.ack_timeout_ns += 2 * scan_time_ns();
   if (phase_ == Phase::kRate) {
-    // After a first command that was heard, a second one at the old rate would be garbage.
-    limits.tries = 1;
+    // After a first command that may have been heard, a second one at the old rate may be garbage.
+    limits.repeat_unanswered = false;
     limits.reply_timeout_ns = settings_.baud_reply_timeout_ns;
   }
   if (phase_ == Phase::kRun) {

@@ -75,7 +75,7 @@ void SickExchange::send(std::int64_t now_ns) {
 }
 
 void SickExchange::fail(Result result, std::int64_t now_ns) {
-  if (sent_ >= limits_.tries) {
+  if (sent_ >= limits_.tries || (result != Result::kRefused && !limits_.repeat_unanswered)) {
     result_ = result;
     return;
   }

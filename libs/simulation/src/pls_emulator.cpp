@@ -176,7 +176,7 @@ PlsEmulator::Reply PlsEmulator::change_mode(std::span<const std::uint8_t> data) 
     change.mode = mode;
     return Reply{devices::pls_reply::kMode, {static_cast<std::uint8_t>(result)}, change};
   };
-  const Reply refused = reply(devices::PlsModeReply::kRefused, std::nullopt);
+  Reply refused = reply(devices::PlsModeReply::kRefused, std::nullopt);
   if (data.empty()) return refused;
   if (data.size() == 1 && data[0] == static_cast<std::uint8_t>(PlsMode::kOnRequest)) {
     return reply(devices::PlsModeReply::kDone, Mode::kOnRequest);

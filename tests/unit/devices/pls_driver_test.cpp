@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "pls_on_line.hpp"
+#include "sick_streams.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -216,6 +217,49 @@ TEST(PlsDriver, ReadsTheErrorsOfTheSensor) {
   PlsOnLine pls({}, sensor);
   pls.start();
   EXPECT_EQ(pls.driver.status().errors, sensor.errors);
+}
+
+TEST(PlsDriver, RepeatsACommandThatTheSensorHeardWrongly) {
+  PlsOnLine pls;
+  int commands = 0;
+  pls.line.set_host_filter([&](std::vector<std::uint8_t>& bytes) {
+    if (++commands % 2 == 0) bytes.back() ^= 0x10;
+  });
+  pls.start();
+  const PlsStatus status = pls.driver.status();
+  EXPECT_EQ(status.line.baud, 500'000U);
+  EXPECT_GE(status.counters.refusals, 3U) << "NAK";
+  EXPECT_GE(status.counters.repeats, 3U);
+  EXPECT_GE(status.counters.line.naks, 3U);
+}
+
+TEST(PlsDriver, RestsWhenTheSensorRefusesToSendScans) {
+  PlsOnLine pls;
+  const Bytes stream = pls_mode_command(PlsMode::kStream);
+  int asked = 0;
+  pls.line.set_host_filter([&](std::vector<std::uint8_t>& bytes) {
+    if (bytes != stream) return;
+    ++asked;
+    bytes.clear();
+  });
+  pls.line.plug_in();
+  pls.run_for(120 * kSecond_ns);
+  EXPECT_EQ(pls.driver.status().state, PlsState::kFailed);
+  EXPECT_EQ(pls.driver.status().reason, "the sensor does not send scans");
+  EXPECT_GE(asked, 20);
+  EXPECT_LE(asked, 120) << "once per second at most in the long run";
+  pls.line.set_host_filter({});
+  EXPECT_TRUE(pls.run_for_scans(1, 10 * kSecond_ns));
+}
+
+TEST(PlsDriver, IgnoresTheEchoOfItsCommands) {
+  PlsOnLine pls;
+  pls.line.set_echo(true);
+  pls.start();
+  EXPECT_EQ(pls.driver.status().line.baud, 500'000U);
+  EXPECT_GE(pls.driver.status().counters.line.echoes, 5U);
+  EXPECT_EQ(pls.driver.status().counters.line.noise_bytes, 0U);
+  EXPECT_EQ(pls.driver.status().counters.repeats, 0U);
 }
 
 TEST(PlsDriver, OrdersNothingWithoutAPort) {

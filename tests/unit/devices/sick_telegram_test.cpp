@@ -68,11 +68,11 @@ TEST(SickTelegram, OfAScanIsWrittenAsWorkedOutByAScript) {
 }
 
 TEST(SickTelegram, RefusesWhatIsTooLong) {
-  EXPECT_NO_THROW(sick_command(0x77, Bytes(63)));
-  EXPECT_THROW(sick_command(0x77, Bytes(64)), std::invalid_argument);
-  EXPECT_NO_THROW(sick_reply(0xB1, Bytes(810), 0));
-  EXPECT_THROW(sick_reply(0xB1, Bytes(811), 0), std::invalid_argument);
-  EXPECT_THROW(sick_reply(0xB1, {}, 0, 0x7F), std::invalid_argument);
+  EXPECT_NO_THROW((void)sick_command(0x77, Bytes(63)));
+  EXPECT_THROW((void)sick_command(0x77, Bytes(64)), std::invalid_argument);
+  EXPECT_NO_THROW((void)sick_reply(0xB1, Bytes(810), 0));
+  EXPECT_THROW((void)sick_reply(0xB1, Bytes(811), 0), std::invalid_argument);
+  EXPECT_THROW((void)sick_reply(0xB1, {}, 0, 0x7F), std::invalid_argument);
 }
 
 TEST(SickDecoder, TellsThePartsOfATelegram) {
@@ -118,7 +118,7 @@ TEST(SickDecoder, FindsATelegramWithFalseStartsInside) {
   const Bytes many = measured_values(std::vector<std::uint16_t>(361, 640));
   Bytes stream = false_start;
   append(stream, many);
-  for (const std::size_t part : {1, 3, 731, 5000}) {
+  for (const std::size_t part : {1U, 3U, 731U, 5000U}) {
     EXPECT_THAT(all(stream, part), ElementsAre(false_start, many)) << part;
   }
   // Listening from anywhere in the first scan on, the second one is still found.

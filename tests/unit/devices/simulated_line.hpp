@@ -34,6 +34,14 @@ class SimulatedLine {
     filter_ = std::move(filter);
   }
 
+  /// What the driver wrote, on its way to the device: may be changed.
+  void set_host_filter(std::function<void(std::vector<std::uint8_t>&)> filter) {
+    host_filter_ = std::move(filter);
+  }
+
+  /// Whether the line returns to the driver what it wrote, as some two-wire adapters do.
+  void set_echo(bool echo) { echo_ = echo; }
+
   /// The port appears, with settings that nobody chose.
   void plug_in() {
     if (plugged_) return;
@@ -110,15 +118,20 @@ class SimulatedLine {
       }
       if (*written_ns_ > now_ns_) return;
       written_ns_.reset();
-      const std::vector<std::uint8_t> bytes = std::move(order.bytes);
+      std::vector<std::uint8_t> bytes = std::move(order.bytes);
       orders_.pop_front();
-      if (!bytes.empty()) device_.receive(bytes, host_, now_ns_);
+      if (bytes.empty()) continue;
+      if (echo_) driver_.receive(bytes, now_ns_);
+      if (host_filter_) host_filter_(bytes);
+      device_.receive(bytes, host_, now_ns_);
     }
   }
 
   SerialDriver& driver_;
   simulation::SerialDevice& device_;
   std::function<void(std::vector<std::uint8_t>&)> filter_;
+  std::function<void(std::vector<std::uint8_t>&)> host_filter_;
+  bool echo_ = false;
   std::int64_t now_ns_;
   std::int64_t read_due_ns_;
   bool plugged_ = false;

@@ -19,6 +19,7 @@ class SickExchange {
     std::int64_t reply_timeout_ns = 0;  ///< from ACK to the reply
     std::int64_t repeat_gap_ns = 0;     ///< before the command is sent again
     int tries = 1;                      ///< how often it is sent at most
+    bool repeat_unanswered = true;      ///< or only what was refused
   };
   enum class Result {
     kNone,     ///< nothing was asked
