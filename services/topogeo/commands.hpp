@@ -12,6 +12,7 @@ void add_map_command(CLI::App& app, int& exit_code);
 void add_localize_command(CLI::App& app, int& exit_code);
 void add_localizer_command(CLI::App& app, int& exit_code);
 void add_demo_command(CLI::App& app, int& exit_code);
+void add_simulator_command(CLI::App& app, int& exit_code);
 void add_status_command(CLI::App& app, int& exit_code);
 void add_workers_command(CLI::App& app, int& exit_code);
 void add_plan_command(CLI::App& app, int& exit_code);

@@ -25,6 +25,8 @@ namespace {
 struct DemoOptions {
   RunOptions run;
   std::optional<std::filesystem::path> world;
+  bool with_devices = false;
+  SimulationOptions simulation{};
 };
 
 simulation::World read_world(const std::optional<std::filesystem::path>& file) {
@@ -69,12 +71,28 @@ int show_demo(DemoOptions options) {
   return run_log(options.run);
 }
 
+/// The same floor through the serial lines of emulated devices, in real time.
+int show_devices(DemoOptions options) {
+  support::check_writable_directory(options.run.job.out);
+  options.simulation.world = options.run.job.out / "floor.world.yaml";
+  if (options.world) {
+    options.simulation.world = *options.world;
+  } else {
+    support::write_file_atomically(options.simulation.world, kDemoWorld);
+  }
+  options.run.simulation = options.simulation;
+  std::cerr << "a simulated robot drives through the floor; this takes as long as the drive\n";
+  return run_devices(options.run);
+}
+
 }  // namespace
 
 void add_demo_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "demo", "Map a synthetic floor and compare the result with the known truth");
   auto options = std::make_shared<DemoOptions>();
+  // Faster than a B21 likes to go, so that nobody has to wait for long.
+  options->simulation.speed_m_per_s = 1.5;
   command->add_option("--out", options->run.job.out, "directory for the results")
       ->required()
       ->type_name("DIR");
@@ -83,7 +101,12 @@ void add_demo_command(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   add_common_options(*command, options->run.job);
   add_run_options(*command, options->run);
-  command->callback([options, &exit_code] { exit_code = show_demo(*options); });
+  CLI::Option* sim = command->add_flag("--sim", options->with_devices,
+                                       "drive through it with emulated devices on serial ports");
+  add_simulation_options(*command, options->simulation, sim);
+  command->callback([options, &exit_code] {
+    exit_code = options->with_devices ? show_devices(*options) : show_demo(*options);
+  });
 }
 
 }  // namespace topogeo::cli

@@ -27,6 +27,7 @@ int run(int argc, const char* const* argv) {
   cli::add_localize_command(app, exit_code);
   cli::add_localizer_command(app, exit_code);
   cli::add_demo_command(app, exit_code);
+  cli::add_simulator_command(app, exit_code);
   cli::add_status_command(app, exit_code);
   cli::add_workers_command(app, exit_code);
   cli::add_plan_command(app, exit_code);

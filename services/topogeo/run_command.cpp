@@ -21,8 +21,6 @@
 namespace topogeo::cli {
 namespace {
 
-constexpr int kSignalBase = 128;  // exit code of a program that a signal has ended, as in shells
-
 /// What the localizer counted; "accepted" and "rejected: <reason>" are its names.
 void add_matches(storage::Report& report, const ServiceTable& services) {
   const msg::ServiceStatus* localizer = services.find("localizer");
@@ -59,18 +57,27 @@ void add_continuation(storage::Report& report, const ServiceTable& services) {
   if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
 }
 
-storage::Report make_report(const RunOptions& options, Job& job, const RunResult& result) {
+std::string check_rate(const std::string& text) {
+  try {
+    static_cast<void>(service::parse_rate(text));
+    return {};
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+storage::Report make_report(const RunOptions& options, const support::EffectiveConfig& config,
+                            const RunResult& result) {
   storage::Report report;
   report.command = "run";
-  report.log = options.job.log.filename().string();
+  report.log = source_name(options);
   report.workers = options.workers;
-  report.configuration = job.config.effective;
+  report.configuration = config;
   pipeline::add_map(report, storage::read_map_file(options.job.out / "map.pb"));
   add_matches(report, result.services);
   pipeline::add_loop_candidates(report, result.loop_decisions);
-  while (job.reader.next()) {  // to learn what the gateway skipped
-  }
-  pipeline::add_log(report, job.reader.statistics());
   if (options.job.map) add_localization(report, result.services);
   if (options.job.continued) add_continuation(report, result.services);
   report.stages = result.times;
@@ -79,7 +86,6 @@ storage::Report make_report(const RunOptions& options, Job& job, const RunResult
   return report;
 }
 
-/// Who did the searching, and what went wrong on the way.
 void print_pool(std::ostream& out, const ServiceTable& services) {
   const msg::ServiceStatus* localizer = services.find("localizer");
   if (localizer == nullptr) return;
@@ -102,17 +108,6 @@ void print_pool(std::ostream& out, const ServiceTable& services) {
         << (fault.count() == 1 ? " time" : " times") << ", see logs/localizer.log\n";
   }
 }
-
-std::string check_rate(const std::string& text) {
-  try {
-    static_cast<void>(service::parse_rate(text));
-    return {};
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-}
-
-}  // namespace
 
 void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--workers", options.workers,
@@ -145,7 +140,10 @@ int run_log(const RunOptions& options) {
   }
   if (!result.finished) throw std::runtime_error(result.failure);
 
-  storage::Report report = make_report(options, job, result);
+  storage::Report report = make_report(options, job.config.effective, result);
+  while (job.reader.next()) {  // to learn what the gateway skipped
+  }
+  pipeline::add_log(report, job.reader.statistics());
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
   tell_skipped(job.reader.statistics());
@@ -158,12 +156,31 @@ int run_log(const RunOptions& options) {
 }
 
 void add_run_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("run", "Map a log with all services as processes on DDS");
+  CLI::App* command = app.add_subcommand(
+      "run", "Map a log, or with real or simulated devices, all services as processes on DDS");
   auto options = std::make_shared<RunOptions>();
   add_log_options(*command, options->job);
   add_map_options(*command, options->job, StoredMapUse::kEither);
   add_run_options(*command, *options);
-  command->callback([options, &exit_code] { exit_code = run_log(*options); });
+  CLI::Option* log = command->get_option("--log")->required(false);
+  CLI::Option* devices =
+      command->add_option("--devices", options->devices, "use the devices of this file (YAML)")
+          ->type_name("FILE")
+          ->excludes(log);
+  auto simulation = std::make_shared<SimulationOptions>();
+  CLI::Option* sim =
+      command->add_option("--sim", simulation->world, "drive the tour of this world file (YAML)")
+          ->type_name("WORLD")
+          ->excludes(log)
+          ->excludes(devices);
+  add_simulation_options(*command, *simulation, sim);
+  command->callback([=, &exit_code] {
+    if (log->count() + devices->count() + sim->count() == 0) {
+      throw service::UsageError("run: expected --log, --devices or --sim (see --help)");
+    }
+    if (sim->count() > 0) options->simulation = *simulation;
+    exit_code = log->count() > 0 ? run_log(*options) : run_devices(*options);
+  });
 }
 
 }  // namespace topogeo::cli

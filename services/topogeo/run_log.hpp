@@ -1,6 +1,14 @@
 // What `topogeo run` does, for the commands that need it.
 #pragma once
 
+#include <iosfwd>
+
+#include <CLI/App.hpp>
+
+#include "topogeo/storage/report.hpp"
+#include "topogeo/support/config_schema.hpp"
+
+#include "run_supervisor.hpp"
 #include "service_group.hpp"
 
 namespace topogeo::cli {
@@ -9,6 +17,22 @@ namespace topogeo::cli {
 /// (service::kOk or 128 + signal). Throws service::UsageError, service::BadInputError for what
 /// cannot be started and std::runtime_error for a run that failed.
 int run_log(const RunOptions& options);
+
+/// The same with the devices of options.devices, to the first Ctrl-C, or of options.simulation, to
+/// the end of the tour of its world; the error against the truth is printed then.
+int run_devices(RunOptions options);
+
+/// Exit code of a program that a signal has ended, less the signal, as in shells.
+inline constexpr int kSignalBase = 128;
+
+/// All that is known of a run but its wall time and what was skipped of a log.
+storage::Report make_report(const RunOptions& options, const support::EffectiveConfig& config,
+                            const RunResult& result);
+/// Who did the searching, and what went wrong on the way.
+void print_pool(std::ostream& out, const ServiceTable& services);
+
+/// Adds --seed, --baud, --odometry, --speed and --people, which need the option `simulation`.
+void add_simulation_options(CLI::App& app, SimulationOptions& options, CLI::Option* simulation);
 
 /// Adds --workers, --domain, --rate and --profiles.
 void add_run_options(CLI::App& app, RunOptions& options);

@@ -9,12 +9,16 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include "topogeo/simulation/world.hpp"
+
 namespace topogeo::cli {
 namespace {
 
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTick{50};
+/// The base is told to go half as fast up as it could, so that it keeps up with what it is told.
+constexpr double kShareOfAcceleration = 0.6;
 constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
@@ -47,10 +51,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       status_reader_(participant_),
       end_reader_(participant_),
       decision_reader_(participant_),
-      signals_([this](int number) {
-        signal_ = number;
-        loop_.stop();
-      }),
+      signals_([this](int number) { on_signal(number); }),
       services_(options, partition) {
   loop_.add<msg::ServiceStatus>(
       status_reader_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
@@ -67,12 +68,35 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
         if (segment.robot_id() == options_.job.robot_id.c_str()) decisions_.add(segment);
       });
   loop_.add_timer(kTick, [this] { tick(); });
+  if (!options_.simulation) return;
+  simulation::DriveOptions drive;
+  drive.speed_m_per_s = options_.simulation->speed_m_per_s;
+  drive.turn_rad_per_s = kSimulatedTurn_radps;
+  drive.acceleration_m_per_s2 = kShareOfAcceleration * kSimulatedAcceleration_mps2;
+  drive.turn_gain_per_s = 2.0;
+  tour_.emplace(participant_, loop_, options_.job.robot_id,
+                simulation::load_world(options_.simulation->world).tour_m, drive);
+}
+
+// A second signal stops everything.
+void RunSupervisor::on_signal(int number) {
+  const bool may_finish = !options_.devices.empty() && signal_ == 0;
+  signal_ = number;
+  if (may_finish) {
+    loop_.post([this] { end_stream(); });
+  } else {
+    loop_.stop();
+  }
 }
 
 RunResult RunSupervisor::run() {
   loop_.run();
   ended_ = true;
   result_.signal_number = result_.finished ? 0 : signal_.load();
+  if (tour_) {
+    result_.truth = tour_->truth();
+    result_.collisions = tour_->last().collisions();
+  }
   finish_bar();
   if (result_.finished) wait_for_decisions();
   stop_services();
@@ -84,11 +108,29 @@ void RunSupervisor::tick() {
   if (ended_) return;
   check_deaths();
   check_stall();
+  if (tour_) watch_tour();
   show_progress();
+}
+
+void RunSupervisor::watch_tour() {
+  // Nobody misses the start of the drive: a scan has come through.
+  if (counter(result_.services.find("local_mapper"), "scans") > 0.0) tour_->set_out();
+  if (tour_->arrived()) end_stream();
+  if (tour_->overdue()) {
+    fail(fmt::format("the robot does not arrive, {:.0f} % of the tour were driven",
+                     100.0 * tour_->share()));
+  }
+}
+
+void RunSupervisor::end_stream() {
+  if (stream_ended_) return;
+  stream_ended_ = true;
+  services_.send_signal(SIGTERM, "sensor_gateway");
 }
 
 void RunSupervisor::check_deaths() {
   while (const std::optional<ServiceGroup::Death> death = services_.next_death()) {
+    if (stream_ended_ && death->clean && death->name == "sensor_gateway") continue;
     if (!death->is_worker) {
       fail(death->what);
       return;
@@ -135,7 +177,9 @@ void RunSupervisor::show_progress() {
     std::cerr << "matching revisited places\n";
     return;
   }
-  bar_.update(done, laser_lines_, elapsed_s);
+  std::uint64_t total = laser_lines_;
+  if (tour_) total = static_cast<std::uint64_t>(scans / std::max(tour_->share(), 0.01));
+  bar_.update(done, std::max(total, done), elapsed_s);
 }
 
 void RunSupervisor::finish_bar() {

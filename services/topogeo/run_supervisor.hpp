@@ -22,6 +22,7 @@
 #include "service_group.hpp"
 #include "service_table.hpp"
 #include "stall_watch.hpp"
+#include "tour_driver.hpp"
 
 namespace topogeo::cli {
 
@@ -32,12 +33,17 @@ struct RunResult {
   std::vector<support::StageTime> times;  ///< of each service
   ServiceTable services;                  ///< what they said last
   std::vector<localization::LoopDecision> loop_decisions;  ///< all, when finished
+  // Of a simulation:
+  std::vector<topomap::StampedPose> truth;  ///< where the robot really was
+  std::uint64_t collisions = 0;
 };
 
 class RunSupervisor {
  public:
   /// Starts the services, in a partition of their own. `laser_lines` is how many scans there are to
   /// come, at most. Throws like messaging::Participant and ServiceGroup.
+  /// For a simulation: its world has a tour. A run on devices ends with the tour, or with the first
+  /// signal; the map of what was seen by then is finished.
   RunSupervisor(const RunOptions& options, std::uint64_t laser_lines);
 
   /// Comes back when no service runs any more. Call it once.
@@ -46,6 +52,9 @@ class RunSupervisor {
  private:
   RunSupervisor(const RunOptions& options, std::uint64_t laser_lines, const std::string& partition);
   void tick();
+  void watch_tour();
+  void end_stream();
+  void on_signal(int number);
   void check_deaths();
   void check_stall();
   void show_progress();
@@ -70,6 +79,8 @@ class RunSupervisor {
   messaging::Reader<msg::StreamEnd> end_reader_;
   messaging::Reader<msg::LoopDecisions> decision_reader_;
   messaging::EventLoop loop_;
+  std::optional<TourDriver> tour_;
+  bool stream_ended_ = false;  // the gateway was asked to end
   std::atomic<int> signal_ = 0;
   messaging::SignalStop signals_;
   ServiceGroup services_;  // after the readers: they must not miss what the services say

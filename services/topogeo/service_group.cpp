@@ -53,29 +53,54 @@ bool is_worker(const std::string& name) {
 
 }  // namespace
 
+std::string source_name(const RunOptions& options) {
+  if (options.simulation) return options.simulation->world.filename().string();
+  return (options.devices.empty() ? options.job.log : options.devices).filename().string();
+}
+
+std::filesystem::path simulated_port(const RunOptions& options, const std::string& device) {
+  return std::filesystem::absolute(options.job.out / (device + ".port"));
+}
+
 ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partition)
     : programs_(std::filesystem::read_symlink("/proc/self/exe").parent_path()),
       logs_(options.job.out / "logs") {
   std::filesystem::create_directories(logs_);
   const Words common = common_arguments(options, partition);
   const std::string out = options.job.out.string();
-  const std::string log = options.job.log.string();
-  start("map_store", "map_store",
-        common + Words{"--out", out, "--title", options.job.log.filename().string()} +
-            continue_arguments(options));
+  start(
+      "map_store", "map_store",
+      common + Words{"--out", out, "--title", source_name(options)} + continue_arguments(options));
   start("planner", "planner", common);
   start(
       "localizer", "localizer",
       common +
           Words{"--wait-workers", std::to_string(options.wait_workers.value_or(options.workers))} +
           map_arguments(options));
-  start("local_mapper", "local_mapper", common + Words{"--replay"});
+  start("local_mapper", "local_mapper",
+        options.devices.empty() ? common + Words{"--replay"} : common);
   for (std::uint32_t i = 1; i <= options.workers; ++i) {
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);
     start(name, std::string(kWorker), common + Words{"--name", name, "--slots", "1"});
   }
-  start("sensor_gateway", "sensor_gateway", common + Words{"--log", log, "--rate", options.rate});
+  start_source(options, common);
   told_.assign(children_.size(), false);
+}
+
+void ServiceGroup::start_source(const RunOptions& options, const Words& common) {
+  if (const auto& simulation = options.simulation) {
+    start("simulator", "simulator",
+          common + Words{"--world", simulation->world.string(), "--seed",
+                         std::to_string(simulation->seed), "--odometry", simulation->odometry,
+                         "--people", std::to_string(simulation->people), "--laser-port",
+                         simulated_port(options, "laser").string(), "--base-port",
+                         simulated_port(options, "base").string(), "--base-baud",
+                         std::to_string(kSimulatedBaseBaud)});
+  }
+  const Words source = options.devices.empty()
+                           ? Words{"--log", options.job.log.string(), "--rate", options.rate}
+                           : Words{"--devices", options.devices.string(), "--readers", "1"};
+  start("sensor_gateway", "sensor_gateway", common + source);
 }
 
 void ServiceGroup::start(const std::string& name, const std::string& program,
@@ -92,7 +117,7 @@ std::optional<ServiceGroup::Death> ServiceGroup::next_death() {
     std::string what = children_[i].name() + " " + describe(*exit);
     const std::string last = children_[i].last_line();
     what += last.empty() ? ", it had logged nothing" : "; last line of its log: " + last;
-    return Death{children_[i].name(), what, is_worker(children_[i].name())};
+    return Death{children_[i].name(), what, is_worker(children_[i].name()), exit->clean()};
   }
   return std::nullopt;
 }
@@ -119,8 +144,8 @@ std::vector<support::StageTime> ServiceGroup::wait() {
       times.push_back({child.name(), exit->wall_s, exit->cpu_s});
     }
   }
-  constexpr std::array<std::string_view, 6> kOrder = {"sensor_gateway", "local_mapper", "localizer",
-                                                      kWorker,          "map_store",    "planner"};
+  constexpr std::array<std::string_view, 7> kOrder = {
+      "simulator", "sensor_gateway", "local_mapper", "localizer", kWorker, "map_store", "planner"};
   const auto place = [&](const support::StageTime& time) {
     return std::find_if(kOrder.begin(), kOrder.end(),
                         [&](std::string_view name) { return time.stage.starts_with(name); });

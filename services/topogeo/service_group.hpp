@@ -14,14 +14,36 @@
 
 namespace topogeo::cli {
 
+/// A world with a robot in place of real devices.
+struct SimulationOptions {
+  std::filesystem::path world;  ///< file
+  std::uint64_t seed = 1;
+  std::uint32_t laser_baud = 500'000;
+  std::string odometry = "mild";  ///< see `simulator --help`
+  double speed_m_per_s = 0.9;
+  std::uint32_t people = 0;
+};
+
 struct RunOptions {
   JobOptions job;
+  std::filesystem::path devices;                ///< file of the devices to use; empty: a log
+  std::optional<SimulationOptions> simulation;  ///< what is behind the ports of `devices`
   std::uint32_t workers = 2;
   std::optional<std::uint32_t> wait_workers;  ///< before the first step; none: `workers`
   std::uint32_t domain = 0;
   std::string rate = "lossless";
   std::filesystem::path profiles_file;  ///< empty: built in
 };
+
+/// File name of the log, the devices or the simulated world.
+std::string source_name(const RunOptions& options);
+
+// What the base of a simulation is capable of.
+inline constexpr std::uint32_t kSimulatedBaseBaud = 38'400;
+inline constexpr double kSimulatedTurn_radps = 2.0;
+inline constexpr double kSimulatedAcceleration_mps2 = 1.0;
+/// Where the simulator of a run puts the port of "laser" or "base".
+std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
 
 class ServiceGroup {
  public:
@@ -33,6 +55,7 @@ class ServiceGroup {
     std::string name;
     std::string what;  ///< "localizer was killed by signal 9 (Killed); last line of its log: ..."
     bool is_worker = false;
+    bool clean = false;  ///< with exit code 0
   };
   /// A service that has ended since the last call.
   std::optional<Death> next_death();
@@ -46,6 +69,7 @@ class ServiceGroup {
   std::vector<support::StageTime> wait();
 
  private:
+  void start_source(const RunOptions& options, const std::vector<std::string>& common);
   void start(const std::string& name, const std::string& program,
              const std::vector<std::string>& arguments);
 

@@ -1,0 +1,110 @@
+// topogeo simulator: makes something go wrong in a running simulator.
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/simulation.h"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "commands.hpp"
+#include "domain_view.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+const std::vector<std::pair<std::string, msg::SimulatedFault>> kFaults = {
+    {"bad-crc", msg::kSimulatedBadCrc},
+    {"truncated", msg::kSimulatedTruncated},
+    {"silence", msg::kSimulatedSilence},
+    {"garbage", msg::kSimulatedGarbage},
+    {"unplug", msg::kSimulatedUnplug},
+    {"restart", msg::kSimulatedRestart},
+    {"stuck-scan", msg::kSimulatedStuckScan},
+    {"contaminated", msg::kSimulatedContaminated},
+    {"echo", msg::kSimulatedEcho},
+    {"joystick", msg::kSimulatedJoystick},
+    {"emergency-stop", msg::kSimulatedEmergencyStop}};
+
+struct Request {
+  DomainView view;
+  std::string robot_id = "robot";
+  msg::SimulatedFault fault = msg::kSimulatedSilence;
+  bool base = false;
+  double duration_s = 1.0;
+  double linear_mps = 0.3;
+  double angular_radps = 0.0;
+};
+
+int send(const Request& request) {
+  constexpr std::chrono::seconds kPatience{5};
+  const messaging::Participant participant = join(request.view, "topogeo/simulator");
+  messaging::Writer<msg::SimulatorCommand> commands(participant);
+  if (!commands.wait_for_matched(1, kPatience)) {
+    throw std::runtime_error(nothing_alive(request.view, "simulator"));
+  }
+  msg::SimulatorCommand command;
+  messaging::set_header(command, request.robot_id, 0, 0);
+  messaging::set_text_cut(command.client_id(),
+                          support::host_name() + "-" + std::to_string(::getpid()));
+  command.fault(request.fault);
+  command.device(request.base ? msg::kSimulatedBase : msg::kSimulatedLaser);
+  command.duration_s(request.duration_s);
+  command.linear_mps(request.linear_mps);
+  command.angular_radps(request.angular_radps);
+  if (!commands.write(command) || !commands.wait_for_acknowledgments(kPatience)) {
+    throw std::runtime_error("the command could not be sent");
+  }
+  return service::kOk;
+}
+
+void add_options(CLI::App& app, Request& request) {
+  app.add_option("fault", request.fault,
+                 "bad-crc, truncated, silence, garbage, unplug or restart (off and on again) of "
+                 "the laser or, with --base, of the base; stuck-scan or contaminated of the laser; "
+                 "echo, joystick or emergency-stop of the base")
+      ->required()
+      ->type_name("FAULT")
+      ->transform(CLI::CheckedTransformer(kFaults).description(""));
+  app.add_flag("--base", request.base, "the base has it");
+  app.add_option("--seconds", request.duration_s, "how long, in the simulated world")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
+  app.add_option("--linear", request.linear_mps, "m/s by joystick")
+      ->check(CLI::Range(-3.0, 3.0))
+      ->capture_default_str();
+  app.add_option("--angular", request.angular_radps, "rad/s by joystick")
+      ->check(CLI::Range(-3.0, 3.0))
+      ->capture_default_str();
+  app.add_option("--robot,--robot-id", request.robot_id, "whose")->capture_default_str();
+  app.add_option("--domain", request.view.domain, "DDS domain")
+      ->check(CLI::Range(0U, 232U))
+      ->capture_default_str();
+  app.add_option("--partition", request.view.partition, "only in this partition; *: all")
+      ->capture_default_str();
+  app.add_option("--profiles", request.view.profiles_file,
+                 "QoS profiles instead of the built-in ones")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+void add_simulator_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("simulator", "Make something go wrong in a running simulator");
+  auto request = std::make_shared<Request>();
+  add_options(*command, *request);
+  command->callback([request, &exit_code] { exit_code = send(*request); });
+}
+
+}  // namespace topogeo::cli

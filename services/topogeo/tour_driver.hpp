@@ -1,0 +1,63 @@
+// Drives a simulated robot along the tour of its world by motion commands, which go through gateway
+// and base like everybody's; knows from the simulator where the robot really is. Stands in for what
+// would navigate.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/motion.h"
+#include "topogeo/msg/simulation.h"
+#include "topogeo/simulation/tour_follower.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::cli {
+
+class TourDriver {
+ public:
+  /// Lives in the loop. Throws like TourFollower.
+  TourDriver(const messaging::Participant& participant, messaging::EventLoop& loop,
+             std::string robot_id, const std::vector<Eigen::Vector2d>& tour_m,
+             const simulation::DriveOptions& options);
+
+  /// Until this is called the robot stands still.
+  void set_out() { started_ = true; }
+  /// The robot stands at the end of the tour.
+  [[nodiscard]] bool arrived() const { return arrived_; }
+  /// Of the tour, [0, 1].
+  [[nodiscard]] double share() const;
+  /// Twenty times what the tour takes at full speed has passed: it will not arrive any more.
+  [[nodiscard]] bool overdue() const { return driven_s_ > limit_s_; }
+
+  /// Where the robot really was, fifty times a second.
+  [[nodiscard]] const std::vector<topomap::StampedPose>& truth() const { return truth_; }
+  /// What the simulator said last.
+  [[nodiscard]] const msg::GroundTruth& last() const { return last_; }
+
+ private:
+  void on_truth(const msg::GroundTruth& truth);
+  void command(const simulation::Velocity& velocity);
+
+  std::string robot_id_;
+  simulation::TourFollower follower_;
+  double tour_m_;
+  double limit_s_;
+  messaging::Writer<msg::MotionCommand> commands_;
+  messaging::Reader<msg::GroundTruth> truths_;
+  std::vector<topomap::StampedPose> truth_;
+  msg::GroundTruth last_;
+  bool started_ = false;
+  bool arrived_ = false;
+  bool at_end_ = false;
+  double command_due_s_ = 0.0;  // in the world
+  double driven_s_ = 0.0;
+  double standing_s_ = 0.0;  // at the end
+  std::uint64_t commands_sent_ = 0;
+};
+
+}  // namespace topogeo::cli
