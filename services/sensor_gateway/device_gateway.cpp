@@ -49,8 +49,10 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
     });
   }
   if (!config.laser_port.empty()) {
-    laser_.emplace(service_, config, time_, gate_,
-                   [this](std::int64_t now_ns) { release(now_ns); });
+    laser_.emplace(service_, config, time_, gate_, [this](std::int64_t arrival_ns) {
+      release(arrival_ns);
+      measure_latency(arrival_ns);
+    });
   }
   timer_ = service_.loop().add_timer(kStatePeriod, [this] { tell_state(); });
   tell_state();
@@ -90,6 +92,13 @@ void DeviceGateway::publish(const scan::Scan& scan) {
   ++sent_;
 }
 
+/// From when the last bytes of a scan were read from the port to when the scan was published.
+void DeviceGateway::measure_latency(std::int64_t arrival_ns) {
+  if (sent_ == 0) return;
+  latency_ns_ = steady_now_ns() - arrival_ns;
+  largest_latency_ns_ = std::max(largest_latency_ns_, latency_ns_);
+}
+
 void DeviceGateway::tell_state() {
   std::string text;
   bool running = true;
@@ -104,6 +113,8 @@ void DeviceGateway::tell_state() {
     text += (text.empty() ? "base " : "; base ") + base_->describe();
   }
   messaging::StatusPublisher& status = service_.status();
+  status.set_counter("scan_latency_ms", static_cast<double>(latency_ns_) * 1e-6);
+  status.set_counter("scan_latency_largest_ms", static_cast<double>(largest_latency_ns_) * 1e-6);
   const msg::ServiceState state = running ? msg::kServiceRunning : msg::kServiceWaiting;
   if (text == told_ && state == status.state()) return;
   told_ = text;

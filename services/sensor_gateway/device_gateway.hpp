@@ -38,6 +38,7 @@ class DeviceGateway {
   /// Publishes what can leave by now.
   void release(std::int64_t now_ns);
   void publish(const scan::Scan& scan);
+  void measure_latency(std::int64_t arrival_ns);
   void tell_state();
 
   service::Service& service_;
@@ -48,9 +49,11 @@ class DeviceGateway {
   messaging::Writer<msg::StreamEnd> stream_end_;
   std::int64_t last_stamp_ns_ = 0;
   std::uint64_t sent_ = 0;
-  std::string told_;                 // as the state of the service
-  std::uint64_t timer_ = 0;          // of tell_state
-  std::uint64_t release_timer_ = 0;  // while scans wait for odometry
+  std::int64_t latency_ns_ = 0;          // of the last scan
+  std::int64_t largest_latency_ns_ = 0;  // of all
+  std::string told_;                     // as the state of the service
+  std::uint64_t timer_ = 0;              // of tell_state
+  std::uint64_t release_timer_ = 0;      // while scans wait for odometry
   std::optional<BaseDesk> base_;
   std::optional<LaserDesk> laser_;
 };

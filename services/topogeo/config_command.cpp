@@ -11,19 +11,28 @@
 #include "topogeo/service/service_options.hpp"
 
 #include "commands.hpp"
+#include "device_config.hpp"
 
 namespace topogeo::cli {
 namespace {
 
-void print_config(const std::optional<std::filesystem::path>& file) {
-  pipeline::Config config;
-  const support::ConfigSchema schema = pipeline::describe(config);
+void print(const support::ConfigSchema& schema, const std::optional<std::filesystem::path>& file) {
   try {
     if (file) support::load_yaml_file(*file, schema);
   } catch (const std::exception& error) {
     throw service::UsageError(error.what());
   }
   support::write_yaml(schema, std::cout);
+}
+
+void print_config(const std::optional<std::filesystem::path>& file, bool devices) {
+  if (devices) {
+    sensor_gateway::DeviceFile values;
+    print(describe(values), file);
+  } else {
+    pipeline::Config values;
+    print(pipeline::describe(values), file);
+  }
 }
 
 }  // namespace
@@ -34,8 +43,11 @@ void add_config_command(CLI::App& app, int& exit_code) {
   auto file = std::make_shared<std::optional<std::filesystem::path>>();
   command->add_option("--config", *file, "take the values of this file instead of the defaults")
       ->type_name("FILE");
-  command->callback([file, &exit_code] {
-    print_config(*file);
+  auto devices = std::make_shared<bool>(false);
+  command->add_flag("--devices", *devices,
+                    "the file of a robot's devices instead, for --devices of other commands");
+  command->callback([file, devices, &exit_code] {
+    print_config(*file, *devices);
     exit_code = service::kOk;
   });
 }

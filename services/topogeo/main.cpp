@@ -26,6 +26,9 @@ int run(int argc, const char* const* argv) {
   cli::add_map_command(app, exit_code);
   cli::add_localize_command(app, exit_code);
   cli::add_localizer_command(app, exit_code);
+  cli::add_base_command(app, exit_code);
+  cli::add_record_command(app, exit_code);
+  cli::add_check_log_command(app, exit_code);
   cli::add_demo_command(app, exit_code);
   cli::add_simulator_command(app, exit_code);
   cli::add_status_command(app, exit_code);

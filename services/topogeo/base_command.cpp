@@ -1,0 +1,195 @@
+// topogeo base: what an operator tells the base of a robot.
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/motion.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "commands.hpp"
+#include "domain_view.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using std::chrono::milliseconds;
+
+struct Request {
+  DomainView view;
+  std::string robot_id = "robot";
+  double wait_s = 5.0;
+  msg::BaseCommand command;
+};
+
+std::string_view name(msg::BaseState state) {
+  switch (state) {
+    case msg::kBaseReady:
+      return "ready";
+    case msg::kBaseMoving:
+      return "moving";
+    case msg::kBaseStarting:
+      return "starting";
+    case msg::kBaseEmergencyStop:
+      return "emergency stop";
+    case msg::kBaseHalted:
+      return "halted";
+    case msg::kBaseWatchdogExpired:
+      return "watchdog expired";
+    case msg::kBaseBumped:
+      return "bumped";
+    case msg::kBaseJoystick:
+      return "joystick";
+    case msg::kBaseMotorsOff:
+      return "motors off";
+    case msg::kBaseOffline:
+      break;
+  }
+  return "offline";
+}
+
+void print(const msg::BaseStatus& status) {
+  std::cout << status.robot_id().c_str() << ": " << name(status.state());
+  if (status.reason().size() > 0) std::cout << ": " << status.reason().c_str();
+  if (status.battery_v() > 0.0F) {
+    std::cout << ", battery " << status.battery_v() << " V"
+              << (status.battery_low() ? ", low" : "");
+  }
+  std::cout << (status.commands_taken() ? ", takes motion commands\n"
+                                        : ", refuses motion commands\n");
+}
+
+/// The next status of the base for which `wanted` holds, within the request's time.
+std::optional<msg::BaseStatus> next_status(
+    messaging::Reader<msg::BaseStatus>& reader, const Request& request,
+    const std::function<bool(const msg::BaseStatus&)>& wanted) {
+  const auto end = std::chrono::steady_clock::now() +
+                   milliseconds(static_cast<std::int64_t>(1000.0 * request.wait_s));
+  std::optional<msg::BaseStatus> found;
+  while (!found && std::chrono::steady_clock::now() < end) {
+    if (!reader.wait_for_data(milliseconds(50))) continue;
+    reader.take([&](const msg::BaseStatus& status, const messaging::SampleInfo& info) {
+      if (info.valid && status.robot_id() == request.robot_id.c_str() && wanted(status)) {
+        found = status;
+      }
+    });
+  }
+  return found;
+}
+
+int show(const Request& request) {
+  const messaging::Participant participant = join(request.view, "topogeo/base");
+  messaging::Reader<msg::BaseStatus> reader(participant);
+  const auto status = next_status(reader, request, [](const msg::BaseStatus&) { return true; });
+  if (!status) throw std::runtime_error(nothing_alive(request.view, "base"));
+  print(*status);
+  return service::kOk;
+}
+
+/// Sends the command and shows what the base is like afterwards.
+int send(Request request) {
+  const messaging::Participant participant = join(request.view, "topogeo/base");
+  messaging::Reader<msg::BaseStatus> reader(participant);
+  messaging::Writer<msg::BaseCommand> writer(participant);
+  const milliseconds patience(static_cast<std::int64_t>(1000.0 * request.wait_s));
+  if (!writer.wait_for_matched(1, patience) || !reader.wait_for_matched(1, patience)) {
+    throw std::runtime_error(nothing_alive(request.view, "base"));
+  }
+  messaging::set_header(request.command, request.robot_id, 0, 0);
+  messaging::set_text(request.command.client_id(),
+                      support::host_name().substr(0, 32) + "-" + std::to_string(::getpid()),
+                      "client_id");
+  if (!writer.write(request.command) || !writer.wait_for_acknowledgments(patience)) {
+    throw std::runtime_error("the command could not be sent");
+  }
+  const msg::BaseCommandKind kind = request.command.kind();
+  const auto status = next_status(reader, request, [&](const msg::BaseStatus& now) {
+    if (kind == msg::kBaseHalt) return !now.commands_taken();
+    return kind != msg::kBaseReset ||
+           (now.state() != msg::kBaseHalted && now.state() != msg::kBaseEmergencyStop);
+  });
+  if (!status) {
+    throw std::runtime_error("robot '" + request.robot_id + "' did not do it within " +
+                             std::to_string(patience.count()) + " ms");
+  }
+  print(*status);
+  return service::kOk;
+}
+
+void add_options(CLI::App& app, Request& request) {
+  app.add_option("--robot,--robot-id", request.robot_id, "whose base")->capture_default_str();
+  app.add_option("--domain", request.view.domain, "DDS domain")
+      ->check(CLI::Range(0U, 232U))
+      ->capture_default_str();
+  app.add_option("--partition", request.view.partition, "only in this partition; *: all")
+      ->capture_default_str();
+  app.add_option("--profiles", request.view.profiles_file,
+                 "QoS profiles instead of the built-in ones")
+      ->type_name("FILE");
+  constexpr double kLongestWait_s = 3600.0;
+  app.add_option("--wait-seconds", request.wait_s, "how long to wait for the base")
+      ->check(CLI::Range(0.1, kLongestWait_s))
+      ->capture_default_str();
+}
+
+void add_limits(CLI::App& group, const std::shared_ptr<Request>& request, int& exit_code) {
+  CLI::App* limits = group.add_subcommand("limits", "Set its largest speeds and accelerations");
+  auto values = std::make_shared<std::array<double, 4>>();
+  constexpr double kMost = 100.0;
+  const CLI::Validator range = CLI::Range(1e-3, kMost);
+  limits->add_option("linear", (*values)[0], "m/s")->required()->check(range);
+  limits->add_option("angular", (*values)[1], "rad/s")->required()->check(range);
+  limits->add_option("linear-acceleration", (*values)[2], "m/s^2")->required()->check(range);
+  limits->add_option("angular-acceleration", (*values)[3], "rad/s^2")->required()->check(range);
+  limits->footer("Never over those of the gateway's file of devices.");
+  add_options(*limits, *request);
+  limits->callback([request, values, &exit_code] {
+    request->command.kind(msg::kBaseSetLimits);
+    request->command.largest_linear_mps((*values)[0]);
+    request->command.largest_angular_radps((*values)[1]);
+    request->command.linear_acceleration_mps2((*values)[2]);
+    request->command.angular_acceleration_radps2((*values)[3]);
+    exit_code = send(*request);
+  });
+}
+
+}  // namespace
+
+void add_base_command(CLI::App& app, int& exit_code) {
+  CLI::App* group =
+      app.add_subcommand("base", "Show the base of a robot, halt it, let it go again");
+  group->require_subcommand(1);
+  auto request = std::make_shared<Request>();
+  CLI::App* status = group->add_subcommand("status", "What state it is in");
+  add_options(*status, *request);
+  status->callback([request, &exit_code] { exit_code = show(*request); });
+  CLI::App* halt = group->add_subcommand("halt", "Stop it; it refuses to move until reset");
+  add_options(*halt, *request);
+  halt->callback([request, &exit_code] {
+    request->command.kind(msg::kBaseHalt);
+    exit_code = send(*request);
+  });
+  CLI::App* reset =
+      group->add_subcommand("reset", "It may move again, after a halt or an emergency stop");
+  add_options(*reset, *request);
+  reset->callback([request, &exit_code] {
+    request->command.kind(msg::kBaseReset);
+    exit_code = send(*request);
+  });
+  add_limits(*group, request, exit_code);
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,162 @@
+// topogeo check-log: what is wrong with a log, before hours are spent on it.
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/scan/carmen_log_check.hpp"
+#include "topogeo/service/service_options.hpp"
+
+#include "commands.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+// Of this command alone, so that scripts can tell a faulty log from one that is no log.
+constexpr int kClean = 0;
+constexpr int kFaulty = 1;
+constexpr int kUnreadable = 2;
+
+double duration_s(const scan::LogCheck& check) {
+  return static_cast<double>(check.last_ns - check.first_ns) * 1e-9;
+}
+
+double rate_hz(const scan::LogCheck& check) {
+  return check.median_period_s > 0.0 ? 1.0 / check.median_period_s : 0.0;
+}
+
+double degrees(double angle_rad) {
+  return angle_rad * 180.0 / std::numbers::pi;
+}
+
+void print_text(const std::string& path, const scan::LogCheck& check) {
+  for (const scan::LogFinding& finding : check.findings) {
+    std::cout << fmt::format("{}:{}: {}: {}\n", path, finding.line, describe(finding.fault),
+                             finding.text);
+  }
+  std::cout << fmt::format("{} lines: {} scans, {} odometry, {} comments, {} others\n", check.lines,
+                           check.laser_lines, check.odometry_lines, check.comments,
+                           check.other_lines);
+  if (check.scans > 0) {
+    std::cout << fmt::format(
+        "{} beams from {:.2f} deg by {:.3f} deg; {:.1f} s, {:.2f} scans a second, longest pause "
+        "{:.2f} s; {:.1f} m of way\n",
+        check.beams, degrees(check.angle_min_rad), degrees(check.angle_step_rad), duration_s(check),
+        rate_hz(check), check.longest_period_s, check.way_m);
+  }
+  if (check.faults() == 0) {
+    std::cout << "no fault found\n";
+    return;
+  }
+  std::cout << check.faults() << (check.faults() == 1 ? " fault" : " faults");
+  const char* separator = ": ";
+  for (std::size_t i = 0; i < scan::kLogFaults; ++i) {
+    if (check.counts[i] == 0) continue;
+    std::cout << separator << check.counts[i] << ' ' << describe(static_cast<scan::LogFault>(i));
+    separator = ", ";
+  }
+  if (check.findings.size() < check.faults()) {
+    std::cout << " (" << check.findings.size() << " shown)";
+  }
+  std::cout << '\n';
+}
+
+void print_json(const std::string& path, const scan::LogCheck& check) {
+  nlohmann::ordered_json out;
+  out["log"] = path;
+  out["lines"] = check.lines;
+  out["laser_lines"] = check.laser_lines;
+  out["scans"] = check.scans;
+  out["odometry_lines"] = check.odometry_lines;
+  out["comments"] = check.comments;
+  out["other_lines"] = check.other_lines;
+  out["beams"] = check.beams;
+  out["angle_min_rad"] = check.angle_min_rad;
+  out["angle_step_rad"] = check.angle_step_rad;
+  out["first_stamp_ns"] = check.first_ns;
+  out["last_stamp_ns"] = check.last_ns;
+  out["median_period_s"] = check.median_period_s;
+  out["longest_period_s"] = check.longest_period_s;
+  out["way_m"] = check.way_m;
+  out["faults"] = check.faults();
+  nlohmann::ordered_json counts = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < scan::kLogFaults; ++i) {
+    counts[std::string(describe(static_cast<scan::LogFault>(i)))] = check.counts[i];
+  }
+  out["counts"] = std::move(counts);
+  nlohmann::ordered_json findings = nlohmann::ordered_json::array();
+  for (const scan::LogFinding& finding : check.findings) {
+    findings.push_back({{"line", finding.line},
+                        {"fault", std::string(describe(finding.fault))},
+                        {"text", finding.text}});
+  }
+  out["findings"] = std::move(findings);
+  // What a damaged log says need not be UTF-8.
+  std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+struct Request {
+  std::string log;
+  bool json = false;
+  scan::LogCheckOptions options;
+};
+
+int check_log(const Request& request) {
+  scan::LogCheck check;
+  try {
+    check = scan::check_carmen_log(request.log, request.options);
+  } catch (const std::runtime_error& error) {
+    std::cerr << "topogeo: " << error.what() << '\n';
+    return kUnreadable;
+  }
+  if (request.json) {
+    print_json(request.log, check);
+  } else {
+    print_text(request.log, check);
+  }
+  return check.faults() == 0 ? kClean : kFaulty;
+}
+
+}  // namespace
+
+void add_check_log_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("check-log", "Look for what is wrong with a log");
+  auto request = std::make_shared<Request>();
+  constexpr double kMost = 1e6;
+  command->add_option("log", request->log, "CARMEN log, plain or gzip")->required();
+  command->add_flag("--json", request->json, "print everything as JSON");
+  command
+      ->add_option("--gap", request->options.longest_gap_s,
+                   "seconds between two scans that are too long")
+      ->check(CLI::Range(1e-3, kMost))
+      ->capture_default_str();
+  command
+      ->add_option("--speed", request->options.largest_mps,
+                   "faster odometry is a jump, metres a second")
+      ->check(CLI::Range(1e-3, kMost))
+      ->capture_default_str();
+  command
+      ->add_option("--turn", request->options.largest_radps,
+                   "the same for rotation, radians a second")
+      ->check(CLI::Range(1e-3, kMost))
+      ->capture_default_str();
+  command
+      ->add_option("--stuck", request->options.stuck_scans,
+                   "so many identical scans in a row are a fault")
+      ->check(CLI::Range(2U, 1'000'000U))
+      ->capture_default_str();
+  command
+      ->add_option("--findings", request->options.findings,
+                   "how many of each kind to show; all are counted")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}))
+      ->capture_default_str();
+  command->footer("Exit codes: 0 no fault, 1 faults found, 2 not a log that can be read.");
+  command->callback([request, &exit_code] { exit_code = check_log(*request); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,156 @@
+// topogeo record: writes the scans that a gateway publishes as a log that can be replayed.
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/signal_stop.hpp"
+#include "topogeo/messaging/topics.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/scan/carmen_log_writer.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/service/service_options.hpp"
+
+#include "commands.hpp"
+#include "domain_view.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+/// Scans that a stream end speaks of and that have not come by then will not come any more.
+constexpr std::chrono::seconds kPatience{5};
+constexpr milliseconds kTick{50};
+
+struct Request {
+  DomainView view;
+  std::string robot_id = "robot";
+  std::filesystem::path out;
+};
+
+scan::CarmenLogWriter open(const std::filesystem::path& path) {
+  try {
+    return scan::CarmenLogWriter(path);
+  } catch (const std::runtime_error& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+class Recorder {
+ public:
+  explicit Recorder(const Request& request)
+      : request_(request),
+        log_(open(request.out)),
+        participant_(join(request.view, "topogeo/record")),
+        // Slows a replay down rather than lose scans.
+        scans_(participant_, {std::string(messaging::kReplayRole), {}}),
+        ends_(participant_) {
+    loop_.add<msg::Scan>(scans_, [this](const msg::Scan& scan, const messaging::SampleInfo&) {
+      if (scan.robot_id() == request_.robot_id.c_str()) take(scan);
+    });
+    loop_.add<msg::StreamEnd>(
+        ends_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
+          if (end.robot_id() != request_.robot_id.c_str() || end.stage() != "gateway") return;
+          expected_ = end.count();
+          last_news_ = Clock::now();
+        });
+    loop_.add_timer(kTick, [this] { stop_at_end(); });
+  }
+
+  /// Until the end of the stream or a signal. Throws std::runtime_error when the log cannot be
+  /// written or scans are missing.
+  void run() {
+    {
+      const messaging::SignalStop signals([this](int) { loop_.stop(); });
+      loop_.run();
+    }
+    log_.close();
+    std::cerr << "topogeo: " << recorded_ << " scans recorded in " << request_.out.string() << '\n';
+    if (first_ > 0) {
+      std::cerr << "topogeo: the first of them is number " << first_
+                << " of its source: the recording was started after it\n";
+    }
+    std::uint64_t missing = missing_;
+    if (expected_ && *expected_ > next_) missing += *expected_ - next_;
+    if (missing > 0) throw std::runtime_error(std::to_string(missing) + " scans are missing");
+    if (recorded_ == 0) throw std::runtime_error("no scan came");
+  }
+
+ private:
+  void take(const msg::Scan& message) {
+    last_news_ = Clock::now();
+    const std::uint64_t number = message.sequence_number();
+    if (recorded_ > 0 && number < next_) {
+      throw std::runtime_error("scan " + std::to_string(number) + " came after scan " +
+                               std::to_string(next_ - 1) +
+                               ": another source has begun, or there are two of them");
+    }
+    if (recorded_ == 0) first_ = number;
+    if (recorded_ > 0) missing_ += number - next_;
+    log_.write(service::from_msg(message));
+    next_ = number + 1;
+    ++recorded_;
+  }
+
+  void stop_at_end() {
+    if (!expected_) return;
+    if (next_ >= *expected_ || Clock::now() - last_news_ > kPatience) loop_.stop();
+  }
+
+  Request request_;
+  scan::CarmenLogWriter log_;
+  messaging::Participant participant_;
+  messaging::Reader<msg::Scan> scans_;
+  messaging::Reader<msg::StreamEnd> ends_;
+  messaging::EventLoop loop_;
+  std::uint64_t first_ = 0;  // number of the first scan recorded
+  std::uint64_t next_ = 0;   // number of the scan that is expected
+  std::uint64_t recorded_ = 0;
+  std::uint64_t missing_ = 0;              // between the scans recorded
+  std::optional<std::uint64_t> expected_;  // scans in the whole stream
+  Clock::time_point last_news_;
+};
+
+}  // namespace
+
+void add_record_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("record", "Write the scans that a sensor gateway gives as a log");
+  auto request = std::make_shared<Request>();
+  request->view.partition = messaging::kDefaultPartition;
+  command->add_option("--out", request->out, "log to write, gzip when its name ends in .gz")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--robot,--robot-id", request->robot_id, "whose scans")
+      ->capture_default_str();
+  command->add_option("--domain", request->view.domain, "DDS domain")
+      ->check(CLI::Range(0U, 232U))
+      ->capture_default_str();
+  command->add_option("--partition", request->view.partition, "only in this partition; *: all")
+      ->capture_default_str();
+  command
+      ->add_option("--profiles", request->view.profiles_file,
+                   "QoS profiles instead of the built-in ones")
+      ->type_name("FILE");
+  command->footer(
+      "Ends with the stream of the gateway or with Ctrl-C. Numbers are written with every digit, "
+      "so "
+      "that\na replay of the log gives the map of the recorded run, byte for byte.");
+  command->callback([request, &exit_code] {
+    Recorder(*request).run();
+    exit_code = service::kOk;
+  });
+}
+
+}  // namespace topogeo::cli
