@@ -41,10 +41,12 @@ RobotOptions checked(const World& world, RobotOptions o) {
   return o;
 }
 
-// Sideways slip moves the robot itself.
-OdometryDrift of_wheels(OdometryDrift drift) {
-  drift.lateral_sigma_m_per_sqrt_m = 0.0;
-  drift.turn_shift_sigma_m_per_sqrt_rad = 0.0;
+// The base regulates what its encoders count, so these see what was told, and it is the robot that
+// errs: by the same random numbers, and the other way where it is systematic.
+OdometryDrift of_robot(OdometryDrift drift) {
+  drift.range_scale_error = 1.0 / (1.0 + drift.range_scale_error) - 1.0;
+  drift.turn_scale_error = 1.0 / (1.0 + drift.turn_scale_error) - 1.0;
+  drift.heading_drift_rad_per_m = -drift.heading_drift_rad_per_m;
   return drift;
 }
 
@@ -71,9 +73,8 @@ SimulatedRobot::SimulatedRobot(World world, const RobotOptions& options)
       laser_random_(random_for(options, "laser")),
       sonar_random_(random_for(options, "sonar")),
       slip_random_(random_for(options, "slip")),
-      odometry_(of_wheels(options.odometry), random_for(options, "odometry")),
+      errors_(of_robot(options.odometry), random_for(options, "odometry")),
       T_world_robot_(*options_.T_world_start) {
-  odometry_.advance(T_start_wheels_);
   change_world();
   if (overlapped_) {
     throw std::invalid_argument(world_.name + ": the robot overlaps something at its start, (" +
@@ -104,26 +105,26 @@ EncoderStep SimulatedRobot::advance(const Velocity& command, double dt_s) {
                                         options_.angular_acceleration_rad_per_s2 * dt_s);
   const double rolled_m = velocity_.linear_m_per_s * dt_s;
   const double turned_rad = velocity_.angular_rad_per_s * dt_s;
-
-  // All numbers are drawn in every piece, so that one option leaves the others' slips as they were.
-  const double aside_m = options_.odometry.lateral_sigma_m_per_sqrt_m *
-                         std::sqrt(std::fabs(rolled_m)) * slip_random_.normal();
-  const double shift_m =
-      options_.odometry.turn_shift_sigma_m_per_sqrt_rad * std::sqrt(std::fabs(turned_rad));
-  const double shift_x_m = shift_m * slip_random_.normal();
-  const double shift_y_m = shift_m * slip_random_.normal();
-  const double forward_m = rolled_m * (1.0 - lost_share(std::fabs(rolled_m)));
-
-  const geometry::SinCos heading = geometry::sincos(T_world_robot_.theta_rad + turned_rad / 2.0);
-  const Eigen::Vector2d wanted_m(forward_m + shift_x_m, aside_m + shift_y_m);
-  const double share = go({heading.cos * wanted_m.x() - heading.sin * wanted_m.y(),
-                           heading.sin * wanted_m.x() + heading.cos * wanted_m.y()});
-  T_world_robot_.theta_rad = geometry::wrap_angle(T_world_robot_.theta_rad + turned_rad);
+  const double hold = 1.0 - lost_share(std::fabs(rolled_m));
+  const geometry::Pose2 wanted = with_errors(arc(hold * rolled_m, turned_rad));
+  const geometry::SinCos heading = geometry::sincos(T_world_robot_.theta_rad);
+  const double share = go({heading.cos * wanted.x_m - heading.sin * wanted.y_m,
+                           heading.sin * wanted.x_m + heading.cos * wanted.y_m});
+  T_world_robot_.theta_rad = geometry::wrap_angle(T_world_robot_.theta_rad + wanted.theta_rad);
   if (share < 1.0) velocity_.linear_m_per_s = 0.0;
   way_m_ += std::fabs(rolled_m) * share;
   time_s_ += dt_s;
   change_world();
-  return count(rolled_m * share, turned_rad);
+  const EncoderStep counted{rolled_m * share, turned_rad};
+  T_odom_robot_ = T_odom_robot_ * arc(counted.forward_m, counted.turn_rad);
+  return counted;
+}
+
+// What the robot does when its wheels go this step without errors.
+geometry::Pose2 SimulatedRobot::with_errors(const geometry::Pose2& step) {
+  errors_.carry({});
+  const geometry::Pose2 T_sum_now = errors_.advance(step);
+  return geometry::between(std::exchange(T_sum_last_, T_sum_now), T_sum_now);
 }
 
 double SimulatedRobot::go(const Eigen::Vector2d& displacement_m) {
@@ -156,17 +157,6 @@ double SimulatedRobot::lost_share(double rolled_m) {
   if (slippery_m_ <= 0.0) return 0.0;
   slippery_m_ -= rolled_m;
   return options_.slip.lost_share;
-}
-
-EncoderStep SimulatedRobot::count(double rolled_m, double turned_rad) {
-  T_start_wheels_ = T_start_wheels_ * arc(rolled_m, turned_rad);
-  const geometry::Pose2 T_odom_now = odometry_.advance(T_start_wheels_);
-  const geometry::Pose2 step = geometry::between(T_odom_last_, T_odom_now);
-  T_odom_last_ = T_odom_now;
-  const geometry::SinCos half = geometry::sincos(step.theta_rad / 2.0);
-  const EncoderStep counted{step.x_m * half.cos + step.y_m * half.sin, step.theta_rad};
-  T_odom_robot_ = T_odom_robot_ * arc(counted.forward_m, counted.turn_rad);
-  return counted;
 }
 
 void SimulatedRobot::carry(const geometry::Pose2& T_world_robot) {

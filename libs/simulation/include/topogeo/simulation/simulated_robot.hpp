@@ -35,8 +35,8 @@ struct RobotOptions {
   double radius_m = devices::kB21Radius_m;  ///< of its round body; (0, 5]
   double acceleration_m_per_s2 = std::numeric_limits<double>::infinity();            ///< > 0
   double angular_acceleration_rad_per_s2 = std::numeric_limits<double>::infinity();  ///< > 0
-  /// What its wheels count. Slipping sideways (lateral and turn_shift) moves the robot, which the
-  /// wheels do not notice.
+  /// How the way that its wheels count differs from the one that it goes. They count what they are
+  /// told to roll; the robot makes the difference.
   OdometryDrift odometry{};
   Slip slip{};
   BeamPattern beams{};
@@ -105,7 +105,7 @@ class SimulatedRobot {
   /// The share of the way `displacement_m` that is free.
   double go(const Eigen::Vector2d& displacement_m);
   double lost_share(double rolled_m);
-  EncoderStep count(double rolled_m, double turned_rad);
+  geometry::Pose2 with_errors(const geometry::Pose2& step);
   void change_world();
   void look_for_overlap();
 
@@ -118,11 +118,10 @@ class SimulatedRobot {
   support::Random laser_random_;
   support::Random sonar_random_;
   support::Random slip_random_;
-  OdometryModel odometry_;
+  OdometryModel errors_;
 
   geometry::Pose2 T_world_robot_;
-  geometry::Pose2 T_start_wheels_;  // where the wheels have rolled, without slip
-  geometry::Pose2 T_odom_last_;     // what the odometry model said last
+  geometry::Pose2 T_sum_last_;  // of all steps with their errors
   geometry::Pose2 T_odom_robot_;
   Velocity velocity_;
   double time_s_ = 0.0;
