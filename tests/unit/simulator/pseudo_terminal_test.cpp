@@ -1,0 +1,76 @@
+#include "pseudo_terminal.hpp"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "host_port.hpp"
+
+namespace topogeo::simulator {
+namespace {
+
+TEST(PseudoTerminal, CarriesBytesAsTheyAreBothWays) {
+  PseudoTerminal terminal(link_name("bytes"));
+  terminal.plug();
+  const HostPort host(terminal.link());
+  EXPECT_TRUE(terminal.receive().empty());
+  std::string all;
+  for (int byte = 0; byte < 256; ++byte) all.push_back(static_cast<char>(byte));
+  host.write(all);
+  const std::vector<std::uint8_t> heard = terminal.receive();
+  EXPECT_EQ(std::string(heard.begin(), heard.end()), all);
+  EXPECT_EQ(host.read(), "");  // no echo
+  EXPECT_EQ(terminal.send(heard), 0U);
+  EXPECT_EQ(host.read(), all);
+}
+
+TEST(PseudoTerminal, ShowsTheRateThatTheHostHasSet) {
+  PseudoTerminal terminal(link_name("rate"));
+  terminal.plug();
+  EXPECT_EQ(terminal.host(devices::Parity::kEven),
+            (devices::LineSettings{9600, devices::Parity::kEven}));
+  const HostPort host(terminal.link());
+  host.set_rate(B500000);
+  EXPECT_EQ(terminal.host(devices::Parity::kNone).baud, 500'000U);
+}
+
+TEST(PseudoTerminal, LosesWhatNobodyReads) {
+  PseudoTerminal terminal(link_name("full"));
+  terminal.plug();
+  const std::vector<std::uint8_t> much(1'000'000, 7);
+  EXPECT_GT(terminal.send(much), 0U);
+}
+
+TEST(PseudoTerminal, GoesAndComesBackUnderItsName) {
+  const std::filesystem::path link = link_name("again");
+  {
+    PseudoTerminal terminal(link);
+    terminal.plug();
+    const HostPort host(link);
+    EXPECT_FALSE(host.hung_up());
+    terminal.unplug();
+    EXPECT_TRUE(host.hung_up());
+    EXPECT_FALSE(std::filesystem::is_symlink(link));
+    terminal.plug();
+    const HostPort again(link);
+    again.write("x");
+    EXPECT_EQ(terminal.receive().size(), 1U);
+  }
+  EXPECT_FALSE(std::filesystem::is_symlink(link));
+}
+
+TEST(PseudoTerminal, ReplacesALinkOfADeadSimulatorAndNothingElse) {
+  const std::filesystem::path link = link_name("stale");
+  std::filesystem::create_symlink("/nowhere", link);
+  PseudoTerminal terminal(link);
+  terminal.plug();
+  EXPECT_NO_THROW(HostPort{link});
+  terminal.unplug();
+  std::ofstream(link) << "a file";
+  EXPECT_THROW(terminal.plug(), std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_regular_file(link));
+  std::filesystem::remove(link);
+}
+
+}  // namespace
+}  // namespace topogeo::simulator
