@@ -18,8 +18,10 @@ constexpr int kHeight = 120;
 
 /// 40 x 12 m: a corridor 2.4 m wide between rooms, with a door every 3 m.
 markov::ObstacleCells corridor() {
-  std::vector<std::uint8_t> cells(static_cast<std::size_t>(kWidth * kHeight), 0);
-  const auto occupy = [&](int x, int y) { cells[static_cast<std::size_t>(y * kWidth + x)] = 1; };
+  std::vector<std::uint8_t> cells(std::size_t{kWidth} * kHeight, 0);
+  const auto occupy = [&](int x, int y) {
+    cells[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)] = 1;
+  };
   for (int x = 0; x < kWidth; ++x) {
     occupy(x, 0);
     occupy(x, kHeight - 1);

@@ -176,7 +176,7 @@ void SonarModel::cast(std::span<double> readings) {
             open & surroundings_bits(margin_ + crossing.x + 64 * word, margin_ + crossing.y + row);
         open &= ~met;
         still_open |= open;
-        double* of_word = readings.data() + static_cast<std::ptrdiff_t>(row) * size_ + 64 * word;
+        double* of_word = readings.data() + std::ptrdiff_t{row} * size_ + std::ptrdiff_t{64} * word;
         for (; met != 0; met &= met - 1) {
           double& reading = of_word[std::countr_zero(met)];
           reading = std::min(reading, crossing.distance_m);
@@ -188,10 +188,10 @@ void SonarModel::cast(std::span<double> readings) {
 }
 
 double SonarModel::virtual_m(std::size_t sensor, Cell offset) const {
-  const auto side = static_cast<std::size_t>(size_);
-  const auto row = static_cast<std::size_t>(offset.y + size_ / 2);
-  const auto column = static_cast<std::size_t>(offset.x + size_ / 2);
-  return virtual_m_[(sensor * side + row) * side + column];
+  const std::ptrdiff_t half = size_ / 2;
+  const std::ptrdiff_t cell = (offset.y + half) * size_ + offset.x + half;
+  return virtual_m_[sensor * (virtual_m_.size() / sensors_.size()) +
+                    static_cast<std::size_t>(cell)];
 }
 
 double SonarModel::probability_of(double difference_m) const {

@@ -29,7 +29,8 @@ void check_side(const std::string& field, int side) {
 void check_matrix(const std::string& name, const TransitionMatrix& matrix) {
   check_side(name + ".rows", matrix.rows);
   check_side(name + ".columns", matrix.columns);
-  const auto cells = static_cast<std::size_t>(matrix.rows * matrix.columns);
+  const auto cells =
+      static_cast<std::size_t>(matrix.rows) * static_cast<std::size_t>(matrix.columns);
   if (matrix.values.size() != cells) {
     throw std::invalid_argument("TransitionModel." + name + " has " +
                                 std::to_string(matrix.values.size()) + " values, must have " +
@@ -50,8 +51,9 @@ class TapSquare {
       : half_(half), values_(static_cast<std::size_t>((2 * half + 1) * (2 * half + 1)), 0.0) {}
 
   void add(Cell offset, double probability) {
-    values_[static_cast<std::size_t>((offset.y + half_) * (2 * half_ + 1) + offset.x + half_)] +=
-        probability;
+    const std::ptrdiff_t side = 2 * half_ + 1;
+    const std::ptrdiff_t cell = (offset.y + half_) * side + offset.x + half_;
+    values_[static_cast<std::size_t>(cell)] += probability;
   }
 
   void share(double x, double y, double probability) {

@@ -88,6 +88,45 @@ TEST(MarkovLocalizer, AnAdvanceOfACellIsTheWorkedExampleNormalized) {
   EXPECT_EQ(localizer.belief().at({0, -1}), 0.0);
 }
 
+TEST(MarkovLocalizer, BackwardsTheMatrixIsTurnedWithTheMotion) {
+  MarkovLocalizer localizer{{}, test::open_space(100, 100), test::macondo_ring()};
+  localizer.initialize({5.05, 5.05, 0.0}, kNothing);
+  localizer.move({MoveKind::kAdvance, -0.1});
+  EXPECT_GT(localizer.belief().at({-1, 0}), 0.06);
+  EXPECT_EQ(localizer.belief().at({1, 0}), 0.0);
+}
+
+TEST(MarkovLocalizer, EachPrimitiveHasItsMatrix) {
+  MarkovConfig config;
+  config.transition.advance = {1, 3, {0.0, 0.0, 1.0}};  // ahead
+  config.transition.left = {3, 1, {1.0, 0.0, 0.0}};     // to the left
+  config.transition.right = {3, 1, {0.0, 0.0, 1.0}};    // to the right
+  const auto after = [&](const Move& move) {
+    MarkovLocalizer localizer{config, test::open_space(100, 100), test::macondo_ring()};
+    localizer.initialize({5.05, 5.05, 0.0}, kNothing);
+    localizer.move(move);
+    return localizer.estimate()->offset;
+  };
+  EXPECT_EQ(after({MoveKind::kAdvance, 0.1}), (Cell{1, 0}));
+  EXPECT_EQ(after({MoveKind::kTurnLeft, kQuarter_rad}), (Cell{0, 1}));
+  EXPECT_EQ(after({MoveKind::kTurnRight, kQuarter_rad}), (Cell{0, -1}));
+  EXPECT_EQ(after({MoveKind::kTurnLeft, 3 * kQuarter_rad}), (Cell{0, 3}));
+}
+
+TEST(MarkovLocalizer, EntropyAndSpreadOfThreeEqualCells) {
+  MarkovConfig config;
+  config.transition.advance = {1, 3, {0.25, 0.25, 0.25}};
+  MarkovLocalizer localizer{config, test::open_space(100, 100), test::macondo_ring()};
+  localizer.initialize({5.05, 5.05, 0.0}, kNothing);
+  localizer.move({MoveKind::kAdvance, 0.1});
+  const std::optional<Estimate> estimate = localizer.estimate();
+  ASSERT_TRUE(estimate);
+  EXPECT_EQ(estimate->offset, (Cell{0, 0}));  // of equals the nearest to the expected cell
+  EXPECT_NEAR(estimate->probability, 1.0 / 3.0, 1e-12);
+  EXPECT_NEAR(estimate->entropy, std::log(3.0), 1e-12);
+  EXPECT_NEAR(estimate->spread_m, 0.1 * std::sqrt(2.0 / 3.0), 1e-12);
+}
+
 TEST(MarkovLocalizer, AnAdvanceInPiecesIsTheSameAdvance) {
   const auto after = [](const std::vector<double>& lengths_m) {
     MarkovLocalizer localizer{{}, test::open_space(100, 100), test::macondo_ring()};
@@ -276,7 +315,8 @@ TEST(MarkovLocalizer, BadInputIsRefusedAndChangesNothing) {
   EXPECT_THROW(localizer.move({MoveKind::kTurnLeft, -0.1}), std::invalid_argument);
   EXPECT_THROW(localizer.perceive(std::vector<float>(7, 1.0F)), std::invalid_argument);
   EXPECT_THROW(localizer.perceive(std::vector<float>(6, -1.0F)), std::invalid_argument);
-  EXPECT_THROW(localizer.relocalization_moves({nan, 0.0, 0.0}), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(localizer.relocalization_moves({nan, 0.0, 0.0})),
+               std::invalid_argument);
   EXPECT_NEAR(localizer.expected().x_m, 1.35, 1e-12);
   for (std::size_t i = 0; i < before.size(); ++i) {
     ASSERT_EQ(localizer.belief().current()[i], before[i]);

@@ -31,12 +31,12 @@ TEST(ObstacleCells, OutsideTheMapIsNeitherObstacleNorFree) {
 
 TEST(ObstacleCells, WordsAgreeWithTheCellsOneByOne) {
   std::mt19937 random{7};
-  std::vector<std::uint8_t> cells(150 * 5);
+  std::vector<std::uint8_t> cells(std::size_t{150} * 5);
   for (std::uint8_t& cell : cells) cell = random() % 3 == 0 ? 1 : 0;
   const ObstacleCells map{{.width = 150, .height = 5, .resolution_m = 0.1, .occupied = cells}};
   const auto truth = [&](int x, int y) {
     return x >= 0 && x < 150 && y >= 0 && y < 5 &&
-           cells[static_cast<std::size_t>(y * 150 + x)] != 0;
+           cells[static_cast<std::size_t>(y) * 150 + static_cast<std::size_t>(x)] != 0;
   };
   for (int y = -1; y <= 5; ++y) {
     for (int x = -130; x <= 160; ++x) {
@@ -52,7 +52,7 @@ TEST(ObstacleCells, WordsAgreeWithTheCellsOneByOne) {
 
 TEST(ObstacleCells, TheWindowSaysWhichOfItsCellsAreFree) {
   std::mt19937 random{8};
-  std::vector<std::uint8_t> cells(90 * 90);
+  std::vector<std::uint8_t> cells(std::size_t{90} * 90);
   for (std::uint8_t& cell : cells) cell = random() % 4 == 0 ? 1 : 0;
   const ObstacleCells map{{.width = 90, .height = 90, .resolution_m = 0.1, .occupied = cells}};
   for (const int size : {5, 21, 63, 65, 101}) {

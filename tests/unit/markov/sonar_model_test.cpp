@@ -14,6 +14,7 @@ namespace topogeo::markov {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kCells = std::size_t{21} * 21;  // of the window
 constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
 
 /// Six sonars at the edge of a body of 3 x 3 cells, numbered like MACONDO's: front left, front
@@ -108,7 +109,7 @@ TEST(SonarModel, TheWholeWindowAtOnceEqualsRayByRay) {
   std::mt19937 random{5};
   std::uniform_real_distribution<double> uniform{0.0, 1.0};
   for (int run = 0; run < 4; ++run) {
-    std::vector<std::uint8_t> cells(80 * 60);
+    std::vector<std::uint8_t> cells(std::size_t{80} * 60);
     for (std::uint8_t& cell : cells) cell = uniform(random) < 0.015 ? 1 : 0;
     const ObstacleCells map{{.width = 80, .height = 60, .resolution_m = 0.1, .occupied = cells}};
     expect_as_ray_by_ray(
@@ -117,7 +118,7 @@ TEST(SonarModel, TheWholeWindowAtOnceEqualsRayByRay) {
 }
 
 TEST(SonarModel, WideWindowsTakeTwoWords) {
-  std::vector<std::uint8_t> cells(110 * 8, 0);
+  std::vector<std::uint8_t> cells(std::size_t{110} * 8, 0);
   for (const std::size_t cell : {3U, 70U, 105U, 250U, 333U, 500U, 642U, 811U}) cells[cell] = 1;
   const ObstacleCells map{{.width = 110, .height = 8, .resolution_m = 0.1, .occupied = cells}};
   expect_as_ray_by_ray(map, {5.513, 0.437, 0.3}, 101);
@@ -129,7 +130,7 @@ TEST(SonarModel, NothingInRangeAndOutsideTheMapIsInfinity) {
   for (std::size_t i = 0; i < sonar.sensors(); ++i) {
     EXPECT_EQ(sonar.virtual_m(i, {0, 0}), kInfinity);
   }
-  std::vector<double> probabilities(21 * 21);
+  std::vector<double> probabilities(kCells);
   const PerceptualMatch match = sonar.compare(std::vector<float>(6, 1.0F), probabilities);
   EXPECT_EQ(match.reliability, 0.0);
   sonar.look_around(test::open_space(30, 30), {-1e6, 1e6, 0.0}, 21);
@@ -153,7 +154,7 @@ TEST(SonarModel, ReliabilityOfTheVectorIsTheMean) {
   const test::Room room{70, 20};
   SonarModel sonar{six_at_the_edge(), {}};
   sonar.look_around(room.cells(), {3.15, 1.15, 0.0}, 21);
-  std::vector<double> probabilities(21 * 21);
+  std::vector<double> probabilities(kCells);
   std::vector<float> ranges_m = room.measured({3.15, 1.15, 0.0}, six_at_the_edge());
   EXPECT_NEAR(sonar.compare(ranges_m, probabilities).reliability, (2 * 0.25 + 4) / 6.0, 1e-12);
   ranges_m[2] = scan::Scan::kNoReturn;  // counts as a reading without any
@@ -174,12 +175,13 @@ TEST(SonarModel, TheSmallerTheDifferenceTheMoreProbable) {
     sonar.look_around(room.cells(), expected, 21);
     // The robot really is three cells ahead and two to the left.
     const std::vector<float> ranges_m = room.measured({2.35, 1.35, 0.0}, sensors);
-    std::vector<double> probabilities(21 * 21);
+    std::vector<double> probabilities(kCells);
     const PerceptualMatch match = sonar.compare(ranges_m, probabilities);
     EXPECT_TRUE(match.informative);
     EXPECT_NEAR(match.best_difference_m, 0.0, 1e-6);
     const auto at = [&](int x, int y) {
-      return probabilities[static_cast<std::size_t>((y + 10) * 21 + x + 10)];
+      return probabilities[static_cast<std::size_t>(y + std::ptrdiff_t{10}) * 21 +
+                           static_cast<std::size_t>(x + std::ptrdiff_t{10})];
     };
     double sum = 0.0;
     for (const double probability : probabilities) {
@@ -206,9 +208,9 @@ TEST(SonarModel, TheFormulasAsDocumented) {
     config.scale_m = 0.25;
     SonarModel sonar{front, config};
     sonar.look_around(room.cells(), expected, 21);
-    std::vector<double> probabilities(21 * 21);
+    std::vector<double> probabilities(kCells);
     sonar.compare(ranges_m, probabilities);
-    const std::size_t middle = 10 * 21 + 10;
+    const std::size_t middle = kCells / 2;
     return probabilities[middle + static_cast<std::size_t>(cells)] / probabilities[middle];
   };
   EXPECT_NEAR(ratio(PerceptualFormula::kExponential, 2), std::exp(-0.8), 1e-6);
@@ -226,7 +228,7 @@ TEST(SonarModel, UnreliableReadingsMayBeLeftOutOfTheDifference) {
   const std::vector<RangeSensor> sensors = six_at_the_edge();
   std::vector<float> ranges_m = room.measured({2.05, 1.15, 0.0}, sensors);
   ranges_m[0] = 0.4F;
-  std::vector<double> probabilities(21 * 21);
+  std::vector<double> probabilities(kCells);
   SonarModelConfig config;
   SonarModel as_the_source{sensors, config};
   as_the_source.look_around(room.cells(), {2.05, 1.15, 0.0}, 21);
@@ -241,7 +243,7 @@ TEST(SonarModel, SonarsThatReadNothingSayNothing) {
   const test::Room room{30, 20};
   SonarModel sonar{six_at_the_edge(), {}};
   sonar.look_around(room.cells(), {1.05, 1.15, 0.0}, 21);
-  std::vector<double> probabilities(21 * 21, 1.0);
+  std::vector<double> probabilities(kCells, 1.0);
   const PerceptualMatch match =
       sonar.compare(std::vector<float>(6, scan::Scan::kNoReturn), probabilities);
   EXPECT_FALSE(match.informative);
@@ -254,7 +256,7 @@ TEST(SonarModel, SonarsThatReadNothingSayNothing) {
 TEST(SonarModel, BadReadingsAreRefused) {
   SonarModel sonar{six_at_the_edge(), {}};
   sonar.look_around(test::open_space(30, 30), {1.0, 1.0, 0.0}, 21);
-  std::vector<double> probabilities(21 * 21);
+  std::vector<double> probabilities(kCells);
   EXPECT_THROW(sonar.compare(std::vector<float>(5, 1.0F), probabilities), std::invalid_argument);
   for (const float bad :
        {-0.1F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {

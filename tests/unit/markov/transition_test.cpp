@@ -152,6 +152,7 @@ TEST(Transition, ObstaclesTakeNothingAndGiveNothing) {
 std::vector<double> cell_by_cell(const BeliefGrid& grid, const std::vector<Tap>& taps,
                                  const ObstacleCells& map) {
   const int half = grid.half();
+  const std::ptrdiff_t side = grid.size();
   std::vector<double> result(grid.current().size(), 0.0);
   for (int y = -half; y <= half; ++y) {
     for (int x = -half; x <= half; ++x) {
@@ -160,7 +161,7 @@ std::vector<double> cell_by_cell(const BeliefGrid& grid, const std::vector<Tap>&
         const Cell to{x + tap.offset.x, y + tap.offset.y};
         if (std::abs(to.x) > half || std::abs(to.y) > half) continue;
         if (!map.free({grid.centre().x + to.x, grid.centre().y + to.y})) continue;
-        result[static_cast<std::size_t>((to.y + half) * grid.size() + to.x + half)] +=
+        result[static_cast<std::size_t>((to.y + half) * side + to.x + half)] +=
             tap.probability * grid.at({x, y});
       }
     }
@@ -173,7 +174,7 @@ TEST(Transition, TheUpdateEqualsTheRuleCellByCell) {
   std::uniform_real_distribution<double> uniform{0.0, 1.0};
   const TransitionMatrix wide{5, 7, std::vector<double>(35, 1.0 / 35.0)};
   for (int run = 0; run < 60; ++run) {
-    std::vector<std::uint8_t> cells(40 * 40);
+    std::vector<std::uint8_t> cells(std::size_t{40} * 40);
     for (std::uint8_t& cell : cells) cell = uniform(random) < 0.2 ? 1 : 0;
     const ObstacleCells map{{.width = 40, .height = 40, .resolution_m = 0.1, .occupied = cells}};
     BeliefGrid grid{run % 2 == 0 ? 21 : 7};
