@@ -23,7 +23,7 @@ constexpr std::int64_t kProbesPerSilence = 20;
 /// A base that has not answered for so long is set up all the same: it may not understand the
 /// question. Not sooner, because that makes the reports of one that has just come back start anew.
 constexpr std::int64_t kBlindStart_ns = 15 * kSecond_ns;
-constexpr double kBelievedBattery_v = 100.0;  // and from 1 V on
+constexpr double kMostBelievedVolts = 100.0;  // and from 1 V on
 
 std::int64_t nanoseconds(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
@@ -243,7 +243,7 @@ void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
   answered_ = true;
   if (answer.command != McpCommand::kBatteryVoltage) return;
   const double battery_v = 0.1 * answer.value;
-  if (battery_v < 1.0 || battery_v > kBelievedBattery_v) return;
+  if (battery_v < 1.0 || battery_v > kMostBelievedVolts) return;
   status_.battery_v = battery_v;
   status_.battery_low = battery_v < settings_.battery_low_v;
 }

@@ -14,7 +14,7 @@ constexpr std::int64_t kEarliest_ns = 25'000'000;
 /// A host that was busy for longer than this takes the base for restarted.
 constexpr std::int64_t kLatest_ns = 3'000'000'000;
 constexpr std::int64_t kPause_ns = 1'000'000'000;
-constexpr double kFastest_mps = 2.5;  // what 16 bits of encoder counts can say, and a little
+constexpr double kFastestSpeed = 2.5;  // what 16 bits of encoder counts can say, and a little
 /// A device's clock is not more wrong than one part in this.
 constexpr std::int64_t kDriftDivisor = 1000;
 /// The first message may be a late one: after so long the least delay is known.
@@ -87,7 +87,7 @@ bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
   const geometry::Pose2 moved = geometry::between(T_base_from, tracker.track(to));
   const double elapsed_s = 1e-9 * static_cast<double>(elapsed_ns);
   if (loosely || elapsed_ns > kPause_ns) {  // in a pause it may have moved and stopped again
-    return moved.position_m().norm() <= kMargin_m + kFastest_mps * elapsed_s;
+    return moved.position_m().norm() <= kMargin_m + kFastestSpeed * elapsed_s;
   }
   const auto fits = [elapsed_s](double way, double speed_from, double speed_to, double acceleration,
                                 double margin) {

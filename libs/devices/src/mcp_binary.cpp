@@ -207,17 +207,17 @@ void McpBinaryDecoder::interpret(std::span<const std::uint8_t> payload,
   const std::uint8_t code = payload.front();
   const auto data = payload.subspan(1);
   if (code == opcode(McpCommand::kReportMask) || code == opcode(McpCommand::kReportOnce)) {
-    interpret_report(data, messages);
-  } else if (data.size() > sizeof(std::uint32_t)) {
-    ++count_of(drops_, McpDrop::kUnknownOpcode);
-  } else if (code == opcode(McpCommand::kVersion)) {  // as a reply: errors
+    return interpret_report(data, messages);
+  }
+  const bool fits = data.size() <= sizeof(std::uint32_t);
+  if (fits && code == opcode(McpCommand::kVersion)) {  // as a reply: errors
     const std::uint32_t bits = big_endian(data);
     for (std::size_t i = 0; i < kErrorBits.size(); ++i) {
       if ((bits >> i & 1U) != 0) messages.emplace_back(McpEvent{kErrorBits.at(i), 0});
     }
-  } else if (const auto event = event_of(code)) {
+  } else if (const auto event = event_of(code); fits && event) {
     messages.emplace_back(McpEvent{*event, big_endian(data)});
-  } else if (is_query(static_cast<McpCommand>(code))) {
+  } else if (fits && is_query(static_cast<McpCommand>(code))) {
     messages.emplace_back(McpAnswer{static_cast<McpCommand>(code), big_endian(data)});
   } else {
     ++count_of(drops_, McpDrop::kUnknownOpcode);

@@ -21,7 +21,7 @@ constexpr std::uint32_t kRotateVelocity = 0x0080;
 constexpr std::uint32_t kRotateAcceleration = 0x0400;
 
 constexpr double kOrigin = 0x8000;
-constexpr double kLowBattery_v = 44.0;
+constexpr double kLowBatteryVolts = 44.0;
 /// While motors turn, ticks are due so often that speeds are smooth.
 constexpr std::int64_t kMotorStep_ns = 10'000'000;
 /// A report that is cut keeps so many bytes and loses three times as many.
@@ -158,7 +158,7 @@ void McpEmulator::take_joystick(const Velocity& velocity) {
 }
 
 void McpEmulator::set_battery(double battery_v, std::int64_t now_ns) {
-  const bool sank = battery_v < kLowBattery_v && battery_v_ >= kLowBattery_v;
+  const bool sank = battery_v < kLowBatteryVolts && battery_v_ >= kLowBatteryVolts;
   battery_v_ = battery_v;
   if (sank) say("%BLO", {0x01, 0x20}, now_ns);
 }

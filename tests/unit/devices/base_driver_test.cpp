@@ -1,54 +1,26 @@
 // The driver of the base against the emulated base, on a simulated clock: start-up, motion,
-// odometry, and everything that has to make the robot stand.
+// odometry, silence and restarts.
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base_on_line.hpp"
+#include "base_lines.hpp"
 
 namespace topogeo::devices {
 namespace {
 
-using simulation::McpEmulatorSettings;
 using testing::Contains;
-using testing::Not;
 
 constexpr double kPi = std::numbers::pi;
 
-struct Way {
-  BaseDialect dialect;
-  std::uint32_t baud;
-};
-std::string name_of(const testing::TestParamInfo<Way>& info) {
-  return (info.param.dialect == BaseDialect::kAscii ? "Ascii" : "Binary") +
-         std::to_string(info.param.baud);
-}
-BaseSettings settings_of(const Way& way) {
-  BaseSettings settings;
-  settings.dialect = way.dialect;
-  settings.line.baud = way.baud;
-  return settings;
-}
+class BaseDriverOn : public BaseOnAnyLine {};
 
-class BaseDriverOn : public testing::TestWithParam<Way> {
- protected:
-  BaseSettings settings() const { return settings_of(GetParam()); }
-  double period_s() const { return 1e-9 * static_cast<double>(period_ns()); }
-  std::int64_t period_ns() const { return ticks_ns(report_period_ticks(settings())); }
-};
-
-INSTANTIATE_TEST_SUITE_P(Dialects, BaseDriverOn,
-                         testing::Values(Way{BaseDialect::kAscii, 9600},
-                                         Way{BaseDialect::kAscii, 38400},
-                                         Way{BaseDialect::kBinary, 9600},
-                                         Way{BaseDialect::kBinary, 38400}),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Dialects, BaseDriverOn, testing::ValuesIn(kWays), name_of);
 
 TEST_P(BaseDriverOn, StartsTheBaseUp) {
   BaseOnLine all(settings());
@@ -150,178 +122,7 @@ TEST_P(BaseDriverOn, AMoveEndsWhenItIsNoLongerValid) {
   EXPECT_LT(all.base.mcp.T_start_robot().x_m, 1.5);
 }
 
-TEST_P(BaseDriverOn, HaltsWhenCommandsCease) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.drive(0.4, 0.2, 3 * kSecond);
-  all.base.mcp.forget_heard();
-  const std::int64_t last_ns = all.line.now_ns() - kSecond / 10;
-  const auto halted = [&] {
-    const auto& heard = all.base.mcp.heard();
-    return std::ranges::count(heard, McpOrder{McpCommand::kTranslateHalt}) > 0 &&
-           std::ranges::count(heard, McpOrder{McpCommand::kRotateHalt}) > 0;
-  };
-  ASSERT_TRUE(all.pass_until(kSecond, halted));
-  EXPECT_NEAR(static_cast<double>(all.line.now_ns() - last_ns), 0.53e9, 0.03e9);
-  all.pass(3 * kSecond);
-  EXPECT_TRUE(all.base.stands());
-  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
-  all.drive(0.4, 0.0, 2 * kSecond);
-  EXPECT_FALSE(all.base.stands());
-}
-
-TEST_P(BaseDriverOn, TheBaseStopsByItselfWhenTheDriverIsGone) {
-  for (const bool limps : {false, true}) {
-    BaseOnLine all(settings(), {.watchdog_limps = limps});
-    ASSERT_TRUE(all.start());
-    all.drive(0.4, 0.2, 3 * kSecond);
-    ASSERT_FALSE(all.base.stands());
-    all.line.unplug();
-    all.pass(3 * kSecond);
-    EXPECT_TRUE(all.base.stands());
-    EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
-    EXPECT_FALSE(all.driver.status().commands_taken);
-    EXPECT_FALSE(all.driver.command(0.4, 0.2, all.line.now_ns() + kSecond, all.line.now_ns()));
-    ASSERT_TRUE(all.start());
-    all.pass(2 * kSecond);
-    EXPECT_TRUE(all.base.stands());
-    all.drive(0.4, 0.2, 2 * kSecond);
-    EXPECT_FALSE(all.base.stands());
-    EXPECT_LT(all.worst_m, 0.02);
-    EXPECT_EQ(all.stamps_back, 0U);
-  }
-}
-
 /// The driver's own words do not reach the base, its reports do reach the driver.
-TEST_P(BaseDriverOn, SaysThatTheWatchdogExpired) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  all.base.mcp.receive({}, settings().line, all.line.now_ns());
-  // Somebody else at the line sets a watchdog that is too short.
-  std::vector<std::uint8_t> bytes;
-  const McpOrder order{McpCommand::kWatchdog, 2};
-  if (GetParam().dialect == BaseDialect::kAscii) {
-    append_ascii(order, bytes);
-  } else {
-    const McpPacket packet = binary_packet(order);
-    bytes.assign(packet.begin(), packet.end());
-  }
-  all.base.mcp.receive(bytes, settings().line, all.line.now_ns());
-  ASSERT_TRUE(all.pass_until(
-      kSecond, [&] { return all.driver.status().state == BaseState::kWatchdogExpired; }));
-  EXPECT_NE(all.driver.status().reason, "");
-  all.pass(2 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kWatchdogExpired);
-  EXPECT_TRUE(all.base.stands());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
-  EXPECT_FALSE(all.base.stands());
-  EXPECT_EQ(all.driver.status().watchdog_expirations, 1U);
-}
-
-TEST_P(BaseDriverOn, TheEmergencyStopHaltsAndTheRobotDoesNotJumpWhenPowerReturns) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.drive(0.4, 0.0, 3 * kSecond);
-  all.base.mcp.forget_heard();
-  all.base.mcp.press_emergency_stop();
-  all.drive(0.4, 0.0, 2 * kSecond);  // whoever commands goes on
-  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
-  EXPECT_FALSE(all.driver.status().commands_taken);
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt}));
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kRotateHalt}));
-  all.base.mcp.release_emergency_stop();
-  const geometry::Pose2 before = all.base.mcp.T_start_robot();
-  all.drive(0.4, 0.0, 3 * kSecond);
-  EXPECT_EQ(all.base.mcp.T_start_robot(), before);
-  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
-  all.driver.reset_stop(all.line.now_ns());
-  all.pass(2 * kSecond);
-  EXPECT_EQ(all.base.mcp.T_start_robot(), before);
-  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
-  all.drive(0.4, 0.0, 3 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
-  EXPECT_LT(all.worst_m, 0.02);
-}
-
-TEST_P(BaseDriverOn, AStartWithThePowerOffIsAnEmergencyStop) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.base.mcp.press_emergency_stop();
-  all.drive(0.0, 0.5, 2 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
-  all.driver.reset_stop(all.line.now_ns());
-  all.drive(0.0, 0.5, 2 * kSecond);  // it is still pressed
-  EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
-}
-
-TEST_P(BaseDriverOn, TheJoystickTakesOverAndIsLeftAlone) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.drive(0.2, 0.0, 3 * kSecond);
-  all.base.mcp.forget_heard();
-  for (int i = 0; i < 20; ++i) {  // held against whatever the base is told
-    all.base.mcp.take_joystick({-0.3, 0.4});
-    all.drive(0.2, 0.0, kSecond / 10);
-  }
-  EXPECT_EQ(all.driver.status().state, BaseState::kJoystick);
-  EXPECT_FALSE(all.driver.status().commands_taken);
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt}));
-  all.base.mcp.take_joystick({});
-  all.drive(0.2, 0.0, kSecond);
-  EXPECT_TRUE(all.base.stands());
-  all.pass(3 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
-  all.drive(0.2, 0.0, 2 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
-  EXPECT_LT(all.worst_m, 0.02);
-}
-
-TEST_P(BaseDriverOn, AJoystickThatIsSwitchedOffDoesNothing) {
-  BaseSettings without = settings();
-  without.joystick_allowed = false;
-  BaseOnLine all(without);
-  ASSERT_TRUE(all.start());
-  all.base.mcp.take_joystick({0.3, 0.4});
-  all.pass(2 * kSecond);
-  EXPECT_TRUE(all.base.stands());
-  EXPECT_EQ(all.driver.status().state, BaseState::kReady);
-}
-
-TEST_P(BaseDriverOn, ABumpStopsAndTheWayBackIsFreeToWhoeverNoticed) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  all.base.mcp.press_bumpers(0x0008, all.line.now_ns());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kBumped);
-  EXPECT_EQ(all.driver.status().bumpers, 0x0008);
-  EXPECT_FALSE(all.driver.status().commands_taken);
-  EXPECT_TRUE(all.base.stands());
-  all.drive(0.0, 0.0, kSecond);
-  EXPECT_TRUE(all.driver.status().commands_taken);
-  all.drive(-0.2, 0.0, kSecond);
-  EXPECT_LT(all.base.mcp.commanded_velocity().linear_m_per_s, -0.1);
-  EXPECT_EQ(all.driver.status().state, BaseState::kBumped);
-  all.base.mcp.press_bumpers(0, all.line.now_ns());
-  all.drive(-0.2, 0.0, kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
-}
-
-TEST_P(BaseDriverOn, HaltHoldsUntilReset) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  all.driver.halt(all.line.now_ns());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kHalted);
-  EXPECT_TRUE(all.base.stands());
-  all.driver.reset_stop(all.line.now_ns());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
-}
-
 TEST_P(BaseDriverOn, LimitsHoldAtOnceAndNeverExceedTheSettings) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
@@ -335,29 +136,6 @@ TEST_P(BaseDriverOn, LimitsHoldAtOnceAndNeverExceedTheSettings) {
   EXPECT_NEAR(all.base.mcp.commanded_velocity().angular_rad_per_s, 0.5 * 2.0 / 3.0, 0.01);
   EXPECT_THROW(all.driver.set_limits({.angular_radps = 0.0}, all.line.now_ns()),
                std::invalid_argument);
-}
-
-TEST_P(BaseDriverOn, AMotorFaultIsSaidAndAcknowledged) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.drive(0.3, 0.0, 2 * kSecond);
-  all.base.mcp.forget_heard();
-  all.base.mcp.fail_motor(all.line.now_ns());
-  all.pass(2 * kSecond);
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kAcknowledge, 0}));
-  EXPECT_TRUE(all.base.stands());
-}
-
-TEST_P(BaseDriverOn, ALowBatteryIsSaid) {
-  BaseOnLine all(settings());
-  ASSERT_TRUE(all.start());
-  all.pass(kSecond);
-  EXPECT_FALSE(all.driver.status().battery_low);
-  all.base.mcp.set_battery(43.0, all.line.now_ns());
-  all.pass(kSecond);
-  EXPECT_TRUE(all.driver.status().battery_low);
-  all.pass(11 * kSecond);
-  EXPECT_DOUBLE_EQ(all.driver.status().battery_v, 43.0);
 }
 
 TEST_P(BaseDriverOn, ARestartedBaseIsSetUpAgainAndThePoseGoesOn) {
@@ -476,6 +254,5 @@ TEST(BaseDriver, RefusesCommandsThatAreNoNumbers) {
   EXPECT_THROW((void)driver.advance(std::numeric_limits<double>::infinity(), 1, 0),
                std::invalid_argument);
 }
-
 }  // namespace
 }  // namespace topogeo::devices
