@@ -134,7 +134,7 @@ void add_check_log_command(CLI::App& app, int& exit_code) {
       ->add_option("--gap", request->options.longest_gap_s,
                    "seconds between two scans that are too long")
       ->check(CLI::Range(1e-3, kMost))
-      ->capture_default_str();
+      ->default_str("five times the median, at least 2");
   command
       ->add_option("--speed", request->options.largest_mps,
                    "faster odometry is a jump, metres a second")

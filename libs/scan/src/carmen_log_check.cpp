@@ -78,19 +78,22 @@ class Checker {
   void compare_geometry(const Scan& scan);
   void compare_odometry(const Scan& scan);
   void compare_readings(const Scan& scan);
-  void found(LogFault fault, const std::string& text);
+  void find_gaps();
+  void found(LogFault fault, const std::string& text) { found(fault, check_.lines, text); }
+  void found(LogFault fault, std::uint64_t line, const std::string& text);
 
   LogCheckOptions options_;
   CarmenLineParser parser_;
   LogCheck check_;
   std::optional<Scan> last_;
   std::uint32_t identical_ = 1;
-  std::vector<std::int64_t> periods_ns_;
+  std::vector<std::int64_t> periods_ns_;     // between two scans, where time goes on
+  std::vector<std::uint64_t> period_lines_;  // of the second of each two
 };
 
-void Checker::found(LogFault fault, const std::string& text) {
+void Checker::found(LogFault fault, std::uint64_t line, const std::string& text) {
   if (++check_.counts[static_cast<std::size_t>(fault)] <= options_.findings) {
-    check_.findings.push_back({fault, check_.lines, text});
+    check_.findings.push_back({fault, line, text});
   }
 }
 
@@ -163,9 +166,7 @@ void Checker::compare_time(const Scan& scan) {
   } else {
     periods_ns_.push_back(period_ns);
     check_.longest_period_s = std::max(check_.longest_period_s, period_s);
-    if (period_s > options_.longest_gap_s) {
-      found(LogFault::kGap, "no scan for " + text_of(period_s, 3) + " s");
-    }
+    period_lines_.push_back(check_.lines);
   }
 }
 
@@ -212,9 +213,27 @@ void Checker::compare_readings(const Scan& scan) {
 void Checker::end(const std::string& damage) {
   if (!damage.empty()) found(LogFault::kCompression, damage);
   if (periods_ns_.empty()) return;
-  const auto middle = periods_ns_.begin() + static_cast<std::ptrdiff_t>(periods_ns_.size() / 2);
-  std::nth_element(periods_ns_.begin(), middle, periods_ns_.end());
+  std::vector<std::int64_t> sorted = periods_ns_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
   check_.median_period_s = static_cast<double>(*middle) * 1e-9;
+  find_gaps();
+}
+
+void Checker::find_gaps() {
+  constexpr double kPeriods = 5.0;
+  const double longest_s =
+      options_.longest_gap_s > 0.0
+          ? options_.longest_gap_s
+          : std::max(LogCheckOptions::kShortestGap_s, kPeriods * check_.median_period_s);
+  for (std::size_t i = 0; i < periods_ns_.size(); ++i) {
+    const double period_s = static_cast<double>(periods_ns_[i]) * 1e-9;
+    if (period_s > longest_s) {
+      found(LogFault::kGap, period_lines_[i], "no scan for " + text_of(period_s, 3) + " s");
+    }
+  }
+  std::stable_sort(check_.findings.begin(), check_.findings.end(),
+                   [](const LogFinding& a, const LogFinding& b) { return a.line < b.line; });
 }
 
 void check_options(const LogCheckOptions& options) {
@@ -224,7 +243,7 @@ void check_options(const LogCheckOptions& options) {
                                   std::to_string(value));
     }
   };
-  positive("longest_gap_s", options.longest_gap_s);
+  if (options.longest_gap_s != 0.0) positive("longest_gap_s", options.longest_gap_s);
   positive("largest_mps", options.largest_mps);
   positive("largest_radps", options.largest_radps);
   if (options.stuck_scans < 2) {

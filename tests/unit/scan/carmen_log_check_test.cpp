@@ -76,8 +76,10 @@ TEST_F(LogCheckTest, EachFaultIsFoundWithItsLine) {
       {line("10.5", "0", "3 1 two 3"), LogFault::kFields, "range 1"},
       {std::string("FLASER 3 1 \x01 3\n"), LogFault::kText, "binary"},
   };
+  LogCheckOptions options;
+  options.longest_gap_s = 2.0;
   for (const Case& c : cases) {
-    const LogFinding finding = only(check(line("10.0") + line("10.4") + c.third));
+    const LogFinding finding = only(check(line("10.0") + line("10.4") + c.third, options));
     EXPECT_EQ(finding.fault, c.fault) << c.third << describe(finding.fault);
     EXPECT_EQ(finding.line, 3U) << c.third;
     EXPECT_THAT(finding.text, HasSubstr(c.text)) << c.third;
@@ -107,6 +109,21 @@ TEST_F(LogCheckTest, StuckLaserIsFoundOnceAndEmptyViewIsNone) {
   EXPECT_EQ(check(empty, options).faults(), 0U);
   options.stuck_scans = 13;
   EXPECT_EQ(check(stuck, options).faults(), 0U);
+}
+
+TEST_F(LogCheckTest, GapsAreMeasuredByTheLogItself) {
+  // A scan every 3 s: 15 s and less are no gap, by itself.
+  const std::string slow = line("1") + line("4") + line("7") + line("10");
+  EXPECT_EQ(check(slow + line("24")).faults(), 0U);
+  EXPECT_EQ(only(check(slow + line("26") + line("29"))).line, 5U);
+  LogCheckOptions options;
+  options.longest_gap_s = 2.5;
+  EXPECT_EQ(check(slow, options).count(LogFault::kGap), 3U);
+  // Findings come by line, whatever is found first.
+  const LogCheck mixed = check(slow + line("26") + "FLASER 3 1\n");
+  ASSERT_EQ(mixed.findings.size(), 2U);
+  EXPECT_EQ(mixed.findings[0].fault, LogFault::kGap);
+  EXPECT_EQ(mixed.findings[1].fault, LogFault::kTruncated);
 }
 
 TEST_F(LogCheckTest, AllFaultsAreCountedAndSomeAreKept) {
@@ -143,7 +160,7 @@ TEST_F(LogCheckTest, WhatIsNoLogIsAnError) {
   EXPECT_THROW(check(""), std::runtime_error);
   EXPECT_THROW(check("# nothing but a comment\n"), std::runtime_error);
   LogCheckOptions options;
-  options.longest_gap_s = 0.0;
+  options.longest_gap_s = -1.0;
   EXPECT_THROW(check(line("1.0"), options), std::invalid_argument);
   options = {};
   options.stuck_scans = 1;

@@ -31,7 +31,10 @@ inline constexpr std::size_t kLogFaults = 12;
 std::string_view describe(LogFault fault);
 
 struct LogCheckOptions {
-  double longest_gap_s = 2.0;      ///< between two scans; > 0
+  /// Between two scans, >= 0; 0: five times the median, and at least kShortestGap_s, as some logs
+  /// have a scan for each metre and others for each turn of the mirror.
+  double longest_gap_s = 0.0;
+  static constexpr double kShortestGap_s = 2.0;
   double largest_mps = 2.5;        ///< of the odometry between two scans; > 0
   double largest_radps = 6.3;      ///< the same for rotation; > 0
   std::uint32_t stuck_scans = 50;  ///< so many identical scans in a row are a fault; >= 2
