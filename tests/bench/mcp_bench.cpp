@@ -45,7 +45,7 @@ void decode(benchmark::State& state, const Decoder& fresh,
     }
   }
   if (found != kReports) state.SkipWithError("reports are missing");
-  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * stream.size()));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(stream.size()));
 }
 
 void ascii(benchmark::State& state) {

@@ -79,7 +79,6 @@ void McpEmulator::hear_binary(std::uint8_t byte, std::int64_t now_ns) {
   packet_.clear();
   if (good) return execute(order, now_ns);
   synchronised_ = false;
-  zeros_ = 0;
   say({}, {0x00}, now_ns);
 }
 
@@ -89,7 +88,9 @@ void McpEmulator::answer(McpCommand command, std::uint32_t value, std::int64_t n
   const int length = std::snprintf(text.data(), text.size(), "%s%.2s %x",
                                    settings_.prompt ? "*" : "", name.data(), value);
   std::vector<std::uint8_t> payload{static_cast<std::uint8_t>(command)};
-  for (unsigned shift = 32; shift > 0; shift -= 8) {
+  const bool narrow =
+      command == McpCommand::kBatteryVoltage || command == McpCommand::kBatteryCurrent;
+  for (unsigned shift = narrow ? 16 : 32; shift > 0; shift -= 8) {
     payload.push_back(static_cast<std::uint8_t>(value >> (shift - 8) & 0xFFU));
   }
   say({text.data(), static_cast<std::size_t>(length)}, payload, now_ns);
