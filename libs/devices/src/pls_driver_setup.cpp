@@ -134,8 +134,9 @@ void PlsDriver::after_install(std::int64_t now_ns) {
 }
 
 void PlsDriver::after_rate(std::int64_t now_ns) {
-  const bool replied = exchange_.result() == SickExchange::Result::kReplied;
-  if (replied && exchange_.mode_reply() != PlsModeReply::kDone) {
+  const SickExchange::Result result = exchange_.result();
+  if (result == SickExchange::Result::kRefused ||
+      (result == SickExchange::Result::kReplied && exchange_.mode_reply() != PlsModeReply::kDone)) {
     fallback_ =
         runs_at(line_.baud) + "the sensor refuses " + std::to_string(settings_.baud) + " baud";
     start_phase(Phase::kStatus, now_ns);

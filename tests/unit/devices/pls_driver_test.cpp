@@ -233,6 +233,17 @@ TEST(PlsDriver, RepeatsACommandThatTheSensorHeardWrongly) {
   EXPECT_GE(status.counters.line.naks, 3U);
 }
 
+TEST(PlsDriver, StaysAtTheRateWhenTheSensorNeverTakesTheCommand) {
+  PlsOnLine pls;
+  const Bytes rate = pls_baud_command(500'000).value();
+  pls.line.set_host_filter([&](std::vector<std::uint8_t>& bytes) {
+    if (bytes == rate) bytes.back() ^= 0x10;
+  });
+  pls.start();
+  EXPECT_EQ(pls.driver.status().line.baud, 9600U);
+  EXPECT_EQ(pls.driver.status().reason, "runs at 9600 baud: the sensor refuses 500000 baud");
+}
+
 TEST(PlsDriver, RestsWhenTheSensorRefusesToSendScans) {
   PlsOnLine pls;
   const Bytes stream = pls_mode_command(PlsMode::kStream);
