@@ -86,8 +86,8 @@ TEST(ChangingWorld, RandomDoorsOpenAndShutByTurns) {
     changes += now != before ? 1 : 0;
     before = now;
   }
-  EXPECT_NEAR(open, 10000 * 2 / 3, 400);
-  EXPECT_NEAR(changes, 2 * 10000 / 30, 60);
+  EXPECT_NEAR(open, 6667, 400);
+  EXPECT_NEAR(changes, 667, 60);
   const auto first = [](const World& w) { return w.changing[0].present_s.front().to_s; };
   EXPECT_EQ(first(drawn), first(draw_changes(world, 3, 10000.0)));
   EXPECT_NE(first(drawn), first(draw_changes(world, 4, 10000.0)));
