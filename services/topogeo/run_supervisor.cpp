@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTick{50};
-/// The base is told to go half as fast up as it could, so that it keeps up with what it is told.
+/// Speeds change more slowly than the base could change them, so that it keeps up.
 constexpr double kShareOfAcceleration = 0.6;
 constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
 

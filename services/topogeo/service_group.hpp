@@ -41,7 +41,7 @@ std::string source_name(const RunOptions& options);
 // What the base of a simulation is capable of.
 inline constexpr std::uint32_t kSimulatedBaseBaud = 38'400;
 inline constexpr double kSimulatedTurn_radps = 2.0;
-inline constexpr double kSimulatedAcceleration_mps2 = 1.0;
+inline constexpr double kSimulatedAcceleration_mps2 = 1.5;
 /// Where the simulator of a run puts the port of "laser" or "base".
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
 
