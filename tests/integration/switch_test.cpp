@@ -1,0 +1,153 @@
+// A running localizer that is told to leave its map as it is, and to go on with it.
+#include <csignal>
+
+#include "topogeo/localization/mapping_session.hpp"
+#include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/trajectory_assembly.hpp"
+
+#include "pool_fixture.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Gives a localizer its local maps one by one, each after the one before was worked on, so that a
+/// command comes after a stop of the test's choice.
+class SwitchTest : public ::testing::Test {
+ protected:
+  SwitchTest() {
+    loop_.add<msg::TrajectorySegment>(
+        segments_, [this](const auto& message, const auto&) { assembly_.add(message); });
+    loop_.add<msg::LivePose>(poses_,
+                             [this](const auto& message, const auto&) { last_pose_ = message; });
+    loop_.add<msg::LocalizationReply>(
+        replies_, [this](const auto& message, const auto&) { last_reply_ = message; });
+    loop_.add<msg::StreamEnd>(ends_in_, [this](const auto& message, const auto&) {
+      if (message.stage() == "localizer") end_ = message;
+    });
+  }
+
+  void start(std::vector<std::string> words = {}) {
+    words.insert(words.end(), {"--domain", own_domain(), "--partition", partition_});
+    localizer_ = std::make_unique<Program>(scratch_, "localizer", words);
+    ASSERT_TRUE(commands_.wait_for_matched(1, kPatience));
+    ASSERT_TRUE(replies_.wait_for_matched(1, kPatience));
+  }
+  bool wait_until(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition() && std::chrono::steady_clock::now() < end) loop_.run_for(milliseconds(5));
+    return condition();
+  }
+  /// The stops [from, to), each worked on before the next.
+  void drive(std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      ASSERT_TRUE(map_writer_.write(service::to_msg(*maps_.at(i))));
+      ASSERT_TRUE(wait_until([&] {
+        return last_pose_ && last_pose_->local_map_id() == i &&
+               last_pose_->stamp_ns() == maps_[i]->stamp_ns;
+      })) << i;
+    }
+  }
+  std::string tell(msg::LocalizationCommandKind kind) {
+    service::LocalizationCommand command;
+    command.kind = kind;
+    command.client_id = "test";
+    command.request_id = ++requests_;
+    EXPECT_TRUE(commands_.write(service::to_msg(command, "robot", 0, requests_)));
+    EXPECT_TRUE(wait_until([&] { return last_reply_ && last_reply_->request_id() == requests_; }));
+    return (last_reply_->accepted() ? "accepted: " : "refused: ") +
+           last_reply_->message().to_string();
+  }
+  void end_stream(std::size_t count) {
+    msg::StreamEnd end;
+    messaging::set_header(end, "robot", maps_.back()->stamp_ns, 0);
+    messaging::set_text(end.stage(), "local_mapper", "stage");
+    end.count(count);
+    ASSERT_TRUE(ends_out_.write(end));
+    ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
+    ASSERT_TRUE(wait_until([&] { return assembly_.whole(end_->version()).has_value(); }));
+  }
+  [[nodiscard]] std::size_t stops_in_map() const { return assembly_.newest().stops.size(); }
+
+  std::string partition_ = random_partition();
+  Scratch scratch_;
+  Maps maps_ = maps_of_room();
+  messaging::Participant participant_{options_in(partition_)};
+  messaging::Writer<msg::LocalMap> map_writer_{participant_};
+  messaging::Writer<msg::LocalizationCommand> commands_{participant_};
+  messaging::Writer<msg::StreamEnd> ends_out_{participant_};
+  messaging::Reader<msg::TrajectorySegment> segments_{participant_};
+  messaging::Reader<msg::LivePose> poses_{participant_};
+  messaging::Reader<msg::LocalizationReply> replies_{participant_};
+  messaging::Reader<msg::StreamEnd> ends_in_{participant_};
+  messaging::EventLoop loop_;
+  service::TrajectoryAssembly assembly_;
+  std::optional<msg::LivePose> last_pose_;
+  std::optional<msg::LocalizationReply> last_reply_;
+  std::optional<msg::StreamEnd> end_;
+  std::uint64_t requests_ = 0;
+  std::unique_ptr<Program> localizer_;
+};
+
+TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
+  const std::size_t end = maps_.size();
+  const std::size_t leave = end / 2;
+  const std::size_t resume = leave + 4;
+  ASSERT_GT(end, resume + 4);
+  start();
+  EXPECT_EQ(tell(msg::kCommandSwitchToMapping), "refused: it makes a map already");
+  EXPECT_EQ(tell(msg::kCommandSwitchToLocalization), "refused: there is no map yet");
+  drive(0, leave);
+  EXPECT_EQ(tell(msg::kCommandSwitchToLocalization),
+            "accepted: the map of " + std::to_string(leave) + " stops stays as it is");
+  ASSERT_TRUE(wait_until([&] { return stops_in_map() == leave; }));
+  const std::uint64_t version = assembly_.version();
+  drive(leave, resume);
+  EXPECT_EQ(last_pose_->mode(), msg::kModeLocalization);
+  EXPECT_EQ(last_pose_->state(), msg::kStateTracking);
+  EXPECT_EQ(stops_in_map(), leave);
+  EXPECT_EQ(assembly_.version(), version);
+  EXPECT_EQ(tell(msg::kCommandSwitchToLocalization),
+            "refused: it localizes in a finished map already");
+  EXPECT_EQ(tell(msg::kCommandSwitchToMapping),
+            "accepted: new stops extend the map of " + std::to_string(leave) + " stops");
+  drive(resume, end);
+  EXPECT_EQ(last_pose_->mode(), msg::kModeMapping);
+  end_stream(end);
+  EXPECT_EQ(end_->count(), leave + (end - resume));
+
+  // The same turns after the same stops in one process.
+  localization::InProcessPool pool;
+  localization::MappingSession session({}, pool);
+  for (std::size_t i = 0; i < end; ++i) {
+    if (i == leave) session.stop_mapping();
+    if (i == resume) session.resume_mapping();
+    session.add(maps_[i]);
+  }
+  session.finish();
+  const topomap::Trajectory expected = session.trajectory();
+  const auto got = assembly_.whole(end_->version());
+  ASSERT_EQ(got->stops.size(), expected.stops.size());
+  for (std::size_t i = 0; i < expected.stops.size(); ++i) {
+    EXPECT_EQ(got->stops[i].T_map_robot, expected.stops[i].T_map_robot) << i;
+    EXPECT_EQ(got->stops[i].source_id, i < leave ? i : i - leave + resume) << i;
+  }
+  localizer_->send_signal(SIGTERM);
+  EXPECT_EQ(localizer_->wait(), 0) << localizer_->err();
+}
+
+TEST_F(SwitchTest, StopsOfTheMeantimeAreInNoMapWhenTheLogEndsInIt) {
+  const std::size_t leave = maps_.size() / 2;
+  start();
+  drive(0, leave);
+  EXPECT_THAT(tell(msg::kCommandSwitchToLocalization), ::testing::HasSubstr("accepted"));
+  drive(leave, leave + 3);
+  end_stream(leave + 3);
+  EXPECT_EQ(end_->count(), leave);
+  EXPECT_EQ(tell(msg::kCommandSwitchToMapping), "refused: the log has ended");
+}
+
+}  // namespace
+}  // namespace topogeo::test
