@@ -1,0 +1,56 @@
+// Where the robot's middle may be: the grid with everything forbidden that is too near to an
+// obstacle (the forbidden cells of spec B1), and the clearance of every cell.
+//
+// Distances are exact Euclidean ones between the middles of cells, by the separable transform of
+// Felzenszwalb and Huttenlocher (2012) on squared integers, so they are the same everywhere.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "topogeo/planning/occupancy_grid.hpp"
+
+namespace topogeo::planning {
+
+struct InflationConfig {
+  double forbidden_cells = 3.0;  ///< a cell is forbidden when the middle of an occupied one is at
+                                 ///< most so many cells away, [0, 100]
+  bool inflate_unknown = false;  ///< unknown cells are always forbidden; true: also the cells near
+                                 ///< them
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const InflationConfig& config);
+
+class FreeSpace {
+ public:
+  /// Throws std::invalid_argument as `check`.
+  explicit FreeSpace(OccupancyGrid grid, const InflationConfig& config = {});
+
+  [[nodiscard]] const OccupancyGrid& grid() const { return grid_; }
+  [[nodiscard]] const GridFrame& frame() const { return grid_.frame(); }
+  [[nodiscard]] const InflationConfig& inflation() const { return config_; }
+
+  /// Whether the robot's middle may be in the cell; false outside.
+  [[nodiscard]] bool passable(const Cell& cell) const {
+    return frame().contains(cell) && passable_[frame().index(cell)] != 0;
+  }
+  [[nodiscard]] bool passable(std::size_t index) const { return passable_[index] != 0; }
+
+  /// Distance from the middle of a cell inside to that of the nearest obstacle (occupied, with
+  /// inflate_unknown also unknown), metres; infinity when the grid has none.
+  [[nodiscard]] double clearance_m(const Cell& cell) const;
+
+  /// The same in cells, squared; kNoObstacle when the grid has none.
+  [[nodiscard]] std::int32_t squared_cells(std::size_t index) const { return squared_[index]; }
+  static constexpr std::int32_t kNoObstacle = std::numeric_limits<std::int32_t>::max();
+
+ private:
+  OccupancyGrid grid_;
+  InflationConfig config_;
+  std::vector<std::int32_t> squared_;
+  std::vector<std::uint8_t> passable_;
+};
+
+}  // namespace topogeo::planning

@@ -1,0 +1,98 @@
+// Cheapest ways over the cells of a window of the grid: A* to one cell, or one search to many.
+//
+// Eight neighbours; a step costs its length in cells, 1 or the root of 2. A diagonal step needs
+// both cells beside it open, so no way cuts a corner. The searches are those of Boost.Graph on a
+// graph that is never stored: the neighbours follow from the mask of open cells.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/planning/free_space.hpp"
+#include "topogeo/planning/occupancy_grid.hpp"
+
+namespace topogeo::planning {
+
+/// A rectangle of cells, both corners included.
+struct CellBox {
+  Cell low;
+  Cell high;
+
+  [[nodiscard]] bool contains(const Cell& cell) const {
+    return cell.column >= low.column && cell.row >= low.row && cell.column <= high.column &&
+           cell.row <= high.row;
+  }
+};
+
+/// The part of a box that lies in the grid, with `cells` more on every side. The box must meet the
+/// grid.
+CellBox grown(const CellBox& box, std::int32_t cells, const GridFrame& frame);
+
+/// The whole grid.
+CellBox whole(const GridFrame& frame);
+
+/// Which cells of a box a search may enter.
+class SearchWindow {
+ public:
+  /// The passable cells of the box, which must lie in the grid.
+  SearchWindow(const FreeSpace& space, const CellBox& box);
+
+  /// The cells of the box whose label is `label`; one label for each cell of the grid.
+  SearchWindow(const GridFrame& frame, const CellBox& box, std::span<const std::uint16_t> labels,
+               std::uint16_t label);
+
+  [[nodiscard]] const CellBox& box() const { return box_; }
+
+  [[nodiscard]] bool open(const Cell& cell) const {
+    return box_.contains(cell) && mask_[index(cell)] != 0;
+  }
+
+  /// Cells outside of the box do not matter.
+  void close(const Cell& cell);
+
+  /// Closes the cells whose middle is at most `radius_cells` from that of `cell`.
+  void close_disc(const Cell& cell, double radius_cells);
+
+  // For the search: cells by number, in rows with a closed cell at each end.
+  [[nodiscard]] std::uint32_t index(const Cell& cell) const {
+    return static_cast<std::uint32_t>(cell.row - box_.low.row + 1) * stride_ +
+           static_cast<std::uint32_t>(cell.column - box_.low.column + 1);
+  }
+  [[nodiscard]] Cell cell_at(std::uint32_t index) const {
+    return {static_cast<std::int32_t>(index % stride_) + box_.low.column - 1,
+            static_cast<std::int32_t>(index / stride_) + box_.low.row - 1};
+  }
+  [[nodiscard]] std::uint32_t stride() const { return stride_; }
+  [[nodiscard]] const std::vector<std::uint8_t>& mask() const { return mask_; }
+
+ private:
+  CellBox box_;
+  std::uint32_t stride_ = 0;
+  std::vector<std::uint8_t> mask_;
+};
+
+struct CellPath {
+  std::vector<Cell> cells;  ///< from the first to the last, >= 1
+  double cost_cells = 0.0;  ///< length between the middles of the cells, in cells
+};
+
+/// Length of a way over neighbouring cells, in cells.
+double cost_cells(std::span<const Cell> cells);
+
+/// Length of the shortest way between two cells if nothing is between (octile distance), in cells.
+double least_cost_cells(const Cell& a, const Cell& b);
+
+/// The cheapest way by A* with the octile distance as its estimate; empty when there is none or
+/// one of the two cells is not open.
+std::optional<CellPath> shortest_path(const SearchWindow& window, const Cell& from, const Cell& to);
+
+/// The cheapest ways to each of several cells, by one search that ends when all are reached: the
+/// costs are those of an A* to each, in the time of one.
+std::vector<std::optional<CellPath>> shortest_paths(const SearchWindow& window, const Cell& from,
+                                                    std::span<const Cell> to);
+
+}  // namespace topogeo::planning

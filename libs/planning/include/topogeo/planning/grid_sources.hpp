@@ -1,0 +1,59 @@
+// Occupancy grids from drawings and from the scans of a mapped floor (spec B1).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/planning/occupancy_grid.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::planning {
+
+/// Walls as lines and columns as discs, map frame.
+struct Drawing {
+  struct Line {
+    Eigen::Vector2d a_m;
+    Eigen::Vector2d b_m;
+  };
+  struct Disc {
+    Eigen::Vector2d center_m;
+    double radius_m;
+  };
+  std::vector<Line> lines{};
+  std::vector<Disc> discs{};
+  /// Points of the free space: what cannot be reached from any of them without crossing a line
+  /// (inside of furniture, behind the outer walls) is unknown. Empty: everything is free.
+  std::vector<Eigen::Vector2d> inside_m{};
+};
+
+/// The grid of a drawing with `margin_m` around it; its origin is a multiple of the resolution.
+/// Every cell that a line or disc touches is occupied. Throws std::invalid_argument for an empty
+/// drawing, a coordinate that is not finite and a grid out of range (see check(GridFrame)).
+OccupancyGrid grid_of(const Drawing& drawing, double resolution_m = 0.1, double margin_m = 1.0);
+
+struct ScanGridConfig {
+  double resolution_m = 0.1;  ///< [0.01, 1]
+  double margin_m = 1.0;      ///< around what was seen, [0, 100]
+  // Log-odds in hundredths, kept within +-limit so that a door that is shut later becomes a wall.
+  std::int32_t hit = 85;     ///< added where a beam ends, [1, 1000]
+  std::int32_t miss = 40;    ///< taken off where one passes, [1, 1000]
+  std::int32_t limit = 350;  ///< [1, 10000]
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const ScanGridConfig& config);
+
+/// What the scans of the located stops saw, in the order of the stops: a cell is occupied when its
+/// log-odds are above zero, free when they are below, unknown at zero and where no beam went. Only
+/// beams with an echo count. `maps[i]` is the map of `stops[i]`. Throws std::invalid_argument when
+/// there are more stops than maps, no scan point at all, or the grid is out of range.
+OccupancyGrid grid_from_scans(std::span<const topomap::LocalMap> maps,
+                              std::span<const topomap::StopPose> stops,
+                              const ScanGridConfig& config = {});
+
+}  // namespace topogeo::planning

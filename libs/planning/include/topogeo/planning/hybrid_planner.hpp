@@ -1,0 +1,111 @@
+// Routes on the hybrid map (spec B2).
+//
+// Start and goal in one zone: A* on the grid, the graph is ignored. In two zones, adjacent or not:
+// ways on the grid from the start to every node of its zone and from every node of the goal's zone
+// to the goal, Dijkstra on the graph between every pair of them; the cheapest sum wins.
+//
+// Beyond the source, because the middle of a border can lie off the shortest way: short routes, and
+// pieces of the others round their crossings of borders, are planned again on the grid; and a long
+// way round within a zone is compared with the ways that leave it and come back.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/planning/hybrid_map.hpp"
+
+namespace topogeo::planning {
+
+struct HybridPlannerConfig {
+  /// A robot that stands in a forbidden cell starts from the nearest passable one this near, if no
+  /// obstacle is between, [0, 5].
+  double start_snap_m = 0.35;
+  double goal_snap_m = 0.0;  ///< the same for goals, [0, 5]; 0: they must be passable
+  /// Of a route across borders, so much before and behind each crossing is planned again on the
+  /// grid, and at least as much as the border is wide, [0, 20]; 0: never, as the source.
+  double crossing_reach_m = 2.0;
+  /// A route that is longer than the straight way is planned again whole when all ways shorter than
+  /// it lie in a window of at most so many cells, [0, 1e8]; 0: never, as the source.
+  double exact_window_cells = 40000.0;
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const HybridPlannerConfig& config);
+
+/// BorderNode::id.
+struct NodeNumber {
+  std::uint32_t id = 0;
+};
+
+/// Where to go: a point of the map frame (m), a node, or the name of a place.
+using Target = std::variant<Eigen::Vector2d, NodeNumber, std::string>;
+
+/// What must not be used now. A closed node is a border that nobody gets through (a door found
+/// shut); a closed edge is a way through a zone that is blocked.
+using Closures = ClosedParts;
+
+enum class RouteStatus : std::uint8_t {
+  kFound = 0,
+  kInvalidPoint = 1,   ///< a coordinate is not finite
+  kUnknownPlace = 2,   ///< no place of that name
+  kUnknownNode = 3,    ///< no node of that number
+  kStartOutside = 4,   ///< outside of the grid, or where nothing is known
+  kStartOccupied = 5,  ///< in an obstacle or a forbidden cell
+  kGoalOutside = 6,
+  kGoalOccupied = 7,
+  kUnreachable = 8,  ///< no way, or none that is open now
+};
+
+/// A word for logs and messages: "found", "unknown place", ...
+std::string_view describe(RouteStatus status);
+
+enum class RouteKind : std::uint8_t { kSameZone = 0, kAdjacentZones = 1, kDistantZones = 2 };
+
+struct HybridRoute {
+  RouteStatus status = RouteStatus::kUnreachable;
+  std::string reason;  ///< one line for people; empty when found
+  /// When the goal cannot be had but the start is good: the place nearest to it that can.
+  std::optional<Eigen::Vector2d> nearest_reachable_m;
+
+  // Filled when found.
+  RouteKind kind = RouteKind::kSameZone;
+  std::vector<Cell> cells;                ///< from the start's to the goal's, neighbours each
+  double cost_m = 0.0;                    ///< length over the middles of the cells
+  std::vector<Eigen::Vector2d> points_m;  ///< the same way straightened, from start to goal
+  double length_m = 0.0;                  ///< of `points_m`
+  double min_clearance_m = 0.0;           ///< least of the cells
+  std::vector<ZoneId> zones;              ///< in the order of the way
+  std::vector<std::uint32_t> nodes;       ///< in order; empty in one zone
+  std::vector<std::uint32_t> edges;       ///< between them
+
+  [[nodiscard]] bool found() const { return status == RouteStatus::kFound; }
+};
+
+/// Plans on one map, which must outlive it.
+class HybridPlanner {
+ public:
+  /// Throws std::invalid_argument as `check`.
+  explicit HybridPlanner(const HybridMap& map, const HybridPlannerConfig& config = {});
+
+  /// Everything that can be wrong with start and goal is a status. Throws std::invalid_argument
+  /// only for closed nodes or edges that do not exist.
+  [[nodiscard]] HybridRoute plan(const Eigen::Vector2d& from_m, const Target& to,
+                                 const Closures& closed = {}) const;
+
+ private:
+  const HybridMap& map_;
+  HybridPlannerConfig config_;
+};
+
+/// The same by A* over the whole grid: the shortest way over cells that there is, in much more
+/// time. Without zones, nodes and edges.
+HybridRoute plan_on_grid(const FreeSpace& space, const Eigen::Vector2d& from_m,
+                         const Eigen::Vector2d& to_m, const HybridPlannerConfig& config = {});
+
+}  // namespace topogeo::planning

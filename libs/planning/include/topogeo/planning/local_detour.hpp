@@ -1,0 +1,54 @@
+// A way round what blocks the route and is not on the map: planned on a window of the grid around
+// the robot, with the obstacles that its sensors see now, back to the route behind them (spec B4).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/planning/free_space.hpp"
+
+namespace topogeo::planning {
+
+struct DetourConfig {
+  double half_side_m = 3.0;    ///< of the window around the robot, [0.5, 20]
+  double start_snap_m = 0.35;  ///< as HybridPlannerConfig::start_snap_m: obstacles seen now can be
+                               ///< nearer than the forbidden cells, [0, 5]
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const DetourConfig& config);
+
+enum class DetourStatus : std::uint8_t {
+  kClear = 0,    ///< nothing blocks the route within the window
+  kFound = 1,    ///< the cells go round
+  kBlocked = 2,  ///< no way round within the window
+  kLost = 3,     ///< the robot is outside of the grid or has no passable cell near it
+};
+
+/// A word for logs and messages.
+std::string_view describe(DetourStatus status);
+
+struct Detour {
+  DetourStatus status = DetourStatus::kLost;
+  std::string reason;       ///< one line for people; empty when clear or found; then nothing below
+                            ///< is empty
+  std::vector<Cell> cells;  ///< from the robot's cell over the detour to the end of the route
+  std::vector<Eigen::Vector2d> points_m;  ///< straightened, from the robot to `goal_m`
+  std::size_t rejoins = 0;  ///< index in the old route of the cell from which on it is kept
+};
+
+/// `route` are the cells of a planned route, `goal_m` its exact end, `obstacles_m` points of the
+/// map frame that the sensors see. Cells so near to one of them as the inflation of the space says
+/// are forbidden, too. Throws std::invalid_argument for an empty route, points that are not finite
+/// and a configuration out of range.
+Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
+                   const Eigen::Vector2d& robot_m, const Eigen::Vector2d& goal_m,
+                   std::span<const Eigen::Vector2d> obstacles_m, const DetourConfig& config = {});
+
+}  // namespace topogeo::planning

@@ -1,0 +1,106 @@
+// Zones: parts of the free space that meet at borders (spec B1). They are drawn, found from the
+// narrow passages of the topo-geometric map, or found from the width of the free space alone.
+//
+// However they come about, every passable cell is in exactly one zone, and a zone hangs together:
+// a robot gets from each of its cells to each other without leaving it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/planning/free_space.hpp"
+#include "topogeo/planning/grid_search.hpp"
+#include "topogeo/topomap/global_map.hpp"
+
+namespace topogeo::planning {
+
+using ZoneId = std::uint16_t;
+inline constexpr ZoneId kNoZone = 0xffff;
+
+struct Zone {
+  ZoneId id = 0;     ///< index in ZoneMap::zones
+  std::string name;  ///< "" when it was not drawn
+  std::size_t cells = 0;
+  CellBox box;  ///< the smallest one around its cells
+};
+
+struct ZoneMap {
+  std::vector<ZoneId> zone_of_cell;  ///< row by row; kNoZone for cells that are not passable
+  std::vector<Zone> zones;
+};
+
+struct ZoneConfig {
+  double min_area_m2 = 2.0;  ///< zones that are smaller join the neighbour with the longest border,
+                             ///< drawn ones excepted, [0, 1000]
+  /// For zones_by_width: where less than this is free on either side, a passage is narrow, (0, 5].
+  double passage_half_width_m = 0.6;
+  /// For zones_between: how much further than the passage's clearance a cut may have to go to meet
+  /// forbidden cells, [0, 5] m. A passage whose cut ends in the open is no border.
+  double cut_reach_m = 0.6;
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const ZoneConfig& config);
+
+/// A place of least clearance, with the direction of the way through it.
+struct Passage {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame
+  Eigen::Vector2d along = Eigen::Vector2d::UnitX();      ///< unit vector
+  double clearance_m = 0.0;
+};
+
+/// The doors and narrowings of a topo-geometric map, in the order of their nodes. Those without a
+/// branch that was seen are left out.
+std::vector<Passage> passages_of(const topomap::GlobalMap& map);
+
+/// Cuts the free space across each passage; what still hangs together is a zone.
+ZoneMap zones_between(const FreeSpace& space, std::span<const Passage> passages,
+                      const ZoneConfig& config = {});
+
+/// Zones for maps without a graph: the wide parts of the free space, each with the half of the
+/// narrow passages that is nearer to it.
+ZoneMap zones_by_width(const FreeSpace& space, const ZoneConfig& config = {});
+
+/// A zone as it is drawn. Of several that overlap the first counts.
+struct DrawnZone {
+  std::string name;
+  std::vector<Eigen::Vector2d> polygon_m;  ///< corners in order, map frame
+};
+
+/// A zone for each polygon; when walls separate it into parts, the largest has the name and the
+/// others are "NAME 2", "NAME 3", ... The free space outside of all polygons becomes zones without
+/// a name.
+ZoneMap drawn_zones(const FreeSpace& space, std::span<const DrawnZone> drawn,
+                    const ZoneConfig& config = {});
+
+/// A place that has a name.
+struct Place {
+  std::string name;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame
+};
+
+struct ZoneDrawing {
+  std::vector<DrawnZone> zones;
+  std::vector<Place> places;
+};
+
+/// Reads zones and places:
+///   zones:
+///     - {name: hall, polygon: [[0, 0], [4, 0], [4, 3], [0, 3]]}
+///   places:
+///     - {name: room A, at: [1.5, 2.0]}
+/// Throws std::runtime_error naming file, line and what was expected: an unreadable file, broken
+/// YAML, an unknown key, an empty or repeated name, a polygon of less than three corners, a
+/// coordinate out of range.
+ZoneDrawing read_zone_drawing(const std::filesystem::path& path);
+
+/// The same from text; `source` stands for the file in messages.
+ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& source);
+
+}  // namespace topogeo::planning

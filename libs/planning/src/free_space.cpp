@@ -1,0 +1,121 @@
+#include "topogeo/planning/free_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace topogeo::planning {
+namespace {
+
+constexpr double kMostForbiddenCells = 100.0;
+
+// The lower envelope of parabolas over one line of the grid. All in integers: the distance to go
+// by is value[i] + (x - i)^2, and two parabolas p < q meet where q begins to be the lower one.
+class LineTransform {
+ public:
+  explicit LineTransform(std::size_t length) : value_(length), places_(length), starts_(length) {}
+
+  std::vector<std::int32_t>& values() { return value_; }
+
+  template <typename Store>
+  void run(Store&& store) {
+    const auto length = static_cast<std::int64_t>(value_.size());
+    std::size_t kept = 0;
+    for (std::int64_t q = 0; q < length; ++q) {
+      if (at(q) == FreeSpace::kNoObstacle) continue;
+      std::int64_t from = 0;
+      while (kept > 0) {
+        from = first_lower(places_[kept - 1], q);
+        if (from > starts_[kept - 1]) break;
+        --kept;
+      }
+      if (kept == 0) from = 0;
+      if (from >= length) continue;
+      places_[kept] = q;
+      starts_[kept] = from;
+      ++kept;
+    }
+    std::size_t k = 0;
+    for (std::int64_t x = 0; x < length; ++x) {
+      while (k + 1 < kept && starts_[k + 1] <= x) ++k;
+      store(x, kept == 0 ? FreeSpace::kNoObstacle : distance(places_[k], x));
+    }
+  }
+
+ private:
+  [[nodiscard]] std::int32_t at(std::int64_t i) const {
+    return value_[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] std::int32_t distance(std::int64_t i, std::int64_t x) const {
+    return static_cast<std::int32_t>(at(i) + (x - i) * (x - i));
+  }
+
+  // Least x from which the parabola at q > p is below that at p.
+  [[nodiscard]] std::int64_t first_lower(std::int64_t p, std::int64_t q) const {
+    const std::int64_t above = (at(q) + q * q) - (at(p) + p * p);
+    const std::int64_t twice = 2 * (q - p);
+    return above < 0 ? 0 : above / twice + 1;
+  }
+
+  std::vector<std::int32_t> value_;
+  std::vector<std::int64_t> places_;
+  std::vector<std::int64_t> starts_;
+};
+
+std::vector<std::int32_t> squared_distances(const OccupancyGrid& grid, bool unknown_too) {
+  const GridFrame& frame = grid.frame();
+  const auto columns = static_cast<std::size_t>(frame.columns);
+  const auto rows = static_cast<std::size_t>(frame.rows);
+  std::vector<std::int32_t> squared(frame.size());
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    const CellState state = grid.cells()[i];
+    const bool obstacle =
+        state == CellState::kOccupied || (unknown_too && state == CellState::kUnknown);
+    squared[i] = obstacle ? 0 : FreeSpace::kNoObstacle;
+  }
+  LineTransform upright(rows);
+  for (std::size_t x = 0; x < columns; ++x) {
+    for (std::size_t y = 0; y < rows; ++y) upright.values()[y] = squared[y * columns + x];
+    upright.run([&](std::int64_t y, std::int32_t value) {
+      squared[static_cast<std::size_t>(y) * columns + x] = value;
+    });
+  }
+  LineTransform across(columns);
+  for (std::size_t y = 0; y < rows; ++y) {
+    const auto row = squared.begin() + static_cast<std::ptrdiff_t>(y * columns);
+    std::copy_n(row, columns, across.values().begin());
+    across.run([&](std::int64_t x, std::int32_t value) { row[x] = value; });
+  }
+  return squared;
+}
+
+}  // namespace
+
+void check(const InflationConfig& config) {
+  if (config.forbidden_cells >= 0.0 && config.forbidden_cells <= kMostForbiddenCells) return;
+  std::ostringstream text;
+  text << "inflation: forbidden_cells is " << config.forbidden_cells << ", allowed are 0 to "
+       << kMostForbiddenCells;
+  throw std::invalid_argument(text.str());
+}
+
+FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config)
+    : grid_(std::move(grid)), config_(config) {
+  check(config);
+  squared_ = squared_distances(grid_, config.inflate_unknown);
+  passable_.resize(squared_.size());
+  const double forbidden = config.forbidden_cells * config.forbidden_cells;
+  for (std::size_t i = 0; i < squared_.size(); ++i) {
+    passable_[i] = grid_.cells()[i] == CellState::kFree && squared_[i] > forbidden ? 1 : 0;
+  }
+}
+
+double FreeSpace::clearance_m(const Cell& cell) const {
+  const std::int32_t squared = squared_[frame().index(cell)];
+  if (squared == kNoObstacle) return std::numeric_limits<double>::infinity();
+  return std::sqrt(static_cast<double>(squared)) * frame().resolution_m;
+}
+
+}  // namespace topogeo::planning

@@ -1,0 +1,217 @@
+#include "topogeo/planning/grid_sources.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "cell_line.hpp"
+
+namespace topogeo::planning {
+namespace {
+
+// The box around points, as the frame of a grid.
+class Bounds {
+ public:
+  void add(const Eigen::Vector2d& point_m, double reach_m = 0.0) {
+    if (!point_m.allFinite() || !std::isfinite(reach_m)) {
+      throw std::invalid_argument("grid: a coordinate is not finite");
+    }
+    low_m_ = low_m_.cwiseMin(point_m - Eigen::Vector2d::Constant(reach_m));
+    high_m_ = high_m_.cwiseMax(point_m + Eigen::Vector2d::Constant(reach_m));
+  }
+
+  [[nodiscard]] bool empty() const { return !(low_m_.x() <= high_m_.x()); }
+
+  [[nodiscard]] GridFrame frame(double resolution_m, double margin_m) const {
+    GridFrame probe;
+    probe.columns = probe.rows = 1;
+    probe.resolution_m = resolution_m;
+    check(probe);
+    GridFrame frame = probe;
+    const double x_cells = std::floor((low_m_.x() - margin_m) / resolution_m);
+    const double y_cells = std::floor((low_m_.y() - margin_m) / resolution_m);
+    frame.T_map_grid = {x_cells * resolution_m, y_cells * resolution_m, 0.0};
+    frame.columns = cells((high_m_.x() + margin_m) / resolution_m - x_cells);
+    frame.rows = cells((high_m_.y() + margin_m) / resolution_m - y_cells);
+    check(frame);
+    return frame;
+  }
+
+ private:
+  // Too many cells stay too many, whatever an integer can hold.
+  static std::int32_t cells(double count) {
+    constexpr double kTooMany = 1e9;
+    return static_cast<std::int32_t>(std::min(std::floor(count) + 1.0, kTooMany));
+  }
+
+  Eigen::Vector2d low_m_ = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high_m_ = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity());
+};
+
+void draw_line(OccupancyGrid& grid, const Drawing::Line& line) {
+  const GridFrame& frame = grid.frame();
+  visit_line(frame.in_cells(line.a_m), frame.in_cells(line.b_m), [&](const Cell& cell) {
+    if (frame.contains(cell)) grid.set(cell, CellState::kOccupied);
+    return true;
+  });
+}
+
+// Every cell whose square is not further from the middle than the radius.
+void draw_disc(OccupancyGrid& grid, const Drawing::Disc& disc) {
+  const GridFrame& frame = grid.frame();
+  const Eigen::Vector2d middle = frame.in_cells(disc.center_m);
+  const double radius = disc.radius_m / frame.resolution_m;
+  const auto reach = static_cast<std::int32_t>(radius) + 1;
+  const Cell at{static_cast<std::int32_t>(std::floor(middle.x())),
+                static_cast<std::int32_t>(std::floor(middle.y()))};
+  for (std::int32_t row = at.row - reach; row <= at.row + reach; ++row) {
+    for (std::int32_t column = at.column - reach; column <= at.column + reach; ++column) {
+      const Eigen::Vector2d nearest(std::clamp(middle.x(), column + 0.0, column + 1.0),
+                                    std::clamp(middle.y(), row + 0.0, row + 1.0));
+      const Cell cell{column, row};
+      if (frame.contains(cell) && (nearest - middle).norm() <= radius) {
+        grid.set(cell, CellState::kOccupied);
+      }
+    }
+  }
+}
+
+// Free space that no seed reaches becomes unknown.
+void keep_reached(OccupancyGrid& grid, const std::vector<Eigen::Vector2d>& seeds_m) {
+  const GridFrame& frame = grid.frame();
+  std::vector<std::uint8_t> reached(frame.size(), 0);
+  std::vector<Cell> open;
+  const auto reach = [&](const Cell& cell) {
+    if (!frame.contains(cell) || grid.at(cell) != CellState::kFree) return;
+    if (reached[frame.index(cell)] != 0) return;
+    reached[frame.index(cell)] = 1;
+    open.push_back(cell);
+  };
+  for (const Eigen::Vector2d& seed_m : seeds_m) {
+    if (const auto cell = frame.cell_of(seed_m)) reach(*cell);
+  }
+  while (!open.empty()) {
+    const Cell cell = open.back();
+    open.pop_back();
+    reach({cell.column + 1, cell.row});
+    reach({cell.column - 1, cell.row});
+    reach({cell.column, cell.row + 1});
+    reach({cell.column, cell.row - 1});
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const Cell cell = frame.cell_at(i);
+    if (reached[i] == 0 && grid.at(cell) == CellState::kFree) grid.set(cell, CellState::kUnknown);
+  }
+}
+
+void check_range(const char* field, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  std::ostringstream text;
+  text << "grid from scans: " << field << " is " << value << ", allowed are " << low << " to "
+       << high;
+  throw std::invalid_argument(text.str());
+}
+
+// Log-odds of every cell, raised and lowered scan by scan.
+class Evidence {
+ public:
+  Evidence(const GridFrame& frame, const ScanGridConfig& config)
+      : frame_(frame), config_(config), odds_(frame.size(), 0), last_scan_(frame.size(), 0) {}
+
+  // A cell counts once per scan, as a hit if any beam ends there.
+  void add(const topomap::LocalMap& map, const geometry::Pose2& T_map_robot) {
+    ++scan_;
+    const Eigen::Vector2d from = frame_.in_cells((T_map_robot * map.T_robot_laser).position_m());
+    ends_.clear();
+    for (const topomap::ScanPoint& p : map.points) {
+      ends_.push_back(frame_.in_cells(T_map_robot * Eigen::Vector2d(p.x_m, p.y_m)));
+      count({static_cast<std::int32_t>(ends_.back().x()),
+             static_cast<std::int32_t>(ends_.back().y())},
+            config_.hit);
+    }
+    for (const Eigen::Vector2d& end : ends_) {
+      visit_line(from, end, [this](const Cell& cell) {
+        count(cell, -config_.miss);
+        return true;
+      });
+    }
+  }
+
+  [[nodiscard]] OccupancyGrid grid() const {
+    OccupancyGrid grid(frame_);
+    for (std::size_t i = 0; i < odds_.size(); ++i) {
+      if (odds_[i] == 0) continue;
+      grid.set(frame_.cell_at(i), odds_[i] > 0 ? CellState::kOccupied : CellState::kFree);
+    }
+    return grid;
+  }
+
+ private:
+  void count(const Cell& cell, std::int32_t change) {
+    const std::size_t i = frame_.index(cell);
+    if (last_scan_[i] == scan_) return;
+    last_scan_[i] = scan_;
+    odds_[i] = std::clamp(odds_[i] + change, -config_.limit, config_.limit);
+  }
+
+  GridFrame frame_;
+  ScanGridConfig config_;
+  std::vector<std::int32_t> odds_;
+  std::vector<std::uint32_t> last_scan_;
+  std::uint32_t scan_ = 0;
+  std::vector<Eigen::Vector2d> ends_;
+};
+
+}  // namespace
+
+OccupancyGrid grid_of(const Drawing& drawing, double resolution_m, double margin_m) {
+  Bounds bounds;
+  for (const Drawing::Line& line : drawing.lines) {
+    bounds.add(line.a_m);
+    bounds.add(line.b_m);
+  }
+  for (const Drawing::Disc& disc : drawing.discs) bounds.add(disc.center_m, disc.radius_m);
+  if (bounds.empty()) throw std::invalid_argument("grid: the drawing is empty");
+  OccupancyGrid grid(bounds.frame(resolution_m, margin_m), CellState::kFree);
+  for (const Drawing::Line& line : drawing.lines) draw_line(grid, line);
+  for (const Drawing::Disc& disc : drawing.discs) draw_disc(grid, disc);
+  if (!drawing.inside_m.empty()) keep_reached(grid, drawing.inside_m);
+  return grid;
+}
+
+void check(const ScanGridConfig& config) {
+  check_range("resolution_m", config.resolution_m, 0.01, 1.0);
+  check_range("margin_m", config.margin_m, 0.0, 100.0);
+  check_range("hit", config.hit, 1, 1000);
+  check_range("miss", config.miss, 1, 1000);
+  check_range("limit", config.limit, 1, 10000);
+}
+
+OccupancyGrid grid_from_scans(std::span<const topomap::LocalMap> maps,
+                              std::span<const topomap::StopPose> stops,
+                              const ScanGridConfig& config) {
+  check(config);
+  if (stops.size() > maps.size()) {
+    throw std::invalid_argument("grid from scans: " + std::to_string(stops.size()) + " stops but " +
+                                std::to_string(maps.size()) + " local maps");
+  }
+  Bounds bounds;
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (!stops[i].located || maps[i].points.empty()) continue;
+    bounds.add((stops[i].T_map_robot * maps[i].T_robot_laser).position_m());
+    for (const topomap::ScanPoint& p : maps[i].points) {
+      bounds.add(stops[i].T_map_robot * Eigen::Vector2d(p.x_m, p.y_m));
+    }
+  }
+  if (bounds.empty()) throw std::invalid_argument("grid from scans: no stop with scan points");
+  Evidence evidence(bounds.frame(config.resolution_m, config.margin_m), config);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (stops[i].located) evidence.add(maps[i], stops[i].T_map_robot);
+  }
+  return evidence.grid();
+}
+
+}  // namespace topogeo::planning

@@ -1,0 +1,135 @@
+#include "topogeo/planning/local_detour.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "topogeo/planning/grid_search.hpp"
+
+#include "straighten.hpp"
+
+namespace topogeo::planning {
+namespace {
+
+void check_range(const char* field, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  std::ostringstream text;
+  text << "detour: " << field << " is " << value << " m, allowed are " << low << " to " << high
+       << " m";
+  throw std::invalid_argument(text.str());
+}
+
+double distance(const Cell& a, const Cell& b) {
+  return std::hypot(a.column - b.column, a.row - b.row);
+}
+
+std::optional<Cell> nearest_open(const SearchWindow& window, const Cell& cell, double within) {
+  std::optional<Cell> best;
+  const auto reach = static_cast<std::int32_t>(within);
+  for (std::int32_t y = -reach; y <= reach; ++y) {
+    for (std::int32_t x = -reach; x <= reach; ++x) {
+      const Cell candidate{cell.column + x, cell.row + y};
+      if (!window.open(candidate) || distance(candidate, cell) > within) continue;
+      if (!best || distance(candidate, cell) < distance(*best, cell)) best = candidate;
+    }
+  }
+  return best;
+}
+
+std::size_t nearest_on_route(std::span<const Cell> route, const Cell& cell) {
+  const auto nearer = [&](const Cell& a, const Cell& b) {
+    return distance(a, cell) < distance(b, cell);
+  };
+  return static_cast<std::size_t>(std::min_element(route.begin(), route.end(), nearer) -
+                                  route.begin());
+}
+
+Detour failure(DetourStatus status, const char* reason) {
+  Detour detour;
+  detour.status = status;
+  detour.reason = reason;
+  return detour;
+}
+
+// Cells of the route from `from` on that lie in the window without a gap: [from, end).
+std::size_t end_in_window(const SearchWindow& window, std::span<const Cell> route,
+                          std::size_t from) {
+  std::size_t end = from;
+  while (end < route.size() && window.box().contains(route[end])) ++end;
+  return end;
+}
+
+}  // namespace
+
+void check(const DetourConfig& config) {
+  check_range("half_side_m", config.half_side_m, 0.5, 20.0);
+  check_range("start_snap_m", config.start_snap_m, 0.0, 5.0);
+}
+
+std::string_view describe(DetourStatus status) {
+  constexpr std::array<std::string_view, 4> kWords = {"clear", "found", "blocked", "lost"};
+  const auto index = static_cast<std::size_t>(status);
+  return index < kWords.size() ? kWords.at(index) : "unknown status";
+}
+
+Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
+                   const Eigen::Vector2d& robot_m, const Eigen::Vector2d& goal_m,
+                   std::span<const Eigen::Vector2d> obstacles_m, const DetourConfig& config) {
+  check(config);
+  const GridFrame& frame = space.frame();
+  const auto finite = [](const Eigen::Vector2d& point_m) { return point_m.allFinite(); };
+  if (route.empty() || !finite(robot_m) || !finite(goal_m) ||
+      !std::all_of(obstacles_m.begin(), obstacles_m.end(), finite)) {
+    throw std::invalid_argument("detour: the route is empty or a point is not finite");
+  }
+  const auto robot = frame.cell_of(robot_m);
+  if (!robot) return failure(DetourStatus::kLost, "the robot is outside of the grid");
+  const auto half = static_cast<std::int32_t>(config.half_side_m / frame.resolution_m);
+  SearchWindow window(space, grown({*robot, *robot}, half, frame));
+  for (const Eigen::Vector2d& obstacle_m : obstacles_m) {
+    if (const auto cell = frame.cell_of(obstacle_m)) {
+      window.close_disc(*cell, space.inflation().forbidden_cells);
+    }
+  }
+  const auto start = nearest_open(window, *robot, config.start_snap_m / frame.resolution_m);
+  if (!start) return failure(DetourStatus::kLost, "no passable cell is near the robot");
+  const std::size_t from = nearest_on_route(route, *robot);
+  const std::size_t end = end_in_window(window, route, from);
+  if (end == from) return failure(DetourStatus::kLost, "the route does not pass near the robot");
+
+  // Behind the last cell that is blocked, every one will do; before it there is no use.
+  std::size_t behind = end;
+  while (behind > from && window.open(route[behind - 1])) --behind;
+  if (behind == end) {
+    return failure(DetourStatus::kBlocked, "the route is blocked as far as the window goes");
+  }
+  const std::span<const Cell> candidates = route.subspan(behind, end - behind);
+  const auto paths = shortest_paths(window, *start, candidates);
+  std::optional<std::size_t> best;
+  double best_cells = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    if (!paths[k]) continue;
+    const double total = paths[k]->cost_cells + cost_cells(candidates.subspan(k));
+    if (total >= best_cells) continue;
+    best = k;
+    best_cells = total;
+  }
+  if (!best) return failure(DetourStatus::kBlocked, "no way leads round within the window");
+  Detour detour;
+  detour.status = behind == from ? DetourStatus::kClear : DetourStatus::kFound;
+  detour.rejoins = behind + *best;
+  detour.cells = paths[*best]->cells;
+  const auto rest = route.subspan(detour.rejoins + 1);
+  detour.cells.insert(detour.cells.end(), rest.begin(), rest.end());
+  const auto passable = [&](const Cell& cell) {
+    return window.box().contains(cell) ? window.open(cell) : space.passable(cell);
+  };
+  detour.points_m = straighten_where(frame, passable, detour.cells, robot_m, goal_m);
+  return detour;
+}
+
+}  // namespace topogeo::planning

@@ -1,0 +1,177 @@
+#include "topogeo/planning/zones.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "cell_line.hpp"
+#include "zone_labels.hpp"
+
+namespace topogeo::planning {
+namespace {
+
+using topomap::BranchPoint;
+using topomap::GlobalMap;
+using topomap::MapBranch;
+using topomap::NodeKind;
+
+// Directions are taken over this distance from a node: the first points of a branch jitter.
+constexpr double kTangentReach_m = 0.4;
+
+void check_range(const char* field, double value, double low, double high, const char* unit) {
+  if (value >= low && value <= high) return;
+  std::ostringstream text;
+  text << "zones: " << field << " is " << value << ", allowed are " << low << " to " << high << ' '
+       << unit;
+  throw std::invalid_argument(text.str());
+}
+
+// The first point at least kTangentReach_m from the first one, or the last point.
+Eigen::Vector2d point_ahead(std::span<const BranchPoint> points, bool from_back) {
+  const auto at = [&](std::size_t i) {
+    return points[from_back ? points.size() - 1 - i : i].position_m;
+  };
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if ((at(i) - at(0)).norm() >= kTangentReach_m) return at(i);
+  }
+  return at(points.size() - 1);
+}
+
+// Cells of a line across the passage to both sides, up to the forbidden ones; none when a side
+// stays open.
+std::vector<std::size_t> cut(const FreeSpace& space, const Passage& passage,
+                             const ZoneConfig& config) {
+  const GridFrame& frame = space.frame();
+  const Eigen::Vector2d across(-passage.along.y(), passage.along.x());
+  const double reach_m = passage.clearance_m + config.cut_reach_m;
+  std::vector<std::size_t> cells;
+  for (const double side : {1.0, -1.0}) {
+    const Eigen::Vector2d end_m = passage.position_m + side * reach_m * across;
+    const bool open = visit_line(frame.in_cells(passage.position_m), frame.in_cells(end_m),
+                                 [&](const Cell& cell) {
+                                   if (!space.passable(cell)) return false;
+                                   cells.push_back(frame.index(cell));
+                                   return true;
+                                 });
+    if (open) return {};
+  }
+  return cells;
+}
+
+// Even-odd rule: whether a ray to the right crosses the outline an odd number of times.
+bool inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& point) {
+  bool odd = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const Eigen::Vector2d& a = polygon[i];
+    const Eigen::Vector2d& b = polygon[j];
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    if (point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) odd = !odd;
+  }
+  return odd;
+}
+
+// Gives the passable cells in a polygon that nobody owns yet to `index`.
+void fill_polygon(const FreeSpace& space, const std::vector<Eigen::Vector2d>& polygon_m,
+                  std::uint32_t index, std::vector<std::uint32_t>& owner) {
+  const GridFrame& frame = space.frame();
+  std::vector<Eigen::Vector2d> polygon;
+  Eigen::Vector2d low(frame.columns, frame.rows);
+  Eigen::Vector2d high(0.0, 0.0);
+  for (const Eigen::Vector2d& corner_m : polygon_m) {
+    polygon.push_back(frame.in_cells(corner_m));
+    low = low.cwiseMin(polygon.back());
+    high = high.cwiseMax(polygon.back());
+  }
+  low = low.cwiseMax(Eigen::Vector2d::Zero());
+  high = high.cwiseMin(Eigen::Vector2d(frame.columns - 1, frame.rows - 1));
+  for (auto row = static_cast<std::int32_t>(low.y()); row <= high.y(); ++row) {
+    for (auto column = static_cast<std::int32_t>(low.x()); column <= high.x(); ++column) {
+      const std::size_t i = frame.index({column, row});
+      if (!space.passable(i) || owner[i] != kNoLabel) continue;
+      if (inside(polygon, {column + 0.5, row + 0.5})) owner[i] = index;
+    }
+  }
+}
+
+ZoneLabels no_labels(const FreeSpace& space) {
+  return {std::vector<std::uint32_t>(space.frame().size(), kNoLabel), {}, {}};
+}
+
+}  // namespace
+
+void check(const ZoneConfig& config) {
+  check_range("min_area_m2", config.min_area_m2, 0.0, 1000.0, "m2");
+  check_range("passage_half_width_m", config.passage_half_width_m, 0.01, 5.0, "m");
+  check_range("cut_reach_m", config.cut_reach_m, 0.0, 5.0, "m");
+}
+
+std::vector<Passage> passages_of(const GlobalMap& map) {
+  std::map<std::uint32_t, std::vector<Eigen::Vector2d>> ahead_of_node;
+  for (const MapBranch& branch : map.branches) {
+    if (branch.is_virtual || branch.points.size() < 2) continue;
+    ahead_of_node[branch.node_a].push_back(point_ahead(branch.points, false));
+    ahead_of_node[branch.node_b].push_back(point_ahead(branch.points, true));
+  }
+  std::vector<Passage> passages;
+  for (const topomap::MapNode& node : map.nodes) {
+    if (node.kind != NodeKind::kDoor && node.kind != NodeKind::kNarrowing) continue;
+    const auto found = ahead_of_node.find(node.id);
+    if (found == ahead_of_node.end()) continue;
+    const std::vector<Eigen::Vector2d>& ahead = found->second;
+    const Eigen::Vector2d behind = ahead.size() > 1 ? ahead[1] : node.position_m;
+    const Eigen::Vector2d along = ahead[0] - behind;
+    if (along.norm() > 0.0) {
+      passages.push_back({node.position_m, along.normalized(), node.clearance_m});
+    }
+  }
+  return passages;
+}
+
+ZoneMap zones_between(const FreeSpace& space, std::span<const Passage> passages,
+                      const ZoneConfig& config) {
+  check(config);
+  std::vector<std::uint32_t> owner = passable_owner(space);
+  for (const Passage& passage : passages) {
+    for (const std::size_t i : cut(space, passage, config)) owner[i] = kNoLabel;
+  }
+  ZoneLabels labels = no_labels(space);
+  label_parts(space, owner, {""}, labels);
+  return complete(space, std::move(labels), config);
+}
+
+ZoneMap zones_by_width(const FreeSpace& space, const ZoneConfig& config) {
+  check(config);
+  const double half_cells = config.passage_half_width_m / space.frame().resolution_m;
+  std::vector<std::uint32_t> owner = passable_owner(space);
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    if (space.squared_cells(i) <= half_cells * half_cells) owner[i] = kNoLabel;
+  }
+  ZoneLabels labels = no_labels(space);
+  label_parts(space, owner, {""}, labels);
+  return complete(space, std::move(labels), config);
+}
+
+ZoneMap drawn_zones(const FreeSpace& space, std::span<const DrawnZone> drawn,
+                    const ZoneConfig& config) {
+  check(config);
+  std::vector<std::uint32_t> owner(space.frame().size(), kNoLabel);
+  std::vector<std::string> names;
+  for (const DrawnZone& zone : drawn) {
+    const auto index = static_cast<std::uint32_t>(names.size());
+    names.push_back(zone.name);
+    fill_polygon(space, zone.polygon_m, index, owner);
+  }
+  // What no polygon covers.
+  const auto outside = static_cast<std::uint32_t>(names.size());
+  names.emplace_back();
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    if (space.passable(i) && owner[i] == kNoLabel) owner[i] = outside;
+  }
+  ZoneLabels labels = no_labels(space);
+  label_parts(space, owner, names, labels);
+  return complete(space, std::move(labels), config);
+}
+
+}  // namespace topogeo::planning
