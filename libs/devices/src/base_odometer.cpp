@@ -153,14 +153,17 @@ BaseOdometer::Result BaseOdometer::take(const McpReport& report, std::int64_t ar
     return {Verdict::kGood, accept(report, arrival_ns)};
   }
   if (follows_doubted(report, arrival_ns)) {
-    // While its clock goes on the registers are the same ones: it was the last report that erred.
-    if (clock_goes_on && doubts_ >= kFewDoubts) {
+    // While its clock goes on the registers are the same ones: it was the last report that erred,
+    // or all of them had come late for long.
+    const std::int64_t arrived_ns = arrival_ns - last_->arrival_ns;
+    const bool same_clock =
+        clock_goes_on || (elapsed_ns > 0 && std::abs(elapsed_ns - arrived_ns) < kLatest_ns);
+    if (same_clock && doubts_ >= kFewDoubts) {
       return {Verdict::kGood, accept(report, arrival_ns)};
     }
     // A base that was switched on since then has a clock that began then.
-    const bool fresh =
-        ticks_ns(report.wide(McpField::kClock)) <= arrival_ns - last_->arrival_ns + kFreshMargin_ns;
-    if (!clock_goes_on && (fresh || doubts_ >= kManyDoubts)) {
+    const bool fresh = ticks_ns(report.wide(McpField::kClock)) <= arrived_ns + kFreshMargin_ns;
+    if (!same_clock && (fresh || doubts_ >= kManyDoubts)) {
       start_from(doubted_->report);
       return {Verdict::kRestarted, accept(report, arrival_ns)};
     }

@@ -2,6 +2,7 @@
 // change something.
 #include "topogeo/devices/base_odometer.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <vector>
@@ -53,7 +54,8 @@ McpReport standing(std::uint32_t ticks, double forward_m) {
   };
   set(McpField::kClock, ticks);
   set(McpField::kX, 0x8000);
-  set(McpField::kY, 0x8000 + static_cast<std::uint32_t>(units.position_units(forward_m) + 0.5));
+  set(McpField::kY,
+      0x8000 + static_cast<std::uint32_t>(std::lround(units.position_units(forward_m))));
   return report;
 }
 
@@ -69,7 +71,7 @@ class BaseOdometerTest : public testing::Test {
 
 TEST_F(BaseOdometerTest, DropsOneReportThatJumpsAndKeepsThePose) {
   for (std::uint32_t i = 0; i < 30; ++i) {
-    EXPECT_EQ(take(1000 + 32 * i, 1.0, i * 125 * kMs).verdict, Verdict::kGood);
+    EXPECT_EQ(take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kMs).verdict, Verdict::kGood);
   }
   EXPECT_EQ(take(1960, 19.0, 3750 * kMs).verdict, Verdict::kImplausible);
   const auto after = take(1992, 1.0, 3875 * kMs);
@@ -78,20 +80,42 @@ TEST_F(BaseOdometerTest, DropsOneReportThatJumpsAndKeepsThePose) {
 }
 
 TEST_F(BaseOdometerTest, BelievesAPlaceThatStays) {
-  for (std::uint32_t i = 0; i < 30; ++i) (void)take(1000 + 32 * i, 1.0, i * 125 * kMs);
+  for (std::uint32_t i = 0; i < 30; ++i)
+    (void)take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kMs);
   std::vector<Verdict> verdicts;
   for (std::uint32_t i = 30; i < 34; ++i) {
-    verdicts.push_back(take(1000 + 32 * i, 2.0, i * 125 * kMs).verdict);
+    verdicts.push_back(take(1000 + 32 * i, 2.0, std::int64_t{i} * 125 * kMs).verdict);
   }
   EXPECT_EQ(verdicts, (std::vector{Verdict::kImplausible, Verdict::kImplausible, Verdict::kGood,
                                    Verdict::kGood}));
 }
 
 TEST_F(BaseOdometerTest, DropsReportsOfTheSameTimeAndOfTheFuture) {
-  for (std::uint32_t i = 0; i < 30; ++i) (void)take(1000 + 32 * i, 1.0, i * 125 * kMs);
+  for (std::uint32_t i = 0; i < 30; ++i)
+    (void)take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kMs);
   EXPECT_EQ(take(1928, 1.0, 3750 * kMs).verdict, Verdict::kImplausible);
   EXPECT_EQ(take(1960 + 64, 1.0, 3750 * kMs).verdict, Verdict::kImplausible);
   EXPECT_EQ(take(1960, 1.0, 3750 * kMs).verdict, Verdict::kGood);
+}
+
+TEST_F(BaseOdometerTest, ALineThatWasSlowForLongMovesNothing) {
+  const auto at = [](std::uint32_t i, std::int64_t late_ns) {
+    return std::int64_t{i} * 125 * kMs + late_ns;
+  };
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    EXPECT_EQ(take(1000 + 32 * i, 1.0, at(i, 400 * kMs)).verdict, Verdict::kGood);
+  }
+  std::vector<Verdict> verdicts;
+  for (std::uint32_t i = 200; i < 204; ++i) {
+    const auto result = take(1000 + 32 * i, 1.0, at(i, 0));
+    verdicts.push_back(result.verdict);
+    if (result.verdict == Verdict::kGood) {
+      EXPECT_NEAR(result.odometry.T_odom_robot.x_m, 0.0, 1e-9);
+      EXPECT_LE(result.odometry.stamp_ns, at(i, 0));
+    }
+  }
+  EXPECT_EQ(verdicts, (std::vector{Verdict::kImplausible, Verdict::kImplausible, Verdict::kGood,
+                                   Verdict::kGood}));
 }
 
 TEST_F(BaseOdometerTest, GoesOnFromWhereItWasWhenTheBaseStartsAnew) {
