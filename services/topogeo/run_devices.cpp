@@ -42,8 +42,8 @@ void write_devices(const RunOptions& options) {
                                    "  angular_acceleration_radps2: {}\n",
                                    simulated_port(options, "laser").string(), simulation.laser_baud,
                                    simulated_port(options, "base").string(), kSimulatedBaseBaud,
-                                   simulation.speed_m_per_s, kSimulatedTurn_radps,
-                                   kSimulatedAcceleration_mps2, 2.0 * kSimulatedTurn_radps));
+                                   simulation.speed_m_per_s, kSimulatedTurn_rad_s,
+                                   kSimulatedAcceleration, 2.0 * kSimulatedTurn_rad_s));
 }
 
 /// Finds out before anything starts whether the world can be driven through.

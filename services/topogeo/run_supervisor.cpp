@@ -71,8 +71,8 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
   if (!options_.simulation) return;
   simulation::DriveOptions drive;
   drive.speed_m_per_s = options_.simulation->speed_m_per_s;
-  drive.turn_rad_per_s = kSimulatedTurn_radps;
-  drive.acceleration_m_per_s2 = kShareOfAcceleration * kSimulatedAcceleration_mps2;
+  drive.turn_rad_per_s = kSimulatedTurn_rad_s;
+  drive.acceleration_m_per_s2 = kShareOfAcceleration * kSimulatedAcceleration;
   drive.turn_gain_per_s = 2.0;
   tour_.emplace(participant_, loop_, options_.job.robot_id,
                 simulation::load_world(options_.simulation->world).tour_m, drive);

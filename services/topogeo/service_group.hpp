@@ -40,8 +40,8 @@ std::string source_name(const RunOptions& options);
 
 // What the base of a simulation is capable of.
 inline constexpr std::uint32_t kSimulatedBaseBaud = 38'400;
-inline constexpr double kSimulatedTurn_radps = 2.0;
-inline constexpr double kSimulatedAcceleration_mps2 = 1.5;
+inline constexpr double kSimulatedTurn_rad_s = 2.0;
+inline constexpr double kSimulatedAcceleration = 1.5;  // m/s^2
 /// Where the simulator of a run puts the port of "laser" or "base".
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
 
