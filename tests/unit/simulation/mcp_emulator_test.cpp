@@ -72,7 +72,8 @@ TEST(McpEmulator, HearsNothingBeforeItIsUpNorAtAnotherRate) {
   base.receive(question, {}, 5 * kSecond);
   const auto garbled = base.take_output({38400, devices::Parity::kNone}, 6 * kSecond);
   EXPECT_FALSE(garbled.empty());
-  EXPECT_EQ(std::ranges::search(garbled, question).begin(), garbled.end());
+  EXPECT_EQ(std::search(garbled.begin(), garbled.end(), question.begin(), question.end()),
+            garbled.end());
 }
 
 TEST(McpEmulator, ReportsInTheFormAndPeriodThatItWasTold) {
