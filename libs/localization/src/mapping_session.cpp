@@ -9,6 +9,11 @@ namespace topogeo::localization {
 
 namespace {
 
+// In succession, after a search, before a drive joins the map. A room that is taken for another one
+// is tracked while the robot turns in it, but not much further (continue_test).
+constexpr std::uint32_t kTrackedStops = 3;
+constexpr double kTrackedWay_m = 2.5;
+
 void add_to(SlamCounts& sum, const SlamCounts& more) {
   sum.tasks += more.tasks;
   sum.evaluations += more.evaluations;
@@ -61,13 +66,24 @@ bool MappingSession::map_stop(const MapPointer& map) {
 
 bool MappingSession::follow(const MapPointer& map) {
   follower_->add(map);
+  const bool found = confirmed();
   if (!mapping_) return false;
   waiting_.push_back(map);
-  const std::optional<TrackedStep>& step = follower_->last_step();
-  const bool found =
-      follower_->belief().state == LocalizationState::kTracking && step && !step->believed.empty();
   if (found) join();
   return found;
+}
+
+// True when the last stop is tracked and matched, and so were enough stops before it where the
+// place was found by a search: in one look a room of another building can look like one of the map.
+bool MappingSession::confirmed() {
+  const std::optional<TrackedStep>& step = follower_->last_step();
+  const bool tracked =
+      follower_->belief().state == LocalizationState::kTracking && step && !step->believed.empty();
+  if (!step) searched_ = true;
+  tracked_stops_ = tracked ? tracked_stops_ + 1 : 0;
+  tracked_way_m_ = tracked ? tracked_way_m_ + step->evidence.way_m : 0.0;
+  return tracked &&
+         (!searched_ || (tracked_stops_ >= kTrackedStops && tracked_way_m_ >= kTrackedWay_m));
 }
 
 void MappingSession::join() {
@@ -126,6 +142,9 @@ void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
   const std::uint64_t next_task = localizer_ != nullptr ? localizer_->next_task() : counts_.tasks;
   follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_, next_id_);
   follower_->number_tasks_from(next_task);
+  searched_ = false;
+  tracked_stops_ = 0;
+  tracked_way_m_ = 0.0;
 }
 
 void MappingSession::end_following() {

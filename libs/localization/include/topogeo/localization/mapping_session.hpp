@@ -4,8 +4,9 @@
 // Whenever the robot's place in the map is not known for certain, at the start of a stored map and
 // after a time in which stops were not mapped, it is followed or searched for by a MapLocalizer.
 // Its stops are kept meanwhile, and join the map together as soon as the last of them is tracked
-// and matched there; if that never happens the map stays as it was. All of that follows from the
-// stops alone, so one drive gives the same map wherever it is worked out.
+// and matched there, after a search not without a way of some metres; if that never happens the map
+// stays as it was. All of that follows from the stops alone, so one drive gives the same map
+// wherever it is worked out.
 #pragma once
 
 #include <cstddef>
@@ -82,6 +83,7 @@ class MappingSession : public Slam {
  private:
   bool map_stop(const MapPointer& map);
   bool follow(const MapPointer& map);
+  bool confirmed();
   void join();
   void start_following(std::shared_ptr<const StoredMap> map);
   void end_following();
@@ -98,6 +100,9 @@ class MappingSession : public Slam {
   std::vector<MapPointer> maps_;
   std::vector<std::uint32_t> sources_;  // of maps_: ids in the drive
   std::size_t stored_stops_ = 0;
+  bool searched_ = false;            // the place is known by a search
+  std::uint32_t tracked_stops_ = 0;  // in succession, the last one included
+  double tracked_way_m_ = 0.0;       // driven to them
   std::vector<MapPointer> waiting_;  // to join the map, as they came
   SlamCounts counts_;
   SlamCounts counts_before_;  // of followers that have gone
