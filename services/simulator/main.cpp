@@ -2,6 +2,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <sys/resource.h>
 
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -61,6 +62,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
 }
 
+/// Real devices do not wait for other programs of the machine. Without the right to go first the
+/// simulator goes with the others.
+void go_first() {
+  constexpr int kNiceness = -10;
+  static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNiceness));
+}
+
 simulation::World load(const std::filesystem::path& path) {
   try {
     return simulation::load_world(path);
@@ -81,6 +89,7 @@ int main(int argc, char** argv) {
         robot.T_robot_laser = setup.config.config.local_mapper.T_robot_laser;
         robot.odometry = drift(arguments.odometry, robot.seed);
         const simulation::World world = load(arguments.world);
+        go_first();
         service::Service service(setup);
         const simulator::SimulatorService simulator(service, world, arguments.options);
         service.run();
