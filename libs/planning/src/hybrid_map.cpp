@@ -152,6 +152,7 @@ void HybridMap::find_edges() {
     if (ids.size() < 2) continue;
     const SearchWindow window(frame(), zone.box, zones_.zone_of_cell, zone.id);
     std::vector<Cell> cells;
+    cells.reserve(ids.size());
     for (const std::uint32_t id : ids) cells.push_back(nodes_[id].cell_in(zone.id));
     for (std::size_t i = 0; i + 1 < ids.size(); ++i) {
       const std::vector<Cell> others(cells.begin() + static_cast<std::ptrdiff_t>(i + 1),

@@ -126,7 +126,7 @@ class Query {
       append(route.cells, edge.route, edge.node_a != path->nodes[i]);
     }
     append(route.cells, goal.cells_to(path->nodes.back()), true);
-    improve(route);
+    improve(route.cells);
     return route;
   }
 
@@ -138,15 +138,10 @@ class Query {
     cells.insert(cells.end(), piece.begin() + skip, piece.end());
   }
 
-  // Ways shorter than this one stay in the ellipse around its ends that is as long as it. Returns
-  // whether it is the shortest way now.
+  // Returns whether it is the shortest way now.
   bool improve_whole(std::vector<Cell>& cells) const {
-    const double cost = cost_cells(cells);
-    if (cost <= least_cost_cells(cells.front(), cells.back())) return true;
-    const double across = cells.back().column - cells.front().column;
-    const double up = cells.back().row - cells.front().row;
-    const double half_axis = 0.5 * std::sqrt(cost * cost - across * across - up * up);
-    const auto margin = static_cast<std::int32_t>(half_axis) + 1;
+    const std::int32_t margin = margin_of(cells);
+    if (margin == 0) return true;
     const CellBox box = box_around(cells.front(), cells.back(), margin);
     const double size =
         (box.high.column - box.low.column + 1.0) * (box.high.row - box.low.row + 1.0);
@@ -155,32 +150,28 @@ class Query {
     return true;
   }
 
-  void improve(HybridRoute& route) const {
-    if (improve_whole(route.cells)) return;
-    const double cell_m = map_.frame().resolution_m;
-    const auto reach = static_cast<std::size_t>(config_.crossing_reach_m / cell_m);
-    if (reach == 0) return;
-    std::size_t from = 0;
-    for (const std::uint32_t id : route.nodes) {
-      const BorderNode& node = map_.nodes()[id];
-      const std::optional<std::size_t> at = crossing(route.cells, from, node);
-      if (!at) continue;
-      const std::size_t width = std::max(reach, node.border[0].size());
-      from = *at > width ? *at - width : 0;
-      const std::size_t end = std::min(*at + 1 + width, route.cells.size() - 1);
-      plan_again(route.cells, from, end, static_cast<std::int32_t>(width / 2));
+  void improve(std::vector<Cell>& cells) const {
+    if (improve_whole(cells)) return;
+    const auto piece = static_cast<std::size_t>(config_.piece_m / map_.frame().resolution_m);
+    if (piece < 2) return;
+    for (std::size_t begin = 0; begin + 1 < cells.size(); begin += piece / 2) {
+      const std::size_t end = std::min(begin + piece, cells.size() - 1);
+      const std::span<const Cell> old(cells.data() + begin, end - begin + 1);
+      const auto widest = static_cast<std::int32_t>(piece / 2);
+      const std::int32_t margin = std::min(margin_of(old), widest);
+      if (margin > 0) plan_again(cells, begin, end, margin);
     }
   }
 
-  // The first step over the border of a node at or behind `from`.
-  [[nodiscard]] std::optional<std::size_t> crossing(const std::vector<Cell>& cells,
-                                                    std::size_t from,
-                                                    const BorderNode& node) const {
-    for (std::size_t i = from; i + 1 < cells.size(); ++i) {
-      const std::array<ZoneId, 2> step{map_.zone_of(cells[i]), map_.zone_of(cells[i + 1])};
-      if (step == node.zones || (step[0] == node.zones[1] && step[1] == node.zones[0])) return i;
-    }
-    return std::nullopt;
+  // Ways shorter than this one stay in the ellipse around its ends that is as long as it: how far
+  // that can reach. 0 when none is shorter.
+  static std::int32_t margin_of(std::span<const Cell> cells) {
+    const double cost = cost_cells(cells);
+    if (cost <= least_cost_cells(cells.front(), cells.back())) return 0;
+    const double across = cells.back().column - cells.front().column;
+    const double up = cells.back().row - cells.front().row;
+    const double half_axis = 0.5 * std::sqrt(cost * cost - across * across - up * up);
+    return static_cast<std::int32_t>(half_axis) + 1;
   }
 
   [[nodiscard]] CellBox box_around(const Cell& a, const Cell& b, std::int32_t margin) const {
@@ -265,7 +256,7 @@ Goal resolve(const HybridMap& map, const Target& to) {
 void check(const HybridPlannerConfig& config) {
   check_range("start_snap_m", config.start_snap_m, 5.0);
   check_range("goal_snap_m", config.goal_snap_m, 5.0);
-  check_range("crossing_reach_m", config.crossing_reach_m, 20.0);
+  check_range("piece_m", config.piece_m, 50.0);
   constexpr double kMostCells = 1e8;
   if (!(config.exact_window_cells >= 0.0 && config.exact_window_cells <= kMostCells)) {
     throw std::invalid_argument("planner: exact_window_cells is " +

@@ -112,6 +112,7 @@ struct RouteGraph::State {
     record.cost.assign(nodes(), kInfinity);
     before.resize(nodes());
     std::vector<std::uint32_t> starts;
+    starts.reserve(entries.size());
     for (const GraphAccess& exit : exits) {
       check_index("exit", exit.node, nodes());
       check_cost("an exit", exit.cost);
@@ -147,6 +148,8 @@ RouteGraph::RouteGraph(std::size_t nodes, std::span<const GraphEdge> edges)
     : state_(std::make_unique<State>()) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
   std::vector<Directed> properties;
+  ends.reserve(2 * edges.size());
+  properties.reserve(2 * edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const GraphEdge& edge = edges[i];
     check_index("node", edge.node_a, nodes);

@@ -80,7 +80,7 @@ class Smoother {
     double radius_m = std::min(room_m / tangent_of_half, config_.max_radius_m);
     constexpr double kNarrower = 0.8;
     for (; radius_m >= config_.min_radius_m; radius_m *= kNarrower) {
-      const Arc arc{points_m[i] - radius_m * tangent_of_half * in, heading(in), turn_rad, radius_m};
+      Arc arc{points_m[i] - radius_m * tangent_of_half * in, heading(in), turn_rad, radius_m};
       if (fits(arc)) return arc;
     }
     return spot;

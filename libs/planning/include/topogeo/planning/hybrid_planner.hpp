@@ -5,7 +5,7 @@
 // to the goal, Dijkstra on the graph between every pair of them; the cheapest sum wins.
 //
 // Beyond the source, because the middle of a border can lie off the shortest way: short routes, and
-// pieces of the others round their crossings of borders, are planned again on the grid; and a long
+// pieces of the others, are planned again on the grid; and a long
 // way round within a zone is compared with the ways that leave it and come back.
 #pragma once
 
@@ -27,12 +27,12 @@ struct HybridPlannerConfig {
   /// obstacle is between, [0, 5].
   double start_snap_m = 0.35;
   double goal_snap_m = 0.0;  ///< the same for goals, [0, 5]; 0: they must be passable
-  /// Of a route across borders, so much before and behind each crossing is planned again on the
-  /// grid, and at least as much as the border is wide, [0, 20]; 0: never, as the source.
-  double crossing_reach_m = 2.0;
   /// A route that is longer than the straight way is planned again whole when all ways shorter than
   /// it lie in a window of at most so many cells, [0, 1e8]; 0: never, as the source.
   double exact_window_cells = 40000.0;
+  /// Other routes are planned again in pieces of this length that overlap by half, [0, 50]; 0:
+  /// never, as the source.
+  double piece_m = 10.0;
 };
 
 /// Throws std::invalid_argument naming the field, the value and the range that it must lie in.

@@ -1,0 +1,147 @@
+#include "topogeo/planning/grid_sources.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace topogeo::planning {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+CellState at(const OccupancyGrid& grid, double x_m, double y_m) {
+  return grid.at(grid.frame().cell_of({x_m, y_m}).value());
+}
+
+Drawing box(double x0, double y0, double x1, double y1) {
+  Drawing drawing;
+  drawing.lines = {
+      {{x0, y0}, {x1, y0}}, {{x1, y0}, {x1, y1}}, {{x1, y1}, {x0, y1}}, {{x0, y1}, {x0, y0}}};
+  return drawing;
+}
+
+TEST(GridOfDrawing, DrawsWallsAndColumns) {
+  Drawing drawing = box(0.0, 0.0, 4.0, 3.0);
+  drawing.discs.push_back({{2.05, 1.55}, 0.2});
+  const OccupancyGrid grid = grid_of(drawing, 0.1, 0.5);
+  EXPECT_EQ(grid.frame().columns, 51);
+  EXPECT_EQ(grid.frame().rows, 41);
+  EXPECT_EQ(at(grid, 2.0, 0.05), CellState::kOccupied);
+  EXPECT_EQ(at(grid, 2.0, 0.15), CellState::kFree);
+  EXPECT_EQ(at(grid, 2.05, 1.55), CellState::kOccupied);
+  EXPECT_EQ(at(grid, 2.25, 1.55), CellState::kOccupied);
+  EXPECT_EQ(at(grid, 2.35, 1.55), CellState::kFree);
+  EXPECT_EQ(at(grid, -0.3, 1.0), CellState::kFree);
+}
+
+TEST(GridOfDrawing, KnowsNothingOfWhatCannotBeReached) {
+  Drawing drawing = box(0.0, 0.0, 4.0, 3.0);
+  const Drawing cupboard = box(1.0, 1.0, 2.0, 2.0);
+  drawing.lines.insert(drawing.lines.end(), cupboard.lines.begin(), cupboard.lines.end());
+  drawing.inside_m = {{0.5, 0.5}};
+  const OccupancyGrid grid = grid_of(drawing);
+  EXPECT_EQ(at(grid, 3.5, 2.5), CellState::kFree);
+  EXPECT_EQ(at(grid, 1.5, 1.5), CellState::kUnknown);
+  EXPECT_EQ(at(grid, -0.5, 1.0), CellState::kUnknown);
+}
+
+// A flood over the four sides must not get through, at whatever angle a wall stands.
+TEST(GridOfDrawing, SlantingWallsHaveNoGaps) {
+  for (int k = 0; k < 60; ++k) {
+    const double angle_rad = 0.1047 * k;
+    const Eigen::Vector2d along(std::cos(angle_rad), std::sin(angle_rad));
+    const Eigen::Vector2d across(-along.y(), along.x());
+    Drawing drawing;
+    const std::vector<Eigen::Vector2d> corners{
+        1.7 * along + 1.1 * across, -1.7 * along + 1.1 * across, -1.7 * along - 1.1 * across,
+        1.7 * along - 1.1 * across};
+    for (std::size_t i = 0; i < 4; ++i) {
+      drawing.lines.push_back({corners[i], corners[(i + 1) % 4]});
+    }
+    drawing.inside_m = {{0.0, 0.0}};
+    const OccupancyGrid grid = grid_of(drawing);
+    EXPECT_EQ(at(grid, 0.0, 0.0), CellState::kFree);
+    EXPECT_EQ(grid.at({0, 0}), CellState::kUnknown) << angle_rad;
+  }
+}
+
+TEST(GridOfDrawing, RefusesWhatItCannotDraw) {
+  EXPECT_THAT([] { grid_of(Drawing{}); }, ThrowsMessage<std::invalid_argument>(HasSubstr("empty")));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT([&] { grid_of(box(0.0, 0.0, nan, 1.0)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("not finite")));
+  EXPECT_THAT([] { grid_of(box(0.0, 0.0, 1e6, 1.0)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("columns is")));
+}
+
+// A robot at `stop` that sees the square room |x|, |y| <= 2 m.
+topomap::LocalMap scan_of_room(const Eigen::Vector2d& stop_m) {
+  topomap::LocalMap map;
+  for (int k = -39; k <= 39; ++k) {
+    const double along_m = 0.05 * k;
+    for (const Eigen::Vector2d& p :
+         {Eigen::Vector2d(2.0, along_m), Eigen::Vector2d(-2.0, along_m),
+          Eigen::Vector2d(along_m, 2.0), Eigen::Vector2d(along_m, -2.0)}) {
+      const Eigen::Vector2d seen_m = p - stop_m;
+      map.points.push_back({static_cast<float>(seen_m.x()), static_cast<float>(seen_m.y())});
+    }
+  }
+  return map;
+}
+
+topomap::StopPose stop_at(double x_m, double y_m) {
+  topomap::StopPose stop;
+  stop.T_map_robot = {x_m, y_m, 0.0};
+  return stop;
+}
+
+TEST(GridFromScans, TellsFreeOccupiedAndUnknownApart) {
+  const std::vector<topomap::LocalMap> maps{scan_of_room({0.0, 0.0}), scan_of_room({0.5, -0.7})};
+  const std::vector<topomap::StopPose> stops{stop_at(0.0, 0.0), stop_at(0.5, -0.7)};
+  const OccupancyGrid grid = grid_from_scans(maps, stops);
+  EXPECT_EQ(at(grid, 0.05, 0.05), CellState::kFree);
+  EXPECT_EQ(at(grid, 1.85, 1.2), CellState::kFree);
+  EXPECT_EQ(at(grid, 2.02, 0.55), CellState::kOccupied);
+  EXPECT_EQ(at(grid, 2.5, 0.5), CellState::kUnknown);
+  EXPECT_EQ(grid.frame().columns, 61);
+}
+
+TEST(GridFromScans, ForgetsWhatLaterScansLookThrough) {
+  topomap::LocalMap crate = scan_of_room({0.0, 0.0});
+  for (topomap::ScanPoint& p : crate.points) {
+    if (p.x_m > 1.9F && std::fabs(p.y_m) < 0.5F) p = {0.5F * p.x_m, 0.5F * p.y_m};
+  }
+  const std::vector<topomap::LocalMap> maps{crate, scan_of_room({0.0, 0.0}),
+                                            scan_of_room({0.0, 0.0}), scan_of_room({0.0, 0.0})};
+  const std::vector<topomap::StopPose> stops(4, stop_at(0.0, 0.0));
+  const std::span<const topomap::StopPose> all(stops);
+  EXPECT_EQ(at(grid_from_scans(maps, all.first(1)), 1.01, 0.01), CellState::kOccupied);
+  EXPECT_EQ(at(grid_from_scans(maps, all), 1.01, 0.01), CellState::kFree);
+}
+
+TEST(GridFromScans, LeavesOutStopsThatNobodyLocated) {
+  const std::vector<topomap::LocalMap> maps{scan_of_room({0.0, 0.0}), scan_of_room({0.0, 0.0})};
+  std::vector<topomap::StopPose> stops{stop_at(0.0, 0.0), stop_at(50.0, 0.0)};
+  stops[1].located = false;
+  EXPECT_EQ(grid_from_scans(maps, stops).frame().columns, 61);
+}
+
+TEST(GridFromScans, RefusesBadInput) {
+  const std::vector<topomap::LocalMap> maps(1);
+  const std::vector<topomap::StopPose> stops(2);
+  EXPECT_THAT([&] { grid_from_scans(maps, stops); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("2 stops but 1 local maps")));
+  EXPECT_THAT([&] { grid_from_scans(maps, std::span(stops).first(1)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("no stop with scan points")));
+  ScanGridConfig config;
+  config.hit = 0;
+  EXPECT_THAT([&] { grid_from_scans(maps, {}, config); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("hit is 0, allowed are 1 to 1000")));
+}
+
+}  // namespace
+}  // namespace topogeo::planning
