@@ -82,7 +82,7 @@ std::shared_ptr<const localization::StoredMap> stored_map(const storage::MapDocu
 std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::filesystem::path& file,
                                                                  const Config& config,
                                                                  const std::string& robot_id) {
-  const auto document = std::make_shared<const storage::MapDocument>(load_usable_map(file));
+  auto document = std::make_shared<const storage::MapDocument>(load_usable_map(file));
   if (document->robot_id != robot_id) {
     throw std::runtime_error(fmt::format("{}: the map is of robot '{}', expected '{}' (--robot)",
                                          file.string(), document->robot_id, robot_id));
