@@ -1,0 +1,129 @@
+#include "topogeo/render/route_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "canvas.hpp"
+#include "page.hpp"
+
+namespace topogeo::render {
+namespace {
+
+using planning::Cell;
+using planning::CellState;
+using planning::HybridMap;
+
+constexpr double kMargin_px = 20.0;
+constexpr double kHeader_px = 40.0;
+constexpr Colour kForbidden{0.78, 0.78, 0.78};
+constexpr std::array<Colour, 6> kTints{{{0.90, 0.94, 1.00},
+                                        {0.92, 0.98, 0.90},
+                                        {1.00, 0.95, 0.86},
+                                        {0.95, 0.91, 0.99},
+                                        {0.88, 0.97, 0.97},
+                                        {0.99, 0.92, 0.94}}};
+
+Colour colour_of(const HybridMap& map, const Cell& cell) {
+  switch (map.space().grid().at(cell)) {
+    case CellState::kOccupied:
+      return kInk;
+    case CellState::kUnknown:
+      return kWhite;
+    case CellState::kFree:
+      break;
+  }
+  const planning::ZoneId zone = map.zone_of(cell);
+  return zone == planning::kNoZone ? kForbidden : kTints.at(zone % kTints.size());
+}
+
+class RouteDrawing {
+ public:
+  RouteDrawing(const HybridMap& map, double width_px)
+      : map_(map), scale_((width_px - 2 * kMargin_px) / map.frame().columns) {}
+
+  [[nodiscard]] std::uint32_t height_px() const {
+    return static_cast<std::uint32_t>(
+        std::ceil(map_.frame().rows * scale_ + kHeader_px + kMargin_px));
+  }
+
+  void draw(cairo_t* cr, const planning::HybridRoute& route, const std::string& title) const {
+    start_page(cr);
+    set_colour(cr, kInk);
+    draw_text(cr, title, kMargin_px, kHeader_px - 14.0, 16.0);
+    draw_cells(cr);
+    for (const planning::BorderNode& node : map_.nodes()) {
+      circle(cr, to_px(node.position_m), 2.5);
+      fill_and_edge(cr, kDoor, kWhite, 0.5);
+    }
+    for (const planning::Place& place : map_.places()) {
+      const Eigen::Vector2d at_px = to_px(place.position_m);
+      set_colour(cr, kBranch);
+      draw_text_centred(cr, place.name, at_px.x(), at_px.y() - 5.0, 12.0);
+      circle(cr, at_px, 2.5);
+      fill_and_edge(cr, kBranch, kWhite, 0.5);
+    }
+    if (route.found()) draw_route(cr, route);
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector2d cells_to_px(const Eigen::Vector2d& cells) const {
+    return {kMargin_px + cells.x() * scale_, kHeader_px + (map_.frame().rows - cells.y()) * scale_};
+  }
+  [[nodiscard]] Eigen::Vector2d to_px(const Eigen::Vector2d& point_m) const {
+    return cells_to_px(map_.frame().in_cells(point_m));
+  }
+
+  // Neighbours in a row of one colour as one rectangle, to keep an SVG small.
+  void draw_cells(cairo_t* cr) const {
+    const auto& frame = map_.frame();
+    const auto same = [](const Colour& a, const Colour& b) {
+      return a.red == b.red && a.green == b.green && a.blue == b.blue;
+    };
+    cairo_save(cr);
+    cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
+    for (std::int32_t row = 0; row < frame.rows; ++row) {
+      for (std::int32_t first = 0; first < frame.columns;) {
+        const Colour colour = colour_of(map_, {first, row});
+        std::int32_t end = first + 1;
+        while (end < frame.columns && same(colour, colour_of(map_, {end, row}))) ++end;
+        if (!same(colour, kWhite)) {
+          const Eigen::Vector2d corner_px = cells_to_px(Eigen::Vector2d(first, row + 1));
+          set_colour(cr, colour);
+          cairo_rectangle(cr, corner_px.x(), corner_px.y(), (end - first) * scale_, scale_);
+          cairo_fill(cr);
+        }
+        first = end;
+      }
+    }
+    cairo_restore(cr);
+  }
+
+  void draw_route(cairo_t* cr, const planning::HybridRoute& route) const {
+    set_colour(cr, kCorrected);
+    cairo_set_line_width(cr, 2.5);
+    move_to(cr, to_px(route.points_m.front()));
+    for (const Eigen::Vector2d& point_m : route.points_m) line_to(cr, to_px(point_m));
+    cairo_stroke(cr);
+    circle(cr, to_px(route.points_m.front()), 6.0);
+    fill_and_edge(cr, kWhite, kCorrected, 2.0);
+    circle(cr, to_px(route.points_m.back()), 6.0);
+    fill_and_edge(cr, kCorrected, kWhite, 1.0);
+  }
+
+  const HybridMap& map_;
+  double scale_;  // pixels per cell
+};
+
+}  // namespace
+
+std::string route_picture(const HybridMap& map, const planning::HybridRoute& route,
+                          const std::string& title, PictureFormat format,
+                          const PictureOptions& options) {
+  check(options);
+  const RouteDrawing drawing(map, options.max_width_px);
+  return draw_page(format, options.max_width_px, drawing.height_px(),
+                   [&](cairo_t* cr) { drawing.draw(cr, route, title); });
+}
+
+}  // namespace topogeo::render
