@@ -1,5 +1,6 @@
 // Continuing a stored map: over DDS as in one process, when the robot is not found in it, and with
 // maps that cannot be continued.
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -109,6 +110,20 @@ TEST_F(ContinueTest, WhereTheRobotIsNotFoundTheMapIsAsItWas) {
     EXPECT_EQ(report(out)["continuation"]["added_stops"], 0);
     EXPECT_GT(report(out)["continuation"]["unmapped_stops"].get<int>(), 5);
   }
+}
+
+TEST_F(ContinueTest, PosesOfStopsThatAreSearchedForAreInNoTrajectory) {
+  make_map(0.3);
+  const std::string log = scratch_ / "elsewhere.clf.gz";
+  write_part("room", log, 0.0, 1.0);
+  const Outcome localized = call({"localize", "--log", log, "--map", map_}, "out");
+  ASSERT_EQ(localized.code, 0) << localized.err;
+  const auto lines_of = [&](const char* file) {
+    const std::string text = read_file(scratch_ / "out" / file);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  EXPECT_THAT(read_file(scratch_ / "out" / "localization.csv"), HasSubstr(",SEARCHING,"));
+  EXPECT_LT(lines_of("trajectory.tum"), lines_of("odometry.tum"));
 }
 
 TEST_F(ContinueTest, AContinuedMapIsContinuedAgain) {

@@ -29,7 +29,9 @@ class LocalizeTest : public testing::Test {
   std::string map_ = scratch_ / "map" / "map.pb";
 };
 
-TEST_F(LocalizeTest, OverDdsItGivesTheBytesOfOneProcessAndLeavesTheMapAlone) {
+class LocalizeByWorkersTest : public LocalizeTest, public testing::WithParamInterface<int> {};
+
+TEST_P(LocalizeByWorkersTest, OverDdsItGivesTheBytesOfOneProcessAndLeavesTheMapAlone) {
   make_map();
   const std::string before = read_file(map_);
   Program alone(scratch_, "topogeo",
@@ -37,8 +39,8 @@ TEST_F(LocalizeTest, OverDdsItGivesTheBytesOfOneProcessAndLeavesTheMapAlone) {
   ASSERT_EQ(alone.wait(), 0) << alone.err();
   EXPECT_THAT(alone.out(), HasSubstr("localization: "));
   Program run(scratch_, "topogeo",
-              {"run", "--log", log_, "--map", map_, "--out", scratch_ / "run", "--workers", "2",
-               "--domain", own_domain()});
+              {"run", "--log", log_, "--map", map_, "--out", scratch_ / "run", "--workers",
+               std::to_string(GetParam()), "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
   for (const char* file : {"localization.csv", "trajectory.tum", "map.pb"}) {
     EXPECT_TRUE(read_file(scratch_ / "run" / file) == read_file(scratch_ / "alone" / file)) << file;
@@ -50,6 +52,9 @@ TEST_F(LocalizeTest, OverDdsItGivesTheBytesOfOneProcessAndLeavesTheMapAlone) {
   EXPECT_GT(report["localization"]["TRACKING"].get<int>(),
             report["counts"]["stops"].get<int>() / 2);
 }
+
+INSTANTIATE_TEST_SUITE_P(Workers, LocalizeByWorkersTest, testing::Values(1, 2, 4),
+                         [](const auto& workers) { return std::to_string(workers.param); });
 
 TEST_F(LocalizeTest, CommandsAreAcceptedOrRefusedWithTheReason) {
   make_map();
