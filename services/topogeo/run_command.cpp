@@ -128,6 +128,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str();
   app.add_option("--profiles", options.profiles_file, "QoS profiles instead of the built-in ones")
       ->type_name("FILE");
+  app.add_option("--record", options.record,
+                 "also write the scans that are mapped as a log, which gives the same map")
+      ->type_name("FILE");
 }
 
 int run_log(const RunOptions& options) {

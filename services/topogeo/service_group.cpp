@@ -83,6 +83,7 @@ ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partiti
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);
     start(name, std::string(kWorker), common + Words{"--name", name, "--slots", "1"});
   }
+  if (!options.record.empty()) start_recorder(options, partition);
   start_source(options, common);
   told_.assign(children_.size(), false);
 }
@@ -99,8 +100,26 @@ void ServiceGroup::start_source(const RunOptions& options, const Words& common) 
   }
   const Words source = options.devices.empty()
                            ? Words{"--log", options.job.log.string(), "--rate", options.rate}
-                           : Words{"--devices", options.devices.string(), "--readers", "1"};
-  start("sensor_gateway", "sensor_gateway", common + source);
+                           : Words{"--devices", options.devices.string()};
+  // All of them have the first scan.
+  const std::string readers = options.record.empty() ? "1" : "2";
+  start("sensor_gateway", "sensor_gateway", common + source + Words{"--readers", readers});
+}
+
+void ServiceGroup::start_recorder(const RunOptions& options, const std::string& partition) {
+  Words words = {"record",
+                 "--out",
+                 options.record.string(),
+                 "--domain",
+                 std::to_string(options.domain),
+                 "--partition",
+                 partition,
+                 "--robot-id",
+                 options.job.robot_id};
+  if (!options.profiles_file.empty()) {
+    words.insert(words.end(), {"--profiles", options.profiles_file.string()});
+  }
+  start("record", "topogeo", words);
 }
 
 void ServiceGroup::start(const std::string& name, const std::string& program,

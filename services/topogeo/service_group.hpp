@@ -27,6 +27,7 @@ struct SimulationOptions {
 struct RunOptions {
   JobOptions job;
   std::filesystem::path devices;                ///< file of the devices to use; empty: a log
+  std::filesystem::path record;                 ///< log to write of what is mapped; empty: none
   std::optional<SimulationOptions> simulation;  ///< what is behind the ports of `devices`
   std::uint32_t workers = 2;
   std::optional<std::uint32_t> wait_workers;  ///< before the first step; none: `workers`
@@ -70,6 +71,7 @@ class ServiceGroup {
 
  private:
   void start_source(const RunOptions& options, const std::vector<std::string>& common);
+  void start_recorder(const RunOptions& options, const std::string& partition);
   void start(const std::string& name, const std::string& program,
              const std::vector<std::string>& arguments);
 

@@ -1,0 +1,105 @@
+// A gateway on the emulated devices of a simulator, and what both publish.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/motion.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/simulation.h"
+#include "topogeo/msg/status.h"
+#include "topogeo/msg/stream.h"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+
+class GatewayOnDevices : public testing::Test {
+ protected:
+  static constexpr std::chrono::seconds kPatience{60};
+
+  GatewayOnDevices();
+
+  void start_simulator();
+  /// Waits for one reader of scans, which is this test. `keys` are further lines of the file.
+  void start_gateway(const std::string& keys = {});
+  /// Both, and until the laser runs, the base is ready and `scans` have come.
+  void start(std::size_t scans = 5);
+
+  /// Hands on what comes until `condition` holds; false when it does not within kPatience.
+  template <class Condition>
+  bool wait_for(const Condition& condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      loop_.run_for(std::chrono::milliseconds(5));
+    }
+    return true;
+  }
+  /// The same while motion is commanded ten times a second.
+  template <class Condition>
+  bool drive_until(double linear_mps, double angular_radps, const Condition& condition) {
+    auto next = std::chrono::steady_clock::now();
+    return wait_for([&] {
+      if (std::chrono::steady_clock::now() >= next) {
+        command(linear_mps, angular_radps);
+        next = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
+      }
+      return condition();
+    });
+  }
+
+  void command(double linear_mps, double angular_radps);
+  void tell_base(msg::BaseCommandKind kind);
+  void strike(msg::SimulatedFault fault, msg::SimulatedDevice device, double duration_s);
+
+  [[nodiscard]] bool base_is(msg::BaseState state) const {
+    return base_status_ && base_status_->state() == state;
+  }
+  [[nodiscard]] bool laser_is(msg::LaserState state) const {
+    return laser_status_ && laser_status_->state() == state;
+  }
+  /// Of the gateway's status; 0 if it has none of that name.
+  [[nodiscard]] double counter(std::string_view name) const;
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  messaging::Participant participant_;
+  messaging::Reader<msg::Scan> scans_reader_;
+  messaging::Reader<msg::Odometry> odometry_reader_;
+  messaging::Reader<msg::BaseStatus> base_reader_;
+  messaging::Reader<msg::LaserStatus> laser_reader_;
+  messaging::Reader<msg::GroundTruth> truth_reader_;
+  messaging::Reader<msg::ServiceStatus> status_reader_;
+  messaging::Reader<msg::StreamEnd> end_reader_;
+  messaging::Writer<msg::MotionCommand> motion_;
+  messaging::Writer<msg::BaseCommand> base_;
+  messaging::Writer<msg::SimulatorCommand> faults_;
+  messaging::EventLoop loop_;
+
+  std::vector<msg::Scan> scans_;
+  std::vector<msg::Odometry> odometry_;
+  std::optional<msg::BaseStatus> base_status_;
+  std::optional<msg::LaserStatus> laser_status_;
+  std::optional<msg::GroundTruth> truth_;
+  std::optional<msg::ServiceStatus> gateway_status_;
+  std::optional<msg::StreamEnd> end_;
+  std::uint64_t commands_ = 0;
+
+  std::unique_ptr<Program> simulator_;
+  std::unique_ptr<Program> gateway_;
+};
+
+}  // namespace topogeo::test

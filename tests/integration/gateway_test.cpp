@@ -1,0 +1,193 @@
+// The gateway on emulated devices: what it gives, how it comes back from faults, and that the base
+// stops whenever it must.
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include "gateway_fixture.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kFault_s = 0.4;
+
+TEST_F(GatewayOnDevices, GivesScansAndOdometryInOrderAndSaysWhenItEnds) {
+  start(25);
+  gateway_->send_signal(SIGTERM);
+  ASSERT_TRUE(wait_for([&] { return end_.has_value(); }));
+  EXPECT_EQ(gateway_->wait(), 0) << gateway_->err();
+  ASSERT_TRUE(wait_for([&] { return scans_.size() >= end_->count(); }));
+  EXPECT_EQ(scans_.size(), end_->count());
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    EXPECT_EQ(scans_[i].sequence_number(), i);
+    EXPECT_EQ(scans_[i].ranges_m().size(), 361U);
+    if (i > 0) {
+      EXPECT_GT(scans_[i].stamp_ns(), scans_[i - 1].stamp_ns());
+    }
+  }
+  for (std::size_t i = 1; i < odometry_.size(); ++i) {
+    EXPECT_GT(odometry_[i].stamp_ns(), odometry_[i - 1].stamp_ns());
+  }
+  // A room: most beams of a scan meet something.
+  const auto& ranges = scans_.back().ranges_m();
+  EXPECT_GT(std::count_if(ranges.begin(), ranges.end(), [](float r) { return r > 0.0F; }), 200);
+}
+
+TEST_F(GatewayOnDevices, DrivesAndHaltsWhenCommandsCease) {
+  start();
+  ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
+  EXPECT_TRUE(base_is(msg::kBaseMoving));
+  ASSERT_TRUE(wait_for([&] { return truth_->linear_mps() == 0.0 && base_is(msg::kBaseReady); }));
+  ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
+}
+
+TEST_F(GatewayOnDevices, EndOfTheGatewayStopsTheBase) {
+  start();
+  ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
+  gateway_->send_signal(SIGTERM);
+  EXPECT_TRUE(wait_for([&] { return truth_->linear_mps() == 0.0; }));
+  EXPECT_EQ(gateway_->wait(), 0);
+  // A gateway that is gone without a word: the base's own watchdog stops it.
+  gateway_.reset();
+  base_status_.reset();
+  start_gateway();
+  ASSERT_TRUE(wait_for([&] { return base_is(msg::kBaseReady) && motion_.matched() > 0; }));
+  ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
+  gateway_->send_signal(SIGKILL);
+  EXPECT_TRUE(wait_for([&] { return truth_->linear_mps() == 0.0; }));
+}
+
+TEST_F(GatewayOnDevices, HaltHoldsUntilReset) {
+  start();
+  ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
+  tell_base(msg::kBaseHalt);
+  ASSERT_TRUE(drive_until(
+      0.2, 0.0, [&] { return truth_->linear_mps() == 0.0 && base_is(msg::kBaseHalted); }));
+  EXPECT_FALSE(base_status_->commands_taken());
+  tell_base(msg::kBaseReset);
+  EXPECT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
+}
+
+TEST_F(GatewayOnDevices, EmergencyStopHoldsUntilReset) {
+  start();
+  strike(msg::kSimulatedEmergencyStop, msg::kSimulatedBase, 2.0);
+  ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return base_is(msg::kBaseEmergencyStop); }));
+  EXPECT_FALSE(base_status_->commands_taken());
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+  // Power is back by then, and the robot must not jump.
+  ASSERT_TRUE(drive_until(0.2, 0.0, [&] { return std::chrono::steady_clock::now() > end; }));
+  EXPECT_TRUE(base_is(msg::kBaseEmergencyStop));
+  EXPECT_EQ(truth_->linear_mps(), 0.0);
+  tell_base(msg::kBaseReset);
+  EXPECT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
+}
+
+struct FaultCase {
+  const char* name;
+  msg::SimulatedFault fault;
+  msg::SimulatedDevice device;
+};
+
+class GatewayFaults : public GatewayOnDevices, public testing::WithParamInterface<FaultCase> {};
+
+/// Five times: the fault begins and ends, and what the device gives comes again, from after the
+/// end.
+TEST_P(GatewayFaults, ComesBackFiveTimes) {
+  start();
+  const bool laser = GetParam().device == msg::kSimulatedLaser;
+  for (int i = 0; i < 5; ++i) {
+    strike(GetParam().fault, GetParam().device, kFault_s);
+    const auto end = std::chrono::steady_clock::now() +
+                     std::chrono::milliseconds(static_cast<int>(1000.0 * kFault_s));
+    ASSERT_TRUE(wait_for([&] { return std::chrono::steady_clock::now() > end; }));
+    const std::size_t scans = scans_.size();
+    const std::size_t samples = odometry_.size();
+    ASSERT_TRUE(wait_for([&] {
+      return laser ? laser_is(msg::kLaserRunning) && scans_.size() >= scans + 5
+                   : base_is(msg::kBaseReady) && odometry_.size() >= samples + 5;
+    })) << GetParam().name
+        << ' ' << i << '\n'
+        << gateway_->err();
+  }
+  for (std::size_t i = 1; i < scans_.size(); ++i) {
+    EXPECT_EQ(scans_[i].sequence_number(), scans_[i - 1].sequence_number() + 1);
+    EXPECT_GT(scans_[i].stamp_ns(), scans_[i - 1].stamp_ns());
+    EXPECT_EQ(scans_[i].ranges_m().size(), 361U);
+  }
+  if (GetParam().fault == msg::kSimulatedUnplug) {
+    EXPECT_TRUE(
+        wait_for([&] { return counter(laser ? "laser_port_opened" : "base_port_opened") >= 6.0; }));
+  }
+  gateway_->send_signal(SIGTERM);
+  EXPECT_EQ(gateway_->wait(), 0) << gateway_->err();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, GatewayFaults,
+    testing::Values(FaultCase{"laser_bad_crc", msg::kSimulatedBadCrc, msg::kSimulatedLaser},
+                    FaultCase{"laser_truncated", msg::kSimulatedTruncated, msg::kSimulatedLaser},
+                    FaultCase{"laser_silence", msg::kSimulatedSilence, msg::kSimulatedLaser},
+                    FaultCase{"laser_garbage", msg::kSimulatedGarbage, msg::kSimulatedLaser},
+                    FaultCase{"laser_unplug", msg::kSimulatedUnplug, msg::kSimulatedLaser},
+                    FaultCase{"laser_restart", msg::kSimulatedRestart, msg::kSimulatedLaser},
+                    FaultCase{"laser_stuck", msg::kSimulatedStuckScan, msg::kSimulatedLaser},
+                    FaultCase{"base_truncated", msg::kSimulatedTruncated, msg::kSimulatedBase},
+                    FaultCase{"base_silence", msg::kSimulatedSilence, msg::kSimulatedBase},
+                    FaultCase{"base_garbage", msg::kSimulatedGarbage, msg::kSimulatedBase},
+                    FaultCase{"base_unplug", msg::kSimulatedUnplug, msg::kSimulatedBase},
+                    FaultCase{"base_restart", msg::kSimulatedRestart, msg::kSimulatedBase},
+                    FaultCase{"base_echo", msg::kSimulatedEcho, msg::kSimulatedBase}),
+    [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST_F(GatewayOnDevices, DropsAreCountedByReason) {
+  start();
+  strike(msg::kSimulatedBadCrc, msg::kSimulatedLaser, 1.0);
+  EXPECT_TRUE(wait_for([&] { return counter("dropped: bad checksum") > 0.0; }));
+  EXPECT_TRUE(wait_for([&] { return !laser_status_->drops().empty(); }));
+}
+
+TEST_F(GatewayOnDevices, SaysWhichPortItMisses) {
+  start_gateway();  // without a simulator
+  ASSERT_TRUE(wait_for([&] { return laser_status_ && base_status_; }));
+  ASSERT_TRUE(wait_for([&] {
+    return std::string(laser_status_->reason().c_str()).find("laser.port") != std::string::npos;
+  }));
+  EXPECT_TRUE(laser_is(msg::kLaserOffline));
+  EXPECT_TRUE(base_is(msg::kBaseOffline));
+  EXPECT_THAT(std::string(base_status_->reason().c_str()), HasSubstr("base.port"));
+  gateway_->send_signal(SIGTERM);
+  EXPECT_EQ(gateway_->wait(), 0);
+}
+
+/// Exit code and message of a gateway that cannot start.
+class GatewayMistakes : public testing::Test {
+ protected:
+  std::string told(const std::string& text) {
+    const std::filesystem::path file = scratch_ / "devices.yaml";
+    std::ofstream(file) << text;
+    Program gateway(scratch_, "sensor_gateway",
+                    {"--domain", own_domain(), "--devices", file.string()});
+    EXPECT_EQ(gateway.wait(), 2);
+    return gateway.err();
+  }
+  Scratch scratch_;
+};
+
+TEST_F(GatewayMistakes, FileOfDevicesIsChecked) {
+  EXPECT_THAT(told("laser:\n  prt: /dev/ttyS0\n"), HasSubstr("devices.yaml:2: key 'laser.prt'"));
+  EXPECT_THAT(told("laser:\n  baud: fast\n"), HasSubstr("'laser.baud' = 'fast'"));
+  EXPECT_THAT(told("laser:\n  port: /dev/x\n  baud: 9601\n"), HasSubstr("9601"));
+  EXPECT_THAT(told("laser:\n  port: /dev/x\n  detection_bauds: \"9600 slow\"\n"),
+              HasSubstr("laser.detection_bauds"));
+  EXPECT_THAT(told("laser:\n  port: /dev/x\nbase:\n  port: /dev/x\n"), HasSubstr("another port"));
+  EXPECT_THAT(told("laser:\n  baud: 9600\n"), HasSubstr("at least one port"));
+}
+
+}  // namespace
+}  // namespace topogeo::test

@@ -1,0 +1,123 @@
+// topogeo record and topogeo check-log.
+#include <csignal>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Record : public testing::Test {
+ protected:
+  /// Replays `log` and records what the gateway gives of it.
+  void record(const fs::path& log, const fs::path& out) {
+    const std::string domain = own_domain();
+    Program recorder(
+        scratch_, "topogeo",
+        {"record", "--domain", domain, "--partition", "record", "--out", out.string()});
+    Program gateway(
+        scratch_, "sensor_gateway",
+        {"--domain", domain, "--partition", "record", "--log", log.string(), "--exit-at-end"});
+    EXPECT_EQ(recorder.wait(), 0) << recorder.err();
+    EXPECT_EQ(gateway.wait(), 0) << gateway.err();
+  }
+
+  std::string map_of(const fs::path& log, const std::string& name) {
+    const fs::path out = scratch_ / name;
+    Program map(scratch_, "topogeo", {"map", "--log", log.string(), "--out", out.string()});
+    EXPECT_EQ(map.wait(), 0) << map.err();
+    return read_file(out / "map.pb");
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(Record, ReplayOfARecordIsTheSame) {
+  const fs::path log = scratch_ / "log.clf";
+  write_log("corridor", log);
+  record(log, scratch_ / "first.clf.gz");
+  record(scratch_ / "first.clf.gz", scratch_ / "second.clf");
+  record(scratch_ / "second.clf", scratch_ / "third.clf");
+  const std::string second = read_file(scratch_ / "second.clf");
+  EXPECT_GT(second.size(), 10'000U);
+  EXPECT_TRUE(second == read_file(scratch_ / "third.clf"));
+  const std::string map = map_of(log, "map");
+  EXPECT_FALSE(map.empty());
+  EXPECT_TRUE(map == map_of(scratch_ / "first.clf.gz", "map_first"));
+  EXPECT_TRUE(map == map_of(scratch_ / "third.clf", "map_third"));
+}
+
+TEST_F(Record, MapOfARunIsTheMapOfItsRecord) {
+  const fs::path log = scratch_ / "log.clf";
+  write_log("corridor", log);
+  Program run(scratch_, "topogeo",
+              {"run", "--log", log.string(), "--out", (scratch_ / "run").string(), "--record",
+               (scratch_ / "run.clf.gz").string(), "--workers", "0", "--domain", own_domain()});
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(scratch_ / "run.clf.gz", "map"));
+}
+
+TEST_F(Record, WhatCannotBeRecordedIsSaid) {
+  Program nowhere(scratch_, "topogeo", {"record", "--out", "/no/such/folder/x.clf"});
+  EXPECT_EQ(nowhere.wait(), 3);
+  EXPECT_THAT(nowhere.err(), HasSubstr("/no/such/folder/x.clf"));
+  Program silent(scratch_, "topogeo",
+                 {"record", "--domain", own_domain(), "--out", (scratch_ / "x.clf").string()});
+  for (int i = 0; i < 1000 && !fs::exists(scratch_ / "x.clf"); ++i) ::usleep(10'000);
+  ::usleep(500'000);  // until it listens to signals; sooner, it ends with another code
+  silent.send_signal(SIGINT);
+  EXPECT_NE(silent.wait(), 0);
+}
+
+class CheckLog : public testing::Test {
+ protected:
+  int run(const std::vector<std::string>& words) {
+    std::vector<std::string> all = {"check-log"};
+    all.insert(all.end(), words.begin(), words.end());
+    Program program(scratch_, "topogeo", all);
+    const int code = program.wait();
+    out_ = program.out();
+    err_ = program.err();
+    return code;
+  }
+  Scratch scratch_;
+  std::string out_;
+  std::string err_;
+};
+
+TEST_F(CheckLog, ExitCodeTellsCleanFromFaultyFromUnreadable) {
+  const fs::path log = scratch_ / "log.clf";
+  write_log("corridor", log);
+  EXPECT_EQ(run({log.string()}), 0) << out_;
+  EXPECT_THAT(out_, HasSubstr("no fault found"));
+  std::ofstream(log, std::ios::app) << "FLASER 3 1 2\n";
+  EXPECT_EQ(run({log.string()}), 1);
+  EXPECT_THAT(out_, HasSubstr("truncated line"));
+  EXPECT_EQ(run({(scratch_ / "missing.clf").string()}), 2);
+  EXPECT_THAT(err_, HasSubstr("missing.clf"));
+  EXPECT_EQ(run({log.string(), "--gap", "-1"}), 2);
+}
+
+TEST_F(CheckLog, JsonSaysTheSame) {
+  const fs::path log = scratch_ / "log.clf";
+  write_log("corridor", log);
+  std::ofstream(log, std::ios::app) << "FLASER 3 1 2 \xff\xfe\n";
+  ASSERT_EQ(run({"--json", log.string()}), 1);
+  const auto json = nlohmann::json::parse(out_);
+  EXPECT_EQ(json["faults"], 1);
+  EXPECT_EQ(json["counts"]["truncated line"], 1);
+  EXPECT_EQ(json["findings"].size(), 1U);
+  EXPECT_GT(json["scans"], 10);
+  EXPECT_EQ(json["laser_lines"], json["scans"].get<int>() + 1);
+}
+
+}  // namespace
+}  // namespace topogeo::test

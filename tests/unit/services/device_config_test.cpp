@@ -1,0 +1,119 @@
+#include "sensor_gateway/device_config.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace topogeo::sensor_gateway {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+DeviceConfig config_of(const std::string& text) {
+  DeviceFile file;
+  support::load_yaml_text(text, "devices.yaml", describe(file));
+  return to_config(file);
+}
+
+TEST(DeviceConfig, DefaultsAreThoseOfTheDrivers) {
+  const DeviceConfig config = config_of("laser.port: /dev/a\nbase.port: /dev/b\n");
+  const devices::PlsSettings laser;
+  EXPECT_EQ(config.laser_port, "/dev/a");
+  EXPECT_EQ(config.laser.baud, laser.baud);
+  EXPECT_EQ(config.laser.detection_bauds, laser.detection_bauds);
+  EXPECT_EQ(config.laser.parities, laser.parities);
+  EXPECT_EQ(config.laser.ack_timeout_ns, laser.ack_timeout_ns);
+  EXPECT_EQ(config.laser.sweep_to_send_ns, laser.sweep_to_send_ns);
+  EXPECT_EQ(config.laser.first_no_return_code, laser.first_no_return_code);
+  const devices::BaseSettings base;
+  EXPECT_EQ(config.base_port, "/dev/b");
+  EXPECT_EQ(config.base.line, base.line);
+  EXPECT_EQ(config.base.report_mask, base.report_mask);
+  EXPECT_EQ(config.base.torque, base.torque);
+  EXPECT_EQ(config.base.calibration.counts_per_m, base.calibration.counts_per_m);
+}
+
+TEST(DeviceConfig, KeysReachTheDrivers) {
+  const DeviceConfig config = config_of(R"(
+laser:
+  port: /dev/a
+  kind: lms
+  baud: 38400
+  detection_bauds: "38400 9600"
+  settle_s: 0.5
+  first_no_return_code: 8000
+base:
+  port: /dev/b
+  baud: 38400
+  dialect: binary
+  counts_per_m: 25630
+  torque: 20
+odometry:
+  wait_s: 0.15
+)");
+  EXPECT_THAT(config.laser.parities, ElementsAre(devices::Parity::kNone));
+  EXPECT_THAT(config.laser.detection_bauds, ElementsAre(38'400U, 9600U));
+  EXPECT_EQ(config.laser.settle_ns, 500'000'000);
+  EXPECT_EQ(config.laser.first_no_return_code, 8000);
+  EXPECT_EQ(config.base.dialect, devices::BaseDialect::kBinary);
+  EXPECT_EQ(config.base.line.baud, 38'400U);
+  EXPECT_EQ(config.base.calibration.counts_per_m, 25'630.0);
+  EXPECT_EQ(config.base.torque, std::uint8_t{20});
+  EXPECT_EQ(config.odometry_wait_ns, 150'000'000);
+}
+
+TEST(DeviceConfig, PrintedFileReadsBackToTheSame) {
+  DeviceFile file;
+  file.laser.port = "/dev/ttyUSB0";
+  file.base.settings.calibration.counts_per_m = 27'444.6;
+  std::ostringstream text;
+  support::write_yaml(describe(file), text);
+  DeviceFile again;
+  support::load_yaml_text(text.str(), "printed", describe(again));
+  EXPECT_EQ(support::effective(describe(again)).fingerprint,
+            support::effective(describe(file)).fingerprint);
+}
+
+/// A change of a key, its default or its reason changes the example, too:
+/// topogeo config --devices --config deploy/devices.example.yaml
+TEST(DeviceConfig, ExampleNamesEveryKeyWithItsDefault) {
+  DeviceFile file;
+  const support::ConfigSchema schema = describe(file);
+  file.laser.port = "/dev/ttyUSB0";
+  file.base.port = "/dev/ttyUSB1";
+  std::ostringstream expected;
+  support::write_yaml(schema, expected);
+  std::ifstream example(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "deploy/devices.example.yaml");
+  const std::string text((std::istreambuf_iterator<char>(example)), {});
+  EXPECT_EQ(text, expected.str());
+}
+
+TEST(DeviceConfig, MistakesNameTheKey) {
+  const auto why = [](const std::string& text) -> std::string {
+    try {
+      (void)config_of(text);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(why("laser.port: /dev/a\nlaser.speed: 3\n"), HasSubstr("laser.speed"));
+  EXPECT_THAT(why("laser.port: /dev/a\nlaser.baud: 12345\n"), HasSubstr("12345"));
+  EXPECT_THAT(why("laser.port: /dev/a\nlaser.detection_bauds: 9600,500000\n"),
+              HasSubstr("laser.detection_bauds"));
+  EXPECT_THAT(why("laser.port: /dev/a\nlaser.password: short\n"), HasSubstr("password"));
+  EXPECT_THAT(why("base.port: /dev/b\nbase.counts_per_m: -1\n"), HasSubstr("base.counts_per_m"));
+  EXPECT_THAT(why("base.port: /dev/b\nbase.command_timeout_s: 2\n"),
+              HasSubstr("base.command_timeout_s"));
+  EXPECT_THAT(why("odometry.wait_s: 0\n"), HasSubstr("at least one port"));
+  EXPECT_THAT(why("laser.port: /dev/a\nbase.port: /dev/a\n"), HasSubstr("another port"));
+}
+
+}  // namespace
+}  // namespace topogeo::sensor_gateway

@@ -1,0 +1,151 @@
+#include "sensor_gateway/scan_gate.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "sensor_gateway/odometry_track.hpp"
+
+namespace topogeo::sensor_gateway {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr double kTolerance = 1e-12;
+
+devices::PlsScan scan_at(std::int64_t stamp_ns, std::size_t beams = 3) {
+  devices::PlsScan scan;
+  scan.stamp_ns = stamp_ns;
+  scan.angle_min_rad = -1.0;
+  scan.angle_step_rad = 0.1;
+  scan.ranges_m.assign(beams, 2.0F);
+  return scan;
+}
+
+TEST(OdometryTrack, BetweenTwoSamplesIsOnTheWayBetweenThem) {
+  OdometryTrack track(0);
+  const double heading_rad = std::numbers::pi - 0.1;
+  EXPECT_TRUE(track.add({100 * kMs, {1.0, 2.0, heading_rad}}));
+  EXPECT_TRUE(track.add({200 * kMs, {2.0, 0.0, -heading_rad}}));  // over pi, the shorter way
+  const auto answer = track.at(125 * kMs);
+  ASSERT_TRUE(answer);
+  EXPECT_FALSE(answer->extrapolated);
+  EXPECT_NEAR(answer->T_odom_robot.x_m, 1.25, kTolerance);
+  EXPECT_NEAR(answer->T_odom_robot.y_m, 1.5, kTolerance);
+  EXPECT_NEAR(answer->T_odom_robot.theta_rad, std::numbers::pi - 0.05, kTolerance);
+  EXPECT_EQ(track.at(100 * kMs)->T_odom_robot, (geometry::Pose2{1.0, 2.0, heading_rad}));
+  EXPECT_EQ(track.at(200 * kMs)->T_odom_robot, (geometry::Pose2{2.0, 0.0, -heading_rad}));
+}
+
+TEST(OdometryTrack, AfterTheLastSampleItsSpeedsGoOn) {
+  OdometryTrack track(500 * kMs);
+  track.add({0, {0.0, 0.0, std::numbers::pi / 2.0}, 0.5, 0.0});
+  const auto straight = track.at(200 * kMs);
+  ASSERT_TRUE(straight);
+  EXPECT_TRUE(straight->extrapolated);
+  EXPECT_NEAR(straight->T_odom_robot.x_m, 0.0, kTolerance);
+  EXPECT_NEAR(straight->T_odom_robot.y_m, 0.1, kTolerance);
+  track.add({1000 * kMs, {0.0, 0.0, 0.0}, 0.5, 0.5});
+  const auto arc = track.at(1200 * kMs);
+  ASSERT_TRUE(arc);
+  EXPECT_NEAR(arc->T_odom_robot.theta_rad, 0.1, kTolerance);
+  // A circle of 1 m: half a millimetre's difference between arc and chord at most.
+  EXPECT_NEAR(arc->T_odom_robot.x_m, std::sin(0.1), 5e-4);
+  EXPECT_NEAR(arc->T_odom_robot.y_m, 1.0 - std::cos(0.1), 5e-4);
+}
+
+TEST(OdometryTrack, WhatIsNotKnownIsNotAnswered) {
+  OdometryTrack track(500 * kMs);
+  EXPECT_FALSE(track.at(0));
+  EXPECT_FALSE(track.last_ns());
+  track.add({100 * kMs, {}});
+  EXPECT_FALSE(track.at(99 * kMs));
+  EXPECT_TRUE(track.at(600 * kMs));
+  EXPECT_FALSE(track.at(600 * kMs + 1));
+  EXPECT_FALSE(track.add({100 * kMs, {9.0, 9.0, 9.0}}));  // not after the one before
+  EXPECT_EQ(track.at(100 * kMs)->T_odom_robot, geometry::Pose2{});
+  track.add({100 * kMs + OdometryTrack::kKept_ns + 1, {}});
+  EXPECT_FALSE(track.at(100 * kMs));  // forgotten
+}
+
+TEST(ScanGate, ScansAreNumberedFromWhenSomebodyReads) {
+  ScanGate gate({.has_base = false});
+  gate.add(scan_at(1), 1);
+  EXPECT_TRUE(gate.take(1).empty());
+  EXPECT_EQ(gate.dropped(ScanDrop::kNoReader), 1U);
+  gate.open();
+  gate.add(scan_at(2), 2);
+  gate.add(scan_at(3), 3);
+  const auto scans = gate.take(3);
+  ASSERT_EQ(scans.size(), 2U);
+  EXPECT_EQ(scans[0].sequence, 0U);
+  EXPECT_EQ(scans[1].sequence, 1U);
+  EXPECT_EQ(scans[1].stamp_ns, 3);
+  EXPECT_EQ(scans[1].T_odom_robot, geometry::Pose2{});  // there is no base
+}
+
+TEST(ScanGate, TimeAndBeamsMustFit) {
+  ScanGate gate({.has_base = false});
+  gate.open();
+  for (const auto& scan : {scan_at(10), scan_at(10), scan_at(9), scan_at(11, 4), scan_at(12)}) {
+    gate.add(scan, 12);
+  }
+  const auto scans = gate.take(12);
+  ASSERT_EQ(scans.size(), 2U);
+  EXPECT_EQ(scans[1].stamp_ns, 12);
+  EXPECT_EQ(scans[1].sequence, 1U);
+  EXPECT_EQ(gate.dropped(ScanDrop::kTime), 2U);
+  EXPECT_EQ(gate.dropped(ScanDrop::kGeometry), 1U);
+}
+
+TEST(ScanGate, RangesBeyondTheLimitAreNoReturnAsInALog) {
+  ScanGate gate({.has_base = false, .range_max_m = 5.0});
+  gate.open();
+  devices::PlsScan scan = scan_at(1);
+  scan.ranges_m = {4.999F, 5.0F, 0.0F};
+  gate.add(scan, 1);
+  EXPECT_EQ(gate.take(1).at(0).ranges_m, (std::vector<float>{4.999F, 0.0F, 0.0F}));
+}
+
+TEST(ScanGate, WithoutWaitingOdometryIsCarriedOn) {
+  ScanGate gate({.longest_extrapolation_ns = 500 * kMs});
+  gate.open();
+  gate.add(scan_at(50 * kMs), 60 * kMs);
+  EXPECT_TRUE(gate.take(60 * kMs).empty());
+  EXPECT_EQ(gate.dropped(ScanDrop::kNoOdometry), 1U);
+  gate.add({100 * kMs, {1.0, 0.0, 0.0}, 1.0, 0.0});
+  gate.add(scan_at(150 * kMs), 160 * kMs);
+  const auto scans = gate.take(160 * kMs);
+  ASSERT_EQ(scans.size(), 1U);
+  EXPECT_NEAR(scans[0].T_odom_robot.x_m, 1.05, kTolerance);
+  EXPECT_EQ(gate.extrapolated(), 1U);
+  gate.add(scan_at(601 * kMs), 602 * kMs);  // the base has been silent for too long
+  EXPECT_TRUE(gate.take(602 * kMs).empty());
+  EXPECT_EQ(gate.dropped(ScanDrop::kNoOdometry), 2U);
+}
+
+TEST(ScanGate, WaitsForOdometryAsLongAsItMay) {
+  ScanGate gate({.odometry_wait_ns = 100 * kMs, .longest_extrapolation_ns = 500 * kMs});
+  gate.open();
+  EXPECT_EQ(gate.due_ns(), std::numeric_limits<std::int64_t>::max());
+  gate.add({0, {0.0, 0.0, 0.0}, 1.0, 0.0});
+  gate.add(scan_at(50 * kMs), 60 * kMs);
+  EXPECT_TRUE(gate.take(60 * kMs).empty());
+  EXPECT_EQ(gate.due_ns(), 160 * kMs);
+  gate.add({100 * kMs, {0.2, 0.0, 0.0}, 1.0, 0.0});  // faster than its speed said
+  ASSERT_EQ(gate.due_ns(), 160 * kMs);
+  const auto bracketed = gate.take(101 * kMs);
+  ASSERT_EQ(bracketed.size(), 1U);
+  EXPECT_NEAR(bracketed[0].T_odom_robot.x_m, 0.1, kTolerance);
+  EXPECT_EQ(gate.extrapolated(), 0U);
+  gate.add(scan_at(150 * kMs), 160 * kMs);
+  EXPECT_TRUE(gate.take(259 * kMs).empty());
+  const auto late = gate.take(260 * kMs);  // no odometry came
+  ASSERT_EQ(late.size(), 1U);
+  EXPECT_NEAR(late[0].T_odom_robot.x_m, 0.25, kTolerance);
+  EXPECT_EQ(gate.extrapolated(), 1U);
+}
+
+}  // namespace
+}  // namespace topogeo::sensor_gateway
