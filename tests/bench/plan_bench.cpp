@@ -93,7 +93,9 @@ void plan_graph(benchmark::State& state) {
   }
   const RouteGraph graph(std::size_t{kSide} * kSide, edges);
   for (auto _ : state) {
-    const auto node = [&random] { return static_cast<std::uint32_t>(random.below(kSide * kSide)); };
+    const auto node = [&random] {
+      return static_cast<std::uint32_t>(random.below(std::uint64_t{kSide} * kSide));
+    };
     const std::vector<GraphAccess> entries{{node(), 0.0}};
     const std::vector<GraphAccess> exits{{node(), 0.0}};
     benchmark::DoNotOptimize(graph.cheapest(entries, exits));
