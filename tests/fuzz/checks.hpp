@@ -34,8 +34,8 @@ std::size_t check_map_file(std::string_view bytes);
 std::size_t check_sick_decoder(std::string_view bytes);
 
 /// Takes `bytes` as what came over the line of a B21 base, in both dialects, through the decoder,
-/// cut in several ways, and through the driver. Returns how many messages the decoders found. Throws
-/// BrokenPromise.
+/// cut in several ways, and through the driver. Returns how many messages the decoders found.
+/// Throws BrokenPromise.
 std::size_t check_mcp_decoder(std::string_view bytes);
 
 }  // namespace topogeo::fuzz

@@ -1,5 +1,5 @@
-// The check word at the end of every telegram of SICK PLS and LMS lasers. It steps once per byte, not
-// once per bit, so it is none of the usual CRC-16 functions.
+// The check word at the end of every telegram of SICK PLS and LMS lasers. It steps once per byte,
+// not once per bit, so it is none of the usual CRC-16 functions.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace topogeo::devices {
 
-/// The check word of `bytes`, which are a telegram from its STX up to the last byte before the check
-/// word. It is sent low byte first.
+/// The check word of `bytes`, which are a telegram from its STX up to the last byte before the
+/// check word. It is sent low byte first.
 [[nodiscard]] std::uint16_t sick_crc(std::span<const std::uint8_t> bytes);
 
 }  // namespace topogeo::devices

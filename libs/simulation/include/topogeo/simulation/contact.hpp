@@ -22,8 +22,8 @@ struct FreeWay {
 FreeWay free_way(const World& scene, const Eigen::Vector2d& from_m,
                  const Eigen::Vector2d& direction, double length_m, double radius_m);
 
-/// The point nearest to the disc's centre of all that overlaps the disc by more than 0.1 mm; nothing
-/// if nothing does.
+/// The point nearest to the disc's centre of all that overlaps the disc by more than 0.1 mm;
+/// nothing if nothing does.
 std::optional<Eigen::Vector2d> overlap_m(const World& scene, const Eigen::Vector2d& center_m,
                                          double radius_m);
 

@@ -1,5 +1,5 @@
-// An emulated device at the other end of a serial line: bytes in, bytes out, no port and no clock of
-// its own. See devices/serial_driver.hpp for the host's end.
+// An emulated device at the other end of a serial line: bytes in, bytes out, no port and no clock
+// of its own. See devices/serial_driver.hpp for the host's end.
 #pragma once
 
 #include <cstdint>
