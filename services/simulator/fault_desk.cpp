@@ -101,6 +101,8 @@ void FaultDesk::tick() {
                active.fault.device == Device::kBase && now_ns >= garbage_ns_) {
       garbage_ns_ = now_ns + kGarbagePeriod_ns;
       devices_.base().send_garbage(kGarbage_bytes, now_ns);
+    } else if (active.fault.kind == msg::kSimulatedJoystick) {
+      set(active.fault, true);  // who holds it drives on whatever the host says
     }
   }
   std::erase_if(active_, [now_ns](const Active& active) { return active.end_ns <= now_ns; });

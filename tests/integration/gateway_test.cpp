@@ -88,11 +88,26 @@ TEST_F(GatewayOnDevices, EmergencyStopHoldsUntilReset) {
   EXPECT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
 }
 
+TEST_F(GatewayOnDevices, JoystickIsSeenAndLetGo) {
+  start();
+  strike(msg::kSimulatedJoystick, msg::kSimulatedBase, 10.0);
+  ASSERT_TRUE(wait_for([&] { return base_is(msg::kBaseJoystick); })) << gateway_->err();
+  EXPECT_FALSE(base_status_->commands_taken());
+  ASSERT_TRUE(wait_for([&] { return base_is(msg::kBaseReady); })) << gateway_->err();
+  EXPECT_EQ(truth_->linear_mps(), 0.0);
+  EXPECT_TRUE(drive_until(0.2, 0.0, [&] { return truth_->linear_mps() > 0.15; }));
+}
+
 struct FaultCase {
   const char* name;
   msg::SimulatedFault fault;
   msg::SimulatedDevice device;
 };
+
+// Without it a test's name would hold the address of the name.
+void PrintTo(const FaultCase& fault, std::ostream* out) {
+  *out << fault.name;
+}
 
 class GatewayFaults : public GatewayOnDevices, public testing::WithParamInterface<FaultCase> {};
 
