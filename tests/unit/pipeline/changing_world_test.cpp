@@ -91,7 +91,7 @@ TEST(ChangingWorldTest, PeopleWhoWalkAboutNeitherBendTheMapNorEnterIt) {
   EXPECT_NEAR(branch_length_m(busy.document.global_map), length_m, 0.1 * length_m);
 }
 
-// A corridor driven there and back three times (18 m each way), with a room behind a door in its
+// A corridor driven there and back twice (18 m each way), with a room behind a door in its
 // northern wall at x = 10.
 std::string corridor(const std::string& door) {
   return "name: corridor with a door\n"
@@ -117,7 +117,9 @@ TEST(ChangingWorldTest, ADoorThatOpensLaterEntersTheMapAndDoesNotBendIt) {
     return map_world(simulation::parse_world(corridor(door), "test"), 0);
   };
   const Mapped shut = mapped("{at: 10, width: 1.0, open: []}");
-  const Mapped opened = mapped("{at: 10, width: 1.0, open: [[36, 200]]}");
+  // Shut on the first of the four passes: a branch needs 40 % of the votes, those of the newest
+  // views, and half of the passes is too near to that to be told from noise.
+  const Mapped opened = mapped("{at: 10, width: 1.0, open: [[18, 200]]}");
   const Mapped open = mapped("{at: 10, width: 1.0}");
   for (const Mapped* m : {&shut, &opened, &open}) {
     EXPECT_LT(m->worst_loop_m, kFalseLoop_m);
