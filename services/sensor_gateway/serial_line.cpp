@@ -8,6 +8,15 @@
 
 namespace topogeo::sensor_gateway {
 
+namespace {
+
+/// A timer that comes later than this tells that the process did not get to run.
+constexpr std::int64_t kLate_ns = 50'000'000;
+/// For the port's thread, to read what came meanwhile.
+constexpr std::chrono::milliseconds kReadTime{10};
+
+}  // namespace
+
 SerialLine::SerialLine(messaging::EventLoop& loop, devices::SerialDriver& driver,
                        const PortOptions& options, AfterHandler after)
     : loop_(loop),
@@ -78,6 +87,13 @@ void SerialLine::carry_out() {
 void SerialLine::tick() {
   timer_armed_ = false;
   const std::int64_t now = now_ns();
+  if (now - timer_due_ns_ > kLate_ns && !deferred_) {
+    // The device is not silent because nobody listened.
+    deferred_ = true;
+    timer_armed_ = true;
+    timer_ = loop_.call_after(kReadTime, [this] { tick(); });
+    return;
+  }
   if (now >= driver_.due_ns()) driver_.tick(now);
   after(now);
 }
@@ -89,6 +105,7 @@ void SerialLine::arm() {
   timer_armed_ = due_ns != std::numeric_limits<std::int64_t>::max();
   if (!timer_armed_) return;
   timer_due_ns_ = due_ns;
+  deferred_ = false;
   const std::int64_t wait_ns = std::max<std::int64_t>(0, due_ns - now_ns());
   timer_ = loop_.call_after(std::chrono::nanoseconds(wait_ns), [this] { tick(); });
 }

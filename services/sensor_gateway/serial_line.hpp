@@ -71,6 +71,7 @@ class SerialLine {
   std::uint64_t timer_ = 0;
   std::int64_t timer_due_ns_ = 0;
   bool timer_armed_ = false;
+  bool deferred_ = false;              // the timer was late and waits for what is to be read
   std::shared_ptr<SerialLine*> self_;  // what the port's thread posts may come after the end
   std::unique_ptr<SerialPort> port_;
 };

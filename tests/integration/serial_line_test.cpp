@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <optional>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -132,6 +133,19 @@ TEST_F(SerialLineTest, OrdersAreCarriedOutInTheirOrder) {
   EXPECT_EQ(arriving(expected.size()), expected);
   EXPECT_TRUE(line_->wait_written(kPatience));
   EXPECT_EQ(terminal_.speed(), speed_t{B500000});  // of number 198
+}
+
+// Else a device would be called silent because the gateway did not get to run.
+TEST_F(SerialLineTest, AfterStandingStillReadsBeforeTimeIsUp) {
+  terminal_.plug();
+  start();
+  ASSERT_EQ(arriving(2).size(), 2U);
+  driver_.due_ns_ = steady_now_ns() + 10'000'000;
+  line_->carry_out();
+  std::this_thread::sleep_for(milliseconds(100));  // the loop does not run
+  const std::int64_t back_ns = steady_now_ns();
+  ASSERT_TRUE(wait_for([&] { return driver_.ticks_ > 0; }));
+  EXPECT_GE(driver_.last_ns_ - back_ns, 10'000'000);
 }
 
 TEST_F(SerialLineTest, UnpluggedAndPluggedInAgainFiveTimes) {
