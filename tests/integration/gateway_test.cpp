@@ -105,8 +105,8 @@ struct FaultCase {
 };
 
 // Without it a test's name would hold the address of the name.
-void PrintTo(const FaultCase& fault, std::ostream* out) {
-  *out << fault.name;
+std::ostream& operator<<(std::ostream& out, const FaultCase& fault) {
+  return out << fault.name;
 }
 
 class GatewayFaults : public GatewayOnDevices, public testing::WithParamInterface<FaultCase> {};
