@@ -1,6 +1,7 @@
 // The commands beside mapping: help, configuration, status, plan, demo, and the report of a run.
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -25,7 +26,7 @@ class CommandsTest : public testing::Test {
 
 TEST_F(CommandsTest, EveryProgramHasHelpAndVersion) {
   for (const char* name : {"topogeo", "sensor_gateway", "local_mapper", "localizer", "ga_worker",
-                           "map_store", "planner"}) {
+                           "map_store", "planner", "simulator"}) {
     Program help(scratch_, name, {"--help"});
     EXPECT_EQ(help.wait(), 0) << name;
     EXPECT_THAT(help.out(), HasSubstr("Usage: " + std::string(name)));
@@ -37,7 +38,8 @@ TEST_F(CommandsTest, EveryProgramHasHelpAndVersion) {
 
 TEST_F(CommandsTest, EverySubcommandHasHelp) {
   for (const char* name : {"run", "map", "demo", "status", "workers", "plan", "dvl", "config",
-                           "calibrate-odometry", "compare", "calibrate-laser"}) {
+                           "calibrate-odometry", "compare", "calibrate-laser", "simulate-route",
+                           "record", "check-log", "base", "simulator"}) {
     Program help(scratch_, "topogeo", {name, "--help"});
     EXPECT_EQ(help.wait(), 0) << name;
     EXPECT_THAT(help.out(), HasSubstr("Usage: topogeo " + std::string(name)));
@@ -143,6 +145,29 @@ TEST_F(CommandsTest, PlanRefusesWhatIsNoMap) {
   write_log("corridor", log);
   Program wrong(scratch_, "topogeo", {"plan", log, "--from", "0,0", "--to", "1,1"});
   EXPECT_EQ(wrong.wait(), 3);
+}
+
+TEST_F(CommandsTest, SimulateRouteShowsStepsAndPictureOrSaysWhyThereIsNone) {
+  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  const auto route = [&](const std::string& to, const std::string& picture) {
+    std::vector<std::string> words{"simulate-route", world, "--from", "1,1", "--to", to};
+    if (!picture.empty()) words.insert(words.end(), {"--picture", picture});
+    return Program(scratch_, "topogeo", words);
+  };
+  const std::filesystem::path picture = scratch_ / "route.png";
+  Program found = route("4.5,3", picture.string());
+  ASSERT_EQ(found.wait(), 0) << found.err();
+  EXPECT_THAT(found.out(), StartsWith("length "));  // round the table
+  EXPECT_THAT(found.out(), HasSubstr("advance"));
+  EXPECT_GT(std::filesystem::file_size(picture), 1000U);
+  for (const auto& [to, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"kitchen", "no place has the name 'kitchen'"},
+           {"100,1", "is outside of the grid"},
+           {"3,2", "is in an obstacle"}}) {
+    Program none = route(to, "");
+    EXPECT_EQ(none.wait(), 1) << to;
+    EXPECT_THAT(none.err(), HasSubstr(reason));
+  }
 }
 
 TEST_F(CommandsTest, DemoTellsTheErrorBeforeAndAfter) {
