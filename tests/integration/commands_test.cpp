@@ -163,7 +163,7 @@ TEST_F(CommandsTest, SimulateRouteShowsStepsAndPictureOrSaysWhyThereIsNone) {
   for (const auto& [to, reason] : std::vector<std::pair<std::string, std::string>>{
            {"kitchen", "no place has the name 'kitchen'"},
            {"100,1", "is outside of the grid"},
-           {"3,2", "is in an obstacle"}}) {
+           {"5,4", "is in an obstacle"}}) {
     Program none = route(to, "");
     EXPECT_EQ(none.wait(), 1) << to;
     EXPECT_THAT(none.err(), HasSubstr(reason));
