@@ -1,5 +1,7 @@
 #include "scan_gate.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace topogeo::sensor_gateway {
@@ -14,6 +16,8 @@ std::string_view describe(ScanDrop drop) {
       return "time not increasing";
     case ScanDrop::kGeometry:
       return "other beam geometry";
+    case ScanDrop::kRepeated:
+      return "repeated while moving";
   }
   return "unknown";
 }
@@ -64,6 +68,10 @@ std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {
     }
     if (answer->extrapolated) ++extrapolated_;
     out.T_odom_robot = answer->T_odom_robot;
+    if (repeats(scan.ranges_m, out.T_odom_robot)) {
+      drop(ScanDrop::kRepeated);
+      return std::nullopt;
+    }
   }
   geometry_ = geometry;
   last_stamp_ns_ = scan.stamp_ns;
@@ -77,6 +85,21 @@ std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {
     if (range_m >= limit_m) range_m = scan::Scan::kNoReturn;
   }
   return out;
+}
+
+// A laser that hangs gives old readings with new stamps, which would bend the map.
+bool ScanGate::repeats(const std::vector<float>& ranges_m, const geometry::Pose2& T_odom_robot) {
+  constexpr double kMoved_m = 0.01;
+  constexpr double kMoved_rad = 0.005;
+  const bool empty = std::all_of(ranges_m.begin(), ranges_m.end(),
+                                 [](float range_m) { return range_m == scan::Scan::kNoReturn; });
+  if (empty || ranges_m != seen_m_) {
+    seen_m_ = ranges_m;
+    T_odom_seen_ = T_odom_robot;
+    return false;
+  }
+  const geometry::Pose2 moved = geometry::between(T_odom_seen_, T_odom_robot);
+  return moved.position_m().norm() > kMoved_m || std::fabs(moved.theta_rad) > kMoved_rad;
 }
 
 }  // namespace topogeo::sensor_gateway

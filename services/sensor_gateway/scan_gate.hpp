@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "topogeo/devices/pls_scan.hpp"
+#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/scan/scan.hpp"
 
 #include "odometry_track.hpp"
@@ -23,9 +24,10 @@ enum class ScanDrop : std::uint8_t {
   kNoReader,    ///< nobody listens yet
   kNoOdometry,  ///< before the first, or too long after the last
   kTime,        ///< not after the scan before it
-  kGeometry     ///< other beams than the first scan
+  kGeometry,    ///< other beams than the first scan
+  kRepeated     ///< the readings of the one before to the last digit, but the robot has moved
 };
-inline constexpr std::size_t kScanDrops = 4;
+inline constexpr std::size_t kScanDrops = 5;
 /// A few words for people.
 std::string_view describe(ScanDrop drop);
 
@@ -71,6 +73,8 @@ class ScanGate {
   };
 
   std::optional<scan::Scan> finish(devices::PlsScan&& scan);
+  [[nodiscard]] bool repeats(const std::vector<float>& ranges_m,
+                             const geometry::Pose2& T_odom_robot);
   void drop(ScanDrop reason) { ++drops_[static_cast<std::size_t>(reason)]; }
 
   ScanGateOptions options_;
@@ -78,6 +82,8 @@ class ScanGate {
   bool open_ = false;
   std::deque<Waiting> waiting_;
   std::optional<Geometry> geometry_;
+  std::vector<float> seen_m_;    // ranges of the last scan ...
+  geometry::Pose2 T_odom_seen_;  // ... and where the robot was when they came first
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t next_sequence_ = 0;
   std::uint64_t extrapolated_ = 0;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -19,7 +21,8 @@ devices::PlsScan scan_at(std::int64_t stamp_ns, std::size_t beams = 3) {
   scan.stamp_ns = stamp_ns;
   scan.angle_min_rad = -1.0;
   scan.angle_step_rad = 0.1;
-  scan.ranges_m.assign(beams, 2.0F);
+  // No two are alike, as with a real laser.
+  scan.ranges_m.assign(beams, 2.0F + static_cast<float>(stamp_ns) * 1e-9F);
   return scan;
 }
 
@@ -123,6 +126,28 @@ TEST(ScanGate, WithoutWaitingOdometryIsCarriedOn) {
   gate.add(scan_at(601 * kMs), 602 * kMs);  // the base has been silent for too long
   EXPECT_TRUE(gate.take(602 * kMs).empty());
   EXPECT_EQ(gate.dropped(ScanDrop::kNoOdometry), 2U);
+}
+
+TEST(ScanGate, OldReadingsOfAMovingRobotAreDropped) {
+  ScanGate gate({});
+  gate.open();
+  const auto published = [&](std::int64_t stamp_ns, std::vector<float> ranges_m,
+                             const geometry::Pose2& T_odom_robot) {
+    devices::PlsScan scan = scan_at(stamp_ns);
+    scan.ranges_m = std::move(ranges_m);
+    gate.add({stamp_ns, T_odom_robot});
+    gate.add(std::move(scan), stamp_ns);
+    return gate.take(stamp_ns).size() == 1;
+  };
+  EXPECT_TRUE(published(10 * kMs, {1, 2, 3}, {}));
+  EXPECT_TRUE(published(20 * kMs, {1, 2, 3}, {}));  // it stands
+  EXPECT_TRUE(published(30 * kMs, {1, 2, 3}, {0.009, 0, 0}));
+  EXPECT_FALSE(published(40 * kMs, {1, 2, 3}, {0.018, 0, 0}));  // by small steps, too
+  EXPECT_FALSE(published(50 * kMs, {1, 2, 3}, {0, 0, 0.006}));
+  EXPECT_TRUE(published(60 * kMs, {1, 2, 4}, {0.1, 0, 0}));
+  EXPECT_TRUE(published(70 * kMs, {0, 0, 0}, {0.1, 0, 0}));
+  EXPECT_TRUE(published(80 * kMs, {0, 0, 0}, {0.5, 0, 0}));  // there is nothing to see
+  EXPECT_EQ(gate.dropped(ScanDrop::kRepeated), 2U);
 }
 
 TEST(ScanGate, WaitsForOdometryAsLongAsItMay) {
