@@ -131,14 +131,7 @@ int send(Request request) {
 
 void add_options(CLI::App& app, Request& request) {
   app.add_option("--robot,--robot-id", request.robot_id, "whose base")->capture_default_str();
-  app.add_option("--domain", request.view.domain, "DDS domain")
-      ->check(CLI::Range(0U, 232U))
-      ->capture_default_str();
-  app.add_option("--partition", request.view.partition, "only in this partition; *: all")
-      ->capture_default_str();
-  app.add_option("--profiles", request.view.profiles_file,
-                 "QoS profiles instead of the built-in ones")
-      ->type_name("FILE");
+  add_domain_options(app, request.view);
   constexpr double kLongestWait_s = 3600.0;
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the base")
       ->check(CLI::Range(0.1, kLongestWait_s))

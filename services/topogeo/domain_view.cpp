@@ -17,7 +17,7 @@ constexpr std::chrono::milliseconds kAgain{1000};
 
 }  // namespace
 
-void add_view_options(CLI::App& app, DomainView& view) {
+void add_domain_options(CLI::App& app, DomainView& view) {
   app.add_option("--domain", view.domain, "DDS domain")
       ->check(CLI::Range(0U, 232U))
       ->capture_default_str();
@@ -25,6 +25,10 @@ void add_view_options(CLI::App& app, DomainView& view) {
       ->capture_default_str();
   app.add_option("--profiles", view.profiles_file, "QoS profiles instead of the built-in ones")
       ->type_name("FILE");
+}
+
+void add_view_options(CLI::App& app, DomainView& view) {
+  add_domain_options(app, view);
   app.add_flag("--watch", view.watch, "again every second until Ctrl-C");
 }
 

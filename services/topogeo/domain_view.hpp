@@ -20,7 +20,10 @@ struct DomainView {
   bool watch = false;
 };
 
-/// Adds --domain, --partition, --profiles and --watch; `view` must outlive the app.
+/// Adds --domain, --partition and --profiles; `view` must outlive the app.
+void add_domain_options(CLI::App& app, DomainView& view);
+
+/// The same and --watch.
 void add_view_options(CLI::App& app, DomainView& view);
 
 /// Joins the domain under a name that DDS tools show. Throws like messaging::Participant.

@@ -134,15 +134,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   command->add_option("--robot,--robot-id", request->robot_id, "whose scans")
       ->capture_default_str();
-  command->add_option("--domain", request->view.domain, "DDS domain")
-      ->check(CLI::Range(0U, 232U))
-      ->capture_default_str();
-  command->add_option("--partition", request->view.partition, "only in this partition; *: all")
-      ->capture_default_str();
-  command
-      ->add_option("--profiles", request->view.profiles_file,
-                   "QoS profiles instead of the built-in ones")
-      ->type_name("FILE");
+  add_domain_options(*command, request->view);
   command->footer(
       "Ends with the stream of the gateway or with Ctrl-C. Numbers are written with every digit, "
       "so "

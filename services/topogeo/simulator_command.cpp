@@ -87,14 +87,7 @@ void add_options(CLI::App& app, Request& request) {
       ->check(CLI::Range(-3.0, 3.0))
       ->capture_default_str();
   app.add_option("--robot,--robot-id", request.robot_id, "whose")->capture_default_str();
-  app.add_option("--domain", request.view.domain, "DDS domain")
-      ->check(CLI::Range(0U, 232U))
-      ->capture_default_str();
-  app.add_option("--partition", request.view.partition, "only in this partition; *: all")
-      ->capture_default_str();
-  app.add_option("--profiles", request.view.profiles_file,
-                 "QoS profiles instead of the built-in ones")
-      ->type_name("FILE");
+  add_domain_options(app, request.view);
 }
 
 }  // namespace
