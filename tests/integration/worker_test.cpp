@@ -19,7 +19,6 @@ using ga_worker::task;
 using localization::MatchTask;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 class WorkerTest : public ::testing::Test {
  protected:
