@@ -31,10 +31,4 @@ ActiveSlam::ActiveSlam(const localization::LocalizerConfig& config, localization
   current_ = std::move(localizer);
 }
 
-std::optional<topomap::StopPose> ActiveSlam::last_stop() const {
-  if (session_ != nullptr) return session_->last_stop();
-  if (map_localizer_->stops().empty()) return std::nullopt;
-  return map_localizer_->trajectory().stops.back();
-}
-
 }  // namespace topogeo::localizer

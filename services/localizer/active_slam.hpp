@@ -37,8 +37,6 @@ class ActiveSlam {
   }
   /// Stops become part of the map, now or when their place in it is known.
   [[nodiscard]] bool mapping() const { return session_ != nullptr && session_->mapping(); }
-  /// Where the robot was at its last stop; nothing before the first.
-  [[nodiscard]] std::optional<topomap::StopPose> last_stop() const;
 
  private:
   BackgroundOptimizer optimizer_;

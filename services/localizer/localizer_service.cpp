@@ -267,7 +267,7 @@ void LocalizerService::finish() {
 void LocalizerService::publish(bool whole) {
   const topomap::Trajectory trajectory = localizer_->trajectory();
   version_ = trajectory.version;
-  if (const auto last = localizer_.last_stop()) last_stop_ = *last;
+  if (const auto last = localizer_->last_stop()) last_stop_ = *last;
   std::vector<std::uint32_t> numbers = updates_.update(trajectory);
   if (whole) {
     numbers.resize(service::segment_count(trajectory.stops.size()));

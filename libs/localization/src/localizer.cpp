@@ -178,11 +178,18 @@ topomap::Trajectory Localizer::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = version_;
   trajectory.stops.reserve(stops_.size());
-  for (std::size_t i = 0; i < stops_.size(); ++i) {
-    trajectory.stops.push_back({stops_[i].map->id, stops_[i].map->stamp_ns, graph_.poses()[i],
-                                stops_[i].covariance, stops_[i].map->id});
-  }
+  for (std::size_t i = 0; i < stops_.size(); ++i) trajectory.stops.push_back(pose_of(i));
   return trajectory;
+}
+
+std::optional<topomap::StopPose> Localizer::last_stop() const {
+  if (stops_.empty()) return std::nullopt;
+  return pose_of(stops_.size() - 1);
+}
+
+topomap::StopPose Localizer::pose_of(std::size_t stop) const {
+  const LocalMap& map = *stops_[stop].map;
+  return {map.id, map.stamp_ns, graph_.poses()[stop], stops_[stop].covariance, map.id};
 }
 
 std::vector<topomap::LoopClosure> Localizer::loop_closures() const {

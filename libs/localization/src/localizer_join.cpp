@@ -134,12 +134,4 @@ void Localizer::add_missing(std::span<const StoredMatch> matches_of_last) {
   }
 }
 
-// Lets a running optimisation take effect now.
-void Localizer::settle() {
-  if (!due_) return;
-  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
-  due_ = stop;
-  finish_optimization(stop);
-}
-
 }  // namespace topogeo::localization

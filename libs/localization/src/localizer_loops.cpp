@@ -196,12 +196,17 @@ std::vector<std::uint32_t> Localizer::moved_since(const std::vector<Pose2>& befo
   return moved;
 }
 
-void Localizer::optimize_now() {
+// Lets a running optimisation take effect now.
+void Localizer::settle() {
+  if (!due_) return;
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
-  if (due_) {  // what runs, first
-    due_ = stop;
-    finish_optimization(stop);
-  }
+  due_ = stop;
+  finish_optimization(stop);
+}
+
+void Localizer::optimize_now() {
+  settle();
+  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   optimization_wanted_ = true;
   start_optimization(stop);
   due_ = stop;

@@ -26,6 +26,11 @@ constexpr double kFarthest_m = 12.0;  // stored stops further away are not compa
 constexpr double kGivenPoseRight = 0.9;
 constexpr double kHardlyDoubtful = 1.0;  // right matches mostly are below, wrong ones above
 
+topomap::StopPose pose_of(const LocalizedStop& stop) {
+  return {stop.id, stop.stamp_ns, stop.T_map_robot,
+          stop.covariance, stop.id, located(stop.belief.state)};
+}
+
 }  // namespace
 
 UncertainPose fused(const std::vector<UncertainPose>& measurements) {
@@ -194,11 +199,13 @@ void MapLocalizer::search() {
 topomap::Trajectory MapLocalizer::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = stops_.size();
-  for (const LocalizedStop& stop : stops_) {
-    trajectory.stops.push_back({stop.id, stop.stamp_ns, stop.T_map_robot, stop.covariance, stop.id,
-                                located(stop.belief.state)});
-  }
+  for (const LocalizedStop& stop : stops_) trajectory.stops.push_back(pose_of(stop));
   return trajectory;
+}
+
+std::optional<topomap::StopPose> MapLocalizer::last_stop() const {
+  if (stops_.empty()) return std::nullopt;
+  return pose_of(stops_.back());
 }
 
 // The stored stops that have most in view of what the stop should see, no two of them next to each

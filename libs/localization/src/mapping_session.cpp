@@ -165,12 +165,10 @@ topomap::Trajectory MappingSession::trajectory() const {
 
 std::optional<topomap::StopPose> MappingSession::last_stop() const {
   if (next_id_ == 0) return std::nullopt;
-  if (follower_ && !follower_->stops().empty()) {
-    const LocalizedStop& stop = follower_->stops().back();
-    return topomap::StopPose{stop.id,         stop.stamp_ns, stop.T_map_robot,
-                             stop.covariance, stop.id,       located(stop.belief.state)};
-  }
-  return trajectory().stops.back();  // mapped, or right after stop_mapping()
+  if (follower_ && !follower_->stops().empty()) return follower_->last_stop();
+  std::optional<topomap::StopPose> stop = mapper_->last_stop();
+  stop->source_id = sources_.back();  // mapped, or right after stop_mapping()
+  return stop;
 }
 
 void MappingSession::count() {

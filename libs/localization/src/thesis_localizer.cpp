@@ -159,12 +159,18 @@ void ThesisLocalizer::store(std::uint32_t stop, const Match& match) {
 topomap::Trajectory ThesisLocalizer::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = version_;
-  for (std::size_t i = 0; i < stops_.size(); ++i) {
-    const LocalMap& map = *stops_[i].map;
-    trajectory.stops.push_back(
-        {map.id, map.stamp_ns, graph_.poses()[i], stops_[i].covariance, map.id});
-  }
+  for (std::size_t i = 0; i < stops_.size(); ++i) trajectory.stops.push_back(pose_of(i));
   return trajectory;
+}
+
+std::optional<topomap::StopPose> ThesisLocalizer::last_stop() const {
+  if (stops_.empty()) return std::nullopt;
+  return pose_of(stops_.size() - 1);
+}
+
+topomap::StopPose ThesisLocalizer::pose_of(std::size_t stop) const {
+  const LocalMap& map = *stops_[stop].map;
+  return {map.id, map.stamp_ns, graph_.poses()[stop], stops_[stop].covariance, map.id};
 }
 
 // --- forward correction (7.3.1.1.1)

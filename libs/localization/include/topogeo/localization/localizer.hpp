@@ -100,6 +100,7 @@ class Localizer : public Slam {
   void finish() override;
 
   [[nodiscard]] topomap::Trajectory trajectory() const override;
+  [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override;
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return decisions_;
@@ -144,6 +145,7 @@ class Localizer : public Slam {
     [[nodiscard]] double turn_rad() const;
   };
 
+  [[nodiscard]] topomap::StopPose pose_of(std::size_t stop) const;
   [[nodiscard]] static Stop described(std::shared_ptr<const topomap::LocalMap> map);
   void append(std::shared_ptr<const topomap::LocalMap> map);
   void restore(const StoredMap& stored, const std::shared_ptr<const topomap::LocalMap>& map);

@@ -80,6 +80,7 @@ class MapLocalizer : public Slam {
   [[nodiscard]] const std::vector<LocalizedStop>& stops() const { return stops_; }
   /// The same as a trajectory in the frame of the map.
   [[nodiscard]] topomap::Trajectory trajectory() const override;
+  [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
   /// None: the map stays as it is.
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override { return {}; }
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {

@@ -66,8 +66,7 @@ class MappingSession : public Slam {
   }
   /// Of those, the ones that join it if the robot finds its place.
   [[nodiscard]] std::size_t waiting_stops() const { return waiting_.size(); }
-  /// Where the robot was at its last stop; nothing before the first.
-  [[nodiscard]] std::optional<topomap::StopPose> last_stop() const;
+  [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
 
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override {
     return mapper_->loop_closures();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "topogeo/localization/localization_state.hpp"
@@ -43,6 +44,8 @@ class Slam {
   virtual void finish() = 0;
 
   [[nodiscard]] virtual topomap::Trajectory trajectory() const = 0;
+  /// Where the robot was at its last stop; nothing before the first.
+  [[nodiscard]] virtual std::optional<topomap::StopPose> last_stop() const = 0;
   [[nodiscard]] virtual std::vector<topomap::LoopClosure> loop_closures() const = 0;
   /// Every loop that was considered so far, in the order of the decisions.
   [[nodiscard]] virtual const std::vector<LoopDecision>& loop_decisions() const = 0;

@@ -53,6 +53,7 @@ class ThesisLocalizer : public Slam {
   void finish() override {}
 
   [[nodiscard]] topomap::Trajectory trajectory() const override;
+  [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override {
     return closures_;
   }
@@ -76,6 +77,8 @@ class ThesisLocalizer : public Slam {
     std::vector<std::uint32_t> overlaps;                   // MS, ascending
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the pose in the map
   };
+
+  [[nodiscard]] topomap::StopPose pose_of(std::size_t stop) const;
   /// An earlier map as it is expected to lie.
   struct Neighbour {
     std::uint32_t id = 0;
