@@ -40,7 +40,6 @@ msg::Route no_route(msg::RouteStatus status, std::string_view why) {
 msg::Route answer(const msg::Goal& goal, const std::optional<topomap::GlobalMap>& map,
                   const std::optional<service::LivePose>& pose,
                   const planning::PlanningConfig& config) {
-  if (goal.kind() == msg::kGoalCancel) return no_route(msg::kRouteCancelled, "cancelled");
   if (!map) return no_route(msg::kRouteNoMap, "no map yet");
   if (!pose || !is_known(*pose)) {
     return no_route(msg::kRouteNoPose, "the robot's pose is not known");
@@ -121,9 +120,9 @@ void PlannerService::on_goal(const msg::Goal& message) {
   service_.status().add_to_counter("goals");
   goal_.reset();  // the one before needs no answer on a newer map
   take_map();
+  if (message.kind() == msg::kGoalCancel) return;
   goal_ = message;
   plan();
-  if (message.kind() == msg::kGoalCancel) goal_.reset();
 }
 
 void PlannerService::take_map() {

@@ -165,14 +165,47 @@ Defect find_defect(const msg::MapElement& message) {
 }
 
 Defect find_defect(const msg::Goal& message) {
-  return Check(message).value("kind", message.kind(), msg::kGoalCancel).defect();
+  return Check(message).value("kind", message.kind(), msg::kGoalResume).defect();
 }
 
 Defect find_defect(const msg::Route& message) {
-  return Check(message)
+  Check check(message);
+  check.size("zones", message.zones().size(), msg::kMaxRouteNodes)
       .size("node_ids", message.node_ids().size(), msg::kMaxRouteNodes)
       .size("points", message.points().size(), msg::kMaxRoutePoints)
-      .value("status", message.status(), msg::kRouteCancelled)
+      .size("primitives", message.primitives().size(), msg::kMaxRoutePrimitives)
+      .value("status", message.status(), msg::kRouteNoPose);
+  for (const msg::MotionPrimitive& primitive : message.primitives()) {
+    check.value("primitives.kind", primitive.kind(), msg::kMotionTurnRight);
+  }
+  return check.defect();
+}
+
+Defect find_defect(const msg::Blockages& message) {
+  return Check(message).size("points", message.points().size(), msg::kMaxBlockedPoints).defect();
+}
+
+Defect find_defect(const msg::NavigatorStatus& message) {
+  return Check(message)
+      .value("state", message.state(), msg::kNavigatorStopped)
+      .value("reason", message.reason(), msg::kHaltBaseStuck)
+      .defect();
+}
+
+Defect find_defect(const msg::GridTile& message) {
+  return Check(message)
+      .size("states", message.states().size(), msg::kTileArea)
+      .size("zones", message.zones().size(), msg::kTileArea)
+      .defect();
+}
+
+Defect find_defect(const msg::HybridMap& message) {
+  return Check(message)
+      .size("tile_versions", message.tile_versions().size(), msg::kMaxTiles)
+      .size("zones", message.zones().size(), msg::kMaxZones)
+      .size("places", message.places().size(), msg::kMaxPlaces)
+      .size("nodes", message.nodes().size(), msg::kMaxBorderNodes)
+      .size("edges", message.edges().size(), msg::kMaxHybridEdges)
       .defect();
 }
 

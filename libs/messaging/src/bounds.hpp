@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "topogeo/msg/hybrid_map.h"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/map_update.h"
 #include "topogeo/msg/match.h"
@@ -42,6 +43,10 @@ Defect find_defect(const msg::LocalizationReply& message);
 Defect find_defect(const msg::MapElement& message);
 Defect find_defect(const msg::Goal& message);
 Defect find_defect(const msg::Route& message);
+Defect find_defect(const msg::Blockages& message);
+Defect find_defect(const msg::NavigatorStatus& message);
+Defect find_defect(const msg::GridTile& message);
+Defect find_defect(const msg::HybridMap& message);
 Defect find_defect(const msg::MotionCommand& message);
 Defect find_defect(const msg::BaseCommand& message);
 Defect find_defect(const msg::GroundTruth& message);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "topogeo/msg/hybrid_mapPubSubTypes.h"
+#include "topogeo/msg/hybrid_mapTypeObject.h"
 #include "topogeo/msg/local_mapPubSubTypes.h"
 #include "topogeo/msg/local_mapTypeObject.h"
 #include "topogeo/msg/map_updatePubSubTypes.h"
@@ -99,6 +101,10 @@ TOPOGEO_TOPIC(LocalizationReply, kLocalizationReply, "request", registertrajecto
 TOPOGEO_TOPIC(MapElement, kMapElement, "state", registermap_updateTypes)
 TOPOGEO_TOPIC(Goal, kGoal, "state", registerplanningTypes)
 TOPOGEO_TOPIC(Route, kRoute, "state", registerplanningTypes)
+TOPOGEO_TOPIC(Blockages, kBlockages, "state", registerplanningTypes)
+TOPOGEO_TOPIC(NavigatorStatus, kNavigatorStatus, "state", registerplanningTypes)
+TOPOGEO_TOPIC(GridTile, kGridTile, "state", registerhybrid_mapTypes)
+TOPOGEO_TOPIC(HybridMap, kHybridMap, "state", registerhybrid_mapTypes)
 TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command", registermotionTypes)
 TOPOGEO_TOPIC(BaseCommand, kBaseCommand, "request", registermotionTypes)
 TOPOGEO_TOPIC(GroundTruth, kGroundTruth, "motion_live", registersimulationTypes)
@@ -107,11 +113,14 @@ TOPOGEO_TOPIC(SimulatorCommand, kSimulatorCommand, "request", registersimulation
 #undef TOPOGEO_TOPIC
 
 std::span<const TopicInfo* const> all_topics() {
-  static const std::array<const TopicInfo*, 26> topics = {
+  static const std::array<const TopicInfo*, 30> topics = {
       &TopicTraits<msg::BaseCommand>::info(),
       &TopicTraits<msg::BaseStatus>::info(),
+      &TopicTraits<msg::Blockages>::info(),
       &TopicTraits<msg::Goal>::info(),
+      &TopicTraits<msg::GridTile>::info(),
       &TopicTraits<msg::GroundTruth>::info(),
+      &TopicTraits<msg::HybridMap>::info(),
       &TopicTraits<msg::LaserStatus>::info(),
       &TopicTraits<msg::LocalMap>::info(),
       &TopicTraits<msg::LocalizationCommand>::info(),
@@ -124,6 +133,7 @@ std::span<const TopicInfo* const> all_topics() {
       &TopicTraits<msg::MatchResult>::info(),
       &TopicTraits<msg::MatchTask>::info(),
       &TopicTraits<msg::MotionCommand>::info(),
+      &TopicTraits<msg::NavigatorStatus>::info(),
       &TopicTraits<msg::Odometry>::info(),
       &TopicTraits<msg::LivePose>::info(),
       &TopicTraits<msg::Route>::info(),

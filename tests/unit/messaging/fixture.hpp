@@ -15,6 +15,7 @@
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/hybrid_map.h"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/map_update.h"
 #include "topogeo/msg/match.h"

@@ -231,15 +231,58 @@ void fill(msg::MapElement& element) {
 
 void fill(msg::Goal& goal) {
   goal.goal_id(5);
-  goal.kind(msg::kGoalPosition);
+  goal.kind(msg::kGoalPlace);
+  set_text(goal.place(), "room A", "place");
   goal.target().x_m(12.5);
+  goal.has_heading(true);
+  goal.heading_rad(-1.5);
 }
 
 void fill(msg::Route& route) {
   route.status(msg::kRouteFound);
   route.length_m(20.0);
   route.node_ids() = {1, 5, 9};
+  route.zones() = {0, 3};
   route.points().assign(5'000, branch_point(1.0));
+  msg::MotionPrimitive primitive;
+  primitive.kind(msg::kMotionTurnRight);
+  primitive.amount(0.25);
+  route.primitives().assign(100, primitive);
+}
+
+void fill(msg::Blockages& blockages) {
+  blockages.version(4);
+  blockages.points().resize(msg::kMaxBlockedPoints);
+  blockages.points().back().y_m(-3.5);
+}
+
+void fill(msg::NavigatorStatus& status) {
+  status.state(msg::kNavigatorBlocked);
+  status.reason(msg::kHaltObstacle);
+  status.T_map_robot(pose(2.5));
+  status.rest_m(7.5);
+  set_text(status.message(), "something stands in the way", "message");
+}
+
+void fill(msg::GridTile& tile) {
+  tile.tile(7);
+  tile.version(3);
+  tile.states().assign(msg::kTileArea, 2);
+  tile.zones().assign(msg::kTileArea, msg::kNoZone);
+}
+
+void fill(msg::HybridMap& map) {
+  map.version(3);
+  map.columns(640);
+  map.rows(64);
+  map.tile_versions().assign(10, 3);
+  map.zones().resize(2);
+  set_text(map.zones().front().name(), "hall", "name");
+  map.places().resize(1);
+  map.places().front().position().x_m(1.5);
+  map.nodes().resize(2);
+  map.edges().resize(1);
+  map.edges().front().cost_m(4.5);
 }
 
 void fill(msg::MotionCommand& command) {
@@ -263,7 +306,8 @@ using AllTypes =
                      msg::MatchResult, msg::WorkerStatus, msg::ServiceStatus, msg::LivePose,
                      msg::TrajectorySegment, msg::LoopClosures, msg::LoopDecisions,
                      msg::LocalizationCommand, msg::LocalizationReply, msg::MapElement, msg::Goal,
-                     msg::Route, msg::MotionCommand, msg::BaseCommand, msg::SimulatorCommand>;
+                     msg::Route, msg::Blockages, msg::NavigatorStatus, msg::GridTile,
+                     msg::HybridMap, msg::MotionCommand, msg::BaseCommand, msg::SimulatorCommand>;
 TYPED_TEST_SUITE(RoundTrip, AllTypes);
 
 TYPED_TEST(RoundTrip, ArrivesUnchanged) {

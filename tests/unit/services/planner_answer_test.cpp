@@ -74,11 +74,5 @@ TEST(Answer, NoRouteHasItsReason) {
   }
 }
 
-TEST(Answer, CancelIsConfirmed) {
-  msg::Goal goal;
-  goal.kind(msg::kGoalCancel);
-  EXPECT_EQ(answer(goal, one_branch(), pose_at(1), {}).status(), msg::kRouteCancelled);
-}
-
 }  // namespace
 }  // namespace topogeo::planner

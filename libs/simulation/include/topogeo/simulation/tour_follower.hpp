@@ -11,15 +11,11 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/geometry/velocity.hpp"
 
 namespace topogeo::simulation {
 
-/// How a base that drives and turns is told to move.
-struct Velocity {
-  double linear_m_per_s = 0.0;     ///< along x of the robot
-  double angular_rad_per_s = 0.0;  ///< counter-clockwise
-  friend bool operator==(const Velocity&, const Velocity&) = default;
-};
+using geometry::Velocity;  ///< how a base is told to move
 
 struct DriveOptions {
   double speed_m_per_s = 0.9;                               ///< at most; (0, 10]

@@ -1,0 +1,97 @@
+// Drives a robot along routes of the hybrid map: a state machine without clock, threads or I/O.
+//
+// Whoever owns it tells it everything that comes (poses, odometry, scans, sonars, base, routes) and
+// calls step() many times a second; it answers with the velocity for the base. It follows the route
+// smoothly, or in the motion primitives of spec B2; it goes round what is not on the map as long as
+// a way round can be seen (local_detour.hpp), waits for what moves, reports what stays in the way
+// so that the planner finds another route, and stands still whenever it does not know where it is.
+// The collision guard has the last word.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "topogeo/geometry/velocity.hpp"
+#include "topogeo/navigation/collision_guard.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/planning/local_detour.hpp"
+#include "topogeo/planning/motion_primitives.hpp"
+
+namespace topogeo::navigation {
+
+enum class MotionStyle : std::uint8_t {
+  kSmooth = 0,      ///< arcs round the corners, for bases that take velocities
+  kPrimitives = 1,  ///< advance, turn left, turn right (spec B2), one after the other
+};
+
+struct NavigatorConfig {
+  MotionStyle motion = MotionStyle::kSmooth;
+  double speed_m_per_s = 0.6;                 ///< at most, (0, 3]
+  double turn_rad_per_s = 1.0;                ///< at most, (0, 6]
+  double acceleration_m_per_s2 = 0.5;         ///< (0, 10]
+  double turn_acceleration_rad_per_s2 = 2.0;  ///< (0, 20]
+  double delay_s = 0.15;           ///< from a command until the base obeys it, about, [0, 1]
+  double arrival_m = 0.03;         ///< so near to the goal it has arrived, [0.005, 1]
+  double arrival_rad = 0.02;       ///< and so near to the heading, [0.002, 1]
+  double settle_s = 0.5;           ///< stands so long at the goal and looks where it is, [0, 10]
+  double oldest_pose_s = 3.0;      ///< an older pose fix is none, [0.1, 60]
+  double oldest_odometry_s = 1.0;  ///< [0.1, 10]
+  double largest_sigma_m = 0.5;    ///< a pose that is less certain is lost, [0.05, 5]
+  double obstacle_wait_s =
+      4.0;  ///< for what may move away, before another route is asked for, [0, 600]
+  double blockage_s = 60.0;    ///< so long a blockage is believed without being seen, [1, 86400]
+  double route_wait_s = 5.0;   ///< for the planner to answer, [0.1, 600]
+  double stuck_s = 2.0;        ///< told to move, and does not: stuck, [0.2, 60]
+  double look_around_m = 5.0;  ///< how far it may go without a pose, where it may, [0, 50]
+  GuardConfig guard;
+  planning::DetourConfig detour;
+  planning::SmoothPathConfig smooth;
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const NavigatorConfig& config);
+
+class Navigator {
+ public:
+  /// Throws std::invalid_argument as `check`.
+  explicit Navigator(const NavigatorConfig& config);
+  ~Navigator();
+  Navigator(Navigator&&) noexcept;
+  Navigator& operator=(Navigator&&) noexcept;
+
+  /// The map that routes are of; another one while it drives stops it until the planner has
+  /// answered with a route of the new one, unless its way is free there too.
+  void set_map(std::shared_ptr<const planning::HybridMap> map, std::uint64_t version);
+
+  /// A new goal: the old one is forgotten, the robot stops until a route for it comes.
+  void set_goal(const GoalOrder& goal);
+  /// Routes for other goals are ignored; a refusal stops the robot with the planner's reason.
+  void set_route(const RoutePlan& route);
+  void cancel();
+  void pause();
+  void resume();
+
+  // Sensors, in any order among each other; each in time order.
+  void add(const PoseFix& pose);
+  void add(const OdometrySample& odometry);
+  void add(const ScanPoints& scan);
+  void add(const SonarRound& sonar);
+  void add(const BaseCondition& base);
+
+  /// What the base shall do until the next call. `now_ns` never goes back.
+  geometry::Velocity step(std::int64_t now_ns);
+
+  [[nodiscard]] const NavigatorStatus& status() const;
+  /// What stands in the way now. A new version asks the planner for another route.
+  [[nodiscard]] const BlockageReport& blockages() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace topogeo::navigation

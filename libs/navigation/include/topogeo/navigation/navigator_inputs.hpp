@@ -1,0 +1,131 @@
+// What a navigator is told, and what it tells. All stamps are of one clock, nanoseconds.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/geometry/velocity.hpp"
+
+namespace topogeo::navigation {
+
+/// Where the robot is, as a localizer says it.
+struct PoseFix {
+  std::int64_t stamp_ns = 0;
+  geometry::Pose2 T_map_robot;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
+  bool tracking = false;   ///< only then may the robot drive to a goal
+  std::string state_text;  ///< for people, when it is not: "searching", "lost", ...
+};
+
+struct OdometrySample {
+  std::int64_t stamp_ns = 0;
+  geometry::Pose2 T_odom_robot;
+};
+
+/// What the laser sees: the points where beams ended, robot frame, with the odometry at that time.
+/// A beam without an echo gives none.
+struct ScanPoints {
+  std::int64_t stamp_ns = 0;
+  geometry::Pose2 T_odom_robot;
+  geometry::Pose2 T_robot_laser;
+  std::vector<Eigen::Vector2d> points_m;
+};
+
+/// One sonar's reading.
+struct SonarReading {
+  geometry::Pose2 T_robot_sonar;  ///< it looks along its x
+  double half_cone_rad = 0.0;
+  float range_m = 0.0F;  ///< scan::Scan::kNoReturn where nothing came back
+};
+
+struct SonarRound {
+  std::int64_t stamp_ns = 0;
+  std::vector<SonarReading> readings;
+};
+
+struct BaseCondition {
+  std::int64_t stamp_ns = 0;
+  bool commands_taken = true;
+  std::string reason;  ///< for people, when they are not
+};
+
+/// A way to a goal, as the planner gives it; also again, when something has changed.
+struct RoutePlan {
+  std::uint64_t goal_id = 0;
+  std::uint64_t map_version = 0;
+  std::uint64_t blockages_version = 0;  ///< of the blockages that it avoids
+  bool found = false;
+  std::string reason;                     ///< one line for people; empty when found
+  std::vector<Eigen::Vector2d> points_m;  ///< map frame, straightened, from start to goal
+  std::vector<Eigen::Vector2d> nodes_m;   ///< border nodes on the way, in order, map frame
+  std::optional<double> heading_rad;      ///< where the robot shall look in the end, map frame
+};
+
+/// A goal in which nothing but the number is the navigator's business: the route follows.
+struct GoalOrder {
+  std::uint64_t goal_id = 0;
+  bool look_around = false;  ///< without a pose: may turn and move a little where nothing is near
+};
+
+enum class NavigatorState : std::uint8_t {
+  kIdle = 0,  ///< no goal
+  kDriving = 1,
+  kRelocalizing = 2,  ///< stands, or looks around, to find out where it is
+  kBlocked = 3,       ///< waits for its way to become free, or for another route
+  kArrived = 4,
+  kStopped = 5,  ///< has a goal and does not drive: see the reason
+};
+
+/// Why it does not drive.
+enum class HaltReason : std::uint8_t {
+  kNone = 0,
+  kWaitsForRoute = 1,
+  kNoRoute = 2,  ///< the planner has none
+  kCancelled = 3,
+  kPaused = 4,
+  kPoseLost = 5,  ///< the pose is not known, or not sure enough
+  kNoMap = 6,
+  kOutsideMap = 7,  ///< the robot is not on the map
+  kObstacle = 8,    ///< something that is not on the map
+  kNoScan = 9,
+  kSonarSilent = 10,  ///< the sonars hear nothing, though something is near
+  kNoOdometry = 11,
+  kBaseNotReady = 12,
+  kBaseStuck = 13,  ///< does not move when told
+};
+
+/// A word for logs and messages: "driving", ...
+std::string_view describe(NavigatorState state);
+/// The same: "the pose is lost", ...
+std::string_view describe(HaltReason reason);
+
+struct NavigatorStatus {
+  NavigatorState state = NavigatorState::kIdle;
+  HaltReason reason = HaltReason::kNone;
+  std::string message;        ///< one line for people: what it does, or why it does not
+  std::uint64_t goal_id = 0;  ///< 0: none
+  double driven_m = 0.0;      ///< since the goal was given, by odometry
+  double rest_m = 0.0;        ///< of the route
+  double rest_s = 0.0;        ///< until the arrival, about
+  std::optional<geometry::Pose2> T_map_robot;  ///< now; nothing while it is not known
+  geometry::Velocity command;                  ///< that the last step() gave
+  double free_ahead_m = 0.0;      ///< nothing is nearer in the direction of motion, at most 5
+  std::uint32_t detours = 0;      ///< round what is not on the map, since the goal was given
+  std::uint32_t routes = 0;       ///< taken over for the goal
+  std::uint32_t guard_stops = 0;  ///< how often the collision guard has stopped it since then
+};
+
+/// What stands in the way and is not on the map; the planner is to find a way that avoids it.
+struct BlockageReport {
+  std::uint64_t version = 0;              ///< counts the changes
+  std::vector<Eigen::Vector2d> points_m;  ///< map frame: middles of cells that something fills
+};
+
+}  // namespace topogeo::navigation
