@@ -1,0 +1,37 @@
+// The hybrid map as messages: tiles of its grid and a summary. HybridMapMirror makes a map of them
+// again.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/msg/hybrid_map.h"
+#include "topogeo/planning/hybrid_map.hpp"
+
+namespace topogeo::service {
+
+/// Tiles in a row and rows of tiles of a grid.
+struct TileLayout {
+  std::uint32_t columns = 0;
+  std::uint32_t rows = 0;
+
+  [[nodiscard]] std::uint32_t count() const { return columns * rows; }
+};
+TileLayout tile_layout(const planning::GridFrame& frame);
+
+struct HybridMapMessages {
+  std::vector<msg::GridTile> tiles;  ///< by number
+  msg::HybridMap summary;
+};
+
+/// All versions and sequence numbers are `version` and 0. Throws std::invalid_argument naming the
+/// field when the map has more tiles, zones, places, nodes or edges than the messages hold, or a
+/// name is too long.
+HybridMapMessages to_messages(const planning::HybridMap& map, std::string_view robot_id,
+                              std::int64_t stamp_ns, std::uint64_t version);
+
+/// The frame of a summary's grid. Throws std::invalid_argument like planning::check(GridFrame).
+planning::GridFrame frame_from_msg(const msg::HybridMap& summary);
+
+}  // namespace topogeo::service
