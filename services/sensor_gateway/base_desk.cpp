@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -78,6 +79,16 @@ BaseDesk::BaseDesk(service::Service& service, const DeviceConfig& config, const 
 
 BaseDesk::~BaseDesk() {
   service_.loop().cancel_timer(timer_);
+  if (stopped_ || !line_.is_open()) return;
+  // An exception ends the service: nobody runs the loop any more, so only what the line takes at
+  // once gets to the base. Its watchdog does the rest.
+  try {
+    driver_.halt(line_.now_ns());
+    line_.carry_out();
+    static_cast<void>(line_.wait_written(kLongestStop));
+  } catch (const std::exception& error) {
+    spdlog::error("halt not sent: {}", error.what());
+  }
 }
 
 void BaseDesk::after_driver(std::int64_t) {
@@ -196,8 +207,7 @@ void BaseDesk::stop() {
   driver_.halt(line_.now_ns());
   line_.carry_out();
   const auto end = std::chrono::steady_clock::now() + kLongestStop;
-  while (line_.is_open() && driver_.status().state != devices::BaseState::kHalted &&
-         std::chrono::steady_clock::now() < end) {
+  while (line_.is_open() && !driver_.stands() && std::chrono::steady_clock::now() < end) {
     service_.loop().run_for(kStopPoll);
   }
   if (!line_.wait_written(kLongestStop)) {

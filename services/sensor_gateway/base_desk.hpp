@@ -28,7 +28,7 @@ class BaseDesk {
   BaseDesk& operator=(const BaseDesk&) = delete;
   BaseDesk(BaseDesk&&) = delete;
   BaseDesk& operator=(BaseDesk&&) = delete;
-  /// Stops the base: see stop().
+  /// Halts the base, unless stop() has done it.
   ~BaseDesk();
 
   /// Whether it takes motion commands.

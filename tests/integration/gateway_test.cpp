@@ -53,6 +53,15 @@ TEST_F(GatewayOnDevices, EndOfTheGatewayStopsTheBase) {
   gateway_->send_signal(SIGTERM);
   EXPECT_TRUE(wait_for([&] { return truth_->linear_mps() == 0.0; }));
   EXPECT_EQ(gateway_->wait(), 0);
+  // Turning alone ends as well.
+  gateway_.reset();
+  base_status_.reset();
+  start_gateway();
+  ASSERT_TRUE(wait_for([&] { return base_is(msg::kBaseReady) && motion_.matched() > 0; }));
+  ASSERT_TRUE(drive_until(0.0, 0.5, [&] { return truth_->angular_radps() > 0.3; }));
+  gateway_->send_signal(SIGTERM);
+  EXPECT_TRUE(wait_for([&] { return truth_->angular_radps() == 0.0; }));
+  EXPECT_EQ(gateway_->wait(), 0);
   // A gateway that is gone without a word: the base's own watchdog stops it.
   gateway_.reset();
   base_status_.reset();

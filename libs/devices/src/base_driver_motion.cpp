@@ -203,7 +203,16 @@ std::string BaseDriver::reason() const {
   return {};
 }
 
+bool BaseDriver::stands() const {
+  return reports_at_halt_ && status_.reports > *reports_at_halt_ && watch_.stands();
+}
+
 void BaseDriver::update_status() {
+  if (!motion_.halt_told()) {
+    reports_at_halt_.reset();
+  } else if (!reports_at_halt_) {
+    reports_at_halt_ = status_.reports;
+  }
   status_.state = state();
   status_.reason = reason();
   status_.commands_taken = commands_taken();

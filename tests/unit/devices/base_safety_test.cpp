@@ -187,6 +187,21 @@ TEST_P(BaseSafetyOn, HaltHoldsUntilReset) {
   EXPECT_EQ(all.driver.status().state, BaseState::kMoving);
 }
 
+TEST_P(BaseSafetyOn, AHaltIsOverWhenBothAxesStand) {
+  BaseOnLine all(settings());
+  ASSERT_TRUE(all.start());
+  all.drive(0.3, 0.5, 2 * kSecond);
+  EXPECT_FALSE(all.driver.stands());
+  all.base.mcp.forget_heard();
+  all.driver.halt(all.line.now_ns());
+  EXPECT_FALSE(all.driver.stands());
+  for (int i = 0; i < 200 && !all.driver.stands(); ++i) all.pass(10 * kMs);
+  EXPECT_TRUE(all.driver.stands());
+  EXPECT_TRUE(all.base.stands());
+  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt, 0}));
+  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kRotateHalt, 0}));
+}
+
 TEST_P(BaseSafetyOn, AMotorFaultIsSaidAndAcknowledged) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());

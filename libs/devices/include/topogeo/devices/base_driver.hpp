@@ -85,6 +85,8 @@ class BaseDriver final : public SerialDriver {
 
   /// Stops now and refuses motion commands until reset_stop().
   void halt(std::int64_t now_ns);
+  /// Both axes were told to halt, and the base has reported since that it stands.
+  [[nodiscard]] bool stands() const;
   /// An operator says that it may move again after halt() or an emergency stop. It does not move
   /// before the next command.
   void reset_stop(std::int64_t now_ns);
@@ -172,6 +174,7 @@ class BaseDriver final : public SerialDriver {
   std::int64_t last_motion_command_ns_ = 0;
   bool stopped_ = false;
   bool halted_ = false;
+  std::optional<std::uint64_t> reports_at_halt_{};  // when both axes had been told to halt
   bool watchdog_expired_ = false;
   bool bump_latched_ = false;
   bool joystick_halted_ = false;  // the base was told to halt when the joystick took over

@@ -40,6 +40,8 @@ class BaseAxis {
   /// A relative move that is wanted was told.
   [[nodiscard]] bool distance_told() const { return told_ == Run::kFar; }
   [[nodiscard]] bool moves() const { return wanted_ != Run::kHalt; }
+  /// It is to halt and was told so.
+  [[nodiscard]] bool halt_told() const { return wanted_ == Run::kHalt && told_ == Run::kHalt; }
 
   /// The command that halts, if it has to be told.
   std::optional<McpOrder> next_halt();
@@ -87,6 +89,8 @@ class BaseMotion {
   McpOrder repeat_acceleration();
 
   [[nodiscard]] bool moves() const { return translation_.moves() || rotation_.moves(); }
+  /// Both axes are to halt and were told so.
+  [[nodiscard]] bool halt_told() const { return translation_.halt_told() && rotation_.halt_told(); }
   [[nodiscard]] bool translates() const { return translation_.moves(); }
   [[nodiscard]] bool rotates() const { return rotation_.moves(); }
   /// A relative move is wanted and everything about it was told.
