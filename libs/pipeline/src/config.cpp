@@ -1,5 +1,7 @@
 #include "topogeo/pipeline/config.hpp"
 
+#include "config_navigator.hpp"
+
 namespace topogeo::pipeline {
 namespace {
 
@@ -224,6 +226,7 @@ ConfigSchema describe(Config& config) {
   describe_match(config, schema);
   describe_localizer(config, schema);
   describe_global_map(config, schema);
+  describe_navigator(config.navigator, schema);
   return schema;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "topogeo/localization/localizer.hpp"
+#include "topogeo/navigation/navigator.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
@@ -20,6 +21,7 @@ struct Config {
   localization::LocalizerConfig localizer;
   topomap::GlobalMapConfig global_map;
   planning::PlanningConfig planning;
+  navigation::NavigatorConfig navigator;
 };
 
 /// Declares every key of the file with its variable in `config`, its range, unit and reason.
