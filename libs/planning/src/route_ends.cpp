@@ -115,6 +115,9 @@ void fill_in(const FreeSpace& space, const Eigen::Vector2d& from_m, const Eigen:
   }
   route.points_m = straighten(space, route.cells, from_m, to_m);
   route.length_m = length_m(route.points_m);
+  for (const Eigen::Vector2d& point_m : route.points_m) {
+    route.clearances_m.push_back(space.clearance_m(space.frame().cell_of(point_m).value()));
+  }
 }
 
 }  // namespace topogeo::planning

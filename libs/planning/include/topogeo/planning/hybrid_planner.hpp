@@ -5,8 +5,8 @@
 // to the goal, Dijkstra on the graph between every pair of them; the cheapest sum wins.
 //
 // Beyond the source, because the middle of a border can lie off the shortest way: short routes, and
-// pieces of the others, are planned again on the grid; and a long
-// way round within a zone is compared with the ways that leave it and come back.
+// pieces of the others, are planned again on the grid; and a long way round within a zone is
+// compared with the ways that leave it and come back.
 #pragma once
 
 #include <cstdint>
@@ -78,11 +78,12 @@ struct HybridRoute {
   std::vector<Cell> cells;                ///< from the start's to the goal's, neighbours each
   double cost_m = 0.0;                    ///< length over the middles of the cells
   std::vector<Eigen::Vector2d> points_m;  ///< the same way straightened, from start to goal
-  double length_m = 0.0;                  ///< of `points_m`
-  double min_clearance_m = 0.0;           ///< least of the cells
-  std::vector<ZoneId> zones;              ///< in the order of the way
-  std::vector<std::uint32_t> nodes;       ///< in order; empty in one zone
-  std::vector<std::uint32_t> edges;       ///< between them
+  std::vector<double> clearances_m;  ///< of the cells of `points_m`, infinite without obstacles
+  double length_m = 0.0;             ///< of `points_m`
+  double min_clearance_m = 0.0;      ///< least of the cells
+  std::vector<ZoneId> zones;         ///< in the order of the way
+  std::vector<std::uint32_t> nodes;  ///< in order; empty in one zone
+  std::vector<std::uint32_t> edges;  ///< between them
 
   [[nodiscard]] bool found() const { return status == RouteStatus::kFound; }
 };

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/trajectory.h"
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/topomap/global_map.hpp"
@@ -133,5 +137,33 @@ topomap::GlobalMap from_elements(std::span<const msg::MapElement> elements);
 msg::Route to_msg(const planning::Route& route);
 /// branch_ids is empty; min_clearance_m is the smallest of the points.
 planning::Route from_msg(const msg::Route& message);
+
+/// Where a robot shall go, or what it shall do about the goal that it has, as in msg::Goal.
+struct Goal {
+  std::uint64_t goal_id = 0;
+  std::string client_id;
+  msg::GoalKind kind = msg::kGoalPosition;
+  planning::Target target;  ///< as `kind` says: a point, a NodeNumber or a place's name; of
+                            ///< cancel, pause and resume it does not matter
+  std::optional<double> heading_rad;  ///< where the robot shall look in the end, map frame
+  bool look_around = false;
+};
+
+/// Throws also when the target is not of the kind that `kind` says.
+msg::Goal to_msg(const Goal& goal, std::string_view robot_id, std::int64_t stamp_ns,
+                 std::uint64_t sequence_number);
+/// Refuses a place without a name.
+Goal from_msg(const msg::Goal& message);
+
+/// A route that was found or not, with the motions that take a robot along it which looks to
+/// `start_heading_rad` (map frame). Header, goal and versions are left to the sender. A clearance
+/// is infinite when there is no obstacle at all.
+msg::Route to_msg(const planning::HybridRoute& route, double start_heading_rad,
+                  std::optional<double> final_heading_rad);
+/// What a navigator has to know of a route. The nodes are where they lie on `map`; those that it
+/// does not have, and all when it is null, are left out: give the map of the route's version, or
+/// none.
+navigation::RoutePlan route_plan_from_msg(const msg::Route& message,
+                                          const planning::HybridMap* map);
 
 }  // namespace topogeo::service
