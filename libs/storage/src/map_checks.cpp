@@ -61,6 +61,7 @@ void check_document(const MapDocument& document) {
     }
   }
   check_global_map(document.global_map);
+  check(document.drawing);
 }
 
 }  // namespace topogeo::storage

@@ -22,17 +22,7 @@ double finite(double value, const char* what) {
   return value;
 }
 
-void to_proto(const geometry::Pose2& pose, proto::Pose2* out) {
-  out->set_x_m(pose.x_m);
-  out->set_y_m(pose.y_m);
-  out->set_theta_rad(pose.theta_rad);
-}
-
-geometry::Pose2 from_proto(const proto::Pose2& in, const char* what) {
-  return {finite(in.x_m(), what), finite(in.y_m(), what), finite(in.theta_rad(), what)};
-}
-
-topomap::NodeKind from_proto(proto::NodeKind kind) {
+topomap::NodeKind node_kind_from_proto(proto::NodeKind kind) {
   require(kind >= proto::NODE_KIND_REAL && kind <= proto::NODE_KIND_HALL_CORRIDOR,
           "node kind {}: expected 0 to 5", static_cast<int>(kind));
   return static_cast<topomap::NodeKind>(kind);
@@ -90,7 +80,7 @@ void to_proto(const topomap::LocalBranch& branch, proto::LocalBranch* out) {
 topomap::LocalNode local_node_from_proto(const proto::LocalNode& in, std::uint32_t id) {
   topomap::LocalNode node;
   node.id = id;
-  node.kind = from_proto(in.kind());
+  node.kind = node_kind_from_proto(in.kind());
   node.position_m = {finite(in.x_m(), "node position"), finite(in.y_m(), "node position")};
   node.clearance_m = finite(in.clearance_m(), "node clearance");
   for (const std::uint32_t group : in.base_groups()) {
@@ -123,6 +113,16 @@ topomap::TrackedScan tracked_scan_from_proto(const proto::TrackedScan& in) {
 }
 
 }  // namespace
+
+void to_proto(const geometry::Pose2& pose, proto::Pose2* out) {
+  out->set_x_m(pose.x_m);
+  out->set_y_m(pose.y_m);
+  out->set_theta_rad(pose.theta_rad);
+}
+
+geometry::Pose2 from_proto(const proto::Pose2& in, const char* what) {
+  return {finite(in.x_m(), what), finite(in.y_m(), what), finite(in.theta_rad(), what)};
+}
 
 void to_proto(const topomap::LocalMap& map, proto::LocalMap* out) {
   out->set_robot_id(map.robot_id);
@@ -226,7 +226,7 @@ void to_proto(const topomap::MapNode& node, proto::MapNode* out) {
 topomap::MapNode from_proto(const proto::MapNode& in) {
   topomap::MapNode node;
   node.id = in.id();
-  node.kind = from_proto(in.kind());
+  node.kind = node_kind_from_proto(in.kind());
   node.position_m = {finite(in.x_m(), "node position"), finite(in.y_m(), "node position")};
   node.clearance_m = finite(in.clearance_m(), "node clearance");
   node.observations = in.observations();

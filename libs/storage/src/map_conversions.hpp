@@ -18,12 +18,17 @@ void to_proto(const topomap::StopPose& stop, proto::StopPose* out);
 void to_proto(const topomap::LoopClosure& closure, proto::LoopClosure* out);
 void to_proto(const topomap::MapNode& node, proto::MapNode* out);
 void to_proto(const topomap::MapBranch& branch, proto::MapBranch* out);
+void to_proto(const geometry::Pose2& pose, proto::Pose2* out);
+/// What is drawn must have passed check(MapDrawing).
+void to_proto(const MapDrawing& drawing, proto::Drawing* out);
 
 topomap::LocalMap from_proto(const proto::LocalMap& in);
 topomap::StopPose from_proto(const proto::StopPose& in);
 topomap::LoopClosure from_proto(const proto::LoopClosure& in);
 topomap::MapNode from_proto(const proto::MapNode& in);
 topomap::MapBranch from_proto(const proto::MapBranch& in);
+geometry::Pose2 from_proto(const proto::Pose2& in, const char* what);
+MapDrawing from_proto(const proto::Drawing& in);
 
 /// Throws std::runtime_error unless ids, robot ids and references between the parts fit together.
 void check_document(const MapDocument& document);

@@ -11,6 +11,7 @@
 #include "topogeo/support/hash.hpp"
 
 #include "map_conversions.hpp"
+#include "meta_table.hpp"
 #include "sqlite.hpp"
 
 namespace topogeo::storage {
@@ -44,6 +45,11 @@ constexpr const char* kSchema = R"(
   CREATE INDEX map_branch_node_b ON map_branch(node_b);
 )";
 
+// Made with the first drawing: databases without one do not have it.
+constexpr const char* kDrawingSchema =
+    "CREATE TABLE IF NOT EXISTS drawing("
+    "id INTEGER PRIMARY KEY, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL)";
+
 std::int64_t as_signed(std::uint64_t value) {
   return std::bit_cast<std::int64_t>(value);
 }
@@ -54,33 +60,6 @@ std::uint64_t as_unsigned(std::int64_t value) {
 std::int64_t pragma(SqliteConnection& connection, const char* name) {
   SqliteStatement statement(connection, fmt::format("PRAGMA {}", name));
   return statement.step() ? statement.integer(0) : 0;
-}
-
-void write_meta(SqliteConnection& connection, const std::string& key, const std::string& value) {
-  SqliteStatement(connection, "INSERT OR REPLACE INTO meta(key, value) VALUES(?, ?)")
-      .bind_text(1, key)
-      .bind_text(2, value)
-      .run();
-}
-
-std::string read_meta(SqliteConnection& connection, const std::string& key) {
-  SqliteStatement statement(connection, "SELECT value FROM meta WHERE key = ?");
-  if (!statement.bind_text(1, key).step()) {
-    throw std::runtime_error(fmt::format("{}: damaged (no '{}')", connection.name(), key));
-  }
-  return statement.text(0);
-}
-
-std::uint64_t read_meta_number(SqliteConnection& connection, const std::string& key) {
-  const std::string text = read_meta(connection, key);
-  try {
-    std::size_t used = 0;
-    const std::uint64_t value = std::stoull(text, &used);
-    if (used == text.size()) return value;
-  } catch (const std::logic_error&) {  // told below
-  }
-  throw std::runtime_error(
-      fmt::format("{}: damaged ({} is '{}', expected a number)", connection.name(), key, text));
 }
 
 /// Throws unless the file is missing, empty or starts like an SQLite file. SQLite itself takes a
@@ -358,6 +337,20 @@ void MapDatabase::put_global_map(const topomap::GlobalMap& map) {
   branch_hashes_ = std::move(branch_hashes);
 }
 
+void MapDatabase::put_drawing(const MapDrawing& drawing) {
+  try {
+    check(drawing);
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", name_, error.what()));
+  }
+  const std::string blob = to_blob<proto::Drawing>(drawing);
+  SqliteTransaction transaction(*connection_, SqliteTransaction::Kind::kWrite);
+  connection_->execute(kDrawingSchema);
+  BlobHashes none_stored;
+  TableWriter(*connection_, "drawing", "", "").put(none_stored, 0, blob);
+  transaction.commit();
+}
+
 MapDocument MapDatabase::load() const {
   const SqliteTransaction one_state(*connection_, SqliteTransaction::Kind::kRead);
   MapDocument document;
@@ -370,6 +363,11 @@ MapDocument MapDatabase::load() const {
   document.global_map.version = read_meta_number(*connection_, "global_map_version");
   read_table<proto::MapNode>(*connection_, "map_node", document.global_map.nodes);
   read_table<proto::MapBranch>(*connection_, "map_branch", document.global_map.branches);
+  if (has_table(*connection_, "drawing")) {
+    std::vector<MapDrawing> drawings;
+    read_table<proto::Drawing>(*connection_, "drawing", drawings);
+    if (!drawings.empty()) document.drawing = std::move(drawings.front());
+  }
   try {
     check_document(document);
   } catch (const std::runtime_error& error) {

@@ -84,6 +84,7 @@ MapDocument document_from_proto(const proto::MapFile& in) {
   for (const auto& branch : in.global_map().branches()) {
     document.global_map.branches.push_back(from_proto(branch));
   }
+  if (in.has_drawing()) document.drawing = from_proto(in.drawing());
   check_document(document);
   return document;
 }
@@ -114,6 +115,7 @@ std::string map_file_bytes(const MapDocument& document) {
   for (const auto& branch : document.global_map.branches) {
     to_proto(branch, file.mutable_global_map()->add_branches());
   }
+  if (!document.drawing.empty()) to_proto(document.drawing, file.mutable_drawing());
   std::string bytes = deterministic_bytes(file);
   // Fields are serialized by number, so the checksum, which has the largest, is what comes last. It
   // is written by hand because Protobuf would leave out a checksum of zero.

@@ -57,6 +57,9 @@ class MapDatabase {
   /// branch ends at a node that is not in the map.
   void put_global_map(const topomap::GlobalMap& map);
 
+  /// Makes this the drawing of the map. Throws std::invalid_argument where check(MapDrawing) does.
+  void put_drawing(const MapDrawing& drawing);
+
   /// Everything stored, checked.
   [[nodiscard]] MapDocument load() const;
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/storage/map_drawing.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -18,6 +19,7 @@ struct MapDocument {
   topomap::Trajectory trajectory;             ///< at most as many stops as local maps
   std::vector<topomap::LoopClosure> loop_closures;
   topomap::GlobalMap global_map;
+  MapDrawing drawing;
 };
 
 }  // namespace topogeo::storage
