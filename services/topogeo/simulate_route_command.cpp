@@ -1,7 +1,5 @@
 // topogeo simulate-route: plans on a map, a drawn floor or a grid, and shows the route as steps and
 // as a picture before anything moves (spec B2).
-#include <charconv>
-#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -9,7 +7,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -24,6 +21,7 @@
 #include "topogeo/support/atomic_file.hpp"
 
 #include "commands.hpp"
+#include "target_text.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -36,34 +34,6 @@ struct SimulateRouteOptions {
   std::optional<std::filesystem::path> zones;
   std::optional<std::filesystem::path> picture;
 };
-
-std::optional<Eigen::Vector2d> point_of(std::string_view text) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string_view::npos) return std::nullopt;
-  const auto number = [](std::string_view part) -> std::optional<double> {
-    double value = 0.0;
-    const char* end = part.data() + part.size();
-    const auto [rest, error] = std::from_chars(part.data(), end, value);
-    if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
-    return value;
-  };
-  const auto x = number(text.substr(0, comma));
-  const auto y = number(text.substr(comma + 1));
-  if (!x || !y) return std::nullopt;
-  return Eigen::Vector2d(*x, *y);
-}
-
-/// X,Y, #NODE or the name of a place.
-planning::Target target_of(const std::string& text) {
-  if (const auto point = point_of(text)) return *point;
-  if (text.starts_with('#')) {
-    planning::NodeNumber node;
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data() + 1, end, node.id);
-    if (error == std::errc() && rest == end) return node;
-  }
-  return text;
-}
 
 /// A world file (.world.yaml), a grid (.yaml) or a map file, with the zones of the drawing if there
 /// is one, otherwise those between the narrow passages.

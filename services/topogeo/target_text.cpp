@@ -1,0 +1,36 @@
+#include "target_text.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace topogeo::cli {
+
+std::optional<Eigen::Vector2d> point_of(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  const auto number = [](std::string_view part) -> std::optional<double> {
+    double value = 0.0;
+    const char* end = part.data() + part.size();
+    const auto [rest, error] = std::from_chars(part.data(), end, value);
+    if (error != std::errc() || rest != end || !std::isfinite(value)) return std::nullopt;
+    return value;
+  };
+  const auto x = number(text.substr(0, comma));
+  const auto y = number(text.substr(comma + 1));
+  if (!x || !y) return std::nullopt;
+  return Eigen::Vector2d(*x, *y);
+}
+
+planning::Target target_of(const std::string& text) {
+  if (const auto point = point_of(text)) return *point;
+  if (text.starts_with('#')) {
+    planning::NodeNumber node;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data() + 1, end, node.id);
+    if (error == std::errc() && rest == end) return node;
+  }
+  return text;
+}
+
+}  // namespace topogeo::cli
