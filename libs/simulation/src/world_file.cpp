@@ -30,9 +30,9 @@ class WorldParser {
   explicit WorldParser(const std::string& source) : source_(source) {}
 
   World parse(const YAML::Node& root) {
-    expect_keys(
-        root, "the world",
-        {"name", "wall_thickness", "walls", "boxes", "columns", "segments", "tour", "people"});
+    expect_keys(root, "the world",
+                {"name", "wall_thickness", "walls", "boxes", "columns", "segments", "tour",
+                 "people", "places"});
     if (const YAML::Node name = root["name"]) world_.name = text(name, "name");
     double thickness_m = 0.0;
     if (const YAML::Node node = root["wall_thickness"]) {
@@ -49,6 +49,7 @@ class WorldParser {
       world_.tour_m.push_back(point(node, "tour"));
     }
     for (const YAML::Node& node : list(root["people"], "people")) add_person(node);
+    for (const YAML::Node& node : list(root["places"], "places")) add_place(node);
     if (world_.segments.empty() && world_.circles.empty() && world_.changing.empty()) {
       fail(root, "the world", "walls, boxes, columns or segments", "none");
     }
@@ -207,6 +208,16 @@ class WorldParser {
       }
     }
     world_.people.push_back(std::move(person));
+  }
+
+  void add_place(const YAML::Node& node) {
+    expect_keys(node, "places", {"name", "at"});
+    const std::string name = text(required(node, "name"), "name");
+    const auto is_it = [&](const NamedPlace& place) { return place.name == name; };
+    if (name.empty() || std::ranges::any_of(world_.places, is_it)) {
+      fail(node, "name", "a name that is not empty, each once", "'" + name + "'");
+    }
+    world_.places.push_back({name, point(required(node, "at"), "at")});
   }
 
   void add_box(const YAML::Node& node) {

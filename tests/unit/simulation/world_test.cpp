@@ -110,8 +110,35 @@ INSTANTIATE_TEST_SUITE_P(
                  ":3: speed: expected a number in [0, 10] m/s"},
         BadWorld{"person_wings",
                  "segments: [[0, 0, 1, 1]]\npeople:\n  - {path: [[0, 0]], wings: 2}\n",
-                 ":3: people: expected one of the keys"}),
+                 ":3: people: expected one of the keys"},
+        BadWorld{"place_without_name", "segments: [[0, 0, 1, 1]]\nplaces:\n  - {at: [1, 2]}\n",
+                 ":3: name: expected a value, got nothing"},
+        BadWorld{"place_with_a_taken_name",
+                 "segments: [[0, 0, 1, 1]]\nplaces:\n  - {name: a, at: [1, 2]}\n"
+                 "  - {name: a, at: [1, 3]}\n",
+                 ":4: name: expected a name that is not empty, each once, got 'a'"},
+        BadWorld{"place_nowhere", "segments: [[0, 0, 1, 1]]\nplaces:\n  - {name: a, at: [1]}\n",
+                 ":3: at: expected 2 coordinates"}),
     [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(World, HasThePlacesThatItNames) {
+  const World world = parse_world(
+      "segments: [[0, 0, 1, 1]]\n"
+      "places: [{name: room A, at: [1.5, -2]}, {name: hall, at: [0, 4]}]\n",
+      "w");
+  ASSERT_EQ(world.places.size(), 2U);
+  EXPECT_EQ(world.places[0].name, "room A");
+  EXPECT_EQ(world.places[0].position_m, Eigen::Vector2d(1.5, -2.0));
+  EXPECT_EQ(world.places[1].name, "hall");
+}
+
+TEST(World, TheOfficeFloorHasRoomForTheRobotAtItsPlaces) {
+  const World world = load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+  EXPECT_EQ(world.places.size(), 9U);
+  for (const NamedPlace& place : world.places) {
+    EXPECT_GT(clearance_m(world, place.position_m), 0.6) << place.name;
+  }
+}
 
 TEST(World, AMissingFileIsNamed) {
   try {

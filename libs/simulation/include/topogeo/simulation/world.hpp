@@ -9,6 +9,7 @@
 //   columns: [{center: [4, 4], radius: 0.3}]
 //   segments: [[0, 0, 1, 1]]      # single lines: x1, y1, x2, y2
 //   tour: [[1, 1], [6, 1]]        # way points of the drive
+//   places: [{name: room A, at: [1, 1]}]         # what people call them; each name once
 // What changes while the robot drives:
 //   doors: [{at: 2.5, width: 0.9, open: [[0, 12.5], [40, 60]]}]   # closed but for these parts of
 //                                 # the way driven; without `open` it stands open for ever
@@ -84,6 +85,12 @@ struct Person {
   bool yields = false;   ///< stands still where the next step would bring it too near to the robot
 };
 
+/// A place that has a name.
+struct NamedPlace {
+  std::string name;
+  Eigen::Vector2d position_m;
+};
+
 struct World {
   std::string name{};
   std::vector<Segment> segments{};
@@ -91,6 +98,7 @@ struct World {
   std::vector<Eigen::Vector2d> tour_m{};
   std::vector<ChangingPart> changing{};
   std::vector<Person> people{};
+  std::vector<NamedPlace> places{};
 };
 
 /// Reads a world file. Throws std::runtime_error naming file, line, key and what was expected: an
