@@ -1,0 +1,132 @@
+#include "topogeo/service/hybrid_map_messages.hpp"
+
+#include <algorithm>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+
+#include "convert.hpp"
+
+namespace topogeo::service {
+
+using detail::check_bound;
+
+namespace {
+
+constexpr auto kUnknown = static_cast<std::uint8_t>(planning::CellState::kUnknown);
+
+msg::Point2 to_point(const Eigen::Vector2d& point_m) {
+  msg::Point2 out;
+  out.x_m(point_m.x());
+  out.y_m(point_m.y());
+  return out;
+}
+
+msg::GridTile tile_of(const planning::HybridMap& map, std::uint32_t number,
+                      const TileLayout& layout) {
+  constexpr auto kSide = static_cast<std::int32_t>(msg::kTileCells);
+  const planning::Cell corner{static_cast<std::int32_t>(number % layout.columns) * kSide,
+                              static_cast<std::int32_t>(number / layout.columns) * kSide};
+  msg::GridTile tile;
+  tile.tile(number);
+  tile.states().assign(msg::kTileArea, kUnknown);
+  tile.zones().assign(msg::kTileArea, msg::kNoZone);
+  const planning::GridFrame& frame = map.frame();
+  std::size_t at = 0;
+  for (std::int32_t row = corner.row; row < corner.row + kSide; ++row) {
+    for (std::int32_t column = corner.column; column < corner.column + kSide; ++column, ++at) {
+      const planning::Cell cell{column, row};
+      if (!frame.contains(cell)) continue;
+      tile.states()[at] = static_cast<std::uint8_t>(map.space().grid().at(cell));
+      tile.zones()[at] = map.zone_of(cell);
+    }
+  }
+  return tile;
+}
+
+void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
+  const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
+  check_bound("zones", map.zones().zones.size(), msg::kMaxZones);
+  for (const planning::Zone& zone : map.zones().zones) {
+    msg::HybridZone& entry = out.zones().emplace_back();
+    messaging::set_text(entry.name(), zone.name, "zone");
+    entry.area_m2(static_cast<double>(zone.cells) * cell_m2);
+  }
+  check_bound("places", map.places().size(), msg::kMaxPlaces);
+  for (const planning::Place& place : map.places()) {
+    msg::HybridPlace& entry = out.places().emplace_back();
+    messaging::set_text(entry.name(), place.name, "place");
+    entry.position(to_point(place.position_m));
+  }
+}
+
+void add_graph(const planning::HybridMap& map, msg::HybridMap& out) {
+  check_bound("nodes", map.nodes().size(), msg::kMaxBorderNodes);
+  for (const planning::BorderNode& node : map.nodes()) {
+    msg::HybridNode& entry = out.nodes().emplace_back();
+    entry.position(to_point(node.position_m));
+    entry.zone_a(node.zones[0]);
+    entry.zone_b(node.zones[1]);
+    entry.clearance_m(node.clearance_m);
+  }
+  check_bound("edges", map.edges().size(), msg::kMaxHybridEdges);
+  for (const planning::HybridEdge& edge : map.edges()) {
+    msg::HybridEdge& entry = out.edges().emplace_back();
+    entry.node_a(edge.node_a);
+    entry.node_b(edge.node_b);
+    entry.zone(edge.zone);
+    entry.cost_m(edge.cost_m);
+  }
+}
+
+}  // namespace
+
+TileLayout tile_layout(const planning::GridFrame& frame) {
+  const auto tiles = [](std::int32_t cells) {
+    return (static_cast<std::uint32_t>(cells) + msg::kTileCells - 1) / msg::kTileCells;
+  };
+  return {tiles(frame.columns), tiles(frame.rows)};
+}
+
+HybridMapMessages to_messages(const planning::HybridMap& map, std::string_view robot_id,
+                              std::int64_t stamp_ns, std::uint64_t version) {
+  const TileLayout layout = tile_layout(map.frame());
+  check_bound("tiles", layout.count(), msg::kMaxTiles);
+  HybridMapMessages out;
+  out.tiles.reserve(layout.count());
+  for (std::uint32_t number = 0; number < layout.count(); ++number) {
+    msg::GridTile& tile = out.tiles.emplace_back(tile_of(map, number, layout));
+    messaging::set_header(tile, robot_id, stamp_ns, 0);
+    tile.version(version);
+  }
+  msg::HybridMap& summary = out.summary;
+  messaging::set_header(summary, robot_id, stamp_ns, 0);
+  summary.version(version);
+  summary.columns(static_cast<std::uint32_t>(map.frame().columns));
+  summary.rows(static_cast<std::uint32_t>(map.frame().rows));
+  summary.resolution_m(map.frame().resolution_m);
+  summary.T_map_grid(to_msg(map.frame().T_map_grid));
+  summary.forbidden_cells(map.space().inflation().forbidden_cells);
+  summary.inflate_unknown(map.space().inflation().inflate_unknown);
+  summary.tile_versions().assign(layout.count(), version);
+  add_zones_and_places(map, summary);
+  add_graph(map, summary);
+  return out;
+}
+
+planning::GridFrame frame_from_msg(const msg::HybridMap& summary) {
+  // Too many stay too many, whatever a signed number can hold.
+  const auto cells = [](std::uint32_t count) {
+    constexpr std::uint32_t kTooMany = 1'000'000'000;
+    return static_cast<std::int32_t>(std::min(count, kTooMany));
+  };
+  planning::GridFrame frame;
+  frame.columns = cells(summary.columns());
+  frame.rows = cells(summary.rows());
+  frame.resolution_m = summary.resolution_m();
+  frame.T_map_grid = from_msg(summary.T_map_grid());
+  planning::check(frame);
+  return frame;
+}
+
+}  // namespace topogeo::service
