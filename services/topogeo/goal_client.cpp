@@ -1,0 +1,155 @@
+#include "goal_client.hpp"
+
+#include <chrono>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include <unistd.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/host.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+constexpr std::size_t kLongestHost = 32;
+
+std::int64_t host_stamp_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Nobody else's, and never 0.
+std::uint64_t new_goal_id() {
+  std::random_device random;
+  return (static_cast<std::uint64_t>(random()) << 16U) + (random() & 0xFFFFU) + 1;
+}
+
+}  // namespace
+
+GoalClient::GoalClient(const messaging::Participant& participant, messaging::EventLoop& loop,
+                       std::string robot_id)
+    : robot_id_(std::move(robot_id)),
+      client_id_(support::host_name().substr(0, kLongestHost) + "-" + std::to_string(::getpid())),
+      loop_(loop),
+      goals_(participant),
+      service_statuses_(participant),
+      statuses_(participant),
+      routes_(participant),
+      tiles_(participant),
+      maps_(participant) {
+  loop_.add(goals_);
+  listen();
+}
+
+void GoalClient::listen() {
+  using messaging::SampleInfo;
+  loop_.add<msg::ServiceStatus>(
+      service_statuses_,
+      [this](const msg::ServiceStatus& status, const SampleInfo& info) {
+        if (is_own(status) && status.state() != msg::kServiceStopped) {
+          services_.update(status, info);
+        }
+      },
+      [this](const SampleInfo& info) { services_.remove(info); });
+  loop_.add<msg::NavigatorStatus>(statuses_,
+                                  [this](const msg::NavigatorStatus& status, const SampleInfo&) {
+                                    if (!is_own(status)) return;
+                                    status_ = status;
+                                    if (watch_) watch_->add(status, support::monotonic_s());
+                                  });
+  loop_.add<msg::Route>(routes_, [this](const msg::Route& route, const SampleInfo&) {
+    if (!is_own(route) || goal_id_ == 0 || route.goal_id() != goal_id_) return;
+    if (watch_) watch_->add(route);
+    if (!route_ && route.status() == msg::kRouteFound && !route.points().empty()) route_ = route;
+  });
+  // The services count what they cannot use of a map; here it is only drawn.
+  loop_.add<msg::GridTile>(
+      tiles_,
+      [this](const msg::GridTile& tile, const SampleInfo& info) {
+        if (!is_own(tile)) return;
+        try {
+          mirror_.put(tile, info.instance);
+        } catch (const std::invalid_argument&) {
+          return;
+        }
+      },
+      [this](const SampleInfo& info) {
+        if (info.state == messaging::InstanceState::kDisposed) mirror_.remove(info.instance);
+      });
+  loop_.add<msg::HybridMap>(maps_, [this](const msg::HybridMap& map, const SampleInfo&) {
+    if (!is_own(map)) return;
+    try {
+      mirror_.put(map);
+    } catch (const std::invalid_argument&) {
+      return;
+    }
+  });
+}
+
+std::string GoalClient::missing() const {
+  std::string names;
+  for (const char* name : {"planner", "navigator"}) {
+    if (services_.find(name) == nullptr)
+      names += (names.empty() ? "" : " and no ") + std::string(name);
+  }
+  return names;
+}
+
+void GoalClient::send(service::Goal goal, double patience_s) {
+  const bool order = goal.kind == msg::kGoalCancel || goal.kind == msg::kGoalPause ||
+                     goal.kind == msg::kGoalResume;
+  goal.client_id = client_id_;
+  if (!order) {
+    goal.goal_id = goal_id_ = new_goal_id();
+    route_.reset();
+    watch_.emplace(goal_id_, patience_s, support::monotonic_s());
+  }
+  if (!goals_.write(service::to_msg(goal, robot_id_, host_stamp_ns(), sent_++))) {
+    throw std::runtime_error("the goal could not be sent");
+  }
+}
+
+void GoalClient::cancel() {
+  if (goal_id_ == 0) return;
+  service::Goal order;
+  order.kind = msg::kGoalCancel;
+  order.goal_id = goal_id_;
+  send(order);
+}
+
+bool GoalClient::delivered(double patience_s) {
+  return goals_.wait_for_acknowledgments(
+      std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * patience_s)));
+}
+
+std::optional<GoalEnd> GoalClient::end() const {
+  return watch_ ? watch_->look(support::monotonic_s()) : std::nullopt;
+}
+
+std::shared_ptr<const planning::HybridMap> GoalClient::map() {
+  try {
+    return mirror_.map();
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+}
+
+planning::HybridRoute route_to_draw(const msg::Route& route) {
+  planning::HybridRoute out;
+  out.status = planning::RouteStatus::kFound;
+  out.length_m = route.length_m();
+  out.cost_m = route.cost_m();
+  out.min_clearance_m = route.min_clearance_m();
+  for (const std::uint16_t zone : route.zones()) out.zones.push_back(zone);
+  for (const std::uint32_t node : route.node_ids()) out.nodes.push_back(node);
+  for (const msg::BranchPoint& point : route.points()) {
+    out.points_m.emplace_back(point.x_m(), point.y_m());
+  }
+  return out;
+}
+
+}  // namespace topogeo::cli

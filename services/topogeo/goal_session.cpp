@@ -1,0 +1,111 @@
+#include "goal_session.hpp"
+
+#include <iostream>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/render/route_picture.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/progress_bar.hpp"
+
+#include "target_text.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+msg::GoalKind kind_of(const planning::Target& target) {
+  if (std::holds_alternative<planning::NodeNumber>(target)) return msg::kGoalNode;
+  return std::holds_alternative<std::string>(target) ? msg::kGoalPlace : msg::kGoalPosition;
+}
+
+void check_picture(const std::optional<std::filesystem::path>& picture) {
+  if (!picture) return;
+  try {
+    static_cast<void>(render::picture_format(*picture));
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
+}  // namespace
+
+void add_goal_options(CLI::App& app, GoalOptions& options) {
+  app.add_option("--heading", options.heading_deg, "where the robot shall look in the end")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->type_name("DEG");
+  app.add_flag("--look-around", options.look_around,
+               "without a pose it may turn and move a little to find out where it is");
+  app.add_option("--picture", options.picture, "write the way on the map as .png or .svg")
+      ->type_name("FILE");
+  constexpr double kLongest_s = 86400.0;
+  app.add_option("--patience", options.patience_s,
+                 "give the goal up when the robot has not driven for so many seconds")
+      ->check(CLI::Range(1.0, kLongest_s))
+      ->capture_default_str();
+}
+
+service::Goal to_goal(const GoalOptions& options) {
+  constexpr std::size_t kLongestName = 64;  // idl
+  if (options.target.empty() || options.target.size() > kLongestName) {
+    throw service::UsageError(fmt::format(
+        "goal '{}': expected X,Y in metres, #NODE or the name of a place, up to {} bytes",
+        options.target, kLongestName));
+  }
+  service::Goal goal;
+  goal.target = target_of(options.target);
+  goal.kind = kind_of(goal.target);
+  if (options.heading_deg) goal.heading_rad = *options.heading_deg * std::numbers::pi / 180.0;
+  goal.look_around = options.look_around;
+  return goal;
+}
+
+GoalSession::GoalSession(const messaging::Participant& participant, messaging::EventLoop& loop,
+                         const std::string& robot_id, GoalOptions options)
+    : options_(std::move(options)),
+      goal_(to_goal(options_)),
+      client_(participant, loop, robot_id),
+      progress_(std::cerr, support::stderr_is_terminal(), terminal_columns()) {
+  check_picture(options_.picture);
+}
+
+void GoalSession::send() {
+  client_.send(goal_, options_.patience_s);
+}
+
+void GoalSession::tick() {
+  if (client_.route() && !told_way_) {
+    told_way_ = true;
+    progress_.say(fmt::format("the way to {} is {:.1f} m long, through {} zones and {} borders",
+                              options_.target, client_.route()->length_m(),
+                              client_.route()->zones().size(), client_.route()->node_ids().size()));
+  }
+  if (client_.route() && options_.picture && !drawn_) draw_way();
+  if (client_.taken()) progress_.show(*client_.status(), support::monotonic_s());
+}
+
+void GoalSession::draw_way() {
+  const std::shared_ptr<const planning::HybridMap> map = client_.map();
+  if (!map) return;  // on its way
+  drawn_ = true;
+  const std::string title =
+      fmt::format("to {}: {:.1f} m", options_.target, client_.route()->length_m());
+  support::write_file_atomically(*options_.picture,
+                                 render::route_picture(*map, route_to_draw(*client_.route()), title,
+                                                       render::picture_format(*options_.picture)));
+  progress_.say("the way is drawn in " + options_.picture->string());
+}
+
+bool GoalSession::stands() const {
+  const auto& status = client_.status();
+  return !status || (status->linear_mps() == 0.0 && status->angular_radps() == 0.0 &&
+                     status->state() != msg::kNavigatorDriving);
+}
+
+}  // namespace topogeo::cli

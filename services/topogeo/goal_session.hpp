@@ -1,0 +1,61 @@
+// A goal from the command line: waits for the services, sends it, shows how the robot gets on,
+// draws the way.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "topogeo/render/picture_format.hpp"
+
+#include "goal_client.hpp"
+#include "goal_progress.hpp"
+
+namespace topogeo::cli {
+
+struct GoalOptions {
+  std::string target;                            ///< X,Y, #NODE or the name of a place
+  std::optional<double> heading_deg;             ///< map frame
+  bool look_around = false;                      ///< see msg::Goal
+  std::optional<std::filesystem::path> picture;  ///< of the way
+  double patience_s = 60.0;                      ///< see GoalWatch
+};
+
+/// Adds --heading, --look-around, --picture and --patience.
+void add_goal_options(CLI::App& app, GoalOptions& options);
+
+/// Throws service::UsageError for a target or a picture that cannot be.
+service::Goal to_goal(const GoalOptions& options);
+
+class GoalSession {
+ public:
+  /// Lives in the loop. Throws like GoalClient and to_goal.
+  GoalSession(const messaging::Participant& participant, messaging::EventLoop& loop,
+              const std::string& robot_id, GoalOptions options);
+
+  [[nodiscard]] GoalClient& client() { return client_; }
+  [[nodiscard]] GoalProgress& progress() { return progress_; }
+
+  void send();
+  /// Shows what is new and draws the way when it is known. Call it some ten times a second.
+  /// Throws std::runtime_error when the picture cannot be written.
+  void tick();
+  /// Of the goal; nothing while it may still be reached.
+  [[nodiscard]] std::optional<GoalEnd> end() const { return client_.end(); }
+  /// The robot stands: what it was commanded last is nothing.
+  [[nodiscard]] bool stands() const;
+
+ private:
+  void draw_way();
+
+  GoalOptions options_;
+  service::Goal goal_;
+  GoalClient client_;
+  GoalProgress progress_;
+  bool told_way_ = false;
+  bool drawn_ = false;
+};
+
+}  // namespace topogeo::cli
