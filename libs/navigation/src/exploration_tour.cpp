@@ -1,0 +1,142 @@
+#include "topogeo/navigation/exploration_tour.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "topogeo/planning/hybrid_planner.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr double kNanoseconds = 1e9;
+constexpr double kNearer_m = 0.1;   // progress
+constexpr double kAside_rad = 0.5;  // enough turn for another stop
+constexpr int kLooks = 2;           // at a target that stays open
+
+void check_range(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  throw std::invalid_argument(std::string("explorer.") + name + ": expected a number in [" +
+                              std::to_string(low) + ", " + std::to_string(high) + "], got " +
+                              std::to_string(value));
+}
+
+}  // namespace
+
+void check(const TourConfig& config) {
+  check(config.explorer);
+  check_range("patience_s", config.patience_s, 1.0, 3600.0);
+  check_range("settle_s", config.settle_s, 0.0, 600.0);
+}
+
+ExplorationTour::ExplorationTour(const TourConfig& config, std::uint64_t first_goal_id)
+    : config_(config), explorer_(config.explorer), next_goal_id_(first_goal_id) {
+  check(config_);
+}
+
+ExplorationTour::~ExplorationTour() = default;
+
+void ExplorationTour::set_map(ExploredMap map) {
+  planner_.reset();
+  map_ = std::move(map);
+  explorer_.set_visited(map_.T_map_stops);
+  planning::HybridPlannerConfig config;
+  config.goal_snap_m = 0.2;  // what was passable in the map before may be forbidden now
+  if (map_.map) planner_ = std::make_unique<planning::HybridPlanner>(*map_.map, config);
+}
+
+std::optional<TourGoal> ExplorationTour::step(const NavigatorStatus& navigator,
+                                              std::int64_t now_ns) {
+  if (done_ || !planner_ || !navigator.T_map_robot) return std::nullopt;
+  if (target_) judge(navigator, now_ns);
+  if (again_) return std::exchange(again_, std::nullopt);
+  if (target_) return std::nullopt;
+  return choose(*navigator.T_map_robot, now_ns);
+}
+
+void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_ns) {
+  const bool changed = std::exchange(judged_version_, map_.version) != map_.version;
+  if (changed && !explorer_.open(*target_, *map_.graph, *map_.map)) {
+    target_.reset();
+    return;
+  }
+  if (navigator.goal_id != goal_->goal_id) return;  // it has not heard of it yet
+  switch (navigator.state) {
+    case NavigatorState::kArrived:
+      // Its last scan may not be in the map yet.
+      if (changed || static_cast<double>(now_ns - nearest_ns_) > kNanoseconds * config_.settle_s) {
+        arrived();
+        nearest_ns_ = now_ns;
+      }
+      return;
+    case NavigatorState::kStopped:
+      if (navigator.reason == HaltReason::kNoRoute) {
+        explorer_.give_up(*target_);
+        target_.reset();
+        return;
+      }
+      break;
+    default:
+      break;
+  }
+  const Eigen::Vector2d rest_m =
+      goal_->T_map_goal.position_m() - navigator.T_map_robot->position_m();
+  const double way_m = navigator.rest_m > 0.0 ? navigator.rest_m : rest_m.norm();
+  if (way_m < nearest_m_ - kNearer_m || navigator.state == NavigatorState::kRelocalizing) {
+    nearest_m_ = way_m;
+    nearest_ns_ = now_ns;
+  } else if (static_cast<double>(now_ns - nearest_ns_) > kNanoseconds * config_.patience_s) {
+    explorer_.give_up(*target_);
+    target_.reset();
+  }
+}
+
+// It is there and the target is open all the same: another look, a little to the side, so that a
+// stop is made.
+void ExplorationTour::arrived() {
+  if (++looks_ >= kLooks) {
+    explorer_.give_up(*target_);
+    target_.reset();
+    return;
+  }
+  geometry::Pose2 T_map_goal = target_->T_map_view;
+  T_map_goal.theta_rad =
+      geometry::wrap_angle(T_map_goal.theta_rad + (looks_ % 2 == 1 ? kAside_rad : -kAside_rad));
+  again_ = give(T_map_goal);
+}
+
+std::optional<TourGoal> ExplorationTour::choose(const geometry::Pose2& T_map_robot,
+                                                std::int64_t now_ns) {
+  if (idle_ns_ && chosen_version_ == map_.version) {
+    done_ = static_cast<double>(now_ns - *idle_ns_) >= kNanoseconds * config_.settle_s;
+    return std::nullopt;
+  }
+  chosen_version_ = map_.version;
+  target_ = explorer_.next(*map_.graph, *map_.map, *planner_, T_map_robot);
+  if (!target_) {
+    if (!idle_ns_) idle_ns_ = now_ns;
+    return std::nullopt;
+  }
+  idle_ns_.reset();
+  ++targets_;
+  looks_ = 0;
+  nearest_m_ = target_->way_m;
+  nearest_ns_ = now_ns;
+  judged_version_ = map_.version;
+  return give(target_->T_map_view);
+}
+
+TourGoal ExplorationTour::give(const geometry::Pose2& T_map_goal) {
+  goal_ = TourGoal{next_goal_id_++, T_map_goal};
+  return *goal_;
+}
+
+std::string ExplorationTour::message() const {
+  if (done_) return "nothing is left that can be reached";
+  if (!planner_) return "waits for a map";
+  if (!target_) return "looks for a target";
+  return "to a " + std::string(describe(target_->kind)) + ", " +
+         std::to_string(static_cast<long>(std::lround(target_->way_m))) + " m away when chosen";
+}
+
+}  // namespace topogeo::navigation
