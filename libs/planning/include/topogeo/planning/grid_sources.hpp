@@ -37,8 +37,10 @@ struct Drawing {
 OccupancyGrid grid_of(const Drawing& drawing, double resolution_m = 0.1, double margin_m = 1.0);
 
 struct ScanGridConfig {
-  double resolution_m = 0.1;  ///< [0.01, 1]
-  double margin_m = 1.0;      ///< around what was seen, [0, 100]
+  double resolution_m = 0.1;    ///< [0.01, 1]
+  double margin_m = 1.0;        ///< around what was seen, [0, 100]
+  std::int32_t snap_cells = 1;  ///< the lower left corner is at multiples of so many cells, [1,
+                                ///< 1024], so that a map that grows seldom shifts
   // Log-odds in hundredths, kept within +-limit so that a door that is shut later becomes a wall.
   std::int32_t hit = 85;     ///< added where a beam ends, [1, 1000]
   std::int32_t miss = 40;    ///< taken off where one passes, [1, 1000]
@@ -55,5 +57,13 @@ void check(const ScanGridConfig& config);
 OccupancyGrid grid_from_scans(std::span<const topomap::LocalMap> maps,
                               std::span<const topomap::StopPose> stops,
                               const ScanGridConfig& config = {});
+
+/// A drawing and what scans saw of it, on the grid of the drawing, which grows by multiples of
+/// snap_cells where scans reach further; resolution and margin are those of the drawing. A cell is
+/// occupied when either says so, otherwise free when either says so. With no scan point at all it
+/// is the drawing. Throws std::invalid_argument as grid_from_scans.
+OccupancyGrid grid_of_both(const OccupancyGrid& drawn, std::span<const topomap::LocalMap> maps,
+                           std::span<const topomap::StopPose> stops,
+                           const ScanGridConfig& config = {});
 
 }  // namespace topogeo::planning
