@@ -1,5 +1,6 @@
 #include "topogeo/pipeline/config.hpp"
 
+#include "config_hybrid_map.hpp"
 #include "config_navigator.hpp"
 
 namespace topogeo::pipeline {
@@ -226,6 +227,7 @@ ConfigSchema describe(Config& config) {
   describe_match(config, schema);
   describe_localizer(config, schema);
   describe_global_map(config, schema);
+  describe_hybrid_map(config.hybrid_map, schema);
   describe_navigator(config.navigator, schema);
   return schema;
 }
@@ -238,6 +240,7 @@ LoadedConfig load_config(const std::optional<std::filesystem::path>& file) {
   share_values(loaded.config);
   topomap::check(loaded.config.global_map);
   planning::check(loaded.config.planning);
+  check(loaded.config.hybrid_map);
   return loaded;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/service/conversions.hpp"
 
 #include "convert.hpp"
@@ -12,6 +13,8 @@ namespace topogeo::service {
 using detail::check_bound;
 
 namespace {
+
+static_assert(msg::kTileCells == pipeline::kTileCells);
 
 constexpr auto kUnknown = static_cast<std::uint8_t>(planning::CellState::kUnknown);
 

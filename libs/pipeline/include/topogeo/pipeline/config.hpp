@@ -7,6 +7,7 @@
 
 #include "topogeo/localization/localizer.hpp"
 #include "topogeo/navigation/navigator.hpp"
+#include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
@@ -21,6 +22,7 @@ struct Config {
   localization::LocalizerConfig localizer;
   topomap::GlobalMapConfig global_map;
   planning::PlanningConfig planning;
+  HybridMapConfig hybrid_map;
   navigation::NavigatorConfig navigator;
 };
 

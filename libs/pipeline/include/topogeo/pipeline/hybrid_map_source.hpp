@@ -1,0 +1,68 @@
+// The hybrid map (spec B1) of what is stored of a floor: a drawing, what the robot has mapped, or
+// both.
+//
+// The grid is the drawn one, the one that scans saw, or the two as planning::grid_of_both lays them
+// together. Zones are the drawn ones; without any they lie between the passages of the map that the
+// robot has made; without those they follow from the width of the free space.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/planning/grid_sources.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/storage/map_document.hpp"
+
+namespace topogeo::pipeline {
+
+/// Side of the tiles that a grid is sent in: a map that grows must not shift them.
+inline constexpr std::int32_t kTileCells = 64;
+
+struct HybridMapConfig {
+  planning::ScanGridConfig grid{.snap_cells = kTileCells};
+  planning::InflationConfig inflation;
+  planning::ZoneConfig zones;
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const HybridMapConfig& config);
+
+/// What a hybrid map is made of; it is looked at during the call only. What is missing is empty.
+struct HybridMapParts {
+  std::span<const topomap::LocalMap> local_maps;
+  std::span<const topomap::StopPose> stops;
+  const topomap::GlobalMap* global_map = nullptr;
+  const storage::MapDrawing* drawing = nullptr;
+};
+HybridMapParts parts_of(const storage::MapDocument& document);
+
+/// Throws std::invalid_argument saying why when there is nothing to make a grid of (no drawing and
+/// no scan points), the grid would be too large, or the configuration is out of range. The lower
+/// left corner of a grid of scans lies at a multiple of config.grid.snap_cells.
+planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config);
+
+/// A drawn floor: the grid and the places of a world file (.world.yaml, see simulation/world.hpp)
+/// with cells of `resolution_m`, or the grid of a YAML file (see planning/grid_file.hpp). The names
+/// of `zones` (see planning::read_zone_drawing), in the frame of the drawing, are added to it. All
+/// is taken to the map frame. Throws std::runtime_error naming file, line or field.
+storage::MapDrawing read_drawing(const std::filesystem::path& file,
+                                 const std::optional<std::filesystem::path>& zones,
+                                 double resolution_m, const geometry::Pose2& T_map_drawing = {});
+
+/// Places and zones of a file, checked like a drawing; there is no grid. Throws the same.
+storage::MapDrawing read_zones_and_places(const std::filesystem::path& file);
+
+/// Puts what `added` has on `drawing`: its grid takes the place of the one there, and so do places
+/// and zones of the same names; others come behind those there.
+void lay_over(storage::MapDrawing& drawing, storage::MapDrawing added);
+
+/// What is known of a floor from one file: a world, a grid (both as read_drawing, with no robot) or
+/// a map file. Throws std::runtime_error naming file, line or field.
+storage::MapDocument read_floor(const std::filesystem::path& file,
+                                const std::optional<std::filesystem::path>& zones,
+                                double resolution_m);
+
+}  // namespace topogeo::pipeline
