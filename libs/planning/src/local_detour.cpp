@@ -10,6 +10,8 @@
 
 #include "topogeo/planning/grid_search.hpp"
 
+#include "cell_order.hpp"
+#include "nearest_in_sight.hpp"
 #include "straighten.hpp"
 
 namespace topogeo::planning {
@@ -27,25 +29,33 @@ double distance(const Cell& a, const Cell& b) {
   return std::hypot(a.column - b.column, a.row - b.row);
 }
 
-std::optional<Cell> nearest_open(const SearchWindow& window, const Cell& cell, double within) {
-  std::optional<Cell> best;
-  const auto reach = static_cast<std::int32_t>(within);
-  for (std::int32_t y = -reach; y <= reach; ++y) {
-    for (std::int32_t x = -reach; x <= reach; ++x) {
-      const Cell candidate{cell.column + x, cell.row + y};
-      if (!window.open(candidate) || distance(candidate, cell) > within) continue;
-      if (!best || distance(candidate, cell) < distance(*best, cell)) best = candidate;
-    }
-  }
-  return best;
-}
-
 std::size_t nearest_on_route(std::span<const Cell> route, const Cell& cell) {
   const auto nearer = [&](const Cell& a, const Cell& b) {
     return distance(a, cell) < distance(b, cell);
   };
   return static_cast<std::size_t>(std::min_element(route.begin(), route.end(), nearer) -
                                   route.begin());
+}
+
+std::vector<Cell> cells_of(const GridFrame& frame, std::span<const Eigen::Vector2d> points_m) {
+  std::vector<Cell> cells;
+  for (const Eigen::Vector2d& point_m : points_m) {
+    if (const auto cell = frame.cell_of(point_m)) cells.push_back(*cell);
+  }
+  sort_cells(cells);
+  return cells;
+}
+
+std::optional<Cell> start_of(const FreeSpace& space, const SearchWindow& window,
+                             const std::vector<Cell>& obstacles, const Eigen::Vector2d& robot_m,
+                             double snap_m) {
+  const auto open = [&](const Cell& cell) { return window.open(cell); };
+  const Cell robot = space.frame().cell_of(robot_m).value();
+  if (open(robot)) return robot;
+  const auto clear = [&](const Cell& cell) {
+    return space.grid().at(cell) != CellState::kOccupied && !has_cell(obstacles, cell);
+  };
+  return nearest_in_sight(space.frame(), robot_m, snap_m, open, clear);
 }
 
 Detour failure(DetourStatus status, const char* reason) {
@@ -90,12 +100,11 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
   if (!robot) return failure(DetourStatus::kLost, "the robot is outside of the grid");
   const auto half = static_cast<std::int32_t>(config.half_side_m / frame.resolution_m);
   SearchWindow window(space, grown({*robot, *robot}, half, frame));
-  for (const Eigen::Vector2d& obstacle_m : obstacles_m) {
-    if (const auto cell = frame.cell_of(obstacle_m)) {
-      window.close_disc(*cell, space.inflation().forbidden_cells);
-    }
+  const std::vector<Cell> obstacles = cells_of(frame, obstacles_m);
+  for (const Cell& cell : obstacles) {
+    window.close_disc(cell, space.inflation().forbidden_cells);
   }
-  const auto start = nearest_open(window, *robot, config.start_snap_m / frame.resolution_m);
+  const auto start = start_of(space, window, obstacles, robot_m, config.start_snap_m);
   if (!start) return failure(DetourStatus::kLost, "no passable cell is near the robot");
   const std::size_t from = nearest_on_route(route, *robot);
   const std::size_t end = end_in_window(window, route, from);

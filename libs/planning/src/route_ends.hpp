@@ -1,13 +1,15 @@
 // Finding the cells that a route begins and ends at, and saying why there is none.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "topogeo/planning/hybrid_planner.hpp"
+
+#include "closed_cells.hpp"
 
 namespace topogeo::planning {
 
@@ -17,19 +19,36 @@ std::string shown(const Eigen::Vector2d& point_m);
 /// A route that there is not.
 HybridRoute no_route(RouteStatus status, std::string reason);
 
-/// The passable cell of a point, or the nearest one within snap_m that no obstacle hides. Without
-/// any, `failure` gets status and reason of a route that begins (`what` is "start") or ends there.
-std::optional<Cell> find_end(const FreeSpace& space, const Eigen::Vector2d& point_m, double snap_m,
-                             bool is_start, HybridRoute& failure);
+/// Finds the cells that a route begins and ends at.
+class EndFinder {
+ public:
+  EndFinder(const FreeSpace& space, const ClosedCells& cells) : space_(space), cells_(cells) {}
 
-/// Middle of the cell nearest to a point of all those that `reachable` holds for (by index); of
-/// equally near ones the first.
+  /// The open cell of a point, or the nearest one within snap_m that no obstacle hides. Without
+  /// any, `failure` gets status and reason of a route that begins there.
+  [[nodiscard]] std::optional<Cell> start(const Eigen::Vector2d& point_m, double snap_m,
+                                          HybridRoute& failure) const;
+
+  /// The same for a route that ends there.
+  [[nodiscard]] std::optional<Cell> goal(const Eigen::Vector2d& point_m, double snap_m,
+                                         HybridRoute& failure) const;
+
+ private:
+  [[nodiscard]] std::optional<Cell> find(const std::string& what, const Eigen::Vector2d& point_m,
+                                         double snap_m, RouteStatus outside, RouteStatus occupied,
+                                         HybridRoute& failure) const;
+
+  const FreeSpace& space_;
+  const ClosedCells& cells_;
+};
+
+/// Middle of the cell nearest to a point of all those that are reachable (by index); of equally
+/// near ones the first.
 std::optional<Eigen::Vector2d> nearest_cell_m(const GridFrame& frame,
                                               const Eigen::Vector2d& point_m,
-                                              const std::function<bool(std::size_t)>& reachable);
+                                              const std::vector<bool>& reachable);
 
-/// Cost, clearance, points and length of a route from its cells.
-void fill_in(const FreeSpace& space, const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m,
-             HybridRoute& route);
+/// Cost, clearances and length of a route from its cells and points.
+void measure(const ClosedCells& cells, const GridFrame& frame, HybridRoute& route);
 
 }  // namespace topogeo::planning

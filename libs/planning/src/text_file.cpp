@@ -47,7 +47,8 @@ YAML::Node parse_yaml(const std::string& text, const std::string& source) {
   try {
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(source + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    const int line = std::max(error.mark.line + 1, 1);
+    throw std::runtime_error(source + ":" + std::to_string(line) + ": " + error.msg);
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -10,8 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/planning/motion_primitives.hpp"
-
+#include "drivable.hpp"
 #include "floors.hpp"
 
 namespace topogeo::planning {
@@ -206,21 +204,6 @@ TEST(HybridPlanner, AvoidsWhatIsClosedNow) {
             map.zone_of(map.frame().cell_of(from_m).value()));
   EXPECT_THROW((void)planner.plan(from_m, to_m, {{99}, {}}), std::invalid_argument);
   EXPECT_THROW((void)planner.plan(from_m, to_m, {{}, {99}}), std::invalid_argument);
-}
-
-void expect_drivable(const FreeSpace& space, const HybridRoute& route) {
-  for (const Cell& cell : route.cells) ASSERT_TRUE(space.passable(cell));
-  for (std::size_t i = 1; i < route.cells.size(); ++i) {
-    const Cell& a = route.cells[i - 1];
-    const Cell& b = route.cells[i];
-    ASSERT_EQ(std::max(std::abs(a.column - b.column), std::abs(a.row - b.row)), 1);
-    ASSERT_TRUE(space.passable(Cell{a.column, b.row}));
-    ASSERT_TRUE(space.passable(Cell{b.column, a.row}));
-  }
-  for (std::size_t i = 1; i < route.points_m.size(); ++i) {
-    ASSERT_TRUE(in_sight(space, route.points_m[i - 1], route.points_m[i]));
-  }
-  EXPECT_LE(route.length_m, route.cost_m + 1e-9);
 }
 
 // The shares by which routes are longer than the shortest ways, over floors and pairs of points.

@@ -95,6 +95,27 @@ TEST(LocalDetour, KnowsWhenTheRobotIsLost) {
             DetourStatus::kLost);
 }
 
+// A thin wall between two corridors, the robot so near to it that it must snap: its own corridor
+// is open further off than the other one.
+TEST(LocalDetour, StartsOnTheRobotsSideOfAWall) {
+  std::vector<std::string> lines(41, std::string(60, '.'));
+  lines[20].assign(60, '#');
+  InflationConfig inflation;
+  inflation.forbidden_cells = 1.0;
+  const FreeSpace space(grid_of_text(lines, 0.1), inflation);
+  const std::vector<Cell> route{{30, 10}, {31, 10}, {32, 10}, {33, 10}, {34, 10}, {35, 10}};
+  const Eigen::Vector2d robot_m(3.05, 1.95);  // just below the wall, in row 19
+  std::vector<Eigen::Vector2d> seen_m;        // below the robot, so that no cell near it is open
+  for (std::int32_t column = 0; column < 60; ++column) {
+    seen_m.emplace_back(0.1 * column + 0.05, 1.75);
+  }
+  const Detour none = plan_detour(space, route, robot_m, {3.55, 1.05}, seen_m);
+  EXPECT_EQ(none.status, DetourStatus::kLost) << none.cells.front().row;
+  const Detour free = plan_detour(space, route, robot_m, {3.55, 1.05}, {});
+  ASSERT_EQ(free.status, DetourStatus::kClear) << free.reason;
+  EXPECT_EQ(free.cells.front(), (Cell{30, 18}));
+}
+
 TEST(LocalDetour, RefusesBadInput) {
   const FreeSpace space = corridor();
   EXPECT_THROW(plan_detour(space, {}, kStart_m, kGoal_m, {}), std::invalid_argument);

@@ -189,7 +189,18 @@ TEST(ZoneDrawing, NamesTheLineOfWhatIsWrong) {
   expect("zones:\n  - {name: a, polygon: [[1, 2], [3, 4]]}", "f.yaml:2: polygon", "three corners");
   expect("zones:\n  - {name: a, color: red}", "f.yaml:2: a zone", "'color'");
   expect("zones: 3", "f.yaml:1: zones", "a list");
-  expect("zones: [", "f.yaml:", "");
+  expect("zones: [", "f.yaml:1", "");
+}
+
+TEST(ZoneDrawing, NamesALineFromOneOnForWhatIsNoYaml) {
+  for (const std::string text : {"[", "a: *b", "%YAML 5\n---\na", "!<", "a\nb:", "\"\\q\""}) {
+    EXPECT_THAT([&] { parse_zone_drawing(text, "f.yaml"); },
+                ThrowsMessage<std::runtime_error>(testing::MatchesRegex("f.yaml:[1-9].*")))
+        << text;
+  }
+  const std::string deep(6000, '[');
+  EXPECT_THAT([&] { parse_zone_drawing(deep, "f.yaml"); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("f.yaml:1: ")));
 }
 
 }  // namespace

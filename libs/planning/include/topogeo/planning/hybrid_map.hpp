@@ -30,7 +30,7 @@ struct BorderNode {
   std::array<Cell, 2> cells{};                           ///< cells[i] is in zones[i]
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< between the two, map frame
   double clearance_m = 0.0;                              ///< the less of the two
-  /// The cells of the border, on either side: what to close when nobody gets through.
+  /// The cells of the border on either side, row by row: what to close when nobody gets through.
   std::array<std::vector<Cell>, 2> border;
 
   /// Its cell in a zone that it borders on.
@@ -59,6 +59,7 @@ class HybridMap {
   [[nodiscard]] const GridFrame& frame() const { return space_.frame(); }
   [[nodiscard]] const ZoneMap& zones() const { return zones_; }
   [[nodiscard]] const std::vector<BorderNode>& nodes() const { return nodes_; }
+  /// By zone, ascending.
   [[nodiscard]] const std::vector<HybridEdge>& edges() const { return edges_; }
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
   [[nodiscard]] const RouteGraph& graph() const { return graph_; }

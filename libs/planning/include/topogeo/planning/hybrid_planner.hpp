@@ -46,9 +46,14 @@ struct NodeNumber {
 /// Where to go: a point of the map frame (m), a node, or the name of a place.
 using Target = std::variant<Eigen::Vector2d, NodeNumber, std::string>;
 
-/// What must not be used now. A closed node is a border that nobody gets through (a door found
-/// shut); a closed edge is a way through a zone that is blocked.
-using Closures = ClosedParts;
+/// What must not be used now.
+struct Closures {
+  std::vector<std::uint32_t> nodes{};  ///< borders that nobody gets through (a door found shut)
+  std::vector<std::uint32_t> edges{};  ///< ways through a zone that are blocked
+  /// Cells that something fills which is not on the map; the robot's middle keeps as far from them
+  /// as from the obstacles on the map. In any order; those outside of the grid count, too.
+  std::vector<Cell> cells{};
+};
 
 enum class RouteStatus : std::uint8_t {
   kFound = 0,
@@ -82,7 +87,7 @@ struct HybridRoute {
   double length_m = 0.0;             ///< of `points_m`
   double min_clearance_m = 0.0;      ///< least of the cells
   std::vector<ZoneId> zones;         ///< in the order of the way
-  std::vector<std::uint32_t> nodes;  ///< in order; empty in one zone
+  std::vector<std::uint32_t> nodes;  ///< in order; empty when it stays in one zone
   std::vector<std::uint32_t> edges;  ///< between them
 
   [[nodiscard]] bool found() const { return status == RouteStatus::kFound; }

@@ -1,0 +1,61 @@
+// One query of the hybrid planner: start and goal are good.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "topogeo/planning/hybrid_planner.hpp"
+
+#include "closed_cells.hpp"
+#include "open_network.hpp"
+
+namespace topogeo::planning {
+
+class RouteQuery {
+ public:
+  /// `closed` are the nodes and edges that must not be used. All must outlive it.
+  RouteQuery(const HybridMap& map, const HybridPlannerConfig& config, const ClosedParts& closed,
+             const ClosedCells& cells)
+      : map_(map), config_(config), closed_(closed), cells_(cells), network_(map, closed, cells) {}
+
+  /// With kind, cells, nodes and edges; without cells when no way leads from one open cell to the
+  /// other.
+  [[nodiscard]] HybridRoute run(const Cell& from, const Cell& to) const;
+
+  /// As OpenNetwork::within_reach.
+  [[nodiscard]] std::vector<bool> within_reach(const Cell& from) const {
+    return network_.within_reach(from);
+  }
+
+  /// As `straighten`, round what is closed.
+  [[nodiscard]] std::vector<Eigen::Vector2d> straightened(std::span<const Cell> cells,
+                                                          const Eigen::Vector2d& from_m,
+                                                          const Eigen::Vector2d& to_m) const;
+
+ private:
+  struct Reach;
+
+  [[nodiscard]] Reach reach(const Cell& cell, ZoneId zone) const;
+  [[nodiscard]] HybridRoute within(const Cell& from, const Cell& to, ZoneId zone) const;
+  [[nodiscard]] std::vector<Cell> way_within(const Cell& from, const Cell& to, ZoneId zone) const;
+  [[nodiscard]] HybridRoute across(const Cell& from, const Cell& to, ZoneId zone_from,
+                                   ZoneId zone_to) const;
+  void follow(const GraphPath& path, const Reach& start, const Reach& goal,
+              HybridRoute& route) const;
+  void improve(HybridRoute& route) const;
+  [[nodiscard]] bool improve_whole(std::vector<Cell>& cells) const;
+  void improve_pieces(std::vector<Cell>& cells) const;
+  [[nodiscard]] bool plan_again(std::vector<Cell>& cells, std::size_t begin, std::size_t end,
+                                std::int32_t margin) const;
+  [[nodiscard]] CellBox box_around(const Cell& a, const Cell& b, std::int32_t margin) const;
+  void close_parts(SearchWindow& window, ZoneId keep) const;
+  [[nodiscard]] bool uses_closed_edge(std::span<const Cell> cells) const;
+
+  const HybridMap& map_;
+  const HybridPlannerConfig& config_;
+  const ClosedParts& closed_;
+  const ClosedCells& cells_;
+  OpenNetwork network_;
+};
+
+}  // namespace topogeo::planning
