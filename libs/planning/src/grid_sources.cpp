@@ -25,14 +25,15 @@ class Bounds {
 
   [[nodiscard]] bool empty() const { return !(low_m_.x() <= high_m_.x()); }
 
-  [[nodiscard]] GridFrame frame(double resolution_m, double margin_m) const {
+  [[nodiscard]] GridFrame frame(double resolution_m, double margin_m,
+                                std::int32_t snap_cells = 1) const {
     GridFrame probe;
     probe.columns = probe.rows = 1;
     probe.resolution_m = resolution_m;
     check(probe);
     GridFrame frame = probe;
-    const double x_cells = std::floor((low_m_.x() - margin_m) / resolution_m);
-    const double y_cells = std::floor((low_m_.y() - margin_m) / resolution_m);
+    const double x_cells = snapped((low_m_.x() - margin_m) / resolution_m, snap_cells);
+    const double y_cells = snapped((low_m_.y() - margin_m) / resolution_m, snap_cells);
     frame.T_map_grid = {x_cells * resolution_m, y_cells * resolution_m, 0.0};
     frame.columns = cells((high_m_.x() + margin_m) / resolution_m - x_cells);
     frame.rows = cells((high_m_.y() + margin_m) / resolution_m - y_cells);
@@ -40,7 +41,27 @@ class Bounds {
     return frame;
   }
 
+  /// The drawn frame, grown by multiples of snap_cells until it holds the points, which are in
+  /// cells of it.
+  [[nodiscard]] GridFrame grown(const GridFrame& drawn, std::int32_t snap_cells) const {
+    const double left = std::min(snapped(low_m_.x(), snap_cells), 0.0);
+    const double down = std::min(snapped(low_m_.y(), snap_cells), 0.0);
+    GridFrame frame = drawn;
+    frame.columns = cells(std::max(high_m_.x(), drawn.columns - 1.0) - left);
+    frame.rows = cells(std::max(high_m_.y(), drawn.rows - 1.0) - down);
+    if (left < 0.0 || down < 0.0) {
+      frame.T_map_grid = drawn.T_map_grid *
+                         geometry::Pose2{left * drawn.resolution_m, down * drawn.resolution_m, 0.0};
+    }
+    check(frame);
+    return frame;
+  }
+
  private:
+  static double snapped(double cells, std::int32_t snap_cells) {
+    return std::floor(cells / snap_cells) * snap_cells;
+  }
+
   // Too many cells stay too many, whatever an integer can hold.
   static std::int32_t cells(double count) {
     constexpr double kTooMany = 1e9;
@@ -167,6 +188,36 @@ class Evidence {
   std::vector<Eigen::Vector2d> ends_;
 };
 
+void check_stops(std::span<const topomap::LocalMap> maps,
+                 std::span<const topomap::StopPose> stops) {
+  if (stops.size() <= maps.size()) return;
+  throw std::invalid_argument("grid from scans: " + std::to_string(stops.size()) + " stops but " +
+                              std::to_string(maps.size()) + " local maps");
+}
+
+// Lasers and scan points of the located stops, each as `place` has it.
+template <typename Place>
+void add_points(std::span<const topomap::LocalMap> maps, std::span<const topomap::StopPose> stops,
+                const Place& place, Bounds& bounds) {
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (!stops[i].located || maps[i].points.empty()) continue;
+    bounds.add(place((stops[i].T_map_robot * maps[i].T_robot_laser).position_m()));
+    for (const topomap::ScanPoint& p : maps[i].points) {
+      bounds.add(place(stops[i].T_map_robot * Eigen::Vector2d(p.x_m, p.y_m)));
+    }
+  }
+}
+
+// What the scans saw on a grid that holds all their points.
+OccupancyGrid seen(const GridFrame& frame, std::span<const topomap::LocalMap> maps,
+                   std::span<const topomap::StopPose> stops, const ScanGridConfig& config) {
+  Evidence evidence(frame, config);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (stops[i].located) evidence.add(maps[i], stops[i].T_map_robot);
+  }
+  return evidence.grid();
+}
+
 }  // namespace
 
 OccupancyGrid grid_of(const Drawing& drawing, double resolution_m, double margin_m) {
@@ -187,6 +238,7 @@ OccupancyGrid grid_of(const Drawing& drawing, double resolution_m, double margin
 void check(const ScanGridConfig& config) {
   check_range("resolution_m", config.resolution_m, 0.01, 1.0);
   check_range("margin_m", config.margin_m, 0.0, 100.0);
+  check_range("snap_cells", config.snap_cells, 1, 1024);
   check_range("hit", config.hit, 1, 1000);
   check_range("miss", config.miss, 1, 1000);
   check_range("limit", config.limit, 1, 10000);
@@ -196,24 +248,35 @@ OccupancyGrid grid_from_scans(std::span<const topomap::LocalMap> maps,
                               std::span<const topomap::StopPose> stops,
                               const ScanGridConfig& config) {
   check(config);
-  if (stops.size() > maps.size()) {
-    throw std::invalid_argument("grid from scans: " + std::to_string(stops.size()) + " stops but " +
-                                std::to_string(maps.size()) + " local maps");
-  }
+  check_stops(maps, stops);
   Bounds bounds;
-  for (std::size_t i = 0; i < stops.size(); ++i) {
-    if (!stops[i].located || maps[i].points.empty()) continue;
-    bounds.add((stops[i].T_map_robot * maps[i].T_robot_laser).position_m());
-    for (const topomap::ScanPoint& p : maps[i].points) {
-      bounds.add(stops[i].T_map_robot * Eigen::Vector2d(p.x_m, p.y_m));
-    }
-  }
+  add_points(
+      maps, stops, [](const Eigen::Vector2d& point_m) { return point_m; }, bounds);
   if (bounds.empty()) throw std::invalid_argument("grid from scans: no stop with scan points");
-  Evidence evidence(bounds.frame(config.resolution_m, config.margin_m), config);
-  for (std::size_t i = 0; i < stops.size(); ++i) {
-    if (stops[i].located) evidence.add(maps[i], stops[i].T_map_robot);
+  return seen(bounds.frame(config.resolution_m, config.margin_m, config.snap_cells), maps, stops,
+              config);
+}
+
+OccupancyGrid grid_of_both(const OccupancyGrid& drawn, std::span<const topomap::LocalMap> maps,
+                           std::span<const topomap::StopPose> stops, const ScanGridConfig& config) {
+  check(config);
+  check_stops(maps, stops);
+  Bounds bounds;
+  add_points(
+      maps, stops, [&](const Eigen::Vector2d& point_m) { return drawn.frame().in_cells(point_m); },
+      bounds);
+  if (bounds.empty()) return drawn;
+  OccupancyGrid grid = seen(bounds.grown(drawn.frame(), config.snap_cells), maps, stops, config);
+  // Where the drawing's first cell is now.
+  const Eigen::Vector2d shift = grid.frame().in_cells(drawn.frame().center_m({0, 0}));
+  const Cell corner{static_cast<std::int32_t>(shift.x()), static_cast<std::int32_t>(shift.y())};
+  for (std::size_t i = 0; i < drawn.cells().size(); ++i) {
+    const CellState state = drawn.cells()[i];
+    const Cell from = drawn.frame().cell_at(i);
+    const Cell to{corner.column + from.column, corner.row + from.row};
+    if (state == CellState::kOccupied || grid.at(to) == CellState::kUnknown) grid.set(to, state);
   }
-  return evidence.grid();
+  return grid;
 }
 
 }  // namespace topogeo::planning

@@ -131,6 +131,71 @@ TEST(GridFromScans, LeavesOutStopsThatNobodyLocated) {
   EXPECT_EQ(grid_from_scans(maps, stops).frame().columns, 61);
 }
 
+// Tiles of 16 cells keep their cells when the map grows.
+TEST(GridFromScans, CanBeginAtMultiplesOfManyCells) {
+  ScanGridConfig config;
+  config.snap_cells = 16;
+  const std::vector<topomap::LocalMap> maps{scan_of_room({0.0, 0.0})};
+  for (const double x_m : {0.0, 0.4, -0.9, 7.3}) {
+    const std::vector<topomap::StopPose> stops{stop_at(x_m, 0.0)};
+    const GridFrame frame = grid_from_scans(maps, stops, config).frame();
+    EXPECT_EQ(frame.T_map_grid.x_m, std::floor((x_m - 3.0) / 1.6) * 16 * 0.1) << x_m;
+    EXPECT_EQ(frame.T_map_grid.y_m, -32 * 0.1);
+    EXPECT_EQ(frame.rows, 63);
+    EXPECT_TRUE(frame.cell_of({x_m + 2.9, 2.9}).has_value());
+  }
+}
+
+TEST(GridOfBoth, IsOccupiedWhereEitherSaysSo) {
+  GridFrame frame;
+  frame.columns = 40;
+  frame.rows = 40;
+  frame.T_map_grid = {-2.0, -2.0, 0.0};
+  OccupancyGrid drawn(frame, CellState::kFree);
+  drawn.set({10, 20}, CellState::kOccupied);  // the scan looks through it
+  drawn.set({30, 30}, CellState::kUnknown);   // the scan sees it free
+  const std::vector<topomap::LocalMap> maps{scan_of_room({0.0, 0.0})};
+  const std::vector<topomap::StopPose> stops{stop_at(0.45, -0.35)};
+  ScanGridConfig config;
+  config.snap_cells = 8;
+  const OccupancyGrid both = grid_of_both(drawn, maps, stops, config);
+  EXPECT_EQ(at(both, -0.95, 0.05), CellState::kOccupied);
+  EXPECT_EQ(at(both, 1.05, 1.05), CellState::kFree);
+  EXPECT_EQ(at(both, -1.55, 0.55), CellState::kOccupied) << "only the scan has this wall";
+  EXPECT_EQ(at(both, 2.45, 0.55), CellState::kOccupied) << "beyond the drawing";
+  EXPECT_EQ(at(both, 2.2, 0.55), CellState::kFree) << "beyond the drawing";
+  EXPECT_EQ(at(both, -1.8, 1.8), CellState::kFree) << "only the drawing has this";
+  EXPECT_EQ(both.frame().columns, 45);
+  EXPECT_EQ(both.frame().rows, 48) << "8 more below";
+  EXPECT_EQ(both.frame().T_map_grid, (geometry::Pose2{-2.0, -2.0 - 8 * 0.1, 0.0}));
+}
+
+TEST(GridOfBoth, KeepsTheCellsOfATurnedDrawing) {
+  GridFrame frame;
+  frame.columns = 30;
+  frame.rows = 20;
+  frame.T_map_grid = {0.3, -0.2, 0.7};
+  OccupancyGrid drawn(frame);
+  for (std::int32_t i = 0; i < 20; ++i) drawn.set({i, i}, CellState::kOccupied);
+  const std::vector<topomap::LocalMap> maps{scan_of_room({0.0, 0.0})};
+  const std::vector<topomap::StopPose> stops{stop_at(0.0, 0.0)};
+  const OccupancyGrid both = grid_of_both(drawn, maps, stops);
+  for (std::int32_t i = 0; i < 20; ++i) {
+    const Eigen::Vector2d middle_m = frame.center_m({i, i});
+    EXPECT_EQ(at(both, middle_m.x(), middle_m.y()), CellState::kOccupied) << i;
+  }
+  EXPECT_EQ(at(both, 0.0, 1.0), CellState::kFree);
+  EXPECT_EQ(at(both, -1.99, -1.0), CellState::kOccupied);
+}
+
+TEST(GridOfBoth, WithoutScansIsTheDrawing) {
+  GridFrame frame;
+  frame.columns = frame.rows = 3;
+  OccupancyGrid drawn(frame, CellState::kFree);
+  drawn.set({1, 1}, CellState::kOccupied);
+  EXPECT_TRUE(std::ranges::equal(grid_of_both(drawn, {}, {}).cells(), drawn.cells()));
+}
+
 // Scan points and robot lie on the rim of such a grid, where rounding decides on which side.
 TEST(GridFromScans, NeedsNoMargin) {
   ScanGridConfig config;
