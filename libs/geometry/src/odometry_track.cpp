@@ -1,30 +1,28 @@
-#include "odometry_track.hpp"
+#include "topogeo/geometry/odometry_track.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace topogeo::sensor_gateway {
+namespace topogeo::geometry {
 
 namespace {
 
-geometry::Pose2 interpolate(const OdometrySample& a, const OdometrySample& b,
-                            std::int64_t stamp_ns) {
+Pose2 interpolate(const OdometrySample& a, const OdometrySample& b, std::int64_t stamp_ns) {
   const double share =
       static_cast<double>(stamp_ns - a.stamp_ns) / static_cast<double>(b.stamp_ns - a.stamp_ns);
-  const geometry::Pose2& from = a.T_odom_robot;
-  const geometry::Pose2& to = b.T_odom_robot;
+  const Pose2& from = a.T_odom_robot;
+  const Pose2& to = b.T_odom_robot;
   return {from.x_m + share * (to.x_m - from.x_m), from.y_m + share * (to.y_m - from.y_m),
-          geometry::wrap_angle(from.theta_rad +
-                               share * geometry::wrap_angle(to.theta_rad - from.theta_rad))};
+          wrap_angle(from.theta_rad + share * wrap_angle(to.theta_rad - from.theta_rad))};
 }
 
 /// The chord of the arc, which for the small turns between two reports is the arc.
-geometry::Pose2 extrapolate(const OdometrySample& last, std::int64_t stamp_ns) {
+Pose2 extrapolate(const OdometrySample& last, std::int64_t stamp_ns) {
   const double time_s = static_cast<double>(stamp_ns - last.stamp_ns) * 1e-9;
   const double way_m = last.linear_mps * time_s;
   const double turn_rad = last.angular_radps * time_s;
-  const geometry::Pose2 step{way_m * std::cos(turn_rad / 2.0), way_m * std::sin(turn_rad / 2.0),
-                             geometry::wrap_angle(turn_rad)};
+  const Pose2 step{way_m * std::cos(turn_rad / 2.0), way_m * std::sin(turn_rad / 2.0),
+                   wrap_angle(turn_rad)};
   return last.T_odom_robot * step;
 }
 
@@ -56,4 +54,4 @@ std::optional<OdometryTrack::Answer> OdometryTrack::at(std::int64_t stamp_ns) co
   return Answer{interpolate(*(after - 1), *after, stamp_ns), false};
 }
 
-}  // namespace topogeo::sensor_gateway
+}  // namespace topogeo::geometry

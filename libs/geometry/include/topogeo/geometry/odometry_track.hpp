@@ -1,0 +1,50 @@
+// The odometry of the last seconds, and the pose at a time between or shortly after its samples.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::geometry {
+
+struct OdometrySample {
+  std::int64_t stamp_ns = 0;
+  Pose2 T_odom_robot;
+  double linear_mps = 0.0;     ///< along x of the robot
+  double angular_radps = 0.0;  ///< counter-clockwise
+};
+
+class OdometryTrack {
+ public:
+  /// Older samples than this are forgotten.
+  static constexpr std::int64_t kKept_ns = 5'000'000'000;
+
+  /// `longest_extrapolation_ns` >= 0: how far after the last sample a pose is still given.
+  explicit OdometryTrack(std::int64_t longest_extrapolation_ns)
+      : longest_extrapolation_ns_(longest_extrapolation_ns) {}
+
+  /// Samples come in time order; one that does not is left out and gives false.
+  bool add(const OdometrySample& sample);
+  /// The samples so far do not belong to those that follow.
+  void clear() { samples_.clear(); }
+
+  /// Stamp of the last sample; nothing without one.
+  [[nodiscard]] std::optional<std::int64_t> last_ns() const;
+
+  struct Answer {
+    Pose2 T_odom_robot;
+    bool extrapolated = false;
+  };
+  /// Between two samples: x and y on the straight line, the heading on the shorter way. After the
+  /// last one: on the arc of its speeds. Nothing before the first sample or too long after the
+  /// last.
+  [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
+
+ private:
+  std::int64_t longest_extrapolation_ns_;
+  std::deque<OdometrySample> samples_;
+};
+
+}  // namespace topogeo::geometry
