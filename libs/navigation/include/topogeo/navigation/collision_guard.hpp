@@ -1,11 +1,19 @@
 // Keeps a robot from driving into what its laser and sonars see, whatever it is told by whoever
 // plans its way (spec B4). It knows no map, no pose and no route.
+//
+// The points of the last scan, carried on by odometry, and the echoes of the sonars where the laser
+// sees nothing in their cone are what the body's disc must not touch on the arc that is wanted, nor
+// on the one that the robot is on. From the free way follows the speed from which it still stops in
+// time. Noise of the laser is smoothed over neighbouring beams by no more than the side margin, so
+// a measured point itself is never touched.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
 #include "topogeo/navigation/navigator_inputs.hpp"
@@ -14,7 +22,8 @@ namespace topogeo::navigation {
 
 struct GuardConfig {
   double radius_m = 0.267;             ///< of the robot's round body, [0.05, 2]
-  double margin_m = 0.05;              ///< nothing comes nearer to the body while it drives, [0, 1]
+  double margin_m = 0.05;              ///< it stops so far before what is in its way, [0, 1]
+  double side_margin_m = 0.02;         ///< it passes what is beside it at this distance, [0, 1]
   double deceleration_m_per_s2 = 0.5;  ///< that the base surely can, [0.05, 10]
   double delay_s = 0.25;               ///< from a measurement until the base obeys, [0, 2]
   double oldest_scan_s = 0.6;          ///< an older scan is none, [0.05, 10]
@@ -30,28 +39,49 @@ struct GuardConfig {
 void check(const GuardConfig& config);
 
 struct GuardVerdict {
-  geometry::Velocity allowed;             ///< the wanted motion, slower or none
+  geometry::Velocity allowed;             ///< the wanted motion, slower on the same arc, or none
   HaltReason reason = HaltReason::kNone;  ///< why nothing is allowed at all
   std::string message;                    ///< for people; empty when the motion is allowed
   double free_way_m = 0.0;  ///< along the wanted motion before the body touches something; <= 5
   bool limited = false;     ///< slower than wanted
+  /// What ends the free way, robot frame; nothing when nothing does within 5 m.
+  std::optional<Eigen::Vector2d> contact_m;
 };
 
 class CollisionGuard {
  public:
+  static constexpr double kFarthest_m = 5.0;
+
   /// Throws std::invalid_argument as `check`.
   explicit CollisionGuard(const GuardConfig& config);
 
+  // Each in time order; what is not newer than the one before is left out.
   void add(const OdometrySample& odometry);
   void add(const ScanPoints& scan);
   void add(const SonarRound& sonar);
 
   /// What of a wanted velocity is safe now. Turning on the spot of a round body always is, as long
-  /// as the sensors work.
+  /// as the sensors work. Backwards goes only what fresh sonars look at.
   [[nodiscard]] GuardVerdict judge(const geometry::Velocity& wanted, std::int64_t now_ns) const;
 
+  /// Why no motion at all is allowed; kNone when the sensors work. `message` may be null.
+  [[nodiscard]] HaltReason health(std::int64_t now_ns, std::string* message = nullptr) const;
+
  private:
+  [[nodiscard]] bool fresh(std::int64_t stamp_ns, std::int64_t now_ns) const;
+  [[nodiscard]] std::vector<Eigen::Vector2d> obstacles_m(std::int64_t now_ns) const;
+  [[nodiscard]] geometry::Velocity driven() const;
+  [[nodiscard]] double speed_for(double free_way_m) const;
+  [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
+  void listen(const SonarRound& sonar);
+
   GuardConfig config_;
+  geometry::OdometryTrack odometry_{0};
+  std::optional<OdometrySample> last_;
+  std::optional<ScanPoints> scan_;  ///< smoothed
+  std::optional<SonarRound> sonar_;
+  std::optional<geometry::Pose2> T_odom_sonar_round_;
+  std::optional<std::int64_t> silent_since_ns_;
 };
 
 }  // namespace topogeo::navigation

@@ -1,0 +1,129 @@
+// Drives a base along a sampled path: leg by leg, each begun with a turn on the spot where it is
+// needed and ended with a stop.
+//
+// On a leg the curvature of the motion is that of the path, corrected for the distance from it and
+// the heading error so that both die out over `kSettle_m` of way, whatever the speed. All control
+// is on the pose where the base will be when it obeys: the given one carried on by the commands of
+// the last `delay_s`. Paths of smooth_path() have few legs; those of straight_path() one for every
+// advance of spec B2, so that its primitives are executed one after the other.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/geometry/velocity.hpp"
+#include "topogeo/planning/motion_primitives.hpp"
+
+namespace topogeo::navigation {
+
+struct FollowerConfig {
+  double speed_m_per_s = 0.6;                 ///< at most, (0, 3]
+  double turn_rad_per_s = 1.0;                ///< at most, (0, 6]
+  double acceleration_m_per_s2 = 0.5;         ///< (0, 10]
+  double turn_acceleration_rad_per_s2 = 2.0;  ///< (0, 20]
+  double delay_s = 0.15;                      ///< from a command until the base obeys it, [0, 1]
+  double arrival_m = 0.03;                    ///< stops are that exact, [0.005, 1]
+  double arrival_rad = 0.02;                  ///< turns on the spot are, [0.002, 1]
+  double begin_turn_rad = 0.4;  ///< a heading error up to this is corrected on the way, [0, 1]
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const FollowerConfig& config);
+
+/// The samples of a polyline with a turn on the spot at every corner.
+std::vector<planning::PathSample> straight_path(std::span<const Eigen::Vector2d> points_m,
+                                                double step_m = 0.1);
+
+struct FollowerStep {
+  geometry::Velocity command;
+  bool done = false;    ///< stands at the end of the path, in its final heading
+  double rest_m = 0.0;  ///< of the path
+  double rest_s = 0.0;  ///< about
+  double off_m = 0.0;   ///< distance from the path
+};
+
+class PathFollower {
+ public:
+  static constexpr double kSettle_m = 0.35;
+
+  /// Throws std::invalid_argument as `check`.
+  explicit PathFollower(const FollowerConfig& config);
+
+  /// Another path from here on, the robot may be moving. `path` may be empty: then there is only
+  /// the final heading to turn to.
+  void follow(std::vector<planning::PathSample> path, std::optional<double> final_heading_rad);
+  void forget();
+  [[nodiscard]] bool has_path() const { return active_; }
+
+  /// The command for the pose now. `speed_limit_m_per_s` >= 0 for this step. `now_ns` never goes
+  /// back.
+  FollowerStep step(const geometry::Pose2& T_map_robot, std::int64_t now_ns,
+                    double speed_limit_m_per_s);
+
+  /// What the base was really told at that time; once for each step, also while nothing is
+  /// followed.
+  void commanded(const geometry::Velocity& command, std::int64_t now_ns);
+
+  [[nodiscard]] std::span<const planning::PathSample> path() const { return path_; }
+  [[nodiscard]] double progress_m() const { return progress_m_; }
+  [[nodiscard]] double rest_m() const;
+
+  /// Primitives executed since the last call: turns on the spot and legs.
+  std::vector<planning::MotionPrimitive> take_finished();
+
+ private:
+  enum class Phase : std::uint8_t { kTurn, kAdvance, kFinalTurn, kDone };
+  struct Place {
+    Eigen::Vector2d position_m;
+    double heading_rad;
+    double curvature_per_m;
+    double left_m;  ///< of the path, where the robot is
+    double to_go_m;
+  };
+
+  [[nodiscard]] std::size_t leg_end(std::size_t from) const;
+  [[nodiscard]] geometry::Pose2 predicted(const geometry::Pose2& T_map_robot,
+                                          std::int64_t now_ns) const;
+  [[nodiscard]] Place locate(const geometry::Pose2& T_map_robot);
+  [[nodiscard]] double curve_speed(double to_go_m) const;
+  [[nodiscard]] geometry::Velocity turn(double error_rad) const;
+  [[nodiscard]] geometry::Velocity advance(const geometry::Pose2& T_map_robot, const Place& place,
+                                           double limit_m_per_s) const;
+  geometry::Velocity control(const geometry::Pose2& T_map_robot, double limit_m_per_s);
+  [[nodiscard]] geometry::Velocity ramped(const geometry::Velocity& wanted,
+                                          std::int64_t now_ns) const;
+  void begin_leg(std::size_t from);
+  void finish_turn(double heading_rad);
+  void finish_leg(const Eigen::Vector2d& at_m);
+  [[nodiscard]] bool stands() const;
+
+  FollowerConfig config_;
+  std::vector<planning::PathSample> path_;
+  std::optional<double> final_heading_rad_;
+  bool active_ = false;
+  Phase phase_ = Phase::kDone;
+  std::size_t leg_begin_ = 0;
+  std::size_t leg_end_ = 0;
+  std::size_t segment_ = 0;  ///< of the path, in which the robot is
+  double progress_m_ = 0.0;
+  double off_m_ = 0.0;
+
+  struct Command {
+    std::int64_t stamp_ns;
+    geometry::Velocity velocity;
+  };
+  std::deque<Command> commands_;  ///< of the last second
+
+  std::optional<double> turn_from_rad_;
+  std::optional<Eigen::Vector2d> leg_from_m_;
+  double leg_sign_turn_rad_ = 0.0;
+  std::vector<planning::MotionPrimitive> finished_;
+};
+
+}  // namespace topogeo::navigation

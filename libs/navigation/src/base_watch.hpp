@@ -1,0 +1,50 @@
+// Notices a base that is told to move and does not.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/geometry/velocity.hpp"
+
+namespace topogeo::navigation {
+
+class BaseWatch {
+ public:
+  explicit BaseWatch(double stuck_s) : stuck_ns_(static_cast<std::int64_t>(stuck_s * 1e9)) {}
+
+  /// What the base was told, and where odometry says that it is. True: it has not moved for
+  /// `stuck_s` though told so all the time.
+  bool stuck(const geometry::Velocity& told, const geometry::Pose2& T_odom_robot,
+             std::int64_t now_ns) {
+    constexpr double kLeast_m_per_s = 0.02;
+    constexpr double kLeast_rad_per_s = 0.05;
+    constexpr double kMoved_m = 0.01;
+    constexpr double kMoved_rad = 0.02;
+    const bool moves = std::fabs(told.linear_m_per_s) >= kLeast_m_per_s ||
+                       std::fabs(told.angular_rad_per_s) >= kLeast_rad_per_s;
+    if (!moves) {
+      reset();
+      return false;
+    }
+    if (T_odom_then_) {
+      const geometry::Pose2 step = between(*T_odom_then_, T_odom_robot);
+      if (step.position_m().norm() < kMoved_m && std::fabs(step.theta_rad) < kMoved_rad) {
+        return now_ns - since_ns_ >= stuck_ns_;
+      }
+    }
+    T_odom_then_ = T_odom_robot;
+    since_ns_ = now_ns;
+    return false;
+  }
+
+  void reset() { T_odom_then_.reset(); }
+
+ private:
+  std::int64_t stuck_ns_;
+  std::int64_t since_ns_ = 0;
+  std::optional<geometry::Pose2> T_odom_then_;
+};
+
+}  // namespace topogeo::navigation

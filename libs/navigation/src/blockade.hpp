@@ -1,0 +1,47 @@
+// What is reported to the planner as filled, until it is seen to be free again or too old.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/planning/occupancy_grid.hpp"
+
+namespace topogeo::navigation {
+
+class Blockade {
+ public:
+  explicit Blockade(double believed_s)
+      : believed_ns_(static_cast<std::int64_t>(believed_s * 1e9)) {}
+
+  /// Adds the cells of these points; true when one of them is new.
+  bool add(std::span<const Eigen::Vector2d> points_m, const planning::GridFrame& frame,
+           std::int64_t now_ns);
+  /// What a scan says of them; `T_map_robot` at its time.
+  void see(const ScanPoints& scan, const geometry::Pose2& T_map_robot);
+  /// Takes away what is seen to be free, and what is too old.
+  void expire(std::int64_t now_ns);
+  void clear();
+  /// The planner is to answer again although nothing has changed.
+  void ask_again() { ++report_.version; }
+
+  [[nodiscard]] const BlockageReport& report() const { return report_; }
+  [[nodiscard]] bool empty() const { return cells_.empty(); }
+
+ private:
+  struct Filled {
+    Eigen::Vector2d point_m;
+    std::int64_t last_ns;
+    int free = 0;  ///< seen so, one time after the other
+  };
+  void publish();
+
+  std::int64_t believed_ns_;
+  std::vector<Filled> cells_;
+  BlockageReport report_;
+};
+
+}  // namespace topogeo::navigation

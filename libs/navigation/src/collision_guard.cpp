@@ -1,0 +1,220 @@
+#include "topogeo/navigation/collision_guard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/scan/scan.hpp"
+
+#include "arc_sweep.hpp"
+#include "scan_smoothing.hpp"
+#include "settings_check.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr double kStill_m_per_s = 1e-6;
+constexpr double kNanoseconds = 1e-9;
+
+bool heard(const SonarReading& reading) {
+  return reading.range_m > scan::Scan::kNoReturn;
+}
+
+std::string text_of(const char* format, double number) {
+  std::array<char, 160> text{};
+  const int length = std::snprintf(text.data(), text.size(), format, number);
+  return {text.data(), static_cast<std::size_t>(std::max(0, length))};
+}
+
+}  // namespace
+
+void check(const GuardConfig& config) {
+  const auto range = [](const char* field, double value, double low, double high) {
+    check_range("collision guard", field, value, low, high);
+  };
+  range("radius_m", config.radius_m, 0.05, 2.0);
+  range("margin_m", config.margin_m, 0.0, 1.0);
+  range("side_margin_m", config.side_margin_m, 0.0, 1.0);
+  range("deceleration_m_per_s2", config.deceleration_m_per_s2, 0.05, 10.0);
+  range("delay_s", config.delay_s, 0.0, 2.0);
+  range("oldest_scan_s", config.oldest_scan_s, 0.05, 10.0);
+  range("sonar_reach_m", config.sonar_reach_m, 0.2, 5.0);
+  range("silent_s", config.silent_s, 0.1, 60.0);
+}
+
+CollisionGuard::CollisionGuard(const GuardConfig& config) : config_(config) {
+  check(config);
+}
+
+void CollisionGuard::add(const OdometrySample& odometry) {
+  if (odometry_.add({odometry.stamp_ns, odometry.T_odom_robot})) last_ = odometry;
+}
+
+void CollisionGuard::add(const ScanPoints& scan) {
+  if (scan_ && scan.stamp_ns <= scan_->stamp_ns) return;
+  scan_ = smoothed(scan, config_.side_margin_m);
+}
+
+void CollisionGuard::add(const SonarRound& sonar) {
+  if (sonar_ && sonar.stamp_ns <= sonar_->stamp_ns) return;
+  sonar_ = sonar;
+  T_odom_sonar_round_.reset();
+  if (const auto answer = odometry_.at(sonar.stamp_ns)) {
+    T_odom_sonar_round_ = answer->T_odom_robot;
+  } else if (last_) {
+    T_odom_sonar_round_ = last_->T_odom_robot;
+  }
+  listen(sonar);
+}
+
+// Notes since when the sonars hear nothing although there is something to be heard.
+void CollisionGuard::listen(const SonarRound& sonar) {
+  const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), heard);
+  const auto must_hear = [&](const SonarReading& reading) {
+    return laser_sees(reading, config_.sonar_reach_m);
+  };
+  if (any || !std::any_of(sonar.readings.begin(), sonar.readings.end(), must_hear)) {
+    silent_since_ns_.reset();
+  } else if (!silent_since_ns_) {
+    silent_since_ns_ = sonar.stamp_ns;
+  }
+}
+
+bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m) const {
+  if (!scan_) return false;
+  const geometry::Pose2 T_sonar_robot = inverse(reading.T_robot_sonar);
+  const double tangent =
+      std::tan(std::min(reading.half_cone_rad, 1.5));  // decides no result of mapping
+  return std::any_of(scan_->points_m.begin(), scan_->points_m.end(), [&](const auto& point_m) {
+    const Eigen::Vector2d seen_m = T_sonar_robot * point_m;
+    return seen_m.x() > 0.0 && std::fabs(seen_m.y()) <= tangent * seen_m.x() &&
+           seen_m.norm() <= up_to_m;
+  });
+}
+
+bool CollisionGuard::fresh(std::int64_t stamp_ns, std::int64_t now_ns) const {
+  return static_cast<double>(now_ns - stamp_ns) * kNanoseconds <= config_.oldest_scan_s;
+}
+
+HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) const {
+  const auto say = [&](HaltReason reason, std::string text) {
+    if (message != nullptr) *message = std::move(text);
+    return reason;
+  };
+  const auto age_s = [&](std::int64_t stamp_ns) {
+    return static_cast<double>(now_ns - stamp_ns) * kNanoseconds;
+  };
+  if (config_.needs_scan && !scan_) return say(HaltReason::kNoScan, "no scan has come yet");
+  if (config_.needs_scan && !fresh(scan_->stamp_ns, now_ns)) {
+    return say(HaltReason::kNoScan, text_of("the last scan is %.1f s old", age_s(scan_->stamp_ns)));
+  }
+  const bool needs_sonar = config_.needs_sonar || !config_.needs_scan;
+  if (needs_sonar && (!sonar_ || sonar_->readings.empty())) {
+    return say(HaltReason::kSonarSilent, "no reading of the sonars has come yet");
+  }
+  if (needs_sonar && age_s(sonar_->stamp_ns) > std::max(config_.silent_s, config_.oldest_scan_s)) {
+    return say(HaltReason::kSonarSilent,
+               text_of("the last reading of the sonars is %.1f s old", age_s(sonar_->stamp_ns)));
+  }
+  if (silent_since_ns_ && age_s(sonar_->stamp_ns) <= config_.silent_s &&
+      static_cast<double>(sonar_->stamp_ns - *silent_since_ns_) * kNanoseconds >=
+          config_.silent_s) {
+    return say(HaltReason::kSonarSilent,
+               text_of("no sonar has heard anything for %.1f s, though the laser sees something "
+                       "near",
+                       age_s(*silent_since_ns_)));
+  }
+  return HaltReason::kNone;
+}
+
+std::vector<Eigen::Vector2d> CollisionGuard::obstacles_m(std::int64_t now_ns) const {
+  std::vector<Eigen::Vector2d> points_m;
+  const auto carried = [&](const geometry::Pose2& T_odom_then) {
+    return last_ ? between(last_->T_odom_robot, T_odom_then) : geometry::Pose2{};
+  };
+  if (scan_ && fresh(scan_->stamp_ns, now_ns)) {
+    const geometry::Pose2 T_now_then = carried(scan_->T_odom_robot);
+    for (const Eigen::Vector2d& point_m : scan_->points_m) points_m.push_back(T_now_then * point_m);
+  }
+  if (!sonar_ || !fresh(sonar_->stamp_ns, now_ns)) return points_m;
+  constexpr double kSame_m = 0.2;  // an echo of what the laser sees, too, and sees better
+  const geometry::Pose2 T_now_then =
+      T_odom_sonar_round_ ? carried(*T_odom_sonar_round_) : geometry::Pose2{};
+  for (const SonarReading& reading : sonar_->readings) {
+    const double range_m = static_cast<double>(reading.range_m);
+    if (!heard(reading) || laser_sees(reading, range_m + kSame_m)) continue;
+    points_m.push_back(T_now_then * (reading.T_robot_sonar * Eigen::Vector2d(range_m, 0.0)));
+  }
+  return points_m;
+}
+
+geometry::Velocity CollisionGuard::driven() const {
+  if (!last_) return {};
+  constexpr std::int64_t kOver_ns = 150'000'000;
+  for (std::int64_t back_ns = kOver_ns; back_ns >= 10'000'000; back_ns /= 2) {
+    const auto before = odometry_.at(last_->stamp_ns - back_ns);
+    if (!before) continue;
+    const geometry::Pose2 step = between(before->T_odom_robot, last_->T_odom_robot);
+    const double time_s = static_cast<double>(back_ns) * kNanoseconds;
+    return {step.x_m / time_s, step.theta_rad / time_s};
+  }
+  return {};
+}
+
+// v with v delay + v^2 / (2 a) = the free way less the margin.
+double CollisionGuard::speed_for(double free_way_m) const {
+  const double way_m = free_way_m - std::max(0.0, config_.margin_m - config_.side_margin_m);
+  if (way_m <= 0.0) return 0.0;
+  const double brake = config_.deceleration_m_per_s2;
+  const double delayed = brake * config_.delay_s;
+  return std::sqrt(delayed * delayed + 2.0 * brake * way_m) - delayed;
+}
+
+GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_t now_ns) const {
+  GuardVerdict verdict;
+  verdict.reason = health(now_ns, &verdict.message);
+  if (verdict.reason != HaltReason::kNone) {
+    verdict.limited = wanted != geometry::Velocity{};
+    return verdict;
+  }
+  const std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
+  const double body_m = config_.radius_m + std::min(config_.margin_m, config_.side_margin_m);
+  const bool still = std::fabs(wanted.linear_m_per_s) < kStill_m_per_s;
+  const SweptWay way =
+      sweep(still ? geometry::Velocity{1.0, 0.0} : wanted, points_m, body_m, kFarthest_m);
+  verdict.free_way_m = way.way_m;
+  if (way.contact) verdict.contact_m = points_m[*way.contact];
+  verdict.allowed = wanted;
+  if (still) return verdict;
+  if (wanted.linear_m_per_s < 0.0 && (!sonar_ || !fresh(sonar_->stamp_ns, now_ns))) {
+    verdict.allowed = {};
+    verdict.limited = true;
+    verdict.reason = HaltReason::kSonarSilent;
+    verdict.message = "no sonar looks backwards";
+    return verdict;
+  }
+  double speed = speed_for(way.way_m);
+  const geometry::Velocity now = driven();
+  constexpr double kRolls_m_per_s = 0.05;
+  if (std::fabs(now.linear_m_per_s) > kRolls_m_per_s &&
+      (now.linear_m_per_s > 0.0) == (wanted.linear_m_per_s > 0.0)) {
+    speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).way_m));
+  }
+  const double asked = std::fabs(wanted.linear_m_per_s);
+  if (speed >= asked) return verdict;
+  verdict.limited = true;
+  verdict.allowed.linear_m_per_s *= speed / asked;
+  verdict.allowed.angular_rad_per_s *= speed / asked;
+  constexpr double kCreep_m_per_s = 0.01;
+  if (speed < kCreep_m_per_s) {
+    verdict.allowed = {};
+    verdict.reason = HaltReason::kObstacle;
+  }
+  verdict.message = text_of("something is %.2f m ahead of the body", way.way_m);
+  return verdict;
+}
+
+}  // namespace topogeo::navigation

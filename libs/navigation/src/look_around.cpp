@@ -1,0 +1,73 @@
+#include "look_around.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr double kTurn_rad_per_s = 0.5;
+constexpr double kSpeed_m_per_s = 0.2;
+constexpr double kLeg_m = 1.0;
+constexpr double kRoomLeft_m = 0.3;  // stays free ahead of the body
+constexpr double kFacing_rad = 0.1;
+
+}  // namespace
+
+geometry::Velocity LookAround::step(const geometry::Pose2& T_odom_robot,
+                                    const CollisionGuard& guard, std::int64_t now_ns) {
+  const double free_m = guard.judge({kSpeed_m_per_s, 0.0}, now_ns).free_way_m;
+  if (T_odom_last_) {
+    const geometry::Pose2 moved = between(*T_odom_last_, T_odom_robot);
+    turned_rad_ += std::fabs(moved.theta_rad);
+    if (phase_ == Phase::kGo) {
+      gone_m_ += moved.position_m().norm();
+      leg_m_ += moved.position_m().norm();
+    }
+  }
+  T_odom_last_ = T_odom_robot;
+  switch (phase_) {
+    case Phase::kRound:
+      return round(T_odom_robot, free_m);
+    case Phase::kFace:
+      return face(T_odom_robot);
+    case Phase::kGo:
+      return go(free_m);
+    case Phase::kFinished:
+      return {};
+  }
+  return {};
+}
+
+geometry::Velocity LookAround::round(const geometry::Pose2& T_odom_robot, double free_m) {
+  if (free_m > best_free_m_) {
+    best_free_m_ = free_m;
+    best_heading_rad_ = T_odom_robot.theta_rad;
+  }
+  if (turned_rad_ < 2.0 * std::numbers::pi) return {0.0, kTurn_rad_per_s};
+  const bool may_go = gone_m_ < farthest_m_ && best_free_m_ > 2.0 * kRoomLeft_m;
+  phase_ = may_go ? Phase::kFace : Phase::kFinished;
+  return {};
+}
+
+geometry::Velocity LookAround::face(const geometry::Pose2& T_odom_robot) {
+  const double error_rad = geometry::wrap_angle(best_heading_rad_ - T_odom_robot.theta_rad);
+  if (std::fabs(error_rad) > kFacing_rad) {
+    return {0.0, error_rad > 0.0 ? kTurn_rad_per_s : -kTurn_rad_per_s};
+  }
+  phase_ = Phase::kGo;
+  leg_m_ = 0.0;
+  return {};
+}
+
+geometry::Velocity LookAround::go(double free_m) {
+  if (leg_m_ < kLeg_m && gone_m_ < farthest_m_ && free_m > kRoomLeft_m) {
+    return {kSpeed_m_per_s, 0.0};
+  }
+  phase_ = Phase::kRound;
+  turned_rad_ = 0.0;
+  best_free_m_ = 0.0;
+  return {};
+}
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,44 @@
+// Moves that let a localizer find an unknown pose: once round on the spot, then a little way to
+// where most room is, and again.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/geometry/velocity.hpp"
+#include "topogeo/navigation/collision_guard.hpp"
+
+namespace topogeo::navigation {
+
+class LookAround {
+ public:
+  explicit LookAround(double farthest_m) : farthest_m_(farthest_m) {}
+
+  void reset() { *this = LookAround(farthest_m_); }
+
+  /// The next velocity, not judged by the guard yet.
+  geometry::Velocity step(const geometry::Pose2& T_odom_robot, const CollisionGuard& guard,
+                          std::int64_t now_ns);
+
+  /// It has gone as far as it may and has looked round there.
+  [[nodiscard]] bool finished() const { return phase_ == Phase::kFinished; }
+  [[nodiscard]] double gone_m() const { return gone_m_; }
+
+ private:
+  enum class Phase { kRound, kFace, kGo, kFinished };
+  geometry::Velocity round(const geometry::Pose2& T_odom_robot, double free_m);
+  geometry::Velocity face(const geometry::Pose2& T_odom_robot);
+  geometry::Velocity go(double free_m);
+
+  double farthest_m_;
+  Phase phase_ = Phase::kRound;
+  std::optional<geometry::Pose2> T_odom_last_;
+  double turned_rad_ = 0.0;
+  double gone_m_ = 0.0;
+  double leg_m_ = 0.0;
+  double best_free_m_ = 0.0;
+  double best_heading_rad_ = 0.0;
+};
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,46 @@
+// Arriving: it stands, looks where it is, corrects what is left, and has arrived.
+#include <array>
+#include <cmath>
+
+#include "navigator_state.hpp"
+
+namespace topogeo::navigation {
+
+geometry::Velocity Navigator::State::settle(const geometry::Pose2& T_map_robot) {
+  constexpr int kCorrections = 5;
+  constexpr double kLongest = 3.0;  // of the time to settle, for a pose that does not come
+  const double stood_s = since_s(*settle_ns);
+  const bool seen = keeper.fix_ns().value_or(0) >=
+                    *settle_ns + static_cast<std::int64_t>(0.5 * config.settle_s * 1e9);
+  status.state = NavigatorState::kDriving;
+  if (stood_s < config.settle_s || (!seen && stood_s < kLongest * config.settle_s)) {
+    return stop(NavigatorState::kDriving, HaltReason::kNone, "is there; looks where exactly");
+  }
+  const double off_m = (way.goal_m() - T_map_robot.position_m()).norm();
+  const auto& heading_rad = way.route().heading_rad;
+  const double off_rad =
+      heading_rad ? std::fabs(geometry::wrap_angle(*heading_rad - T_map_robot.theta_rad)) : 0.0;
+  const bool there = off_m <= config.arrival_m && off_rad <= config.arrival_rad;
+  if (there || corrections >= kCorrections) {
+    arrived = true;
+    follower.forget();
+    status.rest_m = 0.0;
+    status.rest_s = 0.0;
+    return stop(NavigatorState::kArrived, HaltReason::kNone,
+                heading_rad ? say("has arrived, %.2f m and %.1f degrees off by its own pose", off_m,
+                                  off_rad * 57.29578)
+                            : say("has arrived, %.2f m off by its own pose", off_m));
+  }
+  ++corrections;
+  settle_ns.reset();
+  std::vector<planning::PathSample> path;
+  if (off_m > config.arrival_m) {
+    const std::array<Eigen::Vector2d, 2> line = {T_map_robot.position_m(), way.goal_m()};
+    path = straight_path(line);
+  }
+  follower.follow(std::move(path), heading_rad);
+  return stop(NavigatorState::kDriving, HaltReason::kNone,
+              say("corrects %.2f m at the goal", off_m));
+}
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,137 @@
+#include "path_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr double kStep_m = 0.08;
+
+std::vector<Eigen::Vector2d> dense(std::span<const Eigen::Vector2d> points_m) {
+  std::vector<Eigen::Vector2d> result;
+  for (std::size_t i = 0; i + 1 < points_m.size(); ++i) {
+    const Eigen::Vector2d way_m = points_m[i + 1] - points_m[i];
+    const int steps = std::max(1, static_cast<int>(std::ceil(way_m.norm() / kStep_m)));
+    for (int k = 0; k < steps; ++k) {
+      result.emplace_back(points_m[i] + static_cast<double>(k) / steps * way_m);
+    }
+  }
+  if (!points_m.empty()) result.push_back(points_m.back());
+  return result;
+}
+
+class Field {
+ public:
+  Field(const planning::FreeSpace& space, std::span<const Eigen::Vector2d> obstacles_m)
+      : space_(space), obstacles_m_(obstacles_m) {}
+
+  // Distance to the nearest surface of the map or obstacle, about; between the middles of cells
+  // linear.
+  [[nodiscard]] double clearance_m(const Eigen::Vector2d& point_m) const {
+    const planning::GridFrame& frame = space_.frame();
+    const Eigen::Vector2d at = frame.in_cells(point_m) - Eigen::Vector2d(0.5, 0.5);
+    const double column = std::floor(at.x());
+    const double row = std::floor(at.y());
+    const double x = at.x() - column;
+    const double y = at.y() - row;
+    const planning::Cell cell{static_cast<std::int32_t>(column), static_cast<std::int32_t>(row)};
+    const double lower = (1.0 - x) * of(cell, 0, 0) + x * of(cell, 1, 0);
+    const double upper = (1.0 - x) * of(cell, 0, 1) + x * of(cell, 1, 1);
+    double least_m = (1.0 - y) * lower + y * upper - 0.5 * frame.resolution_m;
+    for (const Eigen::Vector2d& obstacle_m : obstacles_m_) {
+      least_m = std::min(least_m, (obstacle_m - point_m).norm());
+    }
+    return least_m;
+  }
+
+  [[nodiscard]] Eigen::Vector2d uphill(const Eigen::Vector2d& point_m) const {
+    constexpr double kReach_m = 0.05;
+    const Eigen::Vector2d x(kReach_m, 0.0);
+    const Eigen::Vector2d y(0.0, kReach_m);
+    const Eigen::Vector2d slope(clearance_m(point_m + x) - clearance_m(point_m - x),
+                                clearance_m(point_m + y) - clearance_m(point_m - y));
+    return slope / (2.0 * kReach_m);
+  }
+
+ private:
+  [[nodiscard]] double of(const planning::Cell& cell, std::int32_t x, std::int32_t y) const {
+    const planning::Cell there{cell.column + x, cell.row + y};
+    constexpr double kMost_m = 2.0;
+    if (!space_.frame().contains(there)) return 0.0;
+    if (space_.grid().at(there) != planning::CellState::kFree) return 0.0;
+    return std::min(kMost_m, space_.clearance_m(there));
+  }
+
+  const planning::FreeSpace& space_;
+  std::span<const Eigen::Vector2d> obstacles_m_;
+};
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
+                                  std::span<const Eigen::Vector2d> points_m,
+                                  std::span<const Eigen::Vector2d> obstacles_m, double wished_m) {
+  constexpr int kRounds = 60;
+  constexpr int kSmoothingOnly = 6;
+  constexpr double kPull = 0.3;
+  constexpr double kPush = 0.15;
+  constexpr double kLargestPush_m = 0.02;
+  std::vector<Eigen::Vector2d> way_m = dense(points_m);
+  const Field field(space, obstacles_m);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Eigen::Vector2d> next_m = way_m;
+    for (std::size_t i = 1; i + 1 < way_m.size(); ++i) {
+      next_m[i] += kPull * (0.5 * (way_m[i - 1] + way_m[i + 1]) - way_m[i]);
+      if (round + kSmoothingOnly >= kRounds) continue;
+      const double missing_m = wished_m - field.clearance_m(way_m[i]);
+      if (missing_m <= 0.0) continue;
+      next_m[i] += std::min(kPush * missing_m, kLargestPush_m) * field.uphill(way_m[i]);
+    }
+    way_m = std::move(next_m);
+  }
+  constexpr double kEnds_m = 0.4;  // robot and goal may be in forbidden cells, and so the way there
+  for (const Eigen::Vector2d& point_m : way_m) {
+    const auto cell = space.frame().cell_of(point_m);
+    const bool at_end =
+        (point_m - way_m.front()).norm() < kEnds_m || (point_m - way_m.back()).norm() < kEnds_m;
+    if (!cell || (!at_end && !space.passable(*cell))) return {};
+  }
+  return way_m;
+}
+
+std::vector<planning::PathSample> samples_of(std::span<const Eigen::Vector2d> points_m,
+                                             double corner_rad) {
+  std::vector<Eigen::Vector2d> kept_m;
+  constexpr double kSame_m = 0.01;
+  for (const Eigen::Vector2d& point_m : points_m) {
+    if (kept_m.empty() || (point_m - kept_m.back()).norm() > kSame_m) kept_m.push_back(point_m);
+  }
+  if (!points_m.empty() && !kept_m.empty()) kept_m.back() = points_m.back();
+  if (kept_m.size() < 2) return {};
+  std::vector<planning::PathSample> samples;
+  double distance_m = 0.0;
+  double before_rad = 0.0;
+  for (std::size_t i = 0; i + 1 < kept_m.size(); ++i) {
+    const Eigen::Vector2d way_m = kept_m[i + 1] - kept_m[i];
+    const double heading_rad = geometry::atan2(way_m.y(), way_m.x());
+    const double turn_rad = i == 0 ? 0.0 : geometry::wrap_angle(heading_rad - before_rad);
+    const bool corner = std::fabs(turn_rad) > corner_rad;
+    samples.push_back(
+        {{kept_m[i].x(), kept_m[i].y(), heading_rad}, distance_m, 0.0, corner ? turn_rad : 0.0});
+    if (!corner && i > 0) {
+      const double around_m = 0.5 * (way_m.norm() + (kept_m[i] - kept_m[i - 1]).norm());
+      samples.back().curvature_per_m = turn_rad / around_m;
+      // Half of the turn lies before the corner of the polyline.
+      samples.back().T_map_robot.theta_rad = geometry::wrap_angle(heading_rad - 0.5 * turn_rad);
+    }
+    distance_m += way_m.norm();
+    before_rad = heading_rad;
+  }
+  samples.push_back({{kept_m.back().x(), kept_m.back().y(), before_rad}, distance_m, 0.0, 0.0});
+  return samples;
+}
+
+}  // namespace topogeo::navigation

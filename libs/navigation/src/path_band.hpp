@@ -1,0 +1,27 @@
+// Turns a straightened way into one that a robot likes to drive: rounded, and as far from what it
+// could touch as is useful.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/planning/free_space.hpp"
+#include "topogeo/planning/motion_primitives.hpp"
+
+namespace topogeo::navigation {
+
+/// An elastic band (Quinlan and Khatib 1993) from the first to the last point: pulled straight, and
+/// pushed off everything that is nearer than `wished_m`. Empty when a part of it would leave the
+/// passable cells; then the way as it is must do.
+std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
+                                  std::span<const Eigen::Vector2d> points_m,
+                                  std::span<const Eigen::Vector2d> obstacles_m, double wished_m);
+
+/// Samples of a dense polyline with the curvature of the circle through three points each; corners
+/// sharper than `corner_rad` are turned on the spot.
+std::vector<planning::PathSample> samples_of(std::span<const Eigen::Vector2d> points_m,
+                                             double corner_rad);
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,349 @@
+#include "topogeo/navigation/path_follower.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+#include "arc_sweep.hpp"
+#include "settings_check.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr double kNanoseconds = 1e-9;
+constexpr double kBrake = 0.7;      // of the acceleration: stops are planned with a reserve
+constexpr double kTurnBrake = 0.6;  // the same of turns
+constexpr double kSlowest_m_per_s = 0.03;
+constexpr double kSlowest_rad_per_s = 0.06;
+constexpr double kLost_rad = 0.9;     // so far off the heading it turns on the spot again
+constexpr double kCorner_rad = 0.02;  // less is no turn on the spot
+constexpr double kStands_m_per_s = 1e-3;
+constexpr double kStands_rad_per_s = 5e-3;
+
+double stop_speed(double way_m, double brake) {
+  return std::sqrt(2.0 * brake * std::max(0.0, way_m));
+}
+
+}  // namespace
+
+void check(const FollowerConfig& config) {
+  constexpr double kLeast = 1e-3;
+  const auto range = [](const char* field, double value, double low, double high) {
+    check_range("path follower", field, value, low, high);
+  };
+  range("speed_m_per_s", config.speed_m_per_s, kLeast, 3.0);
+  range("turn_rad_per_s", config.turn_rad_per_s, kLeast, 6.0);
+  range("acceleration_m_per_s2", config.acceleration_m_per_s2, kLeast, 10.0);
+  range("turn_acceleration_rad_per_s2", config.turn_acceleration_rad_per_s2, kLeast, 20.0);
+  range("delay_s", config.delay_s, 0.0, 1.0);
+  range("arrival_m", config.arrival_m, 0.005, 1.0);
+  range("arrival_rad", config.arrival_rad, 0.002, 1.0);
+  range("begin_turn_rad", config.begin_turn_rad, 0.0, 1.0);
+}
+
+std::vector<planning::PathSample> straight_path(std::span<const Eigen::Vector2d> points_m,
+                                                double step_m) {
+  std::vector<planning::PathSample> samples;
+  constexpr double kSame_m = 1e-6;
+  double distance_m = 0.0;
+  double heading_rad = 0.0;
+  for (std::size_t i = 0, at = 0; i < points_m.size(); ++i) {
+    const Eigen::Vector2d way_m = points_m[i] - points_m[at];
+    const double length_m = way_m.norm();
+    if (length_m < kSame_m) continue;
+    const double before_rad = heading_rad;
+    heading_rad = geometry::atan2(way_m.y(), way_m.x());
+    const int steps = std::max(1, static_cast<int>(std::ceil(length_m / step_m)));
+    for (int k = 0; k < steps; ++k) {
+      const double share = static_cast<double>(k) / steps;
+      const Eigen::Vector2d point_m = points_m[at] + share * way_m;
+      const bool corner = k == 0 && !samples.empty();
+      samples.push_back({{point_m.x(), point_m.y(), heading_rad},
+                         distance_m + share * length_m,
+                         0.0,
+                         corner ? geometry::wrap_angle(heading_rad - before_rad) : 0.0});
+    }
+    distance_m += length_m;
+    at = i;
+  }
+  if (!samples.empty()) {
+    const Eigen::Vector2d& end_m = points_m.back();
+    samples.push_back({{end_m.x(), end_m.y(), heading_rad}, distance_m, 0.0, 0.0});
+  }
+  return samples;
+}
+
+PathFollower::PathFollower(const FollowerConfig& config) : config_(config) {
+  check(config);
+}
+
+std::size_t PathFollower::leg_end(std::size_t from) const {
+  std::size_t end = from + 1;
+  while (end + 1 < path_.size() && std::fabs(path_[end].turn_on_spot_rad) < kCorner_rad) ++end;
+  return std::min(end, path_.size() - 1);
+}
+
+void PathFollower::follow(std::vector<planning::PathSample> path,
+                          std::optional<double> final_heading_rad) {
+  path_ = std::move(path);
+  final_heading_rad_ = final_heading_rad;
+  active_ = true;
+  progress_m_ = 0.0;
+  off_m_ = 0.0;
+  segment_ = 0;
+  turn_from_rad_.reset();
+  leg_from_m_.reset();
+  if (path_.size() < 2) {
+    path_.clear();
+    phase_ = Phase::kFinalTurn;
+    return;
+  }
+  begin_leg(0);
+}
+
+void PathFollower::begin_leg(std::size_t from) {
+  leg_begin_ = from;
+  leg_end_ = leg_end(from);
+  segment_ = from;
+  progress_m_ = path_[from].distance_m;
+  phase_ = Phase::kTurn;
+  turn_from_rad_.reset();
+  leg_from_m_.reset();
+}
+
+void PathFollower::forget() {
+  active_ = false;
+  path_.clear();
+  phase_ = Phase::kDone;
+}
+
+double PathFollower::rest_m() const {
+  return path_.empty() ? 0.0 : std::max(0.0, path_.back().distance_m - progress_m_);
+}
+
+void PathFollower::commanded(const geometry::Velocity& command, std::int64_t now_ns) {
+  constexpr std::int64_t kKept_ns = 1'500'000'000;
+  commands_.push_back({now_ns, command});
+  while (commands_.size() > 1 && commands_[1].stamp_ns < now_ns - kKept_ns) commands_.pop_front();
+}
+
+std::vector<planning::MotionPrimitive> PathFollower::take_finished() {
+  return std::exchange(finished_, {});
+}
+
+bool PathFollower::stands() const {
+  if (commands_.empty()) return true;
+  const std::int64_t since_ns =
+      commands_.back().stamp_ns - static_cast<std::int64_t>(config_.delay_s * 1e9);
+  return std::all_of(commands_.rbegin(), commands_.rend(), [&](const Command& command) {
+    return command.stamp_ns < since_ns ||
+           (std::fabs(command.velocity.linear_m_per_s) < kStands_m_per_s &&
+            std::fabs(command.velocity.angular_rad_per_s) < kStands_rad_per_s);
+  });
+}
+
+geometry::Pose2 PathFollower::predicted(const geometry::Pose2& T_map_robot,
+                                        std::int64_t now_ns) const {
+  geometry::Pose2 pose = T_map_robot;
+  const std::int64_t from_ns = now_ns - static_cast<std::int64_t>(config_.delay_s * 1e9);
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    const std::int64_t begin_ns = std::max(commands_[i].stamp_ns, from_ns);
+    const std::int64_t end_ns = i + 1 < commands_.size() ? commands_[i + 1].stamp_ns : now_ns;
+    if (end_ns <= begin_ns) continue;
+    pose =
+        pose * moved(commands_[i].velocity, static_cast<double>(end_ns - begin_ns) * kNanoseconds);
+  }
+  return pose;
+}
+
+// The nearest place of the leg, not far from the last one.
+PathFollower::Place PathFollower::locate(const geometry::Pose2& T_map_robot) {
+  constexpr double kAhead_m = 1.0;
+  const Eigen::Vector2d robot_m = T_map_robot.position_m();
+  double best_m = HUGE_VAL;
+  std::size_t best = segment_;
+  double best_along_m = 0.0;
+  for (std::size_t i = segment_; i < leg_end_; ++i) {
+    if (path_[i].distance_m > progress_m_ + kAhead_m) break;
+    const Eigen::Vector2d from_m = path_[i].T_map_robot.position_m();
+    const Eigen::Vector2d way_m = path_[i + 1].T_map_robot.position_m() - from_m;
+    const double length_m = std::max(way_m.norm(), 1e-9);
+    const double along_m = std::clamp((robot_m - from_m).dot(way_m) / length_m, 0.0, length_m);
+    const double off_m = (robot_m - from_m - along_m / length_m * way_m).norm();
+    if (off_m >= best_m - 1e-9) continue;
+    best_m = off_m;
+    best = i;
+    best_along_m = along_m;
+  }
+  segment_ = best;
+  off_m_ = best_m;
+  const planning::PathSample& sample = path_[best];
+  progress_m_ = std::max(progress_m_, sample.distance_m + best_along_m);
+  Place place;
+  place.curvature_per_m = sample.curvature_per_m;
+  place.heading_rad = sample.T_map_robot.theta_rad + sample.curvature_per_m * best_along_m;
+  const auto half =
+      geometry::sincos(sample.T_map_robot.theta_rad + 0.5 * sample.curvature_per_m * best_along_m);
+  place.position_m =
+      sample.T_map_robot.position_m() + best_along_m * Eigen::Vector2d(half.cos, half.sin);
+  const auto along = geometry::sincos(place.heading_rad);
+  const Eigen::Vector2d off = robot_m - place.position_m;
+  place.left_m = along.cos * off.y() - along.sin * off.x();
+  place.to_go_m = path_[leg_end_].distance_m - (sample.distance_m + best_along_m);
+  if (best + 1 == leg_end_) {  // beyond the end it is negative
+    const Eigen::Vector2d rest_m = path_[leg_end_].T_map_robot.position_m() - robot_m;
+    place.to_go_m = rest_m.x() * along.cos + rest_m.y() * along.sin;
+  }
+  return place;
+}
+
+// What the curves within the next metre allow.
+double PathFollower::curve_speed(double to_go_m) const {
+  constexpr double kAhead_m = 1.0;
+  constexpr double kSideways_m_per_s2 = 0.6;
+  constexpr double kTurnShare = 0.8;  // the rest is for corrections
+  const double brake = kBrake * config_.acceleration_m_per_s2;
+  double speed = std::min(config_.speed_m_per_s, stop_speed(to_go_m, brake));
+  for (std::size_t i = segment_; i < leg_end_; ++i) {
+    const double ahead_m = std::max(0.0, path_[i].distance_m - progress_m_);
+    if (ahead_m > kAhead_m) break;
+    const double curvature = std::fabs(path_[i].curvature_per_m);
+    if (curvature < 1e-3) continue;
+    const double here = std::min(kTurnShare * config_.turn_rad_per_s / curvature,
+                                 std::sqrt(kSideways_m_per_s2 / curvature));
+    speed = std::min(speed, std::sqrt(here * here + 2.0 * brake * ahead_m));
+  }
+  return speed;
+}
+
+geometry::Velocity PathFollower::turn(double error_rad) const {
+  const double most =
+      std::min(config_.turn_rad_per_s,
+               stop_speed(std::fabs(error_rad), kTurnBrake * config_.turn_acceleration_rad_per_s2));
+  const double speed = std::max(most, kSlowest_rad_per_s);
+  return {0.0, error_rad > 0.0 ? speed : -speed};
+}
+
+geometry::Velocity PathFollower::advance(const geometry::Pose2& T_map_robot, const Place& place,
+                                         double limit_m_per_s) const {
+  constexpr double kSteepest_rad = 0.7;
+  constexpr double kSteepestAtEnd_rad = 0.3;
+  const double heading_error_rad = geometry::wrap_angle(T_map_robot.theta_rad - place.heading_rad);
+  const double steepest = place.to_go_m < kSettle_m ? kSteepestAtEnd_rad : kSteepest_rad;
+  const double back_rad = std::clamp(-place.left_m / (2.0 * kSettle_m), -steepest, steepest);
+  const double curvature = place.curvature_per_m + 2.0 / kSettle_m * (back_rad - heading_error_rad);
+  double speed = std::min({limit_m_per_s, config_.speed_m_per_s, curve_speed(place.to_go_m)});
+  speed *= std::max(0.1, 1.0 - std::fabs(heading_error_rad) / kLost_rad);
+  speed = std::max(speed, std::min(kSlowest_m_per_s, limit_m_per_s));
+  if (std::fabs(curvature) * speed > config_.turn_rad_per_s) {
+    speed = config_.turn_rad_per_s / std::fabs(curvature);
+  }
+  return {speed, speed * curvature};
+}
+
+void PathFollower::finish_turn(double heading_rad) {
+  if (!turn_from_rad_) return;
+  const double turned_rad = geometry::wrap_angle(heading_rad - *turn_from_rad_);
+  turn_from_rad_.reset();
+  if (std::fabs(turned_rad) < kCorner_rad) return;
+  finished_.push_back(
+      {turned_rad > 0.0 ? planning::MotionKind::kTurnLeft : planning::MotionKind::kTurnRight,
+       std::fabs(turned_rad)});
+}
+
+void PathFollower::finish_leg(const Eigen::Vector2d& at_m) {
+  if (leg_from_m_) {
+    const double way_m = (at_m - *leg_from_m_).norm();
+    if (way_m > 1e-3) finished_.push_back({planning::MotionKind::kAdvance, way_m});
+  }
+  leg_from_m_.reset();
+  if (leg_end_ + 1 < path_.size()) {
+    begin_leg(leg_end_);
+  } else {
+    progress_m_ = path_.back().distance_m;
+    phase_ = Phase::kFinalTurn;
+  }
+}
+
+geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, double limit_m_per_s) {
+  if (phase_ == Phase::kTurn) {
+    const Place place = locate(T_map_robot);
+    const double error_rad = geometry::wrap_angle(place.heading_rad - T_map_robot.theta_rad);
+    const bool turning = turn_from_rad_.has_value();
+    const double enough_rad =
+        turning || leg_begin_ > 0 ? std::max(config_.arrival_rad, 0.05) : config_.begin_turn_rad;
+    if (std::fabs(error_rad) > enough_rad) {
+      if (!turning) turn_from_rad_ = T_map_robot.theta_rad;
+      return turn(error_rad);
+    }
+    finish_turn(T_map_robot.theta_rad);
+    leg_from_m_ = T_map_robot.position_m();
+    phase_ = Phase::kAdvance;
+  }
+  if (phase_ == Phase::kAdvance) {
+    const Place place = locate(T_map_robot);
+    constexpr double kStopsAt = 0.3;  // of the arrival distance
+    if (place.to_go_m <= kStopsAt * config_.arrival_m) {
+      finish_leg(T_map_robot.position_m());
+      return {};
+    }
+    const double error_rad = geometry::wrap_angle(place.heading_rad - T_map_robot.theta_rad);
+    if (std::fabs(error_rad) < kLost_rad) return advance(T_map_robot, place, limit_m_per_s);
+    phase_ = Phase::kTurn;
+    turn_from_rad_ = T_map_robot.theta_rad;
+    return turn(error_rad);
+  }
+  if (phase_ == Phase::kFinalTurn) {
+    const double error_rad = final_heading_rad_
+                                 ? geometry::wrap_angle(*final_heading_rad_ - T_map_robot.theta_rad)
+                                 : 0.0;
+    if (std::fabs(error_rad) > 0.5 * config_.arrival_rad) {
+      if (!turn_from_rad_) turn_from_rad_ = T_map_robot.theta_rad;
+      return turn(error_rad);
+    }
+    finish_turn(T_map_robot.theta_rad);
+    if (stands()) phase_ = Phase::kDone;
+  }
+  return {};
+}
+
+geometry::Velocity PathFollower::ramped(const geometry::Velocity& wanted,
+                                        std::int64_t now_ns) const {
+  constexpr double kLongest_s = 0.2;
+  constexpr double kDown = 1.5;  // braking may be that much harder than speeding up
+  geometry::Velocity last;
+  double time_s = 0.05;
+  if (!commands_.empty()) {
+    last = commands_.back().velocity;
+    time_s = std::clamp(static_cast<double>(now_ns - commands_.back().stamp_ns) * kNanoseconds, 0.0,
+                        kLongest_s);
+  }
+  const double up = config_.acceleration_m_per_s2 * time_s;
+  const double turn = config_.turn_acceleration_rad_per_s2 * time_s;
+  return {
+      std::clamp(wanted.linear_m_per_s, last.linear_m_per_s - kDown * up, last.linear_m_per_s + up),
+      std::clamp(wanted.angular_rad_per_s, last.angular_rad_per_s - turn,
+                 last.angular_rad_per_s + turn)};
+}
+
+FollowerStep PathFollower::step(const geometry::Pose2& T_map_robot, std::int64_t now_ns,
+                                double speed_limit_m_per_s) {
+  FollowerStep result;
+  if (!active_) return result;
+  const geometry::Velocity wanted =
+      control(predicted(T_map_robot, now_ns), std::max(0.0, speed_limit_m_per_s));
+  result.command = ramped(wanted, now_ns);
+  result.done = phase_ == Phase::kDone;
+  result.rest_m = rest_m();
+  result.off_m = off_m_;
+  result.rest_s = result.rest_m / config_.speed_m_per_s;
+  if (!result.done) result.rest_s += config_.speed_m_per_s / config_.acceleration_m_per_s2;
+  for (std::size_t i = segment_ + 1; i < path_.size(); ++i) {
+    result.rest_s += std::fabs(path_[i].turn_on_spot_rad) / config_.turn_rad_per_s;
+  }
+  return result;
+}
+
+}  // namespace topogeo::navigation

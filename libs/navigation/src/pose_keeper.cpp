@@ -1,0 +1,132 @@
+#include "pose_keeper.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr std::int64_t kCarriedOn_ns = 300'000'000;  // after the last odometry, by its speeds
+
+double seconds(std::int64_t duration_ns) {
+  return static_cast<double>(duration_ns) * 1e-9;
+}
+
+double sigma_of(const Eigen::Matrix3d& covariance) {
+  // The larger eigenvalue of the position's block.
+  const double half = 0.5 * (covariance(0, 0) + covariance(1, 1));
+  const double spread = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
+  return std::sqrt(std::max(0.0, half + spread));
+}
+
+}  // namespace
+
+PoseKeeper::PoseKeeper(const PoseKeeperConfig& config)
+    : config_(config), odometry_(kCarriedOn_ns) {}
+
+void PoseKeeper::add(const OdometrySample& sample) {
+  geometry::OdometrySample moving{sample.stamp_ns, sample.T_odom_robot};
+  if (last_ && sample.stamp_ns > last_->stamp_ns) {
+    const geometry::Pose2 step = between(last_->T_odom_robot, sample.T_odom_robot);
+    const double time_s = std::max(0.01, seconds(sample.stamp_ns - last_->stamp_ns));
+    moving.linear_mps = step.x_m / time_s;
+    moving.angular_radps = step.theta_rad / time_s;
+  }
+  if (!odometry_.add(moving)) return;
+  if (last_) {
+    driven_m_ += (sample.T_odom_robot.position_m() - last_->T_odom_robot.position_m()).norm();
+  }
+  last_ = sample;
+  if (pending_ && pending_->stamp_ns <= sample.stamp_ns) use(*std::exchange(pending_, {}));
+}
+
+void PoseKeeper::add(const PoseFix& fix) {
+  if (fix_ && fix.stamp_ns < fix_->stamp_ns) return;
+  if (!fix.tracking) {  // counts at once, whatever odometry there is
+    fix_ = fix;
+    pending_.reset();
+    return;
+  }
+  if (!last_ || fix.stamp_ns > last_->stamp_ns) {
+    pending_ = fix;
+    return;
+  }
+  use(fix);
+}
+
+void PoseKeeper::use(const PoseFix& fix) {
+  const auto then = odometry_.at(fix.stamp_ns);
+  if (!then) return;  // older than all odometry that is kept
+  const geometry::Pose2 T_map_odom = fix.T_map_robot * inverse(then->T_odom_robot);
+  if (fix_ && last_) {
+    const Eigen::Vector2d robot_m = last_->T_odom_robot.position_m();
+    jump_m_ = std::max(jump_m_, (T_map_odom * robot_m - T_map_odom_ * robot_m).norm());
+  }
+  T_map_odom_ = T_map_odom;
+  fix_ = fix;
+}
+
+bool PoseKeeper::has_odometry(std::int64_t now_ns) const {
+  return last_ && seconds(now_ns - last_->stamp_ns) <= config_.oldest_odometry_s;
+}
+
+std::optional<geometry::Pose2> PoseKeeper::T_odom_robot(std::int64_t now_ns) const {
+  if (!has_odometry(now_ns)) return std::nullopt;
+  const auto answer = odometry_.at(std::min(now_ns, last_->stamp_ns + kCarriedOn_ns));
+  if (!answer) return std::nullopt;
+  return answer->T_odom_robot;
+}
+
+std::optional<geometry::Pose2> PoseKeeper::T_map_robot(std::int64_t at_ns) const {
+  if (!fix_ || !fix_->tracking || !last_) return std::nullopt;
+  const auto answer = odometry_.at(std::min(at_ns, last_->stamp_ns + kCarriedOn_ns));
+  if (!answer) return std::nullopt;
+  return T_map_odom_ * answer->T_odom_robot;
+}
+
+std::optional<geometry::Pose2> PoseKeeper::good_pose(std::int64_t now_ns) const {
+  if (!fix_ || !fix_->tracking || !has_odometry(now_ns)) return std::nullopt;
+  if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) return std::nullopt;
+  if (!(sigma_m() <= config_.largest_sigma_m)) return std::nullopt;
+  return T_map_robot(now_ns);
+}
+
+std::string PoseKeeper::why_not(std::int64_t now_ns) const {
+  if (!fix_) return "no pose has come yet";
+  std::array<char, 160> text{};
+  if (!fix_->tracking) {
+    std::snprintf(text.data(), text.size(), "the localizer does not track the pose: %s",
+                  fix_->state_text.empty() ? "no reason given" : fix_->state_text.c_str());
+  } else if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) {
+    std::snprintf(text.data(), text.size(), "the last pose is %.1f s old",
+                  seconds(now_ns - fix_->stamp_ns));
+  } else if (!(sigma_m() <= config_.largest_sigma_m)) {
+    std::snprintf(text.data(), text.size(), "the pose is only known to %.2f m, %.2f m are allowed",
+                  sigma_m(), config_.largest_sigma_m);
+  } else {
+    return "no odometry";
+  }
+  return text.data();
+}
+
+std::optional<std::int64_t> PoseKeeper::fix_ns() const {
+  if (!fix_) return std::nullopt;
+  return fix_->stamp_ns;
+}
+
+double PoseKeeper::sigma_m() const {
+  return fix_ ? sigma_of(fix_->covariance) : HUGE_VAL;
+}
+
+double PoseKeeper::take_jump_m() {
+  return std::exchange(jump_m_, 0.0);
+}
+
+double PoseKeeper::take_driven_m() {
+  return std::exchange(driven_m_, 0.0);
+}
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,58 @@
+// Where the robot is now: the last pose fix, carried on by odometry.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "topogeo/geometry/odometry_track.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+
+namespace topogeo::navigation {
+
+struct PoseKeeperConfig {
+  double oldest_pose_s = 3.0;
+  double oldest_odometry_s = 1.0;
+  double largest_sigma_m = 0.5;
+};
+
+class PoseKeeper {
+ public:
+  explicit PoseKeeper(const PoseKeeperConfig& config);
+
+  void add(const PoseFix& fix);
+  void add(const OdometrySample& sample);
+
+  [[nodiscard]] bool has_odometry(std::int64_t now_ns) const;
+  /// Nothing without odometry, or when it is too old.
+  [[nodiscard]] std::optional<geometry::Pose2> T_odom_robot(std::int64_t now_ns) const;
+  /// Pose in the map at a time of the last seconds; nothing when it is not known. At `now_ns` it
+  /// is what may be driven by: tracking, fresh and certain enough.
+  [[nodiscard]] std::optional<geometry::Pose2> T_map_robot(std::int64_t at_ns) const;
+  [[nodiscard]] std::optional<geometry::Pose2> good_pose(std::int64_t now_ns) const;
+  /// Why there is no good pose; one line.
+  [[nodiscard]] std::string why_not(std::int64_t now_ns) const;
+
+  /// Stamp of the last fix that is in use; nothing without one.
+  [[nodiscard]] std::optional<std::int64_t> fix_ns() const;
+  /// Largest standard deviation of the position, metres.
+  [[nodiscard]] double sigma_m() const;
+  /// How far the fixes since the last call have moved the robot, metres.
+  double take_jump_m();
+  /// Way by odometry since the last call, metres.
+  double take_driven_m();
+
+ private:
+  void use(const PoseFix& fix);
+
+  PoseKeeperConfig config_;
+  geometry::OdometryTrack odometry_;
+  std::optional<OdometrySample> last_;
+  std::optional<PoseFix> pending_;  ///< its odometry has not come yet
+  std::optional<PoseFix> fix_;
+  geometry::Pose2 T_map_odom_;
+  double jump_m_ = 0.0;
+  double driven_m_ = 0.0;
+};
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,31 @@
+// What one scan says about a place: seen to be free, seen to be occupied, or not seen.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+
+namespace topogeo::navigation {
+
+enum class Sight { kUnseen, kFree, kOccupied };
+
+class ScanView {
+ public:
+  explicit ScanView(const ScanPoints& scan);
+
+  /// `place_m` in the robot's frame at the time of the scan, as large as `radius_m`.
+  [[nodiscard]] Sight look(const Eigen::Vector2d& place_m, double radius_m) const;
+
+ private:
+  struct Beam {
+    double bearing_rad;
+    double range_m;
+  };
+  geometry::Pose2 T_laser_robot_;
+  std::vector<Beam> beams_;  ///< ascending
+};
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,231 @@
+// Small floors in text, cells of 0.25 m, forbidden cells 1: what comes next to be explored.
+#include "topogeo/navigation/explorer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../planning/floors.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+using planning::grid_of_text;
+using testing::HasSubstr;
+
+constexpr double kCell_m = 0.25;
+
+planning::HybridMap map_of(const std::vector<std::string>& lines,
+                           const std::vector<planning::Passage>& passages = {}) {
+  planning::InflationConfig inflation;
+  inflation.forbidden_cells = 1.0;
+  planning::FreeSpace space(grid_of_text(lines, kCell_m), inflation);
+  planning::ZoneConfig zones;
+  zones.min_area_m2 = 0.2;
+  planning::ZoneMap cut = planning::zones_between(space, passages, zones);
+  return {std::move(space), std::move(cut)};
+}
+
+/// The middle of the cell that a line and column of the text name, counted from the last line.
+Eigen::Vector2d at(int column, int row) {
+  return {kCell_m * (column + 0.5), kCell_m * (row + 0.5)};
+}
+
+geometry::Pose2 pose_at(int column, int row, double theta_rad = 0.0) {
+  const Eigen::Vector2d point_m = at(column, row);
+  return {point_m.x(), point_m.y(), theta_rad};
+}
+
+ExplorerConfig small() {
+  ExplorerConfig config;
+  config.sure_m = 0.2;
+  config.least_gap_m = 0.5;
+  config.least_zone_m2 = 0.5;
+  return config;
+}
+
+std::optional<ExplorationTarget> next(const Explorer& explorer, const planning::HybridMap& map,
+                                      const geometry::Pose2& T_map_robot,
+                                      const topomap::GlobalMap& graph = {}) {
+  return explorer.next(graph, map, planning::HybridPlanner(map), T_map_robot);
+}
+
+topomap::GlobalMap with_end(const Eigen::Vector2d& end_m) {
+  topomap::GlobalMap graph;
+  graph.nodes = {{1, topomap::NodeKind::kReal, at(2, 2), 0.5, 1},
+                 {2, topomap::NodeKind::kFictitious, end_m, 0.5, 1}};
+  graph.branches = {{1, 1, 2, false, 1, {{at(2, 2), 0.5}, {end_m, 0.5}}}};
+  return graph;
+}
+
+const std::vector<std::string> kOpenRight = {
+    "##################????", "#.................????", "#.................????",
+    "#.................????", "#.................????", "#.................????",
+    "##################????",
+};
+
+const std::vector<std::string> kClosed = {
+    "##################", "#................#", "#................#", "#................#",
+    "#................#", "#................#", "##################",
+};
+
+TEST(Explorer, GoesWhereTheKnownEnds) {
+  const planning::HybridMap map = map_of(kOpenRight);
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(3, 3)});
+  const auto target = next(explorer, map, pose_at(3, 3));
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->kind, TargetKind::kGap);
+  EXPECT_NEAR(target->position_m.x(), at(17, 3).x(), 0.01);
+  // It is looked at from the known side and toward the unknown.
+  EXPECT_LT(target->T_map_view.x_m, target->position_m.x());
+  EXPECT_NEAR(target->T_map_view.theta_rad, 0.0, 1.0);
+  EXPECT_GT(target->way_m, 1.0);
+}
+
+TEST(Explorer, TheEndOfABranchIsAFrontierOnlyWhereSomethingIsUnknown) {
+  const planning::HybridMap map = map_of(kOpenRight);
+  ExplorerConfig config = small();
+  config.least_gap_m = 10.0;  // no gaps
+  Explorer explorer(config);
+  explorer.set_visited({pose_at(3, 3)});
+  const auto target = next(explorer, map, pose_at(3, 3), with_end(at(17, 3)));
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->kind, TargetKind::kBranchEnd);
+  EXPECT_EQ(target->position_m, at(17, 3));
+  EXPECT_FALSE(next(explorer, map, pose_at(3, 3), with_end(at(9, 3))));
+}
+
+TEST(Explorer, NothingIsLeftOfAFloorThatIsKnown) {
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(3, 3)});
+  EXPECT_FALSE(next(explorer, map_of(kClosed), pose_at(3, 3), with_end(at(16, 3))));
+}
+
+TEST(Explorer, WhatCannotBeReachedIsNoTarget) {
+  // The right part is open to the unknown, but behind a wall.
+  const planning::HybridMap map = map_of({
+      "#########################",
+      "#.........#.........?????",
+      "#.........#.........?????",
+      "#.........#.........?????",
+      "#.........#.........?????",
+      "#.........#.........?????",
+      "#########################",
+  });
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(4, 3)});
+  EXPECT_FALSE(next(explorer, map, pose_at(4, 3)));
+  explorer.set_visited({pose_at(14, 3)});
+  EXPECT_TRUE(next(explorer, map, pose_at(14, 3)));
+}
+
+TEST(Explorer, ARoomThatWasSeenIsEnteredToo) {
+  const std::vector<std::string> lines = {
+      "#########################", "#.........#.............#", "#.........#.............#",
+      "#.......................#", "#.......................#", "#.......................#",
+      "#.........#.............#", "#.........#.............#", "#########################",
+  };
+  const planning::HybridMap map = map_of(lines, {{at(10, 4), Eigen::Vector2d::UnitX(), 0.4}});
+  ASSERT_EQ(map.zones().zones.size(), 2U);
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(4, 4)});
+  const auto target = next(explorer, map, pose_at(4, 4));
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->kind, TargetKind::kRoom);
+  EXPECT_GT(target->T_map_view.x_m, at(11, 4).x());
+  explorer.set_visited({pose_at(4, 4), pose_at(11, 4)});  // the threshold is not inside
+  EXPECT_TRUE(next(explorer, map, pose_at(4, 4)));
+  explorer.set_visited({pose_at(4, 4), pose_at(16, 4)});
+  EXPECT_FALSE(next(explorer, map, pose_at(4, 4)));
+}
+
+TEST(Explorer, ASideOfAPassageThatWasNotSeenIsGoneTo) {
+  const planning::HybridMap map = map_of({
+      "#########????????",
+      "#........????????",
+      "#........????????",
+      "#................",
+      "#................",
+      "#................",
+      "#........????????",
+      "#........????????",
+      "#########????????",
+  });
+  ExplorerConfig config = small();
+  config.least_gap_m = 10.0;
+  Explorer explorer(config);
+  explorer.set_visited({pose_at(3, 4)});
+  topomap::GlobalMap graph;
+  graph.nodes = {{1, topomap::NodeKind::kReal, at(3, 4), 0.8, 1},
+                 {2, topomap::NodeKind::kDoor, at(9, 7), 0.4, 1}};
+  graph.branches = {{1, 1, 2, false, 1, {{at(3, 7), 0.8}, {at(9, 7), 0.4}}}};
+  const auto target = next(explorer, map, pose_at(3, 4), graph);
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->kind, TargetKind::kPassage);
+  EXPECT_GT(target->position_m.x(), at(9, 7).x());
+}
+
+TEST(Explorer, TheCheapestComesFirst) {
+  const planning::HybridMap map = map_of({
+      "??????????????????????????",
+      "#..#######################",
+      "#..#.....................?",
+      "#..#.....................?",
+      "#........................?",
+      "#........................?",
+      "##########################",
+  });
+  ExplorerConfig config = small();
+  config.unknown_near_m = 0.3;
+  Explorer explorer(config);
+  for (const int column : {6, 20}) {
+    explorer.set_visited({pose_at(column, 2)});
+    const auto target = next(explorer, map, pose_at(column, 2));
+    ASSERT_TRUE(target) << column;
+    EXPECT_EQ(target->position_m.x() > at(13, 2).x(), column == 20);
+  }
+}
+
+TEST(Explorer, WhatWasGivenUpDoesNotComeAgain) {
+  const planning::HybridMap map = map_of(kOpenRight);
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(3, 3)});
+  for (int i = 0; i < 20; ++i) {
+    const auto target = next(explorer, map, pose_at(3, 3));
+    if (!target) break;
+    EXPECT_TRUE(explorer.open(*target, {}, map));
+    explorer.give_up(*target);
+  }
+  EXPECT_FALSE(next(explorer, map, pose_at(3, 3)));
+  EXPECT_GT(explorer.given_up(), 0U);
+}
+
+TEST(Explorer, ATargetIsClosedWhenTheMapShowsIt) {
+  const planning::HybridMap map = map_of(kOpenRight);
+  const planning::HybridMap later = map_of(kClosed);
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(3, 3)});
+  const auto target = next(explorer, map, pose_at(3, 3));
+  ASSERT_TRUE(target);
+  EXPECT_TRUE(explorer.open(*target, {}, map));
+  EXPECT_FALSE(explorer.open(*target, {}, later));
+}
+
+TEST(Explorer, ARobotOffTheMapGoesNowhere) {
+  Explorer explorer(small());
+  EXPECT_FALSE(next(explorer, map_of(kOpenRight), {-50.0, 3.0, 0.0}));
+}
+
+TEST(Explorer, BadSettingsAreNamed) {
+  ExplorerConfig config;
+  config.view_m = 0.2;
+  try {
+    const Explorer explorer(config);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("explorer.view_m"));
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::navigation
