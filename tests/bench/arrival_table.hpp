@@ -1,0 +1,22 @@
+// Tables of simulated drives to goals, in Markdown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arrival_run.hpp"
+
+namespace topogeo::bench {
+
+struct ArrivalRow {
+  std::string floor;
+  std::uint64_t run = 0;  ///< with the floor: repeats it
+  ObstacleKind obstacle = ObstacleKind::kNone;
+  ArrivalResult result;
+};
+
+/// A line for each floor, with and without an obstacle, and all together; then the runs that did
+/// not end well, one line each.
+std::string arrival_table(const std::vector<ArrivalRow>& rows);
+
+}  // namespace topogeo::bench

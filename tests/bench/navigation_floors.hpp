@@ -1,0 +1,61 @@
+// Three floors for closed-loop runs, each with the map that the system itself makes of it: a drive
+// past everything is simulated, mapped as `topogeo map` does it, and the hybrid map built from
+// that.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/stored_map.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/simulation/odometry.hpp"
+#include "topogeo/simulation/world.hpp"
+
+namespace topogeo::bench {
+
+inline constexpr std::array<std::string_view, 3> kNavigationFloors{"office", "warehouse",
+                                                                   "two loops"};
+
+/// How the wheels err.
+enum class Wheels : std::uint8_t {
+  kMild = 0,  ///< as the simulator's default
+  kB21 = 1,   ///< as one in a recorded log, see simulation::b21_odometry
+};
+
+simulation::OdometryDrift drift_of(Wheels wheels, std::uint64_t seed);
+
+/// A floor of kNavigationFloors, without a tour of its own: the tour of load and of
+/// tour_of_everything differ. Throws std::invalid_argument for another name, and as load_world.
+simulation::World navigation_floor(std::string_view name);
+
+/// Way points from the first point of the world's tour past everything that can be reached, and
+/// back: each cell of the free space comes within 4 m in plain sight.
+std::vector<Eigen::Vector2d> tour_of_everything(const simulation::World& world);
+
+struct MappedFloor {
+  simulation::World world;
+  std::shared_ptr<const localization::StoredMap> stored;
+  std::shared_ptr<const planning::HybridMap> map;
+  std::vector<geometry::Pose2> T_world_stop;  ///< the truth of each stop of the map
+  double tour_m = 0.0;
+  double seconds = 0.0;  ///< that the drive and its map took
+
+  /// Frame of the map, by its first stop.
+  [[nodiscard]] geometry::Pose2 T_world_map() const;
+  /// Frame of the map as the stop nearest to `point_m` (world) has it: without what the map is bent
+  /// between the two.
+  [[nodiscard]] geometry::Pose2 T_world_map_at(const Eigen::Vector2d& point_m) const;
+};
+
+MappedFloor map_floor(std::string_view name, const pipeline::Config& config, Wheels wheels,
+                      std::uint64_t seed);
+
+}  // namespace topogeo::bench
