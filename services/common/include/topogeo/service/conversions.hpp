@@ -143,8 +143,9 @@ struct Goal {
   std::uint64_t goal_id = 0;
   std::string client_id;
   msg::GoalKind kind = msg::kGoalPosition;
-  planning::Target target;  ///< as `kind` says: a point, a NodeNumber or a place's name; of
-                            ///< cancel, pause and resume it does not matter
+  /// As `kind` says: a point, a NodeNumber or a place's name; of cancel, pause and resume it does
+  /// not matter.
+  planning::Target target = Eigen::Vector2d(0.0, 0.0);
   std::optional<double> heading_rad;  ///< where the robot shall look in the end, map frame
   bool look_around = false;
 };
