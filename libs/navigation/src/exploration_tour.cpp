@@ -107,14 +107,14 @@ void ExplorationTour::arrived() {
 
 std::optional<TourGoal> ExplorationTour::choose(const geometry::Pose2& T_map_robot,
                                                 std::int64_t now_ns) {
-  if (idle_ns_ && chosen_version_ == map_.version) {
-    done_ = static_cast<double>(now_ns - *idle_ns_) >= kNanoseconds * config_.settle_s;
-    return std::nullopt;
+  const bool waited =
+      idle_ns_ && static_cast<double>(now_ns - *idle_ns_) >= kNanoseconds * config_.settle_s;
+  if (std::exchange(chosen_version_, map_.version) != map_.version || !idle_ns_) {
+    target_ = explorer_.next(*map_.graph, *map_.map, *planner_, T_map_robot);
   }
-  chosen_version_ = map_.version;
-  target_ = explorer_.next(*map_.graph, *map_.map, *planner_, T_map_robot);
   if (!target_) {
     if (!idle_ns_) idle_ns_ = now_ns;
+    done_ = waited;
     return std::nullopt;
   }
   idle_ns_.reset();
