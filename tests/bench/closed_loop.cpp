@@ -118,6 +118,7 @@ void ClosedLoop::locate() {
   located_ = localization::located(state);
   pose_ = {now_ns_, now.T_a_b, now.covariance, state == localization::LocalizationState::kTracking,
            localization::to_string(state)};
+  if (config_.mapping) pose_->covariance.setZero();
   navigator_.add(*pose_);
 }
 

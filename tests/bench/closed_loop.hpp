@@ -28,6 +28,9 @@ struct ClosedLoopConfig {
   navigation::NavigatorConfig navigator;
   planning::HybridPlannerConfig planner;
   simulation::RobotOptions robot;
+  /// The pose's covariance is that to the first stop and says nothing of the map around the robot:
+  /// it is left out.
+  bool mapping = false;
   double obeys_after_s = 0.15;  ///< the base, from a command on
 };
 

@@ -155,6 +155,7 @@ ClosedLoopConfig loop_config(const ExplorationConfig& config, const Pose2& T_wor
   ClosedLoopConfig loop;
   loop.system = config.system;
   loop.navigator = config.navigator;
+  loop.mapping = true;
   loop.planner.goal_snap_m = 0.3;  // what was free when the goal was chosen may be forbidden now
   loop.robot.seed = seed;
   loop.robot.T_world_start = T_world_start;
@@ -198,6 +199,7 @@ ExplorationResult explore(std::string_view floor, const ExplorationConfig& confi
   navigation::ExploredMap map;
   std::vector<Pose2> T_world_stop;
   std::vector<Pose2> T_world_robot;
+  std::string said;
   constexpr std::uint64_t kMapTicks = 100;
   constexpr std::uint64_t kTourTicks = 20;
   const double start_s = loop.time_s();
@@ -218,6 +220,11 @@ ExplorationResult explore(std::string_view floor, const ExplorationConfig& confi
       status.T_map_robot = loop.pose()->T_map_robot;
     }
     const auto goal = tour.step(status, now_ns);
+    if (record != nullptr && status.message != said) {
+      said = status.message;
+      record->log.push_back(fmt::format("{:7.1f} s            {}: {}", loop.time_s(),
+                                        navigation::describe(status.state), said));
+    }
     if (!goal) continue;
     loop.set_goal(
         {{goal->goal_id, false}, goal->T_map_goal.position_m(), goal->T_map_goal.theta_rad});
