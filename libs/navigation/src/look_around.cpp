@@ -11,6 +11,7 @@ constexpr double kSpeed_m_per_s = 0.2;
 constexpr double kLeg_m = 1.0;
 constexpr double kRoomLeft_m = 0.3;  // stays free ahead of the body
 constexpr double kFacing_rad = 0.1;
+constexpr double kStops_m = 0.1;  // the way on after it was told to stop
 
 }  // namespace
 
@@ -45,7 +46,7 @@ geometry::Velocity LookAround::round(const geometry::Pose2& T_odom_robot, double
     best_heading_rad_ = T_odom_robot.theta_rad;
   }
   if (turned_rad_ < 2.0 * std::numbers::pi) return {0.0, kTurn_rad_per_s};
-  const bool may_go = gone_m_ < farthest_m_ && best_free_m_ > 2.0 * kRoomLeft_m;
+  const bool may_go = gone_m_ + kStops_m < farthest_m_ && best_free_m_ > 2.0 * kRoomLeft_m;
   phase_ = may_go ? Phase::kFace : Phase::kFinished;
   return {};
 }
@@ -61,7 +62,7 @@ geometry::Velocity LookAround::face(const geometry::Pose2& T_odom_robot) {
 }
 
 geometry::Velocity LookAround::go(double free_m) {
-  if (leg_m_ < kLeg_m && gone_m_ < farthest_m_ && free_m > kRoomLeft_m) {
+  if (leg_m_ < kLeg_m && gone_m_ + kStops_m < farthest_m_ && free_m > kRoomLeft_m) {
     return {kSpeed_m_per_s, 0.0};
   }
   phase_ = Phase::kRound;

@@ -11,6 +11,10 @@ namespace {
 constexpr double kSees_m = 2.5;       // what is further along the path does not matter yet
 constexpr double kKeepsOff_m = 0.15;  // stops so far before the place where it would touch
 constexpr double kWaiting_m_per_s = 0.05;
+constexpr double kBrake = 0.6;       // of the acceleration, when something is in the way
+constexpr double kSeeing_s = 0.15;   // from a measurement until a command follows, about
+constexpr double kProgress_m = 0.1;  // so far on, and it does not wait for that obstacle any more
+constexpr double kWaiting_rad_per_s = 0.1;
 constexpr double kPlanEvery_s = 0.3;
 constexpr double kContactsKept_s = 12.0;
 constexpr double kGuardWaits_s = 0.7;  // stopped by the guard for so long, it looks for a way round
@@ -72,7 +76,6 @@ geometry::Velocity Navigator::State::drive(const geometry::Pose2& T_map_robot) {
   if (needs_path || !follower.has_path()) {
     const bool again = blocked_ns && since_s(planned_ns) < kPlanEvery_s;
     if (again || !find_path(T_map_robot)) return wait_for_obstacle();
-    blocked_ns.reset();
   }
   return follow(T_map_robot);
 }
@@ -80,14 +83,15 @@ geometry::Velocity Navigator::State::drive(const geometry::Pose2& T_map_robot) {
 geometry::Velocity Navigator::State::follow(const geometry::Pose2& T_map_robot) {
   const double limit = speed_past_obstacles(T_map_robot);
   if (needs_path) return wait_for_obstacle();
-  const bool guard_waits = guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s;
-  if (guard_waits) go_round(T_map_robot);
+  if (guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s) go_round(T_map_robot);
   const FollowerStep order = follower.step(T_map_robot, now_ns, limit);
-  const bool stands_before = block_m && limit < kWaiting_m_per_s && order.rest_m > 0.0 &&
-                             order.command.linear_m_per_s < kWaiting_m_per_s;
-  if (stands_before || (guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s)) {
-    if (!blocked_ns) blocked_ns = guard_stop_ns.value_or(now_ns);
-  } else if (!block_m && !guard_stop_ns) {
+  const bool before_block = block_m && limit < kWaiting_m_per_s && order.rest_m > 0.0 &&
+                            order.command.linear_m_per_s < kWaiting_m_per_s &&
+                            std::fabs(order.command.angular_rad_per_s) < kWaiting_rad_per_s;
+  const bool before_guard = guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s;
+  if (before_block || before_guard) {
+    begin_waiting();
+  } else if (blocked_ns && status.driven_m > blocked_driven_m + kProgress_m) {
     blocked_ns.reset();
     reported = false;
   }
@@ -97,7 +101,7 @@ geometry::Velocity Navigator::State::follow(const geometry::Pose2& T_map_robot) 
   }
   tell_driving(order);
   const geometry::Velocity told = command(order.command);
-  if (blocked_ns) tell_waiting();
+  if (before_block || before_guard) tell_waiting();
   return told;
 }
 
@@ -138,8 +142,14 @@ void Navigator::State::go_round(const geometry::Pose2& T_map_robot) {
   if (find_path(T_map_robot)) guard_stop_ns.reset();
 }
 
+void Navigator::State::begin_waiting() {
+  if (blocked_ns) return;
+  blocked_ns = now_ns;
+  blocked_driven_m = status.driven_m;
+}
+
 geometry::Velocity Navigator::State::wait_for_obstacle() {
-  if (!blocked_ns) blocked_ns = now_ns;
+  begin_waiting();
   tell_waiting();
   return stop(status.state, status.reason, status.message);
 }

@@ -47,6 +47,7 @@ struct Navigator::State {
   double speed_past_obstacles(const geometry::Pose2& T_map_robot);
   void go_round(const geometry::Pose2& T_map_robot);
   geometry::Velocity wait_for_obstacle();
+  void begin_waiting();
   void tell_waiting();
   void report_blockage();
   std::vector<Eigen::Vector2d> standing_m() const;
@@ -92,10 +93,10 @@ struct Navigator::State {
   std::optional<std::int64_t> waits_route_ns;  ///< since when a fresh route is waited for
 
   std::optional<std::int64_t> blocked_ns;  ///< since when it stands before an obstacle
+  double blocked_driven_m = 0.0;           ///< what it had driven then
   bool reported = false;                   ///< that obstacle, as a blockage
   std::int64_t reported_ns = 0;
-  std::optional<std::int64_t> no_way_ns;  ///< when the last search for a way round failed
-  std::int64_t planned_ns = 0;            ///< last search for a way round
+  std::int64_t planned_ns = 0;  ///< last search for a way round
   double block_ahead_m = 0.0;
   std::optional<Eigen::Vector2d> block_m;  ///< map frame
   std::optional<std::int64_t> guard_stop_ns;

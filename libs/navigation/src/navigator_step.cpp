@@ -25,7 +25,7 @@ geometry::Velocity Navigator::State::command(const geometry::Velocity& wanted) {
   if (stops && !guard_stop_ns) {
     guard_stop_ns = now_ns;
     ++status.guard_stops;
-  } else if (!stops && wanted.linear_m_per_s > 0.0) {
+  } else if (!stops && wanted != geometry::Velocity{}) {
     guard_stop_ns.reset();
   }
   if (stops && verdict.contact_m) {
@@ -114,6 +114,7 @@ void Navigator::State::use_route() {
   waits_route_ns.reset();
   reported = false;
   blocked_ns.reset();
+  guard_stop_ns.reset();
   lost = false;
   if (same_way || (same_goal && settle_ns)) return;
   needs_path = true;

@@ -99,6 +99,11 @@ std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
         (point_m - way_m.front()).norm() < kEnds_m || (point_m - way_m.back()).norm() < kEnds_m;
     if (!cell || (!at_end && !space.passable(*cell))) return {};
   }
+  // Where the way leads through an obstacle, the band is torn.
+  constexpr double kTorn = 2.5;
+  for (std::size_t i = 1; i < way_m.size(); ++i) {
+    if ((way_m[i] - way_m[i - 1]).norm() > kTorn * kStep_m) return {};
+  }
   return way_m;
 }
 

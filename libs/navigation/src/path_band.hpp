@@ -14,7 +14,7 @@ namespace topogeo::navigation {
 
 /// An elastic band (Quinlan and Khatib 1993) from the first to the last point: pulled straight, and
 /// pushed off everything that is nearer than `wished_m`. Empty when a part of it would leave the
-/// passable cells; then the way as it is must do.
+/// passable cells or the way leads through an obstacle; then the way as it is must do.
 std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> points_m,
                                   std::span<const Eigen::Vector2d> obstacles_m, double wished_m);

@@ -64,8 +64,9 @@ std::vector<planning::PathSample> RouteWay::shape(
     std::span<const Eigen::Vector2d> points_m, std::span<const Eigen::Vector2d> obstacles_m) const {
   if (config_.motion == MotionStyle::kPrimitives) return straight_path(points_m);
   constexpr double kCorner_rad = 0.9;
-  const auto banded_m =
-      band(map_->space(), points_m, obstacles_m, config_.guard.radius_m + kWishedBeside_m);
+  const double wished_m = config_.guard.radius_m + kWishedBeside_m;
+  auto banded_m = band(map_->space(), points_m, obstacles_m, wished_m);
+  if (banded_m.empty()) banded_m = band(map_->space(), points_m, {}, wished_m);
   if (!banded_m.empty()) return samples_of(banded_m, kCorner_rad);
   return planning::smooth_path(map_->space(), points_m, config_.smooth);
 }
@@ -102,16 +103,27 @@ std::optional<RouteWay::Block> RouteWay::blocked(std::span<const planning::PathS
                                                  double reach_m) const {
   constexpr double kBeside_m = 0.04;
   constexpr double kNearer_m = 0.03;
+  constexpr double kStep_m = 0.05;
   const double body_m = config_.guard.radius_m + kBeside_m;
-  for (const planning::PathSample& sample : path) {
-    const double ahead_m = sample.distance_m - from_m;
-    if (ahead_m < 0.0) continue;
-    if (ahead_m > reach_m) break;
-    for (const Eigen::Vector2d& obstacle_m : obstacles_m) {
-      const double there_m = (sample.T_map_robot.position_m() - obstacle_m).norm();
-      if (there_m < std::min(body_m, (robot_m - obstacle_m).norm() - kNearer_m)) {
-        return Block{ahead_m, obstacle_m};
-      }
+  const auto touched = [&](const Eigen::Vector2d& at_m) {
+    return std::find_if(obstacles_m.begin(), obstacles_m.end(), [&](const auto& obstacle_m) {
+      return (at_m - obstacle_m).norm() <
+             std::min(body_m, (robot_m - obstacle_m).norm() - kNearer_m);
+    });
+  };
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const double piece_m = path[i + 1].distance_m - path[i].distance_m;
+    if (path[i + 1].distance_m < from_m) continue;
+    const Eigen::Vector2d begin_m = path[i].T_map_robot.position_m();
+    const Eigen::Vector2d way_m = path[i + 1].T_map_robot.position_m() - begin_m;
+    const int steps = std::max(1, static_cast<int>(std::ceil(piece_m / kStep_m)));
+    for (int k = 1; k <= steps; ++k) {
+      const double share = static_cast<double>(k) / steps;
+      const double ahead_m = path[i].distance_m + share * piece_m - from_m;
+      if (ahead_m < 0.0) continue;
+      if (ahead_m > reach_m) return std::nullopt;
+      const auto obstacle = touched(begin_m + share * way_m);
+      if (obstacle != obstacles_m.end()) return Block{ahead_m, *obstacle};
     }
   }
   return std::nullopt;

@@ -23,6 +23,7 @@ class ScanView {
   struct Beam {
     double bearing_rad;
     double range_m;
+    Eigen::Vector2d end_m;  ///< laser frame
   };
   geometry::Pose2 T_laser_robot_;
   std::vector<Beam> beams_;  ///< ascending
