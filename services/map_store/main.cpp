@@ -6,63 +6,117 @@
 
 #include <CLI/CLI.hpp>
 
+#include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/atomic_file.hpp"
 
+#include "drawing_options.hpp"
+#include "map_server.hpp"
 #include "map_store_service.hpp"
 #include "result_files.hpp"
+
+using namespace topogeo;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
 void check_directory(const std::filesystem::path& directory) {
   try {
-    topogeo::support::check_writable_directory(directory);
+    support::check_writable_directory(directory);
   } catch (const std::exception& error) {
-    throw topogeo::service::BadInputError(error.what());
+    throw service::BadInputError(error.what());
   }
 }
 
-std::shared_ptr<const topogeo::storage::MapDocument> map_to_continue(
-    const std::optional<std::filesystem::path>& file, const topogeo::service::Setup& setup) {
+std::shared_ptr<const storage::MapDocument> map_to_continue(
+    const std::optional<std::filesystem::path>& file, const service::Setup& setup) {
   if (!file) return nullptr;
   try {
-    return topogeo::pipeline::load_map_to_continue(*file, setup.config.config,
-                                                   setup.options.robot_id);
+    return pipeline::load_map_to_continue(*file, setup.config.config, setup.options.robot_id);
   } catch (const std::exception& error) {
-    throw topogeo::service::BadInputError(error.what());
+    throw service::BadInputError(error.what());
   }
+}
+
+struct Options {
+  map_store::MapStoreOptions store;
+  std::optional<std::filesystem::path> continued;
+  std::optional<std::filesystem::path> map;
+  map_store::DrawingOptions drawing;
+
+  /// Shows a map that there is, takes nothing in.
+  [[nodiscard]] bool serves() const { return map || (drawing.drawing && store.directory.empty()); }
+};
+
+void add_options(CLI::App& app, Options& options) {
+  map_store::MapStoreOptions& store = options.store;
+  app.add_option("--out", store.directory,
+                 "directory of the results, made if missing; needed unless a map is only shown");
+  app.add_option("--database", store.database,
+                 "map database; replaced when it is of an earlier run; default: map.sqlite there");
+  app.add_option("--continue", options.continued,
+                 "map.pb that is extended, as given to the localizer; it stays as it is")
+      ->type_name("FILE");
+  app.add_option("--title", store.title, "title of the pictures; default: the robot's name");
+  app.add_option("--map", options.map,
+                 "map.pb that is shown as it is; nothing is taken in and nothing written")
+      ->type_name("FILE");
+  add_drawing_options(app, options.drawing);
+}
+
+/// Shows a stored map, a drawing, or both.
+void serve(const service::Setup& setup, const Options& options) {
+  if (options.continued || !options.store.directory.empty()) {
+    throw service::UsageError("--map shows a map as it is: --out and --continue do not go with it");
+  }
+  const pipeline::HybridMapConfig& config = setup.config.config.hybrid_map;
+  storage::MapDrawing drawing = read_drawing(options.drawing, config.grid.resolution_m);
+  storage::MapDocument document;
+  const auto hybrid = [&] {
+    try {
+      if (options.map) document = storage::read_map_file(*options.map);
+      pipeline::lay_over(document.drawing, std::move(drawing));
+      return pipeline::make_hybrid_map(pipeline::parts_of(document), config);
+    } catch (const std::exception& error) {
+      throw service::BadInputError(error.what());
+    }
+  }();
+  service::Service service(setup);
+  const map_store::MapServer server(service, std::move(document), hybrid);
+  service.run();
+}
+
+/// Keeps the map of a drive.
+void keep(const service::Setup& setup, Options options) {
+  map_store::MapStoreOptions& store = options.store;
+  if (store.directory.empty()) {
+    throw service::UsageError("--out is required (or --map or --drawing, see --help)");
+  }
+  storage::MapDrawing drawing =
+      read_drawing(options.drawing, setup.config.config.hybrid_map.grid.resolution_m);
+  store.continued = map_to_continue(options.continued, setup);
+  if (store.continued) store.drawing = store.continued->drawing;
+  pipeline::lay_over(store.drawing, std::move(drawing));
+  check_directory(store.directory);
+  if (store.database.empty()) store.database = store.directory / "map.sqlite";
+  if (store.title.empty()) store.title = setup.options.robot_id;
+  storage::MapDatabase database = map_store::fresh_database(store.database, setup.options.robot_id,
+                                                            setup.config.config.localizer.seed);
+  service::Service service(setup);
+  const map_store::MapStoreService running(service, std::move(store), std::move(database));
+  service.run();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace topogeo;  // NOLINT(google-build-using-namespace)
-  map_store::MapStoreOptions options;
-  std::optional<std::filesystem::path> continued;
-  const auto add_options = [&](CLI::App& app) {
-    app.add_option("--out", options.directory, "directory of the results, made if missing")
-        ->required();
-    app.add_option(
-        "--database", options.database,
-        "map database; replaced when it is of an earlier run; default: map.sqlite there");
-    app.add_option("--continue", continued,
-                   "map.pb that is extended, as given to the localizer; it stays as it is")
-        ->type_name("FILE");
-    app.add_option("--title", options.title, "title of the pictures; default: the robot's name");
-  };
+  Options options;
   return service::run_service(
       argc, argv, "map_store", "Stores local maps and trajectory and makes the global map.",
-      add_options, [&](const service::Setup& setup) {
-        options.continued = map_to_continue(continued, setup);
-        check_directory(options.directory);
-        if (options.database.empty()) options.database = options.directory / "map.sqlite";
-        if (options.title.empty()) options.title = setup.options.robot_id;
-        storage::MapDatabase database = map_store::fresh_database(
-            options.database, setup.options.robot_id, setup.config.config.localizer.seed);
-        service::Service service(setup);
-        const map_store::MapStoreService store(service, options, std::move(database));
-        service.run();
+      [&](CLI::App& app) { add_options(app, options); },
+      [&](const service::Setup& setup) {
+        options.serves() ? serve(setup, options) : keep(setup, options);
       });
 }

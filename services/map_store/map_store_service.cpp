@@ -23,6 +23,9 @@ constexpr milliseconds kLivePeriod{250};
 constexpr milliseconds kLiveSlice{50};
 constexpr int kLiveShare = 5;
 constexpr std::chrono::seconds kPublishPeriod{2};
+// The hybrid map is made in one go and may take much longer: at most a tenth.
+constexpr std::chrono::seconds kHybridPeriod{4};
+constexpr int kHybridShare = 10;
 constexpr milliseconds kStorePeriod{500};
 constexpr std::chrono::seconds kRetryPeriod{5};
 
@@ -36,13 +39,15 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       input_(options_.continued ? options_.continued->local_maps
                                 : std::vector<topomap::LocalMap>{}),
       live_map_(service.setup().config.config.global_map),
-      updates_(service.robot_id()),
+      elements_(service),
+      hybrid_(service),
       local_maps_(service.participant()),
       segments_(service.participant()),
       closures_(service.participant()),
       ends_in_(service.participant()),
-      elements_(service.participant()),
       ends_out_(service.participant()) {
+  if (!options_.drawing.empty()) database_.put_drawing(options_.drawing);
+  if (options_.drawing.grid) hybrid_pending_.emplace();  // there is a map before any scan
   listen(local_maps_, "local map", [this](const msg::LocalMap& message) { on_local_map(message); });
   listen(segments_, "trajectory segment",
          [this](const msg::TrajectorySegment& message) { input_.add(message); });
@@ -51,14 +56,19 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   listen(ends_in_, "stream end", [this](const msg::StreamEnd& message) {
     if (message.stage() == "localizer") input_.set_end(message);
   });
-  service_.loop().add(elements_);
   service_.loop().add(ends_out_);
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
     finish_if_complete();
     count();
   });
-  service_.loop().add_timer(kLivePeriod, [this] { work_on_live_map(); });
+  service_.loop().add_timer(kLivePeriod, [this] {
+    if (finished_) {
+      hybrid_.send_rest();
+    } else {
+      work_on_live_map();
+    }
+  });
   count();
   service_.status().set_state(msg::kServiceWaiting, "for local maps");
 }
@@ -108,7 +118,6 @@ bool MapStoreService::store() {
 }
 
 void MapStoreService::work_on_live_map() {
-  if (finished_) return;
   const topomap::Trajectory trajectory = input_.newest_trajectory();
   // Not between a map and its publication, or frequent corrections would leave nothing to publish.
   if (Clock::now() >= next_publish_) live_map_.look(trajectory.stops);
@@ -121,10 +130,12 @@ void MapStoreService::work_on_live_map() {
       service_.status().fault("local map not fused", error.what());
     }
   }
+  publish_hybrid();
   const bool news = live_map_.size() != published_maps_ || trajectory.version != published_version_;
   if (more || !news || Clock::now() < next_publish_) return;
   const auto publish_start = Clock::now();
-  publish(live_map_.snapshot(trajectory.version));
+  hybrid_pending_ = live_map_.snapshot(trajectory.version);
+  publish(*hybrid_pending_);
   published_maps_ = live_map_.size();
   published_version_ = trajectory.version;
   const auto now = Clock::now();
@@ -134,24 +145,23 @@ void MapStoreService::work_on_live_map() {
 
 void MapStoreService::publish(const topomap::GlobalMap& map) {
   if (input_.local_maps().empty()) return;
-  const ElementUpdates::Update update =
-      updates_.update_to(map, input_.local_maps().back().stamp_ns);
-  for (const msg::MapElement& element : update.gone) {
-    elements_.dispose(element);
-    updates_.disposed(element);
-  }
-  for (const msg::MapElement& element : update.changed) {
-    if (elements_.write(element)) {
-      updates_.sent(element);
-    } else {  // tried again with the next update
-      service_.status().fault("map element not sent", std::to_string(element.id()));
-    }
-  }
-  messaging::StatusPublisher& status = service_.status();
-  status.add_to_counter("map_updates");
-  status.set_counter("map_elements_sent", static_cast<double>(updates_.count()));
-  status.set_counter("map_nodes", static_cast<double>(map.nodes.size()));
-  status.set_counter("map_branches", static_cast<double>(map.branches.size()));
+  elements_.publish(map, input_.local_maps().back().stamp_ns);
+}
+
+void MapStoreService::publish_hybrid() {
+  hybrid_.send_rest();
+  if (!hybrid_pending_ || Clock::now() < next_hybrid_) return;
+  const auto start = Clock::now();
+  const topomap::Trajectory trajectory = input_.newest_trajectory();
+  pipeline::HybridMapParts parts;
+  parts.local_maps = input_.local_maps();
+  parts.stops = trajectory.stops;
+  parts.global_map = &*hybrid_pending_;
+  parts.drawing = &options_.drawing;
+  hybrid_.publish(parts, parts.local_maps.empty() ? 0 : parts.local_maps.back().stamp_ns);
+  hybrid_pending_.reset();
+  const auto now = Clock::now();
+  next_hybrid_ = now + std::max<Clock::duration>(kHybridPeriod, kHybridShare * (now - start));
 }
 
 void MapStoreService::finish_if_complete() {
@@ -170,7 +180,11 @@ void MapStoreService::finish_if_complete() {
 
 storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& trajectory) const {
   const auto& before = options_.continued;
-  if (before && before->trajectory.stops.size() == trajectory.stops.size()) return *before;
+  if (before && before->trajectory.stops.size() == trajectory.stops.size()) {
+    storage::MapDocument same = *before;
+    same.drawing = options_.drawing;
+    return same;
+  }
   const pipeline::Config& config = service_.setup().config.config;
   storage::MapDocument document;
   document.robot_id = service_.robot_id();
@@ -179,6 +193,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
   document.trajectory = trajectory;
   document.loop_closures = input_.usable_closures();
   document.global_map = pipeline::fuse(config.global_map, document.local_maps, trajectory);
+  document.drawing = options_.drawing;
   return document;
 }
 
@@ -197,6 +212,7 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   end.version(trajectory.version);
   if (!service_.send(ends_out_, end, "stream end")) return;
   finished_ = true;
+  hybrid_.publish(pipeline::parts_of(document), trajectory.stops.back().stamp_ns);
   count();
   spdlog::info("{} local maps, {} nodes and {} branches in {}", document.local_maps.size(),
                document.global_map.nodes.size(), document.global_map.branches.size(),

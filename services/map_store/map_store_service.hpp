@@ -4,19 +4,20 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
-#include "topogeo/msg/map_update.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
 #include "topogeo/storage/map_database.hpp"
 #include "topogeo/storage/map_document.hpp"
 
-#include "element_updates.hpp"
+#include "element_publisher.hpp"
+#include "hybrid_publisher.hpp"
 #include "live_map.hpp"
 #include "map_input.hpp"
 
@@ -27,12 +28,14 @@ struct MapStoreOptions {
   std::filesystem::path database;                         ///< empty: map.sqlite in the directory
   std::string title;                                      ///< of the pictures
   std::shared_ptr<const storage::MapDocument> continued;  ///< map that is extended; null: none
+  storage::MapDrawing drawing;                            ///< goes with the map
 };
 
 /// Lives in the loop of its service.
 class MapStoreService {
  public:
-  /// `database` is empty, `options.directory` exists.
+  /// `database` is empty, `options.directory` exists. Throws std::runtime_error when the drawing
+  /// cannot be stored.
   MapStoreService(service::Service& service, MapStoreOptions options,
                   storage::MapDatabase database);
 
@@ -48,6 +51,8 @@ class MapStoreService {
   /// A slice of work on the live map.
   void work_on_live_map();
   void publish(const topomap::GlobalMap& map);
+  /// Makes and sends the hybrid map of what is there, when it is time to.
+  void publish_hybrid();
   void finish_if_complete();
   /// The map; as it was when it was to be continued and nothing came to it.
   [[nodiscard]] storage::MapDocument final_document(const topomap::Trajectory& trajectory) const;
@@ -59,13 +64,13 @@ class MapStoreService {
   storage::MapDatabase database_;
   MapInput input_;
   LiveMap live_map_;
-  ElementUpdates updates_;
+  ElementPublisher elements_;
+  HybridPublisher hybrid_;
 
   messaging::Reader<msg::LocalMap> local_maps_;
   messaging::Reader<msg::TrajectorySegment> segments_;
   messaging::Reader<msg::LoopClosures> closures_;
   messaging::Reader<msg::StreamEnd> ends_in_;
-  messaging::Writer<msg::MapElement> elements_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
   std::uint64_t stored_version_ = 0;
@@ -73,6 +78,8 @@ class MapStoreService {
   std::size_t published_maps_ = 0;
   std::uint64_t published_version_ = 0;
   Clock::time_point next_publish_;
+  std::optional<topomap::GlobalMap> hybrid_pending_;  // what the next hybrid map is made of
+  Clock::time_point next_hybrid_;
   Clock::time_point next_attempt_;  // to finish, after a failure
   bool finished_ = false;
 };

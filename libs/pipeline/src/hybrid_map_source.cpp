@@ -104,6 +104,14 @@ HybridMapParts parts_of(const storage::MapDocument& document) {
   return {document.local_maps, document.trajectory.stops, &document.global_map, &document.drawing};
 }
 
+bool has_grid(const HybridMapParts& parts) {
+  if (parts.drawing != nullptr && parts.drawing->grid) return true;
+  for (std::size_t i = 0; i < std::min(parts.stops.size(), parts.local_maps.size()); ++i) {
+    if (parts.stops[i].located && !parts.local_maps[i].points.empty()) return true;
+  }
+  return false;
+}
+
 planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config) {
   check(config);
   planning::FreeSpace space(make_grid(parts, config), config.inflation);

@@ -77,6 +77,7 @@ storage::MapDocument MappingRun::finish() {
   }
   document.trajectory = localizer_->trajectory();
   document.loop_closures = localizer_->loop_closures();
+  if (continued_) document.drawing = continued_->drawing;
   const auto scope = times_.measure("map_store");
   document.global_map = fuse(config_.global_map, document.local_maps, document.trajectory);
   return document;

@@ -143,6 +143,18 @@ TEST(HybridMapSource, DrawingAndMapAreOneMap) {
   EXPECT_EQ(state(-1.0, 2.0), CellState::kUnknown);
 }
 
+TEST(HybridMapSource, NeedsAGridOrSomethingSeen) {
+  storage::MapDocument document = mapped_rooms();
+  EXPECT_TRUE(has_grid(parts_of(document)));
+  document.trajectory.stops[0].located = false;
+  EXPECT_FALSE(has_grid(parts_of(document)));
+  document.drawing.grid = drawn_grid(0.0);
+  EXPECT_TRUE(has_grid(parts_of(document)));
+  document = mapped_rooms();
+  document.local_maps[0].points.clear();
+  EXPECT_FALSE(has_grid(parts_of(document)));
+}
+
 TEST(HybridMapSource, RefusesWhatMakesNoMap) {
   EXPECT_THAT([] { make_hybrid_map({}, {}); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("no stop with scan points")));

@@ -39,6 +39,9 @@ struct HybridMapParts {
 };
 HybridMapParts parts_of(const storage::MapDocument& document);
 
+/// Whether there is something to make a grid of: a drawn one, or a located stop that saw something.
+bool has_grid(const HybridMapParts& parts);
+
 /// Throws std::invalid_argument saying why when there is nothing to make a grid of (no drawing and
 /// no scan points), the grid would be too large, or the configuration is out of range. The lower
 /// left corner of a grid of scans lies at a multiple of config.grid.snap_cells.

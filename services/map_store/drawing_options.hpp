@@ -1,0 +1,29 @@
+// What a map store is told of drawings on its command line.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "topogeo/storage/map_drawing.hpp"
+
+namespace topogeo::map_store {
+
+struct DrawingOptions {
+  std::optional<std::filesystem::path> drawing;
+  std::optional<std::filesystem::path> zones;
+  std::optional<std::string> pose;  ///< T_map_drawing
+  std::optional<std::filesystem::path> places;
+};
+
+/// Adds --drawing, --zones, --drawing-pose and --places; `options` must outlive the app.
+void add_drawing_options(CLI::App& app, DrawingOptions& options);
+
+/// The drawing in the map frame; empty when none of them is there. Throws service::UsageError for
+/// flags that do not go together and a pose that is none, service::BadInputError naming the file
+/// for what cannot be read.
+storage::MapDrawing read_drawing(const DrawingOptions& options, double resolution_m);
+
+}  // namespace topogeo::map_store

@@ -1,0 +1,30 @@
+// Sends the elements of the global map that have changed.
+#pragma once
+
+#include <cstdint>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/map_update.h"
+#include "topogeo/service/service.hpp"
+#include "topogeo/topomap/global_map.hpp"
+
+#include "element_updates.hpp"
+
+namespace topogeo::map_store {
+
+/// Lives in the loop of its service.
+class ElementPublisher {
+ public:
+  explicit ElementPublisher(service::Service& service);
+
+  /// `stamp_ns` is of the last stop in the map. False when something could not be sent: it is tried
+  /// again with the next update.
+  bool publish(const topomap::GlobalMap& map, std::int64_t stamp_ns);
+
+ private:
+  service::Service& service_;
+  ElementUpdates updates_;
+  messaging::Writer<msg::MapElement> elements_;
+};
+
+}  // namespace topogeo::map_store

@@ -1,0 +1,58 @@
+#include "hybrid_updates.hpp"
+
+#include <utility>
+
+#include "topogeo/service/hybrid_map_messages.hpp"
+
+namespace topogeo::map_store {
+
+namespace {
+
+/// Equal but for what changes with every update.
+bool same_content(msg::HybridMap a, const msg::HybridMap& b) {
+  a.stamp_ns(b.stamp_ns());
+  a.sequence_number(b.sequence_number());
+  a.version(b.version());
+  return a == b;
+}
+
+}  // namespace
+
+HybridUpdates::Update HybridUpdates::update_to(const planning::HybridMap& map,
+                                               std::int64_t stamp_ns) {
+  service::HybridMapMessages messages =
+      service::to_messages(map, robot_id_, stamp_ns, version_ + 1);
+  Update update;
+  for (msg::GridTile& tile : messages.tiles) {
+    const auto before = sent_.find(tile.tile());
+    if (before != sent_.end() && before->second.states() == tile.states() &&
+        before->second.zones() == tile.zones()) {
+      messages.summary.tile_versions()[tile.tile()] = before->second.version();
+      continue;
+    }
+    tile.sequence_number(count_ + update.changed.size());
+    update.changed.push_back(std::move(tile));
+  }
+  for (const auto& [number, tile] : sent_) {
+    if (number >= messages.tiles.size()) update.gone.push_back(tile);
+  }
+  messages.summary.sequence_number(summaries_);
+  if (!sent_summary_ || !update.changed.empty() ||
+      !same_content(messages.summary, *sent_summary_)) {
+    ++version_;
+    update.summary = std::move(messages.summary);
+  }
+  return update;
+}
+
+void HybridUpdates::sent(const msg::GridTile& tile) {
+  sent_.insert_or_assign(tile.tile(), tile);
+  ++count_;
+}
+
+void HybridUpdates::sent(const msg::HybridMap& summary) {
+  sent_summary_ = summary;
+  ++summaries_;
+}
+
+}  // namespace topogeo::map_store

@@ -1,0 +1,50 @@
+// What has to be sent so that readers of the hybrid map have its newest state.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/msg/hybrid_map.h"
+#include "topogeo/planning/hybrid_map.hpp"
+
+namespace topogeo::map_store {
+
+/// Remembers what was sent of the hybrid map of one robot.
+class HybridUpdates {
+ public:
+  /// Versions are larger than `version`.
+  HybridUpdates(std::string robot_id, std::uint64_t version)
+      : robot_id_(std::move(robot_id)), version_(version) {}
+
+  struct Update {
+    std::vector<msg::GridTile> gone;        ///< to be disposed
+    std::vector<msg::GridTile> changed;     ///< to be written, before the summary
+    std::optional<msg::HybridMap> summary;  ///< nothing: the map is as it was sent
+
+    [[nodiscard]] bool empty() const { return gone.empty() && !summary; }
+  };
+  /// Tiles that are as they were are not in it. Every update has a version of its own, so that no
+  /// tile of an update that was sent in part passes for one of the next. `stamp_ns` is of the last
+  /// stop in the map. Tell what was sent with sent() and disposed(). Throws std::invalid_argument
+  /// like service::to_messages.
+  Update update_to(const planning::HybridMap& map, std::int64_t stamp_ns);
+
+  void sent(const msg::GridTile& tile);
+  void sent(const msg::HybridMap& summary);
+  void disposed(const msg::GridTile& tile) { sent_.erase(tile.tile()); }
+  /// Tiles sent so far.
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+ private:
+  std::string robot_id_;
+  std::uint64_t version_;
+  std::map<std::uint32_t, msg::GridTile> sent_;
+  std::optional<msg::HybridMap> sent_summary_;
+  std::uint64_t count_ = 0;
+  std::uint64_t summaries_ = 0;
+};
+
+}  // namespace topogeo::map_store

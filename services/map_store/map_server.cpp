@@ -1,0 +1,34 @@
+#include "map_server.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace topogeo::map_store {
+
+namespace {
+
+constexpr std::chrono::milliseconds kRetryPeriod{500};
+
+}  // namespace
+
+MapServer::MapServer(service::Service& service, storage::MapDocument document,
+                     const planning::HybridMap& hybrid)
+    : service_(service), document_(std::move(document)), elements_(service), hybrid_(service) {
+  if (!document_.local_maps.empty()) stamp_ns_ = document_.local_maps.back().stamp_ns;
+  hybrid_.publish(hybrid, stamp_ns_);
+  send();
+  service_.loop().add_timer(kRetryPeriod, [this] { send(); });
+  service_.status().set_counter("local_maps", static_cast<double>(document_.local_maps.size()));
+  service_.status().set_state(msg::kServiceRunning);
+  spdlog::info("serves a map of {} local maps, {} zones and {} places", document_.local_maps.size(),
+               hybrid.zones().zones.size(), hybrid.places().size());
+}
+
+void MapServer::send() {
+  if (!elements_sent_) elements_sent_ = elements_.publish(document_.global_map, stamp_ns_);
+  hybrid_.send_rest();
+}
+
+}  // namespace topogeo::map_store

@@ -1,0 +1,33 @@
+// Shows a map that is finished, or drawn, to everybody.
+#pragma once
+
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/service/service.hpp"
+#include "topogeo/storage/map_document.hpp"
+
+#include "element_publisher.hpp"
+#include "hybrid_publisher.hpp"
+
+namespace topogeo::map_store {
+
+/// Lives in the loop of its service.
+class MapServer {
+ public:
+  /// Sends both maps. `hybrid` is made of `document`. Throws std::invalid_argument when it does not
+  /// fit the messages.
+  MapServer(service::Service& service, storage::MapDocument document,
+            const planning::HybridMap& hybrid);
+
+ private:
+  /// Sends what could not be sent before.
+  void send();
+
+  service::Service& service_;
+  storage::MapDocument document_;
+  std::int64_t stamp_ns_ = 0;  // of its last stop
+  ElementPublisher elements_;
+  HybridPublisher hybrid_;
+  bool elements_sent_ = false;
+};
+
+}  // namespace topogeo::map_store
