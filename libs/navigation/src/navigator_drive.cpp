@@ -48,6 +48,13 @@ bool Navigator::State::find_path(const geometry::Pose2& T_map_robot) {
   auto local = way.plan(T_map_robot.position_m(), standing_m());
   planned_ns = now_ns;
   if (local.path.empty()) return false;
+  // A long way round is taken when what is in the way has had its time to go away.
+  constexpr double kLong_m = 2.0;
+  const bool waited = blocked_ns && since_s(*blocked_ns) >= config.obstacle_wait_s;
+  if (!needs_path && follower.has_path() && !waited &&
+      local.path.back().distance_m > follower.rest_m() + kLong_m) {
+    return false;
+  }
   if (local.status == planning::DetourStatus::kFound) ++status.detours;
   follower.follow(std::move(local.path), way.route().heading_rad);
   needs_path = false;
@@ -156,7 +163,7 @@ geometry::Velocity Navigator::State::wait_for_obstacle() {
 
 void Navigator::State::tell_waiting() {
   const double waited_s = since_s(*blocked_ns);
-  if (!reported && waited_s >= config.obstacle_wait_s) report_blockage();
+  if (!reported && waited_s >= config.obstacle_wait_s + kPlanEvery_s) report_blockage();
   const std::string what =
       block_m ? say("something is in the way %.1f m ahead", block_ahead_m) : "the way is blocked";
   status.state = NavigatorState::kBlocked;

@@ -23,6 +23,38 @@ std::vector<Eigen::Vector2d> dense(std::span<const Eigen::Vector2d> points_m) {
   return result;
 }
 
+// The same line with its points at equal distances.
+std::vector<Eigen::Vector2d> evenly(const std::vector<Eigen::Vector2d>& points_m) {
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < points_m.size(); ++i) {
+    length_m += (points_m[i] - points_m[i - 1]).norm();
+  }
+  const int pieces = std::max(1, static_cast<int>(std::lround(length_m / kStep_m)));
+  std::vector<Eigen::Vector2d> result{points_m.front()};
+  double passed_m = 0.0;
+  std::size_t at = 1;
+  for (int k = 1; k < pieces; ++k) {
+    const double wanted_m = length_m * k / pieces;
+    double piece_m = (points_m[at] - points_m[at - 1]).norm();
+    while (passed_m + piece_m < wanted_m && at + 1 < points_m.size()) {
+      passed_m += piece_m;
+      ++at;
+      piece_m = (points_m[at] - points_m[at - 1]).norm();
+    }
+    const double share = piece_m > 0.0 ? (wanted_m - passed_m) / piece_m : 0.0;
+    result.emplace_back(points_m[at - 1] + share * (points_m[at] - points_m[at - 1]));
+  }
+  if (points_m.size() > 1) result.push_back(points_m.back());
+  return result;
+}
+
+// Angle between the pieces before and after a point.
+double turn_at(const std::vector<Eigen::Vector2d>& points_m, std::size_t i) {
+  const Eigen::Vector2d in = points_m[i] - points_m[i - 1];
+  const Eigen::Vector2d out = points_m[i + 1] - points_m[i];
+  return geometry::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
+}
+
 class Field {
  public:
   Field(const planning::FreeSpace& space, std::span<const Eigen::Vector2d> obstacles_m)
@@ -69,13 +101,33 @@ class Field {
   std::span<const Eigen::Vector2d> obstacles_m_;
 };
 
+// Bends that are too tight give way, as far as there is room.
+void relax(std::vector<Eigen::Vector2d>& way_m, const Field& field, double least_m) {
+  constexpr int kRounds = 40;
+  constexpr double kTightest_rad = 3.0 * kStep_m;  // on a circle of a third of a metre
+  for (int round = 0; round < kRounds; ++round) {
+    bool any = false;
+    for (std::size_t i = 1; i + 1 < way_m.size(); ++i) {
+      if (std::fabs(turn_at(way_m, i)) < kTightest_rad) continue;
+      const Eigen::Vector2d moved_m = 0.5 * way_m[i] + 0.25 * (way_m[i - 1] + way_m[i + 1]);
+      const double room_m = field.clearance_m(moved_m);
+      if (room_m < least_m && room_m < field.clearance_m(way_m[i])) continue;
+      way_m[i] = moved_m;
+      any = true;
+    }
+    if (!any) return;
+  }
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> points_m,
-                                  std::span<const Eigen::Vector2d> obstacles_m, double wished_m) {
+                                  std::span<const Eigen::Vector2d> obstacles_m,
+                                  const BandConfig& config) {
   constexpr int kRounds = 60;
   constexpr int kSmoothingOnly = 6;
+  constexpr int kEvenlyEvery = 10;
   constexpr double kPull = 0.3;
   constexpr double kPush = 0.15;
   constexpr double kLargestPush_m = 0.02;
@@ -86,23 +138,25 @@ std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
     for (std::size_t i = 1; i + 1 < way_m.size(); ++i) {
       next_m[i] += kPull * (0.5 * (way_m[i - 1] + way_m[i + 1]) - way_m[i]);
       if (round + kSmoothingOnly >= kRounds) continue;
-      const double missing_m = wished_m - field.clearance_m(way_m[i]);
+      const double missing_m = config.wished_m - field.clearance_m(way_m[i]);
       if (missing_m <= 0.0) continue;
       next_m[i] += std::min(kPush * missing_m, kLargestPush_m) * field.uphill(way_m[i]);
     }
-    way_m = std::move(next_m);
+    // Where the way leads through an obstacle, the band is torn.
+    constexpr double kTorn = 2.5;
+    for (std::size_t i = 1; i < next_m.size(); ++i) {
+      if ((next_m[i] - next_m[i - 1]).norm() > kTorn * kStep_m) return {};
+    }
+    way_m = (round + 1) % kEvenlyEvery == 0 ? evenly(next_m) : std::move(next_m);
   }
+  relax(way_m, field, config.least_m);
+  way_m = evenly(way_m);
   constexpr double kEnds_m = 0.4;  // robot and goal may be in forbidden cells, and so the way there
   for (const Eigen::Vector2d& point_m : way_m) {
     const auto cell = space.frame().cell_of(point_m);
     const bool at_end =
         (point_m - way_m.front()).norm() < kEnds_m || (point_m - way_m.back()).norm() < kEnds_m;
     if (!cell || (!at_end && !space.passable(*cell))) return {};
-  }
-  // Where the way leads through an obstacle, the band is torn.
-  constexpr double kTorn = 2.5;
-  for (std::size_t i = 1; i < way_m.size(); ++i) {
-    if ((way_m[i] - way_m[i - 1]).norm() > kTorn * kStep_m) return {};
   }
   return way_m;
 }

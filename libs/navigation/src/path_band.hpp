@@ -12,12 +12,18 @@
 
 namespace topogeo::navigation {
 
+struct BandConfig {
+  double wished_m = 0.57;  ///< between the way and whatever could be touched, where there is room
+  double least_m = 0.33;   ///< tight bends are made wider until it is only this
+};
+
 /// An elastic band (Quinlan and Khatib 1993) from the first to the last point: pulled straight, and
-/// pushed off everything that is nearer than `wished_m`. Empty when a part of it would leave the
+/// pushed off everything that is nearer than wished. Empty when a part of it would leave the
 /// passable cells or the way leads through an obstacle; then the way as it is must do.
 std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> points_m,
-                                  std::span<const Eigen::Vector2d> obstacles_m, double wished_m);
+                                  std::span<const Eigen::Vector2d> obstacles_m,
+                                  const BandConfig& config);
 
 /// Samples of a dense polyline with the curvature of the circle through three points each; corners
 /// sharper than `corner_rad` are turned on the spot.

@@ -12,6 +12,7 @@ namespace topogeo::navigation {
 namespace {
 
 constexpr double kWishedBeside_m = 0.3;  // free beside the body, where there is room
+constexpr double kLeastBeside_m = 0.07;  // the same in tight bends
 constexpr double kNear_m = 0.3;          // so near to the goal the way is straight
 
 // The cells that a polyline passes, neighbours each.
@@ -64,9 +65,10 @@ std::vector<planning::PathSample> RouteWay::shape(
     std::span<const Eigen::Vector2d> points_m, std::span<const Eigen::Vector2d> obstacles_m) const {
   if (config_.motion == MotionStyle::kPrimitives) return straight_path(points_m);
   constexpr double kCorner_rad = 0.9;
-  const double wished_m = config_.guard.radius_m + kWishedBeside_m;
-  auto banded_m = band(map_->space(), points_m, obstacles_m, wished_m);
-  if (banded_m.empty()) banded_m = band(map_->space(), points_m, {}, wished_m);
+  const double radius_m = config_.guard.radius_m;
+  const BandConfig wished{radius_m + kWishedBeside_m, radius_m + kLeastBeside_m};
+  auto banded_m = band(map_->space(), points_m, obstacles_m, wished);
+  if (banded_m.empty()) banded_m = band(map_->space(), points_m, {}, wished);
   if (!banded_m.empty()) return samples_of(banded_m, kCorner_rad);
   return planning::smooth_path(map_->space(), points_m, config_.smooth);
 }
