@@ -93,7 +93,7 @@ ArrivalResult run_arrival(const MappedFloor& floor, const ArrivalConfig& config,
   }
   ClosedLoop loop(task.world, loop_config(config, task), localizer);
   loop.set_map(floor.map, 1);
-  loop.set_goal({{1, !config.pose_given}, task.T_map_goal.position_m(), task.T_map_goal.theta_rad});
+  loop.set_goal({{1, true}, task.T_map_goal.position_m(), task.T_map_goal.theta_rad});
   const double start_s = loop.time_s();
   constexpr std::uint64_t kTrace = 20;  // ticks
   std::uint64_t ticks = 0;

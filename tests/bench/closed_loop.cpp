@@ -116,8 +116,13 @@ void ClosedLoop::locate() {
       config_.system.localizer.odometry);
   const localization::LocalizationState state = localizer_.belief().state;
   located_ = localization::located(state);
-  pose_ = {now_ns_, now.T_a_b, now.covariance, state == localization::LocalizationState::kTracking,
-           localization::to_string(state)};
+  pose_.emplace();
+  pose_->stamp_ns = now_ns_;
+  pose_->T_map_robot = now.T_a_b;
+  pose_->covariance = now.covariance;
+  pose_->tracking = state == localization::LocalizationState::kTracking;
+  pose_->located = located_;
+  pose_->state_text = localization::to_string(state);
   if (config_.mapping) pose_->covariance.setZero();
   navigator_.add(*pose_);
 }

@@ -37,7 +37,10 @@ void PoseKeeper::add(const OdometrySample& sample) {
   }
   if (!odometry_.add(moving)) return;
   if (last_) {
-    driven_m_ += (sample.T_odom_robot.position_m() - last_->T_odom_robot.position_m()).norm();
+    const double step_m =
+        (sample.T_odom_robot.position_m() - last_->T_odom_robot.position_m()).norm();
+    driven_m_ += step_m;
+    untracked_m_ += step_m;
   }
   last_ = sample;
   if (pending_ && pending_->stamp_ns <= sample.stamp_ns) use(*std::exchange(pending_, {}));
@@ -45,8 +48,9 @@ void PoseKeeper::add(const OdometrySample& sample) {
 
 void PoseKeeper::add(const PoseFix& fix) {
   if (fix_ && fix.stamp_ns < fix_->stamp_ns) return;
-  if (!fix.tracking) {  // counts at once, whatever odometry there is
+  if (!fix.tracking && !fix.located) {  // counts at once, whatever odometry there is
     fix_ = fix;
+    tracked_ = false;
     pending_.reset();
     return;
   }
@@ -67,6 +71,14 @@ void PoseKeeper::use(const PoseFix& fix) {
   }
   T_map_odom_ = T_map_odom;
   fix_ = fix;
+  if (!fix.tracking) return;
+  tracked_ = true;
+  untracked_m_ = 0.0;
+}
+
+bool PoseKeeper::usable() const {
+  if (!fix_) return false;
+  return fix_->tracking || (fix_->located && tracked_ && untracked_m_ <= config_.untracked_m);
 }
 
 bool PoseKeeper::has_odometry(std::int64_t now_ns) const {
@@ -81,14 +93,14 @@ std::optional<geometry::Pose2> PoseKeeper::T_odom_robot(std::int64_t now_ns) con
 }
 
 std::optional<geometry::Pose2> PoseKeeper::T_map_robot(std::int64_t at_ns) const {
-  if (!fix_ || !fix_->tracking || !last_) return std::nullopt;
+  if (!usable() || !last_) return std::nullopt;
   const auto answer = odometry_.at(std::min(at_ns, last_->stamp_ns + kCarriedOn_ns));
   if (!answer) return std::nullopt;
   return T_map_odom_ * answer->T_odom_robot;
 }
 
 std::optional<geometry::Pose2> PoseKeeper::good_pose(std::int64_t now_ns) const {
-  if (!fix_ || !fix_->tracking || !has_odometry(now_ns)) return std::nullopt;
+  if (!usable() || !has_odometry(now_ns)) return std::nullopt;
   if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) return std::nullopt;
   if (!(sigma_m() <= config_.largest_sigma_m)) return std::nullopt;
   return T_map_robot(now_ns);
@@ -97,7 +109,7 @@ std::optional<geometry::Pose2> PoseKeeper::good_pose(std::int64_t now_ns) const 
 std::string PoseKeeper::why_not(std::int64_t now_ns) const {
   if (!fix_) return "no pose has come yet";
   std::array<char, 160> text{};
-  if (!fix_->tracking) {
+  if (!usable()) {
     std::snprintf(text.data(), text.size(), "the localizer does not track the pose: %s",
                   fix_->state_text.empty() ? "no reason given" : fix_->state_text.c_str());
   } else if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) {

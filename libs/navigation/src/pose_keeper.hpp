@@ -14,6 +14,10 @@ struct PoseKeeperConfig {
   double oldest_pose_s = 3.0;
   double oldest_odometry_s = 1.0;
   double largest_sigma_m = 0.5;
+  /// What is not on the map hides it: a stop is not confirmed, and the next one is. So far the
+  /// robot goes on meanwhile; it stood for ever if it waited for a stop that only comes when it
+  /// moves.
+  double untracked_m = 3.0;
 };
 
 class PoseKeeper {
@@ -27,7 +31,7 @@ class PoseKeeper {
   /// Nothing without odometry, or when it is too old.
   [[nodiscard]] std::optional<geometry::Pose2> T_odom_robot(std::int64_t now_ns) const;
   /// Pose in the map at a time of the last seconds; nothing when it is not known. At `now_ns` it
-  /// is what may be driven by: tracking, fresh and certain enough.
+  /// is what may be driven by: tracking or not long since, fresh and certain enough.
   [[nodiscard]] std::optional<geometry::Pose2> T_map_robot(std::int64_t at_ns) const;
   [[nodiscard]] std::optional<geometry::Pose2> good_pose(std::int64_t now_ns) const;
   /// Why there is no good pose; one line.
@@ -44,6 +48,7 @@ class PoseKeeper {
 
  private:
   void use(const PoseFix& fix);
+  [[nodiscard]] bool usable() const;
 
   PoseKeeperConfig config_;
   geometry::OdometryTrack odometry_;
@@ -51,6 +56,8 @@ class PoseKeeper {
   std::optional<PoseFix> pending_;  ///< its odometry has not come yet
   std::optional<PoseFix> fix_;
   geometry::Pose2 T_map_odom_;
+  bool tracked_ = false;  ///< since the pose meant nothing
+  double untracked_m_ = 0.0;
   double jump_m_ = 0.0;
   double driven_m_ = 0.0;
 };

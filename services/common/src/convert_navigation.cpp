@@ -19,6 +19,7 @@ navigation::PoseFix to_pose_fix(const LivePose& pose) {
   fix.T_map_robot = pose.T_map_robot;
   fix.covariance = pose.covariance;
   fix.tracking = pose.belief.state == localization::LocalizationState::kTracking;
+  fix.located = localization::located(pose.belief.state);
   fix.state_text = localization::to_string(pose.belief.state);
   return fix;
 }

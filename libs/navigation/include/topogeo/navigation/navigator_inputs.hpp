@@ -20,7 +20,8 @@ struct PoseFix {
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_map_robot;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
-  bool tracking = false;   ///< only then may the robot drive to a goal
+  bool tracking = false;  ///< only then may the robot set out for a goal
+  bool located = false;   ///< not tracking, but the pose means something: it may drive on for a bit
   std::string state_text;  ///< for people, when it is not: "searching", "lost", ...
 };
 
