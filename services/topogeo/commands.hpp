@@ -19,6 +19,7 @@ void add_simulator_command(CLI::App& app, int& exit_code);
 void add_status_command(CLI::App& app, int& exit_code);
 void add_workers_command(CLI::App& app, int& exit_code);
 void add_goto_command(CLI::App& app, int& exit_code);
+void add_places_command(CLI::App& app, int& exit_code);
 void add_plan_command(CLI::App& app, int& exit_code);
 void add_simulate_route_command(CLI::App& app, int& exit_code);
 void add_dvl_command(CLI::App& app, int& exit_code);
