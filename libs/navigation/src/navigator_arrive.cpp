@@ -5,9 +5,23 @@
 #include "navigator_state.hpp"
 
 namespace topogeo::navigation {
+namespace {
+
+constexpr int kCorrections = 5;
+
+}  // namespace
+
+// Something keeps it off the last centimetres: only the heading is left to be put right.
+geometry::Velocity Navigator::State::settle_here() {
+  corrections = kCorrections;
+  guard_stop_ns.reset();
+  blocked_ns.reset();
+  follower.follow({}, way.route().heading_rad);
+  return stop(NavigatorState::kDriving, HaltReason::kNone,
+              "gets no nearer to the goal; turns to its heading");
+}
 
 geometry::Velocity Navigator::State::settle(const geometry::Pose2& T_map_robot) {
-  constexpr int kCorrections = 5;
   constexpr double kLongest = 3.0;  // of the time to settle, for a pose that does not come
   const double stood_s = since_s(*settle_ns);
   const bool seen = keeper.fix_ns().value_or(0) >=

@@ -16,6 +16,7 @@ constexpr double kSeeing_s = 0.15;   // from a measurement until a command follo
 constexpr double kProgress_m = 0.1;  // so far on, and it does not wait for that obstacle any more
 constexpr double kWaiting_rad_per_s = 0.1;
 constexpr double kPlanEvery_s = 0.3;
+constexpr double kNearEnough_m = 0.08;  // a goal that is too narrow for the last centimetres
 constexpr double kContactsKept_s = 12.0;
 constexpr double kGuardWaits_s = 0.7;  // stopped by the guard for so long, it looks for a way round
 
@@ -66,14 +67,14 @@ bool Navigator::State::find_path(const geometry::Pose2& T_map_robot) {
 geometry::Velocity Navigator::State::drive(const geometry::Pose2& T_map_robot) {
   constexpr double kStray_m = 0.5;
   if (settle_ns) return settle(T_map_robot);
-  if (follower.has_path() && !needs_path &&
-      distance_m(follower.path(), T_map_robot.position_m()) > kStray_m) {
+  const bool strays =
+      !follower.path().empty() && distance_m(follower.path(), T_map_robot.position_m()) > kStray_m;
+  if (strays && !needs_path) {
     lost = true;
     needs_path = true;
   }
   // Far from its route it waits for one from where it is; if none comes, it goes back to the old.
-  if (lost && follower.has_path() &&
-      distance_m(follower.path(), T_map_robot.position_m()) > kStray_m) {
+  if (lost && strays) {
     if (!waits_route_ns) waits_route_ns = now_ns;
     if (since_s(*waits_route_ns) < config.route_wait_s) {
       return stop(NavigatorState::kRelocalizing, HaltReason::kWaitsForRoute,
@@ -96,6 +97,10 @@ geometry::Velocity Navigator::State::follow(const geometry::Pose2& T_map_robot) 
                             order.command.linear_m_per_s < kWaiting_m_per_s &&
                             std::fabs(order.command.angular_rad_per_s) < kWaiting_rad_per_s;
   const bool before_guard = guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s;
+  if ((before_block || before_guard) &&
+      (way.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m) {
+    return settle_here();
+  }
   if (before_block || before_guard) {
     begin_waiting();
   } else if (blocked_ns && status.driven_m > blocked_driven_m + kProgress_m) {

@@ -54,6 +54,7 @@ struct Navigator::State {
   void tell_driving(const FollowerStep& order);
 
   // navigator_arrive.cpp
+  geometry::Velocity settle_here();
   geometry::Velocity settle(const geometry::Pose2& T_map_robot);
 
   [[nodiscard]] double since_s(std::int64_t then_ns) const {
