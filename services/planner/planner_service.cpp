@@ -1,6 +1,5 @@
 #include "planner_service.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <string>
@@ -8,84 +7,44 @@
 #include <spdlog/spdlog.h>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/service/navigation_conversions.hpp"
+
+#include "answer.hpp"
 
 namespace topogeo::planner {
 
 namespace {
 
-/// Elements of an update come one by one, in an order of their own: look at the map when they have
+/// Tiles of an update come one by one, in an order of their own: look at the map when they have
 /// settled.
 constexpr std::chrono::milliseconds kMapPeriod{100};
 
-const topomap::MapNode* find_node(const topomap::GlobalMap& map, std::uint32_t id) {
-  const auto found = std::find_if(map.nodes.begin(), map.nodes.end(),
-                                  [id](const topomap::MapNode& node) { return node.id == id; });
-  return found == map.nodes.end() ? nullptr : &*found;
-}
-
-bool is_known(const service::LivePose& pose) {
-  return pose.belief.state == localization::LocalizationState::kTracking ||
-         pose.belief.state == localization::LocalizationState::kAmbiguous;
-}
-
-msg::Route no_route(msg::RouteStatus status, std::string_view why) {
-  msg::Route route;
-  route.status(status);
-  messaging::set_text_cut(route.message(), why);
-  return route;
-}
+/// A robot that could not begin where it was may be able to from this far.
+constexpr double kMoved_m = 0.1;
 
 }  // namespace
 
-msg::Route answer(const msg::Goal& goal, const std::optional<topomap::GlobalMap>& map,
-                  const std::optional<service::LivePose>& pose,
-                  const planning::PlanningConfig& config) {
-  if (!map) return no_route(msg::kRouteNoMap, "no map yet");
-  if (!pose || !is_known(*pose)) {
-    return no_route(msg::kRouteNoPose, "the robot's pose is not known");
-  }
-  Eigen::Vector2d target_m(goal.target().x_m(), goal.target().y_m());
-  if (goal.kind() == msg::kGoalNode) {
-    const topomap::MapNode* node = find_node(*map, goal.node_id());
-    if (node == nullptr) {
-      return no_route(msg::kRouteUnreachable,
-                      "the map has no node " + std::to_string(goal.node_id()));
-    }
-    target_m = node->position_m;
-  }
-  const planning::PlanResult result =
-      planning::plan(*map, pose->T_map_robot.position_m(), target_m, config);
-  if (!result.found()) {
-    const bool empty = result.status == planning::PlanStatus::kEmptyMap;
-    return no_route(empty ? msg::kRouteNoMap : msg::kRouteUnreachable, result.reason);
-  }
-  msg::Route route = service::to_msg(result.route);
-  route.status(msg::kRouteFound);
-  return route;
-}
-
 PlannerService::PlannerService(service::Service& service)
     : service_(service),
-      elements_(service.participant()),
+      tiles_(service.participant()),
+      maps_(service.participant()),
       poses_(service.participant()),
+      reports_(service.participant()),
       goals_(service.participant()),
       routes_(service.participant()) {
+  listen_to_map();
   messaging::EventLoop& loop = service_.loop();
-  loop.add<msg::MapElement>(
-      elements_,
-      [this](const msg::MapElement& message, const messaging::SampleInfo& info) {
-        on_element(message, info);
-      },
-      [this](const messaging::SampleInfo& info) {
-        // A map_store that has gone leaves its last map standing; only a disposal takes away.
-        if (info.state != messaging::InstanceState::kDisposed) return;
-        mirror_.remove(info.instance);
-        map_changed_ = true;
+  loop.add<msg::LivePose>(
+      poses_, [this](const msg::LivePose& message, const messaging::SampleInfo&) {
+        take(message, "pose", [this](const msg::LivePose& pose) { on_pose(pose); });
       });
-  loop.add<msg::LivePose>(poses_, [this](const msg::LivePose& message,
-                                         const messaging::SampleInfo&) { on_pose(message); });
-  loop.add<msg::Goal>(
-      goals_, [this](const msg::Goal& message, const messaging::SampleInfo&) { on_goal(message); });
+  loop.add<msg::Blockages>(
+      reports_, [this](const msg::Blockages& message, const messaging::SampleInfo&) {
+        take(message, "blockages", [this](const msg::Blockages& report) { on_blockages(report); });
+      });
+  loop.add<msg::Goal>(goals_, [this](const msg::Goal& message, const messaging::SampleInfo&) {
+    take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
+  });
   loop.add(routes_);
   loop.add_timer(kMapPeriod, [this] { take_map(); });
   for (const char* counter : {"goals", "routes_found", "routes_refused", "map_version"}) {
@@ -94,65 +53,112 @@ PlannerService::PlannerService(service::Service& service)
   service_.status().set_state(msg::kServiceRunning);
 }
 
-void PlannerService::on_element(const msg::MapElement& message, const messaging::SampleInfo& info) {
+template <class T, class Use>
+void PlannerService::take(const T& message, const char* what, const Use& use) {
   if (!service_.is_own(message)) return;
   try {
-    mirror_.put(message, info.instance);
-    map_changed_ = true;
+    use(message);
   } catch (const std::invalid_argument& error) {
-    service_.status().fault("invalid map element", error.what());
+    service_.status().fault(std::string("invalid ") + what, error.what());
   }
+}
+
+void PlannerService::listen_to_map() {
+  // A map_store that has gone leaves its last map standing; only a disposal takes away.
+  messaging::EventLoop& loop = service_.loop();
+  loop.add<msg::GridTile>(
+      tiles_,
+      [this](const msg::GridTile& message, const messaging::SampleInfo& info) {
+        take(message, "grid tile", [&](const msg::GridTile& tile) {
+          mirror_.put(tile, info.instance);
+          map_changed_ = true;
+        });
+      },
+      [this](const messaging::SampleInfo& info) {
+        if (info.state != messaging::InstanceState::kDisposed) return;
+        mirror_.remove(info.instance);
+        map_changed_ = true;
+      });
+  loop.add<msg::HybridMap>(
+      maps_,
+      [this](const msg::HybridMap& message, const messaging::SampleInfo&) {
+        take(message, "hybrid map", [this](const msg::HybridMap& summary) {
+          mirror_.put(summary);
+          map_changed_ = true;
+        });
+      },
+      [this](const messaging::SampleInfo& info) {
+        if (info.state != messaging::InstanceState::kDisposed) return;
+        mirror_.remove_summary();
+        map_changed_ = true;
+      });
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
-  if (!service_.is_own(message)) return;
-  try {
-    pose_ = service::from_msg(message);
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault("invalid pose", error.what());
-    return;
-  }
-  if (goal_ && waits_for_pose_ && is_known(*pose_)) plan();
+  const bool was_known = pose_ && is_known(*pose_);
+  pose_ = service::from_msg(message);
+  if (!is_known(*pose_)) return;
+  const bool moved =
+      no_way_at_ && (no_way_at_->position_m() - pose_->T_map_robot.position_m()).norm() >= kMoved_m;
+  if (!was_known || moved) plan();
+}
+
+void PlannerService::on_blockages(const msg::Blockages& message) {
+  blockages_ = service::from_msg(message);
+  plan();
 }
 
 void PlannerService::on_goal(const msg::Goal& message) {
-  if (!service_.is_own(message)) return;
+  if (message.kind() == msg::kGoalPause || message.kind() == msg::kGoalResume) return;
+  if (message.kind() == msg::kGoalCancel) {
+    if (goal_ && (message.goal_id() == 0 || message.goal_id() == goal_->goal_id())) goal_.reset();
+    return;
+  }
   service_.status().add_to_counter("goals");
   goal_.reset();  // the one before needs no answer on a newer map
   take_map();
-  if (message.kind() == msg::kGoalCancel) return;
   goal_ = message;
   plan();
 }
 
 void PlannerService::take_map() {
   if (!map_changed_) return;
-  std::optional<topomap::GlobalMap> map = mirror_.map();
-  if (!map) return;  // the rest of the update is on its way
   map_changed_ = false;
+  std::shared_ptr<const planning::HybridMap> map;
+  try {
+    map = mirror_.map();
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("invalid hybrid map", error.what());
+    return;
+  }
+  if (map == map_) return;  // the rest of the update is on its way
   map_ = std::move(map);
+  map_version_ = mirror_.version();
   messaging::StatusPublisher& status = service_.status();
-  status.set_counter("map_version", static_cast<double>(map_->version));
-  status.set_counter("map_nodes", static_cast<double>(map_->nodes.size()));
-  status.set_counter("map_branches", static_cast<double>(map_->branches.size()));
-  if (goal_) plan();
+  status.set_counter("map_version", static_cast<double>(map_version_));
+  status.set_counter("map_zones", map_ ? static_cast<double>(map_->zones().zones.size()) : 0.0);
+  status.set_counter("map_nodes", map_ ? static_cast<double>(map_->nodes().size()) : 0.0);
+  plan();
 }
 
 void PlannerService::plan() {
+  if (!goal_) return;
   msg::Route route;
   try {
-    route = answer(*goal_, map_, pose_, service_.setup().config.config.planning);
+    route = answer(*goal_, map_.get(), pose_, blockages_.points_m);
   } catch (const std::invalid_argument& error) {
     service_.status().fault("route not sent", error.what());
     return;
   }
-  waits_for_pose_ = route.status() == msg::kRouteNoPose;
+  const bool found = route.status() == msg::kRouteFound;
+  no_way_at_.reset();
+  if (!found && pose_) no_way_at_ = pose_->T_map_robot;
   messaging::set_header(route, service_.robot_id(), pose_ ? pose_->stamp_ns : goal_->stamp_ns(),
                         sent_++);
   route.goal_id(goal_->goal_id());
-  route.map_version(map_ ? map_->version : 0);
+  route.map_version(map_version_);
+  route.blockages_version(blockages_.version);
   if (!service_.send(routes_, route, "route")) return;
-  const bool found = route.status() == msg::kRouteFound;
   service_.status().add_to_counter(found ? "routes_found" : "routes_refused");
   spdlog::debug("goal {}: {}", goal_->goal_id(),
                 found ? std::to_string(route.length_m()) + " m" : route.message().to_string());

@@ -1,26 +1,23 @@
-// Answers goals with routes on the live map, and again when the map changes.
+// Answers goals with routes on the live hybrid map, and again when the map, what blocks the way, or
+// whether the pose is known has changed.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/map_update.h"
+#include "topogeo/msg/hybrid_map.h"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/trajectory.h"
-#include "topogeo/planning/route_planner.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/service/conversions.hpp"
-#include "topogeo/service/map_mirror.hpp"
+#include "topogeo/service/hybrid_map_mirror.hpp"
 #include "topogeo/service/service.hpp"
-#include "topogeo/topomap/global_map.hpp"
 
 namespace topogeo::planner {
-
-/// The answer to a goal, without header. `map` and `pose` are empty while there is none.
-msg::Route answer(const msg::Goal& goal, const std::optional<topomap::GlobalMap>& map,
-                  const std::optional<service::LivePose>& pose,
-                  const planning::PlanningConfig& config);
 
 /// Lives in the loop of its service.
 class PlannerService {
@@ -28,24 +25,33 @@ class PlannerService {
   explicit PlannerService(service::Service& service);
 
  private:
-  void on_element(const msg::MapElement& message, const messaging::SampleInfo& info);
+  void listen_to_map();
   void on_pose(const msg::LivePose& message);
   void on_goal(const msg::Goal& message);
+  void on_blockages(const msg::Blockages& message);
+  /// Calls `use` for a message of this robot; what it throws becomes a fault.
+  template <class T, class Use>
+  void take(const T& message, const char* what, const Use& use);
   /// Takes the mirrored map over, if it is whole and has changed, and plans again.
   void take_map();
+  /// Plans for the goal at hand, if there is one, and sends the answer.
   void plan();
 
   service::Service& service_;
-  service::MapMirror mirror_;
+  service::HybridMapMirror mirror_;
   bool map_changed_ = false;
-  std::optional<topomap::GlobalMap> map_;
+  std::shared_ptr<const planning::HybridMap> map_;
+  std::uint64_t map_version_ = 0;
   std::optional<service::LivePose> pose_;
-  std::optional<msg::Goal> goal_;  // active
+  navigation::BlockageReport blockages_;
+  std::optional<msg::Goal> goal_;             // active
+  std::optional<geometry::Pose2> no_way_at_;  // where the last answer was a refusal
   std::uint64_t sent_ = 0;
-  bool waits_for_pose_ = false;
 
-  messaging::Reader<msg::MapElement> elements_;
+  messaging::Reader<msg::GridTile> tiles_;
+  messaging::Reader<msg::HybridMap> maps_;
   messaging::Reader<msg::LivePose> poses_;
+  messaging::Reader<msg::Blockages> reports_;
   messaging::Reader<msg::Goal> goals_;
   messaging::Writer<msg::Route> routes_;
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "topogeo/planning/motion_primitives.hpp"
+#include "topogeo/planning/place_names.hpp"
 
 #include "closed_cells.hpp"
 #include "route_ends.hpp"
@@ -53,6 +54,19 @@ struct Goal {
   bool known = true;
 };
 
+std::string no_such_place(const HybridMap& map, const std::string& name) {
+  std::string reason = "no place has the name '" + name + "'";
+  if (map.places().empty()) return reason + ", the map has none";
+  constexpr std::size_t kMostNames = 5;
+  reason += map.places().size() > kMostNames ? "; similar are" : "; there are";
+  const char* before = " '";
+  for (const std::string& similar : similar_names(map.places(), name, kMostNames)) {
+    reason += before + similar + "'";
+    before = ", '";
+  }
+  return reason;
+}
+
 Goal resolve(const HybridMap& map, const Target& to) {
   Goal goal;
   if (const auto* point = std::get_if<Eigen::Vector2d>(&to)) {
@@ -69,12 +83,12 @@ Goal resolve(const HybridMap& map, const Target& to) {
     }
   } else {
     const std::string& name = std::get<std::string>(to);
-    const Place* place = map.place(name);
+    const Place* place = find_place(map.places(), name);
     goal.known = place != nullptr;
     if (goal.known) {
       goal.point_m = place->position_m;
     } else {
-      goal.failure = no_route(RouteStatus::kUnknownPlace, "no place has the name '" + name + "'");
+      goal.failure = no_route(RouteStatus::kUnknownPlace, no_such_place(map, name));
     }
   }
   return goal;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -9,8 +8,6 @@
 namespace topogeo::service {
 
 using detail::check;
-using detail::check_bound;
-using detail::finite;
 
 namespace {
 
@@ -87,31 +84,6 @@ topomap::GlobalMap from_elements(std::span<const msg::MapElement> elements) {
   std::sort(map.nodes.begin(), map.nodes.end(), by_id);
   std::sort(map.branches.begin(), map.branches.end(), by_id);
   return map;
-}
-
-msg::Route to_msg(const planning::Route& route) {
-  check_bound("node_ids", route.node_ids.size(), msg::kMaxRouteNodes);
-  check_bound("points", route.points.size(), msg::kMaxRoutePoints);
-  msg::Route out;
-  out.length_m(route.length_m);
-  out.node_ids(route.node_ids);
-  for (const planning::WayPoint& point : route.points) {
-    out.points().push_back(detail::to_branch_point(point.position_m, point.clearance_m));
-  }
-  return out;
-}
-
-planning::Route from_msg(const msg::Route& message) {
-  planning::Route out;
-  out.length_m = finite(message.length_m(), "length_m");
-  out.node_ids = message.node_ids();
-  for (const msg::BranchPoint& point : message.points()) {
-    const topomap::BranchPoint p = detail::from_branch_point(point, "points");
-    out.min_clearance_m =
-        out.points.empty() ? p.clearance_m : std::min(out.min_clearance_m, p.clearance_m);
-    out.points.push_back({p.position_m, p.clearance_m});
-  }
-  return out;
 }
 
 }  // namespace topogeo::service

@@ -228,26 +228,6 @@ TEST_P(Conversions, GlobalMapIsExactInAnyOrderOfItsElements) {
   EXPECT_TRUE(from_elements(elements) == map);
 }
 
-TEST_P(Conversions, RouteIsExact) {
-  planning::Route route;
-  for (int i = 0; i < 20; ++i) {
-    route.points.push_back({{any_double(random_), any_double(random_)}, any_double(random_)});
-    route.node_ids.push_back(any_u32(random_));
-  }
-  route.length_m = any_double(random_);
-  const planning::Route back = from_msg(to_msg(route));
-  EXPECT_EQ(back.node_ids, route.node_ids);
-  EXPECT_EQ(back.length_m, route.length_m);
-  ASSERT_EQ(back.points.size(), route.points.size());
-  double narrowest_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < back.points.size(); ++i) {
-    EXPECT_EQ(back.points[i].position_m, route.points[i].position_m);
-    EXPECT_EQ(back.points[i].clearance_m, route.points[i].clearance_m);
-    narrowest_m = std::min(narrowest_m, route.points[i].clearance_m);
-  }
-  EXPECT_EQ(back.min_clearance_m, narrowest_m);
-}
-
 /// The text of the std::invalid_argument that `call` throws.
 template <class Call>
 std::string refusal(const Call& call) {

@@ -1,36 +1,70 @@
-//   node 1 --- 10 m --- node 2        node 3 (no branch)
+// What the planner answers on a floor of two rooms with a door between them, 10 x 4 m:
+//
+//   y = 4  #####################
+//          #   room A  #room B #
+//   y = 2  #           .       #      door from y = 1.5 to 2.5, at x = 6
+//          #           #       #
+//   y = 0  #####################      x = 0 to 10
 #include <limits>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "planner/planner_service.hpp"
+#include "planner/answer.hpp"
 
 namespace topogeo::planner {
 namespace {
 
 using testing::HasSubstr;
+using testing::SizeIs;
 
-topomap::GlobalMap one_branch() {
-  topomap::GlobalMap map;
-  map.nodes = {{1, topomap::NodeKind::kReal, {0, 0}, 1.0, 1},
-               {2, topomap::NodeKind::kReal, {10, 0}, 1.0, 1},
-               {3, topomap::NodeKind::kReal, {50, 0}, 1.0, 1}};
-  map.branches = {{1, 1, 2, false, 1, {{{0, 0}, 1.0}, {{10, 0}, 1.0}}}};
-  return map;
+planning::OccupancyGrid two_rooms() {
+  planning::GridFrame frame;
+  frame.columns = 100;
+  frame.rows = 40;
+  planning::OccupancyGrid grid(frame, planning::CellState::kFree);
+  for (std::int32_t column = 0; column < frame.columns; ++column) {
+    grid.set({column, 0}, planning::CellState::kOccupied);
+    grid.set({column, 39}, planning::CellState::kOccupied);
+  }
+  for (std::int32_t row = 0; row < frame.rows; ++row) {
+    grid.set({0, row}, planning::CellState::kOccupied);
+    grid.set({99, row}, planning::CellState::kOccupied);
+    if (row < 15 || row >= 25) grid.set({60, row}, planning::CellState::kOccupied);
+  }
+  return grid;
 }
 
-service::LivePose pose_at(double x_m) {
+planning::HybridMap floor_map() {
+  const planning::FreeSpace space(two_rooms());
+  const std::vector<planning::DrawnZone> rooms{
+      {"room A", {{0, 0}, {6.05, 0}, {6.05, 4}, {0, 4}}},
+      {"room B", {{6.05, 0}, {10, 0}, {10, 4}, {6.05, 4}}}};
+  return {space,
+          planning::drawn_zones(space, rooms),
+          {{"Desk", {1.55, 2.05}}, {"window", {9.05, 2.05}}, {"wall", {6.05, 0.5}}}};
+}
+
+// All that fills the door.
+std::vector<Eigen::Vector2d> shut_door_m() {
+  std::vector<Eigen::Vector2d> points_m;
+  for (int k = 0; k < 10; ++k) points_m.emplace_back(6.05, 1.55 + 0.1 * k);
+  return points_m;
+}
+
+std::optional<service::LivePose> pose_at(double x_m, double y_m, double theta_rad = 0.0) {
   service::LivePose pose;
   pose.belief.state = localization::LocalizationState::kTracking;
-  pose.T_map_robot = {x_m, 0.5, 0.0};
+  pose.T_map_robot = {x_m, y_m, theta_rad};
   return pose;
 }
 
-msg::Goal goal_at(double x_m) {
+msg::Goal goal_at(double x_m, double y_m) {
   msg::Goal goal;
   goal.kind(msg::kGoalPosition);
   goal.target().x_m(x_m);
+  goal.target().y_m(y_m);
   return goal;
 }
 
@@ -41,37 +75,133 @@ msg::Goal goal_node(std::uint32_t id) {
   return goal;
 }
 
-TEST(Answer, RouteFromThePoseToTheGoal) {
-  const msg::Route route = answer(goal_at(8.0), one_branch(), pose_at(1.0), {});
-  EXPECT_EQ(route.status(), msg::kRouteFound);
-  EXPECT_DOUBLE_EQ(route.length_m(), 7.0);
-  EXPECT_EQ(route.message().to_string(), "");
-  EXPECT_EQ(route.points().front().x_m(), 1.0);
-  EXPECT_EQ(route.points().back().x_m(), 8.0);
+msg::Goal goal_place(const std::string& name) {
+  msg::Goal goal;
+  goal.kind(msg::kGoalPlace);
+  goal.place(name);
+  return goal;
 }
 
-TEST(Answer, RouteToANode) {
-  const msg::Route route = answer(goal_node(2), one_branch(), pose_at(1.0), {});
+TEST(Answer, RouteThroughTheDoorWithItsMotions) {
+  const planning::HybridMap map = floor_map();
+  msg::Goal goal = goal_at(9.05, 2.05);
+  goal.has_heading(true);
+  goal.heading_rad(-std::numbers::pi / 2);
+  const msg::Route route = answer(goal, &map, pose_at(1.55, 2.05, std::numbers::pi / 2), {});
+  ASSERT_EQ(route.status(), msg::kRouteFound) << route.message().to_string();
+  EXPECT_EQ(route.message().to_string(), "");
+  EXPECT_NEAR(route.length_m(), 7.5, 1e-9);
+  EXPECT_NEAR(route.cost_m(), 7.5, 1e-9);
+  EXPECT_NEAR(route.min_clearance_m(), 0.6, 0.11);
+  EXPECT_THAT(route.zones(), SizeIs(2));
+  EXPECT_THAT(route.node_ids(), testing::ElementsAre(0));
+  EXPECT_TRUE(route.has_heading());
+  EXPECT_EQ(route.heading_rad(), -std::numbers::pi / 2);
+  ASSERT_THAT(route.points(), SizeIs(2));
+  EXPECT_EQ(route.points()[0].x_m(), 1.55);
+  EXPECT_EQ(route.points()[1].x_m(), 9.05);
+  EXPECT_NEAR(route.points()[0].clearance_m(), 1.5, 1e-9);
+  ASSERT_THAT(route.primitives(), SizeIs(3));
+  EXPECT_EQ(route.primitives()[0].kind(), msg::kMotionTurnRight);
+  EXPECT_NEAR(route.primitives()[0].amount(), std::numbers::pi / 2, 1e-9);
+  EXPECT_EQ(route.primitives()[1].kind(), msg::kMotionAdvance);
+  EXPECT_NEAR(route.primitives()[1].amount(), 7.5, 1e-9);
+  EXPECT_EQ(route.primitives()[2].kind(), msg::kMotionTurnRight);
+}
+
+TEST(Answer, PlacesAreFoundByTheirNamesCapitalsOrNot) {
+  const planning::HybridMap map = floor_map();
+  for (const char* name : {"Desk", "desk", "DESK"}) {
+    const msg::Route route = answer(goal_place(name), &map, pose_at(3.05, 2.05), {});
+    ASSERT_EQ(route.status(), msg::kRouteFound) << name;
+    EXPECT_EQ(route.points().back().x_m(), 1.55);
+  }
+  const msg::Route route = answer(goal_node(0), &map, pose_at(3.05, 2.05), {});
   EXPECT_EQ(route.status(), msg::kRouteFound);
-  EXPECT_DOUBLE_EQ(route.length_m(), 9.0);
 }
 
 TEST(Answer, NoRouteHasItsReason) {
-  const auto map = one_branch();
-  EXPECT_EQ(answer(goal_at(8), std::nullopt, pose_at(1), {}).status(), msg::kRouteNoMap);
-  EXPECT_EQ(answer(goal_at(8), topomap::GlobalMap{}, pose_at(1), {}).status(), msg::kRouteNoMap);
-  EXPECT_EQ(answer(goal_at(8), map, std::nullopt, {}).status(), msg::kRouteNoPose);
-  EXPECT_EQ(answer(goal_at(8), map, service::LivePose{}, {}).status(), msg::kRouteNoPose);
-  const msg::Route unknown = answer(goal_node(9), map, pose_at(1), {});
-  EXPECT_EQ(unknown.status(), msg::kRouteUnreachable);
-  EXPECT_THAT(unknown.message().to_string(), HasSubstr("no node 9"));
-  for (const msg::Goal& goal :
-       {goal_node(3), goal_at(50), goal_at(std::numeric_limits<double>::quiet_NaN())}) {
-    const msg::Route route = answer(goal, map, pose_at(1), {});
-    EXPECT_EQ(route.status(), msg::kRouteUnreachable);
-    EXPECT_NE(route.message().to_string(), "");
+  const planning::HybridMap map = floor_map();
+  const auto pose = pose_at(1.55, 2.05);
+  const auto status = [&](const msg::Goal& goal, const char* reason) {
+    const msg::Route route = answer(goal, &map, pose, {});
+    EXPECT_THAT(route.message().to_string(), HasSubstr(reason));
     EXPECT_TRUE(route.points().empty());
-  }
+    EXPECT_TRUE(route.primitives().empty());
+    return route.status();
+  };
+  EXPECT_EQ(status(goal_place("dask"), "'Desk', 'wall', 'window'"), msg::kRouteUnknownPlace);
+  EXPECT_EQ(status(goal_place(""), "place: expected a name"), msg::kRouteInvalidPoint);
+  EXPECT_EQ(status(goal_node(7), "number 7, there are 1"), msg::kRouteUnknownNode);
+  EXPECT_EQ(status(goal_place("wall"), "in an obstacle"), msg::kRouteGoalOccupied);
+  EXPECT_EQ(status(goal_at(5.75, 0.65), "from an obstacle: too near"), msg::kRouteGoalOccupied);
+  EXPECT_EQ(status(goal_at(-3.0, 1.0), "outside of the grid"), msg::kRouteGoalOutside);
+  EXPECT_EQ(status(goal_at(std::numeric_limits<double>::quiet_NaN(), 1.0), "target.x_m"),
+            msg::kRouteInvalidPoint);
+  msg::Goal nowhere = goal_at(2.0, 2.0);
+  nowhere.has_heading(true);
+  nowhere.heading_rad(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(status(nowhere, "heading_rad"), msg::kRouteInvalidPoint);
+}
+
+TEST(Answer, ARefusedGoalHasThePlaceNextToIt) {
+  const planning::HybridMap map = floor_map();
+  const msg::Route route = answer(goal_at(6.05, 0.55), &map, pose_at(1.55, 2.05), {});
+  ASSERT_TRUE(route.has_nearest_reachable());
+  EXPECT_NEAR(route.nearest_reachable().x_m(), 6.05, 0.46);
+  const msg::Goal there = goal_at(route.nearest_reachable().x_m(), route.nearest_reachable().y_m());
+  EXPECT_EQ(answer(there, &map, pose_at(1.55, 2.05), {}).status(), msg::kRouteFound);
+}
+
+TEST(Answer, WithoutMapOrPoseThereIsNone) {
+  const planning::HybridMap map = floor_map();
+  const msg::Goal goal = goal_at(3.05, 2.05);
+  EXPECT_EQ(answer(goal, nullptr, pose_at(1.55, 2.05), {}).status(), msg::kRouteNoMap);
+  EXPECT_EQ(answer(goal, &map, std::nullopt, {}).status(), msg::kRouteNoPose);
+  auto lost = pose_at(1.55, 2.05);
+  lost->belief.state = localization::LocalizationState::kLost;
+  const msg::Route route = answer(goal, &map, lost, {});
+  EXPECT_EQ(route.status(), msg::kRouteNoPose);
+  EXPECT_THAT(route.message().to_string(), HasSubstr("LOST"));
+  lost->belief.state = localization::LocalizationState::kAmbiguous;
+  EXPECT_EQ(answer(goal, &map, lost, {}).status(), msg::kRouteFound);
+}
+
+TEST(Answer, AMapWithoutZonesIsNone) {
+  planning::GridFrame frame;
+  frame.columns = frame.rows = 5;
+  const planning::FreeSpace space{planning::OccupancyGrid(frame)};
+  const planning::HybridMap map(space, planning::zones_by_width(space));
+  const msg::Route route = answer(goal_at(0.25, 0.25), &map, pose_at(0.15, 0.15), {});
+  EXPECT_EQ(route.status(), msg::kRouteNoMap);
+  EXPECT_THAT(route.message().to_string(), HasSubstr("no zone"));
+}
+
+TEST(Answer, ARobotBesideTheMapOrInAWallCannotBegin) {
+  const planning::HybridMap map = floor_map();
+  const msg::Goal goal = goal_at(3.05, 2.05);
+  EXPECT_EQ(answer(goal, &map, pose_at(-2.0, 2.0), {}).status(), msg::kRouteStartOutside);
+  EXPECT_EQ(answer(goal, &map, pose_at(6.05, 0.5), {}).status(), msg::kRouteStartOccupied);
+  EXPECT_EQ(answer(goal, &map, pose_at(0.25, 2.05), {}).status(), msg::kRouteFound)
+      << "too near to a wall, but off it";
+}
+
+TEST(Answer, ADoorThatIsShutNowCutsTheOtherRoomOff) {
+  const planning::HybridMap map = floor_map();
+  const msg::Goal goal = goal_place("window");
+  const msg::Route open = answer(goal, &map, pose_at(1.55, 2.05), {});
+  EXPECT_EQ(open.status(), msg::kRouteFound);
+  std::vector<Eigen::Vector2d> blocked_m = shut_door_m();
+  blocked_m.emplace_back(-500.0, 3.0);  // beyond the map
+  const msg::Route shut = answer(goal, &map, pose_at(1.55, 2.05), blocked_m);
+  EXPECT_EQ(shut.status(), msg::kRouteUnreachable);
+  EXPECT_THAT(shut.message().to_string(), HasSubstr("closed now"));
+  ASSERT_TRUE(shut.has_nearest_reachable());
+  EXPECT_LT(shut.nearest_reachable().x_m(), 6.0);
+  EXPECT_GT(shut.nearest_reachable().x_m(), 5.5);
+  // Before the door, the robot still gets away.
+  EXPECT_EQ(answer(goal_place("Desk"), &map, pose_at(5.85, 2.05), blocked_m).status(),
+            msg::kRouteFound);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct NodeNumber {
   std::uint32_t id = 0;
 };
 
-/// Where to go: a point of the map frame (m), a node, or the name of a place.
+/// Where to go: a point of the map frame (m), a node, or the name of a place (see find_place).
 using Target = std::variant<Eigen::Vector2d, NodeNumber, std::string>;
 
 /// What must not be used now.

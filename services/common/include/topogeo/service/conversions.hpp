@@ -28,7 +28,6 @@
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
-#include "topogeo/planning/route_planner.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -132,11 +131,6 @@ topomap::MapNode node_from_msg(const msg::MapElement& message);
 topomap::MapBranch branch_from_msg(const msg::MapElement& message);
 /// The map of elements in any order; the summary gives its version. MapMirror keeps a live one.
 topomap::GlobalMap from_elements(std::span<const msg::MapElement> elements);
-
-/// Only what the route itself says: points, nodes and length. The branches do not travel.
-msg::Route to_msg(const planning::Route& route);
-/// branch_ids is empty; min_clearance_m is the smallest of the points.
-planning::Route from_msg(const msg::Route& message);
 
 /// Where a robot shall go, or what it shall do about the goal that it has, as in msg::Goal.
 struct Goal {

@@ -1,0 +1,69 @@
+#include "answer.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "topogeo/messaging/message.hpp"
+
+namespace topogeo::planner {
+
+namespace {
+
+using localization::LocalizationState;
+
+msg::Route no_route(msg::RouteStatus status, std::string_view why) {
+  msg::Route route;
+  route.status(status);
+  messaging::set_text_cut(route.message(), why);
+  return route;
+}
+
+std::optional<service::Goal> goal_from(const msg::Goal& message, msg::Route& refusal) {
+  try {
+    return service::from_msg(message);
+  } catch (const std::invalid_argument& error) {
+    refusal = no_route(msg::kRouteInvalidPoint, std::string("invalid goal: ") + error.what());
+    return std::nullopt;
+  }
+}
+
+planning::Closures closures(const planning::GridFrame& frame,
+                            std::span<const Eigen::Vector2d> blocked_m) {
+  planning::Closures closed;
+  for (const Eigen::Vector2d& point_m : blocked_m) {
+    if (const auto cell = frame.cell_of(point_m)) closed.cells.push_back(*cell);
+  }
+  return closed;
+}
+
+}  // namespace
+
+bool is_known(const service::LivePose& pose) {
+  return pose.belief.state == LocalizationState::kTracking ||
+         pose.belief.state == LocalizationState::kAmbiguous;
+}
+
+msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
+                  const std::optional<service::LivePose>& pose,
+                  std::span<const Eigen::Vector2d> blocked_m,
+                  const planning::HybridPlannerConfig& config) {
+  msg::Route refusal;
+  const auto wanted = goal_from(goal, refusal);
+  if (!wanted) return refusal;
+  if (map == nullptr) return no_route(msg::kRouteNoMap, "no map yet");
+  if (map->zones().zones.empty()) {
+    return no_route(msg::kRouteNoMap, "the map has no zone: nowhere on it is room for the robot");
+  }
+  if (!pose) return no_route(msg::kRouteNoPose, "the robot has no pose yet");
+  if (!is_known(*pose)) {
+    return no_route(msg::kRouteNoPose,
+                    std::string("the robot's pose is not known: ") + to_string(pose->belief.state));
+  }
+  const planning::HybridRoute route =
+      planning::HybridPlanner(*map, config)
+          .plan(pose->T_map_robot.position_m(), wanted->target, closures(map->frame(), blocked_m));
+  return service::to_msg(route, pose->T_map_robot.theta_rad, wanted->heading_rad);
+}
+
+}  // namespace topogeo::planner

@@ -1,0 +1,27 @@
+// What the planner answers to a goal.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "topogeo/msg/planning.h"
+#include "topogeo/planning/hybrid_planner.hpp"
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::planner {
+
+/// Whether a route can begin at the pose.
+bool is_known(const service::LivePose& pose);
+
+/// The answer to a goal of a position, node or place, without header, goal_id and versions. `map`
+/// and `pose` are empty while there is none; `blocked_m` are points (map frame) in cells that
+/// something fills which is not on the map; those that are beyond it do not matter. Everything that
+/// can be wrong is a status. Throws std::invalid_argument when the route does not fit a message.
+msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
+                  const std::optional<service::LivePose>& pose,
+                  std::span<const Eigen::Vector2d> blocked_m,
+                  const planning::HybridPlannerConfig& config = {});
+
+}  // namespace topogeo::planner

@@ -1,0 +1,149 @@
+// Goals and routes as messages.
+#include <limits>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/service/conversions.hpp"
+
+namespace topogeo::service {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+TEST(GoalConversion, IsExactForEachKind) {
+  Goal goal{7, "operator-1", msg::kGoalPosition, Eigen::Vector2d(0.1, -1e300), 0.3, true};
+  const Goal point = from_msg(to_msg(goal, "robot", 6, 8));
+  EXPECT_EQ(point.goal_id, 7U);
+  EXPECT_EQ(point.client_id, "operator-1");
+  EXPECT_EQ(point.kind, msg::kGoalPosition);
+  EXPECT_EQ(std::get<Eigen::Vector2d>(point.target), Eigen::Vector2d(0.1, -1e300));
+  EXPECT_EQ(point.heading_rad, 0.3);
+  EXPECT_TRUE(point.look_around);
+  goal.kind = msg::kGoalNode;
+  goal.target = planning::NodeNumber{41};
+  goal.heading_rad.reset();
+  const Goal node = from_msg(to_msg(goal, "robot", 6, 8));
+  EXPECT_EQ(std::get<planning::NodeNumber>(node.target).id, 41U);
+  EXPECT_FALSE(node.heading_rad);
+  goal.kind = msg::kGoalPlace;
+  goal.target = std::string("room A");
+  EXPECT_EQ(std::get<std::string>(from_msg(to_msg(goal, "robot", 6, 8)).target), "room A");
+  for (const msg::GoalKind kind : {msg::kGoalCancel, msg::kGoalPause, msg::kGoalResume}) {
+    goal.kind = kind;
+    EXPECT_EQ(from_msg(to_msg(goal, "robot", 6, 8)).kind, kind);
+  }
+  const msg::Goal message = to_msg(goal, "robot", 6, 8);
+  EXPECT_EQ(message.robot_id().to_string(), "robot");
+  EXPECT_EQ(message.stamp_ns(), 6);
+  EXPECT_EQ(message.sequence_number(), 8U);
+}
+
+TEST(GoalConversion, RefusesWhatIsNoGoal) {
+  Goal goal;
+  goal.kind = msg::kGoalPlace;
+  EXPECT_THROW(to_msg(goal, "robot", 6, 8), std::invalid_argument) << "the target is a point";
+  goal.target = std::string(65, 'a');
+  EXPECT_THROW(to_msg(goal, "robot", 6, 8), std::invalid_argument);
+  goal.target = std::string();
+  EXPECT_THROW(from_msg(to_msg(goal, "robot", 6, 8)), std::invalid_argument);
+  goal.target = std::string("a");
+  msg::Goal message = to_msg(goal, "robot", 6, 8);
+  message.has_heading(true);
+  message.heading_rad(kNoNumber);
+  EXPECT_THROW(from_msg(message), std::invalid_argument);
+  message.has_heading(false);
+  EXPECT_NO_THROW(from_msg(message));
+  message.kind(static_cast<msg::GoalKind>(6));
+  EXPECT_THROW(from_msg(message), std::invalid_argument);
+  message.kind(msg::kGoalPosition);
+  message.target().y_m(kNoNumber);
+  EXPECT_THROW(from_msg(message), std::invalid_argument);
+}
+
+planning::HybridRoute found_route() {
+  planning::HybridRoute route;
+  route.status = planning::RouteStatus::kFound;
+  route.points_m = {{0.0, 0.0}, {3.0, 0.0}, {3.0, 4.0}};
+  route.clearances_m = {1.0, 0.5, std::numeric_limits<double>::infinity()};
+  route.length_m = 7.0;
+  route.cost_m = 7.5;
+  route.min_clearance_m = 0.4;
+  route.zones = {4, 2};
+  route.nodes = {1, 99};
+  return route;
+}
+
+TEST(RouteConversion, HasPointsNodesZonesAndMotions) {
+  const msg::Route message = to_msg(found_route(), std::numbers::pi / 2, 0.0);
+  EXPECT_EQ(message.status(), msg::kRouteFound);
+  EXPECT_EQ(message.length_m(), 7.0);
+  EXPECT_EQ(message.cost_m(), 7.5);
+  EXPECT_EQ(message.min_clearance_m(), 0.4);
+  EXPECT_THAT(message.zones(), ElementsAre(4, 2));
+  EXPECT_THAT(message.node_ids(), ElementsAre(1, 99));
+  ASSERT_THAT(message.points(), SizeIs(3));
+  EXPECT_EQ(message.points()[1].clearance_m(), 0.5);
+  std::vector<msg::MotionKind> kinds;
+  for (const msg::MotionPrimitive& motion : message.primitives()) kinds.push_back(motion.kind());
+  EXPECT_THAT(kinds, ElementsAre(msg::kMotionTurnRight, msg::kMotionAdvance, msg::kMotionTurnLeft,
+                                 msg::kMotionAdvance, msg::kMotionTurnRight));
+}
+
+TEST(RouteConversion, ARefusalHasItsReasonAndTheNearestPlace) {
+  planning::HybridRoute none;
+  none.status = planning::RouteStatus::kGoalOccupied;
+  none.reason = std::string(300, 'x');
+  none.nearest_reachable_m = Eigen::Vector2d(1.0, 2.0);
+  const msg::Route message = to_msg(none, 0.0, std::nullopt);
+  EXPECT_EQ(message.status(), msg::kRouteGoalOccupied);
+  EXPECT_THAT(message.message().to_string(), SizeIs(255));
+  ASSERT_TRUE(message.has_nearest_reachable());
+  EXPECT_EQ(message.nearest_reachable().y_m(), 2.0);
+  const navigation::RoutePlan plan = route_plan_from_msg(message, nullptr);
+  EXPECT_FALSE(plan.found);
+  EXPECT_THAT(plan.reason, SizeIs(255));
+  EXPECT_THAT(plan.points_m, IsEmpty());
+}
+
+TEST(RouteConversion, GivesTheNavigatorThePlacesOfNodesThatTheMapHas) {
+  planning::GridFrame frame;
+  frame.columns = frame.rows = 40;
+  const planning::FreeSpace space(planning::OccupancyGrid(frame, planning::CellState::kFree));
+  const std::vector<planning::DrawnZone> drawn{{"a", {{0, 0}, {1, 0}, {1, 4}, {0, 4}}},
+                                               {"b", {{1, 0}, {2, 0}, {2, 4}, {1, 4}}}};
+  const planning::HybridMap map(space, planning::drawn_zones(space, drawn));
+  ASSERT_THAT(map.nodes(), SizeIs(2));
+  msg::Route message = to_msg(found_route(), 0.0, 0.25);
+  message.goal_id(5);
+  message.map_version(6);
+  message.blockages_version(7);
+  const navigation::RoutePlan plan = route_plan_from_msg(message, &map);
+  EXPECT_EQ(plan.goal_id, 5U);
+  EXPECT_EQ(plan.map_version, 6U);
+  EXPECT_EQ(plan.blockages_version, 7U);
+  EXPECT_TRUE(plan.found);
+  EXPECT_EQ(plan.reason, "");
+  EXPECT_EQ(plan.heading_rad, 0.25);
+  EXPECT_EQ(plan.points_m, found_route().points_m);
+  EXPECT_THAT(plan.nodes_m, ElementsAre(map.nodes()[1].position_m));
+  EXPECT_THAT(route_plan_from_msg(message, nullptr).nodes_m, IsEmpty());
+}
+
+TEST(RouteConversion, RefusesAFoundRouteThatLeadsNowhere) {
+  msg::Route message = to_msg(found_route(), 0.0, std::nullopt);
+  message.points()[1].x_m(kNoNumber);
+  EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument);
+  message.points().clear();
+  EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument);
+  message.status(static_cast<msg::RouteStatus>(11));
+  EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace topogeo::service
