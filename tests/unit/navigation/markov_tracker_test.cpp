@@ -1,0 +1,121 @@
+#include "topogeo/navigation/markov_tracker.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/scan/scan.hpp"
+
+#include "test_drive.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+/// A robot without noise in two rooms, whose odometry measures 3 % too little.
+class MarkovDrive : public testing::Test {
+ protected:
+  MarkovDrive() {
+    simulation::RobotOptions options;
+    options.T_world_start = geometry::Pose2{1.25, 1.55, 0.0};
+    options.laser = {0.0, 0.0, 0.0, 0.0};
+    options.sonar.sigma_m = 0.0;
+    options.odometry = {-0.03, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    robot.emplace(world, options);
+  }
+
+  SonarRound sonars() {
+    SonarRound round;
+    const std::vector<float> ranges_m = robot->sonar();
+    for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+      const auto& mount = robot->options().sonars[i];
+      round.readings.push_back({mount.T_robot_sonar, mount.half_cone_rad, ranges_m[i]});
+    }
+    return round;
+  }
+
+  void drive(double way_m, double turn_rad) {
+    robot->step({way_m, turn_rad}, 1.0);
+    tracker.add(OdometrySample{++stamp_ns, robot->T_odom_robot()});
+  }
+
+  [[nodiscard]] double off_m() const {
+    return (tracker.fix()->T_map_robot.position_m() - robot->T_world_robot().position_m()).norm();
+  }
+
+  simulation::World world = two_doors();
+  std::optional<simulation::SimulatedRobot> robot;
+  MarkovTracker tracker{map_of(world)->space().grid()};
+  std::int64_t stamp_ns = 0;
+};
+
+TEST_F(MarkovDrive, StartsAtTheBaseStation) {
+  EXPECT_FALSE(tracker.started());
+  EXPECT_FALSE(tracker.fix());
+  tracker.add(OdometrySample{++stamp_ns, robot->T_odom_robot()});
+  ASSERT_TRUE(tracker.start({1.25, 1.55, 0.0}, sonars()));
+  ASSERT_TRUE(tracker.fix());
+  EXPECT_TRUE(tracker.fix()->tracking);
+  EXPECT_LT(off_m(), 0.02);
+}
+
+TEST_F(MarkovDrive, AStationInAWallIsRefusedWithTheReason) {
+  EXPECT_FALSE(tracker.start({5.0, 3.0, 0.0}, sonars()));
+  EXPECT_FALSE(tracker.reason().empty());
+  EXPECT_FALSE(tracker.started());
+  EXPECT_FALSE(tracker.fix());
+}
+
+TEST_F(MarkovDrive, LookingPutsRightWhatOdometryGetsWrong) {
+  tracker.add(OdometrySample{++stamp_ns, robot->T_odom_robot()});
+  ASSERT_TRUE(tracker.start({1.25, 1.55, 0.0}, sonars()));
+  for (int i = 0; i < 6; ++i) {
+    drive(1.0, 0.0);
+    tracker.primitive_done();
+  }
+  EXPECT_NEAR(off_m(), 0.18, 0.02);  // 3 % of 6 m
+  tracker.perceive(sonars());
+  EXPECT_TRUE(tracker.fix()->tracking);
+  EXPECT_GT(tracker.corrected_m(), 0.05);
+  EXPECT_LT(off_m(), 0.1 * std::numbers::sqrt2);  // in its cell or the next one
+}
+
+TEST_F(MarkovDrive, TurnsAndArcsAreToldAsPrimitives) {
+  tracker.add(OdometrySample{++stamp_ns, robot->T_odom_robot()});
+  ASSERT_TRUE(tracker.start({1.25, 1.55, 0.0}, sonars()));
+  drive(0.0, 0.5 * std::numbers::pi);
+  tracker.primitive_done();
+  drive(1.0, 0.3);
+  drive(0.5, -0.3);
+  tracker.primitive_done();
+  const auto fix = tracker.fix();
+  ASSERT_TRUE(fix);
+  EXPECT_NEAR(fix->T_map_robot.theta_rad, 0.5 * std::numbers::pi, 0.03);
+  EXPECT_LT(off_m(), 0.12);
+  const auto back = tracker.way_back({1.25, 2.0, 0.0});
+  ASSERT_TRUE(back);
+  EXPECT_FALSE(back->blocked);
+  EXPECT_FALSE(back->moves.empty());
+}
+
+TEST_F(MarkovDrive, PerceivingBeforeTheStartIsAMistake) {
+  EXPECT_THROW(tracker.perceive(sonars()), std::runtime_error);
+}
+
+TEST(LaserRound, HasABeamForEveryStep) {
+  ScanPoints scan;
+  scan.stamp_ns = 7;
+  scan.points_m = {{2.0, 0.0}, {2.0, 0.003}, {0.0, 1.5}, {1.0, 0.3}};
+  const SonarRound round = laser_round(scan, 0.25 * std::numbers::pi);
+  ASSERT_EQ(round.readings.size(), 5U);
+  EXPECT_EQ(round.stamp_ns, 7);
+  EXPECT_EQ(round.readings[0].range_m, scan::Scan::kNoReturn);
+  EXPECT_FLOAT_EQ(round.readings[2].range_m, 2.0F);
+  EXPECT_EQ(round.readings[3].range_m, scan::Scan::kNoReturn);  // a point 17 degrees off it
+  EXPECT_FLOAT_EQ(round.readings[4].range_m, 1.5F);
+  EXPECT_NEAR(round.readings[4].T_robot_sonar.theta_rad, 0.5 * std::numbers::pi, 1e-12);
+  EXPECT_THROW(laser_round(scan, 0.0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace topogeo::navigation
