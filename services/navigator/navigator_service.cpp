@@ -1,0 +1,344 @@
+#include "navigator_service.hpp"
+
+#include <chrono>
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/service/navigation_conversions.hpp"
+
+namespace topogeo::navigator {
+
+using navigation::NavigatorState;
+using std::chrono::milliseconds;
+
+namespace {
+
+constexpr milliseconds kPeriod{50};
+constexpr milliseconds kMapPeriod{100};
+constexpr milliseconds kLastWord{200};  // for the gateway to have the last command
+constexpr double kValid_s = 0.3;
+constexpr std::int64_t kStopTail_ns = 1'000'000'000;
+constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
+constexpr std::int64_t kBlockagesPeriod_ns = 200'000'000;
+
+std::int64_t nanoseconds(std::chrono::nanoseconds duration) {
+  return duration.count();
+}
+
+std::int64_t steady_now_ns() {
+  return nanoseconds(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+/// Until the sensors say their time.
+std::int64_t host_offset_ns() {
+  return nanoseconds(std::chrono::system_clock::now().time_since_epoch()) - steady_now_ns();
+}
+
+/// Whether the base is the navigator's in this state, even when it stands.
+bool holds_the_base(NavigatorState state) {
+  return state == NavigatorState::kDriving || state == NavigatorState::kRelocalizing ||
+         state == NavigatorState::kBlocked;
+}
+
+bool differs(const navigation::NavigatorStatus& a, const navigation::NavigatorStatus& b) {
+  return a.state != b.state || a.reason != b.reason || a.goal_id != b.goal_id;
+}
+
+}  // namespace
+
+NavigatorService::NavigatorService(service::Service& service)
+    : service_(service),
+      clock_(host_offset_ns()),
+      navigator_(service.setup().config.config.navigator),
+      goals_(service.participant()),
+      routes_(service.participant()),
+      tiles_(service.participant()),
+      maps_(service.participant()),
+      poses_(service.participant()),
+      odometry_(service.participant()),
+      scans_(service.participant()),
+      sonars_(service.participant()),
+      bases_(service.participant()),
+      commands_(service.participant()),
+      statuses_(service.participant()),
+      blockages_(service.participant()) {
+  listen_to_orders();
+  listen_to_sensors();
+  messaging::EventLoop& loop = service_.loop();
+  loop.add(commands_);
+  loop.add(statuses_);
+  loop.add(blockages_);
+  loop.add_timer(kPeriod, [this] { tick(); });
+  loop.add_timer(kMapPeriod, [this] { take_map(); });
+  for (const char* counter : {"goals", "arrivals", "routes", "commands", "map_version"}) {
+    service_.status().set_counter(counter, 0.0);
+  }
+  service_.status().set_state(msg::kServiceRunning);
+}
+
+NavigatorService::~NavigatorService() {
+  if (!moving_ && steady_now_ns() > command_until_ns_) return;
+  try {
+    send_command({}, clock_.now_ns(steady_now_ns()));
+    static_cast<void>(commands_.wait_for_acknowledgments(kLastWord));
+  } catch (const std::exception& error) {
+    spdlog::error("the last command was not sent: {}", error.what());
+  }
+}
+
+template <class T, class Use>
+void NavigatorService::take(const T& message, const char* what, const Use& use) {
+  if (!service_.is_own(message)) return;
+  try {
+    use(message);
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault(std::string("invalid ") + what, error.what());
+  }
+}
+
+void NavigatorService::listen_to_orders() {
+  messaging::EventLoop& loop = service_.loop();
+  loop.add<msg::Goal>(goals_, [this](const msg::Goal& message, const messaging::SampleInfo&) {
+    take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
+  });
+  loop.add<msg::Route>(routes_, [this](const msg::Route& message, const messaging::SampleInfo&) {
+    take(message, "route", [this](const msg::Route& route) { on_route(route); });
+  });
+  // A map_store that has gone leaves its last map standing; only a disposal takes away.
+  loop.add<msg::GridTile>(
+      tiles_,
+      [this](const msg::GridTile& message, const messaging::SampleInfo& info) {
+        take(message, "grid tile", [&](const msg::GridTile& tile) {
+          mirror_.put(tile, info.instance);
+          map_changed_ = true;
+        });
+      },
+      [this](const messaging::SampleInfo& info) {
+        if (info.state == messaging::InstanceState::kDisposed) mirror_.remove(info.instance);
+      });
+  loop.add<msg::HybridMap>(maps_,
+                           [this](const msg::HybridMap& message, const messaging::SampleInfo&) {
+                             take(message, "hybrid map", [this](const msg::HybridMap& map) {
+                               mirror_.put(map);
+                               map_changed_ = true;
+                             });
+                           });
+}
+
+void NavigatorService::listen_to_sensors() {
+  messaging::EventLoop& loop = service_.loop();
+  loop.add<msg::LivePose>(poses_,
+                          [this](const msg::LivePose& message, const messaging::SampleInfo&) {
+                            take(message, "pose", [this](const msg::LivePose& pose) {
+                              if (!is_news(Source::kPose, pose.stamp_ns())) return;
+                              navigator_.add(service::to_pose_fix(service::from_msg(pose)));
+                            });
+                          });
+  loop.add<msg::Odometry>(
+      odometry_, [this](const msg::Odometry& message, const messaging::SampleInfo&) {
+        take(message, "odometry", [this](const msg::Odometry& odometry) {
+          const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
+          heard(sample.stamp_ns);
+          if (is_news(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
+        });
+      });
+  loop.add<msg::Scan>(scans_, [this](const msg::Scan& message, const messaging::SampleInfo&) {
+    take(message, "scan", [this](const msg::Scan& scan) { on_scan(scan); });
+  });
+  loop.add<msg::Sonar>(sonars_, [this](const msg::Sonar& message, const messaging::SampleInfo&) {
+    take(message, "sonar", [this](const msg::Sonar& sonar) {
+      const navigation::SonarRound round = service::sonar_from_msg(sonar);
+      if (is_news(Source::kSonar, round.stamp_ns)) navigator_.add(round);
+    });
+  });
+  loop.add<msg::BaseStatus>(bases_,
+                            [this](const msg::BaseStatus& message, const messaging::SampleInfo&) {
+                              take(message, "base status", [this](const msg::BaseStatus& base) {
+                                if (!is_news(Source::kBase, base.stamp_ns())) return;
+                                navigator_.add(service::base_from_msg(base));
+                              });
+                            });
+}
+
+bool NavigatorService::is_news(Source source, std::int64_t stamp_ns) {
+  std::optional<std::int64_t>& last_ns = last_ns_.at(static_cast<std::size_t>(source));
+  if (last_ns && stamp_ns <= *last_ns) {
+    // Odometry that came with a scan may be newer than what comes by itself.
+    if (source != Source::kOdometry) service_.status().add_to_counter("ignored: not newer");
+    return false;
+  }
+  last_ns = stamp_ns;
+  return true;
+}
+
+void NavigatorService::heard(std::int64_t stamp_ns) {
+  clock_.heard(stamp_ns, steady_now_ns());
+}
+
+void NavigatorService::on_scan(const msg::Scan& message) {
+  const navigation::ScanPoints points = service::to_scan_points(
+      service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
+  heard(points.stamp_ns);
+  if (!is_news(Source::kScan, points.stamp_ns)) return;
+  if (is_news(Source::kOdometry, points.stamp_ns)) {
+    navigator_.add(navigation::OdometrySample{points.stamp_ns, points.T_odom_robot});
+  }
+  navigator_.add(points);
+}
+
+void NavigatorService::on_goal(const msg::Goal& message) {
+  const service::Goal goal = service::from_msg(message);
+  const bool order = goal.kind == msg::kGoalCancel || goal.kind == msg::kGoalPause ||
+                     goal.kind == msg::kGoalResume;
+  if (order && goal.goal_id != 0 && (!goal_ || goal.goal_id != goal_->goal_id)) {
+    service_.status().add_to_counter("ignored: other goal");
+    return;
+  }
+  switch (goal.kind) {
+    case msg::kGoalCancel:
+      spdlog::info("{} cancels the goal", goal.client_id);
+      navigator_.cancel();
+      goal_.reset();
+      break;
+    case msg::kGoalPause:
+      spdlog::info("{} pauses", goal.client_id);
+      navigator_.pause();
+      paused_ = true;
+      break;
+    case msg::kGoalResume:
+      spdlog::info("{} resumes", goal.client_id);
+      navigator_.resume();
+      paused_ = false;
+      break;
+    default:
+      spdlog::info("goal {} of {}", goal.goal_id, goal.client_id);
+      service_.status().add_to_counter("goals");
+      goal_ = navigation::GoalOrder{goal.goal_id, goal.look_around};
+      paused_ = false;
+      navigator_.set_goal(*goal_);
+      // The planner may have been faster.
+      if (route_ && route_->goal_id() == goal.goal_id) on_route(*route_);
+      break;
+  }
+  tick();
+}
+
+void NavigatorService::on_route(const msg::Route& message) {
+  take_map();
+  const bool same_map = message.map_version() == mirror_.version();
+  navigator_.set_route(service::route_plan_from_msg(message, same_map ? map_.get() : nullptr));
+  service_.status().add_to_counter("routes");
+  route_ = message;
+}
+
+void NavigatorService::take_map() {
+  if (!map_changed_) return;
+  std::shared_ptr<const planning::HybridMap> map;
+  try {
+    map = mirror_.map();
+  } catch (const std::invalid_argument& error) {
+    map_changed_ = false;
+    service_.status().fault("invalid hybrid map", error.what());
+    return;
+  }
+  if (!map || map == map_) return;  // the rest of the update is on its way
+  map_changed_ = false;
+  map_ = std::move(map);
+  navigator_.set_map(map_, mirror_.version());
+  service_.status().set_counter("map_version", static_cast<double>(mirror_.version()));
+}
+
+void NavigatorService::tick() {
+  const std::int64_t now_ns = clock_.now_ns(steady_now_ns());
+  if (clock_.take_set_back()) begin_again();
+  const geometry::Velocity velocity = navigator_.step(now_ns);
+  command(velocity, now_ns);
+  tell(now_ns);
+  tell_blockages(now_ns);
+}
+
+void NavigatorService::begin_again() {
+  last_ns_.fill(std::nullopt);
+  navigator_ = navigation::Navigator(service_.setup().config.config.navigator);
+  if (map_) navigator_.set_map(map_, mirror_.version());
+  if (!goal_) return;
+  service_.status().fault("time set back", "the sensors' stamps are older than before");
+  navigator_.set_goal(*goal_);
+  if (paused_) navigator_.pause();
+  if (route_ && route_->goal_id() == goal_->goal_id) {
+    const msg::Route route = *route_;
+    on_route(route);
+  }
+}
+
+void NavigatorService::command(const geometry::Velocity& velocity, std::int64_t now_ns) {
+  const std::int64_t steady_ns = steady_now_ns();
+  if (velocity != geometry::Velocity{} || holds_the_base(navigator_.status().state)) {
+    command_until_ns_ = steady_ns + kStopTail_ns;
+  }
+  if (steady_ns < command_until_ns_) send_command(velocity, now_ns);
+}
+
+void NavigatorService::send_command(const geometry::Velocity& velocity, std::int64_t now_ns) {
+  msg::MotionCommand message;
+  messaging::set_header(message, service_.robot_id(), now_ns, commands_sent_);
+  message.linear_mps(velocity.linear_m_per_s);
+  message.angular_radps(velocity.angular_rad_per_s);
+  message.valid_for_s(kValid_s);
+  // One that is not sent is made up for by the next; without any the gateway halts the base.
+  if (!commands_.write(message)) {
+    service_.status().fault("send blocked", "motion command");
+    return;
+  }
+  moving_ = velocity != geometry::Velocity{};
+  ++commands_sent_;
+}
+
+void NavigatorService::tell(std::int64_t now_ns) {
+  const navigation::NavigatorStatus& status = navigator_.status();
+  const std::int64_t steady_ns = steady_now_ns();
+  const bool changed = !told_ || differs(status, *told_);
+  if (!changed && steady_ns < status_due_ns_) return;
+  status_due_ns_ = steady_ns + kStatusPeriod_ns;
+  if (changed) {
+    spdlog::info("{}: {}", navigation::describe(status.state), status.message);
+    if (status.state == NavigatorState::kArrived) {
+      service_.status().add_to_counter("arrivals");
+      goal_.reset();
+    }
+    service_.status().set_state(msg::kServiceRunning,
+                                std::string(navigation::describe(status.state)) +
+                                    (status.message.empty() ? "" : ": " + status.message));
+  }
+  told_ = status;
+  service_.status().set_counter("commands", static_cast<double>(commands_sent_));
+  if (statuses_.write(service::to_msg(status, service_.robot_id(), now_ns, statuses_sent_))) {
+    ++statuses_sent_;
+  } else {
+    service_.status().fault("send blocked", "navigator status");
+  }
+}
+
+void NavigatorService::tell_blockages(std::int64_t now_ns) {
+  const navigation::BlockageReport& report = navigator_.blockages();
+  const std::int64_t steady_ns = steady_now_ns();
+  if (told_blockages_ == report.version || steady_ns < blockages_due_ns_) return;
+  blockages_due_ns_ = steady_ns + kBlockagesPeriod_ns;
+  told_blockages_ = report.version;
+  try {
+    if (service_.send(blockages_,
+                      service::to_msg(report, service_.robot_id(), now_ns, blockages_sent_),
+                      "blockages")) {
+      ++blockages_sent_;
+    }
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("blockages not sent", error.what());
+  }
+}
+
+}  // namespace topogeo::navigator

@@ -1,0 +1,101 @@
+// Takes goals, routes, pose and sensors; gives motion commands, what it does and what is in its
+// way.
+//
+// Time is that of the sensors' stamps, see StampClock. Commands go out twenty times a second while
+// a goal is driven to, and zeros for a second after that; then nothing, so that others may drive. A
+// goal belongs to the robot and not to the client that gave it: it stays when the client is gone,
+// until it is reached, cancelled or replaced.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/hybrid_map.h"
+#include "topogeo/msg/motion.h"
+#include "topogeo/msg/planning.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/navigation/navigator.hpp"
+#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/service.hpp"
+
+#include "stamp_clock.hpp"
+
+namespace topogeo::navigator {
+
+/// Lives in the loop of its service.
+class NavigatorService {
+ public:
+  /// Throws std::invalid_argument for a configuration out of range.
+  explicit NavigatorService(service::Service& service);
+  NavigatorService(const NavigatorService&) = delete;
+  NavigatorService& operator=(const NavigatorService&) = delete;
+  /// The last command is to stand still.
+  ~NavigatorService();
+
+ private:
+  enum class Source : std::uint8_t { kPose, kOdometry, kScan, kSonar, kBase };
+  static constexpr std::size_t kSources = 5;
+
+  void listen_to_orders();
+  void listen_to_sensors();
+  void on_goal(const msg::Goal& message);
+  void on_route(const msg::Route& message);
+  void on_scan(const msg::Scan& message);
+  void take_map();
+  /// False, and counted, for a message that is not newer than the one before.
+  bool is_news(Source source, std::int64_t stamp_ns);
+  void heard(std::int64_t stamp_ns);
+  /// Calls `use` for a message of this robot; what it throws becomes a fault.
+  template <class T, class Use>
+  void take(const T& message, const char* what, const Use& use);
+
+  void tick();
+  /// The time of the sensors has gone back: begins again with the goal at hand.
+  void begin_again();
+  void command(const geometry::Velocity& velocity, std::int64_t now_ns);
+  void send_command(const geometry::Velocity& velocity, std::int64_t now_ns);
+  void tell(std::int64_t now_ns);
+  void tell_blockages(std::int64_t now_ns);
+
+  service::Service& service_;
+  StampClock clock_;
+  navigation::Navigator navigator_;
+  service::HybridMapMirror mirror_;
+  std::shared_ptr<const planning::HybridMap> map_;
+  bool map_changed_ = false;
+
+  std::optional<navigation::GoalOrder> goal_;
+  bool paused_ = false;
+  std::optional<msg::Route> route_;  // the last one
+  std::array<std::optional<std::int64_t>, kSources> last_ns_;
+
+  std::int64_t command_until_ns_ = 0;  // by the steady clock: zeros are sent until then
+  bool moving_ = false;                // the last command was another than to stand
+  std::uint64_t commands_sent_ = 0;
+  std::uint64_t statuses_sent_ = 0;
+  std::uint64_t blockages_sent_ = 0;
+  std::int64_t status_due_ns_ = 0;     // by the steady clock
+  std::int64_t blockages_due_ns_ = 0;  // the same
+  std::optional<navigation::NavigatorStatus> told_;
+  std::optional<std::uint64_t> told_blockages_;
+
+  messaging::Reader<msg::Goal> goals_;
+  messaging::Reader<msg::Route> routes_;
+  messaging::Reader<msg::GridTile> tiles_;
+  messaging::Reader<msg::HybridMap> maps_;
+  messaging::Reader<msg::LivePose> poses_;
+  messaging::Reader<msg::Odometry> odometry_;
+  messaging::Reader<msg::Scan> scans_;
+  messaging::Reader<msg::Sonar> sonars_;
+  messaging::Reader<msg::BaseStatus> bases_;
+  messaging::Writer<msg::MotionCommand> commands_;
+  messaging::Writer<msg::NavigatorStatus> statuses_;
+  messaging::Writer<msg::Blockages> blockages_;
+};
+
+}  // namespace topogeo::navigator

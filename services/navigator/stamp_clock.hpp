@@ -1,0 +1,68 @@
+// What time it is by the clock that the sensors' stamps are of.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace topogeo::navigator {
+
+/// The stamps of gateway and localizer are of the gateway's clock, which is that of its host at the
+/// time when it was started. This one follows them: the message that came fastest of the last ten
+/// seconds says how the two clocks differ, so that one that waited on the way looks as old as it
+/// is. Neither host's clock matters, nor whether it was set in the meantime.
+class StampClock {
+ public:
+  static constexpr std::int64_t kHalfWindow_ns = 5'000'000'000;
+  static constexpr std::int64_t kSetBack_ns = 1'000'000'000;
+
+  /// `offset_ns`: from the steady clock to the stamps, before any message says it.
+  explicit StampClock(std::int64_t offset_ns) : offset_ns_(offset_ns) {}
+
+  /// A message of the gateway came at a time of the steady clock.
+  void heard(std::int64_t stamp_ns, std::int64_t steady_ns) {
+    turn_over(steady_ns);
+    const std::int64_t offset_ns = stamp_ns - steady_ns;
+    newest_ns_ = std::max(newest_ns_.value_or(offset_ns), offset_ns);
+    offset_ns_ = std::max(*newest_ns_, older_ns_.value_or(*newest_ns_));
+  }
+
+  /// Goes back only where the stamps have gone back by more than a second; see take_set_back().
+  std::int64_t now_ns(std::int64_t steady_ns) {
+    std::int64_t now_ns = steady_ns + offset_ns_;
+    if (last_ns_ && now_ns < *last_ns_) {
+      if (*last_ns_ - now_ns > kSetBack_ns) {
+        set_back_ = true;
+      } else {
+        now_ns = *last_ns_;
+      }
+    }
+    last_ns_ = now_ns;
+    return now_ns;
+  }
+
+  /// True once after the time has gone back: nothing measured before then can be compared any more.
+  bool take_set_back() {
+    const bool set_back = set_back_;
+    set_back_ = false;
+    return set_back;
+  }
+
+ private:
+  void turn_over(std::int64_t steady_ns) {
+    if (!window_ns_) window_ns_ = steady_ns;
+    if (steady_ns - *window_ns_ < kHalfWindow_ns) return;
+    older_ns_ = steady_ns - *window_ns_ < 2 * kHalfWindow_ns ? newest_ns_ : std::nullopt;
+    newest_ns_.reset();
+    window_ns_ = steady_ns;
+  }
+
+  std::int64_t offset_ns_;
+  std::optional<std::int64_t> window_ns_;  // when the newer half began
+  std::optional<std::int64_t> newest_ns_;  // largest offset since then
+  std::optional<std::int64_t> older_ns_;   // and of the half before
+  std::optional<std::int64_t> last_ns_;    // that now_ns() gave
+  bool set_back_ = false;
+};
+
+}  // namespace topogeo::navigator
