@@ -53,6 +53,7 @@ void check(const NavigatorConfig& config) {
   range("stuck_s", config.stuck_s, 0.2, 60.0);
   range("look_around_m", config.look_around_m, 0.0, 50.0);
   check(config.guard);
+  check(config.markov);
   planning::check(config.detour);
   planning::check(config.smooth);
 }
@@ -75,7 +76,8 @@ Navigator::State::State(const NavigatorConfig& settings)
       way(config),
       base_watch(settings.stuck_s),
       look_around(settings.look_around_m),
-      blockade(settings.blockage_s) {}
+      blockade(settings.blockage_s),
+      markov(config) {}
 
 Navigator::Navigator(const NavigatorConfig& config) : state_(std::make_unique<State>(config)) {}
 Navigator::~Navigator() = default;
@@ -88,6 +90,7 @@ void Navigator::set_map(std::shared_ptr<const planning::HybridMap> map, std::uin
   state.map_version = version;
   state.way.set_map(state.map);
   state.memory.clear();
+  state.markov.set_map(state.map.get());
   if (!state.map) {
     state.way.forget();
     state.follower.forget();
@@ -160,22 +163,29 @@ void Navigator::resume() {
 }
 
 void Navigator::add(const PoseFix& pose) {
-  state_->keeper.add(pose);
+  if (state_->markov.on()) {
+    state_->markov.add(pose);
+  } else {
+    state_->keeper.add(pose);
+  }
 }
 
 void Navigator::add(const OdometrySample& odometry) {
   state_->keeper.add(odometry);
   state_->guard.add(odometry);
+  state_->markov.add(odometry);
 }
 
 void Navigator::add(const ScanPoints& scan) {
   state_->guard.add(scan);
+  state_->markov.add(scan);
   constexpr std::size_t kMost = 10;
   if (state_->scans.size() < kMost) state_->scans.push_back(scan);
 }
 
 void Navigator::add(const SonarRound& sonar) {
   state_->guard.add(sonar);
+  state_->markov.add(sonar);
 }
 
 void Navigator::add(const BaseCondition& base) {

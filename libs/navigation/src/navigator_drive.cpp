@@ -57,6 +57,7 @@ bool Navigator::State::find_path(const geometry::Pose2& T_map_robot) {
     return false;
   }
   if (local.status == planning::DetourStatus::kFound) ++status.detours;
+  markov.set_path(local.path, way.route().nodes_m);
   follower.follow(std::move(local.path), way.route().heading_rad);
   needs_path = false;
   lost = false;
@@ -66,6 +67,7 @@ bool Navigator::State::find_path(const geometry::Pose2& T_map_robot) {
 
 geometry::Velocity Navigator::State::drive(const geometry::Pose2& T_map_robot) {
   constexpr double kStray_m = 0.5;
+  if (const auto told = look()) return *told;
   if (settle_ns) return settle(T_map_robot);
   const bool strays =
       !follower.path().empty() && distance_m(follower.path(), T_map_robot.position_m()) > kStray_m;
@@ -109,6 +111,7 @@ geometry::Velocity Navigator::State::follow(const geometry::Pose2& T_map_robot) 
   }
   if (order.done) {
     settle_ns = now_ns;
+    looked_at_end = false;
     return settle(T_map_robot);
   }
   tell_driving(order);

@@ -17,6 +17,7 @@
 #include "base_watch.hpp"
 #include "blockade.hpp"
 #include "look_around.hpp"
+#include "markov_mode.hpp"
 #include "obstacle_memory.hpp"
 #include "pose_keeper.hpp"
 #include "route_way.hpp"
@@ -53,6 +54,11 @@ struct Navigator::State {
   std::vector<Eigen::Vector2d> standing_m() const;
   void tell_driving(const FollowerStep& order);
 
+  // navigator_markov.cpp
+  void use_markov();
+  /// Stands and looks where it is, when it is time to; nothing when it is not.
+  std::optional<geometry::Velocity> look();
+
   // navigator_arrive.cpp
   geometry::Velocity settle_here();
   geometry::Velocity settle(const geometry::Pose2& T_map_robot);
@@ -70,6 +76,7 @@ struct Navigator::State {
   BaseWatch base_watch;
   LookAround look_around;
   Blockade blockade;
+  MarkovMode markov;
 
   std::shared_ptr<const planning::HybridMap> map;
   std::uint64_t map_version = 0;
@@ -105,6 +112,7 @@ struct Navigator::State {
 
   std::optional<std::int64_t> settle_ns;
   int corrections = 0;
+  bool looked_at_end = false;  ///< Markov localization has, since it settles
 
   NavigatorStatus status;
 };

@@ -154,6 +154,7 @@ geometry::Velocity Navigator::State::relocalize() {
 geometry::Velocity Navigator::State::step(std::int64_t at_ns) {
   now_ns = std::max(now_ns, at_ns);
   status.driven_m += has_goal ? keeper.take_driven_m() : 0.0;
+  use_markov();
   status.T_map_robot = keeper.good_pose(now_ns);
   note_pose_jump();
   use_scan();

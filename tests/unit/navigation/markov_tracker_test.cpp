@@ -102,6 +102,38 @@ TEST_F(MarkovDrive, PerceivingBeforeTheStartIsAMistake) {
   EXPECT_THROW(tracker.perceive(sonars()), std::runtime_error);
 }
 
+/// Only the base station is told; then the robot finds its way by itself.
+TEST(NavigatorMarkov, FindsItsWayFromTheBaseStationThroughADoor) {
+  for (const bool by_laser : {false, true}) {
+    DriveSettings settings;
+    settings.T_world_start = {1.25, 4.55, 0.0};
+    settings.navigator.motion = MotionStyle::kPrimitives;
+    settings.navigator.pose_source = PoseSource::kMarkov;
+    settings.navigator.markov_by_laser = by_laser;
+    TestDrive drive(two_doors(), settings);
+    drive.go_to({8.5, 1.5}, 0.0);
+    drive.step();
+    drive.poses_come = false;
+    int looks = 0;
+    bool before = false;
+    const bool arrived = drive.run_until(
+        [&] {
+          const bool looking = drive.status().state == NavigatorState::kRelocalizing;
+          if (looking && !before) ++looks;
+          if (looking) {
+            EXPECT_EQ(drive.told, geometry::Velocity{});
+          }
+          before = looking;
+          return drive.status().state == NavigatorState::kArrived;
+        },
+        120.0);
+    ASSERT_TRUE(arrived) << drive.status().message << (by_laser ? " by laser" : " by sonar");
+    EXPECT_GE(looks, 2);  // at the border node and at the end
+    EXPECT_LT(drive.off_m(), 0.15);
+    EXPECT_EQ(drive.robot.collisions(), 0U);
+  }
+}
+
 TEST(LaserRound, HasABeamForEveryStep) {
   ScanPoints scan;
   scan.stamp_ns = 7;

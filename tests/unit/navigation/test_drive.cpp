@@ -80,6 +80,8 @@ void TestDrive::send_route() {
   route.reason = found.reason;
   route.points_m = found.points_m;
   route.heading_rad = heading_rad;
+  for (const std::uint32_t node : found.nodes)
+    route.nodes_m.push_back(map->nodes()[node].position_m);
   navigator.set_route(route);
   answered_goal_ = goal_id;
   answered_map_ = map_version;

@@ -16,6 +16,7 @@
 
 #include "topogeo/geometry/velocity.hpp"
 #include "topogeo/navigation/collision_guard.hpp"
+#include "topogeo/navigation/markov_tracker.hpp"
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/local_detour.hpp"
@@ -26,6 +27,14 @@ namespace topogeo::navigation {
 enum class MotionStyle : std::uint8_t {
   kSmooth = 0,      ///< arcs round the corners, for bases that take velocities
   kPrimitives = 1,  ///< advance, turn left, turn right (spec B2), one after the other
+};
+
+/// Where the pose comes from.
+enum class PoseSource : std::uint8_t {
+  kLocalizer = 0,  ///< pose fixes that are added
+  /// Markov localization (spec B3) on the map's grid: the first pose fix that is added is the base
+  /// station. The robot stops at every border node and at the end of the route to look where it is.
+  kMarkov = 1,
 };
 
 struct NavigatorConfig {
@@ -50,6 +59,9 @@ struct NavigatorConfig {
   GuardConfig guard;
   planning::DetourConfig detour;
   planning::SmoothPathConfig smooth;
+  PoseSource pose_source = PoseSource::kLocalizer;
+  bool markov_by_laser = false;  ///< ranges for Markov localization from the laser, not the sonars
+  MarkovTrackerConfig markov;
 };
 
 /// Throws std::invalid_argument naming the field, the value and the range that it must lie in.

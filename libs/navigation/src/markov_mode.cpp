@@ -1,0 +1,89 @@
+#include "markov_mode.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace topogeo::navigation {
+
+void MarkovMode::set_map(const planning::HybridMap* map) {
+  if (!on()) return;
+  if (const auto known = pose()) T_map_station_ = known->T_map_robot;
+  tracker_.reset();
+  if (map == nullptr) return;
+  tracker_.emplace(map->space().grid(), config_.markov);
+  if (odometry_) tracker_->add(*odometry_);
+}
+
+void MarkovMode::add(const PoseFix& base_station) {
+  if (base_station.tracking && !T_map_station_) T_map_station_ = base_station.T_map_robot;
+}
+
+void MarkovMode::add(const OdometrySample& odometry) {
+  odometry_ = odometry;
+  if (tracker_) tracker_->add(odometry);
+}
+
+void MarkovMode::add(const ScanPoints& scan) {
+  constexpr double kStep_rad = 0.17453292519943295;  // ten degrees
+  if (on() && config_.markov_by_laser) round_ = laser_round(scan, kStep_rad);
+}
+
+void MarkovMode::add(const SonarRound& sonar) {
+  if (on() && !config_.markov_by_laser) round_ = sonar;
+}
+
+std::optional<PoseFix> MarkovMode::pose() {
+  if (!tracker_) return std::nullopt;
+  if (!tracker_->started() && T_map_station_ && round_ && odometry_) {
+    tracker_->start(*T_map_station_, *round_);
+  }
+  if (tracker_->started()) return tracker_->fix();
+  if (!odometry_) return std::nullopt;
+  PoseFix unknown;
+  unknown.stamp_ns = odometry_->stamp_ns;
+  unknown.state_text = T_map_station_ ? tracker_->reason() : "the base station is not known";
+  return unknown;
+}
+
+void MarkovMode::primitive_done() {
+  if (tracker_) tracker_->primitive_done();
+}
+
+void MarkovMode::set_path(std::span<const planning::PathSample> path,
+                          std::span<const Eigen::Vector2d> nodes_m) {
+  constexpr double kOnPath_m = 0.5;
+  constexpr double kJustBegun_m = 0.3;  // it has looked there
+  nodes_at_m_.clear();
+  next_node_ = 0;
+  if (!on() || path.empty()) return;
+  for (const Eigen::Vector2d& node_m : nodes_m) {
+    const auto off_m = [&](const planning::PathSample& sample) {
+      return (sample.T_map_robot.position_m() - node_m).norm();
+    };
+    const auto nearest =
+        std::min_element(path.begin(), path.end(),
+                         [&](const auto& a, const auto& b) { return off_m(a) < off_m(b); });
+    if (off_m(*nearest) < kOnPath_m && nearest->distance_m > kJustBegun_m) {
+      nodes_at_m_.push_back(nearest->distance_m);
+    }
+  }
+  std::sort(nodes_at_m_.begin(), nodes_at_m_.end());
+}
+
+bool MarkovMode::comes_to_node(double progress_m) {
+  if (next_node_ >= nodes_at_m_.size() || progress_m < nodes_at_m_[next_node_]) return false;
+  ++next_node_;
+  return true;
+}
+
+bool MarkovMode::look(std::int64_t now_ns, double& corrected_m) {
+  constexpr std::int64_t kRollsOut_ns = 800'000'000;
+  if (!look_ns_ || !tracker_ || !tracker_->started() || !round_) return false;
+  if (round_->stamp_ns < *look_ns_ + kRollsOut_ns || now_ns < round_->stamp_ns) return false;
+  tracker_->perceive(*round_);
+  corrected_m = tracker_->corrected_m();
+  look_ns_.reset();
+  return true;
+}
+
+}  // namespace topogeo::navigation

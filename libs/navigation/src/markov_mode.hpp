@@ -1,0 +1,57 @@
+// Markov localization as a navigator's source of poses: when to look, and with what.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/navigation/markov_tracker.hpp"
+#include "topogeo/navigation/navigator.hpp"
+
+namespace topogeo::navigation {
+
+class MarkovMode {
+ public:
+  explicit MarkovMode(const NavigatorConfig& config) : config_(config) {}
+
+  [[nodiscard]] bool on() const { return config_.pose_source == PoseSource::kMarkov; }
+
+  /// Goes on where it is in the new map.
+  void set_map(const planning::HybridMap* map);
+  void add(const PoseFix& base_station);
+  void add(const OdometrySample& odometry);
+  void add(const ScanPoints& scan);
+  void add(const SonarRound& sonar);
+
+  /// Starts when everything is there; the pose now, for the navigator.
+  std::optional<PoseFix> pose();
+  void primitive_done();
+
+  /// Where along a path border nodes are: there the robot is to look.
+  void set_path(std::span<const planning::PathSample> path,
+                std::span<const Eigen::Vector2d> nodes_m);
+  /// True once for each node that the robot comes to.
+  bool comes_to_node(double progress_m);
+
+  void begin_look(std::int64_t now_ns) { look_ns_ = now_ns; }
+  [[nodiscard]] bool looks() const { return look_ns_.has_value(); }
+  /// Looks as soon as a reading has come since the robot stands; true when it has. `corrected_m`
+  /// tells how far that has moved the pose.
+  bool look(std::int64_t now_ns, double& corrected_m);
+
+ private:
+  const NavigatorConfig& config_;
+  std::optional<MarkovTracker> tracker_;
+  std::optional<geometry::Pose2> T_map_station_;
+  std::optional<OdometrySample> odometry_;
+  std::optional<SonarRound> round_;
+  std::optional<std::int64_t> look_ns_;
+  std::vector<double> nodes_at_m_;
+  std::size_t next_node_ = 0;
+};
+
+}  // namespace topogeo::navigation
