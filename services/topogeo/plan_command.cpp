@@ -1,13 +1,10 @@
 // topogeo plan: the shortest way between two points of a map file.
-#include <charconv>
-#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -19,6 +16,7 @@
 #include "topogeo/storage/map_file.hpp"
 
 #include "commands.hpp"
+#include "target_text.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -30,29 +28,6 @@ struct PlanOptions {
   std::optional<std::filesystem::path> config;
   bool json = false;
 };
-
-/// Throws service::UsageError naming the flag.
-Eigen::Vector2d parse_point(const char* flag, std::string_view text) {
-  const std::size_t comma = text.find(',');
-  Eigen::Vector2d point;
-  bool good = comma != std::string_view::npos;
-  const auto parse = [&](std::string_view number, double& value) {
-    const char* end = number.data() + number.size();
-    const auto [rest, error] = std::from_chars(number.data(), end, value);
-    good = good && error == std::errc() && rest == end && std::isfinite(value);
-  };
-  if (good) {
-    parse(text.substr(0, comma), point.x());
-    parse(text.substr(comma + 1), point.y());
-  }
-  if (!good) {
-    throw service::UsageError(
-        fmt::format("{} = '{}': expected X,Y in metres of the map frame, "
-                    "for example 1.5,-2",
-                    flag, text));
-  }
-  return point;
-}
 
 pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
   try {
@@ -95,8 +70,8 @@ void print_json(const planning::Route& route) {
 }
 
 int plan_route(const PlanOptions& options) {
-  const Eigen::Vector2d from_m = parse_point("--from", options.from);
-  const Eigen::Vector2d to_m = parse_point("--to", options.to);
+  const Eigen::Vector2d from_m = point_for("--from", options.from);
+  const Eigen::Vector2d to_m = point_for("--to", options.to);
   const pipeline::LoadedConfig config = load(options.config);
   const storage::MapDocument document = read_map(options.map);
   const planning::PlanResult result =

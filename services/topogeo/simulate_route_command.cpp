@@ -7,17 +7,17 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/pipeline/world_grid.hpp"
-#include "topogeo/planning/grid_file.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/service/service_options.hpp"
-#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/atomic_file.hpp"
 
 #include "commands.hpp"
@@ -31,31 +31,33 @@ struct SimulateRouteOptions {
   std::string from;
   std::string to;
   double heading_deg = 0.0;
+  std::vector<std::string> blocks;
   std::optional<std::filesystem::path> zones;
+  std::optional<std::filesystem::path> config;
   std::optional<std::filesystem::path> picture;
 };
 
-/// A world file (.world.yaml), a grid (.yaml) or a map file, with the zones of the drawing if there
-/// is one, otherwise those between the narrow passages.
-planning::HybridMap read_source(const SimulateRouteOptions& options) {
-  planning::ZoneDrawing drawing;
-  if (options.zones) drawing = planning::read_zone_drawing(*options.zones);
-  const std::string name = options.source.filename().string();
-  std::vector<planning::Passage> passages;
-  const planning::FreeSpace space([&] {
-    if (name.ends_with(".world.yaml")) {
-      return planning::grid_of(pipeline::drawing_of(simulation::load_world(options.source)));
+/// A world file (.world.yaml), a grid (.yaml) or a map file as the hybrid map that robots would
+/// have of it.
+planning::HybridMap read_source(const SimulateRouteOptions& options,
+                                const pipeline::HybridMapConfig& config) {
+  const storage::MapDocument floor =
+      pipeline::read_floor(options.source, options.zones, config.grid.resolution_m);
+  return pipeline::make_hybrid_map(pipeline::parts_of(floor), config);
+}
+
+/// The cell of each --block. Throws service::UsageError for one that is off the map.
+std::vector<planning::Cell> blocked_cells(const std::vector<std::string>& blocks,
+                                          const planning::GridFrame& frame) {
+  std::vector<planning::Cell> cells;
+  for (const std::string& block : blocks) {
+    const auto cell = frame.cell_of(point_for("--block", block));
+    if (!cell) {
+      throw service::UsageError(fmt::format("--block = '{}': is outside of the map", block));
     }
-    if (name.ends_with(".yaml")) return planning::read_grid(options.source);
-    const storage::MapDocument document = storage::read_map_file(options.source);
-    passages = planning::passages_of(document.global_map);
-    return planning::grid_from_scans(document.local_maps, document.trajectory.stops);
-  }());
-  if (!drawing.zones.empty()) {
-    return {space, planning::drawn_zones(space, drawing.zones), drawing.places};
+    cells.push_back(*cell);
   }
-  if (!passages.empty()) return {space, planning::zones_between(space, passages), drawing.places};
-  return {space, planning::zones_by_width(space), drawing.places};
+  return cells;
 }
 
 void print_steps(const planning::HybridRoute& route, double heading_rad) {
@@ -84,32 +86,36 @@ void print_steps(const planning::HybridRoute& route, double heading_rad) {
 }
 
 int simulate_route(const SimulateRouteOptions& options) {
-  const auto from_m = point_of(options.from);
-  if (!from_m) {
-    throw service::UsageError(
-        fmt::format("--from = '{}': expected X,Y in metres of the map frame, for example 1.5,-2",
-                    options.from));
-  }
+  const Eigen::Vector2d from_m = point_for("--from", options.from);
   std::optional<render::PictureFormat> format;
   try {
     if (options.picture) format = render::picture_format(*options.picture);
   } catch (const std::exception& error) {
     throw service::UsageError(error.what());
   }
+  const auto config = [&] {
+    try {
+      return pipeline::load_config(options.config).config.hybrid_map;
+    } catch (const std::exception& error) {
+      throw service::UsageError(error.what());
+    }
+  }();
   const auto map = [&] {
     try {
-      return read_source(options);
+      return read_source(options, config);
     } catch (const std::exception& error) {
       throw service::BadInputError(error.what());
     }
   }();
+  planning::Closures closed;
+  closed.cells = blocked_cells(options.blocks, map.frame());
   const planning::HybridRoute route =
-      planning::HybridPlanner(map).plan(*from_m, target_of(options.to));
+      planning::HybridPlanner(map).plan(from_m, target_of(options.to), closed);
   if (format) {
     const std::string title =
         fmt::format("{}: {} to {}", options.source.filename().string(), options.from, options.to);
-    support::write_file_atomically(*options.picture,
-                                   render::route_picture(map, route, title, *format));
+    support::write_file_atomically(
+        *options.picture, render::route_picture(map, route, title, *format, {}, closed.cells));
   }
   if (!route.found()) {
     std::cerr << "topogeo: no route: " << route.reason;
@@ -144,6 +150,13 @@ void add_simulate_route_command(CLI::App& app, int& exit_code) {
   command->add_option("--heading", options->heading_deg, "where the robot looks at the start")
       ->check(CLI::Range(-360.0, 360.0))
       ->type_name("DEG");
+  command
+      ->add_option("--block", options->blocks,
+                   "something stands there that is not on the map; can be given again")
+      ->type_name("X,Y")
+      ->allow_extra_args(false);
+  command->add_option("--config", options->config, "configuration (YAML), for its hybrid map")
+      ->type_name("FILE");
   command->add_option("--zones", options->zones, "drawn zones and places (YAML)")
       ->type_name("FILE");
   command->add_option("--picture", options->picture, "write the route on the map as .png or .svg")

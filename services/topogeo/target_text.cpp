@@ -4,6 +4,10 @@
 #include <cmath>
 #include <system_error>
 
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/service/service_options.hpp"
+
 namespace topogeo::cli {
 
 std::optional<Eigen::Vector2d> point_of(std::string_view text) {
@@ -20,6 +24,13 @@ std::optional<Eigen::Vector2d> point_of(std::string_view text) {
   const auto y = number(text.substr(comma + 1));
   if (!x || !y) return std::nullopt;
   return Eigen::Vector2d(*x, *y);
+}
+
+Eigen::Vector2d point_for(std::string_view flag, std::string_view text) {
+  const auto point_m = point_of(text);
+  if (point_m) return *point_m;
+  throw service::UsageError(fmt::format(
+      "{} = '{}': expected X,Y in metres of the map frame, for example 1.5,-2", flag, text));
 }
 
 planning::Target target_of(const std::string& text) {

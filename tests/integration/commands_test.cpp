@@ -170,6 +170,26 @@ TEST_F(CommandsTest, SimulateRouteShowsStepsAndPictureOrSaysWhyThereIsNone) {
   }
 }
 
+TEST_F(CommandsTest, SimulateRouteGoesRoundWhatIsSaidToStandInTheWay) {
+  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  const auto length_m = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"simulate-route", world, "--from", "1,1", "--to", "1,3"};
+    words.insert(words.end(), more.begin(), more.end());
+    Program program(scratch_, "topogeo", words);
+    EXPECT_EQ(program.wait(), 0) << program.err();
+    return std::stod(program.out().substr(std::string("length ").size()));
+  };
+  const double free_m = length_m({});
+  EXPECT_NEAR(free_m, 2.0, 0.01);
+  EXPECT_GT(length_m({"--block", "1,2", "--block", "0.8,2"}), free_m + 0.05);
+  for (const char* block : {"1;2", "500,500"}) {
+    Program wrong(scratch_, "topogeo",
+                  {"simulate-route", world, "--from", "1,1", "--to", "1,3", "--block", block});
+    EXPECT_EQ(wrong.wait(), 2) << block;
+    EXPECT_THAT(wrong.err(), HasSubstr("--block"));
+  }
+}
+
 TEST_F(CommandsTest, DemoTellsTheErrorBeforeAndAfter) {
   const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
   Program demo(scratch_, "topogeo",

@@ -16,6 +16,7 @@ using planning::HybridMap;
 
 constexpr double kMargin_px = 20.0;
 constexpr double kHeader_px = 40.0;
+constexpr Colour kFilled{0.95, 0.55, 0.10};
 constexpr Colour kForbidden{0.78, 0.78, 0.78};
 constexpr std::array<Colour, 6> kTints{{{0.90, 0.94, 1.00},
                                         {0.92, 0.98, 0.90},
@@ -47,11 +48,16 @@ class RouteDrawing {
         std::ceil(map_.frame().rows * scale_ + kHeader_px + kMargin_px));
   }
 
-  void draw(cairo_t* cr, const planning::HybridRoute& route, const std::string& title) const {
+  void draw(cairo_t* cr, const planning::HybridRoute& route, const std::string& title,
+            std::span<const Cell> filled) const {
     start_page(cr);
     set_colour(cr, kInk);
     draw_text(cr, title, kMargin_px, kHeader_px - 14.0, 16.0);
     draw_cells(cr);
+    set_colour(cr, kFilled);
+    for (const Cell& cell : filled) {
+      if (map_.frame().contains(cell)) draw_run(cr, cell, 1);
+    }
     for (const planning::BorderNode& node : map_.nodes()) {
       circle(cr, to_px(node.position_m), 2.5);
       fill_and_edge(cr, kDoor, kWhite, 0.5);
@@ -74,6 +80,13 @@ class RouteDrawing {
     return cells_to_px(map_.frame().in_cells(point_m));
   }
 
+  // So many cells from one on to the right.
+  void draw_run(cairo_t* cr, const Cell& first, std::int32_t cells) const {
+    const Eigen::Vector2d corner_px = cells_to_px(Eigen::Vector2d(first.column, first.row + 1));
+    cairo_rectangle(cr, corner_px.x(), corner_px.y(), cells * scale_, scale_);
+    cairo_fill(cr);
+  }
+
   // Neighbours in a row of one colour as one rectangle, to keep an SVG small.
   void draw_cells(cairo_t* cr) const {
     const auto& frame = map_.frame();
@@ -88,10 +101,8 @@ class RouteDrawing {
         std::int32_t end = first + 1;
         while (end < frame.columns && same(colour, colour_of(map_, {end, row}))) ++end;
         if (!same(colour, kWhite)) {
-          const Eigen::Vector2d corner_px = cells_to_px(Eigen::Vector2d(first, row + 1));
           set_colour(cr, colour);
-          cairo_rectangle(cr, corner_px.x(), corner_px.y(), (end - first) * scale_, scale_);
-          cairo_fill(cr);
+          draw_run(cr, {first, row}, end - first);
         }
         first = end;
       }
@@ -119,11 +130,11 @@ class RouteDrawing {
 
 std::string route_picture(const HybridMap& map, const planning::HybridRoute& route,
                           const std::string& title, PictureFormat format,
-                          const PictureOptions& options) {
+                          const PictureOptions& options, std::span<const Cell> filled) {
   check(options);
   const RouteDrawing drawing(map, options.max_width_px);
   return draw_page(format, options.max_width_px, drawing.height_px(),
-                   [&](cairo_t* cr) { drawing.draw(cr, route, title); });
+                   [&](cairo_t* cr) { drawing.draw(cr, route, title, filled); });
 }
 
 }  // namespace topogeo::render

@@ -1,6 +1,7 @@
 // A picture of a hybrid map with a route on it: what a robot would drive, before it moves.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "topogeo/planning/hybrid_planner.hpp"
@@ -11,11 +12,13 @@ namespace topogeo::render {
 
 /// The bytes of the file, `max_width_px` wide: obstacles dark, forbidden cells grey, each zone in a
 /// pale tint, border nodes, named places, and the straightened route in red from a ring to a disc.
-/// The grid is drawn in its own frame, x to the right. `route` may be one that was not found; then
+/// The cells in `filled`, which something fills that is not on the map, are orange. The grid is
+/// drawn in its own frame, x to the right. `route` may be one that was not found; then
 /// the map is drawn alone. The same input gives the same SVG bytes. Throws std::invalid_argument
 /// for a width out of range.
 std::string route_picture(const planning::HybridMap& map, const planning::HybridRoute& route,
                           const std::string& title, PictureFormat format,
-                          const PictureOptions& options = {});
+                          const PictureOptions& options = {},
+                          std::span<const planning::Cell> filled = {});
 
 }  // namespace topogeo::render
