@@ -9,8 +9,8 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStill_m_per_s = 1e-6;
-constexpr double kStraight_per_m = 1e-4;
+constexpr double kStill_m_s = 1e-6;
+constexpr double kStraightCurvature = 1e-4;
 
 double arc_cosine(double cosine) {
   return geometry::atan2(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), cosine);
@@ -43,14 +43,14 @@ double arc_way(const Eigen::Vector2d& point_m, double radius_m, double turning_m
 SweptWay sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d> points_m,
                double radius_m, double limit_m) {
   SweptWay way{limit_m, std::nullopt};
-  if (std::fabs(motion.linear_m_per_s) < kStill_m_per_s) return way;
+  if (std::fabs(motion.linear_m_per_s) < kStill_m_s) return way;
   const double ahead = motion.linear_m_per_s > 0.0 ? 1.0 : -1.0;
   // Turning about the path: positive to the left of the direction of travel.
   const double curvature = ahead * motion.angular_rad_per_s / std::fabs(motion.linear_m_per_s);
   const double left = curvature >= 0.0 ? 1.0 : -1.0;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const Eigen::Vector2d point_m(ahead * points_m[i].x(), left * points_m[i].y());
-    const double to_m = std::fabs(curvature) < kStraight_per_m
+    const double to_m = std::fabs(curvature) < kStraightCurvature
                             ? straight_way(point_m, radius_m)
                             : arc_way(point_m, radius_m, 1.0 / std::fabs(curvature));
     if (to_m < way.way_m) way = {to_m, i};

@@ -16,7 +16,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStill_m_per_s = 1e-6;
+constexpr double kStill_m_s = 1e-6;
 constexpr double kNanoseconds = 1e-9;
 
 bool heard(const SonarReading& reading) {
@@ -182,7 +182,7 @@ GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_
   }
   const std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
   const double body_m = config_.radius_m + std::min(config_.margin_m, config_.side_margin_m);
-  const bool still = std::fabs(wanted.linear_m_per_s) < kStill_m_per_s;
+  const bool still = std::fabs(wanted.linear_m_per_s) < kStill_m_s;
   const SweptWay way =
       sweep(still ? geometry::Velocity{1.0, 0.0} : wanted, points_m, body_m, kFarthest_m);
   verdict.free_way_m = way.way_m;

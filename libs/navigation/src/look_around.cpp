@@ -6,8 +6,8 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kTurn_rad_per_s = 0.5;
-constexpr double kSpeed_m_per_s = 0.2;
+constexpr double kTurn_rad_s = 0.5;
+constexpr double kSpeed_m_s = 0.2;
 constexpr double kLeg_m = 1.0;
 constexpr double kRoomLeft_m = 0.3;  // stays free ahead of the body
 constexpr double kFacing_rad = 0.1;
@@ -17,7 +17,7 @@ constexpr double kStops_m = 0.1;  // the way on after it was told to stop
 
 geometry::Velocity LookAround::step(const geometry::Pose2& T_odom_robot,
                                     const CollisionGuard& guard, std::int64_t now_ns) {
-  const double free_m = guard.judge({kSpeed_m_per_s, 0.0}, now_ns).free_way_m;
+  const double free_m = guard.judge({kSpeed_m_s, 0.0}, now_ns).free_way_m;
   if (T_odom_last_) {
     const geometry::Pose2 moved = between(*T_odom_last_, T_odom_robot);
     turned_rad_ += std::fabs(moved.theta_rad);
@@ -45,7 +45,7 @@ geometry::Velocity LookAround::round(const geometry::Pose2& T_odom_robot, double
     best_free_m_ = free_m;
     best_heading_rad_ = T_odom_robot.theta_rad;
   }
-  if (turned_rad_ < 2.0 * std::numbers::pi) return {0.0, kTurn_rad_per_s};
+  if (turned_rad_ < 2.0 * std::numbers::pi) return {0.0, kTurn_rad_s};
   const bool may_go = gone_m_ + kStops_m < farthest_m_ && best_free_m_ > 2.0 * kRoomLeft_m;
   phase_ = may_go ? Phase::kFace : Phase::kFinished;
   return {};
@@ -54,7 +54,7 @@ geometry::Velocity LookAround::round(const geometry::Pose2& T_odom_robot, double
 geometry::Velocity LookAround::face(const geometry::Pose2& T_odom_robot) {
   const double error_rad = geometry::wrap_angle(best_heading_rad_ - T_odom_robot.theta_rad);
   if (std::fabs(error_rad) > kFacing_rad) {
-    return {0.0, error_rad > 0.0 ? kTurn_rad_per_s : -kTurn_rad_per_s};
+    return {0.0, error_rad > 0.0 ? kTurn_rad_s : -kTurn_rad_s};
   }
   phase_ = Phase::kGo;
   leg_m_ = 0.0;
@@ -63,7 +63,7 @@ geometry::Velocity LookAround::face(const geometry::Pose2& T_odom_robot) {
 
 geometry::Velocity LookAround::go(double free_m) {
   if (leg_m_ < kLeg_m && gone_m_ + kStops_m < farthest_m_ && free_m > kRoomLeft_m) {
-    return {kSpeed_m_per_s, 0.0};
+    return {kSpeed_m_s, 0.0};
   }
   phase_ = Phase::kRound;
   turned_rad_ = 0.0;

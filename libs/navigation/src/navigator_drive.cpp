@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kSees_m = 2.5;       // what is further along the path does not matter yet
 constexpr double kKeepsOff_m = 0.15;  // stops so far before the place where it would touch
-constexpr double kWaiting_m_per_s = 0.05;
+constexpr double kWaiting_m_s = 0.05;
 constexpr double kBrake = 0.6;       // of the acceleration, when something is in the way
 constexpr double kSeeing_s = 0.15;   // from a measurement until a command follows, about
 constexpr double kProgress_m = 0.1;  // so far on, and it does not wait for that obstacle any more
-constexpr double kWaiting_rad_per_s = 0.1;
+constexpr double kWaiting_rad_s = 0.1;
 constexpr double kPlanEvery_s = 0.3;
 constexpr double kNearEnough_m = 0.08;  // a goal that is too narrow for the last centimetres
 constexpr double kContactsKept_s = 12.0;
@@ -95,9 +95,9 @@ geometry::Velocity Navigator::State::follow(const geometry::Pose2& T_map_robot) 
   if (needs_path) return wait_for_obstacle();
   if (guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s) go_round(T_map_robot);
   const FollowerStep order = follower.step(T_map_robot, now_ns, limit);
-  const bool before_block = block_m && limit < kWaiting_m_per_s && order.rest_m > 0.0 &&
-                            order.command.linear_m_per_s < kWaiting_m_per_s &&
-                            std::fabs(order.command.angular_rad_per_s) < kWaiting_rad_per_s;
+  const bool before_block = block_m && limit < kWaiting_m_s && order.rest_m > 0.0 &&
+                            order.command.linear_m_per_s < kWaiting_m_s &&
+                            std::fabs(order.command.angular_rad_per_s) < kWaiting_rad_s;
   const bool before_guard = guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s;
   if ((before_block || before_guard) &&
       (way.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m) {

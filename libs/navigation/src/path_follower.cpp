@@ -15,12 +15,12 @@ namespace {
 constexpr double kNanoseconds = 1e-9;
 constexpr double kBrake = 0.7;      // of the acceleration: stops are planned with a reserve
 constexpr double kTurnBrake = 0.6;  // the same of turns
-constexpr double kSlowest_m_per_s = 0.03;
-constexpr double kSlowest_rad_per_s = 0.06;
+constexpr double kSlowest_m_s = 0.03;
+constexpr double kSlowest_rad_s = 0.06;
 constexpr double kLost_rad = 0.9;     // so far off the heading it turns on the spot again
 constexpr double kCorner_rad = 0.02;  // less is no turn on the spot
-constexpr double kStands_m_per_s = 1e-3;
-constexpr double kStands_rad_per_s = 5e-3;
+constexpr double kStands_m_s = 1e-3;
+constexpr double kStands_rad_s = 5e-3;
 
 double stop_speed(double way_m, double brake) {
   return std::sqrt(2.0 * brake * std::max(0.0, way_m));
@@ -139,8 +139,8 @@ bool PathFollower::stands() const {
       commands_.back().stamp_ns - static_cast<std::int64_t>(config_.delay_s * 1e9);
   return std::all_of(commands_.rbegin(), commands_.rend(), [&](const Command& command) {
     return command.stamp_ns < since_ns ||
-           (std::fabs(command.velocity.linear_m_per_s) < kStands_m_per_s &&
-            std::fabs(command.velocity.angular_rad_per_s) < kStands_rad_per_s);
+           (std::fabs(command.velocity.linear_m_per_s) < kStands_m_s &&
+            std::fabs(command.velocity.angular_rad_per_s) < kStands_rad_s);
   });
 }
 
@@ -222,7 +222,7 @@ geometry::Velocity PathFollower::turn(double error_rad) const {
   const double most =
       std::min(config_.turn_rad_per_s,
                stop_speed(std::fabs(error_rad), kTurnBrake * config_.turn_acceleration_rad_per_s2));
-  const double speed = std::max(most, kSlowest_rad_per_s);
+  const double speed = std::max(most, kSlowest_rad_s);
   return {0.0, error_rad > 0.0 ? speed : -speed};
 }
 
@@ -236,7 +236,7 @@ geometry::Velocity PathFollower::advance(const geometry::Pose2& T_map_robot, con
   const double curvature = place.curvature_per_m + 2.0 / kSettle_m * (back_rad - heading_error_rad);
   double speed = std::min({limit_m_per_s, config_.speed_m_per_s, curve_speed(place.to_go_m)});
   speed *= std::max(0.1, 1.0 - std::fabs(heading_error_rad) / kLost_rad);
-  speed = std::max(speed, std::min(kSlowest_m_per_s, limit_m_per_s));
+  speed = std::max(speed, std::min(kSlowest_m_s, limit_m_per_s));
   if (std::fabs(curvature) * speed > config_.turn_rad_per_s) {
     speed = config_.turn_rad_per_s / std::fabs(curvature);
   }
