@@ -129,7 +129,7 @@ void MarkovTracker::primitive_done() {
 markov::PerceptionReport MarkovTracker::perceive(const SonarRound& readings) {
   if (!localizer_) throw std::runtime_error("markov tracker: perceive() before start()");
   primitive_done();
-  const auto report = localizer_->perceive(ranges_of(readings));
+  auto report = localizer_->perceive(ranges_of(readings));
   reason_ = report.possible ? "" : report.reason;
   const Eigen::Vector2d before_m = localizer_->expected().position_m();
   localizer_->accept_estimate();
