@@ -1,0 +1,249 @@
+// The map store that shows a map that there is, and the command that lists its places.
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <random>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/pipeline/hybrid_map_source.hpp"
+#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/map_mirror.hpp"
+#include "topogeo/storage/map_file.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Longer than anything takes on a busy machine.
+constexpr std::chrono::seconds kPatience{60};
+
+/// Two rooms of 4 x 4 m with a door between them, seen from the door, and a name for each.
+storage::MapDocument two_rooms() {
+  storage::MapDocument document;
+  document.robot_id = "robot";
+  topomap::LocalMap& map = document.local_maps.emplace_back();
+  map.robot_id = "robot";
+  map.stamp_ns = 5'000'000'000;
+  const auto add = [&](double x_m, double y_m) {
+    map.points.push_back({static_cast<float>(x_m - 4.0), static_cast<float>(y_m - 2.0)});
+  };
+  for (int k = 0; k <= 160; ++k) {
+    const double along_m = 0.05 * k;
+    add(along_m, 0.0);
+    add(along_m, 4.0);
+    if (along_m > 4.0) continue;
+    add(0.0, along_m);
+    add(8.0, along_m);
+    if (along_m < 1.5 || along_m > 2.5) add(4.0, along_m);
+  }
+  document.trajectory.stops.push_back(
+      {0, map.stamp_ns, {4.0, 2.0, 0.0}, Eigen::Matrix3d::Identity()});
+  document.global_map.version = 3;
+  document.global_map.nodes = {{1, topomap::NodeKind::kReal, {2.0, 2.0}, 2.0, 3},
+                               {2, topomap::NodeKind::kDoor, {4.0, 2.0}, 0.5, 3},
+                               {3, topomap::NodeKind::kReal, {6.0, 2.0}, 2.0, 3}};
+  document.global_map.branches = {{1, 1, 2, false, 3, {{{2.0, 2.0}, 2.0}, {{4.0, 2.0}, 0.5}}},
+                                  {2, 2, 3, false, 3, {{{4.0, 2.0}, 0.5}, {{6.0, 2.0}, 2.0}}}};
+  document.drawing.places = {{"room A", {2.0, 2.0}}, {"room B", {6.0, 2.0}}};
+  return document;
+}
+
+constexpr const char* kWorld =
+    "walls:\n"
+    "  - {from: [0, 0], to: [6, 0]}\n"
+    "  - {from: [6, 0], to: [6, 4]}\n"
+    "  - {from: [6, 4], to: [0, 4]}\n"
+    "  - {from: [0, 4], to: [0, 0]}\n"
+    "tour: [[1, 1]]\n"
+    "places: [{name: desk, at: [5, 3]}]\n";
+
+/// What a program makes of these maps that starts now.
+struct LateReader {
+  LateReader(const std::string& domain, const std::string& partition)
+      : participant([&] {
+          messaging::ParticipantOptions options;
+          options.domain = static_cast<std::uint32_t>(std::stoul(domain));
+          options.partition = partition;
+          options.name = "late reader";
+          return options;
+        }()) {
+    loop.add<msg::MapElement>(elements, [this](const auto& element, const auto& info) {
+      map_mirror.put(element, info.instance);
+    });
+    loop.add<msg::GridTile>(
+        tiles, [this](const auto& tile, const auto& info) { mirror.put(tile, info.instance); });
+    loop.add<msg::HybridMap>(maps,
+                             [this](const auto& summary, const auto&) { mirror.put(summary); });
+  }
+
+  bool wait() {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!(mirror.map() && map_mirror.map()) && std::chrono::steady_clock::now() < end) {
+      static_cast<void>(loop.run_for(std::chrono::milliseconds(20)));
+    }
+    return mirror.map() && map_mirror.map();
+  }
+
+  messaging::Participant participant;
+  messaging::EventLoop loop;
+  messaging::Reader<msg::MapElement> elements{participant};
+  messaging::Reader<msg::GridTile> tiles{participant};
+  messaging::Reader<msg::HybridMap> maps{participant};
+  service::MapMirror map_mirror;
+  service::HybridMapMirror mirror;
+};
+
+void expect_same(const planning::HybridMap& got, const planning::HybridMap& expected) {
+  EXPECT_EQ(got.frame().T_map_grid, expected.frame().T_map_grid);
+  EXPECT_TRUE(std::ranges::equal(got.space().grid().cells(), expected.space().grid().cells()));
+  EXPECT_EQ(got.zones().zone_of_cell, expected.zones().zone_of_cell);
+  ASSERT_EQ(got.nodes().size(), expected.nodes().size());
+  for (std::size_t i = 0; i < got.nodes().size(); ++i) {
+    EXPECT_EQ(got.nodes()[i].position_m, expected.nodes()[i].position_m);
+  }
+  ASSERT_EQ(got.places().size(), expected.places().size());
+  for (std::size_t i = 0; i < got.places().size(); ++i) {
+    EXPECT_EQ(got.places()[i].name, expected.places()[i].name);
+    EXPECT_EQ(got.places()[i].position_m, expected.places()[i].position_m);
+  }
+}
+
+class MapStoreShows : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    std::ofstream(scratch_ / name) << text;
+    return scratch_ / name;
+  }
+  std::filesystem::path write_map() {
+    storage::write_map_file(scratch_ / "map.pb", two_rooms());
+    return scratch_ / "map.pb";
+  }
+  std::vector<std::string> in_domain(std::vector<std::string> words) const {
+    words.insert(words.end(), {"--domain", own_domain(), "--partition", partition_});
+    return words;
+  }
+  /// Exit code of `topogeo places` with these words; what it says is in out_ and err_.
+  int places(std::vector<std::string> words) {
+    words.insert(words.begin(), "places");
+    Program program(scratch_, "topogeo", words);
+    const int code = program.wait();
+    out_ = program.out();
+    err_ = program.err();
+    return code;
+  }
+
+  std::string partition_ = "maps" + std::to_string(std::random_device{}());
+  Scratch scratch_;
+  std::string out_;
+  std::string err_;
+};
+
+TEST_F(MapStoreShows, AStoredMapToWhoeverComesLate) {
+  Program store(scratch_, "map_store", in_domain({"--map", write_map().string()}));
+  store.wait_for_error_text("serves a map of 1 local maps, 2 zones and 2 places");
+  LateReader reader(own_domain(), partition_);
+  ASSERT_TRUE(reader.wait());
+  const storage::MapDocument document = two_rooms();
+  expect_same(*reader.mirror.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
+  const topomap::GlobalMap global = reader.map_mirror.map().value();
+  EXPECT_EQ(global.version, 3U);
+  ASSERT_EQ(global.nodes.size(), 3U);
+  EXPECT_EQ(global.nodes[1].kind, topomap::NodeKind::kDoor);
+  EXPECT_EQ(global.nodes[2].position_m, document.global_map.nodes[2].position_m);
+  ASSERT_EQ(global.branches.size(), 2U);
+  EXPECT_EQ(global.branches[1].node_b, 3U);
+
+  EXPECT_EQ(places(in_domain({"--wait-seconds", "60"})), 0) << err_;
+  EXPECT_THAT(out_, HasSubstr("room B"));
+  EXPECT_THAT(out_, HasSubstr("6.00     2.00  zone 1"));
+  store.send_signal(SIGTERM);
+  EXPECT_EQ(store.wait(), 0);
+}
+
+TEST_F(MapStoreShows, ADrawingOverAMap) {
+  const auto world = write("yard.world.yaml", kWorld);
+  Program store(scratch_, "map_store",
+                in_domain({"--map", write_map().string(), "--drawing", world.string(),
+                           "--drawing-pose", "-9,1,90"}));
+  store.wait_for_error_text("serves a map");
+  LateReader reader(own_domain(), partition_);
+  ASSERT_TRUE(reader.wait());
+  storage::MapDocument document = two_rooms();
+  pipeline::lay_over(document.drawing,
+                     pipeline::read_drawing(world, {}, 0.1, {-9.0, 1.0, 1.5707963267948966}));
+  expect_same(*reader.mirror.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
+  EXPECT_EQ(reader.mirror.map()->places().size(), 3U);
+}
+
+TEST_F(MapStoreShows, NothingOfWhatIsNoMap) {
+  const auto expect = [&](const std::vector<std::string>& words, int code, const char* message) {
+    Program store(scratch_, "map_store", words);
+    EXPECT_EQ(store.wait(), code);
+    EXPECT_THAT(store.err(), HasSubstr(message));
+  };
+  expect({"--map", write("no.pb", "nonsense").string()}, 3, "no.pb: not a topogeo map");
+  storage::MapDocument blind = two_rooms();
+  blind.local_maps[0].points.clear();
+  storage::write_map_file(scratch_ / "blind.pb", blind);
+  expect({"--map", (scratch_ / "blind.pb").string()}, 3, "no stop with scan points");
+  expect({"--map", write_map().string(), "--out", (scratch_ / "out").string()}, 2,
+         "--out and --continue do not go with it");
+  expect({"--drawing", write("bad.world.yaml", "walls: 3").string()}, 3, "bad.world.yaml:1: walls");
+  expect({"--map", write_map().string(), "--drawing-pose", "1,2,3"}, 2, "go with a --drawing");
+  expect({"--drawing", write("a.world.yaml", kWorld).string(), "--drawing-pose", "1,2"}, 2,
+         "--drawing-pose: ");
+  expect({}, 2, "--out is required");
+}
+
+TEST_F(MapStoreShows, PlacesOfAFileCanBeChanged) {
+  const std::string map = write_map().string();
+  EXPECT_EQ(
+      places({map, "--add", "kitchen=6.5,3", "--add", "room A=1.5,1.5", "--remove", "room B"}), 0)
+      << err_;
+  EXPECT_THAT(out_, HasSubstr("kitchen"));
+  EXPECT_THAT(out_, Not(HasSubstr("room B")));
+  const storage::MapDocument read = storage::read_map_file(map);
+  ASSERT_EQ(read.drawing.places.size(), 2U);
+  EXPECT_EQ(read.drawing.places[0].position_m, Eigen::Vector2d(1.5, 1.5));
+  EXPECT_EQ(read.drawing.places[1].name, "kitchen");
+  EXPECT_EQ(read.local_maps.size(), 1U) << "the rest of the map is as it was";
+
+  const std::string before = read_file(map);
+  const auto refused = [&](const std::vector<std::string>& words, int code, const char* message) {
+    std::vector<std::string> all{map};
+    all.insert(all.end(), words.begin(), words.end());
+    EXPECT_EQ(places(all), code);
+    EXPECT_THAT(err_, HasSubstr(message));
+    EXPECT_EQ(read_file(map), before);
+  };
+  refused({"--remove", "room B"}, 3, "there is no such place, the map has 'room A', 'kitchen'");
+  refused({"--add", "a=1"}, 2, "expected NAME=X,Y");
+  refused({"--add", "=1,2"}, 2, "expected a name of 1 to 64 bytes");
+  refused({"--add", "1,2=3,4"}, 2, "would be taken for a point");
+  refused({"--add", "far=1e9,0"}, 2, "coordinate 1000000000");
+}
+
+TEST_F(MapStoreShows, PlacesOfAWorldAreListed) {
+  const auto world = write("yard.world.yaml", kWorld);
+  EXPECT_EQ(places({world.string()}), 0) << err_;
+  EXPECT_THAT(out_, HasSubstr("desk                     5.00     3.00  zone 0"));
+  EXPECT_THAT(out_, HasSubstr("zone   0"));
+  EXPECT_EQ(places({world.string(), "--add", "a=1,1"}), 2);
+  EXPECT_EQ(places({(scratch_ / "none.pb").string()}), 3);
+  EXPECT_THAT(err_, HasSubstr("none.pb: cannot be opened"));
+  EXPECT_EQ(places(in_domain({"live", "--wait-seconds", "0.2"})), 1);
+  EXPECT_THAT(err_, HasSubstr("no hybrid map of robot 'robot'"));
+}
+
+}  // namespace
+}  // namespace topogeo::test
