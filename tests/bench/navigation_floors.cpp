@@ -99,6 +99,7 @@ void drive_to(const planning::FreeSpace& space, const Cell& to,
   const planning::HybridRoute route =
       planning::plan_on_grid(space, tour_m.back(), space.frame().center_m(to));
   if (!route.found()) throw std::runtime_error("tour: " + route.reason);
+  if (route.points_m.size() < 2) return;
   tour_m.insert(tour_m.end(), route.points_m.begin() + 1, route.points_m.end());
 }
 
@@ -142,6 +143,15 @@ std::vector<Eigen::Vector2d> tour_of_everything(const simulation::World& world) 
   return tour_m;
 }
 
+std::vector<Eigen::Vector2d> mapping_tour(const simulation::World& world) {
+  const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(world)));
+  std::vector<Eigen::Vector2d> tour_m = world.tour_m;
+  drive_to(space, *space.frame().cell_of(world.tour_m.front()), tour_m);
+  const std::vector<Eigen::Vector2d> rooms_m = tour_of_everything(world);
+  tour_m.insert(tour_m.end(), rooms_m.begin(), rooms_m.end());
+  return tour_m;
+}
+
 geometry::Pose2 MappedFloor::T_world_map() const {
   return T_world_stop.front() * geometry::inverse(stored->trajectory.stops.front().T_map_robot);
 }
@@ -161,7 +171,7 @@ MappedFloor map_floor(std::string_view name, const pipeline::Config& config, Whe
   MappedFloor floor;
   floor.world = navigation_floor(name);
   simulation::World toured = floor.world;
-  toured.tour_m = tour_of_everything(floor.world);
+  toured.tour_m = mapping_tour(floor.world);
   for (std::size_t i = 1; i < toured.tour_m.size(); ++i) {
     floor.tour_m += (toured.tour_m[i] - toured.tour_m[i - 1]).norm();
   }

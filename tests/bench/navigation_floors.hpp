@@ -32,13 +32,16 @@ enum class Wheels : std::uint8_t {
 
 simulation::OdometryDrift drift_of(Wheels wheels, std::uint64_t seed);
 
-/// A floor of kNavigationFloors, without a tour of its own: the tour of load and of
-/// tour_of_everything differ. Throws std::invalid_argument for another name, and as load_world.
+/// A floor of kNavigationFloors. Throws std::invalid_argument for another name, and as load_world.
 simulation::World navigation_floor(std::string_view name);
 
 /// Way points from the first point of the world's tour past everything that can be reached, and
 /// back: each cell of the free space comes within 4 m in plain sight.
 std::vector<Eigen::Vector2d> tour_of_everything(const simulation::World& world);
+
+/// The tour of the world, which closes the long loops, back to its start, then the tour of
+/// everything: what somebody drives who makes a map.
+std::vector<Eigen::Vector2d> mapping_tour(const simulation::World& world);
 
 struct MappedFloor {
   simulation::World world;
