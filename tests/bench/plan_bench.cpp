@@ -1,11 +1,12 @@
 // Routes on a floor of 200 x 200 m: 2,000 x 2,000 cells, 200 drawn zones, six pieces of furniture
-// in each; and through a graph of 10,000 nodes.
+// in each; through a graph of 10,000 nodes; and round what stands in the way.
 #include <cstdint>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "topogeo/planning/hybrid_planner.hpp"
+#include "topogeo/planning/local_detour.hpp"
 #include "topogeo/planning/route_graph.hpp"
 #include "topogeo/support/random.hpp"
 
@@ -102,5 +103,63 @@ void plan_graph(benchmark::State& state) {
   }
 }
 BENCHMARK(plan_graph)->Name("plan/graph_10000")->Unit(benchmark::kMillisecond);
+
+// A robot on its way through a floor of 60 x 40 m that sees something in its way, half a second's
+// work of a laser: the furniture round it again and a box ahead.
+void plan_detour_round_box(benchmark::State& state) {
+  static const BlockFloor floor = block_floor({12, 10, 50, 40, 10, 2}, kSeed);
+  static const FreeSpace space(floor.grid);
+  support::Random random(kSeed);
+  HybridRoute route;
+  while (route.length_m < 40.0) {
+    const Eigen::Vector2d from_m = random_free_point_m(space, random);
+    route = plan_on_grid(space, from_m, random_free_point_m(space, random));
+  }
+  const std::size_t at = route.cells.size() / 8;
+  const Eigen::Vector2d robot_m = space.frame().center_m(route.cells[at]);
+  const Eigen::Vector2d box_m = space.frame().center_m(route.cells[at + 15]);
+  std::vector<Eigen::Vector2d> seen_m;
+  for (const Cell& cell : route.cells) {
+    for (std::int32_t k = -30; k <= 30 && seen_m.size() < 300; k += 3) {
+      const Cell near{cell.column + k, cell.row - k};
+      if (space.frame().contains(near) && space.grid().at(near) == CellState::kOccupied) {
+        seen_m.push_back(space.frame().center_m(near));
+      }
+    }
+  }
+  for (int k = 0; k < 60; ++k) {
+    seen_m.push_back(box_m + Eigen::Vector2d(0.01 * (k % 20) - 0.1, 0.05 * (k / 20) - 0.05));
+  }
+  DetourStatus status = DetourStatus::kLost;
+  for (auto _ : state) {
+    const Detour detour = plan_detour(space, route.cells, robot_m, route.points_m.back(), seen_m);
+    status = detour.status;
+    benchmark::DoNotOptimize(detour.cells.data());
+  }
+  if (status != DetourStatus::kFound) state.SkipWithError("there is no detour");
+  state.counters["points"] = static_cast<double>(seen_m.size());
+  state.counters["route_m"] = route.length_m;
+}
+BENCHMARK(plan_detour_round_box)->Name("plan/detour")->Unit(benchmark::kMillisecond);
+
+// The floor of 200 x 200 m with something in 40 of its doors and in the way.
+void plan_closed(benchmark::State& state) {
+  static const HybridMap map = large_floor().map();
+  const HybridPlanner planner(map);
+  support::Random random(kSeed);
+  Closures closed;
+  constexpr int kThings = 40;
+  for (int k = 0; k < kThings; ++k) {
+    const Cell at = map.nodes()[random.below(map.nodes().size())].cells[0];
+    for (std::int32_t x = 0; x < 4; ++x) closed.cells.push_back({at.column + x, at.row});
+  }
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const Query& query = large_floor().queries()[next];
+    benchmark::DoNotOptimize(planner.plan(query.from_m, query.to_m, closed));
+    next = (next + 1) % large_floor().queries().size();
+  }
+}
+BENCHMARK(plan_closed)->Name("plan/closed_2000")->Unit(benchmark::kMillisecond);
 
 }  // namespace

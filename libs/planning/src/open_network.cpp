@@ -22,7 +22,7 @@ std::int64_t squared(const Cell& a, const Cell& b) {
 }
 
 std::size_t index_in(const CellBox& box, const Cell& cell) {
-  const auto width = static_cast<std::size_t>(box.high.column - box.low.column + 1);
+  const auto width = static_cast<std::size_t>(box.high.column - box.low.column) + 1;
   return static_cast<std::size_t>(cell.row - box.low.row) * width +
          static_cast<std::size_t>(cell.column - box.low.column);
 }
