@@ -18,6 +18,7 @@ void add_demo_command(CLI::App& app, int& exit_code);
 void add_simulator_command(CLI::App& app, int& exit_code);
 void add_status_command(CLI::App& app, int& exit_code);
 void add_workers_command(CLI::App& app, int& exit_code);
+void add_explore_command(CLI::App& app, int& exit_code);
 void add_goto_command(CLI::App& app, int& exit_code);
 void add_places_command(CLI::App& app, int& exit_code);
 void add_plan_command(CLI::App& app, int& exit_code);

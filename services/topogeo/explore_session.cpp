@@ -1,0 +1,157 @@
+#include "explore_session.hpp"
+
+#include <iostream>
+#include <stdexcept>
+#include <utility>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/render/route_picture.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/progress_bar.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+constexpr double kWayStep_m = 0.1;
+
+std::int64_t monotonic_ns() {
+  return static_cast<std::int64_t>(1e9 * support::monotonic_s());
+}
+
+}  // namespace
+
+ExploreSession::ExploreSession(const messaging::Participant& participant,
+                               messaging::EventLoop& loop, const std::string& robot_id)
+    : robot_id_(robot_id),
+      client_(participant, loop, robot_id),
+      progress_(std::cerr, support::stderr_is_terminal(), terminal_columns()),
+      elements_(participant),
+      segments_(participant),
+      poses_(participant) {
+  listen(loop);
+}
+
+// The services count what they cannot use of a message; here it is passed over.
+void ExploreSession::listen(messaging::EventLoop& loop) {
+  using messaging::SampleInfo;
+  loop.add<msg::MapElement>(
+      elements_,
+      [this](const msg::MapElement& element, const SampleInfo& info) {
+        if (!is_own(element)) return;
+        try {
+          graph_mirror_.put(element, info.instance);
+          graph_changed_ = true;
+        } catch (const std::invalid_argument&) {
+          return;
+        }
+      },
+      [this](const SampleInfo& info) {
+        if (info.state != messaging::InstanceState::kDisposed) return;
+        graph_mirror_.remove(info.instance);
+        graph_changed_ = true;
+      });
+  loop.add<msg::TrajectorySegment>(
+      segments_, [this](const msg::TrajectorySegment& segment, const SampleInfo&) {
+        if (!is_own(segment)) return;
+        try {
+          trajectory_.add(segment);
+        } catch (const std::invalid_argument&) {
+          return;
+        }
+      });
+  loop.add<msg::LivePose>(poses_, [this](const msg::LivePose& pose, const SampleInfo&) {
+    if (is_own(pose)) pose_ = pose;
+  });
+}
+
+void ExploreSession::take_map() {
+  const std::shared_ptr<const planning::HybridMap> map = client_.map();
+  bool changed = map != map_;
+  if (graph_changed_) {
+    if (std::optional<topomap::GlobalMap> graph = graph_mirror_.map()) {
+      graph_changed_ = false;
+      graph_ = std::make_shared<const topomap::GlobalMap>(std::move(*graph));
+      changed = true;
+    }
+  }
+  map_ = map;
+  if (!changed || !map_) return;
+  navigation::ExploredMap explored;
+  explored.version = ++map_versions_;
+  explored.graph = graph_ ? graph_ : std::make_shared<const topomap::GlobalMap>();
+  explored.map = map_;
+  for (const topomap::StopPose& stop : trajectory_.newest().stops) {
+    if (stop.located) explored.T_map_stops.push_back(stop.T_map_robot);
+  }
+  tour_.set_map(std::move(explored));
+}
+
+navigation::NavigatorStatus ExploreSession::navigator() const {
+  navigation::NavigatorStatus status;
+  if (client_.status() && client_.taken()) {
+    status = service::from_msg(*client_.status());
+    status.goal_id = goal_id_;
+  }
+  const bool tracked = pose_ && pose_->state() == msg::kStateTracking;
+  status.T_map_robot.reset();
+  if (tracked) status.T_map_robot = service::from_msg(pose_->T_map_robot());
+  return status;
+}
+
+void ExploreSession::remember_way() {
+  if (!pose_ || pose_->state() != msg::kStateTracking) return;
+  const Eigen::Vector2d at_m = service::from_msg(pose_->T_map_robot()).position_m();
+  const double step_m = way_m_.empty() ? 0.0 : (at_m - way_m_.back()).norm();
+  if (!way_m_.empty() && step_m < kWayStep_m) return;
+  driven_m_ += step_m;
+  way_m_.push_back(at_m);
+}
+
+void ExploreSession::tick() {
+  take_map();
+  remember_way();
+  const auto goal = tour_.step(navigator(), monotonic_ns());
+  if (goal) {
+    goal_id_ = goal->goal_id;
+    service::Goal order;
+    order.kind = msg::kGoalPosition;
+    order.target = goal->T_map_goal.position_m();
+    order.heading_rad = goal->T_map_goal.theta_rad;
+    client_.send(order);
+    progress_.say(fmt::format("{:.1f} m driven: {}", driven_m_, tour_.message()));
+  }
+  if (client_.status()) progress_.show(*client_.status(), support::monotonic_s());
+}
+
+std::string ExploreSession::trouble() const {
+  if (pose_ && pose_->mode() == msg::kModeLocalization) {
+    return "the localizer does not map: topogeo localizer mode mapping";
+  }
+  return {};
+}
+
+bool ExploreSession::stands() const {
+  return !client_.status() ||
+         (client_.status()->linear_mps() == 0.0 && client_.status()->angular_radps() == 0.0);
+}
+
+std::string ExploreSession::summary() const {
+  return fmt::format("{} targets in {:.1f} m, {} of them given up; {}", tour_.targets(), driven_m_,
+                     tour_.given_up(), tour_.message());
+}
+
+void ExploreSession::write_picture(const std::filesystem::path& file) const {
+  if (!map_) throw std::runtime_error("no picture: there was no map");
+  planning::HybridRoute way;
+  way.status = planning::RouteStatus::kFound;
+  way.points_m = way_m_;
+  support::write_file_atomically(
+      file, render::route_picture(*map_, way, fmt::format("explored in {:.1f} m", driven_m_),
+                                  render::picture_format(file)));
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,81 @@
+// An exploration of the floor around a robot: follows the map as it grows and sends the robot from
+// target to target.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/msg/map_update.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/navigation/exploration_tour.hpp"
+#include "topogeo/service/map_mirror.hpp"
+#include "topogeo/service/trajectory_assembly.hpp"
+
+#include "goal_client.hpp"
+#include "goal_progress.hpp"
+
+namespace topogeo::cli {
+
+class ExploreSession {
+ public:
+  /// Lives in the loop. Throws like GoalClient.
+  ExploreSession(const messaging::Participant& participant, messaging::EventLoop& loop,
+                 const std::string& robot_id);
+
+  [[nodiscard]] GoalClient& client() { return client_; }
+
+  /// Takes the map over when it has changed, gives the next goal, shows what is new. Call it some
+  /// ten times a second. Throws std::runtime_error when a goal cannot be sent.
+  void tick();
+
+  [[nodiscard]] bool done() const { return tour_.done(); }
+  /// Why it cannot explore, as far as that will not change by itself; empty: it can.
+  [[nodiscard]] std::string trouble() const;
+  /// The robot stands: what it was commanded last is nothing.
+  [[nodiscard]] bool stands() const;
+  /// A line for the end: targets, metres, what was given up.
+  [[nodiscard]] std::string summary() const;
+  /// The map and the way driven, as a picture (.png or .svg). Throws std::runtime_error when it
+  /// cannot be written.
+  void write_picture(const std::filesystem::path& file) const;
+
+ private:
+  void listen(messaging::EventLoop& loop);
+  void take_map();
+  void remember_way();
+  [[nodiscard]] navigation::NavigatorStatus navigator() const;
+  [[nodiscard]] bool is_own(const auto& message) const {
+    return message.robot_id() == robot_id_.c_str();
+  }
+
+  std::string robot_id_;
+  GoalClient client_;
+  GoalProgress progress_;
+  navigation::ExplorationTour tour_;
+  service::MapMirror graph_mirror_;
+  service::TrajectoryAssembly trajectory_;
+  bool graph_changed_ = false;
+  std::shared_ptr<const topomap::GlobalMap> graph_;
+  std::shared_ptr<const planning::HybridMap> map_;
+  std::uint64_t map_versions_ = 0;
+  std::uint64_t goal_id_ = 0;  // as the tour numbers it
+  std::optional<msg::LivePose> pose_;
+  std::vector<Eigen::Vector2d> way_m_;  // map frame
+  double driven_m_ = 0.0;
+
+  messaging::Reader<msg::MapElement> elements_;
+  messaging::Reader<msg::TrajectorySegment> segments_;
+  messaging::Reader<msg::LivePose> poses_;
+};
+
+}  // namespace topogeo::cli
