@@ -29,12 +29,10 @@ geometry::Velocity Navigator::State::without_route() {
                 HaltReason::kNoRoute, refused);
   }
   const double waited_s = since_s(waits_route_ns.value_or(goal_ns));
-  const bool searched = lost || waits_route_ns.has_value();
-  return stop(searched ? NavigatorState::kRelocalizing : NavigatorState::kStopped,
-              HaltReason::kWaitsForRoute,
-              waited_s < config.route_wait_s
-                  ? "waits for the planner"
-                  : say("the planner has not answered for %.0f s", waited_s));
+  return stop(
+      lost ? NavigatorState::kRelocalizing : NavigatorState::kStopped, HaltReason::kWaitsForRoute,
+      waited_s < config.route_wait_s ? "waits for the planner"
+                                     : say("the planner has not answered for %.0f s", waited_s));
 }
 
 std::vector<Eigen::Vector2d> Navigator::State::standing_m() const {
@@ -48,6 +46,7 @@ std::vector<Eigen::Vector2d> Navigator::State::standing_m() const {
 bool Navigator::State::find_path(const geometry::Pose2& T_map_robot) {
   auto local = way.plan(T_map_robot.position_m(), standing_m());
   planned_ns = now_ns;
+  no_way_to_route = local.status == planning::DetourStatus::kLost;
   if (local.path.empty()) return false;
   // A long way round is taken when what is in the way has had its time to go away.
   constexpr double kLong_m = 2.0;
@@ -172,8 +171,9 @@ geometry::Velocity Navigator::State::wait_for_obstacle() {
 void Navigator::State::tell_waiting() {
   const double waited_s = since_s(*blocked_ns);
   if (!reported && waited_s >= config.obstacle_wait_s + kPlanEvery_s) report_blockage();
-  const std::string what =
-      block_m ? say("something is in the way %.1f m ahead", block_ahead_m) : "the way is blocked";
+  const std::string what = block_m ? say("something is in the way %.1f m ahead", block_ahead_m)
+                           : no_way_to_route ? "no way leads from here to the route"
+                                             : "the way is blocked";
   status.state = NavigatorState::kBlocked;
   status.reason = reported ? HaltReason::kWaitsForRoute : HaltReason::kObstacle;
   if (!reported) {

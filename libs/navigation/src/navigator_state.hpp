@@ -36,6 +36,7 @@ struct Navigator::State {
   /// The guard's word on a wanted velocity; what comes out is what the base is told.
   geometry::Velocity command(const geometry::Velocity& wanted);
   void use_scan();
+  [[nodiscard]] bool usable(const RoutePlan& route) const;
   void use_route();
   void note_pose_jump();
 
@@ -96,7 +97,8 @@ struct Navigator::State {
   std::int64_t goal_ns = 0;             ///< since when a route is waited for
 
   bool needs_path = false;
-  bool lost = false;  ///< the pose was lost, or has jumped: the route may be of no use
+  bool no_way_to_route = false;  ///< the last search for a path did not even begin
+  bool lost = false;             ///< the pose was lost, or has jumped: the route may be of no use
   std::int64_t lost_ns = 0;
   std::optional<std::int64_t> waits_route_ns;  ///< since when a fresh route is waited for
 

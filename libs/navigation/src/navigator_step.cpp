@@ -86,37 +86,44 @@ void Navigator::State::note_pose_jump() {
   if (jump_m > kRoute_m) lost = true;
 }
 
+// Routes of a map that is to come wait for it. Those of an older map are good where the new one has
+// room for them; what an older map has no route for, the planner is asked again by the new one.
+bool Navigator::State::usable(const RoutePlan& route) const {
+  if (route.map_version > map_version) return false;
+  if (reported && route.blockages_version < blockade.report().version) return false;
+  return route.map_version == map_version || (route.found && way.fits(route));
+}
+
 void Navigator::State::use_route() {
-  if (!offered || !map || offered->map_version != map_version) return;
-  if (offered->blockages_version < blockade.report().version && reported) return;
+  if (!offered || !map || !usable(*offered)) return;
   const RoutePlan route = *std::exchange(offered, std::nullopt);
-  if (!route.found) {
+  if (!route.found || route.points_m.empty()) {
     refused = route.reason.empty() ? "the planner has no route" : route.reason;
     way.forget();
     follower.forget();
     return;
   }
-  refused.clear();
-  const bool same_goal = way.has_route() && !route.points_m.empty() &&
-                         (way.goal_m() - route.points_m.back()).norm() < 0.01;
+  const bool same_goal = way.has_route() && (way.goal_m() - route.points_m.back()).norm() < 0.01 &&
+                         way.route().heading_rad == route.heading_rad;
   // The same way again, from a little further on: nothing changes for who is on it.
   const bool same_way =
-      same_goal && !needs_path && !blocked_ns && follower.has_path() && !reported &&
+      same_goal && !needs_path && !follower.path().empty() && !reported &&
       std::all_of(route.points_m.begin(), route.points_m.end(), [&](const auto& point_m) {
         constexpr double kSame_m = 0.35;
         return distance_m(follower.path(), point_m) < kSame_m;
       });
-  if (route.points_m.empty() || !way.take(route)) {
-    refused = "the planner's route is empty";
+  if (!way.take(route)) {
+    refused = "the planner's route is not on the map";
     return;
   }
-  ++status.routes;
+  refused.clear();
   waits_route_ns.reset();
+  if (same_way || (same_goal && settle_ns)) return;
+  ++status.routes;
   reported = false;
   blocked_ns.reset();
   guard_stop_ns.reset();
   lost = false;
-  if (same_way || (same_goal && settle_ns)) return;
   needs_path = true;
   settle_ns.reset();
   corrections = 0;

@@ -56,6 +56,16 @@ bool RouteWay::take(const RoutePlan& route) {
   return true;
 }
 
+bool RouteWay::fits(const RoutePlan& route) const {
+  constexpr double kEnds_m = 0.5;
+  const std::vector<planning::Cell> cells = cells_of(map_->frame(), route.points_m);
+  return !cells.empty() && std::all_of(cells.begin(), cells.end(), [&](const planning::Cell& cell) {
+    const Eigen::Vector2d middle_m = map_->frame().center_m(cell);
+    return map_->space().passable(cell) || (middle_m - route.points_m.front()).norm() < kEnds_m ||
+           (middle_m - route.points_m.back()).norm() < kEnds_m;
+  });
+}
+
 void RouteWay::forget() {
   cells_.clear();
   route_ = {};

@@ -21,6 +21,9 @@ class RouteWay {
 
   void set_map(std::shared_ptr<const planning::HybridMap> map) { map_ = std::move(map); }
 
+  /// Whether a route of another map has room in this one, its ends apart.
+  [[nodiscard]] bool fits(const RoutePlan& route) const;
+
   /// Takes a route that was found; false when none of its points is on the map.
   bool take(const RoutePlan& route);
   void forget();

@@ -96,6 +96,35 @@ TEST_F(NavigatorHalt, ARouteOfAMapToComeWaitsForIt) {
   expect_arrival();
 }
 
+TEST_F(NavigatorHalt, ARouteOfAnOlderMapIsGoodWhereItHasRoom) {
+  drive.go_to({6.5, 4.5});
+  drive.send_route();
+  drive.navigator.set_map(drive.map, 2);
+  drive.planner_answers = false;
+  expect_arrival();
+}
+
+TEST_F(NavigatorHalt, ARouteOfAnOlderMapThatIsNoMoreFreeIsNone) {
+  drive.go_to({6.5, 4.5});
+  drive.send_route();
+  drive.planner_answers = false;
+  simulation::World walled = drive.world;
+  walled.segments.push_back({{4.0, 0.0}, {4.0, 5.0}});
+  drive.navigator.set_map(map_of(walled), 2);
+  expect_halt(HaltReason::kWaitsForRoute, NavigatorState::kStopped, 0.1);
+}
+
+TEST_F(NavigatorHalt, TheSameRouteAgainChangesNothing) {
+  drive_off();
+  for (int i = 0; i < 40; ++i) {
+    drive.send_route();
+    drive.step();
+    EXPECT_GT(drive.told.linear_m_per_s, 0.3);
+  }
+  EXPECT_EQ(drive.status().routes, 1U);
+  expect_arrival();
+}
+
 TEST_F(NavigatorHalt, Cancelled) {
   drive_off();
   drive.navigator.cancel();
@@ -244,7 +273,7 @@ TEST_F(NavigatorHalt, AMapWithAWallAcrossTheRouteStopsIt) {
   drive.map = map_of(walled);
   drive.map_version = 2;
   drive.navigator.set_map(drive.map, 2);
-  expect_halt(HaltReason::kWaitsForRoute, NavigatorState::kRelocalizing, 0.1);
+  expect_halt(HaltReason::kWaitsForRoute, NavigatorState::kStopped, 0.1);
   drive.planner_answers = true;
   expect_arrival();
 }
