@@ -1,0 +1,207 @@
+#include "navigator_fixture.hpp"
+
+#include <algorithm>
+#include <future>
+#include <variant>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/pipeline/world_grid.hpp"
+#include "topogeo/planning/hybrid_planner.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/service/hybrid_map_messages.hpp"
+#include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/support/version.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Info = messaging::SampleInfo;
+
+constexpr std::chrono::milliseconds kMove{20};
+constexpr std::int64_t kScanPeriod_ns = 100'000'000;
+constexpr std::uint64_t kMapVersion = 3;
+
+simulation::World room() {
+  return simulation::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+}
+
+simulation::RobotOptions robot_options() {
+  simulation::RobotOptions options;
+  options.acceleration_m_per_s2 = 1.5;
+  options.angular_acceleration_rad_per_s2 = 4.0;
+  options.odometry = {.range_scale_error = 0.0,
+                      .range_sigma_m_per_sqrt_m = 0.0,
+                      .heading_drift_rad_per_m = 0.0,
+                      .heading_sigma_rad_per_sqrt_m = 0.0,
+                      .turn_sigma_rad_per_sqrt_rad = 0.0};
+  return options;
+}
+
+planning::HybridMap make_map() {
+  const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(room())));
+  return {space, planning::zones_by_width(space), {}};
+}
+
+messaging::Participant join(const std::string& domain, const std::string& partition) {
+  messaging::ParticipantOptions options;
+  options.domain = static_cast<std::uint32_t>(std::stoul(domain));
+  options.partition = partition;
+  return messaging::Participant(options);
+}
+
+}  // namespace
+
+NavigatorOnRobot::NavigatorOnRobot()
+    : robot_(room(), robot_options()),
+      map_(make_map()),
+      participant_(join(domain_, kPartition)),
+      poses_(participant_),
+      goals_(participant_),
+      routes_(participant_),
+      tiles_(participant_),
+      maps_(participant_),
+      odometry_(participant_),
+      scans_(participant_),
+      bases_(participant_),
+      command_reader_(participant_),
+      status_reader_(participant_),
+      service_reader_(participant_),
+      goal_reader_(participant_) {
+  loop_.add<msg::MotionCommand>(command_reader_,
+                                [this](const msg::MotionCommand& command, const Info&) {
+                                  command_ = command;
+                                  ++commands_;
+                                  command_end_ = Clock::now() + std::chrono::milliseconds(300);
+                                });
+  loop_.add<msg::NavigatorStatus>(status_reader_, [this](const msg::NavigatorStatus& status,
+                                                         const Info&) { status_ = status; });
+  loop_.add<msg::ServiceStatus>(service_reader_,
+                                [this](const msg::ServiceStatus& status, const Info&) {
+                                  if (status.service() == "navigator") service_status_ = status;
+                                });
+  loop_.add<msg::Goal>(goal_reader_, [this](const msg::Goal& goal, const Info&) { answer(goal); });
+  loop_.add_timer(kMove, [this] { move(); });
+}
+
+void NavigatorOnRobot::start() {
+  const service::HybridMapMessages messages =
+      service::to_messages(map_, "robot", stamp_ns(), kMapVersion);
+  for (const msg::GridTile& tile : messages.tiles) ASSERT_TRUE(tiles_.write(tile));
+  ASSERT_TRUE(maps_.write(messages.summary));
+  navigator_ = std::make_unique<Program>(
+      scratch_, "navigator",
+      std::vector<std::string>{"--domain", domain_, "--partition", kPartition});
+  ASSERT_TRUE(wait_for([this] {
+    return status_ && scans_.matched() > 0 && poses_.matched() > 0 && goals_.matched() > 1 &&
+           routes_.matched() > 0 && counter("map_version") == static_cast<double>(kMapVersion);
+  })) << navigator_->err();
+}
+
+void NavigatorOnRobot::pretend_planner() {
+  planner_.emplace(
+      participant_, loop_,
+      messaging::ServiceIdentity{"planner", "", "robot", std::string(support::kVersion)});
+  planner_->set_state(msg::kServiceRunning);
+}
+
+std::int64_t NavigatorOnRobot::stamp_ns() const {
+  constexpr std::int64_t kSomeDay_ns = 1'000'000'000'000;
+  return kSomeDay_ns + std::chrono::nanoseconds(Clock::now() - start_).count();
+}
+
+/// The world is as late as this process.
+void NavigatorOnRobot::move() {
+  const std::int64_t now_ns = stamp_ns();
+  if (moved_ns_ == 0) moved_ns_ = now_ns;
+  simulation::Velocity velocity;
+  if (command_ && Clock::now() < command_end_) {
+    velocity = {command_->linear_mps(), command_->angular_radps()};
+  }
+  robot_.step(velocity, static_cast<double>(now_ns - moved_ns_) * 1e-9);
+  moved_ns_ = now_ns;
+  msg::Odometry odometry;
+  messaging::set_header(odometry, robot_id_, now_ns, sent_++);
+  odometry.T_odom_robot(service::to_msg(robot_.T_odom_robot()));
+  odometry.linear_mps(robot_.velocity().linear_m_per_s);
+  odometry.angular_radps(robot_.velocity().angular_rad_per_s);
+  static_cast<void>(odometry_.write(odometry));
+  if (now_ns < scan_due_ns_) return;
+  scan_due_ns_ = now_ns + kScanPeriod_ns;
+  sense();
+}
+
+void NavigatorOnRobot::sense() {
+  scan::Scan scan;
+  scan.sequence = sent_;
+  scan.stamp_ns = moved_ns_;
+  const simulation::BeamPattern& beams = robot_.options().beams;
+  scan.angle_min_rad = beams.angle_min_rad;
+  scan.angle_step_rad = beams.angle_step_rad;
+  scan.ranges_m = robot_.scan();
+  scan.T_odom_robot = robot_.T_odom_robot();
+  static_cast<void>(scans_.write(service::to_msg(scan, robot_id_)));
+
+  service::LivePose pose;
+  pose.stamp_ns = moved_ns_;
+  pose.sequence = sent_;
+  pose.belief = {static_cast<localization::LocalizationState>(pose_state_), 0.9};
+  pose.T_map_robot = robot_.T_world_robot();
+  pose.covariance = 1e-4 * Eigen::Matrix3d::Identity();
+  static_cast<void>(poses_.write(service::to_msg(pose, robot_id_)));
+
+  msg::BaseStatus base;
+  messaging::set_header(base, robot_id_, moved_ns_, sent_);
+  base.state(rolls() ? msg::kBaseMoving : msg::kBaseReady);
+  base.commands_taken(true);
+  static_cast<void>(bases_.write(base));
+}
+
+/// What a planner does.
+void NavigatorOnRobot::answer(const msg::Goal& message) {
+  const service::Goal goal = service::from_msg(message);
+  if (goal.kind != msg::kGoalPosition && goal.kind != msg::kGoalPlace) return;
+  const geometry::Pose2& T_map_robot = robot_.T_world_robot();
+  const planning::HybridRoute found =
+      planning::HybridPlanner(map_).plan(T_map_robot.position_m(), goal.target);
+  msg::Route route = service::to_msg(found, T_map_robot.theta_rad, goal.heading_rad);
+  messaging::set_header(route, "robot", stamp_ns(), sent_++);
+  route.goal_id(goal.goal_id);
+  route.map_version(kMapVersion);
+  ASSERT_TRUE(routes_.write(route));
+}
+
+void NavigatorOnRobot::send_goal(std::uint64_t id, const Eigen::Vector2d& target_m) {
+  service::Goal goal;
+  goal.goal_id = id;
+  goal.client_id = "test";
+  goal.kind = msg::kGoalPosition;
+  goal.target = target_m;
+  ASSERT_TRUE(goals_.write(service::to_msg(goal, "robot", stamp_ns(), sent_++)));
+}
+
+void NavigatorOnRobot::send_order(msg::GoalKind kind, std::uint64_t id) {
+  service::Goal order;
+  order.goal_id = id;
+  order.client_id = "test";
+  order.kind = kind;
+  ASSERT_TRUE(goals_.write(service::to_msg(order, "robot", stamp_ns(), sent_++)));
+}
+
+int NavigatorOnRobot::wait_for_end(Program& program) {
+  std::future<int> end = std::async(std::launch::async, [&] { return program.wait(); });
+  while (end.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    loop_.run_for(std::chrono::milliseconds(5));
+  }
+  return end.get();
+}
+
+double NavigatorOnRobot::counter(std::string_view name) const {
+  if (!service_status_) return 0.0;
+  for (const msg::Counter& counter : service_status_->counters()) {
+    if (counter.name() == std::string(name)) return counter.value();
+  }
+  return 0.0;
+}
+
+}  // namespace topogeo::test

@@ -1,0 +1,123 @@
+// A navigator in a process of its own with a simulated robot in this one, in real time: what comes
+// from gateway, localizer, map store and planner in earnest comes from here, and the motion
+// commands drive the robot.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/status_publisher.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/hybrid_map.h"
+#include "topogeo/msg/motion.h"
+#include "topogeo/msg/planning.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/status.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/simulation/simulated_robot.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+
+class NavigatorOnRobot : public testing::Test {
+ protected:
+  static constexpr std::chrono::seconds kPatience{60};
+  static constexpr const char* kPartition = "navigator-test";
+
+  NavigatorOnRobot();
+
+  /// Starts the navigator and waits until it is connected and has map and sensors.
+  void start();
+  /// A goal at a point of the map frame, which is that of the world.
+  void send_goal(std::uint64_t id, const Eigen::Vector2d& target_m);
+  void send_order(msg::GoalKind kind, std::uint64_t id = 0);
+  /// As far as what they publish goes, this process is a planner, too.
+  void pretend_planner();
+
+  /// Lets the world go on until `condition` holds; false when it does not within kPatience.
+  template <class Condition>
+  bool wait_for(const Condition& condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      loop_.run_for(std::chrono::milliseconds(5));
+    }
+    return true;
+  }
+  /// The world goes on that long.
+  void pass(std::chrono::milliseconds duration) { loop_.run_for(duration); }
+  /// Lets the world go on until the program ends; its exit code.
+  int wait_for_end(Program& program);
+
+  [[nodiscard]] bool is(msg::NavigatorState state) const {
+    return status_ && status_->state() == state;
+  }
+  [[nodiscard]] bool halted(msg::HaltReason reason) const {
+    return status_ && status_->reason() == reason;
+  }
+  /// The robot rolls.
+  [[nodiscard]] bool rolls() const { return robot_.velocity().linear_m_per_s > 0.1; }
+  [[nodiscard]] bool told_to_stand() const {
+    return command_ && command_->linear_mps() == 0.0 && command_->angular_radps() == 0.0;
+  }
+  [[nodiscard]] bool stands() const { return robot_.velocity() == simulation::Velocity{}; }
+  /// Of the navigator's status; 0 if it has none of that name.
+  [[nodiscard]] double counter(std::string_view name) const;
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  simulation::SimulatedRobot robot_;
+  planning::HybridMap map_;
+  msg::LocalizationState pose_state_ = msg::kStateTracking;
+  std::string robot_id_ = "robot";  // of what is published
+  std::optional<msg::MotionCommand> command_;
+  std::uint64_t commands_ = 0;
+  std::optional<msg::NavigatorStatus> status_;
+  std::optional<msg::ServiceStatus> service_status_;
+  std::unique_ptr<Program> navigator_;
+
+ private:
+  void move();
+  void sense();
+  void answer(const msg::Goal& goal);
+  [[nodiscard]] std::int64_t stamp_ns() const;
+
+  messaging::Participant participant_;
+
+ protected:
+  messaging::EventLoop loop_;
+  messaging::Writer<msg::LivePose> poses_;
+
+ private:
+  messaging::Writer<msg::Goal> goals_;
+  messaging::Writer<msg::Route> routes_;
+  messaging::Writer<msg::GridTile> tiles_;
+  messaging::Writer<msg::HybridMap> maps_;
+  messaging::Writer<msg::Odometry> odometry_;
+  messaging::Writer<msg::Scan> scans_;
+  messaging::Writer<msg::BaseStatus> bases_;
+  messaging::Reader<msg::MotionCommand> command_reader_;
+  messaging::Reader<msg::NavigatorStatus> status_reader_;
+  messaging::Reader<msg::ServiceStatus> service_reader_;
+  messaging::Reader<msg::Goal> goal_reader_;
+  std::optional<messaging::StatusPublisher> planner_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point command_end_;
+  std::int64_t moved_ns_ = 0;
+  std::int64_t scan_due_ns_ = 0;
+  std::uint64_t sent_ = 0;
+};
+
+}  // namespace topogeo::test
