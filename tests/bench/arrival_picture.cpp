@@ -14,7 +14,7 @@
 namespace topogeo::bench {
 namespace {
 
-constexpr double kScale_px_per_m = 40.0;
+constexpr double kScale = 40.0;  // pixels per metre
 constexpr double kTitle_px = 24.0;
 constexpr double kRobot_m = 0.267;
 
@@ -29,12 +29,12 @@ class Canvas {
   Canvas(const planning::GridFrame& frame, const geometry::Pose2& T_map_world)
       : frame_(frame),
         T_map_world_(T_map_world),
-        height_px_(frame.rows * frame.resolution_m * kScale_px_per_m + kTitle_px),
-        surface_(cairo_image_surface_create(
-                     CAIRO_FORMAT_RGB24,
-                     static_cast<int>(frame.columns * frame.resolution_m * kScale_px_per_m),
-                     static_cast<int>(height_px_)),
-                 cairo_surface_destroy),
+        height_px_(frame.rows * frame.resolution_m * kScale + kTitle_px),
+        surface_(
+            cairo_image_surface_create(
+                CAIRO_FORMAT_RGB24, static_cast<int>(frame.columns * frame.resolution_m * kScale),
+                static_cast<int>(height_px_)),
+            cairo_surface_destroy),
         cairo_(cairo_create(surface_.get()), cairo_destroy) {
     colour({1.0, 1.0, 1.0});
     cairo_paint(cairo_.get());
@@ -44,7 +44,7 @@ class Canvas {
   void width(double px) { cairo_set_line_width(cairo_.get(), px); }
 
   void cell(const planning::Cell& cell) {
-    const double side_px = frame_.resolution_m * kScale_px_per_m;
+    const double side_px = frame_.resolution_m * kScale;
     cairo_rectangle(cairo_.get(), cell.column * side_px, height_px_ - (cell.row + 1) * side_px,
                     side_px, side_px);
     cairo_fill(cairo_.get());
@@ -61,8 +61,7 @@ class Canvas {
   void circle(const Eigen::Vector2d& center_m, double radius_m) {
     const Eigen::Vector2d px = pixel(center_m);
     cairo_new_path(cairo_.get());
-    cairo_arc(cairo_.get(), px.x(), px.y(), radius_m * kScale_px_per_m, 0.0,
-              2.0 * std::numbers::pi);
+    cairo_arc(cairo_.get(), px.x(), px.y(), radius_m * kScale, 0.0, 2.0 * std::numbers::pi);
     cairo_stroke(cairo_.get());
   }
 
@@ -95,7 +94,7 @@ class Canvas {
  private:
   [[nodiscard]] Eigen::Vector2d pixel(const Eigen::Vector2d& point_m) const {
     const Eigen::Vector2d cells = frame_.in_cells(point_m);
-    const double side_px = frame_.resolution_m * kScale_px_per_m;
+    const double side_px = frame_.resolution_m * kScale;
     return {cells.x() * side_px, height_px_ - cells.y() * side_px};
   }
 
