@@ -105,9 +105,10 @@ TEST(LocalDetour, StartsOnTheRobotsSideOfAWall) {
   const FreeSpace space(grid_of_text(lines, 0.1), inflation);
   const std::vector<Cell> route{{30, 10}, {31, 10}, {32, 10}, {33, 10}, {34, 10}, {35, 10}};
   const Eigen::Vector2d robot_m(3.05, 1.95);  // just below the wall, in row 19
-  std::vector<Eigen::Vector2d> seen_m;        // below the robot, so that no cell near it is open
-  for (std::int32_t column = 0; column < 60; ++column) {
-    seen_m.emplace_back(0.1 * column + 0.05, 1.75);
+  // Below the robot, so that no cell near it is open.
+  std::vector<Eigen::Vector2d> seen_m(60);
+  for (std::size_t i = 0; i < seen_m.size(); ++i) {
+    seen_m[i] = {0.1 * static_cast<double>(i) + 0.05, 1.75};
   }
   const Detour none = plan_detour(space, route, robot_m, {3.55, 1.05}, seen_m);
   EXPECT_EQ(none.status, DetourStatus::kLost) << none.cells.front().row;

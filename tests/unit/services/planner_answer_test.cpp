@@ -48,8 +48,10 @@ planning::HybridMap floor_map() {
 
 // All that fills the door.
 std::vector<Eigen::Vector2d> shut_door_m() {
-  std::vector<Eigen::Vector2d> points_m;
-  for (int k = 0; k < 10; ++k) points_m.emplace_back(6.05, 1.55 + 0.1 * k);
+  std::vector<Eigen::Vector2d> points_m(10);
+  for (std::size_t k = 0; k < points_m.size(); ++k) {
+    points_m[k] = {6.05, 1.55 + 0.1 * static_cast<double>(k)};
+  }
   return points_m;
 }
 
