@@ -42,6 +42,7 @@ void check(const GuardConfig& config) {
   range("delay_s", config.delay_s, 0.0, 2.0);
   range("oldest_scan_s", config.oldest_scan_s, 0.05, 10.0);
   range("sonar_reach_m", config.sonar_reach_m, 0.2, 5.0);
+  range("sonar_least_m", config.sonar_least_m, 0.0, 1.0);
   range("silent_s", config.silent_s, 0.1, 60.0);
 }
 
@@ -146,7 +147,8 @@ std::vector<Eigen::Vector2d> CollisionGuard::obstacles_m(std::int64_t now_ns) co
   for (const SonarReading& reading : sonar_->readings) {
     const double range_m = static_cast<double>(reading.range_m);
     if (!heard(reading) || laser_sees(reading, range_m + kSame_m)) continue;
-    points_m.push_back(T_now_then * (reading.T_robot_sonar * Eigen::Vector2d(range_m, 0.0)));
+    const double away_m = range_m > config_.sonar_least_m ? range_m : 0.0;
+    points_m.push_back(T_now_then * (reading.T_robot_sonar * Eigen::Vector2d(away_m, 0.0)));
   }
   return points_m;
 }

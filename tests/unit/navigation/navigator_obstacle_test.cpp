@@ -113,6 +113,21 @@ TEST(NavigatorObstacle, SomebodyWhoStepsInFrontOfItStopsIt) {
   EXPECT_EQ(drive.robot.collisions(), 0U);
 }
 
+TEST(NavigatorObstacle, WhatOnlySonarsHearStopsItAndIsGoneRound) {
+  simulation::World world = room();
+  simulation::ChangingPart glass;
+  glass.circles = {{{4.0, 2.6}, 0.3}};
+  glass.present_s = {{0.0, kEver_s}};
+  world.changing.push_back(glass);
+  TestDrive drive(world, from(1.0, 2.5, 0.0));
+  drive.glass = glass.circles.front();
+  drive.go_to({7.0, 2.5});
+  ASSERT_TRUE(drive.arrives(120.0)) << drive.status().message;
+  EXPECT_EQ(drive.robot.collisions(), 0U);
+  EXPECT_GE(drive.status().guard_stops, 1U);
+  EXPECT_GE(drive.status().detours, 1U);
+}
+
 TEST(NavigatorObstacle, AGoalThatIsFilledIsRefusedInTheEnd) {
   simulation::World world = room();
   world.changing.push_back(box({6.5, 2.4}, {7.1, 3.0}, 0.0, kEver_s));

@@ -101,7 +101,13 @@ void TestDrive::send_sensors() {
       if (ranges_m[i] <= scan::Scan::kNoReturn) continue;
       const double angle_rad = beams.angle_min_rad + static_cast<double>(i) * beams.angle_step_rad;
       const auto range_m = static_cast<double>(ranges_m[i]);
-      scan.points_m.emplace_back(range_m * std::cos(angle_rad), range_m * std::sin(angle_rad));
+      const Eigen::Vector2d point_m(range_m * std::cos(angle_rad), range_m * std::sin(angle_rad));
+      constexpr double kOnIt_m = 0.06;
+      if (glass &&
+          (robot.T_world_robot() * point_m - glass->center_m).norm() < glass->radius_m + kOnIt_m) {
+        continue;
+      }
+      scan.points_m.push_back(point_m);
     }
     navigator.add(scan);
   }

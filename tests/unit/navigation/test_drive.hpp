@@ -67,6 +67,7 @@ class TestDrive {
   bool base_obeys = true;
   bool planner_answers = true;
   double sigma_m = 0.02;
+  std::optional<simulation::Circle> glass{};  ///< the laser gets no echo of it
 
   std::uint64_t goal_id = 0;
   Eigen::Vector2d goal_m = Eigen::Vector2d::Zero();
