@@ -9,11 +9,18 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/stream.h"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/service/conversions.hpp"
 #include "topogeo/service/hybrid_map_mirror.hpp"
 #include "topogeo/service/map_mirror.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/simulation/world.hpp"
 #include "topogeo/storage/map_file.hpp"
 
 #include "program.hpp"
@@ -183,6 +190,54 @@ TEST_F(MapStoreShows, ADrawingOverAMap) {
                      pipeline::read_drawing(world, {}, 0.1, {-9.0, 1.0, 1.5707963267948966}));
   expect_same(*reader.mirror.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
   EXPECT_EQ(reader.mirror.map()->places().size(), 3U);
+}
+
+// What a drive makes, sent as local mapper and localizer do.
+TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
+  pipeline::MappingRun run({}, "robot");
+  const simulation::World world =
+      simulation::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+  for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
+  storage::MapDocument expected = run.finish();
+  const auto names = write("names.yaml", "places: [{name: start, at: [0, 0]}]\n");
+  expected.drawing = pipeline::read_zones_and_places(names);
+
+  Program store(scratch_, "map_store",
+                in_domain({"--out", (scratch_ / "out").string(), "--places", names.string()}));
+  LateReader reader(own_domain(), partition_);
+  messaging::Writer<msg::LocalMap> maps(reader.participant);
+  messaging::Writer<msg::TrajectorySegment> segments(reader.participant);
+  messaging::Writer<msg::LoopClosures> closures(reader.participant);
+  messaging::Writer<msg::StreamEnd> ends(reader.participant);
+  for (const topomap::LocalMap& map : expected.local_maps) {
+    ASSERT_TRUE(maps.write(service::to_msg(map)));
+  }
+  for (const auto& segment : service::to_segments(expected.trajectory, "robot", 0)) {
+    ASSERT_TRUE(segments.write(segment));
+  }
+  ASSERT_TRUE(closures.write(
+      service::to_msg(expected.loop_closures, expected.trajectory.version, "robot", 0, 0)));
+  ASSERT_TRUE(reader.wait()) << "there is a map while the drive lasts";
+
+  msg::StreamEnd end;
+  messaging::set_header(end, "robot", expected.local_maps.back().stamp_ns, 0);
+  messaging::set_text(end.stage(), "localizer", "stage");
+  end.count(expected.trajectory.stops.size());
+  end.version(expected.trajectory.version);
+  ASSERT_TRUE(ends.write(end));
+  store.wait_for_error_text("local maps, ");  // the final line
+  const auto patience = std::chrono::steady_clock::now() + kPatience;
+  const planning::HybridMap hybrid = pipeline::make_hybrid_map(pipeline::parts_of(expected), {});
+  const auto is_final = [&] {
+    const auto map = reader.mirror.map();
+    return map && map->nodes().size() == hybrid.nodes().size() &&
+           map->zones().zone_of_cell == hybrid.zones().zone_of_cell;
+  };
+  while (!is_final() && std::chrono::steady_clock::now() < patience) {
+    static_cast<void>(reader.loop.run_for(std::chrono::milliseconds(20)));
+  }
+  expect_same(*reader.mirror.map(), hybrid);
+  EXPECT_TRUE(storage::map_file_bytes(expected) == read_file(scratch_ / "out" / "map.pb"));
 }
 
 TEST_F(MapStoreShows, NothingOfWhatIsNoMap) {
