@@ -146,8 +146,12 @@ double Navigator::State::speed_past_obstacles(const geometry::Pose2& T_map_robot
   }
   block_m = block->obstacle_m;
   block_ahead_m = block->ahead_m;
+  // v with v delay + v^2 / (2 brake) = room.
   const double room_m = std::max(0.0, block->ahead_m - kKeepsOff_m);
-  return std::min(config.speed_m_per_s, std::sqrt(config.acceleration_m_per_s2 * room_m));
+  const double brake = kBrake * config.acceleration_m_per_s2;
+  const double delayed = brake * (config.delay_s + kSeeing_s);
+  return std::min(config.speed_m_per_s,
+                  std::sqrt(delayed * delayed + 2.0 * brake * room_m) - delayed);
 }
 
 // Another path, when there is one; the old one stays otherwise.
