@@ -127,8 +127,10 @@ void plan_detour_round_box(benchmark::State& state) {
       }
     }
   }
-  for (int k = 0; k < 60; ++k) {
-    seen_m.push_back(box_m + Eigen::Vector2d(0.01 * (k % 20) - 0.1, 0.05 * (k / 20) - 0.05));
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 20; ++column) {
+      seen_m.push_back(box_m + Eigen::Vector2d(0.01 * column - 0.1, 0.05 * row - 0.05));
+    }
   }
   DetourStatus status = DetourStatus::kLost;
   for (auto _ : state) {
