@@ -195,7 +195,7 @@ TEST(HybridMapMirror, FollowsAGridThatShrinks) {
   map_store::HybridUpdates updates("robot", kVersion);
   service::HybridMapMirror mirror;
   const auto send = [&](const planning::HybridMap& map) {
-    const auto update = updates.update_to(map, 1);
+    auto update = updates.update_to(map, 1);
     for (const auto& tile : update.gone) {
       mirror.remove(handle_of(tile));
       updates.disposed(tile);
