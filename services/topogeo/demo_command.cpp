@@ -8,10 +8,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/simulation/world.hpp"
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
 
@@ -24,6 +27,8 @@ namespace {
 
 struct DemoOptions {
   RunOptions run;
+  GoalOptions goal{};
+  bool unknown_start = false;
   std::optional<std::filesystem::path> world;
   bool with_devices = false;
   SimulationOptions simulation{};
@@ -71,15 +76,54 @@ int show_demo(DemoOptions options) {
   return run_log(options.run);
 }
 
+/// The map of a drive through the world, with its places, as it comes out of one process.
+storage::MapDocument make_map(const DemoOptions& options, const simulation::World& world) {
+  const simulation::SimulatedLog log = simulate(world);
+  const pipeline::LoadedConfig config = [&] {
+    try {
+      return pipeline::load_config(options.run.job.config);
+    } catch (const std::exception& error) {
+      throw service::UsageError(error.what());
+    }
+  }();
+  pipeline::MappingRun mapping(config.config, options.run.job.robot_id);
+  for (const scan::Scan& scan : log.scans) mapping.add(scan);
+  storage::MapDocument document = mapping.finish();
+  const geometry::Pose2 T_map_world = geometry::inverse(log.T_world_robot.front());
+  for (const simulation::NamedPlace& place : world.places) {
+    document.drawing.places.push_back({place.name, T_map_world * place.position_m});
+  }
+  return document;
+}
+
+/// Writes the built-in world where no other was given; the file.
+std::filesystem::path world_file(const DemoOptions& options) {
+  if (options.world) return *options.world;
+  std::filesystem::path file = options.run.job.out / "floor.world.yaml";
+  support::write_file_atomically(file, kDemoWorld);
+  return file;
+}
+
+/// Sends a simulated robot to a place on the floor, in the map of a drive before.
+int show_goto(DemoOptions options) {
+  const simulation::World world = read_world(options.world);
+  support::check_writable_directory(options.run.job.out);
+  std::cerr << "mapping '" << world.name << "' from a simulated drive\n";
+  options.run.job.map = options.run.job.out / "floor.map.pb";
+  storage::write_map_file(*options.run.job.map, make_map(options, world));
+  options.simulation.world = world_file(options);
+  options.run.simulation = options.simulation;
+  options.run.goal = options.goal;
+  if (!options.unknown_start) options.run.job.initial_pose = "0,0,0";
+  std::cerr << "a simulated robot is sent to " << options.goal.target
+            << "; this takes as long as the drive\n";
+  return run_goto(options.run);
+}
+
 /// The same floor through the serial lines of emulated devices, in real time.
 int show_devices(DemoOptions options) {
   support::check_writable_directory(options.run.job.out);
-  options.simulation.world = options.run.job.out / "floor.world.yaml";
-  if (options.world) {
-    options.simulation.world = *options.world;
-  } else {
-    support::write_file_atomically(options.simulation.world, kDemoWorld);
-  }
+  options.simulation.world = world_file(options);
   options.run.simulation = options.simulation;
   std::cerr << "a simulated robot drives through the floor; this takes as long as the drive\n";
   return run_devices(options.run);
@@ -104,8 +148,14 @@ void add_demo_command(CLI::App& app, int& exit_code) {
   CLI::Option* sim = command->add_flag("--sim", options->with_devices,
                                        "drive through it with emulated devices on serial ports");
   add_simulation_options(*command, options->simulation, sim);
+  add_goal_run_options(*command, options->goal, options->unknown_start, nullptr);
+  command->get_option("--goto")->excludes(sim);
   command->callback([options, &exit_code] {
-    exit_code = options->with_devices ? show_devices(*options) : show_demo(*options);
+    if (!options->goal.target.empty()) {
+      exit_code = show_goto(*options);
+    } else {
+      exit_code = options->with_devices ? show_devices(*options) : show_demo(*options);
+    }
   });
 }
 

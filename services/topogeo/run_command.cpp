@@ -57,6 +57,17 @@ void add_continuation(storage::Report& report, const ServiceTable& services) {
   if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
 }
 
+/// Where a simulated robot starts that is sent somewhere: at the origin of the map, if nothing else
+/// is said.
+RunOptions with_start(RunOptions options, bool unknown) {
+  if (!options.job.map) throw service::UsageError("run: --goto needs --map (see --help)");
+  if (unknown && options.job.initial_pose) {
+    throw service::UsageError("run: --unknown-start excludes --initial-pose");
+  }
+  if (!unknown && !options.job.initial_pose) options.job.initial_pose = "0,0,0";
+  return options;
+}
+
 std::string check_rate(const std::string& text) {
   try {
     static_cast<void>(service::parse_rate(text));
@@ -177,11 +188,19 @@ void add_run_command(CLI::App& app, int& exit_code) {
           ->excludes(log)
           ->excludes(devices);
   add_simulation_options(*command, *simulation, sim);
+  auto goal = std::make_shared<GoalOptions>();
+  auto unknown_start = std::make_shared<bool>(false);
+  add_goal_run_options(*command, *goal, *unknown_start, sim);
   command->callback([=, &exit_code] {
     if (log->count() + devices->count() + sim->count() == 0) {
       throw service::UsageError("run: expected --log, --devices or --sim (see --help)");
     }
     if (sim->count() > 0) options->simulation = *simulation;
+    if (!goal->target.empty()) {
+      options->goal = *goal;
+      exit_code = run_goto(with_start(*options, *unknown_start));
+      return;
+    }
     exit_code = log->count() > 0 ? run_log(*options) : run_devices(*options);
   });
 }

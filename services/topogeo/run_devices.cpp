@@ -56,7 +56,17 @@ void check_world(const SimulationOptions& simulation) {
   }
 }
 
-/// The true pose at each time of `poses` that lies within the truth.
+void compare_with_truth(const RunOptions& options, const RunResult& result) {
+  const std::filesystem::path& out = options.job.out;
+  const std::filesystem::path truth_file = out / "truth.tum";
+  const auto trajectory = storage::read_trajectory_tum(out / "trajectory.tum");
+  storage::write_trajectory_tum(truth_file, truth_at(trajectory, result.truth));
+  if (result.collisions > 0) std::cout << "collisions: " << result.collisions << '\n';
+  print_comparison(std::cout, compare(out, truth_file));
+}
+
+}  // namespace
+
 std::vector<StampedPose> truth_at(std::span<const StampedPose> poses,
                                   std::span<const StampedPose> truth) {
   std::vector<StampedPose> found;
@@ -76,16 +86,12 @@ std::vector<StampedPose> truth_at(std::span<const StampedPose> poses,
   return found;
 }
 
-void compare_with_truth(const RunOptions& options, const RunResult& result) {
-  const std::filesystem::path& out = options.job.out;
-  const std::filesystem::path truth_file = out / "truth.tum";
-  const auto trajectory = storage::read_trajectory_tum(out / "trajectory.tum");
-  storage::write_trajectory_tum(truth_file, truth_at(trajectory, result.truth));
-  if (result.collisions > 0) std::cout << "collisions: " << result.collisions << '\n';
-  print_comparison(std::cout, compare(out, truth_file));
+void prepare_simulation(RunOptions& options) {
+  check_world(*options.simulation);
+  support::check_writable_directory(options.job.out);
+  options.devices = options.job.out / "devices.yaml";
+  write_devices(options);
 }
-
-}  // namespace
 
 void add_simulation_options(CLI::App& app, SimulationOptions& options, CLI::Option* simulation) {
   const std::vector<CLI::Option*> added = {
@@ -109,12 +115,8 @@ int run_devices(RunOptions options) {
   } catch (const std::exception& error) {
     throw service::UsageError(error.what());
   }
-  if (options.simulation) check_world(*options.simulation);
+  if (options.simulation) prepare_simulation(options);
   support::check_writable_directory(options.job.out);
-  if (options.simulation) {
-    options.devices = options.job.out / "devices.yaml";
-    write_devices(options);
-  }
   const RunResult result = RunSupervisor(options, 0).run();
   if (result.signal_number != 0) {
     std::cerr << "topogeo: stopped, no map was written\n";

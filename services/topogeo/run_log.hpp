@@ -2,11 +2,14 @@
 #pragma once
 
 #include <iosfwd>
+#include <span>
+#include <vector>
 
 #include <CLI/App.hpp>
 
 #include "topogeo/storage/report.hpp"
 #include "topogeo/support/config_schema.hpp"
+#include "topogeo/topomap/trajectory.hpp"
 
 #include "run_supervisor.hpp"
 #include "service_group.hpp"
@@ -22,6 +25,18 @@ int run_log(const RunOptions& options);
 /// the end of the tour of its world; the error against the truth is printed then.
 int run_devices(RunOptions options);
 
+/// Sends the simulated robot of options.simulation to options.goal in options.job.map and compares
+/// with the truth. Throws as above, std::runtime_error also when it does not arrive.
+int run_goto(RunOptions options);
+
+/// Checks that the world of options.simulation can be driven through and writes the file of devices
+/// for the gateway. Throws service::BadInputError and std::runtime_error.
+void prepare_simulation(RunOptions& options);
+
+/// The true pose at each time of `poses` that lies within the truth.
+std::vector<topomap::StampedPose> truth_at(std::span<const topomap::StampedPose> poses,
+                                           std::span<const topomap::StampedPose> truth);
+
 /// Exit code of a program that a signal has ended, less the signal, as in shells.
 inline constexpr int kSignalBase = 128;
 
@@ -33,6 +48,10 @@ void print_pool(std::ostream& out, const ServiceTable& services);
 
 /// Adds --seed, --baud, --odometry, --speed and --people, which need the option `simulation`.
 void add_simulation_options(CLI::App& app, SimulationOptions& options, CLI::Option* simulation);
+
+/// Adds --goto, which needs the option `needed` unless that is null, and what belongs to it.
+void add_goal_run_options(CLI::App& app, GoalOptions& options, bool& unknown_start,
+                          CLI::Option* needed);
 
 /// Adds --workers, --domain, --rate and --profiles.
 void add_run_options(CLI::App& app, RunOptions& options);

@@ -19,7 +19,9 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick{50};
 /// Speeds change more slowly than the base could change them, so that it keeps up.
 constexpr double kShareOfAcceleration = 0.6;
-constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
+constexpr double kLastWord_s = 5.0;  // for what was sent on a topic of its own
+
+}  // namespace
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
   messaging::ParticipantOptions participant;
@@ -29,8 +31,6 @@ messaging::Participant join(const RunOptions& options, const std::string& partit
   participant.profiles_file = options.profiles_file;
   return messaging::Participant(participant);
 }
-
-}  // namespace
 
 std::string own_partition() {
   // The process id tells people whose it is, the random number keeps containers apart.
@@ -99,7 +99,8 @@ RunResult RunSupervisor::run() {
   }
   finish_bar();
   if (result_.finished) wait_for_decisions();
-  stop_services();
+  // Without the end of the stream samples are still on their way.
+  stop(services_, loop_, !result_.finished, [this](const std::string& text) { say(text); });
   result_.times = services_.wait();
   return std::move(result_);
 }
@@ -208,7 +209,7 @@ void RunSupervisor::wait_for_decisions() {
     const msg::ServiceStatus* localizer = result_.services.find("localizer");
     return localizer == nullptr || localizer->state() == msg::kServiceFinished;
   };
-  const double end_s = support::monotonic_s() + kStopTime_s;
+  const double end_s = support::monotonic_s() + kLastWord_s;
   while ((!finished() || decisions_.all().size() < expected()) && support::monotonic_s() < end_s) {
     loop_.run_for(milliseconds(5));
   }
@@ -218,30 +219,6 @@ void RunSupervisor::wait_for_decisions() {
     fail(fmt::format("{} of {} loop decisions came from the localizer",
                      result_.loop_decisions.size(), expected()));
   }
-}
-
-void RunSupervisor::stop_services() {
-  const double end_s = support::monotonic_s() + kStopTime_s;
-  // The loop goes on meanwhile: the services say their final counts when they stop.
-  const auto wait_while = [&](const auto& running) {
-    while (running() && support::monotonic_s() < end_s) loop_.run_for(milliseconds(20));
-  };
-  if (!result_.finished) {
-    // Alone and first: a writer whose reader goes while samples are on their way to it can lock up
-    // inside Fast DDS 2.9.1 (matched_reader_remove against the flow controller's thread).
-    services_.send_signal(SIGTERM, "sensor_gateway");
-    wait_while([&] {
-      const std::vector<std::string> names = services_.running();
-      return std::find(names.begin(), names.end(), "sensor_gateway") != names.end();
-    });
-  }
-  services_.send_signal(SIGTERM);
-  wait_while([&] { return !services_.running().empty(); });
-  for (const std::string& name : services_.running()) {
-    say(fmt::format("{} did not stop within {:.0f} s and is killed", name, kStopTime_s));
-  }
-  services_.send_signal(SIGKILL);
-  loop_.run_for(milliseconds(20));
 }
 
 }  // namespace topogeo::cli

@@ -62,7 +62,6 @@ class RunSupervisor {
   void say(const std::string& text);
   void fail(const std::string& why);
   void wait_for_decisions();
-  void stop_services();
 
   RunOptions options_;
   std::uint64_t laser_lines_;
@@ -85,6 +84,9 @@ class RunSupervisor {
   messaging::SignalStop signals_;
   ServiceGroup services_;  // after the readers: they must not miss what the services say
 };
+
+/// Joins the domain of a run as the one that watches it.
+messaging::Participant join(const RunOptions& options, const std::string& partition);
 
 /// A partition that no other run has.
 std::string own_partition();

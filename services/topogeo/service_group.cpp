@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <csignal>
 #include <string_view>
 
 namespace topogeo::cli {
@@ -10,6 +12,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 constexpr std::string_view kWorker = "ga_worker";
+constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
 
 /// Flags that all services have.
 Words common_arguments(const RunOptions& options, const std::string& partition) {
@@ -28,15 +31,20 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
-/// What makes a map store extend a stored map.
-Words continue_arguments(const RunOptions& options) {
-  if (!options.job.continued) return {};
-  return {"--continue", options.job.continued->string()};
+/// What a map store keeps, or the map that it shows as it is.
+Words store_arguments(const RunOptions& options) {
+  if (options.goal && options.job.map) return {"--map", options.job.map->string()};
+  Words words = {"--out", options.job.out.string(), "--title", source_name(options)};
+  if (options.job.continued) {
+    words.insert(words.end(), {"--continue", options.job.continued->string()});
+  }
+  return words;
 }
 
 /// What makes a localizer follow the robot in a stored map, or extend it.
 Words map_arguments(const RunOptions& options) {
-  Words words = continue_arguments(options);
+  Words words;
+  if (options.job.continued) words = {"--continue", options.job.continued->string()};
   if (options.job.map) {
     words = {"--map", options.job.map->string(), "--csv",
              (options.job.out / "localization.csv").string()};
@@ -67,11 +75,9 @@ ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partiti
       logs_(options.job.out / "logs") {
   std::filesystem::create_directories(logs_);
   const Words common = common_arguments(options, partition);
-  const std::string out = options.job.out.string();
-  start(
-      "map_store", "map_store",
-      common + Words{"--out", out, "--title", source_name(options)} + continue_arguments(options));
+  start("map_store", "map_store", common + store_arguments(options));
   start("planner", "planner", common);
+  if (options.goal) start("navigator", "navigator", common);
   start(
       "localizer", "localizer",
       common +
@@ -163,8 +169,9 @@ std::vector<support::StageTime> ServiceGroup::wait() {
       times.push_back({child.name(), exit->wall_s, exit->cpu_s});
     }
   }
-  constexpr std::array<std::string_view, 7> kOrder = {
-      "simulator", "sensor_gateway", "local_mapper", "localizer", kWorker, "map_store", "planner"};
+  constexpr std::array<std::string_view, 8> kOrder = {"simulator", "sensor_gateway", "local_mapper",
+                                                      "localizer", kWorker,          "map_store",
+                                                      "planner",   "navigator"};
   const auto place = [&](const support::StageTime& time) {
     return std::find_if(kOrder.begin(), kOrder.end(),
                         [&](std::string_view name) { return time.stage.starts_with(name); });
@@ -172,6 +179,30 @@ std::vector<support::StageTime> ServiceGroup::wait() {
   std::stable_sort(times.begin(), times.end(),
                    [&](const auto& a, const auto& b) { return place(a) < place(b); });
   return times;
+}
+
+void stop(ServiceGroup& services, messaging::EventLoop& loop, bool gateway_first,
+          const std::function<void(const std::string&)>& say) {
+  const double end_s = support::monotonic_s() + kStopTime_s;
+  const auto wait_while = [&](const auto& running) {
+    while (running() && support::monotonic_s() < end_s) loop.run_for(std::chrono::milliseconds(20));
+  };
+  if (gateway_first) {
+    // Alone and first: a writer whose reader goes while samples are on their way to it can lock up
+    // inside Fast DDS 2.9.1 (matched_reader_remove against the flow controller's thread).
+    services.send_signal(SIGTERM, "sensor_gateway");
+    wait_while([&] {
+      const std::vector<std::string> names = services.running();
+      return std::find(names.begin(), names.end(), "sensor_gateway") != names.end();
+    });
+  }
+  services.send_signal(SIGTERM);
+  wait_while([&] { return !services.running().empty(); });
+  for (const std::string& name : services.running()) {
+    say(name + " did not stop in time and is killed");
+  }
+  services.send_signal(SIGKILL);
+  loop.run_for(std::chrono::milliseconds(20));
 }
 
 }  // namespace topogeo::cli

@@ -3,13 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 #include "child_process.hpp"
+#include "goal_session.hpp"
 #include "job.hpp"
 
 namespace topogeo::cli {
@@ -34,6 +37,7 @@ struct RunOptions {
   std::uint32_t domain = 0;
   std::string rate = "lossless";
   std::filesystem::path profiles_file;  ///< empty: built in
+  std::optional<GoalOptions> goal;      ///< to drive to in job.map; none: a drive that maps
 };
 
 /// File name of the log, the devices or the simulated world.
@@ -80,5 +84,11 @@ class ServiceGroup {
   std::vector<ChildProcess> children_;
   std::vector<bool> told_;  // that it has ended, by child
 };
+
+/// Asks all services to end and kills those that do not within some seconds, which `say` is told.
+/// The loop goes on meanwhile: they say their final counts when they stop. `gateway_first`: while
+/// scans may be on their way.
+void stop(ServiceGroup& services, messaging::EventLoop& loop, bool gateway_first,
+          const std::function<void(const std::string&)>& say);
 
 }  // namespace topogeo::cli

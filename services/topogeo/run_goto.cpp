@@ -1,0 +1,122 @@
+// topogeo run --goto: a simulated robot is sent to a place of a stored map.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/tum.hpp"
+#include "topogeo/support/atomic_file.hpp"
+
+#include "commands.hpp"
+#include "goto_run.hpp"
+#include "run_log.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using topomap::StampedPose;
+
+/// Finds out before anything starts whether configuration, goal and map can be used.
+void check_inputs(const RunOptions& options) {
+  static_cast<void>(to_goal(*options.goal));
+  try {
+    static_cast<void>(pipeline::load_config(options.job.config));
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+  try {
+    static_cast<void>(storage::read_map_file(*options.job.map));
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+/// How far what the robot believed on its way was from the truth.
+void print_pose_errors(const std::vector<StampedPose>& believed,
+                       const std::vector<StampedPose>& truth) {
+  const std::vector<StampedPose> true_poses = truth_at(believed, truth);
+  double sum_m2 = 0.0;
+  double largest_m = 0.0;
+  std::size_t i = 0;
+  for (const StampedPose& pose : true_poses) {
+    while (believed[i].stamp_ns < pose.stamp_ns) ++i;
+    const double error_m = (believed[i].pose.position_m() - pose.pose.position_m()).norm();
+    sum_m2 += error_m * error_m;
+    largest_m = std::max(largest_m, error_m);
+  }
+  if (true_poses.empty()) return;
+  std::cout << fmt::format(
+      "its pose on the way was off by {:.3f} m rms, {:.3f} m at most ({} poses)\n",
+      std::sqrt(sum_m2 / static_cast<double>(true_poses.size())), largest_m, true_poses.size());
+}
+
+void print_arrival(const RunOptions& options, const GotoResult& result) {
+  const auto& status = *result.status;
+  std::cout << fmt::format("arrived at {} after {:.1f} m and {:.0f} s; {} collisions, {} detours\n",
+                           options.goal->target, status.driven_m(), result.drive_s,
+                           result.collisions, status.detours());
+  if (!result.goal_m || result.truth.empty()) return;
+  const geometry::Pose2& truth = result.truth.back().pose;
+  std::string text = fmt::format("it stands {:.3f} m from the goal by the truth",
+                                 (truth.position_m() - *result.goal_m).norm());
+  if (options.goal->heading_deg) {
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    const double off_rad =
+        geometry::wrap_angle(truth.theta_rad - *options.goal->heading_deg / kDegrees);
+    text += fmt::format(" and looks {:.1f} degrees off", std::fabs(off_rad) * kDegrees);
+  }
+  if (status.pose_known()) {
+    const Eigen::Vector2d believed_m(status.T_map_robot().x_m(), status.T_map_robot().y_m());
+    text += fmt::format(", {:.3f} m by what it believes", (believed_m - *result.goal_m).norm());
+  }
+  std::cout << text << '\n';
+  print_pose_errors(result.believed, result.truth);
+}
+
+}  // namespace
+
+int run_goto(RunOptions options) {
+  check_inputs(options);
+  if (!options.goal->picture) options.goal->picture = options.job.out / "route.png";
+  prepare_simulation(options);
+  const GotoResult result = GotoRun(options).run();
+  if (!result.believed.empty()) {
+    storage::write_trajectory_tum(options.job.out / "trajectory.tum", result.believed);
+    storage::write_trajectory_tum(options.job.out / "truth.tum",
+                                  truth_at(result.believed, result.truth));
+  }
+  if (result.signal_number != 0) {
+    std::cerr << "topogeo: stopped\n";
+    return kSignalBase + result.signal_number;
+  }
+  if (!result.arrived) throw std::runtime_error(result.failure);
+  print_arrival(options, result);
+  std::cout << "the way: " << options.goal->picture->string() << '\n';
+  return service::kOk;
+}
+
+void add_goal_run_options(CLI::App& app, GoalOptions& options, bool& unknown_start,
+                          CLI::Option* needed) {
+  CLI::Option* target =
+      app.add_option("--goto", options.target, "send the simulated robot there, in the map given")
+          ->type_name("PLACE|X,Y|#NODE");
+  if (needed != nullptr) target->needs(needed);
+  add_goal_options(app, options);
+  app.add_flag("--unknown-start", unknown_start,
+               "the robot is not told where it starts: it has to find its place in the map");
+  for (const char* name :
+       {"--heading", "--look-around", "--picture", "--patience", "--unknown-start"}) {
+    app.get_option(name)->needs(target);
+  }
+}
+
+}  // namespace topogeo::cli
