@@ -147,7 +147,10 @@ std::vector<Eigen::Vector2d> CollisionGuard::obstacles_m(std::int64_t now_ns) co
   for (const SonarReading& reading : sonar_->readings) {
     const double range_m = static_cast<double>(reading.range_m);
     if (!heard(reading) || laser_sees(reading, range_m + kSame_m)) continue;
-    const double away_m = range_m > config_.sonar_least_m ? range_m : 0.0;
+    // Beside the body a least reading is a door post, which its motion does not bring nearer.
+    constexpr double kAhead = 0.5;  // within 60 degrees of ahead or back
+    const bool ahead = std::fabs(geometry::sincos(reading.T_robot_sonar.theta_rad).cos) > kAhead;
+    const double away_m = ahead && range_m <= config_.sonar_least_m ? 0.0 : range_m;
     points_m.push_back(T_now_then * (reading.T_robot_sonar * Eigen::Vector2d(away_m, 0.0)));
   }
   return points_m;

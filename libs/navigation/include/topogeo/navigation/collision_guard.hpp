@@ -31,10 +31,10 @@ struct GuardConfig {
   bool needs_sonar = false;            ///< no motion without sonars
   double sonar_reach_m = 1.5;   ///< sonars must hear what the laser sees nearer than this in their
                                 ///< cone, [0.2, 5]
-  double sonar_least_m = 0.18;  ///< a sonar that reads this or less may be about to be touched,
-                                ///< [0, 1]
-  double silent_s = 1.0;        ///< that long without any echo where there must be one, and the
-                                ///< sonars count as silent, [0.1, 60]
+  double sonar_least_m = 0.16;  ///< a sonar that looks ahead or back and reads this or less may be
+                                ///< about to be touched, [0, 1]
+  double silent_s = 1.0;  ///< that long without any echo where there must be one, and the
+                          ///< sonars count as silent, [0.1, 60]
 };
 
 /// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
