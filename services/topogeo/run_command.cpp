@@ -188,6 +188,11 @@ void add_run_command(CLI::App& app, int& exit_code) {
           ->excludes(log)
           ->excludes(devices);
   add_simulation_options(*command, *simulation, sim);
+  command
+      ->add_flag(
+          "--explore", options->explore,
+          "with --sim or --devices: drive where the robot has not been until nothing is left")
+      ->excludes(log);
   auto goal = std::make_shared<GoalOptions>();
   auto unknown_start = std::make_shared<bool>(false);
   add_goal_run_options(*command, *goal, *unknown_start, sim);

@@ -68,6 +68,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
         if (segment.robot_id() == options_.job.robot_id.c_str()) decisions_.add(segment);
       });
   loop_.add_timer(kTick, [this] { tick(); });
+  if (options_.explore) exploration_.emplace(participant_, loop_, options_.job.robot_id);
   if (!options_.simulation) return;
   simulation::DriveOptions drive;
   drive.speed_m_per_s = options_.simulation->speed_m_per_s;
@@ -109,6 +110,10 @@ void RunSupervisor::tick() {
   if (ended_) return;
   check_deaths();
   check_stall();
+  if (exploration_) {
+    watch_exploration();
+    return;
+  }
   if (tour_) watch_tour();
   show_progress();
 }
@@ -121,6 +126,18 @@ void RunSupervisor::watch_tour() {
     fail(fmt::format("the robot does not arrive, {:.0f} % of the tour were driven",
                      100.0 * tour_->share()));
   }
+}
+
+void RunSupervisor::watch_exploration() {
+  if (stream_ended_ || !exploration_->client().missing().empty() ||
+      !exploration_->client().status()) {
+    return;
+  }
+  exploration_->tick();
+  if (!exploration_->done()) return;
+  exploration_->client().cancel();
+  say(exploration_->summary());
+  end_stream();
 }
 
 void RunSupervisor::end_stream() {

@@ -19,6 +19,7 @@
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
+#include "explore_session.hpp"
 #include "service_group.hpp"
 #include "service_table.hpp"
 #include "stall_watch.hpp"
@@ -53,6 +54,7 @@ class RunSupervisor {
   RunSupervisor(const RunOptions& options, std::uint64_t laser_lines, const std::string& partition);
   void tick();
   void watch_tour();
+  void watch_exploration();
   void end_stream();
   void on_signal(int number);
   void check_deaths();
@@ -78,7 +80,8 @@ class RunSupervisor {
   messaging::Reader<msg::StreamEnd> end_reader_;
   messaging::Reader<msg::LoopDecisions> decision_reader_;
   messaging::EventLoop loop_;
-  std::optional<TourDriver> tour_;
+  std::optional<TourDriver> tour_;  // while exploring it stands still and keeps the truth
+  std::optional<ExploreSession> exploration_;
   bool stream_ended_ = false;  // the gateway was asked to end
   std::atomic<int> signal_ = 0;
   messaging::SignalStop signals_;

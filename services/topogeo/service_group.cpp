@@ -77,7 +77,7 @@ ServiceGroup::ServiceGroup(const RunOptions& options, const std::string& partiti
   const Words common = common_arguments(options, partition);
   start("map_store", "map_store", common + store_arguments(options));
   start("planner", "planner", common);
-  if (options.goal) start("navigator", "navigator", common);
+  if (options.goal || options.explore) start("navigator", "navigator", common);
   start(
       "localizer", "localizer",
       common +

@@ -37,6 +37,7 @@ struct RunOptions {
   std::uint32_t domain = 0;
   std::string rate = "lossless";
   std::filesystem::path profiles_file;  ///< empty: built in
+  bool explore = false;                 ///< the robot drives where it has not been, to the end
   std::optional<GoalOptions> goal;      ///< to drive to in job.map; none: a drive that maps
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -125,9 +126,17 @@ class GrowingMap {
     while (maps_.size() < maps.size()) maps_.push_back(*maps[maps_.size()]);
   }
 
-  /// Takes over the poses; made again whenever one has moved.
+  /// Takes over the poses; the graph is made again when one has moved noticeably.
   navigation::ExploredMap update(const topomap::Trajectory& trajectory) {
-    builder_.rebuild(maps_, trajectory.stops);
+    if (moved(trajectory.stops)) {
+      builder_.rebuild(maps_, trajectory.stops);
+      used_.clear();
+      for (const topomap::StopPose& stop : trajectory.stops) used_.push_back(stop.T_map_robot);
+    }
+    for (std::size_t i = used_.size(); i < maps_.size(); ++i) {
+      builder_.integrate(maps_[i], trajectory.stops[i].T_map_robot);
+      used_.push_back(trajectory.stops[i].T_map_robot);
+    }
     navigation::ExploredMap map;
     map.version = ++version_;
     map.graph = std::make_shared<const topomap::GlobalMap>(builder_.snapshot(version_));
@@ -145,7 +154,20 @@ class GrowingMap {
   [[nodiscard]] std::size_t size() const { return maps_.size(); }
 
  private:
+  [[nodiscard]] bool moved(std::span<const topomap::StopPose> stops) const {
+    constexpr double kMoved_m = 0.05;
+    constexpr double kTurned_rad = 0.0175;
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      const Pose2 step = geometry::between(used_[i], stops[i].T_map_robot);
+      if (step.position_m().norm() > kMoved_m || std::fabs(step.theta_rad) > kTurned_rad) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   topomap::GlobalMapBuilder builder_;
+  std::vector<Pose2> used_;  // that each map was fused at
   std::vector<topomap::LocalMap> maps_;
   std::uint64_t version_ = 0;
 };
@@ -200,7 +222,7 @@ ExplorationResult explore(std::string_view floor, const ExplorationConfig& confi
   std::vector<Pose2> T_world_stop;
   std::vector<Pose2> T_world_robot;
   std::string said;
-  constexpr std::uint64_t kMapTicks = 100;
+  constexpr std::uint64_t kMapTicks = 200;
   constexpr std::uint64_t kTourTicks = 20;
   const double start_s = loop.time_s();
   for (std::uint64_t tick = 1; !tour.done() && loop.time_s() - start_s < config.longest_s; ++tick) {

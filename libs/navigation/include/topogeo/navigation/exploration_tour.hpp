@@ -26,7 +26,7 @@ struct ExploredMap {
 
 struct TourConfig {
   ExplorerConfig explorer;
-  double patience_s = 30.0;  ///< a target that the navigator cannot get nearer to for so long is
+  double patience_s = 12.0;  ///< a target that the navigator cannot get nearer to for so long is
                              ///< given up, [1, 3600]
   double settle_s = 3.0;     ///< without a target, the map is waited for so long before the floor
                              ///< counts as explored, [0, 600]
