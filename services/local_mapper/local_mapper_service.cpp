@@ -18,6 +18,7 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay)
              {replay ? std::string(messaging::kReplayRole) : std::string(), {}}),
       ends_in_(service.participant()),
       local_maps_(service.participant()),
+      tracked_poses_(service.participant()),
       ends_out_(service.participant()) {
   messaging::EventLoop& loop = service_.loop();
   loop.add<msg::Scan>(
@@ -27,6 +28,7 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay)
                              on_stream_end(message);
                            });
   loop.add(local_maps_);
+  loop.add(tracked_poses_);
   loop.add(ends_out_);
   for (const char* counter : {"scans", "local_maps", "tracked_scans", "matched_scans"}) {
     service_.status().set_counter(counter, 0.0);
@@ -52,6 +54,7 @@ void LocalMapperService::on_scan(const msg::Scan& message) {
       service_.status().fault("unusable scan", error.what());
     }
     if (map) publish(*map);
+    tell_tracked();
   }
   finish_if_complete();
 }
@@ -101,6 +104,16 @@ void LocalMapperService::publish(const topomap::LocalMap& map) {
   service_.status().set_counter("local_maps", static_cast<double>(++maps_));
   service_.status().set_counter("tracked_scans", static_cast<double>(tracked_));
   service_.status().set_counter("matched_scans", static_cast<double>(matched_));
+}
+
+// One that cannot be sent now is old by the time it could.
+void LocalMapperService::tell_tracked() {
+  const topomap::TrackedScan* scan = mapper_.last_tracked();
+  if (scan == nullptr || maps_ == 0) return;
+  const auto stop = static_cast<std::uint32_t>(maps_ - 1);
+  if (!tracked_poses_.write(service::to_msg(*scan, stop, service_.robot_id()))) {
+    service_.status().add_to_counter("tracked_poses_not_sent");
+  }
 }
 
 void LocalMapperService::on_stream_end(const msg::StreamEnd& message) {

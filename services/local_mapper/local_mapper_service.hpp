@@ -34,6 +34,8 @@ class LocalMapperService {
   std::optional<scan::Scan> accept(const msg::Scan& message);
   void on_stream_end(const msg::StreamEnd& message);
   void publish(const topomap::LocalMap& map);
+  /// Where the last scan is against the last stop.
+  void tell_tracked();
   void finish_if_complete();
 
   service::Service& service_;
@@ -41,6 +43,7 @@ class LocalMapperService {
   messaging::Reader<msg::Scan> scans_;
   messaging::Reader<msg::StreamEnd> ends_in_;
   messaging::Writer<msg::LocalMap> local_maps_;
+  messaging::Writer<msg::TrackedPose> tracked_poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
   std::uint64_t next_sequence_ = 0;  // of the scan that is expected

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "topogeo/localization/live_pose.hpp"
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
@@ -79,6 +80,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
       commands_(service, [this] { schedule(); }),
       maps_in_(service.participant()),
       odometry_(service.participant()),
+      tracked_poses_(service.participant()),
       ends_in_(service.participant()),
       segments_(service.participant()),
       closures_(service.participant()),
@@ -91,6 +93,15 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
   loop.add<msg::Odometry>(
       odometry_,
       [this](const msg::Odometry& message, const messaging::SampleInfo&) { on_odometry(message); });
+  loop.add<msg::TrackedPose>(tracked_poses_,
+                             [this](const msg::TrackedPose& message, const messaging::SampleInfo&) {
+                               if (!service_.is_own(message)) return;
+                               try {
+                                 tracked_ = {message.local_map_id(), service::from_msg(message)};
+                               } catch (const std::invalid_argument& error) {
+                                 service_.status().fault("invalid tracked pose", error.what());
+                               }
+                             });
   loop.add<msg::StreamEnd>(ends_in_,
                            [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
                              on_stream_end(message);
@@ -147,14 +158,14 @@ void LocalizerService::on_odometry(const msg::Odometry& message) {
   send_pose();
 }
 
-// The pose now: the corrected pose of the last stop and the odometry since.
+// The pose now, from the corrected pose of the last stop.
 void LocalizerService::send_pose() {
   if (!last_map_) return;
-  const geometry::Pose2 T_stop_robot =
-      geometry::between(last_map_->T_odom_robot, newest_.T_odom_robot);
-  const localization::UncertainPose pose =
-      localization::advance({last_stop_.T_map_robot, last_stop_.covariance}, T_stop_robot,
-                            service_.setup().config.config.localizer.odometry);
+  const bool tracked = tracked_ && tracked_->stop == last_map_->id;
+  const localization::UncertainPose pose = localization::live_pose(
+      {last_stop_.T_map_robot, last_stop_.covariance}, last_map_->T_odom_robot,
+      tracked ? &tracked_->scan : nullptr, newest_.T_odom_robot,
+      service_.setup().config.config.localizer.odometry);
   service::LivePose live;
   live.stamp_ns = newest_.stamp_ns;
   live.sequence = newest_.sequence;

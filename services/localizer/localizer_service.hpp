@@ -73,6 +73,7 @@ class LocalizerService {
   CommandDesk commands_;
   messaging::Reader<msg::LocalMap> maps_in_;
   messaging::Reader<msg::Odometry> odometry_;
+  messaging::Reader<msg::TrackedPose> tracked_poses_;
   messaging::Reader<msg::StreamEnd> ends_in_;
   messaging::Writer<msg::TrajectorySegment> segments_;
   messaging::Writer<msg::LoopClosures> closures_;
@@ -90,6 +91,11 @@ class LocalizerService {
     geometry::Pose2 T_odom_robot;
   };
   Newest newest_;  // odometry that came last
+  struct Tracked {
+    std::uint32_t stop = 0;  // as local_mapper numbers it
+    topomap::TrackedScan scan;
+  };
+  std::optional<Tracked> tracked_;  // the scan that came last
   TrajectoryUpdates updates_;
   std::vector<topomap::LoopClosure> sent_closures_;
   std::uint64_t version_ = 0;

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/odometry_model.hpp"
+#include "topogeo/localization/live_pose.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::bench {
@@ -106,14 +106,13 @@ void ClosedLoop::scan() {
   }
 }
 
-// The pose of the last stop and the odometry since, as the localizer service tells it.
+// As the localizer service tells it.
 void ClosedLoop::locate() {
   const std::optional<topomap::StopPose> stop = localizer_.last_stop();
   if (local_maps_.empty() || !stop) return;
-  const localization::UncertainPose now = localization::advance(
-      {stop->T_map_robot, stop->covariance},
-      geometry::between(local_maps_.back()->T_odom_robot, robot_.T_odom_robot()),
-      config_.system.localizer.odometry);
+  const localization::UncertainPose now = localization::live_pose(
+      {stop->T_map_robot, stop->covariance}, local_maps_.back()->T_odom_robot,
+      mapper_.last_tracked(), robot_.T_odom_robot(), config_.system.localizer.odometry);
   const localization::LocalizationState state = localizer_.belief().state;
   located_ = localization::located(state);
   pose_.emplace();

@@ -27,8 +27,8 @@ constexpr double kGivenPoseRight = 0.9;
 constexpr double kHardlyDoubtful = 1.0;  // right matches mostly are below, wrong ones above
 
 topomap::StopPose pose_of(const LocalizedStop& stop) {
-  return {stop.id, stop.stamp_ns, stop.T_map_robot,
-          stop.covariance, stop.id, located(stop.belief.state)};
+  return {stop.id,         stop.stamp_ns, stop.T_map_robot,
+          stop.covariance, stop.id,       located(stop.belief.state)};
 }
 
 }  // namespace

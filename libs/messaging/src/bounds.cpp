@@ -85,6 +85,10 @@ Defect find_defect(const msg::LocalMap& message) {
   return check.defect();
 }
 
+Defect find_defect(const msg::TrackedPose& message) {
+  return Check(message).defect();
+}
+
 Defect find_defect(const msg::MatchTask& message) {
   return Check(message)
       .size("initial_individuals", message.initial_individuals().size(),

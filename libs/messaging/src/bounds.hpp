@@ -28,6 +28,7 @@ Defect find_defect(const msg::BaseStatus& message);
 Defect find_defect(const msg::LaserStatus& message);
 Defect find_defect(const msg::StreamEnd& message);
 Defect find_defect(const msg::LocalMap& message);
+Defect find_defect(const msg::TrackedPose& message);
 Defect find_defect(const msg::MatchTask& message);
 Defect find_defect(const msg::MatchResult& message);
 Defect find_defect(const msg::MapRequest& message);

@@ -86,6 +86,7 @@ TOPOGEO_TOPIC(BaseStatus, kBaseStatus, "sensor_live", registersensorTypes, kRepl
 TOPOGEO_TOPIC(LaserStatus, kLaserStatus, "sensor_live", registersensorTypes, kReplayRole)
 TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state", registerstreamTypes)
 TOPOGEO_TOPIC(LocalMap, kLocalMap, "state", registerlocal_mapTypes)
+TOPOGEO_TOPIC(TrackedPose, kTrackedPose, "motion_live", registerlocal_mapTypes)
 TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes, {}, "worker_id")
 TOPOGEO_TOPIC(MatchResult, kMatchResult, "result", registermatchTypes, {}, "client_id")
 TOPOGEO_TOPIC(MapRequest, kMapRequest, "result", registerlocal_mapTypes, {}, "client_id")
@@ -113,7 +114,7 @@ TOPOGEO_TOPIC(SimulatorCommand, kSimulatorCommand, "request", registersimulation
 #undef TOPOGEO_TOPIC
 
 std::span<const TopicInfo* const> all_topics() {
-  static const std::array<const TopicInfo*, 30> topics = {
+  static const std::array<const TopicInfo*, 31> topics = {
       &TopicTraits<msg::BaseCommand>::info(),
       &TopicTraits<msg::BaseStatus>::info(),
       &TopicTraits<msg::Blockages>::info(),
@@ -142,6 +143,7 @@ std::span<const TopicInfo* const> all_topics() {
       &TopicTraits<msg::SimulatorCommand>::info(),
       &TopicTraits<msg::Sonar>::info(),
       &TopicTraits<msg::StreamEnd>::info(),
+      &TopicTraits<msg::TrackedPose>::info(),
       &TopicTraits<msg::TrajectorySegment>::info(),
       &TopicTraits<msg::WorkerStatus>::info()};
   return topics;

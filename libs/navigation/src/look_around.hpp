@@ -23,6 +23,8 @@ class LookAround {
 
   /// It has gone as far as it may and has looked round there.
   [[nodiscard]] bool finished() const { return phase_ == Phase::kFinished; }
+  /// It has turned once round on the spot, the first time.
+  [[nodiscard]] bool been_round() const { return phase_ != Phase::kRound || gone_m_ > 0.0; }
   [[nodiscard]] double gone_m() const { return gone_m_; }
 
  private:

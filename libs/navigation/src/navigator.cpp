@@ -126,6 +126,7 @@ void Navigator::set_goal(const GoalOrder& goal) {
   state.reported = false;
   state.lost = false;
   state.corrections = 0;
+  state.looks = 0;
   state.goal_ns = state.now_ns;
   state.keeper.take_driven_m();
   state.status = {};

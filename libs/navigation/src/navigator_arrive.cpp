@@ -8,6 +8,8 @@ namespace topogeo::navigation {
 namespace {
 
 constexpr int kCorrections = 5;
+constexpr int kLooks = 3;  // a third of a circle each
+constexpr double kLookTurn_rad = 2.1;
 
 }  // namespace
 
@@ -21,6 +23,20 @@ geometry::Velocity Navigator::State::settle_here() {
               "gets no nearer to the goal; turns to its heading");
 }
 
+// It would not say that it has arrived where the localizer is not sure of that: stops made while it
+// turns confirm the pose or change it.
+geometry::Velocity Navigator::State::look_at_goal(const geometry::Pose2& T_map_robot) {
+  if (looks >= kLooks) {
+    return stop(NavigatorState::kRelocalizing, HaltReason::kPoseLost,
+                "is at the goal by a pose that it is not sure of");
+  }
+  ++looks;
+  settle_ns.reset();
+  follower.follow({}, geometry::wrap_angle(T_map_robot.theta_rad + kLookTurn_rad));
+  return stop(NavigatorState::kDriving, HaltReason::kNone,
+              "is there by an unsure pose; turns to look around");
+}
+
 geometry::Velocity Navigator::State::settle(const geometry::Pose2& T_map_robot) {
   constexpr double kLongest = 3.0;  // of the time to settle, for a pose that does not come
   const double stood_s = since_s(*settle_ns);
@@ -30,6 +46,7 @@ geometry::Velocity Navigator::State::settle(const geometry::Pose2& T_map_robot) 
   if (stood_s < config.settle_s || (!seen && stood_s < kLongest * config.settle_s)) {
     return stop(NavigatorState::kDriving, HaltReason::kNone, "is there; looks where exactly");
   }
+  if (!keeper.tracking()) return look_at_goal(T_map_robot);
   const double off_m = (way.goal_m() - T_map_robot.position_m()).norm();
   const auto& heading_rad = way.route().heading_rad;
   const double off_rad =

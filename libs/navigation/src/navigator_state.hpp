@@ -62,6 +62,7 @@ struct Navigator::State {
 
   // navigator_arrive.cpp
   geometry::Velocity settle_here();
+  geometry::Velocity look_at_goal(const geometry::Pose2& T_map_robot);
   geometry::Velocity settle(const geometry::Pose2& T_map_robot);
 
   [[nodiscard]] double since_s(std::int64_t then_ns) const {
@@ -113,6 +114,7 @@ struct Navigator::State {
   std::vector<std::pair<std::int64_t, Eigen::Vector2d>> contacts;  ///< that the guard has met
 
   std::optional<std::int64_t> settle_ns;
+  int looks = 0;  // turns at the goal, for the localizer to become sure
   int corrections = 0;
   bool looked_at_end = false;  ///< Markov localization has, since it settles
 

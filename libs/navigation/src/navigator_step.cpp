@@ -127,6 +127,7 @@ void Navigator::State::use_route() {
   needs_path = true;
   settle_ns.reset();
   corrections = 0;
+  looks = 0;
 }
 
 geometry::Velocity Navigator::State::relocalize() {
@@ -135,14 +136,16 @@ geometry::Velocity Navigator::State::relocalize() {
   memory.clear();
   const std::string why = keeper.why_not(now_ns);
   const auto odometry = keeper.T_odom_robot(now_ns);
-  if (!goal.look_around || config.look_around_m <= 0.0 || !odometry) {
-    return stop(NavigatorState::kRelocalizing, HaltReason::kPoseLost, why);
-  }
-  constexpr double kStandsFirst_s = 1.0;
   if (status.reason != HaltReason::kPoseLost) {
     lost_ns = now_ns;
     look_around.reset();
   }
+  // A pose that is only unsure is mostly right, and one turn on the spot makes it sure.
+  const bool may_turn = goal.look_around || (keeper.doubtful() && !look_around.been_round());
+  if (!may_turn || config.look_around_m <= 0.0 || !odometry) {
+    return stop(NavigatorState::kRelocalizing, HaltReason::kPoseLost, why);
+  }
+  constexpr double kStandsFirst_s = 1.0;
   const double waited_s = since_s(lost_ns);
   if (waited_s < kStandsFirst_s || look_around.finished()) {
     const bool finished = look_around.finished();

@@ -39,6 +39,10 @@ class PoseKeeper {
 
   /// Stamp of the last fix that is in use; nothing without one.
   [[nodiscard]] std::optional<std::int64_t> fix_ns() const;
+  /// The localizer is sure of the last fix.
+  [[nodiscard]] bool tracking() const { return fix_ && fix_->tracking; }
+  /// There is a fix, but the localizer is not sure of it.
+  [[nodiscard]] bool doubtful() const { return fix_ && fix_->located && !fix_->tracking; }
   /// Largest standard deviation of the position, metres.
   [[nodiscard]] double sigma_m() const;
   /// How far the fixes since the last call have moved the robot, metres.

@@ -136,4 +136,17 @@ topomap::LocalMap from_msg(const msg::LocalMap& message) {
   return out;
 }
 
+msg::TrackedPose to_msg(const topomap::TrackedScan& scan, std::uint32_t local_map_id,
+                        std::string_view robot_id) {
+  msg::TrackedPose out;
+  messaging::set_header(out, robot_id, scan.stamp_ns, scan.sequence);
+  out.local_map_id(local_map_id);
+  out.scan(to_tracked(scan));
+  return out;
+}
+
+topomap::TrackedScan from_msg(const msg::TrackedPose& message) {
+  return from_tracked(message.scan());
+}
+
 }  // namespace topogeo::service

@@ -24,7 +24,7 @@ TEST(Profiles, WriterAndReaderOfEveryTopicMatch) {
       EXPECT_TRUE(reader.wait_for_matched(1, kPatience)) << topic->name << " " << role;
     }
   }
-  EXPECT_EQ(names.size(), 30U);
+  EXPECT_EQ(names.size(), 31U);
 }
 
 TEST(Profiles, BuiltInTextIsTheFileOfDeploy) {

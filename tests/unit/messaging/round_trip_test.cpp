@@ -229,6 +229,13 @@ void fill(msg::MapElement& element) {
   element.points().assign(msg::kMaxBranchPoints, branch_point(2.0));
 }
 
+void fill(msg::TrackedPose& tracked) {
+  tracked.local_map_id(7);
+  tracked.scan().T_odom_robot(pose(1.5));
+  tracked.scan().T_stop_robot(pose(0.5));
+  tracked.scan().matched(true);
+}
+
 void fill(msg::Goal& goal) {
   goal.goal_id(5);
   goal.kind(msg::kGoalPlace);
@@ -302,9 +309,9 @@ class RoundTrip : public TwoParticipants {};
 
 using AllTypes =
     ::testing::Types<msg::Scan, msg::Odometry, msg::Sonar, msg::BaseStatus, msg::LaserStatus,
-                     msg::GroundTruth, msg::StreamEnd, msg::LocalMap, msg::MatchTask,
-                     msg::MatchResult, msg::WorkerStatus, msg::ServiceStatus, msg::LivePose,
-                     msg::TrajectorySegment, msg::LoopClosures, msg::LoopDecisions,
+                     msg::GroundTruth, msg::StreamEnd, msg::LocalMap, msg::TrackedPose,
+                     msg::MatchTask, msg::MatchResult, msg::WorkerStatus, msg::ServiceStatus,
+                     msg::LivePose, msg::TrajectorySegment, msg::LoopClosures, msg::LoopDecisions,
                      msg::LocalizationCommand, msg::LocalizationReply, msg::MapElement, msg::Goal,
                      msg::Route, msg::Blockages, msg::NavigatorStatus, msg::GridTile,
                      msg::HybridMap, msg::MotionCommand, msg::BaseCommand, msg::SimulatorCommand>;

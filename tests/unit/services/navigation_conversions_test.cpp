@@ -102,5 +102,14 @@ TEST(NavigationConversions, OnlyATrackedPoseIsOneToDriveBy) {
   EXPECT_EQ(to_pose_fix(pose).state_text, "AMBIGUOUS");
 }
 
+TEST(NavigationConversions, WhileMappingTheCovarianceToTheFirstStopIsLeftOut) {
+  LivePose pose;
+  pose.covariance = Eigen::Matrix3d::Identity();
+  pose.mode = msg::kModeLocalization;
+  EXPECT_EQ(to_pose_fix(pose).covariance, pose.covariance);
+  pose.mode = msg::kModeMapping;
+  EXPECT_TRUE(to_pose_fix(pose).covariance.isZero());
+}
+
 }  // namespace
 }  // namespace topogeo::service

@@ -33,8 +33,8 @@ struct GuardConfig {
                                 ///< cone, [0.2, 5]
   double sonar_least_m = 0.16;  ///< a sonar that looks ahead or back and reads this or less may be
                                 ///< about to be touched, [0, 1]
-  double silent_s = 1.0;  ///< that long without any echo where there must be one, and the
-                          ///< sonars count as silent, [0.1, 60]
+  double silent_s = 1.0;        ///< that long without any echo where there must be one, and the
+                                ///< sonars count as silent, [0.1, 60]
 };
 
 /// Throws std::invalid_argument naming the field, the value and the range that it must lie in.

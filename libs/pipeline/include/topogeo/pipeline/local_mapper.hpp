@@ -34,6 +34,11 @@ class LocalMapper {
   /// scan is one.
   std::optional<topomap::LocalMap> add(const scan::Scan& scan);
 
+  /// The last scan, placed against the last stop; null when that was the stop.
+  [[nodiscard]] const topomap::TrackedScan* last_tracked() const {
+    return track_.empty() ? nullptr : &track_.back();
+  }
+
   /// At the end of a log: makes a stop of the last scan, if it was none, so that the scans since
   /// the stop before are not lost.
   std::optional<topomap::LocalMap> finish();

@@ -109,6 +109,12 @@ msg::LocalizationCommand to_msg(const LocalizationCommand& command, std::string_
 /// Refuses a covariance that is not symmetric and positive definite where a pose is set.
 LocalizationCommand from_msg(const msg::LocalizationCommand& message);
 
+/// A scan after the stop of that number of a local map.
+msg::TrackedPose to_msg(const topomap::TrackedScan& scan, std::uint32_t local_map_id,
+                        std::string_view robot_id);
+/// The scan alone.
+topomap::TrackedScan from_msg(const msg::TrackedPose& message);
+
 /// Pose of the robot now, as in msg::LivePose.
 struct LivePose {
   std::int64_t stamp_ns = 0;   ///< of the scan

@@ -1,0 +1,71 @@
+// topogeo run --sim --goto: all services on emulated devices, sent to a place of a stored map.
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+
+#include "topogeo/storage/tum.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
+  use_udp_only();
+  const Scratch scratch;
+  write_log("room", scratch / "room.clf");
+  Program map(scratch, "topogeo", {"map", "--log", scratch / "room.clf", "--out", scratch / "map"});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+  const std::string out = scratch / "out";
+  // The origin of the map is where the tour begins, at (1, 1); the robot looks along the wall.
+  Program run(scratch, "topogeo",
+              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--map",
+               scratch / "map/map.pb", "--goto", "3,0", "--heading", "90", "--out", out,
+               "--workers", "0", "--domain", own_domain()});
+  ASSERT_EQ(run.wait(280.0), 0) << run.err();
+  EXPECT_THAT(run.out(), HasSubstr("arrived at 3,0"));
+  EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/route.png"));
+  const auto truth = storage::read_trajectory_tum(out + "/truth.tum");
+  ASSERT_FALSE(truth.empty());
+  EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(3.0, 0.0)).norm(), 0.3);
+  EXPECT_FALSE(std::filesystem::is_symlink(out + "/base.port"));
+}
+
+TEST(Explore, ASimulatedRobotMapsARoomByItself) {
+  use_udp_only();
+  const Scratch scratch;
+  const std::string out = scratch / "out";
+  Program run(scratch, "topogeo",
+              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--explore",
+               "--out", out, "--workers", "0", "--domain", own_domain()});
+  ASSERT_EQ(run.wait(280.0), 0) << run.err();
+  EXPECT_THAT(run.err(), HasSubstr("nothing is left that can be reached"));
+  EXPECT_THAT(run.out(), Not(HasSubstr("collisions")));
+  EXPECT_TRUE(std::filesystem::exists(out + "/map.pb"));
+}
+
+TEST(Explore, SaysWhoIsMissing) {
+  use_udp_only();
+  const Scratch scratch;
+  Program command(scratch, "topogeo",
+                  {"explore", "--domain", own_domain(), "--wait-seconds", "0.5"});
+  EXPECT_EQ(command.wait(60.0), 1);
+  EXPECT_THAT(command.err(), HasSubstr("no planner and no navigator"));
+}
+
+TEST(Goto, WithoutAMapNothingStarts) {
+  const Scratch scratch;
+  Program run(scratch, "topogeo",
+              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--goto", "3,0",
+               "--out", scratch / "out"});
+  EXPECT_EQ(run.wait(30), 2);
+  EXPECT_THAT(run.err(), HasSubstr("--map"));
+}
+
+}  // namespace
+}  // namespace topogeo::test
