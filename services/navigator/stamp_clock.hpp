@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
+#include <limits>
 
 namespace topogeo::navigator {
 
@@ -23,18 +23,18 @@ class StampClock {
   void heard(std::int64_t stamp_ns, std::int64_t steady_ns) {
     turn_over(steady_ns);
     const std::int64_t offset_ns = stamp_ns - steady_ns;
-    newest_ns_ = std::max(newest_ns_.value_or(offset_ns), offset_ns);
-    offset_ns_ = std::max(*newest_ns_, older_ns_.value_or(*newest_ns_));
+    newest_ns_ = std::max(newest_ns_, offset_ns);
+    offset_ns_ = std::max(newest_ns_, older_ns_);
   }
 
   /// Goes back only where the stamps have gone back by more than a second; see take_set_back().
   std::int64_t now_ns(std::int64_t steady_ns) {
     std::int64_t now_ns = steady_ns + offset_ns_;
-    if (last_ns_ && now_ns < *last_ns_) {
-      if (*last_ns_ - now_ns > kSetBack_ns) {
+    if (now_ns < last_ns_) {
+      if (last_ns_ - now_ns > kSetBack_ns) {
         set_back_ = true;
       } else {
-        now_ns = *last_ns_;
+        now_ns = last_ns_;
       }
     }
     last_ns_ = now_ns;
@@ -49,19 +49,21 @@ class StampClock {
   }
 
  private:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
+
   void turn_over(std::int64_t steady_ns) {
-    if (!window_ns_) window_ns_ = steady_ns;
-    if (steady_ns - *window_ns_ < kHalfWindow_ns) return;
-    older_ns_ = steady_ns - *window_ns_ < 2 * kHalfWindow_ns ? newest_ns_ : std::nullopt;
-    newest_ns_.reset();
+    if (window_ns_ == kNever) window_ns_ = steady_ns;
+    if (steady_ns - window_ns_ < kHalfWindow_ns) return;
+    older_ns_ = steady_ns - window_ns_ < 2 * kHalfWindow_ns ? newest_ns_ : kNever;
+    newest_ns_ = kNever;
     window_ns_ = steady_ns;
   }
 
   std::int64_t offset_ns_;
-  std::optional<std::int64_t> window_ns_;  // when the newer half began
-  std::optional<std::int64_t> newest_ns_;  // largest offset since then
-  std::optional<std::int64_t> older_ns_;   // and of the half before
-  std::optional<std::int64_t> last_ns_;    // that now_ns() gave
+  std::int64_t window_ns_ = kNever;  // when the newer half began
+  std::int64_t newest_ns_ = kNever;  // largest offset since then
+  std::int64_t older_ns_ = kNever;   // and of the half before
+  std::int64_t last_ns_ = kNever;    // that now_ns() gave
   bool set_back_ = false;
 };
 
