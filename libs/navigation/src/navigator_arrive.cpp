@@ -1,6 +1,8 @@
 // Arriving: it stands, looks where it is, corrects what is left, and has arrived.
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "navigator_state.hpp"
 
@@ -10,6 +12,7 @@ namespace {
 constexpr int kCorrections = 5;
 constexpr int kLooks = 3;  // a third of a circle each
 constexpr double kLookTurn_rad = 2.1;
+constexpr double kDegrees = 57.29578;
 
 }  // namespace
 
@@ -23,13 +26,8 @@ geometry::Velocity Navigator::State::settle_here() {
               "gets no nearer to the goal; turns to its heading");
 }
 
-// It would not say that it has arrived where the localizer is not sure of that: stops made while it
-// turns confirm the pose or change it.
+// Stops made while it turns confirm a pose that the localizer is not sure of, or change it.
 geometry::Velocity Navigator::State::look_at_goal(const geometry::Pose2& T_map_robot) {
-  if (looks >= kLooks) {
-    return stop(NavigatorState::kRelocalizing, HaltReason::kPoseLost,
-                "is at the goal by a pose that it is not sure of");
-  }
   ++looks;
   settle_ns.reset();
   follower.follow({}, geometry::wrap_angle(T_map_robot.theta_rad + kLookTurn_rad));
@@ -46,7 +44,7 @@ geometry::Velocity Navigator::State::settle(const geometry::Pose2& T_map_robot) 
   if (stood_s < config.settle_s || (!seen && stood_s < kLongest * config.settle_s)) {
     return stop(NavigatorState::kDriving, HaltReason::kNone, "is there; looks where exactly");
   }
-  if (!keeper.tracking()) return look_at_goal(T_map_robot);
+  if (!keeper.tracking() && looks < kLooks) return look_at_goal(T_map_robot);
   const double off_m = (way.goal_m() - T_map_robot.position_m()).norm();
   const auto& heading_rad = way.route().heading_rad;
   const double off_rad =
@@ -57,10 +55,10 @@ geometry::Velocity Navigator::State::settle(const geometry::Pose2& T_map_robot) 
     follower.forget();
     status.rest_m = 0.0;
     status.rest_s = 0.0;
-    return stop(NavigatorState::kArrived, HaltReason::kNone,
-                heading_rad ? say("has arrived, %.2f m and %.1f degrees off by its own pose", off_m,
-                                  off_rad * 57.29578)
-                            : say("has arrived, %.2f m off by its own pose", off_m));
+    std::string message = say("has arrived, %.2f m", off_m);
+    if (heading_rad) message += say(" and %.1f degrees", off_rad * kDegrees);
+    message += keeper.tracking() ? " off by its own pose" : " off by a pose that it is not sure of";
+    return stop(NavigatorState::kArrived, HaltReason::kNone, std::move(message));
   }
   ++corrections;
   settle_ns.reset();

@@ -114,7 +114,7 @@ struct Navigator::State {
   std::vector<std::pair<std::int64_t, Eigen::Vector2d>> contacts;  ///< that the guard has met
 
   std::optional<std::int64_t> settle_ns;
-  int looks = 0;  // turns at the goal, for the localizer to become sure
+  int looks = 0;  ///< turns at the goal, for the localizer to become sure
   int corrections = 0;
   bool looked_at_end = false;  ///< Markov localization has, since it settles
 
