@@ -61,6 +61,8 @@ void describe_guard(navigation::GuardConfig& g, ConfigSchema& schema) {
   schema.add("guard.radius_m", &g.radius_m, 0.05, 2.0, "m", "of the robot's round body");
   schema.add("guard.margin_m", &g.margin_m, 0.0, 1.0, "m",
              "nothing comes nearer to the body while it drives");
+  schema.add("guard.side_margin_m", &g.side_margin_m, 0.0, 1.0, "m",
+             "it passes what is beside it at this distance: in doors there is no more");
   schema.add("guard.deceleration_m_per_s2", &g.deceleration_m_per_s2, 0.05, 10.0, "m/s2",
              "that the base surely can: its speed is such that it can stop before what it sees");
   schema.add("guard.delay_s", &g.delay_s, 0.0, 2.0, "s",
@@ -72,8 +74,33 @@ void describe_guard(navigation::GuardConfig& g, ConfigSchema& schema) {
   schema.add("guard.needs_sonar", &g.needs_sonar, "no motion without sonars");
   schema.add("guard.sonar_reach_m", &g.sonar_reach_m, 0.2, 5.0, "m",
              "sonars must hear what the laser sees in their cone nearer than this");
+  schema.add(
+      "guard.sonar_least_m", &g.sonar_least_m, 0.0, 1.0, "m",
+      "a sonar that reads this or less may have something at the body: they measure no less");
   schema.add("guard.silent_s", &g.silent_s, 0.1, 60.0, "s",
              "so long without an echo where there must be one, and the sonars count as silent");
+}
+
+void describe_markov(navigation::NavigatorConfig& n, ConfigSchema& schema) {
+  schema.add("navigator.pose_source", &n.pose_source,
+             {{"localizer", navigation::PoseSource::kLocalizer},
+              {"markov", navigation::PoseSource::kMarkov}},
+             "markov: on the grid from the first pose on, looking at each border node; without a "
+             "laser's localizer, on floors with walls that sonars hear");
+  markov::MarkovConfig& m = n.markov.markov;
+  schema.add("markov.by_laser", &n.markov_by_laser,
+             "range readings of the laser instead of those of the sonars");
+  schema.add("markov.window_cells", &m.window_cells, 5, 101, "cells",
+             "side of the window of probabilities, odd; the source: 21");
+  schema.add("markov.perceptual_weight", &m.perceptual_weight, 0.0, 1.0, "-",
+             "of readings that are wholly reliable, against the movement; the source: 0.6");
+  schema.add("markov.cell_m", &n.markov.cell_m, 0.01, 1.0, "m", "side of a cell; the source: 0.1");
+  schema.add("markov.heading_sigma_rad", &n.markov.heading_sigma_rad, 0.001, 1.0, "rad",
+             "of the heading, which is that of odometry");
+  schema.add("markov.scale_m", &m.sonar.scale_m, 0.001, 10.0, "m",
+             "a mean difference of the readings by this much makes a place e times less likely");
+  schema.add("markov.difference_cap_m", &m.sonar.difference_cap_m, 0.01, 20.0, "m",
+             "a larger difference counts as this: one reading of a person must not decide");
 }
 
 }  // namespace
@@ -81,6 +108,7 @@ void describe_guard(navigation::GuardConfig& g, ConfigSchema& schema) {
 void describe_navigator(navigation::NavigatorConfig& config, ConfigSchema& schema) {
   describe_motion(config, schema);
   describe_patience(config, schema);
+  describe_markov(config, schema);
   describe_guard(config.guard, schema);
 }
 
