@@ -49,7 +49,7 @@ void GoalWatch::add(const msg::NavigatorStatus& status, double now_s) {
 std::optional<GoalEnd> GoalWatch::look(double now_s) const {
   if (replaced_) return GoalEnd{false, "another goal took its place, or somebody cancelled it"};
   if (status_) {
-    if (const auto end = judge(*status_)) return end;
+    if (std::optional<GoalEnd> end = judge(*status_)) return end;
   }
   if (now_s - alive_s_ > kSilent_s) return GoalEnd{false, "the navigator is gone"};
   if (now_s - driven_s_ <= patience_s_) return std::nullopt;
