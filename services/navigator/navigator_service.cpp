@@ -57,8 +57,10 @@ NavigatorService::NavigatorService(service::Service& service)
       navigator_(service.setup().config.config.navigator),
       goals_(service.participant()),
       routes_(service.participant()),
-      tiles_(service.participant()),
-      maps_(service.participant()),
+      live_map_(service.participant(), service.loop(),
+                [this](const auto& message, const char* what, const auto& use) {
+                  service_.take(message, what, use);
+                }),
       poses_(service.participant()),
       odometry_(service.participant()),
       scans_(service.participant()),
@@ -91,78 +93,49 @@ NavigatorService::~NavigatorService() {
   }
 }
 
-template <class T, class Use>
-void NavigatorService::take(const T& message, const char* what, const Use& use) {
-  if (!service_.is_own(message)) return;
-  try {
-    use(message);
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault(std::string("invalid ") + what, error.what());
-  }
-}
-
 void NavigatorService::listen_to_orders() {
   messaging::EventLoop& loop = service_.loop();
   loop.add<msg::Goal>(goals_, [this](const msg::Goal& message, const messaging::SampleInfo&) {
-    take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
+    service_.take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
   });
   loop.add<msg::Route>(routes_, [this](const msg::Route& message, const messaging::SampleInfo&) {
-    take(message, "route", [this](const msg::Route& route) { on_route(route); });
+    service_.take(message, "route", [this](const msg::Route& route) { on_route(route); });
   });
-  // A map_store that has gone leaves its last map standing; only a disposal takes away.
-  loop.add<msg::GridTile>(
-      tiles_,
-      [this](const msg::GridTile& message, const messaging::SampleInfo& info) {
-        take(message, "grid tile", [&](const msg::GridTile& tile) {
-          mirror_.put(tile, info.instance);
-          map_changed_ = true;
-        });
-      },
-      [this](const messaging::SampleInfo& info) {
-        if (info.state == messaging::InstanceState::kDisposed) mirror_.remove(info.instance);
-      });
-  loop.add<msg::HybridMap>(maps_,
-                           [this](const msg::HybridMap& message, const messaging::SampleInfo&) {
-                             take(message, "hybrid map", [this](const msg::HybridMap& map) {
-                               mirror_.put(map);
-                               map_changed_ = true;
-                             });
-                           });
 }
 
 void NavigatorService::listen_to_sensors() {
   messaging::EventLoop& loop = service_.loop();
   loop.add<msg::LivePose>(poses_,
                           [this](const msg::LivePose& message, const messaging::SampleInfo&) {
-                            take(message, "pose", [this](const msg::LivePose& pose) {
+                            service_.take(message, "pose", [this](const msg::LivePose& pose) {
                               if (!is_news(Source::kPose, pose.stamp_ns())) return;
                               navigator_.add(service::to_pose_fix(service::from_msg(pose)));
                             });
                           });
   loop.add<msg::Odometry>(
       odometry_, [this](const msg::Odometry& message, const messaging::SampleInfo&) {
-        take(message, "odometry", [this](const msg::Odometry& odometry) {
+        service_.take(message, "odometry", [this](const msg::Odometry& odometry) {
           const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
           heard(sample.stamp_ns);
           if (is_news(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
         });
       });
   loop.add<msg::Scan>(scans_, [this](const msg::Scan& message, const messaging::SampleInfo&) {
-    take(message, "scan", [this](const msg::Scan& scan) { on_scan(scan); });
+    service_.take(message, "scan", [this](const msg::Scan& scan) { on_scan(scan); });
   });
   loop.add<msg::Sonar>(sonars_, [this](const msg::Sonar& message, const messaging::SampleInfo&) {
-    take(message, "sonar", [this](const msg::Sonar& sonar) {
+    service_.take(message, "sonar", [this](const msg::Sonar& sonar) {
       const navigation::SonarRound round = service::sonar_from_msg(sonar);
       if (is_news(Source::kSonar, round.stamp_ns)) navigator_.add(round);
     });
   });
-  loop.add<msg::BaseStatus>(bases_,
-                            [this](const msg::BaseStatus& message, const messaging::SampleInfo&) {
-                              take(message, "base status", [this](const msg::BaseStatus& base) {
-                                if (!is_news(Source::kBase, base.stamp_ns())) return;
-                                navigator_.add(service::base_from_msg(base));
-                              });
-                            });
+  loop.add<msg::BaseStatus>(
+      bases_, [this](const msg::BaseStatus& message, const messaging::SampleInfo&) {
+        service_.take(message, "base status", [this](const msg::BaseStatus& base) {
+          if (!is_news(Source::kBase, base.stamp_ns())) return;
+          navigator_.add(service::base_from_msg(base));
+        });
+      });
 }
 
 bool NavigatorService::is_news(Source source, std::int64_t stamp_ns) {
@@ -230,27 +203,24 @@ void NavigatorService::on_goal(const msg::Goal& message) {
 
 void NavigatorService::on_route(const msg::Route& message) {
   take_map();
-  const bool same_map = message.map_version() == mirror_.version();
+  const bool same_map = message.map_version() == live_map_.version();
   navigator_.set_route(service::route_plan_from_msg(message, same_map ? map_.get() : nullptr));
   service_.status().add_to_counter("routes");
   route_ = message;
 }
 
 void NavigatorService::take_map() {
-  if (!map_changed_) return;
   std::shared_ptr<const planning::HybridMap> map;
   try {
-    map = mirror_.map();
+    map = live_map_.map();
   } catch (const std::invalid_argument& error) {
-    map_changed_ = false;
     service_.status().fault("invalid hybrid map", error.what());
     return;
   }
   if (!map || map == map_) return;  // the rest of the update is on its way
-  map_changed_ = false;
   map_ = std::move(map);
-  navigator_.set_map(map_, mirror_.version());
-  service_.status().set_counter("map_version", static_cast<double>(mirror_.version()));
+  navigator_.set_map(map_, live_map_.version());
+  service_.status().set_counter("map_version", static_cast<double>(live_map_.version()));
 }
 
 void NavigatorService::tick() {
@@ -265,7 +235,7 @@ void NavigatorService::tick() {
 void NavigatorService::begin_again() {
   last_ns_.fill(std::nullopt);
   navigator_ = navigation::Navigator(service_.setup().config.config.navigator);
-  if (map_) navigator_.set_map(map_, mirror_.version());
+  if (map_) navigator_.set_map(map_, live_map_.version());
   if (!goal_) return;
   service_.status().fault("time set back", "the sensors' stamps are older than before");
   navigator_.set_goal(*goal_);

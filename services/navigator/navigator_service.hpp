@@ -14,13 +14,12 @@
 
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/hybrid_map.h"
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/navigation/navigator.hpp"
-#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service.hpp"
 
 #include "stamp_clock.hpp"
@@ -50,9 +49,6 @@ class NavigatorService {
   /// False, and counted, for a message that is not newer than the one before.
   bool is_news(Source source, std::int64_t stamp_ns);
   void heard(std::int64_t stamp_ns);
-  /// Calls `use` for a message of this robot; what it throws becomes a fault.
-  template <class T, class Use>
-  void take(const T& message, const char* what, const Use& use);
 
   void tick();
   /// The time of the sensors has gone back: begins again with the goal at hand.
@@ -65,9 +61,7 @@ class NavigatorService {
   service::Service& service_;
   StampClock clock_;
   navigation::Navigator navigator_;
-  service::HybridMapMirror mirror_;
   std::shared_ptr<const planning::HybridMap> map_;
-  bool map_changed_ = false;
 
   std::optional<navigation::GoalOrder> goal_;
   bool paused_ = false;
@@ -86,8 +80,7 @@ class NavigatorService {
 
   messaging::Reader<msg::Goal> goals_;
   messaging::Reader<msg::Route> routes_;
-  messaging::Reader<msg::GridTile> tiles_;
-  messaging::Reader<msg::HybridMap> maps_;
+  service::LiveHybridMap live_map_;
   messaging::Reader<msg::LivePose> poses_;
   messaging::Reader<msg::Odometry> odometry_;
   messaging::Reader<msg::Scan> scans_;

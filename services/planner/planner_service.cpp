@@ -26,24 +26,26 @@ constexpr double kMoved_m = 0.1;
 
 PlannerService::PlannerService(service::Service& service)
     : service_(service),
-      tiles_(service.participant()),
-      maps_(service.participant()),
+      live_map_(service.participant(), service.loop(),
+                [this](const auto& message, const char* what, const auto& use) {
+                  service_.take(message, what, use);
+                }),
       poses_(service.participant()),
       reports_(service.participant()),
       goals_(service.participant()),
       routes_(service.participant()) {
-  listen_to_map();
   messaging::EventLoop& loop = service_.loop();
   loop.add<msg::LivePose>(
       poses_, [this](const msg::LivePose& message, const messaging::SampleInfo&) {
-        take(message, "pose", [this](const msg::LivePose& pose) { on_pose(pose); });
+        service_.take(message, "pose", [this](const msg::LivePose& pose) { on_pose(pose); });
       });
   loop.add<msg::Blockages>(
       reports_, [this](const msg::Blockages& message, const messaging::SampleInfo&) {
-        take(message, "blockages", [this](const msg::Blockages& report) { on_blockages(report); });
+        service_.take(message, "blockages",
+                      [this](const msg::Blockages& report) { on_blockages(report); });
       });
   loop.add<msg::Goal>(goals_, [this](const msg::Goal& message, const messaging::SampleInfo&) {
-    take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
+    service_.take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
   });
   loop.add(routes_);
   loop.add_timer(kMapPeriod, [this] { take_map(); });
@@ -51,47 +53,6 @@ PlannerService::PlannerService(service::Service& service)
     service_.status().set_counter(counter, 0.0);
   }
   service_.status().set_state(msg::kServiceRunning);
-}
-
-template <class T, class Use>
-void PlannerService::take(const T& message, const char* what, const Use& use) {
-  if (!service_.is_own(message)) return;
-  try {
-    use(message);
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault(std::string("invalid ") + what, error.what());
-  }
-}
-
-void PlannerService::listen_to_map() {
-  // A map_store that has gone leaves its last map standing; only a disposal takes away.
-  messaging::EventLoop& loop = service_.loop();
-  loop.add<msg::GridTile>(
-      tiles_,
-      [this](const msg::GridTile& message, const messaging::SampleInfo& info) {
-        take(message, "grid tile", [&](const msg::GridTile& tile) {
-          mirror_.put(tile, info.instance);
-          map_changed_ = true;
-        });
-      },
-      [this](const messaging::SampleInfo& info) {
-        if (info.state != messaging::InstanceState::kDisposed) return;
-        mirror_.remove(info.instance);
-        map_changed_ = true;
-      });
-  loop.add<msg::HybridMap>(
-      maps_,
-      [this](const msg::HybridMap& message, const messaging::SampleInfo&) {
-        take(message, "hybrid map", [this](const msg::HybridMap& summary) {
-          mirror_.put(summary);
-          map_changed_ = true;
-        });
-      },
-      [this](const messaging::SampleInfo& info) {
-        if (info.state != messaging::InstanceState::kDisposed) return;
-        mirror_.remove_summary();
-        map_changed_ = true;
-      });
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
@@ -122,18 +83,16 @@ void PlannerService::on_goal(const msg::Goal& message) {
 }
 
 void PlannerService::take_map() {
-  if (!map_changed_) return;
-  map_changed_ = false;
   std::shared_ptr<const planning::HybridMap> map;
   try {
-    map = mirror_.map();
+    map = live_map_.map();
   } catch (const std::invalid_argument& error) {
     service_.status().fault("invalid hybrid map", error.what());
     return;
   }
   if (map == map_) return;  // the rest of the update is on its way
   map_ = std::move(map);
-  map_version_ = mirror_.version();
+  map_version_ = live_map_.version();
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("map_version", static_cast<double>(map_version_));
   status.set_counter("map_zones", map_ ? static_cast<double>(map_->zones().zones.size()) : 0.0);

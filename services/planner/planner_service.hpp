@@ -8,13 +8,12 @@
 
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/hybrid_map.h"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/service/conversions.hpp"
-#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service.hpp"
 
 namespace topogeo::planner {
@@ -25,21 +24,15 @@ class PlannerService {
   explicit PlannerService(service::Service& service);
 
  private:
-  void listen_to_map();
   void on_pose(const msg::LivePose& message);
   void on_goal(const msg::Goal& message);
   void on_blockages(const msg::Blockages& message);
-  /// Calls `use` for a message of this robot; what it throws becomes a fault.
-  template <class T, class Use>
-  void take(const T& message, const char* what, const Use& use);
   /// Takes the mirrored map over, if it is whole and has changed, and plans again.
   void take_map();
   /// Plans for the goal at hand, if there is one, and sends the answer.
   void plan();
 
   service::Service& service_;
-  service::HybridMapMirror mirror_;
-  bool map_changed_ = false;
   std::shared_ptr<const planning::HybridMap> map_;
   std::uint64_t map_version_ = 0;
   std::optional<service::LivePose> pose_;
@@ -48,8 +41,7 @@ class PlannerService {
   std::optional<geometry::Pose2> no_way_at_;  // where the last answer was a refusal
   std::uint64_t sent_ = 0;
 
-  messaging::Reader<msg::GridTile> tiles_;
-  messaging::Reader<msg::HybridMap> maps_;
+  service::LiveHybridMap live_map_;
   messaging::Reader<msg::LivePose> poses_;
   messaging::Reader<msg::Blockages> reports_;
   messaging::Reader<msg::Goal> goals_;

@@ -134,11 +134,6 @@ std::string ExploreSession::trouble() const {
   return {};
 }
 
-bool ExploreSession::stands() const {
-  return !client_.status() ||
-         (client_.status()->linear_mps() == 0.0 && client_.status()->angular_radps() == 0.0);
-}
-
 std::string ExploreSession::summary() const {
   return fmt::format("{} targets in {:.1f} m, {} of them given up; {}", tour_.targets(), driven_m_,
                      tour_.given_up(), tour_.message());

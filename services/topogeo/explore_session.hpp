@@ -41,8 +41,6 @@ class ExploreSession {
   [[nodiscard]] bool done() const { return tour_.done(); }
   /// Why it cannot explore, as far as that will not change by itself; empty: it can.
   [[nodiscard]] std::string trouble() const;
-  /// The robot stands: what it was commanded last is nothing.
-  [[nodiscard]] bool stands() const;
   /// A line for the end: targets, metres, what was given up.
   [[nodiscard]] std::string summary() const;
   /// The map and the way driven, as a picture (.png or .svg). Throws std::runtime_error when it

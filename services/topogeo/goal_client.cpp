@@ -39,8 +39,15 @@ GoalClient::GoalClient(const messaging::Participant& participant, messaging::Eve
       service_statuses_(participant),
       statuses_(participant),
       routes_(participant),
-      tiles_(participant),
-      maps_(participant) {
+      // The services count what they cannot use of a map; here it is only drawn.
+      live_map_(participant, loop, [this](const auto& message, const char*, const auto& use) {
+        if (!is_own(message)) return;
+        try {
+          use(message);
+        } catch (const std::invalid_argument&) {
+          return;
+        }
+      }) {
   loop_.add(goals_);
   listen();
 }
@@ -65,28 +72,6 @@ void GoalClient::listen() {
     if (!is_own(route) || goal_id_ == 0 || route.goal_id() != goal_id_) return;
     if (watch_) watch_->add(route);
     if (!route_ && route.status() == msg::kRouteFound && !route.points().empty()) route_ = route;
-  });
-  // The services count what they cannot use of a map; here it is only drawn.
-  loop_.add<msg::GridTile>(
-      tiles_,
-      [this](const msg::GridTile& tile, const SampleInfo& info) {
-        if (!is_own(tile)) return;
-        try {
-          mirror_.put(tile, info.instance);
-        } catch (const std::invalid_argument&) {
-          return;
-        }
-      },
-      [this](const SampleInfo& info) {
-        if (info.state == messaging::InstanceState::kDisposed) mirror_.remove(info.instance);
-      });
-  loop_.add<msg::HybridMap>(maps_, [this](const msg::HybridMap& map, const SampleInfo&) {
-    if (!is_own(map)) return;
-    try {
-      mirror_.put(map);
-    } catch (const std::invalid_argument&) {
-      return;
-    }
   });
 }
 
@@ -130,9 +115,14 @@ std::optional<GoalEnd> GoalClient::end() const {
   return watch_ ? watch_->look(support::monotonic_s()) : std::nullopt;
 }
 
+bool GoalClient::stands() const {
+  return !status_ || (status_->linear_mps() == 0.0 && status_->angular_radps() == 0.0 &&
+                      status_->state() != msg::kNavigatorDriving);
+}
+
 std::shared_ptr<const planning::HybridMap> GoalClient::map() {
   try {
-    return mirror_.map();
+    return live_map_.map();
   } catch (const std::invalid_argument&) {
     return nullptr;
   }

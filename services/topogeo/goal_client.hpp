@@ -10,11 +10,10 @@
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/hybrid_map.h"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/service/conversions.hpp"
-#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/live_hybrid_map.hpp"
 
 #include "goal_watch.hpp"
 #include "service_table.hpp"
@@ -49,6 +48,8 @@ class GoalClient {
   [[nodiscard]] const std::optional<msg::Route>& route() const { return route_; }
   /// The newest whole map; null before.
   std::shared_ptr<const planning::HybridMap> map();
+  /// Whether the robot does not drive and is not commanded to move; true before the first status.
+  [[nodiscard]] bool stands() const;
   /// Whether the newest status is of the goal sent.
   [[nodiscard]] bool taken() const { return status_ && status_->goal_id() == goal_id_; }
 
@@ -65,7 +66,6 @@ class GoalClient {
   std::optional<GoalWatch> watch_;
   std::optional<msg::NavigatorStatus> status_;
   std::optional<msg::Route> route_;
-  service::HybridMapMirror mirror_;
   ServiceTable services_;
 
   messaging::EventLoop& loop_;
@@ -73,8 +73,7 @@ class GoalClient {
   messaging::Reader<msg::ServiceStatus> service_statuses_;
   messaging::Reader<msg::NavigatorStatus> statuses_;
   messaging::Reader<msg::Route> routes_;
-  messaging::Reader<msg::GridTile> tiles_;
-  messaging::Reader<msg::HybridMap> maps_;
+  service::LiveHybridMap live_map_;
 };
 
 /// What draws the way: where it goes and where it begins and ends. Its cells are not in a message.

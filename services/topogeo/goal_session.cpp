@@ -25,6 +25,8 @@ msg::GoalKind kind_of(const planning::Target& target) {
   return std::holds_alternative<std::string>(target) ? msg::kGoalPlace : msg::kGoalPosition;
 }
 
+}  // namespace
+
 void check_picture(const std::optional<std::filesystem::path>& picture) {
   if (!picture) return;
   try {
@@ -33,8 +35,6 @@ void check_picture(const std::optional<std::filesystem::path>& picture) {
     throw service::UsageError(error.what());
   }
 }
-
-}  // namespace
 
 void add_goal_options(CLI::App& app, GoalOptions& options) {
   app.add_option("--heading", options.heading_deg, "where the robot shall look in the end")
@@ -100,12 +100,6 @@ void GoalSession::draw_way() {
                                  render::route_picture(*map, route_to_draw(*client_.route()), title,
                                                        render::picture_format(*options_.picture)));
   progress_.say("the way is drawn in " + options_.picture->string());
-}
-
-bool GoalSession::stands() const {
-  const auto& status = client_.status();
-  return !status || (status->linear_mps() == 0.0 && status->angular_radps() == 0.0 &&
-                     status->state() != msg::kNavigatorDriving);
 }
 
 }  // namespace topogeo::cli

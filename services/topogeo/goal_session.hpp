@@ -26,6 +26,9 @@ struct GoalOptions {
 /// Adds --heading, --look-around, --picture and --patience.
 void add_goal_options(CLI::App& app, GoalOptions& options);
 
+/// Throws service::UsageError for a picture of a format that is not known.
+void check_picture(const std::optional<std::filesystem::path>& picture);
+
 /// Throws service::UsageError for a target or a picture that cannot be.
 service::Goal to_goal(const GoalOptions& options);
 
@@ -44,8 +47,6 @@ class GoalSession {
   void tick();
   /// Of the goal; nothing while it may still be reached.
   [[nodiscard]] std::optional<GoalEnd> end() const { return client_.end(); }
-  /// The robot stands: what it was commanded last is nothing.
-  [[nodiscard]] bool stands() const;
 
  private:
   void draw_way();

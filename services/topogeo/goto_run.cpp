@@ -92,7 +92,8 @@ void GotoRun::tick() {
       drive();
       break;
     case Phase::kCallingOff:
-      if (session_.stands() || support::monotonic_s() - since_s_ > kCallOff_s) loop_.stop();
+      if (session_.client().stands() || support::monotonic_s() - since_s_ > kCallOff_s)
+        loop_.stop();
       break;
   }
 }

@@ -32,13 +32,8 @@ ClosedLoopConfig loop_config(const ArrivalConfig& config, const ArrivalTask& tas
   ClosedLoopConfig loop;
   loop.system = config.system;
   loop.navigator = config.navigator;
-  loop.robot.seed = task.seed;
-  loop.robot.T_world_start = task.T_world_start;
-  loop.robot.T_robot_laser = config.system.local_mapper.T_robot_laser;
-  loop.robot.acceleration_m_per_s2 = 0.5;
-  loop.robot.angular_acceleration_rad_per_s2 = 2.0;
-  loop.robot.odometry = drift_of(config.wheels, task.seed);
-  loop.robot.slip.per_m = config.slip_per_m;
+  loop.robot = b21_robot(task.T_world_start, config.system.local_mapper.T_robot_laser,
+                         config.wheels, config.slip_per_m, task.seed);
   return loop;
 }
 

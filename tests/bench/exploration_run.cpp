@@ -179,13 +179,8 @@ ClosedLoopConfig loop_config(const ExplorationConfig& config, const Pose2& T_wor
   loop.navigator = config.navigator;
   loop.mapping = true;
   loop.planner.goal_snap_m = 0.3;  // what was free when the goal was chosen may be forbidden now
-  loop.robot.seed = seed;
-  loop.robot.T_world_start = T_world_start;
-  loop.robot.T_robot_laser = config.system.local_mapper.T_robot_laser;
-  loop.robot.acceleration_m_per_s2 = 0.5;
-  loop.robot.angular_acceleration_rad_per_s2 = 2.0;
-  loop.robot.odometry = drift_of(config.wheels, seed);
-  loop.robot.slip.per_m = config.slip_per_m;
+  loop.robot = b21_robot(T_world_start, config.system.local_mapper.T_robot_laser, config.wheels,
+                         config.slip_per_m, seed);
   return loop;
 }
 

@@ -109,6 +109,20 @@ simulation::OdometryDrift drift_of(Wheels wheels, std::uint64_t seed) {
   return wheels == Wheels::kB21 ? simulation::b21_odometry(seed) : simulation::OdometryDrift{};
 }
 
+simulation::RobotOptions b21_robot(const geometry::Pose2& T_world_start,
+                                   const geometry::Pose2& T_robot_laser, Wheels wheels,
+                                   double slip_per_m, std::uint64_t seed) {
+  simulation::RobotOptions robot;
+  robot.seed = seed;
+  robot.T_world_start = T_world_start;
+  robot.T_robot_laser = T_robot_laser;
+  robot.acceleration_m_per_s2 = 0.5;
+  robot.angular_acceleration_rad_per_s2 = 2.0;
+  robot.odometry = drift_of(wheels, seed);
+  robot.slip.per_m = slip_per_m;
+  return robot;
+}
+
 simulation::World navigation_floor(std::string_view name) {
   if (name == kNavigationFloors[0]) {
     return simulation::load_world(TOPOGEO_SOURCE_DIR "/tests/data/floor.world.yaml");

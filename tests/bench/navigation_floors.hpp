@@ -17,6 +17,7 @@
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/simulation/odometry.hpp"
+#include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/simulation/world.hpp"
 
 namespace topogeo::bench {
@@ -31,6 +32,11 @@ enum class Wheels : std::uint8_t {
 };
 
 simulation::OdometryDrift drift_of(Wheels wheels, std::uint64_t seed);
+
+/// A B21 as all closed-loop runs have it.
+simulation::RobotOptions b21_robot(const geometry::Pose2& T_world_start,
+                                   const geometry::Pose2& T_robot_laser, Wheels wheels,
+                                   double slip_per_m, std::uint64_t seed);
 
 /// A floor of kNavigationFloors. Throws std::invalid_argument for another name, and as load_world.
 simulation::World navigation_floor(std::string_view name);

@@ -1,10 +1,11 @@
 #include "topogeo/navigation/exploration_tour.hpp"
 
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "topogeo/planning/hybrid_planner.hpp"
+
+#include "settings_check.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -14,19 +15,12 @@ constexpr double kNearer_m = 0.1;   // progress
 constexpr double kAside_rad = 0.5;  // enough turn for another stop
 constexpr int kLooks = 2;           // at a target that stays open
 
-void check_range(const char* name, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  throw std::invalid_argument(std::string("explorer.") + name + ": expected a number in [" +
-                              std::to_string(low) + ", " + std::to_string(high) + "], got " +
-                              std::to_string(value));
-}
-
 }  // namespace
 
 void check(const TourConfig& config) {
   check(config.explorer);
-  check_range("patience_s", config.patience_s, 1.0, 3600.0);
-  check_range("settle_s", config.settle_s, 0.0, 600.0);
+  check_range("exploration", "patience_s", config.patience_s, 1.0, 3600.0);
+  check_range("exploration", "settle_s", config.settle_s, 0.0, 600.0);
 }
 
 ExplorationTour::ExplorationTour(const TourConfig& config, std::uint64_t first_goal_id)

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
 
 #include "grid_view.hpp"
+#include "settings_check.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -16,13 +16,6 @@ namespace {
 constexpr double kWide = 0.8;  // of the clearance in the widest place of a room
 constexpr double kWideEnough_m = 0.8;
 constexpr double kSamePlace_m = 0.5;  // a target that was given up comes back within this
-
-void check_range(const char* name, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  throw std::invalid_argument(std::string("explorer.") + name + ": expected a number in [" +
-                              std::to_string(low) + ", " + std::to_string(high) + "], got " +
-                              std::to_string(value));
-}
 
 /// Which zones the robot can get to, by index.
 std::vector<bool> reachable_zones(const planning::HybridMap& map, const Eigen::Vector2d& robot_m) {
@@ -53,16 +46,16 @@ planning::ZoneId dead_end(const planning::HybridMap& map, const Eigen::Vector2d&
 }  // namespace
 
 void check(const ExplorerConfig& config) {
-  check_range("unknown_near_m", config.unknown_near_m, 0.1, 5.0);
-  check_range("passage_side_m", config.passage_side_m, 0.3, 5.0);
-  check_range("gap_side_m", config.gap_side_m, 0.3, 10.0);
-  check_range("least_gap_m", config.least_gap_m, 0.1, 10.0);
-  check_range("approach_m", config.approach_m, 0.1, 10.0);
-  check_range("view_m", config.view_m, config.approach_m, 10.0);
-  check_range("sure_m", config.sure_m, 0.0, 2.0);
-  check_range("gap_worth", config.gap_worth, 1.0, 1000.0);
-  check_range("stay_m", config.stay_m, 0.0, 100.0);
-  check_range("least_zone_m2", config.least_zone_m2, 0.0, 100.0);
+  check_range("exploration", "explorer.unknown_near_m", config.unknown_near_m, 0.1, 5.0);
+  check_range("exploration", "explorer.passage_side_m", config.passage_side_m, 0.3, 5.0);
+  check_range("exploration", "explorer.gap_side_m", config.gap_side_m, 0.3, 10.0);
+  check_range("exploration", "explorer.least_gap_m", config.least_gap_m, 0.1, 10.0);
+  check_range("exploration", "explorer.approach_m", config.approach_m, 0.1, 10.0);
+  check_range("exploration", "explorer.view_m", config.view_m, config.approach_m, 10.0);
+  check_range("exploration", "explorer.sure_m", config.sure_m, 0.0, 2.0);
+  check_range("exploration", "explorer.gap_worth", config.gap_worth, 1.0, 1000.0);
+  check_range("exploration", "explorer.stay_m", config.stay_m, 0.0, 100.0);
+  check_range("exploration", "explorer.least_zone_m2", config.least_zone_m2, 0.0, 100.0);
 }
 
 std::string_view describe(TargetKind kind) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -55,6 +56,18 @@ class Service {
     if (message.robot_id() == setup_.options.robot_id) return true;
     status_->add_to_counter("ignored: other robot");
     return false;
+  }
+
+  /// Calls `use` for a message of this robot; std::invalid_argument from it becomes the fault
+  /// "invalid <what>".
+  template <class T, class Use>
+  void take(const T& message, const char* what, const Use& use) {
+    if (!is_own(message)) return;
+    try {
+      use(message);
+    } catch (const std::invalid_argument& error) {
+      status_->fault(std::string("invalid ") + what, error.what());
+    }
   }
 
  private:

@@ -1,0 +1,44 @@
+#include "robot_in_domain.hpp"
+
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "topogeo/messaging/signal_stop.hpp"
+
+#include "run_log.hpp"
+
+namespace topogeo::cli {
+
+void add_robot_options(CLI::App& app, RobotInDomain& robot) {
+  app.add_option("--robot,--robot-id", robot.robot_id, "which robot")->capture_default_str();
+  add_domain_options(app, robot.view);
+  constexpr double kLongestWait_s = 3600.0;
+  app.add_option("--wait-seconds", robot.wait_s, "how long to wait for planner and navigator")
+      ->check(CLI::Range(0.1, kLongestWait_s))
+      ->capture_default_str();
+}
+
+void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
+                       const GoalClient& client) {
+  if (wait_for(loop, robot.wait_s,
+               [&] { return client.missing().empty() && client.status().has_value(); })) {
+    return;
+  }
+  if (messaging::SignalStop::received() != 0) return;
+  const std::string missing = client.missing();
+  throw std::runtime_error(nothing_alive(robot.view, missing.empty() ? "navigator" : missing));
+}
+
+void call_off(messaging::EventLoop& loop, GoalClient& client) {
+  constexpr double kLastWord_s = 5.0;  // for the robot to have the order, and to stop
+  client.cancel();
+  static_cast<void>(client.delivered(kLastWord_s));
+  static_cast<void>(wait_for(loop, kLastWord_s, [&] { return client.stands(); }));
+}
+
+int interrupted() {
+  return kSignalBase + messaging::SignalStop::received();
+}
+
+}  // namespace topogeo::cli
