@@ -7,7 +7,10 @@ namespace topogeo::navigation {
 
 void MarkovMode::set_map(const planning::HybridMap* map) {
   if (!on()) return;
-  if (const auto known = pose()) T_map_station_ = known->T_map_robot;
+  // A robot that was never found keeps the base station, if it has one.
+  if (const auto found = tracker_ ? tracker_->fix() : std::nullopt) {
+    T_map_station_ = found->T_map_robot;
+  }
   tracker_.reset();
   if (map == nullptr) return;
   tracker_.emplace(map->space().grid(), config_.markov);

@@ -134,6 +134,23 @@ TEST(NavigatorMarkov, FindsItsWayFromTheBaseStationThroughADoor) {
   }
 }
 
+TEST(NavigatorMarkov, AMapThatComesAgainBeforeTheStartLeavesTheBaseStation) {
+  for (const bool station_first : {false, true}) {
+    DriveSettings settings;
+    settings.T_world_start = {1.25, 4.55, 0.0};
+    settings.navigator.pose_source = PoseSource::kMarkov;
+    TestDrive drive(two_doors(), settings);
+    drive.poses_come = station_first;
+    drive.sonars_come = false;  // so it does not start yet
+    drive.step();
+    drive.navigator.set_map(drive.map, ++drive.map_version);
+    drive.poses_come = drive.sonars_come = true;
+    ASSERT_TRUE(drive.run_until([&] { return drive.status().T_map_robot.has_value(); }, 1.0));
+    EXPECT_NEAR(drive.status().T_map_robot->x_m, 1.25, 0.05);
+    EXPECT_NEAR(drive.status().T_map_robot->y_m, 4.55, 0.05);
+  }
+}
+
 TEST(LaserRound, HasABeamForEveryStep) {
   ScanPoints scan;
   scan.stamp_ns = 7;
