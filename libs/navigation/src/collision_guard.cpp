@@ -75,7 +75,7 @@ void CollisionGuard::add(const SonarRound& sonar) {
 void CollisionGuard::listen(const SonarRound& sonar) {
   const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), heard);
   const auto must_hear = [&](const SonarReading& reading) {
-    return laser_sees(reading, config_.sonar_reach_m);
+    return laser_sees(reading, config_.sonar_reach_m, sonar.stamp_ns);
   };
   if (any || !std::any_of(sonar.readings.begin(), sonar.readings.end(), must_hear)) {
     silent_since_ns_.reset();
@@ -84,8 +84,9 @@ void CollisionGuard::listen(const SonarRound& sonar) {
   }
 }
 
-bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m) const {
-  if (!scan_) return false;
+bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m,
+                                std::int64_t now_ns) const {
+  if (!scan_ || !fresh(scan_->stamp_ns, now_ns)) return false;
   const geometry::Pose2 T_sonar_robot = inverse(reading.T_robot_sonar);
   const double tangent =
       std::tan(std::min(reading.half_cone_rad, 1.5));  // decides no result of mapping
@@ -146,7 +147,7 @@ std::vector<Eigen::Vector2d> CollisionGuard::obstacles_m(std::int64_t now_ns) co
       T_odom_sonar_round_ ? carried(*T_odom_sonar_round_) : geometry::Pose2{};
   for (const SonarReading& reading : sonar_->readings) {
     const double range_m = static_cast<double>(reading.range_m);
-    if (!heard(reading) || laser_sees(reading, range_m + kSame_m)) continue;
+    if (!heard(reading) || laser_sees(reading, range_m + kSame_m, now_ns)) continue;
     // Beside the body a least reading is a door post, which its motion does not bring nearer.
     constexpr double kAhead = 0.5;  // within 60 degrees of ahead or back
     const bool ahead = std::fabs(geometry::sincos(reading.T_robot_sonar.theta_rad).cos) > kAhead;

@@ -96,6 +96,27 @@ TEST(CollisionGuard, TheLaserKnowsBetterWhereAnEchoComesFrom) {
   EXPECT_NEAR(free_m, 0.75 - std::sqrt(0.287 * 0.287 - 0.08 * 0.08), 1e-9);
 }
 
+TEST(CollisionGuard, AnEchoCountsWhereTheScanThatSawItsSourceIsTooOld) {
+  GuardConfig config;
+  config.needs_scan = false;
+  CollisionGuard guard = guard_seeing({{0.75, 0.08}}, config);
+  const geometry::Pose2 mount{0.267, 0.0, 0.0};
+  guard.add(round_at(kNow_ns + kSecond_ns, mount, 0.49F));
+  const GuardVerdict verdict = guard.judge({0.1, 0.0}, kNow_ns + kSecond_ns);
+  EXPECT_EQ(verdict.reason, HaltReason::kNone);
+  EXPECT_NEAR(verdict.free_way_m, 0.49 - config.side_margin_m, 1e-6);
+}
+
+TEST(CollisionGuard, WhatAnOldScanSawNeedNotBeHeard) {
+  GuardConfig config;
+  config.needs_scan = false;
+  CollisionGuard guard = guard_seeing({{1.0, 0.0}}, config);
+  const geometry::Pose2 mount{0.267, 0.0, 0.0};
+  guard.add(round_at(kNow_ns + 5 * kSecond_ns, mount, scan::Scan::kNoReturn));
+  guard.add(round_at(kNow_ns + 7 * kSecond_ns, mount, scan::Scan::kNoReturn));
+  EXPECT_EQ(guard.health(kNow_ns + 7 * kSecond_ns), HaltReason::kNone);
+}
+
 TEST(CollisionGuard, BackwardsOnlyWhereASonarLooks) {
   CollisionGuard guard = guard_seeing({{3.0, 0.0}});
   EXPECT_EQ(guard.judge({-0.1, 0.0}, kNow_ns).allowed, geometry::Velocity{});

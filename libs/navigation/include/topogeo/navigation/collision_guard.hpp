@@ -74,7 +74,9 @@ class CollisionGuard {
   [[nodiscard]] std::vector<Eigen::Vector2d> obstacles_m(std::int64_t now_ns) const;
   [[nodiscard]] geometry::Velocity driven() const;
   [[nodiscard]] double speed_for(double free_way_m) const;
-  [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
+  /// Whether a fresh scan has a point in the sonar's cone, at most so far from it.
+  [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m,
+                                std::int64_t now_ns) const;
   void listen(const SonarRound& sonar);
 
   GuardConfig config_;
