@@ -89,7 +89,7 @@ void Navigator::set_map(std::shared_ptr<const planning::HybridMap> map, std::uin
   state.map = std::move(map);
   state.map_version = version;
   state.way.set_map(state.map);
-  state.memory.clear();
+  state.forget_obstacles();
   state.markov.set_map(state.map.get());
   if (!state.map) {
     state.way.forget();

@@ -17,7 +17,6 @@ constexpr double kProgress_m = 0.1;  // so far on, and it does not wait for that
 constexpr double kWaiting_rad_s = 0.1;
 constexpr double kPlanEvery_s = 0.3;
 constexpr double kNearEnough_m = 0.08;  // a goal that is too narrow for the last centimetres
-constexpr double kContactsKept_s = 12.0;
 constexpr double kGuardWaits_s = 0.7;  // stopped by the guard for so long, it looks for a way round
 
 }  // namespace
@@ -37,9 +36,8 @@ geometry::Velocity Navigator::State::without_route() {
 
 std::vector<Eigen::Vector2d> Navigator::State::standing_m() const {
   std::vector<Eigen::Vector2d> points_m = memory.standing_m();
-  for (const auto& [stamp_ns, contact_m] : contacts) {
-    if (since_s(stamp_ns) < kContactsKept_s) points_m.push_back(contact_m);
-  }
+  const std::vector<Eigen::Vector2d> met_m = contacts.points_m(now_ns);
+  points_m.insert(points_m.end(), met_m.begin(), met_m.end());
   return points_m;
 }
 

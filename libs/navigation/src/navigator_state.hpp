@@ -16,6 +16,7 @@
 
 #include "base_watch.hpp"
 #include "blockade.hpp"
+#include "contact_memory.hpp"
 #include "look_around.hpp"
 #include "markov_mode.hpp"
 #include "obstacle_memory.hpp"
@@ -39,6 +40,8 @@ struct Navigator::State {
   [[nodiscard]] bool usable(const RoutePlan& route) const;
   void use_route();
   void note_pose_jump();
+  /// Where something was seen means nothing any more: the pose was wrong, or the map is another.
+  void forget_obstacles();
 
   // navigator_drive.cpp
   geometry::Velocity drive(const geometry::Pose2& T_map_robot);
@@ -74,6 +77,7 @@ struct Navigator::State {
   PoseKeeper keeper;
   PathFollower follower;
   ObstacleMemory memory;
+  ContactMemory contacts;
   RouteWay way;
   BaseWatch base_watch;
   LookAround look_around;
@@ -111,7 +115,6 @@ struct Navigator::State {
   double block_ahead_m = 0.0;
   std::optional<Eigen::Vector2d> block_m;  ///< map frame
   std::optional<std::int64_t> guard_stop_ns;
-  std::vector<std::pair<std::int64_t, Eigen::Vector2d>> contacts;  ///< that the guard has met
 
   std::optional<std::int64_t> settle_ns;
   int looks = 0;  ///< turns at the goal, for the localizer to become sure

@@ -29,11 +29,8 @@ geometry::Velocity Navigator::State::command(const geometry::Velocity& wanted) {
     guard_stop_ns.reset();
   }
   if (stops && verdict.contact_m) {
-    if (const auto pose = keeper.good_pose(now_ns)) {
-      constexpr std::size_t kMost = 20;
-      if (contacts.size() >= kMost) contacts.erase(contacts.begin());
-      contacts.emplace_back(now_ns, *pose * *verdict.contact_m);
-    }
+    if (const auto pose = keeper.good_pose(now_ns))
+      contacts.add(*pose * *verdict.contact_m, now_ns);
   }
   if (stops) status.message = verdict.message;
   status.command = verdict.allowed;
@@ -78,11 +75,16 @@ void Navigator::State::use_scan() {
   blockade.expire(now_ns);
 }
 
+void Navigator::State::forget_obstacles() {
+  memory.clear();
+  contacts.clear();
+}
+
 void Navigator::State::note_pose_jump() {
   constexpr double kMemory_m = 0.15;
   constexpr double kRoute_m = 0.5;
   const double jump_m = keeper.take_jump_m();
-  if (jump_m > kMemory_m) memory.clear();
+  if (jump_m > kMemory_m) forget_obstacles();
   if (jump_m > kRoute_m) lost = true;
 }
 
@@ -133,7 +135,7 @@ void Navigator::State::use_route() {
 geometry::Velocity Navigator::State::relocalize() {
   lost = true;
   needs_path = true;
-  memory.clear();
+  forget_obstacles();
   const std::string why = keeper.why_not(now_ns);
   const auto odometry = keeper.T_odom_robot(now_ns);
   if (status.reason != HaltReason::kPoseLost) {

@@ -128,6 +128,37 @@ TEST(NavigatorObstacle, WhatOnlySonarsHearStopsItAndIsGoneRound) {
   EXPECT_GE(drive.status().detours, 1U);
 }
 
+/// Where the guard met something says nothing after the pose was wrong, or on another map.
+TEST(NavigatorObstacle, WhatTheGuardMetIsForgottenWithThePoseAndTheMap) {
+  enum class Change { kMap, kJump, kLost };
+  for (const Change change : {Change::kMap, Change::kJump, Change::kLost}) {
+    simulation::World world = room();
+    simulation::ChangingPart glass;
+    glass.circles = {{{4.0, 2.6}, 0.3}};
+    glass.present_s = {{0.0, kEver_s}};
+    world.changing.push_back(glass);
+    TestDrive drive(world, from(1.0, 2.5, 0.0));
+    drive.glass = glass.circles.front();
+    drive.go_to({7.0, 2.5});
+    ASSERT_TRUE(drive.run_until([&] { return drive.status().guard_stops > 0; }, 20.0));
+    drive.navigator.pause();
+    drive.sonars_hear = false;  // as if the glass had gone
+    for (int i = 0; i < 20; ++i) drive.step();
+    if (change == Change::kMap) drive.navigator.set_map(drive.map, ++drive.map_version);
+    if (change == Change::kJump) {
+      drive.robot.carry(drive.robot.T_world_robot() * geometry::Pose2{-0.3, 0.0, 0.0});
+    }
+    drive.tracking = change != Change::kLost;
+    for (int i = 0; i < 5; ++i) drive.step();
+    drive.navigator.resume();
+    drive.step();
+    drive.tracking = true;
+    ASSERT_TRUE(drive.run_until([&] { return drive.told.linear_m_per_s > 0.1; }, 3.0))
+        << drive.status().message;
+    EXPECT_EQ(drive.status().detours, 0U) << static_cast<int>(change);
+  }
+}
+
 TEST(NavigatorObstacle, AGoalThatIsFilledIsRefusedInTheEnd) {
   simulation::World world = room();
   world.changing.push_back(box({6.5, 2.4}, {7.1, 3.0}, 0.0, kEver_s));

@@ -1,0 +1,47 @@
+// Where the collision guard has stopped the robot. What only sonars hear is in no other memory, and
+// a way round it has to avoid it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace topogeo::navigation {
+
+class ContactMemory {
+ public:
+  static constexpr std::size_t kMost = 20;  ///< the oldest gives way to a new one
+
+  /// A contact, map frame; one that is known already counts as seen again.
+  void add(const Eigen::Vector2d& contact_m, std::int64_t now_ns) {
+    constexpr double kSame_m = 0.05;
+    std::erase_if(contacts_, [&](const Contact& known) {
+      return (known.point_m - contact_m).norm() < kSame_m;
+    });
+    if (contacts_.size() >= kMost) contacts_.erase(contacts_.begin());
+    contacts_.push_back({contact_m, now_ns});
+  }
+  void clear() { contacts_.clear(); }
+
+  /// Those of the last seconds, in the order in which they were met last.
+  [[nodiscard]] std::vector<Eigen::Vector2d> points_m(std::int64_t now_ns) const {
+    constexpr std::int64_t kKept_ns = 12'000'000'000;
+    std::vector<Eigen::Vector2d> points_m;
+    for (const Contact& contact : contacts_) {
+      if (now_ns - contact.met_ns < kKept_ns) points_m.push_back(contact.point_m);
+    }
+    return points_m;
+  }
+
+ private:
+  struct Contact {
+    Eigen::Vector2d point_m;
+    std::int64_t met_ns;
+  };
+  std::vector<Contact> contacts_;  ///< the one met last at the end
+};
+
+}  // namespace topogeo::navigation
