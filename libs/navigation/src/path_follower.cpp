@@ -95,6 +95,7 @@ void PathFollower::follow(std::vector<planning::PathSample> path,
   segment_ = 0;
   turn_from_rad_.reset();
   leg_from_m_.reset();
+  finished_.clear();  // nobody need ask for them
   if (path_.size() < 2) {
     path_.clear();
     phase_ = Phase::kFinalTurn;

@@ -90,6 +90,18 @@ TEST(PathFollower, ReportsPrimitivesAsTheyAreFinished) {
   EXPECT_TRUE(follower.take_finished().empty());
 }
 
+TEST(PathFollower, PrimitivesThatNobodyAsksForDoNotPileUp) {
+  PathFollower follower{FollowerConfig{}};
+  Base base({0.0, 0.0, 0.0});
+  for (const double heading_rad : {0.5, 1.0, 1.5}) {
+    follower.follow({}, heading_rad);
+    ASSERT_TRUE(base.follow(follower, 20.0));
+  }
+  const auto finished = follower.take_finished();
+  ASSERT_EQ(finished.size(), 1U);
+  EXPECT_NEAR(finished[0].amount, 0.5, 0.03);
+}
+
 TEST(PathFollower, ComesBackToThePathFromBesideIt) {
   PathFollower follower{FollowerConfig{}};
   const std::array<Eigen::Vector2d, 2> line = {Eigen::Vector2d(0.0, 0.0),

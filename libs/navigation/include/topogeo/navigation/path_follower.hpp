@@ -74,7 +74,8 @@ class PathFollower {
   [[nodiscard]] double progress_m() const { return progress_m_; }
   [[nodiscard]] double rest_m() const;
 
-  /// Primitives executed since the last call: turns on the spot and legs.
+  /// Primitives of the path executed since the last call: turns on the spot and legs. Those of the
+  /// path before are gone.
   std::vector<planning::MotionPrimitive> take_finished();
 
  private:
