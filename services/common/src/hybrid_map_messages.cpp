@@ -1,6 +1,9 @@
 #include "topogeo/service/hybrid_map_messages.hpp"
 
 #include <algorithm>
+#include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
@@ -47,12 +50,28 @@ msg::GridTile tile_of(const planning::HybridMap& map, std::uint32_t number,
   return tile;
 }
 
+/// Parts of a zone that is drawn have its name and a number: where there is no room for both, the
+/// name is cut, at a character of UTF-8. Other names stay as they are.
+std::string fitting(const std::string& name, std::size_t most) {
+  const std::size_t number = name.rfind(' ');
+  if (name.size() <= most || number == std::string::npos) return name;
+  const std::string_view digits = std::string_view(name).substr(number + 1);
+  const bool counts = !digits.empty() && std::ranges::all_of(digits, [](char character) {
+    return character >= '0' && character <= '9';
+  });
+  if (!counts || digits.size() + 1 >= most) return name;
+  std::size_t kept = most - digits.size() - 1;
+  while (kept > 0 && (static_cast<unsigned char>(name[kept]) & 0xC0U) == 0x80U) --kept;
+  return name.substr(0, kept) + name.substr(number);
+}
+
 void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
   const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
   check_bound("zones", map.zones().zones.size(), msg::kMaxZones);
   for (const planning::Zone& zone : map.zones().zones) {
     msg::HybridZone& entry = out.zones().emplace_back();
-    messaging::set_text(entry.name(), zone.name, "zone");
+    constexpr auto kMost = std::remove_cvref_t<decltype(entry.name())>::max_size;
+    messaging::set_text(entry.name(), fitting(zone.name, kMost), "zone");
     entry.area_m2(static_cast<double>(zone.cells) * cell_m2);
   }
   check_bound("places", map.places().size(), msg::kMaxPlaces);

@@ -111,6 +111,35 @@ TEST(HybridMapMessages, AMapComesBackToTheLastBit) {
   EXPECT_EQ(mirror.version(), kVersion);
 }
 
+// A wall cuts the drawn zone in two, and its name is as long as a name may be.
+TEST(HybridMapMessages, ThePartsOfAZoneWithALongNameHaveRoomForTheirNumber) {
+  planning::GridFrame frame;
+  frame.columns = 100;
+  frame.rows = 40;
+  planning::OccupancyGrid grid(frame, CellState::kFree);
+  planning::fill_box(grid, {60, 0}, {60, 39}, CellState::kOccupied);
+  const planning::FreeSpace space(std::move(grid), {1.5, false});
+  const auto names_of = [&](const std::string& name) {
+    const std::vector<planning::DrawnZone> drawn{{name, {{0, 0}, {10, 0}, {10, 4}, {0, 4}}}};
+    const planning::HybridMap map(space, planning::drawn_zones(space, drawn));
+    std::vector<std::string> names;
+    const auto messages = service::to_messages(map, "robot", 0, kVersion);
+    for (const msg::HybridZone& zone : messages.summary.zones()) {
+      names.push_back(zone.name().to_string());
+    }
+    return names;
+  };
+  EXPECT_THAT(names_of("hall"), testing::ElementsAre("hall", "hall 2"));
+  const std::string longest(64, 'a');
+  EXPECT_THAT(names_of(longest), testing::ElementsAre(longest, std::string(62, 'a') + " 2"));
+  std::string umlauts = "a";
+  for (int i = 0; i < 31; ++i) umlauts += "\u00e4";
+  EXPECT_THAT(names_of(umlauts + "b"),
+              testing::ElementsAre(umlauts + "b", umlauts.substr(0, 61) + " 2"));
+  EXPECT_THAT([&] { names_of(longest + "b"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("zone: 'aaa")));
+}
+
 TEST(HybridMapMessages, CellsBeyondTheGridAreUnknown) {
   const auto messages = service::to_messages(two_rooms({20, 20}), "robot", 0, kVersion);
   ASSERT_EQ(messages.tiles.size(), 4U);

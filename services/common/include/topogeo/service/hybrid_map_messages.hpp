@@ -27,7 +27,8 @@ struct HybridMapMessages {
 
 /// All versions and sequence numbers are `version` and 0. Throws std::invalid_argument naming the
 /// field when the map has more tiles, zones, places, nodes or edges than the messages hold, or a
-/// name is too long.
+/// name is too long. The parts of a drawn zone, "NAME 2", ..., have a shorter NAME where the whole
+/// does not fit.
 HybridMapMessages to_messages(const planning::HybridMap& map, std::string_view robot_id,
                               std::int64_t stamp_ns, std::uint64_t version);
 
