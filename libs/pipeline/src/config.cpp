@@ -1,5 +1,7 @@
 #include "topogeo/pipeline/config.hpp"
 
+#include <stdexcept>
+
 #include "config_hybrid_map.hpp"
 #include "config_navigator.hpp"
 
@@ -217,6 +219,15 @@ void share_values(Config& c) {
   c.local_mapper.tracker.odometry = c.localizer.odometry;
 }
 
+// What no single range says: values that must fit each other.
+void check_values(const Config& c) {
+  topomap::check(c.global_map);
+  planning::check(c.planning);
+  check(c.hybrid_map);
+  planning::check(c.hybrid_planner);
+  navigation::check(c.navigator);
+}
+
 }  // namespace
 
 ConfigSchema describe(Config& config) {
@@ -228,6 +239,7 @@ ConfigSchema describe(Config& config) {
   describe_localizer(config, schema);
   describe_global_map(config, schema);
   describe_hybrid_map(config.hybrid_map, schema);
+  describe_hybrid_planner(config.hybrid_planner, schema);
   describe_navigator(config.navigator, schema);
   return schema;
 }
@@ -238,9 +250,12 @@ LoadedConfig load_config(const std::optional<std::filesystem::path>& file) {
   if (file) support::load_yaml_file(*file, schema);
   loaded.effective = support::effective(schema);
   share_values(loaded.config);
-  topomap::check(loaded.config.global_map);
-  planning::check(loaded.config.planning);
-  check(loaded.config.hybrid_map);
+  try {
+    check_values(loaded.config);
+  } catch (const std::invalid_argument& error) {
+    if (!file) throw;
+    throw std::runtime_error(file->string() + ": " + error.what());
+  }
   return loaded;
 }
 

@@ -83,6 +83,22 @@ TEST_F(ConfigTest, ValueOutOfRangeIsNamedWithLineAndRange) {
   EXPECT_THAT(what, HasSubstr("between 0.1 and 10 m"));
 }
 
+TEST_F(ConfigTest, ValuesInRangeThatTheNavigatorCannotUseAreNamedWithTheFile) {
+  const std::string even = complaint("markov:\n  window_cells: 20\n");
+  EXPECT_THAT(even, HasSubstr(file_.string()));
+  EXPECT_THAT(even, HasSubstr("window"));
+  EXPECT_THAT(complaint("navigator:\n  min_radius_m: 3\n  max_radius_m: 2\n"), HasSubstr("radius"));
+}
+
+TEST_F(ConfigTest, TheHybridPlannerHasASection) {
+  EXPECT_EQ(complaint("hybrid_planner:\n  start_snap_m: 0.5\n  piece_m: 0\n"), "");
+  const Config config = load_config(file_).config;
+  EXPECT_EQ(config.hybrid_planner.start_snap_m, 0.5);
+  EXPECT_EQ(config.hybrid_planner.piece_m, 0.0);
+  EXPECT_EQ(config.hybrid_planner.goal_snap_m, planning::HybridPlannerConfig{}.goal_snap_m);
+  EXPECT_THAT(complaint("hybrid_planner:\n  goal_snap_m: 6\n"), HasSubstr("between 0 and 5 m"));
+}
+
 TEST_F(ConfigTest, MissingFileIsNamed) {
   try {
     (void)load_config("/nowhere/topogeo.yaml");

@@ -9,6 +9,7 @@
 #include "topogeo/navigation/navigator.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/support/config_schema.hpp"
@@ -23,6 +24,7 @@ struct Config {
   topomap::GlobalMapConfig global_map;
   planning::PlanningConfig planning;
   HybridMapConfig hybrid_map;
+  planning::HybridPlannerConfig hybrid_planner;
   navigation::NavigatorConfig navigator;
 };
 
@@ -30,7 +32,8 @@ struct Config {
 support::ConfigSchema describe(Config& config);
 
 /// The configuration of a file, or the defaults without one. `effective` of it goes into reports.
-/// Throws std::runtime_error naming file, line and key.
+/// Throws std::runtime_error naming file, line and key, or file and field for values that do not
+/// fit each other.
 struct LoadedConfig {
   Config config;
   support::EffectiveConfig effective;
