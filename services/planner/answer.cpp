@@ -10,8 +10,6 @@ namespace topogeo::planner {
 
 namespace {
 
-using localization::LocalizationState;
-
 msg::Route no_route(msg::RouteStatus status, std::string_view why) {
   msg::Route route;
   route.status(status);
@@ -39,11 +37,6 @@ planning::Closures closures(const planning::GridFrame& frame,
 
 }  // namespace
 
-bool is_known(const service::LivePose& pose) {
-  return pose.belief.state == LocalizationState::kTracking ||
-         pose.belief.state == LocalizationState::kAmbiguous;
-}
-
 msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
                   const std::optional<service::LivePose>& pose,
                   std::span<const Eigen::Vector2d> blocked_m,
@@ -56,7 +49,7 @@ msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
     return no_route(msg::kRouteNoMap, "the map has no zone: nowhere on it is room for the robot");
   }
   if (!pose) return no_route(msg::kRouteNoPose, "the robot has no pose yet");
-  if (!is_known(*pose)) {
+  if (!localization::located(pose->belief.state)) {
     return no_route(msg::kRouteNoPose,
                     std::string("the robot's pose is not known: ") + to_string(pose->belief.state));
   }

@@ -12,9 +12,6 @@
 
 namespace topogeo::planner {
 
-/// Whether a route can begin at the pose.
-bool is_known(const service::LivePose& pose);
-
 /// The answer to a goal of a position, node or place, without header, goal_id and versions. `map`
 /// and `pose` are empty while there is none; `blocked_m` are points (map frame) in cells that
 /// something fills which is not on the map; those that are beyond it do not matter. Everything that

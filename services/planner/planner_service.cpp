@@ -56,9 +56,9 @@ PlannerService::PlannerService(service::Service& service)
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
-  const bool was_known = pose_ && is_known(*pose_);
+  const bool was_known = pose_ && localization::located(pose_->belief.state);
   pose_ = service::from_msg(message);
-  if (!is_known(*pose_)) return;
+  if (!localization::located(pose_->belief.state)) return;
   const bool moved =
       no_way_at_ && (no_way_at_->position_m() - pose_->T_map_robot.position_m()).norm() >= kMoved_m;
   if (!was_known || moved) plan();
@@ -104,7 +104,8 @@ void PlannerService::plan() {
   if (!goal_) return;
   msg::Route route;
   try {
-    route = answer(*goal_, map_.get(), pose_, blockages_.points_m);
+    route = answer(*goal_, map_.get(), pose_, blockages_.points_m,
+                   service_.setup().config.config.hybrid_planner);
   } catch (const std::invalid_argument& error) {
     service_.status().fault("route not sent", error.what());
     return;

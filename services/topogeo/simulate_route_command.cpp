@@ -95,22 +95,22 @@ int simulate_route(const SimulateRouteOptions& options) {
   }
   const auto config = [&] {
     try {
-      return pipeline::load_config(options.config).config.hybrid_map;
+      return pipeline::load_config(options.config).config;
     } catch (const std::exception& error) {
       throw service::UsageError(error.what());
     }
   }();
   const auto map = [&] {
     try {
-      return read_source(options, config);
+      return read_source(options, config.hybrid_map);
     } catch (const std::exception& error) {
       throw service::BadInputError(error.what());
     }
   }();
   planning::Closures closed;
   closed.cells = blocked_cells(options.blocks, map.frame());
-  const planning::HybridRoute route =
-      planning::HybridPlanner(map).plan(from_m, target_of(options.to), closed);
+  const planning::HybridRoute route = planning::HybridPlanner(map, config.hybrid_planner)
+                                          .plan(from_m, target_of(options.to), closed);
   if (format) {
     const std::string title =
         fmt::format("{}: {} to {}", options.source.filename().string(), options.from, options.to);
@@ -155,7 +155,9 @@ void add_simulate_route_command(CLI::App& app, int& exit_code) {
                    "something stands there that is not on the map; can be given again")
       ->type_name("X,Y")
       ->allow_extra_args(false);
-  command->add_option("--config", options->config, "configuration (YAML), for its hybrid map")
+  command
+      ->add_option("--config", options->config,
+                   "configuration (YAML), for its hybrid_map and hybrid_planner")
       ->type_name("FILE");
   command->add_option("--zones", options->zones, "drawn zones and places (YAML)")
       ->type_name("FILE");
