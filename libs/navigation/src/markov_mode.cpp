@@ -12,6 +12,7 @@ void MarkovMode::set_map(const planning::HybridMap* map) {
     T_map_station_ = found->T_map_robot;
   }
   tracker_.reset();
+  tried_ns_.reset();
   if (map == nullptr) return;
   tracker_.emplace(map->space().grid(), config_.markov);
   if (odometry_) tracker_->add(*odometry_);
@@ -37,7 +38,9 @@ void MarkovMode::add(const SonarRound& sonar) {
 
 std::optional<PoseFix> MarkovMode::pose() {
   if (!tracker_) return std::nullopt;
-  if (!tracker_->started() && T_map_station_ && round_ && odometry_) {
+  if (!tracker_->started() && T_map_station_ && round_ && odometry_ &&
+      tried_ns_ != round_->stamp_ns) {
+    tried_ns_ = round_->stamp_ns;
     tracker_->start(*T_map_station_, *round_);
   }
   if (tracker_->started()) return tracker_->fix();

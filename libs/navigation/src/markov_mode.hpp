@@ -49,6 +49,7 @@ class MarkovMode {
   std::optional<geometry::Pose2> T_map_station_;
   std::optional<OdometrySample> odometry_;
   std::optional<SonarRound> round_;
+  std::optional<std::int64_t> tried_ns_;  ///< stamp of the round with which it could not start
   std::optional<std::int64_t> look_ns_;
   std::vector<double> nodes_at_m_;
   std::size_t next_node_ = 0;
