@@ -58,6 +58,12 @@ SweptWay sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d
   return way;
 }
 
+double stopping_speed(double way_m, double delay_s, double brake_m_per_s2) {
+  if (way_m <= 0.0) return 0.0;
+  const double delayed = brake_m_per_s2 * delay_s;
+  return std::sqrt(delayed * delayed + 2.0 * brake_m_per_s2 * way_m) - delayed;
+}
+
 geometry::Pose2 moved(const geometry::Velocity& velocity, double time_s) {
   const double turn_rad = velocity.angular_rad_per_s * time_s;
   const double way_m = velocity.linear_m_per_s * time_s;

@@ -24,6 +24,10 @@ struct SweptWay {
 SweptWay sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d> points_m,
                double radius_m, double limit_m);
 
+/// The speed from which it stops within `way_m` when it brakes that hard after a delay: v with
+/// v delay + v^2 / (2 brake) = way. 0 without a way.
+double stopping_speed(double way_m, double delay_s, double brake_m_per_s2);
+
 /// Where the robot is after `time_s` of a constant velocity, seen from where it was.
 geometry::Pose2 moved(const geometry::Velocity& velocity, double time_s);
 

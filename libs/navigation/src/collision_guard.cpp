@@ -1,15 +1,14 @@
 #include "topogeo/navigation/collision_guard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/scan/scan.hpp"
 
 #include "arc_sweep.hpp"
+#include "say.hpp"
 #include "scan_smoothing.hpp"
 #include "settings_check.hpp"
 
@@ -21,12 +20,6 @@ constexpr double kNanoseconds = 1e-9;
 
 bool heard(const SonarReading& reading) {
   return reading.range_m > scan::Scan::kNoReturn;
-}
-
-std::string text_of(const char* format, double number) {
-  std::array<char, 160> text{};
-  const int length = std::snprintf(text.data(), text.size(), format, number);
-  return {text.data(), static_cast<std::size_t>(std::max(0, length))};
 }
 
 }  // namespace
@@ -57,6 +50,7 @@ void CollisionGuard::add(const OdometrySample& odometry) {
 void CollisionGuard::add(const ScanPoints& scan) {
   if (scan_ && scan.stamp_ns <= scan_->stamp_ns) return;
   scan_ = smoothed(scan, config_.side_margin_m);
+  compare_echoes();
 }
 
 void CollisionGuard::add(const SonarRound& sonar) {
@@ -69,24 +63,41 @@ void CollisionGuard::add(const SonarRound& sonar) {
     T_odom_sonar_round_ = last_->T_odom_robot;
   }
   listen(sonar);
+  compare_echoes();
 }
 
 // Notes since when the sonars hear nothing although there is something to be heard.
 void CollisionGuard::listen(const SonarRound& sonar) {
   const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), heard);
   const auto must_hear = [&](const SonarReading& reading) {
-    return laser_sees(reading, config_.sonar_reach_m, sonar.stamp_ns);
+    return laser_sees(reading, config_.sonar_reach_m);
   };
-  if (any || !std::any_of(sonar.readings.begin(), sonar.readings.end(), must_hear)) {
+  if (any || !scan_ || !fresh(scan_->stamp_ns, sonar.stamp_ns) ||
+      !std::any_of(sonar.readings.begin(), sonar.readings.end(), must_hear)) {
     silent_since_ns_.reset();
   } else if (!silent_since_ns_) {
     silent_since_ns_ = sonar.stamp_ns;
   }
 }
 
-bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m,
-                                std::int64_t now_ns) const {
-  if (!scan_ || !fresh(scan_->stamp_ns, now_ns)) return false;
+// What the sonars hear, and whether the laser sees it, too, and better.
+void CollisionGuard::compare_echoes() {
+  constexpr double kSame_m = 0.2;
+  constexpr double kAhead = 0.5;  // within 60 degrees of ahead or back
+  echoes_.clear();
+  if (!sonar_) return;
+  for (const SonarReading& reading : sonar_->readings) {
+    if (!heard(reading)) continue;
+    const double range_m = static_cast<double>(reading.range_m);
+    // Beside the body a least reading is a door post, which its motion does not bring nearer.
+    const bool ahead = std::fabs(geometry::sincos(reading.T_robot_sonar.theta_rad).cos) > kAhead;
+    const double away_m = ahead && range_m <= config_.sonar_least_m ? 0.0 : range_m;
+    echoes_.push_back({reading.T_robot_sonar * Eigen::Vector2d(away_m, 0.0),
+                       scan_ && laser_sees(reading, range_m + kSame_m)});
+  }
+}
+
+bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m) const {
   const geometry::Pose2 T_sonar_robot = inverse(reading.T_robot_sonar);
   const double tangent =
       std::tan(std::min(reading.half_cone_rad, 1.5));  // decides no result of mapping
@@ -102,30 +113,30 @@ bool CollisionGuard::fresh(std::int64_t stamp_ns, std::int64_t now_ns) const {
 }
 
 HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) const {
-  const auto say = [&](HaltReason reason, std::string text) {
+  const auto because = [&](HaltReason reason, std::string text) {
     if (message != nullptr) *message = std::move(text);
     return reason;
   };
   const auto age_s = [&](std::int64_t stamp_ns) {
     return static_cast<double>(now_ns - stamp_ns) * kNanoseconds;
   };
-  if (config_.needs_scan && !scan_) return say(HaltReason::kNoScan, "no scan has come yet");
+  if (config_.needs_scan && !scan_) return because(HaltReason::kNoScan, "no scan has come yet");
   if (config_.needs_scan && !fresh(scan_->stamp_ns, now_ns)) {
-    return say(HaltReason::kNoScan, text_of("the last scan is %.1f s old", age_s(scan_->stamp_ns)));
+    return because(HaltReason::kNoScan, say("the last scan is %.1f s old", age_s(scan_->stamp_ns)));
   }
   const bool needs_sonar = config_.needs_sonar || !config_.needs_scan;
   if (needs_sonar && (!sonar_ || sonar_->readings.empty())) {
-    return say(HaltReason::kSonarSilent, "no reading of the sonars has come yet");
+    return because(HaltReason::kSonarSilent, "no reading of the sonars has come yet");
   }
   if (needs_sonar && age_s(sonar_->stamp_ns) > std::max(config_.silent_s, config_.oldest_scan_s)) {
-    return say(HaltReason::kSonarSilent,
-               text_of("the last reading of the sonars is %.1f s old", age_s(sonar_->stamp_ns)));
+    return because(HaltReason::kSonarSilent,
+                   say("the last reading of the sonars is %.1f s old", age_s(sonar_->stamp_ns)));
   }
   if (silent_since_ns_ && age_s(sonar_->stamp_ns) <= config_.silent_s &&
       static_cast<double>(sonar_->stamp_ns - *silent_since_ns_) * kNanoseconds >=
           config_.silent_s) {
-    return say(HaltReason::kSonarSilent,
-               text_of("no sonar has heard anything for %.1f s, though the laser sees something "
+    return because(HaltReason::kSonarSilent,
+                   say("no sonar has heard anything for %.1f s, though the laser sees something "
                        "near",
                        age_s(*silent_since_ns_)));
   }
@@ -137,22 +148,16 @@ std::vector<Eigen::Vector2d> CollisionGuard::obstacles_m(std::int64_t now_ns) co
   const auto carried = [&](const geometry::Pose2& T_odom_then) {
     return last_ ? between(last_->T_odom_robot, T_odom_then) : geometry::Pose2{};
   };
-  if (scan_ && fresh(scan_->stamp_ns, now_ns)) {
+  const bool scan_counts = scan_ && fresh(scan_->stamp_ns, now_ns);
+  if (scan_counts) {
     const geometry::Pose2 T_now_then = carried(scan_->T_odom_robot);
     for (const Eigen::Vector2d& point_m : scan_->points_m) points_m.push_back(T_now_then * point_m);
   }
   if (!sonar_ || !fresh(sonar_->stamp_ns, now_ns)) return points_m;
-  constexpr double kSame_m = 0.2;  // an echo of what the laser sees, too, and sees better
   const geometry::Pose2 T_now_then =
       T_odom_sonar_round_ ? carried(*T_odom_sonar_round_) : geometry::Pose2{};
-  for (const SonarReading& reading : sonar_->readings) {
-    const double range_m = static_cast<double>(reading.range_m);
-    if (!heard(reading) || laser_sees(reading, range_m + kSame_m, now_ns)) continue;
-    // Beside the body a least reading is a door post, which its motion does not bring nearer.
-    constexpr double kAhead = 0.5;  // within 60 degrees of ahead or back
-    const bool ahead = std::fabs(geometry::sincos(reading.T_robot_sonar.theta_rad).cos) > kAhead;
-    const double away_m = ahead && range_m <= config_.sonar_least_m ? 0.0 : range_m;
-    points_m.push_back(T_now_then * (reading.T_robot_sonar * Eigen::Vector2d(away_m, 0.0)));
+  for (const Echo& echo : echoes_) {
+    if (!scan_counts || !echo.laser_sees) points_m.push_back(T_now_then * echo.point_m);
   }
   return points_m;
 }
@@ -170,13 +175,9 @@ geometry::Velocity CollisionGuard::driven() const {
   return {};
 }
 
-// v with v delay + v^2 / (2 a) = the free way less the margin.
 double CollisionGuard::speed_for(double free_way_m) const {
-  const double way_m = free_way_m - std::max(0.0, config_.margin_m - config_.side_margin_m);
-  if (way_m <= 0.0) return 0.0;
-  const double brake = config_.deceleration_m_per_s2;
-  const double delayed = brake * config_.delay_s;
-  return std::sqrt(delayed * delayed + 2.0 * brake * way_m) - delayed;
+  const double kept_m = std::max(0.0, config_.margin_m - config_.side_margin_m);
+  return stopping_speed(free_way_m - kept_m, config_.delay_s, config_.deceleration_m_per_s2);
 }
 
 GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_t now_ns) const {
@@ -219,7 +220,7 @@ GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_
     verdict.allowed = {};
     verdict.reason = HaltReason::kObstacle;
   }
-  verdict.message = text_of("something is %.2f m ahead of the body", way.way_m);
+  verdict.message = say("something is %.2f m ahead of the body", way.way_m);
   return verdict;
 }
 

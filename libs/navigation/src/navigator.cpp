@@ -1,8 +1,5 @@
 #include "topogeo/navigation/navigator.hpp"
 
-#include <array>
-#include <cstdarg>
-#include <cstdio>
 #include <utility>
 
 #include "navigator_state.hpp"
@@ -35,14 +32,6 @@ void check(const NavigatorConfig& config) {
   const auto range = [](const char* field, double value, double low, double high) {
     check_range("navigator", field, value, low, high);
   };
-  constexpr double kLeast = 1e-3;
-  range("speed_m_per_s", config.speed_m_per_s, kLeast, 3.0);
-  range("turn_rad_per_s", config.turn_rad_per_s, kLeast, 6.0);
-  range("acceleration_m_per_s2", config.acceleration_m_per_s2, kLeast, 10.0);
-  range("turn_acceleration_rad_per_s2", config.turn_acceleration_rad_per_s2, kLeast, 20.0);
-  range("delay_s", config.delay_s, 0.0, 1.0);
-  range("arrival_m", config.arrival_m, 0.005, 1.0);
-  range("arrival_rad", config.arrival_rad, 0.002, 1.0);
   range("settle_s", config.settle_s, 0.0, 10.0);
   range("oldest_pose_s", config.oldest_pose_s, 0.1, 60.0);
   range("oldest_odometry_s", config.oldest_odometry_s, 0.1, 10.0);
@@ -52,19 +41,11 @@ void check(const NavigatorConfig& config) {
   range("route_wait_s", config.route_wait_s, 0.1, 600.0);
   range("stuck_s", config.stuck_s, 0.2, 60.0);
   range("look_around_m", config.look_around_m, 0.0, 50.0);
+  check(follower_config(config));
   check(config.guard);
   check(config.markov);
   planning::check(config.detour);
   planning::check(config.smooth);
-}
-
-std::string say(const char* format, ...) {
-  std::array<char, 240> text{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  va_end(arguments);
-  return text.data();
 }
 
 Navigator::State::State(const NavigatorConfig& settings)

@@ -40,7 +40,6 @@ geometry::Velocity Navigator::State::settle(const geometry::Pose2& T_map_robot) 
   const double stood_s = since_s(*settle_ns);
   const bool seen = keeper.fix_ns().value_or(0) >=
                     *settle_ns + static_cast<std::int64_t>(0.5 * config.settle_s * 1e9);
-  status.state = NavigatorState::kDriving;
   if (stood_s < config.settle_s || (!seen && stood_s < kLongest * config.settle_s)) {
     return stop(NavigatorState::kDriving, HaltReason::kNone, "is there; looks where exactly");
   }

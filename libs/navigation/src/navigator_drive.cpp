@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "arc_sweep.hpp"
 #include "navigator_state.hpp"
 
 namespace topogeo::navigation {
@@ -34,15 +35,23 @@ geometry::Velocity Navigator::State::without_route() {
                                      : say("the planner has not answered for %.0f s", waited_s));
 }
 
-std::vector<Eigen::Vector2d> Navigator::State::standing_m() const {
-  std::vector<Eigen::Vector2d> points_m = memory.standing_m();
+SeenObstacles Navigator::State::seen() const {
+  SeenObstacles seen;
+  const std::vector<Obstacle> obstacles = memory.all();
+  for (const Obstacle& obstacle : obstacles) {
+    if (obstacle.stands) seen.points_m.push_back(obstacle.point_m);
+  }
   const std::vector<Eigen::Vector2d> met_m = contacts.points_m(now_ns);
-  points_m.insert(points_m.end(), met_m.begin(), met_m.end());
-  return points_m;
+  seen.points_m.insert(seen.points_m.end(), met_m.begin(), met_m.end());
+  seen.standing = seen.points_m.size();
+  for (const Obstacle& obstacle : obstacles) {
+    if (!obstacle.stands) seen.points_m.push_back(obstacle.point_m);
+  }
+  return seen;
 }
 
 bool Navigator::State::find_path(const geometry::Pose2& T_map_robot) {
-  auto local = way.plan(T_map_robot.position_m(), standing_m());
+  auto local = way.plan(T_map_robot.position_m(), seen().standing_m());
   planned_ns = now_ns;
   no_way_to_route = local.status == planning::DetourStatus::kLost;
   if (local.path.empty()) return false;
@@ -89,7 +98,6 @@ geometry::Velocity Navigator::State::drive(const geometry::Pose2& T_map_robot) {
 
 geometry::Velocity Navigator::State::follow(const geometry::Pose2& T_map_robot) {
   const double limit = speed_past_obstacles(T_map_robot);
-  if (needs_path) return wait_for_obstacle();
   if (guard_stop_ns && since_s(*guard_stop_ns) > kGuardWaits_s) go_round(T_map_robot);
   const FollowerStep order = follower.step(T_map_robot, now_ns, limit);
   const bool before_block = block_m && limit < kWaiting_m_s && order.rest_m > 0.0 &&
@@ -127,29 +135,23 @@ void Navigator::State::tell_driving(const FollowerStep& order) {
 
 double Navigator::State::speed_past_obstacles(const geometry::Pose2& T_map_robot) {
   block_m.reset();
-  std::vector<Eigen::Vector2d> all_m = standing_m();
-  for (const Obstacle& obstacle : memory.all()) {
-    if (!obstacle.stands) all_m.push_back(obstacle.point_m);
-  }
+  const SeenObstacles seen_now = seen();
   const Eigen::Vector2d robot_m = T_map_robot.position_m();
   const auto look = [&](std::span<const Eigen::Vector2d> points_m) {
     return way.blocked(follower.path(), follower.progress_m(), robot_m, points_m, kSees_m);
   };
-  auto block = look(all_m);
+  auto block = look(seen_now.points_m);
   if (!block) return config.speed_m_per_s;
-  if (since_s(planned_ns) > kPlanEvery_s && look(standing_m())) {
+  if (since_s(planned_ns) > kPlanEvery_s && look(seen_now.standing_m())) {
     go_round(T_map_robot);
-    block = look(all_m);
+    block = look(seen_now.points_m);
     if (!block) return config.speed_m_per_s;
   }
   block_m = block->obstacle_m;
   block_ahead_m = block->ahead_m;
-  // v with v delay + v^2 / (2 brake) = room.
-  const double room_m = std::max(0.0, block->ahead_m - kKeepsOff_m);
-  const double brake = kBrake * config.acceleration_m_per_s2;
-  const double delayed = brake * (config.delay_s + kSeeing_s);
   return std::min(config.speed_m_per_s,
-                  std::sqrt(delayed * delayed + 2.0 * brake * room_m) - delayed);
+                  stopping_speed(block->ahead_m - kKeepsOff_m, config.delay_s + kSeeing_s,
+                                 kBrake * config.acceleration_m_per_s2));
 }
 
 // Another path, when there is one; the old one stays otherwise.
@@ -192,13 +194,11 @@ void Navigator::State::tell_waiting() {
 void Navigator::State::report_blockage() {
   constexpr double kAround_m = 1.0;
   std::vector<Eigen::Vector2d> filled_m;
-  std::vector<Eigen::Vector2d> all_m = standing_m();
-  for (const Obstacle& obstacle : memory.all()) all_m.push_back(obstacle.point_m);
-  const auto pose = keeper.good_pose(now_ns);
+  const auto& pose = status.T_map_robot;
   const Eigen::Vector2d around_m =
       block_m ? *block_m : (pose ? pose->position_m() : Eigen::Vector2d::Zero());
   const double reach_m = block_m ? kAround_m : config.detour.half_side_m;
-  for (const Eigen::Vector2d& point_m : all_m) {
+  for (const Eigen::Vector2d& point_m : seen().points_m) {
     if ((point_m - around_m).norm() < reach_m) filled_m.push_back(point_m);
   }
   if (!blockade.add(filled_m, map->frame(), now_ns)) blockade.ask_again();

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +23,19 @@
 #include "obstacle_memory.hpp"
 #include "pose_keeper.hpp"
 #include "route_way.hpp"
+#include "say.hpp"
 
 namespace topogeo::navigation {
+
+/// What is near and not on the map: first what stands, then what may move away.
+struct SeenObstacles {
+  std::vector<Eigen::Vector2d> points_m;  ///< map frame
+  std::size_t standing = 0;
+
+  [[nodiscard]] std::span<const Eigen::Vector2d> standing_m() const {
+    return std::span(points_m).first(standing);
+  }
+};
 
 struct Navigator::State {
   explicit State(const NavigatorConfig& settings);
@@ -55,7 +67,7 @@ struct Navigator::State {
   void begin_waiting();
   void tell_waiting();
   void report_blockage();
-  std::vector<Eigen::Vector2d> standing_m() const;
+  [[nodiscard]] SeenObstacles seen() const;
   void tell_driving(const FollowerStep& order);
 
   // navigator_markov.cpp
@@ -95,11 +107,10 @@ struct Navigator::State {
   bool paused = false;
   bool stuck = false;
   std::optional<BaseCondition> base;
-  std::vector<ScanPoints> scans;        ///< not used for the memory yet: their pose is to come
-  std::optional<RoutePlan> offered;     ///< the last route for the goal that was not taken yet
-  std::string refused;                  ///< why the planner has none; empty: it has not said so
-  std::uint64_t refused_blockages = 0;  ///< that refusal's blockages_version
-  std::int64_t goal_ns = 0;             ///< since when a route is waited for
+  std::vector<ScanPoints> scans;     ///< not used for the memory yet: their pose is to come
+  std::optional<RoutePlan> offered;  ///< the last route for the goal that was not taken yet
+  std::string refused;               ///< why the planner has none; empty: it has not said so
+  std::int64_t goal_ns = 0;          ///< since when a route is waited for
 
   bool needs_path = false;
   bool no_way_to_route = false;  ///< the last search for a path did not even begin
@@ -123,12 +134,5 @@ struct Navigator::State {
 
   NavigatorStatus status;
 };
-
-/// printf into a string.
-#if defined(__GNUC__)
-__attribute__((format(printf, 1, 2)))
-#endif
-std::string
-say(const char* format, ...);
 
 }  // namespace topogeo::navigation

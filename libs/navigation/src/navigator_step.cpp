@@ -28,9 +28,8 @@ geometry::Velocity Navigator::State::command(const geometry::Velocity& wanted) {
   } else if (!stops && wanted != geometry::Velocity{}) {
     guard_stop_ns.reset();
   }
-  if (stops && verdict.contact_m) {
-    if (const auto pose = keeper.good_pose(now_ns))
-      contacts.add(*pose * *verdict.contact_m, now_ns);
+  if (stops && verdict.contact_m && status.T_map_robot) {
+    contacts.add(*status.T_map_robot * *verdict.contact_m, now_ns);
   }
   if (stops) status.message = verdict.message;
   status.command = verdict.allowed;
@@ -64,8 +63,7 @@ HaltReason Navigator::State::halted(std::string& message) {
 
 void Navigator::State::use_scan() {
   for (const ScanPoints& scan : scans) {
-    if (!map) continue;
-    if (!keeper.good_pose(now_ns)) continue;
+    if (!map || !status.T_map_robot) break;
     const auto T_map_robot = keeper.T_map_robot(scan.stamp_ns);
     if (!T_map_robot) continue;
     memory.add(scan, *T_map_robot, map->space());

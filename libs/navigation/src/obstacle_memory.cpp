@@ -46,12 +46,4 @@ std::vector<Obstacle> ObstacleMemory::all() const {
   return obstacles;
 }
 
-std::vector<Eigen::Vector2d> ObstacleMemory::standing_m() const {
-  std::vector<Eigen::Vector2d> points_m;
-  for (const auto& [index, obstacle] : cells_) {
-    if (obstacle.stands) points_m.push_back(obstacle.point_m);
-  }
-  return points_m;
-}
-
 }  // namespace topogeo::navigation

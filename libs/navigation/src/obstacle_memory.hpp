@@ -44,8 +44,6 @@ class ObstacleMemory {
 
   /// Seen at least twice; in the order of the cells.
   [[nodiscard]] std::vector<Obstacle> all() const;
-  /// The points of those that stand.
-  [[nodiscard]] std::vector<Eigen::Vector2d> standing_m() const;
 
  private:
   MemoryConfig config_;

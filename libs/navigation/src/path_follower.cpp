@@ -22,10 +22,6 @@ constexpr double kCorner_rad = 0.02;  // less is no turn on the spot
 constexpr double kStands_m_s = 1e-3;
 constexpr double kStands_rad_s = 5e-3;
 
-double stop_speed(double way_m, double brake) {
-  return std::sqrt(2.0 * brake * std::max(0.0, way_m));
-}
-
 }  // namespace
 
 void check(const FollowerConfig& config) {
@@ -206,7 +202,7 @@ double PathFollower::curve_speed(double to_go_m) const {
   constexpr double kSideways_m_per_s2 = 0.6;
   constexpr double kTurnShare = 0.8;  // the rest is for corrections
   const double brake = kBrake * config_.acceleration_m_per_s2;
-  double speed = std::min(config_.speed_m_per_s, stop_speed(to_go_m, brake));
+  double speed = std::min(config_.speed_m_per_s, stopping_speed(to_go_m, 0.0, brake));
   for (std::size_t i = segment_; i < leg_end_; ++i) {
     const double ahead_m = std::max(0.0, path_[i].distance_m - progress_m_);
     if (ahead_m > kAhead_m) break;
@@ -220,9 +216,9 @@ double PathFollower::curve_speed(double to_go_m) const {
 }
 
 geometry::Velocity PathFollower::turn(double error_rad) const {
-  const double most =
-      std::min(config_.turn_rad_per_s,
-               stop_speed(std::fabs(error_rad), kTurnBrake * config_.turn_acceleration_rad_per_s2));
+  const double most = std::min(
+      config_.turn_rad_per_s,
+      stopping_speed(std::fabs(error_rad), 0.0, kTurnBrake * config_.turn_acceleration_rad_per_s2));
   const double speed = std::max(most, kSlowest_rad_s);
   return {0.0, error_rad > 0.0 ? speed : -speed};
 }

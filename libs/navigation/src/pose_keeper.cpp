@@ -1,10 +1,10 @@
 #include "pose_keeper.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "say.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -108,20 +108,18 @@ std::optional<geometry::Pose2> PoseKeeper::good_pose(std::int64_t now_ns) const 
 
 std::string PoseKeeper::why_not(std::int64_t now_ns) const {
   if (!fix_) return "no pose has come yet";
-  std::array<char, 160> text{};
   if (!usable()) {
-    std::snprintf(text.data(), text.size(), "the localizer does not track the pose: %s",
-                  fix_->state_text.empty() ? "no reason given" : fix_->state_text.c_str());
-  } else if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) {
-    std::snprintf(text.data(), text.size(), "the last pose is %.1f s old",
-                  seconds(now_ns - fix_->stamp_ns));
-  } else if (!(sigma_m() <= config_.largest_sigma_m)) {
-    std::snprintf(text.data(), text.size(), "the pose is only known to %.2f m, %.2f m are allowed",
-                  sigma_m(), config_.largest_sigma_m);
-  } else {
-    return "no odometry";
+    return say("the localizer does not track the pose: %s",
+               fix_->state_text.empty() ? "no reason given" : fix_->state_text.c_str());
   }
-  return text.data();
+  if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) {
+    return say("the last pose is %.1f s old", seconds(now_ns - fix_->stamp_ns));
+  }
+  if (!(sigma_m() <= config_.largest_sigma_m)) {
+    return say("the pose is only known to %.2f m, %.2f m are allowed", sigma_m(),
+               config_.largest_sigma_m);
+  }
+  return "no odometry";
 }
 
 std::optional<std::int64_t> PoseKeeper::fix_ns() const {

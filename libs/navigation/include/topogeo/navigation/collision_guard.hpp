@@ -74,9 +74,9 @@ class CollisionGuard {
   [[nodiscard]] std::vector<Eigen::Vector2d> obstacles_m(std::int64_t now_ns) const;
   [[nodiscard]] geometry::Velocity driven() const;
   [[nodiscard]] double speed_for(double free_way_m) const;
-  /// Whether a fresh scan has a point in the sonar's cone, at most so far from it.
-  [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m,
-                                std::int64_t now_ns) const;
+  /// Whether the scan has a point in the sonar's cone, at most so far from it.
+  [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
+  void compare_echoes();
   void listen(const SonarRound& sonar);
 
   GuardConfig config_;
@@ -84,6 +84,11 @@ class CollisionGuard {
   std::optional<OdometrySample> last_;
   std::optional<ScanPoints> scan_;  ///< smoothed
   std::optional<SonarRound> sonar_;
+  struct Echo {
+    Eigen::Vector2d point_m;  ///< robot frame when it was heard
+    bool laser_sees;          ///< in the last scan, however old that is
+  };
+  std::vector<Echo> echoes_;  ///< of the last round
   std::optional<geometry::Pose2> T_odom_sonar_round_;
   std::optional<std::int64_t> silent_since_ns_;
 };

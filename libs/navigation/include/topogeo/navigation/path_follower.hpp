@@ -123,7 +123,6 @@ class PathFollower {
 
   std::optional<double> turn_from_rad_;
   std::optional<Eigen::Vector2d> leg_from_m_;
-  double leg_sign_turn_rad_ = 0.0;
   std::vector<planning::MotionPrimitive> finished_;
 };
 
