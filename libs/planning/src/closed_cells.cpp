@@ -24,11 +24,11 @@ ClosedCells::ClosedCells(const FreeSpace& space, std::span<const Cell> filled)
 }
 
 bool ClosedCells::filled(const Cell& cell) const {
-  return !filled_.empty() && has_cell(filled_, cell);
+  return has_cell(filled_, cell);
 }
 
 bool ClosedCells::forbids(const Cell& cell) const {
-  return !forbidden_.empty() && has_cell(forbidden_, cell);
+  return has_cell(forbidden_, cell);
 }
 
 void ClosedCells::close_in(SearchWindow& window) const {
@@ -36,14 +36,13 @@ void ClosedCells::close_in(SearchWindow& window) const {
 }
 
 double ClosedCells::clearance_m(const Cell& cell) const {
-  double clearance_m = space_.clearance_m(cell);
+  double nearest2 = HUGE_VAL;  // in cells, squared
   for (const Cell& other : filled_) {
     const double across = other.column - cell.column;
     const double up = other.row - cell.row;
-    const double distance_m = std::sqrt(across * across + up * up) * space_.frame().resolution_m;
-    clearance_m = std::min(clearance_m, distance_m);
+    nearest2 = std::min(nearest2, across * across + up * up);
   }
-  return clearance_m;
+  return std::min(space_.clearance_m(cell), std::sqrt(nearest2) * space_.frame().resolution_m);
 }
 
 }  // namespace topogeo::planning

@@ -8,6 +8,12 @@
 namespace topogeo::planning {
 namespace {
 
+// A border that a way crosses.
+struct Crossing {
+  std::uint32_t node = 0;
+  ZoneId into = kNoZone;
+};
+
 // The node of the border between two cells side by side in different zones.
 std::optional<std::uint32_t> node_between(const HybridMap& map, const Cell& a, const Cell& b) {
   const ZoneId zone_a = map.zone_of(a);
@@ -29,21 +35,7 @@ Cell beside(const HybridMap& map, const Cell& a, const Cell& b) {
   return zone == map.zone_of(a) || zone == map.zone_of(b) ? second : first;
 }
 
-std::optional<std::uint32_t> edge_between(const HybridMap& map, ZoneId zone, std::uint32_t a,
-                                          std::uint32_t b) {
-  const auto& edges = map.edges();
-  auto edge = std::lower_bound(edges.begin(), edges.end(), zone,
-                               [](const HybridEdge& e, ZoneId z) { return e.zone < z; });
-  for (; edge != edges.end() && edge->zone == zone; ++edge) {
-    if ((edge->node_a == a && edge->node_b == b) || (edge->node_a == b && edge->node_b == a)) {
-      return edge->id;
-    }
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
+// In order.
 std::vector<Crossing> crossings(const HybridMap& map, std::span<const Cell> cells) {
   std::vector<Crossing> found;
   const auto step = [&](const Cell& a, const Cell& b) {
@@ -69,10 +61,25 @@ std::vector<Crossing> crossings(const HybridMap& map, std::span<const Cell> cell
   return found;
 }
 
-NodesAndEdges nodes_and_edges(const HybridMap& map, std::span<const Crossing> crossings) {
+}  // namespace
+
+std::optional<std::uint32_t> edge_between(const HybridMap& map, ZoneId zone, std::uint32_t a,
+                                          std::uint32_t b) {
+  const auto& edges = map.edges();
+  auto edge = std::lower_bound(edges.begin(), edges.end(), zone,
+                               [](const HybridEdge& e, ZoneId z) { return e.zone < z; });
+  for (; edge != edges.end() && edge->zone == zone; ++edge) {
+    if ((edge->node_a == a && edge->node_b == b) || (edge->node_a == b && edge->node_b == a)) {
+      return edge->id;
+    }
+  }
+  return std::nullopt;
+}
+
+NodesAndEdges nodes_and_edges(const HybridMap& map, std::span<const Cell> cells) {
   NodesAndEdges used;
   ZoneId zone = kNoZone;
-  for (const Crossing& crossing : crossings) {
+  for (const Crossing& crossing : crossings(map, cells)) {
     if (used.nodes.empty()) {
       used.nodes.push_back(crossing.node);
     } else if (crossing.node != used.nodes.back()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,20 +10,18 @@
 
 namespace topogeo::planning {
 
-/// A border that a way crosses, wherever on its length.
-struct Crossing {
-  std::uint32_t node = 0;
-  ZoneId into = kNoZone;
-};
-
-/// In order. `cells` are neighbours each; those in no zone are skipped.
-std::vector<Crossing> crossings(const HybridMap& map, std::span<const Cell> cells);
-
-/// Nodes and edges of crossings, as in HybridRoute.
+/// As in HybridRoute.
 struct NodesAndEdges {
   std::vector<std::uint32_t> nodes;
   std::vector<std::uint32_t> edges;
 };
-NodesAndEdges nodes_and_edges(const HybridMap& map, std::span<const Crossing> crossings);
+
+/// The borders that a way crosses, wherever on their length, and the edges between them. `cells`
+/// are neighbours each; those in no zone are skipped.
+NodesAndEdges nodes_and_edges(const HybridMap& map, std::span<const Cell> cells);
+
+/// HybridEdge::id of the edge that joins two nodes within a zone; nothing without one.
+std::optional<std::uint32_t> edge_between(const HybridMap& map, ZoneId zone, std::uint32_t a,
+                                          std::uint32_t b);
 
 }  // namespace topogeo::planning

@@ -113,12 +113,6 @@ HybridMap::HybridMap(FreeSpace space, ZoneMap zones, std::vector<Place> places)
   find_edges();
 }
 
-const Place* HybridMap::place(std::string_view name) const {
-  const auto found = std::find_if(places_.begin(), places_.end(),
-                                  [name](const Place& place) { return place.name == name; });
-  return found == places_.end() ? nullptr : &*found;
-}
-
 void HybridMap::find_nodes() {
   for (const auto& [pair, neighbours] : find_borders(frame(), zones_)) {
     std::set<CellIndex> left;

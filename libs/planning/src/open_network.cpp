@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cell_order.hpp"
+#include "crossings.hpp"
 
 namespace topogeo::planning {
 namespace {
@@ -33,6 +34,10 @@ std::array<Cell, 4> beside(const Cell& cell) {
 }
 
 }  // namespace
+
+OpenNetwork::Way OpenNetwork::way_of(const HybridEdge& edge) {
+  return {edge.node_a, edge.node_b, edge.id, &edge.route, edge.cost_m};
+}
 
 OpenNetwork::OpenNetwork(const HybridMap& map, const ClosedParts& closed, const ClosedCells& cells)
     : map_(map), closed_(closed), cells_(cells) {
@@ -67,8 +72,7 @@ std::uint32_t OpenNetwork::border_node(std::uint32_t node) const {
 
 OpenNetwork::Way OpenNetwork::way(std::uint32_t edge) const {
   if (graph_) return ways_[edge];
-  const HybridEdge& known = map_.edges()[edge];
-  return {known.node_a, known.node_b, known.id, &known.route};
+  return way_of(map_.edges()[edge]);
 }
 
 std::vector<bool> OpenNetwork::within_reach(const Cell& from) const {
@@ -200,25 +204,18 @@ void OpenNetwork::find_ways() {
         contains(closed_.nodes, edge.node_a) || contains(closed_.nodes, edge.node_b)) {
       continue;
     }
-    ways_.push_back({edge.node_a, edge.node_b, edge.id, &edge.route});
-    costs_.push_back(edge.cost_m);
+    ways_.push_back(way_of(edge));
   }
   for (const Zone& zone : map_.zones().zones) {
     if (anew[zone.id]) search_zone(zone.id);
   }
   std::vector<GraphEdge> edges;
   edges.reserve(ways_.size());
-  for (std::size_t i = 0; i < ways_.size(); ++i) {
-    edges.push_back({ways_[i].node_a, ways_[i].node_b, costs_[i]});
-  }
+  for (const Way& way : ways_) edges.push_back({way.node_a, way.node_b, way.cost_m});
   graph_.emplace(nodes_.size(), edges);
 }
 
 void OpenNetwork::search_zone(ZoneId zone) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, const HybridEdge*> known;
-  for (const HybridEdge& edge : map_.edges()) {
-    if (edge.zone == zone) known[std::minmax(edge.node_a, edge.node_b)] = &edge;
-  }
   SearchWindow window(map_.frame(), map_.zones().zones[zone].box, map_.zones().zone_of_cell, zone);
   cells_.close_in(window);
   const std::vector<std::uint32_t>& nodes = nodes_of_[zone];
@@ -228,27 +225,24 @@ void OpenNetwork::search_zone(ZoneId zone) {
     std::vector<Cell> ends;
     for (std::size_t k = i + 1; k < nodes.size(); ++k) {
       const Node& to = nodes_[nodes[k]];
-      Way way{nodes[i], nodes[k], std::nullopt, nullptr};
-      if (const auto edge = known.find(std::minmax(from.border_node, to.border_node));
-          edge != known.end()) {
-        way.edge = edge->second->id;
-        if (contains(closed_.edges, *way.edge)) continue;
+      const auto known = edge_between(map_, zone, from.border_node, to.border_node);
+      if (known) {
+        if (contains(closed_.edges, *known)) continue;
         // Closed cells make no way shorter: what is not touched is still the best one.
-        if (!from.moved && !to.moved && !blocks(edge->second->route)) {
-          ways_.push_back(
-              {edge->second->node_a, edge->second->node_b, way.edge, &edge->second->route});
-          costs_.push_back(edge->second->cost_m);
+        const HybridEdge& edge = map_.edges()[*known];
+        if (!from.moved && !to.moved && !blocks(edge.route)) {
+          ways_.push_back(way_of(edge));
           continue;
         }
       }
-      wanted.push_back(way);
+      wanted.push_back({nodes[i], nodes[k], known});
       ends.push_back(place_in(to, zone));
     }
     if (wanted.empty()) continue;
     auto paths = shortest_paths(window, place_in(from, zone), ends);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       if (!paths[k]) continue;
-      costs_.push_back((paths[k]->cost_cells + 1.0) * map_.frame().resolution_m);
+      wanted[k].cost_m = (paths[k]->cost_cells + 1.0) * map_.frame().resolution_m;
       wanted[k].route = &routes_.emplace_back(std::move(paths[k]->cells));
       ways_.push_back(wanted[k]);
     }

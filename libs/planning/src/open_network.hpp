@@ -44,6 +44,7 @@ class OpenNetwork {
     std::uint32_t node_b = 0;
     std::optional<std::uint32_t> edge;  ///< HybridEdge::id; none between places of one border
     const std::vector<Cell>* route = nullptr;  ///< from node_a's cell to node_b's
+    double cost_m = 0.0;
   };
   [[nodiscard]] Way way(std::uint32_t edge) const;
 
@@ -63,6 +64,7 @@ class OpenNetwork {
     bool moved = false;           // they are not those of the border node
   };
 
+  [[nodiscard]] static Way way_of(const HybridEdge& edge);
   [[nodiscard]] const Cell& place_in(const Node& node, ZoneId zone) const;
   void find_parts();
   void find_nodes();
@@ -80,7 +82,6 @@ class OpenNetwork {
   std::vector<Node> nodes_;        // the first ones have the numbers of their border nodes
   std::vector<std::vector<std::uint32_t>> nodes_of_;
   std::vector<Way> ways_;
-  std::vector<double> costs_;
   std::deque<std::vector<Cell>> routes_;  // of the ways that were searched anew
   std::optional<RouteGraph> graph_;
 };

@@ -87,9 +87,7 @@ HybridRoute RouteQuery::within(const Cell& from, const Cell& to, ZoneId zone) co
   if (!route.cells.empty()) {
     constexpr double kLongWay = 1.05;
     const bool exact = improve_whole(route.cells);
-    auto used = nodes_and_edges(map_, crossings(map_, route.cells));
-    route.nodes = std::move(used.nodes);
-    route.edges = std::move(used.edges);
+    name_nodes_and_edges(route);
     if (exact || cost_cells(route.cells) <= kLongWay * least_cost_cells(from, to)) return route;
   }
   HybridRoute outside = across(from, to, zone, zone);
@@ -149,7 +147,11 @@ void RouteQuery::improve(HybridRoute& route) const {
   const std::vector<Cell> before = route.cells;
   if (!improve_whole(route.cells)) improve_pieces(route.cells);
   if (route.cells == before) return;
-  auto used = nodes_and_edges(map_, crossings(map_, route.cells));
+  name_nodes_and_edges(route);
+}
+
+void RouteQuery::name_nodes_and_edges(HybridRoute& route) const {
+  NodesAndEdges used = nodes_and_edges(map_, route.cells);
   route.nodes = std::move(used.nodes);
   route.edges = std::move(used.edges);
 }
@@ -213,7 +215,7 @@ void RouteQuery::close_parts(SearchWindow& window, ZoneId keep) const {
 
 bool RouteQuery::uses_closed_edge(std::span<const Cell> cells) const {
   if (closed_.edges.empty()) return false;
-  const auto used = nodes_and_edges(map_, crossings(map_, cells)).edges;
+  const auto used = nodes_and_edges(map_, cells).edges;
   return std::any_of(used.begin(), used.end(), [&](std::uint32_t edge) {
     return std::find(closed_.edges.begin(), closed_.edges.end(), edge) != closed_.edges.end();
   });

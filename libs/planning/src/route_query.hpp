@@ -43,6 +43,7 @@ class RouteQuery {
   void follow(const GraphPath& path, const Reach& start, const Reach& goal,
               HybridRoute& route) const;
   void improve(HybridRoute& route) const;
+  void name_nodes_and_edges(HybridRoute& route) const;
   [[nodiscard]] bool improve_whole(std::vector<Cell>& cells) const;
   void improve_pieces(std::vector<Cell>& cells) const;
   [[nodiscard]] bool plan_again(std::vector<Cell>& cells, std::size_t begin, std::size_t end,

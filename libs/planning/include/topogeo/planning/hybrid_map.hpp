@@ -12,7 +12,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -73,8 +72,6 @@ class HybridMap {
   [[nodiscard]] ZoneId zone_of(const Cell& cell) const {
     return frame().contains(cell) ? zones_.zone_of_cell[frame().index(cell)] : kNoZone;
   }
-
-  [[nodiscard]] const Place* place(std::string_view name) const;
 
  private:
   void find_nodes();
