@@ -68,13 +68,20 @@ geometry::Pose2 arc(double forward_m, double turn_rad) {
 
 SimulatedRobot::SimulatedRobot(World world, const RobotOptions& options)
     : options_(checked(world, options)),
-      world_(draw_changes(std::move(world), options.seed, options.changes_until_s)),
+      world_(std::move(world)),
       people_(world_, options.wanderers, options.seed),
       laser_random_(random_for(options, "laser")),
       sonar_random_(random_for(options, "sonar")),
       slip_random_(random_for(options, "slip")),
       errors_(of_robot(options.odometry), random_for(options, "odometry")),
       T_world_robot_(*options_.T_world_start) {
+  for (std::size_t i = 0; i < world_.changing.size(); ++i) {
+    ChangingPart& part = world_.changing[i];
+    if (!part.random) continue;
+    turns_.push_back({i, DrawnTurns(*part.random, options.seed, i)});
+    part.present_s.push_back(turns_.back().drawn.next());
+    part.random.reset();
+  }
   change_world();
   if (overlapped_) {
     throw std::invalid_argument(world_.name + ": the robot overlaps something at its start, (" +
@@ -167,7 +174,15 @@ void SimulatedRobot::carry(const geometry::Pose2& T_world_robot) {
   look_for_overlap();
 }
 
+void SimulatedRobot::draw_turns() {
+  for (Turns& turns : turns_) {
+    TimeInterval& turn = world_.changing[turns.part].present_s.back();
+    while (turn.to_s <= time_s_) turn = turns.drawn.next();
+  }
+}
+
 void SimulatedRobot::change_world() {
+  draw_turns();
   std::vector<bool> present = present_parts(world_, way_m_, time_s_);
   if (present != present_ || scene_.segments.size() + scene_.circles.size() == 0) {
     scene_ = scene_at(world_, way_m_, time_s_);

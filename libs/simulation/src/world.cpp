@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "topogeo/support/random.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::simulation {
@@ -44,21 +43,27 @@ World scene_at(const World& world, double way_m, double time_s) {
   return scene;
 }
 
+// It starts anywhere in one of the two turns.
+DrawnTurns::DrawnTurns(const RandomTurns& turns, std::uint64_t seed, std::size_t part)
+    : turns_(turns),
+      random_(support::derive_seed(seed, "changes", {part})),
+      at_s_(-random_.uniform() * (turns.inside_s + turns.outside_s)) {}
+
+TimeInterval DrawnTurns::next() {
+  for (;;) {
+    const TimeInterval turn{std::max(at_s_, 0.0), at_s_ + draw_s(turns_.inside_s)};
+    at_s_ = turn.to_s + draw_s(turns_.outside_s);
+    if (turn.to_s > 0.0) return turn;
+  }
+}
+
 World draw_changes(World world, std::uint64_t seed, double until_s) {
   for (std::size_t i = 0; i < world.changing.size(); ++i) {
     ChangingPart& part = world.changing[i];
     if (!part.random) continue;
-    support::Random random(support::derive_seed(seed, "changes", {i}));
-    const auto draw_s = [&random](double mean_s) { return mean_s * random.uniform(0.5, 1.5); };
-    // It starts anywhere in one of the two turns.
-    const RandomTurns& turns = *part.random;
-    double at_s = -random.uniform() * (turns.inside_s + turns.outside_s);
-    while (at_s < until_s) {
-      const double end_s = at_s + draw_s(turns.inside_s);
-      if (end_s > 0.0) {
-        part.present_s.push_back({std::max(at_s, 0.0), std::min(end_s, until_s)});
-      }
-      at_s = end_s + draw_s(turns.outside_s);
+    DrawnTurns turns(*part.random, seed, i);
+    for (TimeInterval turn = turns.next(); turn.from_s < until_s; turn = turns.next()) {
+      part.present_s.push_back({turn.from_s, std::min(turn.to_s, until_s)});
     }
     part.random.reset();
   }

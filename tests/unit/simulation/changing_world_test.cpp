@@ -6,6 +6,7 @@
 
 #include "topogeo/simulation/people.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/simulation/simulated_robot.hpp"
 
 namespace topogeo::simulation {
 namespace {
@@ -95,6 +96,21 @@ TEST(ChangingWorld, RandomDoorsOpenAndShutByTurns) {
                std::runtime_error);
   EXPECT_THROW(parse_world("boxes: [{from: [0, 0], to: [1, 1], random: 3}]", "w"),
                std::runtime_error);
+}
+
+TEST(ChangingWorld, RandomDoorsNeverCeaseToChangeBesideARobot) {
+  const World world = parse_world(
+      "walls: [{from: [0, 0], to: [8, 0], doors: [{at: 4, width: 1, random: [20, 10]}]}]\n"
+      "tour: [[1, 1], [7, 1]]\n",
+      "w");
+  constexpr int kHours = 3;
+  const World drawn = draw_changes(world, 3, 3600.0 * kHours);
+  SimulatedRobot robot(world, {.seed = 3});
+  for (int second = 0; second < 3600 * kHours; second += 10) {
+    ASSERT_EQ(robot.scene().segments.size(), scene_at(drawn, 0.0, robot.time_s()).segments.size())
+        << second;
+    robot.step({}, 10.0);
+  }
 }
 
 TEST(ChangingWorld, TheLaserSeesTheDoorAsItIs) {

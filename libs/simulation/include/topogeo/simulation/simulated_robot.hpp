@@ -44,8 +44,7 @@ struct RobotOptions {
   geometry::Pose2 T_robot_laser{};
   std::vector<devices::SonarMount> sonars = devices::b21_sonars();
   SonarNoise sonar{};
-  std::size_t wanderers = 0;      ///< people besides those of the world, see People
-  double changes_until_s = 3600;  ///< see draw_changes
+  std::size_t wanderers = 0;  ///< people besides those of the world, see People
 };
 
 /// What the wheels counted: forward and counter-clockwise.
@@ -109,8 +108,16 @@ class SimulatedRobot {
   void change_world();
   void look_for_overlap();
 
+  /// Something that changes at random: of its times, the world has the one that is not over yet.
+  struct Turns {
+    std::size_t part;
+    DrawnTurns drawn;
+  };
+  void draw_turns();
+
   RobotOptions options_;
   World world_;
+  std::vector<Turns> turns_;
   World scene_;  // without people
   World people_scene_;
   std::vector<bool> present_;

@@ -34,6 +34,8 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/support/random.hpp"
+
 namespace topogeo::simulation {
 
 struct Segment {
@@ -115,6 +117,23 @@ World scene_at(const World& world, double way_m, double time_s = 0.0);
 
 /// Which of world.changing are there then.
 std::vector<bool> present_parts(const World& world, double way_m, double time_s);
+
+/// Draws when something that changes by turns is present or open, one time after the other, without
+/// end.
+class DrawnTurns {
+ public:
+  /// Of the part of this number in world.changing.
+  DrawnTurns(const RandomTurns& turns, std::uint64_t seed, std::size_t part);
+  /// The next time, which ends after the start of the drive.
+  TimeInterval next();
+
+ private:
+  [[nodiscard]] double draw_s(double mean_s) { return mean_s * random_.uniform(0.5, 1.5); }
+
+  RandomTurns turns_;
+  support::Random random_;
+  double at_s_;  // when the next time begins
+};
 
 /// The world with times drawn for what changes at random, up to `until_s`; before, and after that
 /// time, a random part is absent or shut.
