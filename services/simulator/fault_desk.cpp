@@ -143,8 +143,7 @@ void FaultDesk::set_laser(const Fault& fault, bool on) {
     case msg::kSimulatedContaminated:
       return laser.set_status(on ? kPolluted : std::uint8_t{0});
     case msg::kSimulatedSilence:
-      // The end may come later than it looks now.
-      return laser.fall_silent(on ? std::int64_t{3600} * 1'000'000'000 : 0, now_ns);
+      return on ? laser.fall_silent(now_ns) : laser.speak_again(now_ns);
     case msg::kSimulatedRestart:
       return on ? laser.switch_off() : laser.switch_on(now_ns);
     default:
@@ -154,6 +153,7 @@ void FaultDesk::set_laser(const Fault& fault, bool on) {
 
 void FaultDesk::set_base(const Fault& fault, bool on) {
   simulation::McpEmulator& base = devices_.base();
+  const std::int64_t now_ns = devices_.now_ns();
   switch (fault.kind) {
     case msg::kSimulatedBadCrc:
       return base.corrupt_reports(on ? kForEver : 0);
@@ -162,9 +162,7 @@ void FaultDesk::set_base(const Fault& fault, bool on) {
     case msg::kSimulatedSilence:
       return base.set_silent(on);
     case msg::kSimulatedRestart:
-      base.set_silent(on);
-      if (!on) base.restart(devices_.now_ns());
-      return;
+      return on ? base.switch_off(now_ns) : base.switch_on(now_ns);
     case msg::kSimulatedEcho:
       return base.set_echo(on);
     case msg::kSimulatedJoystick:

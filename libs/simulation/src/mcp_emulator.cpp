@@ -46,13 +46,14 @@ McpEmulator::McpEmulator(const McpEmulatorSettings& settings, std::int64_t now_n
       battery_v_(settings.battery_v),
       translation_(kTranslateVelocity, kTranslateAcceleration),
       rotation_(kRotateVelocity, kRotateAcceleration) {
-  power_on(now_ns);
+  switch_on(now_ns);
 }
 
-void McpEmulator::power_on(std::int64_t now_ns) {
+void McpEmulator::switch_off(std::int64_t now_ns) {
+  tick(now_ns);
   output_.clear();
-  ready_ = settings_.start_up_ns == 0;
-  on_ns_ = moved_ns_ = now_ns;
+  on_ = false;
+  ready_ = false;
   binary_ = false;
   synchronised_ = false;
   echo_ = settings_.echo_at_start;
@@ -70,9 +71,11 @@ void McpEmulator::power_on(std::int64_t now_ns) {
   heading_rad_ = 0.0;
 }
 
-void McpEmulator::restart(std::int64_t now_ns) {
-  tick(now_ns);
-  power_on(now_ns);
+void McpEmulator::switch_on(std::int64_t now_ns) {
+  switch_off(now_ns);
+  on_ = true;
+  ready_ = settings_.start_up_ns == 0;
+  on_ns_ = now_ns;
 }
 
 void McpEmulator::receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
@@ -89,7 +92,7 @@ void McpEmulator::receive(std::span<const std::uint8_t> bytes, const devices::Li
 }
 
 void McpEmulator::tick(std::int64_t now_ns) {
-  if (!ready_ && now_ns >= on_ns_ + settings_.start_up_ns) ready_ = true;
+  if (on_ && !ready_ && now_ns >= on_ns_ + settings_.start_up_ns) ready_ = true;
   if (now_ns >= watchdog_ns_) expire_watchdog(now_ns);
   move_motors(now_ns);
   while (now_ns >= report_ns_) {
@@ -102,7 +105,7 @@ void McpEmulator::tick(std::int64_t now_ns) {
 
 std::int64_t McpEmulator::due_ns() const {
   std::int64_t due_ns = std::min(report_ns_, watchdog_ns_);
-  if (!ready_) due_ns = std::min(due_ns, on_ns_ + settings_.start_up_ns);
+  if (on_ && !ready_) due_ns = std::min(due_ns, on_ns_ + settings_.start_up_ns);
   if (translation_.moves() || rotation_.moves()) {
     due_ns = std::min(due_ns, moved_ns_ + kMotorStep_ns);
   }
@@ -196,7 +199,7 @@ void McpEmulator::send_line(std::string line, std::int64_t now_ns) {
 }
 
 void McpEmulator::send(std::vector<std::uint8_t> bytes, std::int64_t now_ns) {
-  if (!silent_) output_.send(std::move(bytes), settings_.line, now_ns);
+  if (on_ && !silent_) output_.send(std::move(bytes), settings_.line, now_ns);
 }
 
 void McpEmulator::send_garbage(std::size_t bytes, std::int64_t now_ns) {

@@ -49,7 +49,7 @@ PlsEmulator::PlsEmulator(PlsEmulatorSettings settings, Ranges ranges, std::int64
 void PlsEmulator::receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
                           std::int64_t now_ns) {
   tick(now_ns);
-  if (power_ != Power::kOn || silent(now_ns) || host != line_) {
+  if (power_ != Power::kOn || silent_ || host != line_) {
     decoder_.clear();
     return;
   }
@@ -113,11 +113,17 @@ void PlsEmulator::inject(PlsFault fault, int count) {
   pending_[static_cast<std::size_t>(fault)] += count;
 }
 
-void PlsEmulator::fall_silent(std::int64_t duration_ns, std::int64_t now_ns) {
+void PlsEmulator::fall_silent(std::int64_t now_ns) {
+  tick(now_ns);
   output_.clear();
   decoder_.clear();
-  silent_until_ns_ = now_ns + duration_ns;
-  fault_end_ns_ = std::max(fault_end_ns_, silent_until_ns_);
+  silent_ = true;
+}
+
+void PlsEmulator::speak_again(std::int64_t now_ns) {
+  tick(now_ns);
+  silent_ = false;
+  fault_end_ns_ = std::max(fault_end_ns_, now_ns);
 }
 
 int PlsEmulator::pending(PlsFault fault) const {
@@ -256,7 +262,7 @@ void PlsEmulator::measure(std::int64_t now_ns) {
       now_ns + settings_.sweep_to_send_ns);
   if (pending(PlsFault::kStuckScan) != stuck_before)
     fault_end_ns_ = std::max(fault_end_ns_, free_ns);
-  if (!silent(now_ns)) ++scans_sent_;
+  if (!silent_) ++scans_sent_;
   if (mode_ != Mode::kStream) return;
   const std::int64_t turn_ns = planned_ns + settings_.mirror_period_ns;
   measure_at_ns_ = std::max({turn_ns, free_ns - settings_.sweep_to_send_ns, now_ns + 1});
@@ -274,7 +280,7 @@ std::vector<std::uint8_t> PlsEmulator::scan_data(std::int64_t now_ns) {
 
 /// Sends a telegram, with the faults that are to strike it; returns when it will have left.
 std::int64_t PlsEmulator::send_telegram(std::vector<std::uint8_t> telegram, std::int64_t start_ns) {
-  if (silent(start_ns)) return start_ns;
+  if (silent_) return start_ns;
   bool struck = false;
   if (strikes(PlsFault::kBadCrc)) {
     struck = true;

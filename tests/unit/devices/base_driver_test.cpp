@@ -144,7 +144,7 @@ TEST_P(BaseDriverOn, ARestartedBaseIsSetUpAgainAndThePoseGoesOn) {
   all.drive(0.3, 0.3, 5 * kSecond);
   all.drive(0.0, 0.0, 2 * kSecond);
   const geometry::Pose2 before = all.T_odom_robot;
-  all.base.mcp.restart(all.line.now_ns());
+  all.base.mcp.switch_on(all.line.now_ns());
   all.pass(kSecond);
   EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
   const std::uint64_t odometries = all.odometries;

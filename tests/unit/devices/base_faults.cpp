@@ -17,6 +17,7 @@ using support::Random;
 /// What the wheels may turn on after something has stopped them, and still be called stopped: the
 /// time to halt from full speed.
 constexpr std::int64_t kHalting = 2 * kSecond;
+constexpr std::int64_t kLongestOff = 20 * kSecond;
 
 /// A fault in progress.
 struct Scene {
@@ -131,9 +132,13 @@ std::int64_t unplug(Scene& scene) {
 }
 
 std::int64_t restart(Scene& scene) {
-  scene.all.pass(kHalting);  // what it does between its last report and the restart nobody knows
+  // How far it goes on between its last report and the end of its power nobody knows.
+  if (scene.random.below(2) == 0) scene.all.pass(kHalting);
   const geometry::Pose2 before = scene.all.T_odom_robot;
-  scene.all.base.mcp.restart(scene.all.line.now_ns());
+  scene.all.base.mcp.switch_off(scene.all.line.now_ns());
+  scene.drive(scene.some(kMs, kLongestOff));
+  scene.must_stand();
+  scene.all.base.mcp.switch_on(scene.all.line.now_ns());
   (void)scene.all.line.run_until(10 * kSecond, [&] { return scene.all.base.mcp.ready(); });
   const std::int64_t end_ns = scene.all.line.now_ns();
   scene.all.compare_anew();
@@ -237,7 +242,8 @@ std::vector<Fault> faults(const BaseFaultLine& line) {
       {"silence below the limit", "", anything, short_silence},
       {"silence of 1 to 10 s", "", anything, long_silence},
       {"port unplugged", "starts", starts, unplug, kSecond},
-      {"base restarts", "restarts", restarts, restart, kSecond},
+      // It is looked for every twentieth of how long it has been silent.
+      {"base restarts", "restarts", restarts, restart, kSecond + kLongestOff / 20},
       {"watchdog expires", "watchdog_expirations", expirations, other_watchdog},
       {"motion commands cease", "", anything, commands_cease},
       {"emergency stop", "", anything, emergency_stop},

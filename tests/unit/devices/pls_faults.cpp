@@ -48,9 +48,10 @@ Inject struck_by(PlsFault fault, std::uint64_t most) {
 
 Inject silent_for(std::int64_t low_ns, std::int64_t high_ns) {
   return [=](PlsOnLine& pls, support::Random& random) {
-    pls.emulator.fall_silent(between(random, low_ns, high_ns), pls.line.now_ns());
-    pls.run_for(pls.emulator.fault_end_ns() - pls.line.now_ns());
-    return pls.emulator.fault_end_ns();
+    pls.emulator.fall_silent(pls.line.now_ns());
+    pls.run_for(between(random, low_ns, high_ns));
+    pls.emulator.speak_again(pls.line.now_ns());
+    return pls.line.now_ns();
   };
 }
 

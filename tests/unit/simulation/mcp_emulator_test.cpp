@@ -165,6 +165,30 @@ TEST(McpEmulator, SpeaksTheBinaryDialectAndFindsPacketsAgain) {
   }
 }
 
+TEST(McpEmulator, KnowsNothingOfBeforeItsPowerWasOff) {
+  Terminal terminal;
+  const std::string told = "HD\rSD a0a7a\rSP 40\rTV 2000\rTA 2000\rRV 80\rT+\rR+\r";
+  (void)terminal.type(told, 3 * kSecond);
+  EXPECT_NE(terminal.base.commanded_velocity().linear_m_per_s, 0.0);
+  EXPECT_EQ(terminal.hear(kSecond).find("%PSR\r\nCLK 000000"), std::string::npos);
+
+  terminal.base.switch_off(terminal.now_ns);
+  EXPECT_EQ(terminal.base.commanded_velocity().linear_m_per_s, 0.0);
+  EXPECT_EQ(terminal.base.commanded_velocity().angular_rad_per_s, 0.0);
+  EXPECT_EQ(terminal.type(told, 10 * kSecond), "");
+  terminal.base.moved(0.5, 0.0, 1.0);  // pushed away
+  EXPECT_NE(terminal.base.T_start_robot().x_m, 0.0);
+
+  terminal.base.switch_on(terminal.now_ns);
+  EXPECT_EQ(terminal.type("BV\r", kSecond), "");
+  terminal.pass(2 * kSecond);
+  EXPECT_EQ(terminal.type("BV\r"), "BV\r\nBV 1e2\r\n");  // echoes again, reports no more
+  EXPECT_EQ(terminal.type("HD\rTW\rRW\r"), "HD\r\nTW 0\r\nRW 80000000\r\n");
+  const std::string report = terminal.type("SD a0a7a\rSP 40\r", 400 * kMs);
+  EXPECT_EQ(report.substr(0, 16), "%PSR\r\nCLK 000003");  // three seconds of 256 ticks and a little
+  EXPECT_NE(report.find("BPX 8000\r\nBPY 8000\r\nTPH 0000\r\nTVE 0000\r\n"), std::string::npos);
+}
+
 TEST(McpEmulator, StopsWhenItBumpsUnlessToldOtherwise) {
   for (const bool stops : {true, false}) {
     Terminal terminal;

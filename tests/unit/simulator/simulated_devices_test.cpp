@@ -145,6 +145,27 @@ TEST_F(SimulatedDevicesTest, ASilentBaseSaysNothingUntilItsTimeIsOver) {
   EXPECT_NE(base_.read(), "");
 }
 
+TEST_F(SimulatedDevicesTest, ABaseWithoutPowerStandsAndComesBackAsNew) {
+  devices_.run_until(kReady_ns);
+  base_.write("HD\rSD 32\rSP 40\r");
+  base_.write(kDrive);
+  run_for(2.0);
+  faults_.begin({.kind = msg::kSimulatedRestart, .device = Device::kBase, .duration_s = 2.0});
+  const double off_m = way_m();
+  run_with_faults(0.1);
+  static_cast<void>(base_.read());
+  base_.write(kDrive);
+  run_with_faults(1.5);
+  EXPECT_EQ(base_.read(), "");
+  EXPECT_EQ(way_m(), off_m);
+
+  run_with_faults(3.0);  // on again, and the time to start up
+  EXPECT_EQ(base_.read(), "");
+  base_.write("TW\r");
+  run_for(0.5);
+  EXPECT_EQ(base_.read(), "TW\r\nTW 0\r\n");  // it echoes and has counted nothing
+}
+
 TEST(BumperBits, AreOneOfSixteenCounterClockwiseFromAhead) {
   constexpr double kSector_rad = std::numbers::pi / 8.0;
   for (unsigned i = 0; i < 16; ++i) {

@@ -79,7 +79,11 @@ class McpEmulator final : public SerialDevice {
   void fail_motor(std::int64_t now_ns);
 
   // Faults.
-  void restart(std::int64_t now_ns);
+  /// Without power it neither hears nor says anything, its wheels stand, and all that it was told
+  /// and has counted is gone.
+  void switch_off(std::int64_t now_ns);
+  /// Switches on, or off and on again: as on the first day, once the time of the start-up is over.
+  void switch_on(std::int64_t now_ns);
   void set_silent(bool silent) { silent_ = silent; }
   void set_echo(bool echo) { echo_ = echo; }
   /// One bit of each of the next reports is wrong; in the binary dialect it may be the checksum's.
@@ -98,7 +102,6 @@ class McpEmulator final : public SerialDevice {
   [[nodiscard]] std::uint64_t reports() const { return reports_; }
 
  private:
-  void power_on(std::int64_t now_ns);
   void hear_ascii(std::uint8_t byte, std::int64_t now_ns);
   void hear_binary(std::uint8_t byte, std::int64_t now_ns);
   void hear_line(std::int64_t now_ns);
@@ -122,7 +125,8 @@ class McpEmulator final : public SerialDevice {
   support::Random random_;
   SerialOutput output_;
 
-  bool ready_ = false;
+  bool on_ = false;
+  bool ready_ = false;         // the start-up is over
   std::int64_t on_ns_ = 0;     // switched on
   std::int64_t moved_ns_ = 0;  // the motors are as of then
   bool binary_ = false;

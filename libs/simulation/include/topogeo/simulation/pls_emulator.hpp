@@ -77,8 +77,9 @@ class PlsEmulator final : public SerialDevice {
   // Faults.
   /// Strikes the next `count` telegrams, scans or changes of the rate that the fault can strike.
   void inject(PlsFault fault, int count);
-  /// Neither sends nor hears anything for this time; what is on its way is cut.
-  void fall_silent(std::int64_t duration_ns, std::int64_t now_ns);
+  /// Neither sends nor hears anything until told otherwise; what is on its way is cut.
+  void fall_silent(std::int64_t now_ns);
+  void speak_again(std::int64_t now_ns);
   /// How often the fault is still to strike.
   [[nodiscard]] int pending(PlsFault fault) const;
   /// When the last telegram that a fault struck has left the line, or the silence ended.
@@ -116,7 +117,6 @@ class PlsEmulator final : public SerialDevice {
   [[nodiscard]] std::vector<std::uint8_t> scan_data(std::int64_t now_ns);
   std::int64_t send_telegram(std::vector<std::uint8_t> telegram, std::int64_t start_ns);
   [[nodiscard]] bool strikes(PlsFault fault);
-  [[nodiscard]] bool silent(std::int64_t now_ns) const { return now_ns < silent_until_ns_; }
 
   PlsEmulatorSettings settings_;
   Ranges ranges_;
@@ -135,7 +135,7 @@ class PlsEmulator final : public SerialDevice {
   std::optional<std::int64_t> measure_at_ns_;  ///< the next scan
   std::vector<std::uint8_t> last_scan_;
   std::array<int, kPlsFaults> pending_{};
-  std::int64_t silent_until_ns_ = 0;
+  bool silent_ = false;
   std::int64_t fault_end_ns_ = 0;
   std::uint64_t scans_sent_ = 0;
 };
