@@ -24,7 +24,8 @@ constexpr double kOrigin = 0x8000;
 constexpr double kLowBatteryVolts = 44.0;
 /// While motors turn, ticks are due so often that speeds are smooth.
 constexpr std::int64_t kMotorStep_ns = 10'000'000;
-/// A report that is cut keeps so many bytes and loses three times as many.
+/// A report that is cut keeps so many bytes, or a quarter of a short one, and loses three times as
+/// many.
 constexpr std::size_t kLeastCut = 4;
 /// A report that would wait longer than this for the line is left out.
 constexpr std::int64_t kBacklog_ns = 50'000'000;
@@ -253,7 +254,8 @@ void McpEmulator::damage(std::vector<std::uint8_t>& report) {
   }
   if (truncate_ > 0) {
     --truncate_;
-    report.resize(kLeastCut + random_.below(report.size() - 4 * kLeastCut));
+    const std::size_t least = std::min(kLeastCut, report.size() / 4);
+    report.resize(least + random_.below(std::max<std::size_t>(report.size() - 4 * least, 1)));
   }
 }
 

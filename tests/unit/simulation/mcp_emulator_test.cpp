@@ -189,6 +189,18 @@ TEST(McpEmulator, KnowsNothingOfBeforeItsPowerWasOff) {
   EXPECT_NE(report.find("BPX 8000\r\nBPY 8000\r\nTPH 0000\r\nTVE 0000\r\n"), std::string::npos);
 }
 
+TEST(McpEmulator, CutsReportsOfAnyLength) {
+  for (const std::string mask : {"0", "1", "2", "a0a7a", "ffffffff"}) {
+    Terminal terminal;
+    (void)terminal.type("HD\rSD " + mask + "\rSP 100\r");
+    const std::size_t whole = terminal.hear(50 * kSecond).size();
+    terminal.base.truncate_reports(50);
+    const std::size_t cut = terminal.hear(50 * kSecond).size();
+    EXPECT_GT(cut, 0U) << mask;
+    EXPECT_LT(cut, whole) << mask;
+  }
+}
+
 TEST(McpEmulator, StopsWhenItBumpsUnlessToldOtherwise) {
   for (const bool stops : {true, false}) {
     Terminal terminal;
