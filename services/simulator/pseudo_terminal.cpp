@@ -55,36 +55,37 @@ void PseudoTerminal::plug() {
   } else if (std::filesystem::exists(link_)) {
     throw std::runtime_error(link_.string() + ": expected nothing or a link, found something else");
   }
-  device_end_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  support::FileDescriptor device_end(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   std::array<char, 128> name{};
-  if (device_end_ < 0 || ::grantpt(device_end_) != 0 || ::unlockpt(device_end_) != 0 ||
-      ::ptsname_r(device_end_, name.data(), name.size()) != 0) {
+  if (!device_end.is_open() || ::grantpt(device_end.get()) != 0 ||
+      ::unlockpt(device_end.get()) != 0 ||
+      ::ptsname_r(device_end.get(), name.data(), name.size()) != 0) {
     throw failure(link_, "cannot make a pseudo-terminal");
   }
-  host_end_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (host_end_ < 0 || !make_raw(host_end_)) throw failure(link_, "cannot set a pseudo-terminal");
+  support::FileDescriptor host_end(::open(name.data(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!host_end.is_open() || !make_raw(host_end.get())) {
+    throw failure(link_, "cannot set a pseudo-terminal");
+  }
   std::error_code error;
   std::filesystem::create_symlink(name.data(), link_, error);
   if (error)
     throw std::runtime_error(link_.string() + ": cannot make the link: " + error.message());
+  device_end_ = std::move(device_end);
+  host_end_ = std::move(host_end);
 }
 
 void PseudoTerminal::unplug() {
-  if (device_end_ < 0) return;
+  if (!plugged()) return;
   std::error_code ignored;
-  if (host_end_ >= 0 && std::filesystem::is_symlink(link_, ignored)) {
-    std::filesystem::remove(link_, ignored);
-  }
-  if (host_end_ >= 0) ::close(host_end_);
-  ::close(device_end_);
-  host_end_ = -1;
-  device_end_ = -1;
+  if (std::filesystem::is_symlink(link_, ignored)) std::filesystem::remove(link_, ignored);
+  host_end_ = support::FileDescriptor();
+  device_end_ = support::FileDescriptor();
 }
 
 devices::LineSettings PseudoTerminal::host(devices::Parity parity) const {
   termios settings{};
   devices::LineSettings host{0, parity};
-  if (::tcgetattr(device_end_, &settings) != 0) return host;
+  if (::tcgetattr(device_end_.get(), &settings) != 0) return host;
   const speed_t speed = ::cfgetospeed(&settings);
   for (const auto& [constant, baud] : kRates) {
     if (constant == speed) host.baud = baud;
@@ -94,14 +95,14 @@ devices::LineSettings PseudoTerminal::host(devices::Parity parity) const {
 
 std::vector<std::uint8_t> PseudoTerminal::receive() const {
   std::vector<std::uint8_t> bytes(4096);
-  const ssize_t got = ::read(device_end_, bytes.data(), bytes.size());
+  const ssize_t got = ::read(device_end_.get(), bytes.data(), bytes.size());
   bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
   return bytes;
 }
 
 std::size_t PseudoTerminal::send(std::span<const std::uint8_t> bytes) const {
   if (bytes.empty()) return 0;
-  const ssize_t sent = ::write(device_end_, bytes.data(), bytes.size());
+  const ssize_t sent = ::write(device_end_.get(), bytes.data(), bytes.size());
   return bytes.size() - (sent > 0 ? static_cast<std::size_t>(sent) : 0);
 }
 

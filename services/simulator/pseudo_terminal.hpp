@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "topogeo/devices/serial_driver.hpp"
+#include "topogeo/support/file_descriptor.hpp"
 
 namespace topogeo::simulator {
 
@@ -27,7 +28,7 @@ class PseudoTerminal {
   void plug();
   /// The port disappears: whoever has it open reads an error.
   void unplug();
-  [[nodiscard]] bool plugged() const { return host_end_ >= 0; }
+  [[nodiscard]] bool plugged() const { return host_end_.is_open(); }
 
   /// The rate that the program at the other end has set. A pseudo-terminal of Linux forgets the
   /// parity, so that it is taken for `parity`.
@@ -41,8 +42,9 @@ class PseudoTerminal {
 
  private:
   std::filesystem::path link_;
-  int device_end_ = -1;
-  int host_end_ = -1;  // kept open, or the device would read errors while no program has it open
+  support::FileDescriptor device_end_;
+  // Kept open, or the device would read errors while no program has it open.
+  support::FileDescriptor host_end_;
 };
 
 }  // namespace topogeo::simulator

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/file_descriptor.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -27,20 +28,11 @@ std::runtime_error system_error(const std::string& what) {
   return std::runtime_error(what + ": " + std::strerror(errno));
 }
 
-/// A file descriptor that is closed at the end of the scope.
-class Descriptor {
- public:
-  Descriptor(const char* path, int flags) : number_(::open(path, flags | O_CLOEXEC, 0644)) {
-    if (number_ < 0) throw system_error(std::string("cannot open ") + path);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { ::close(number_); }
-  [[nodiscard]] int number() const { return number_; }
-
- private:
-  int number_;
-};
+support::FileDescriptor open(const char* path, int flags) {
+  support::FileDescriptor file(::open(path, flags | O_CLOEXEC, 0644));
+  if (!file.is_open()) throw system_error(std::string("cannot open ") + path);
+  return file;
+}
 
 /// Becomes the program. Only async-signal-safe calls: the parent has other threads.
 [[noreturn]] void become(const char* program, char* const* arguments, int input, int output,
@@ -75,8 +67,9 @@ ChildProcess::ChildProcess(std::string name, const std::filesystem::path& progra
                            std::filesystem::path log_file)
     : name_(std::move(name)), log_file_(std::move(log_file)), start_s_(support::monotonic_s()) {
   if (::access(program.c_str(), X_OK) != 0) throw system_error("cannot run " + program.string());
-  const Descriptor input("/dev/null", O_RDONLY);
-  const Descriptor output(log_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
+  const support::FileDescriptor input = open("/dev/null", O_RDONLY);
+  const support::FileDescriptor output =
+      open(log_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
@@ -88,7 +81,7 @@ ChildProcess::ChildProcess(std::string name, const std::filesystem::path& progra
   pid_ = ::fork();
   if (pid_ < 0) throw system_error("cannot start " + name_);
   if (pid_ == 0) {
-    become(program.c_str(), pointers.data(), input.number(), output.number(), parent);
+    become(program.c_str(), pointers.data(), input.get(), output.get(), parent);
   }
 }
 

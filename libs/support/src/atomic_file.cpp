@@ -10,6 +10,8 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include "topogeo/support/file_descriptor.hpp"
+
 namespace topogeo::support {
 namespace fs = std::filesystem;
 namespace {
@@ -18,22 +20,6 @@ namespace {
   throw std::runtime_error(path.string() + ": " + what + ": " +
                            std::generic_category().message(error));
 }
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  ~FileDescriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  [[nodiscard]] int get() const { return fd_; }
-  /// Closes now; false with errno where the kernel reports a late write error.
-  bool close() { return ::close(std::exchange(fd_, -1)) == 0; }
-
- private:
-  int fd_;
-};
 
 /// Removes the file at the end unless it was kept.
 class TemporaryFile {

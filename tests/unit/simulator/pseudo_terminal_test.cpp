@@ -1,6 +1,10 @@
 #include "pseudo_terminal.hpp"
 
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -70,6 +74,19 @@ TEST(PseudoTerminal, ReplacesALinkOfADeadSimulatorAndNothingElse) {
   EXPECT_THROW(terminal.plug(), std::runtime_error);
   EXPECT_TRUE(std::filesystem::is_regular_file(link));
   std::filesystem::remove(link);
+}
+
+std::size_t open_files() {
+  const std::filesystem::directory_iterator files("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+TEST(PseudoTerminal, APortThatCannotBeMadeLeavesNothingOpen) {
+  PseudoTerminal terminal(link_name("nowhere").string() + "/port");  // in no directory
+  const std::size_t before = open_files();
+  for (int i = 0; i < 3; ++i) EXPECT_THROW(terminal.plug(), std::runtime_error);
+  EXPECT_FALSE(terminal.plugged());
+  EXPECT_EQ(open_files(), before);
 }
 
 }  // namespace
