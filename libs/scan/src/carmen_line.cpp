@@ -26,8 +26,9 @@ std::string quoted(std::string_view field) {
   return text;
 }
 
-[[noreturn]] void fail(SkipReason reason, const std::string& expected, const std::string& got) {
-  throw Bad{{reason, "expected " + expected + ", got " + got}};
+[[noreturn]] void fail(SkipReason reason, const std::string& expected, const std::string& got,
+                       bool ends_early = false) {
+  throw Bad{{reason, "expected " + expected + ", got " + got, ends_early}};
 }
 
 template <typename T>
@@ -112,7 +113,7 @@ void CarmenLineParser::parse_flaser(Scan& scan) {
     fail(SkipReason::kFields,
          std::to_string(expected) + " fields (" + std::to_string(count) +
              " ranges, two poses, stamp, host, stamp)",
-         std::to_string(fields_.size()));
+         std::to_string(fields_.size()), fields_.size() < expected);
   }
   scan.angle_min_rad = -std::numbers::pi / 2.0;
   scan.angle_step_rad = flaser_angle_step_rad(count);
@@ -131,7 +132,8 @@ void CarmenLineParser::parse_robotlaser(Scan& scan) {
     fail(SkipReason::kFields,
          std::to_string(count) + " ranges followed by the number of remission values",
          remissions_field < fields_.size() ? quoted(fields_[remissions_field])
-                                           : std::to_string(fields_.size()) + " fields");
+                                           : std::to_string(fields_.size()) + " fields",
+         remissions_field >= fields_.size());
   }
   const std::size_t poses = remissions_field + 1 + remissions;
   const std::size_t expected = poses + 6 + 5 + 3;
@@ -139,7 +141,7 @@ void CarmenLineParser::parse_robotlaser(Scan& scan) {
     fail(SkipReason::kFields,
          std::to_string(expected) + " fields (" + std::to_string(count) + " ranges, " +
              std::to_string(remissions) + " remission values)",
-         std::to_string(fields_.size()));
+         std::to_string(fields_.size()), fields_.size() < expected);
   }
   scan.angle_min_rad = parse_number(2, SkipReason::kGeometry, "a start angle");
   scan.angle_step_rad = parse_number(4, SkipReason::kGeometry, "an angular resolution");
@@ -167,7 +169,7 @@ std::size_t CarmenLineParser::parse_count(std::size_t field, const char* what) c
   std::size_t count = 0;
   const std::string expected =
       std::string(what) + " in [2, " + std::to_string(CarmenLogReader::kMaxBeams) + "]";
-  if (field >= fields_.size()) fail(SkipReason::kFields, expected, "the end of the line");
+  if (field >= fields_.size()) fail(SkipReason::kFields, expected, "the end of the line", true);
   if (!from_text(fields_[field], count) || count < 2 || count > CarmenLogReader::kMaxBeams) {
     fail(SkipReason::kFields, expected, quoted(fields_[field]));
   }

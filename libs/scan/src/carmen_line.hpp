@@ -18,7 +18,8 @@ LineKind line_kind(std::string_view line);
 
 struct LineError {
   SkipReason reason;
-  std::string text;  ///< "expected ..., got ..."
+  std::string text;         ///< "expected ..., got ..."
+  bool ends_early = false;  ///< there are fewer fields than the line itself asks for
 };
 
 class CarmenLineParser {

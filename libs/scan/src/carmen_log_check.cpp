@@ -1,7 +1,6 @@
 #include "topogeo/scan/carmen_log_check.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -31,27 +30,7 @@ std::string text_of(double value, int digits) {
   return text.str();
 }
 
-/// Whether a laser line has fewer fields than its own count of readings asks for.
-bool ends_early(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t i = line.find_first_not_of(" \t"); i != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t", i), line.size());
-    fields.push_back(line.substr(i, end - i));
-    i = line.find_first_not_of(" \t", end);
-  }
-  const bool flaser = !fields.empty() && fields.front() == "FLASER";
-  const std::size_t count_field = flaser ? 1 : 8;
-  if (fields.size() <= count_field) return true;
-  std::size_t count = 0;
-  const std::string_view text = fields[count_field];
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (error != std::errc() || end != text.data() + text.size()) return false;
-  // After the readings: two poses and three fields; or a count, two poses, five numbers, three
-  // fields.
-  return fields.size() < count_field + 1 + count + (flaser ? 9 : 15);
-}
-
-LogFault fault_of(const LineError& error, std::string_view line) {
+LogFault fault_of(const LineError& error) {
   switch (error.reason) {
     case SkipReason::kRange:
     case SkipReason::kPose:
@@ -59,7 +38,7 @@ LogFault fault_of(const LineError& error, std::string_view line) {
     case SkipReason::kStamp:
       return LogFault::kStamp;
     default:
-      return ends_early(line) ? LogFault::kTruncated : LogFault::kFields;
+      return error.ends_early ? LogFault::kTruncated : LogFault::kFields;
   }
 }
 
@@ -131,7 +110,7 @@ void Checker::take_laser(std::string_view line) {
   ++check_.laser_lines;
   std::variant<Scan, LineError> parsed = parser_.parse(line);
   if (const auto* error = std::get_if<LineError>(&parsed)) {
-    found(fault_of(*error, line), error->text);
+    found(fault_of(*error), error->text);
     return;
   }
   take_scan(std::get<Scan>(std::move(parsed)));
