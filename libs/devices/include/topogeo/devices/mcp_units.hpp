@@ -91,7 +91,6 @@ class McpClock {
   std::int64_t follow(std::uint32_t ticks);
   /// From the last reading to this one, negative if that is nearer, without taking it.
   [[nodiscard]] std::int64_t since_last_ns(std::uint32_t ticks) const;
-  [[nodiscard]] bool started() const { return started_; }
   void restart() { started_ = false; }
 
  private:

@@ -76,7 +76,6 @@ class PlsDriver final : public SerialDriver {
   /// The scans received since the last call, in order.
   [[nodiscard]] std::vector<PlsScan> take_scans();
   [[nodiscard]] PlsStatus status() const;
-  [[nodiscard]] const PlsSettings& settings() const { return settings_; }
 
  private:
   enum class Phase {
