@@ -11,6 +11,7 @@
 #include "topogeo/localization/match_features.hpp"
 #include "topogeo/localization/match_gate.hpp"
 #include "topogeo/localization/refinement.hpp"
+#include "topogeo/topomap/pose_at.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -22,23 +23,6 @@ constexpr double kWeakPrior = 0.25;     // information, 1/m^2 and 1/rad^2: that 
 constexpr double kLargestMove_m = 0.3;  // of the refinement without prior: beyond it, another place
 constexpr double kContradiction = 25.0;  // squared Mahalanobis distance from the trajectory
 constexpr std::int64_t kLongestGap_ns = 500'000'000;
-
-/// The pose at a time between two poses of a trajectory.
-std::optional<Pose2> pose_at(std::span<const StampedPose> poses, std::int64_t stamp_ns) {
-  const auto after = std::lower_bound(
-      poses.begin(), poses.end(), stamp_ns,
-      [](const StampedPose& pose, std::int64_t stamp) { return pose.stamp_ns < stamp; });
-  if (after == poses.end()) return std::nullopt;
-  if (after->stamp_ns == stamp_ns) return after->pose;
-  if (after == poses.begin()) return std::nullopt;
-  const StampedPose& before = *(after - 1);
-  const std::int64_t gap_ns = after->stamp_ns - before.stamp_ns;
-  if (gap_ns > kLongestGap_ns) return std::nullopt;
-  const double share =
-      static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(gap_ns);
-  const Pose2 step = geometry::between(before.pose, after->pose);
-  return before.pose * Pose2{share * step.x_m, share * step.y_m, share * step.theta_rad};
-}
 
 }  // namespace
 
@@ -118,7 +102,7 @@ std::vector<MeasuredMotion> motions_from_reference(const LocalMaps& maps,
   const std::vector<OdometryStretch> stretches = odometry_stretches(maps);
   std::vector<std::optional<Pose2>> poses;
   poses.reserve(maps.size());
-  for (const auto& map : maps) poses.push_back(pose_at(reference, map->stamp_ns));
+  for (const auto& map : maps) poses.push_back(topomap::pose_at(reference, map->stamp_ns, kLongestGap_ns));
   std::vector<MeasuredMotion> motions;
   for (std::uint32_t first = 0; first + 1 < maps.size(); ++first) {
     if (!poses[first]) continue;

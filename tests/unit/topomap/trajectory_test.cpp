@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/topomap/pose_at.hpp"
+
 namespace topogeo::topomap {
 namespace {
 
@@ -97,6 +99,22 @@ TEST(ExpandOdometry, StartsAtTheIdentityAndKeepsTheDrift) {
     EXPECT_EQ(poses[i].sequence, i);
     expect_pose(poses[i].pose, 0.5 * static_cast<double>(i), 0, 0);
   }
+}
+
+TEST(PoseAt, LiesOnTheWayBetweenItsNeighbours) {
+  const std::vector<StampedPose> poses = {
+      {0, 100, {0, 0, 0}}, {1, 200, {1, 2, kQuarter}}, {2, 900, {1, 3, kQuarter}}};
+  EXPECT_EQ(pose_at(poses, 100), poses[0].pose);
+  EXPECT_EQ(pose_at(poses, 200), poses[1].pose);
+  EXPECT_EQ(pose_at(poses, 900), poses[2].pose);
+  const auto between = pose_at(poses, 125);
+  ASSERT_TRUE(between);
+  expect_pose(*between, 0.25, 0.5, kQuarter / 4);
+  EXPECT_FALSE(pose_at(poses, 99));
+  EXPECT_FALSE(pose_at(poses, 901));
+  EXPECT_TRUE(pose_at(poses, 899));
+  EXPECT_FALSE(pose_at(poses, 899, 699));  // they are 700 apart
+  EXPECT_FALSE(pose_at({}, 100));
 }
 
 }  // namespace
