@@ -13,12 +13,14 @@ MapInput::MapInput(std::vector<topomap::LocalMap> stored)
     : local_maps_(std::move(stored)), stored_(local_maps_.size()) {}
 
 MapInput::Arrival MapInput::add(topomap::LocalMap map) {
+  if (map.id < first_kept_ && !arrived_.contains(map.id)) return Arrival::kKnown;
   const Arrived arrived{map.sequence, topomap::content_hash(map)};
   const auto [held, fresh] = arrived_.try_emplace(map.id, arrived);
   if (!fresh) return held->second == arrived ? Arrival::kKnown : Arrival::kDifferent;
   const std::uint32_t id = map.id;
   waiting_.emplace(id, std::move(map));
   extend();
+  drop_old();
   return Arrival::kNew;
 }
 
@@ -26,6 +28,7 @@ void MapInput::add(const msg::TrajectorySegment& message) {
   check_sources(message);
   trajectory_.add(message);
   extend();
+  drop_old();
 }
 
 void MapInput::check_sources(const msg::TrajectorySegment& message) const {
@@ -49,6 +52,28 @@ void MapInput::extend() {
     local_maps_.push_back(
         topomap::numbered(std::move(waiting_.extract(found).mapped()), id, id > 0 && !follows));
   }
+}
+
+// The trajectory names its stops in the order of their ids.
+void MapInput::drop_old() {
+  while (!waiting_.empty() && last_source_ && waiting_.begin()->first < *last_source_) {
+    drop_oldest();
+  }
+  while (waiting_.size() > kMostWaiting) drop_oldest();
+}
+
+void MapInput::drop_oldest() {
+  const std::uint32_t id = waiting_.begin()->first;
+  waiting_.erase(waiting_.begin());
+  arrived_.erase(id);
+  first_kept_ = id + 1;
+  ++dropped_;
+}
+
+std::optional<std::uint32_t> MapInput::lost() const {
+  const topomap::StopPose* const next = trajectory_.stop(local_maps_.size());
+  if (next == nullptr || next->source_id >= first_kept_) return std::nullopt;
+  return next->source_id;
 }
 
 void MapInput::add(const msg::LoopClosures& message) {

@@ -20,9 +20,14 @@ class MapInput {
   /// `stored` are the local maps of a map that is continued.
   explicit MapInput(std::vector<topomap::LocalMap> stored = {});
 
+  /// So many maps wait for the trajectory at most; then the oldest is dropped. Some 60 MB: those of
+  /// a robot that is followed in its map join nothing, and those of a drive that does not find into
+  /// the map come for as long as it lasts.
+  static constexpr std::size_t kMostWaiting = 4096;
+
   enum class Arrival : std::uint8_t {
     kNew,
-    kKnown,     ///< the same map came before
+    kKnown,     ///< the same map came before, or it comes too late to be used
     kDifferent  ///< another map came before under this id; that one stays
   };
   Arrival add(topomap::LocalMap map);
@@ -39,6 +44,11 @@ class MapInput {
   [[nodiscard]] const std::vector<topomap::LocalMap>& local_maps() const { return local_maps_; }
   /// Maps that came and that the trajectory does not have, or not yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+  /// Maps that were dropped: the trajectory went on without them, or too many waited for it.
+  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
+  /// The id as sent of a map that the trajectory names although it was dropped: the local maps end
+  /// before it.
+  [[nodiscard]] std::optional<std::uint32_t> lost() const;
   /// The newest trajectory, as far as it can be used: stops without gaps whose maps are here.
   [[nodiscard]] topomap::Trajectory newest_trajectory() const;
   /// The newest closures between stops whose maps are here.
@@ -59,12 +69,17 @@ class MapInput {
   void check_sources(const msg::TrajectorySegment& message) const;
   /// Takes in the maps that the trajectory names and that are here.
   void extend();
+  /// Forgets the maps that cannot be used any more.
+  void drop_old();
+  void drop_oldest();
 
   std::vector<topomap::LocalMap> local_maps_;
   std::size_t stored_ = 0;                              // of them, from the stored map
   std::optional<std::uint32_t> last_source_;            // of the last of them that is not
   std::map<std::uint32_t, Arrived> arrived_;            // by id as sent
   std::map<std::uint32_t, topomap::LocalMap> waiting_;  // by id as sent
+  std::uint32_t first_kept_ = 0;                        // ids as sent below are dropped
+  std::uint64_t dropped_ = 0;
   service::TrajectoryAssembly trajectory_;
   std::vector<topomap::LoopClosure> closures_;
   std::optional<std::uint64_t> closures_version_;

@@ -60,6 +60,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
     finish_if_complete();
+    tell_losses();
     count();
   });
   service_.loop().add_timer(kLivePeriod, [this] {
@@ -220,10 +221,24 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   service_.status().set_state(msg::kServiceFinished);
 }
 
+void MapStoreService::tell_losses() {
+  if (input_.dropped() > 0 && !told_drops_) {
+    told_drops_ = true;
+    spdlog::warn("local maps that have joined no map are dropped, see local_maps_dropped");
+  }
+  const std::optional<std::uint32_t> lost = input_.lost();
+  if (!lost || service_.status().state() == msg::kServiceFailed) return;
+  const std::string what = "local map " + std::to_string(*lost) +
+                           " had to be dropped before the trajectory named it: the map ends there";
+  service_.status().fault("local map lost", what);
+  service_.status().set_state(msg::kServiceFailed, what);
+}
+
 void MapStoreService::count() {
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("local_maps", static_cast<double>(input_.local_maps().size()));
   status.set_counter("local_maps_waiting", static_cast<double>(input_.waiting()));
+  status.set_counter("local_maps_dropped", static_cast<double>(input_.dropped()));
   status.set_counter("trajectory_version", static_cast<double>(input_.version()));
   status.set_counter("loop_closures", static_cast<double>(input_.usable_closures().size()));
   status.set_counter("stored_local_maps", static_cast<double>(database_.local_map_count()));

@@ -58,6 +58,8 @@ class MapStoreService {
   [[nodiscard]] storage::MapDocument final_document(const topomap::Trajectory& trajectory) const;
   void finish(const topomap::Trajectory& trajectory);
   void count();
+  /// Of maps that were dropped.
+  void tell_losses();
 
   service::Service& service_;
   MapStoreOptions options_;
@@ -82,6 +84,7 @@ class MapStoreService {
   Clock::time_point next_hybrid_;
   Clock::time_point next_attempt_;  // to finish, after a failure
   bool finished_ = false;
+  bool told_drops_ = false;
 };
 
 }  // namespace topogeo::map_store

@@ -68,7 +68,40 @@ TEST_F(Input, TakesInWhatTheTrajectoryNamesAndNumbersItAsThatDoes) {
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   ASSERT_EQ(input_.local_maps().size(), 2U);
   EXPECT_TRUE(input_.local_maps()[1] == topomap::numbered(maps_[2], 1, true));
-  EXPECT_EQ(input_.waiting(), 1U);
+  // The one between is of no use any more, however often it comes.
+  EXPECT_EQ(input_.waiting(), 0U);
+  EXPECT_EQ(input_.add(maps_[1]), Arrival::kKnown);
+  EXPECT_EQ(input_.waiting(), 0U);
+  EXPECT_EQ(input_.dropped(), 1U);
+  EXPECT_FALSE(input_.lost());
+}
+
+// A robot that is followed in its map for days makes stops that join nothing.
+TEST_F(Input, SoManyMapsWaitAndNoMore) {
+  const auto most = static_cast<std::uint32_t>(MapInput::kMostWaiting);
+  topomap::LocalMap map = maps_[0];
+  for (map.id = 0; map.id < most + 2; ++map.id) EXPECT_EQ(input_.add(map), Arrival::kNew);
+  EXPECT_EQ(input_.waiting(), most);
+  EXPECT_EQ(input_.dropped(), 2U);
+  // Later ones join the map.
+  trajectory_.stops.resize(1);
+  trajectory_.stops[0].source_id = most + 1;
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  EXPECT_EQ(input_.local_maps().size(), 1U);
+  EXPECT_EQ(input_.waiting(), 0U);
+  EXPECT_EQ(input_.dropped(), most + 1U);
+  EXPECT_FALSE(input_.lost());
+}
+
+TEST_F(Input, ADroppedMapThatTheTrajectoryNamesIsLost) {
+  const auto most = static_cast<std::uint32_t>(MapInput::kMostWaiting);
+  topomap::LocalMap map = maps_[0];
+  for (map.id = 0; map.id < most + 2; ++map.id) input_.add(map);
+  trajectory_.stops.resize(1);
+  trajectory_.stops[0].source_id = 1;
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  EXPECT_TRUE(input_.local_maps().empty());
+  EXPECT_EQ(input_.lost(), 1U);
 }
 
 TEST_F(Input, ExtendsAStoredMap) {
