@@ -49,10 +49,8 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
     });
   }
   if (!config.laser_port.empty()) {
-    laser_.emplace(service_, config, time_, gate_, [this](std::int64_t arrival_ns) {
-      release(arrival_ns);
-      measure_latency(arrival_ns);
-    });
+    laser_.emplace(service_, config, time_, gate_,
+                   [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }
   timer_ = service_.loop().add_timer(kStatePeriod, [this] { tell_state(); });
   tell_state();
@@ -73,7 +71,12 @@ void DeviceGateway::wait_for_readers() {
 }
 
 void DeviceGateway::release(std::int64_t now_ns) {
-  for (const scan::Scan& scan : gate_.take(now_ns)) publish(scan);
+  for (const ScanGate::Leaving& leaving : gate_.take(now_ns)) {
+    if (!publish(leaving.scan)) continue;
+    wait_ns_ = now_ns - leaving.arrival_ns;
+    latency_ns_ = steady_now_ns() - leaving.arrival_ns;
+    largest_latency_ns_ = std::max(largest_latency_ns_, latency_ns_);
+  }
   service_.loop().cancel_timer(release_timer_);
   if (gate_.due_ns() == std::numeric_limits<std::int64_t>::max()) return;
   release_timer_ = service_.loop().call_after(
@@ -81,22 +84,16 @@ void DeviceGateway::release(std::int64_t now_ns) {
       [this] { release(steady_now_ns()); });
 }
 
-void DeviceGateway::publish(const scan::Scan& scan) {
+bool DeviceGateway::publish(const scan::Scan& scan) {
   msg::Scan message = service::to_msg(scan, service_.robot_id());
   message.stamp_ns(time_.stamp_ns(scan.stamp_ns));
   if (!scans_.write(message)) {
     service_.status().fault("send blocked", "scan " + std::to_string(scan.sequence));
-    return;
+    return false;
   }
   last_stamp_ns_ = message.stamp_ns();
   ++sent_;
-}
-
-/// From when the last bytes of a scan were read from the port to when the scan was published.
-void DeviceGateway::measure_latency(std::int64_t arrival_ns) {
-  if (sent_ == 0) return;
-  latency_ns_ = steady_now_ns() - arrival_ns;
-  largest_latency_ns_ = std::max(largest_latency_ns_, latency_ns_);
+  return true;
 }
 
 void DeviceGateway::tell_state() {
@@ -115,6 +112,7 @@ void DeviceGateway::tell_state() {
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("scan_latency_ms", static_cast<double>(latency_ns_) * 1e-6);
   status.set_counter("scan_latency_largest_ms", static_cast<double>(largest_latency_ns_) * 1e-6);
+  status.set_counter("scan_wait_ms", static_cast<double>(wait_ns_) * 1e-6);
   const msg::ServiceState state = running ? msg::kServiceRunning : msg::kServiceWaiting;
   if (text == told_ && state == status.state()) return;
   told_ = text;

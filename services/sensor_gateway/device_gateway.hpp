@@ -37,8 +37,8 @@ class DeviceGateway {
   void wait_for_readers();
   /// Publishes what can leave by now.
   void release(std::int64_t now_ns);
-  void publish(const scan::Scan& scan);
-  void measure_latency(std::int64_t arrival_ns);
+  /// False, and a fault, when it cannot be sent.
+  bool publish(const scan::Scan& scan);
   void tell_state();
 
   service::Service& service_;
@@ -49,8 +49,10 @@ class DeviceGateway {
   messaging::Writer<msg::StreamEnd> stream_end_;
   std::int64_t last_stamp_ns_ = 0;
   std::uint64_t sent_ = 0;
+  // From when the last bytes of a scan were read from the port to when it was published.
   std::int64_t latency_ns_ = 0;          // of the last scan
   std::int64_t largest_latency_ns_ = 0;  // of all
+  std::int64_t wait_ns_ = 0;             // what of latency_ns_ the scan waited for odometry
   std::string told_;                     // as the state of the service
   std::uint64_t timer_ = 0;              // of tell_state
   std::uint64_t release_timer_ = 0;      // while scans wait for odometry

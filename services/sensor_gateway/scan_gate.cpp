@@ -27,18 +27,18 @@ void ScanGate::add(devices::PlsScan scan, std::int64_t now_ns) {
     drop(ScanDrop::kNoReader);
     return;
   }
-  waiting_.push_back({std::move(scan), now_ns + options_.odometry_wait_ns});
+  waiting_.push_back({std::move(scan), now_ns});
 }
 
-std::vector<scan::Scan> ScanGate::take(std::int64_t now_ns) {
-  std::vector<scan::Scan> scans;
+std::vector<ScanGate::Leaving> ScanGate::take(std::int64_t now_ns) {
+  std::vector<Leaving> scans;
   while (!waiting_.empty()) {
     Waiting& first = waiting_.front();
     const bool bracketed =
         !options_.has_base || (track_.last_ns() && *track_.last_ns() >= first.scan.stamp_ns);
-    if (!bracketed && now_ns < first.due_ns) break;
+    if (!bracketed && now_ns < due_ns()) break;
     if (std::optional<scan::Scan> scan = finish(std::move(first.scan))) {
-      scans.push_back(*std::move(scan));
+      scans.push_back({*std::move(scan), first.arrival_ns});
     }
     waiting_.pop_front();
   }
@@ -46,7 +46,8 @@ std::vector<scan::Scan> ScanGate::take(std::int64_t now_ns) {
 }
 
 std::int64_t ScanGate::due_ns() const {
-  return waiting_.empty() ? std::numeric_limits<std::int64_t>::max() : waiting_.front().due_ns;
+  return waiting_.empty() ? std::numeric_limits<std::int64_t>::max()
+                          : waiting_.front().arrival_ns + options_.odometry_wait_ns;
 }
 
 std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {

@@ -49,8 +49,12 @@ class ScanGate {
   void add(devices::PlsScan scan, std::int64_t now_ns);
   void add(const OdometrySample& sample) { track_.add(sample); }
 
-  /// The scans that can leave by now, in order, stamped by the same clock as `now_ns`.
-  std::vector<scan::Scan> take(std::int64_t now_ns);
+  struct Leaving {
+    scan::Scan scan;              ///< stamped by the same clock as the times here
+    std::int64_t arrival_ns = 0;  ///< when it was added
+  };
+  /// The scans that can leave by now, in order.
+  std::vector<Leaving> take(std::int64_t now_ns);
   /// When `take` has something at the latest; the largest number while nothing waits.
   [[nodiscard]] std::int64_t due_ns() const;
 
@@ -63,7 +67,7 @@ class ScanGate {
  private:
   struct Waiting {
     devices::PlsScan scan;
-    std::int64_t due_ns = 0;
+    std::int64_t arrival_ns = 0;
   };
   struct Geometry {
     double angle_min_rad = 0.0;

@@ -32,10 +32,10 @@ TEST(ScanGate, ScansAreNumberedFromWhenSomebodyReads) {
   gate.add(scan_at(3), 3);
   const auto scans = gate.take(3);
   ASSERT_EQ(scans.size(), 2U);
-  EXPECT_EQ(scans[0].sequence, 0U);
-  EXPECT_EQ(scans[1].sequence, 1U);
-  EXPECT_EQ(scans[1].stamp_ns, 3);
-  EXPECT_EQ(scans[1].T_odom_robot, geometry::Pose2{});  // there is no base
+  EXPECT_EQ(scans[0].scan.sequence, 0U);
+  EXPECT_EQ(scans[1].scan.sequence, 1U);
+  EXPECT_EQ(scans[1].scan.stamp_ns, 3);
+  EXPECT_EQ(scans[1].scan.T_odom_robot, geometry::Pose2{});  // there is no base
 }
 
 TEST(ScanGate, TimeAndBeamsMustFit) {
@@ -46,8 +46,8 @@ TEST(ScanGate, TimeAndBeamsMustFit) {
   }
   const auto scans = gate.take(12);
   ASSERT_EQ(scans.size(), 2U);
-  EXPECT_EQ(scans[1].stamp_ns, 12);
-  EXPECT_EQ(scans[1].sequence, 1U);
+  EXPECT_EQ(scans[1].scan.stamp_ns, 12);
+  EXPECT_EQ(scans[1].scan.sequence, 1U);
   EXPECT_EQ(gate.dropped(ScanDrop::kTime), 2U);
   EXPECT_EQ(gate.dropped(ScanDrop::kGeometry), 1U);
 }
@@ -58,7 +58,7 @@ TEST(ScanGate, RangesBeyondTheLimitAreNoReturnAsInALog) {
   devices::PlsScan scan = scan_at(1);
   scan.ranges_m = {4.999F, 5.0F, 0.0F};
   gate.add(scan, 1);
-  EXPECT_EQ(gate.take(1).at(0).ranges_m, (std::vector<float>{4.999F, 0.0F, 0.0F}));
+  EXPECT_EQ(gate.take(1).at(0).scan.ranges_m, (std::vector<float>{4.999F, 0.0F, 0.0F}));
 }
 
 TEST(ScanGate, WithoutWaitingOdometryIsCarriedOn) {
@@ -71,7 +71,7 @@ TEST(ScanGate, WithoutWaitingOdometryIsCarriedOn) {
   gate.add(scan_at(150 * kMs), 160 * kMs);
   const auto scans = gate.take(160 * kMs);
   ASSERT_EQ(scans.size(), 1U);
-  EXPECT_NEAR(scans[0].T_odom_robot.x_m, 1.05, kTolerance);
+  EXPECT_NEAR(scans[0].scan.T_odom_robot.x_m, 1.05, kTolerance);
   EXPECT_EQ(gate.extrapolated(), 1U);
   gate.add(scan_at(601 * kMs), 602 * kMs);  // the base has been silent for too long
   EXPECT_TRUE(gate.take(602 * kMs).empty());
@@ -112,13 +112,15 @@ TEST(ScanGate, WaitsForOdometryAsLongAsItMay) {
   ASSERT_EQ(gate.due_ns(), 160 * kMs);
   const auto bracketed = gate.take(101 * kMs);
   ASSERT_EQ(bracketed.size(), 1U);
-  EXPECT_NEAR(bracketed[0].T_odom_robot.x_m, 0.1, kTolerance);
+  EXPECT_EQ(bracketed[0].arrival_ns, 60 * kMs);
+  EXPECT_NEAR(bracketed[0].scan.T_odom_robot.x_m, 0.1, kTolerance);
   EXPECT_EQ(gate.extrapolated(), 0U);
   gate.add(scan_at(150 * kMs), 160 * kMs);
   EXPECT_TRUE(gate.take(259 * kMs).empty());
   const auto late = gate.take(260 * kMs);  // no odometry came
   ASSERT_EQ(late.size(), 1U);
-  EXPECT_NEAR(late[0].T_odom_robot.x_m, 0.25, kTolerance);
+  EXPECT_EQ(late[0].arrival_ns, 160 * kMs);
+  EXPECT_NEAR(late[0].scan.T_odom_robot.x_m, 0.25, kTolerance);
   EXPECT_EQ(gate.extrapolated(), 1U);
 }
 
