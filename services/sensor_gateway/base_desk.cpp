@@ -194,6 +194,7 @@ void BaseDesk::count() {
   set("motion_commands_refused", refused_);
   set("base_port_opened", line_.statistics().opened);
   set("base_starts", base.starts);
+  set("base_restarts", base.restarts);
   set("base_watchdog_expirations", base.watchdog_expirations);
   for (std::size_t i = 0; i < devices::kMcpDropKinds; ++i) {
     if (base.drops[i] == 0) continue;
