@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "topogeo/localization/live_pose.hpp"
 #include "topogeo/localization/match_gate.hpp"
@@ -23,12 +22,11 @@ constexpr std::chrono::milliseconds kCountPeriod{250};
 
 /// Different for every process that ever ran, as far as workers can remember.
 std::string unique_client_id() {
-  constexpr std::size_t kLongestHost = 32;
-  std::string name = support::host_name().substr(0, kLongestHost);
+  std::string name = support::process_name();
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == '\'' || c == '"' || c == '%'; }, '-');
   const auto start = std::chrono::system_clock::now().time_since_epoch();
-  return name + "-" + std::to_string(::getpid()) + "-" +
+  return name + "-" +
          std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(start).count());
 }
 

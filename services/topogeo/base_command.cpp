@@ -10,7 +10,6 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
@@ -109,9 +108,7 @@ int send(Request request) {
     throw std::runtime_error(nothing_alive(request.view, "base"));
   }
   messaging::set_header(request.command, request.robot_id, 0, 0);
-  messaging::set_text(request.command.client_id(),
-                      support::host_name().substr(0, 32) + "-" + std::to_string(::getpid()),
-                      "client_id");
+  messaging::set_text(request.command.client_id(), support::process_name(), "client_id");
   if (!writer.write(request.command) || !writer.wait_for_acknowledgments(patience)) {
     throw std::runtime_error("the command could not be sent");
   }

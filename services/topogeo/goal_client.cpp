@@ -5,22 +5,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include <unistd.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/host.hpp"
 
 namespace topogeo::cli {
 namespace {
-
-constexpr std::size_t kLongestHost = 32;
-
-std::int64_t host_stamp_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 /// Nobody else's, and never 0.
 std::uint64_t new_goal_id() {
@@ -33,7 +23,7 @@ std::uint64_t new_goal_id() {
 GoalClient::GoalClient(const messaging::Participant& participant, messaging::EventLoop& loop,
                        std::string robot_id)
     : robot_id_(std::move(robot_id)),
-      client_id_(support::host_name().substr(0, kLongestHost) + "-" + std::to_string(::getpid())),
+      client_id_(support::process_name()),
       loop_(loop),
       goals_(participant),
       service_statuses_(participant),
@@ -93,7 +83,7 @@ void GoalClient::send(service::Goal goal, double patience_s) {
     route_.reset();
     watch_.emplace(goal_id_, patience_s, support::monotonic_s());
   }
-  if (!goals_.write(service::to_msg(goal, robot_id_, host_stamp_ns(), sent_++))) {
+  if (!goals_.write(service::to_msg(goal, robot_id_, support::wall_clock_ns(), sent_++))) {
     throw std::runtime_error("the goal could not be sent");
   }
 }

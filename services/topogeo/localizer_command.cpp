@@ -8,7 +8,6 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
@@ -37,7 +36,7 @@ struct Request {
 /// Sends the command and waits for its answer, which is printed. Throws std::runtime_error when
 /// nobody answers.
 int send(const Request& request, service::LocalizationCommand command) {
-  command.client_id = support::host_name().substr(0, 32) + "-" + std::to_string(::getpid());
+  command.client_id = support::process_name();
   command.request_id = std::random_device{}();
   const messaging::Participant participant = join(request.view, "topogeo/localizer");
   messaging::Writer<msg::LocalizationCommand> commands(participant);

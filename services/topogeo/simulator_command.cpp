@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/writer.hpp"
@@ -55,8 +54,7 @@ int send(const Request& request) {
   }
   msg::SimulatorCommand command;
   messaging::set_header(command, request.robot_id, 0, 0);
-  messaging::set_text_cut(command.client_id(),
-                          support::host_name() + "-" + std::to_string(::getpid()));
+  messaging::set_text(command.client_id(), support::process_name(), "client_id");
   command.fault(request.fault);
   command.device(request.base ? msg::kSimulatedBase : msg::kSimulatedLaser);
   command.duration_s(request.duration_s);

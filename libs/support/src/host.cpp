@@ -13,6 +13,11 @@ std::string host_name() {
   return name.data();
 }
 
+std::string process_name() {
+  constexpr std::size_t kLongestHost = 32;
+  return host_name().substr(0, kLongestHost) + "-" + std::to_string(::getpid());
+}
+
 std::int64_t wall_clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
