@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick{50};
 /// Speeds change more slowly than the base could change them, so that it keeps up.
 constexpr double kShareOfAcceleration = 0.6;
-constexpr double kLastWord_s = 5.0;  // for what was sent on a topic of its own
+constexpr double kLastWord_s = 30.0;  // for what was sent on a topic of its own
 
 }  // namespace
 
@@ -99,7 +99,7 @@ RunResult RunSupervisor::run() {
     result_.collisions = tour_->last().collisions();
   }
   finish_bar();
-  if (result_.finished) wait_for_decisions();
+  if (result_.finished) wait_for_last_words();
   // Without the end of the stream samples are still on their way.
   stop(services_, loop_, !result_.finished, [this](const std::string& text) { say(text); });
   result_.times = services_.wait();
@@ -217,25 +217,26 @@ void RunSupervisor::fail(const std::string& why) {
   loop_.stop();
 }
 
-// They were sent before the end of the stream, but on a topic of their own.
-void RunSupervisor::wait_for_decisions() {
-  const auto expected = [this] {
-    return static_cast<std::size_t>(counter(result_.services.find("localizer"), "loop_decisions"));
+// What the localizer counted and decided was sent before the end of the stream, but on topics of
+// their own, whose writers may not even be known yet when the machine is busy.
+void RunSupervisor::wait_for_last_words() {
+  const auto localizer = [this] { return result_.services.find("localizer"); };
+  const auto expected = [&] {
+    return static_cast<std::size_t>(counter(localizer(), "loop_decisions"));
   };
-  const auto finished = [this] {
-    const msg::ServiceStatus* localizer = result_.services.find("localizer");
-    return localizer == nullptr || localizer->state() == msg::kServiceFinished;
+  const auto finished = [&] {
+    return localizer() != nullptr && localizer()->state() == msg::kServiceFinished;
   };
   const double end_s = support::monotonic_s() + kLastWord_s;
   while ((!finished() || decisions_.all().size() < expected()) && support::monotonic_s() < end_s) {
-    loop_.run_for(milliseconds(5));
+    if (loop_.run_for(milliseconds(5))) break;  // a signal
   }
   result_.loop_decisions = decisions_.all();
-  if (result_.loop_decisions.size() != expected()) {
-    result_.finished = false;
-    fail(fmt::format("{} of {} loop decisions came from the localizer",
-                     result_.loop_decisions.size(), expected()));
-  }
+  if (finished() && result_.loop_decisions.size() == expected()) return;
+  result_.finished = false;
+  fail(finished() ? fmt::format("{} of {} loop decisions came from the localizer",
+                                result_.loop_decisions.size(), expected())
+                  : "the localizer has not said what it has done: there is a map, but no report");
 }
 
 }  // namespace topogeo::cli

@@ -63,7 +63,7 @@ class RunSupervisor {
   void finish_bar();
   void say(const std::string& text);
   void fail(const std::string& why);
-  void wait_for_decisions();
+  void wait_for_last_words();
 
   RunOptions options_;
   std::uint64_t laser_lines_;
