@@ -47,6 +47,13 @@ inline topomap::NodeKind from_msg(msg::NodeKind kind) {
   return static_cast<topomap::NodeKind>(kind);
 }
 
+inline msg::Point2 to_point(const Eigen::Vector2d& position_m) {
+  msg::Point2 point;
+  point.x_m(position_m.x());
+  point.y_m(position_m.y());
+  return point;
+}
+
 inline msg::BranchPoint to_branch_point(const Eigen::Vector2d& position_m, double clearance_m) {
   msg::BranchPoint point;
   point.x_m(position_m.x());

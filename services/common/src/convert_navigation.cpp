@@ -116,9 +116,7 @@ msg::Blockages to_msg(const navigation::BlockageReport& report, std::string_view
   out.version(report.version);
   out.points().reserve(report.points_m.size());
   for (const Eigen::Vector2d& point_m : report.points_m) {
-    msg::Point2& point = out.points().emplace_back();
-    point.x_m(point_m.x());
-    point.y_m(point_m.y());
+    out.points().push_back(detail::to_point(point_m));
   }
   return out;
 }

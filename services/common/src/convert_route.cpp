@@ -10,15 +10,9 @@ namespace topogeo::service {
 using detail::check;
 using detail::check_bound;
 using detail::finite;
+using detail::to_point;
 
 namespace {
-
-msg::Point2 to_point(const Eigen::Vector2d& point_m) {
-  msg::Point2 point;
-  point.x_m(point_m.x());
-  point.y_m(point_m.y());
-  return point;
-}
 
 template <class Alternative>
 const Alternative& target_as(const Goal& goal, std::string_view expected) {

@@ -14,19 +14,13 @@
 namespace topogeo::service {
 
 using detail::check_bound;
+using detail::to_point;
 
 namespace {
 
 static_assert(msg::kTileCells == pipeline::kTileCells);
 
 constexpr auto kUnknown = static_cast<std::uint8_t>(planning::CellState::kUnknown);
-
-msg::Point2 to_point(const Eigen::Vector2d& point_m) {
-  msg::Point2 out;
-  out.x_m(point_m.x());
-  out.y_m(point_m.y());
-  return out;
-}
 
 msg::GridTile tile_of(const planning::HybridMap& map, std::uint32_t number,
                       const TileLayout& layout) {
