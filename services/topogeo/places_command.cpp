@@ -16,11 +16,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "topogeo/messaging/event_loop.hpp"
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
-#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
 
@@ -146,28 +145,19 @@ void print_file(const PlacesOptions& options) {
 /// The live map of the robot. Throws std::runtime_error when there is none in time.
 std::shared_ptr<const planning::HybridMap> live_map(const PlacesOptions& options) {
   const messaging::Participant participant = join(options.view, "topogeo/places");
-  const messaging::Reader<msg::GridTile> tiles(participant);
-  const messaging::Reader<msg::HybridMap> maps(participant);
   messaging::EventLoop loop;
-  service::HybridMapMirror mirror;
   std::shared_ptr<const planning::HybridMap> map;
   std::string defect;
-  const auto take = [&](const auto& put) {
+  std::optional<service::LiveHybridMap> live;
+  live.emplace(participant, loop, [&](const auto& message, const char*, const auto& use) {
+    if (message.robot_id() != options.robot_id.c_str()) return;
     try {
-      put();
-      map = mirror.map();
+      use(message);
+      map = live->map();
     } catch (const std::invalid_argument& error) {
       defect = error.what();
     }
     if (map) loop.stop();
-  };
-  loop.add<msg::GridTile>(tiles, [&](const msg::GridTile& tile, const messaging::SampleInfo& info) {
-    if (tile.robot_id() != options.robot_id.c_str()) return;
-    take([&] { mirror.put(tile, info.instance); });
-  });
-  loop.add<msg::HybridMap>(maps, [&](const msg::HybridMap& summary, const messaging::SampleInfo&) {
-    if (summary.robot_id() != options.robot_id.c_str()) return;
-    take([&] { mirror.put(summary); });
   });
   const messaging::SignalStop signals([&](int) { loop.stop(); });
   loop.run_for(std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.wait_s)));

@@ -17,7 +17,7 @@
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/service/conversions.hpp"
-#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/map_mirror.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/simulation/world.hpp"
@@ -87,27 +87,22 @@ struct LateReader {
     loop.add<msg::MapElement>(elements, [this](const auto& element, const auto& info) {
       map_mirror.put(element, info.instance);
     });
-    loop.add<msg::GridTile>(
-        tiles, [this](const auto& tile, const auto& info) { mirror.put(tile, info.instance); });
-    loop.add<msg::HybridMap>(maps,
-                             [this](const auto& summary, const auto&) { mirror.put(summary); });
   }
 
   bool wait() {
     const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!(mirror.map() && map_mirror.map()) && std::chrono::steady_clock::now() < end) {
+    while (!(hybrid.map() && map_mirror.map()) && std::chrono::steady_clock::now() < end) {
       static_cast<void>(loop.run_for(std::chrono::milliseconds(20)));
     }
-    return mirror.map() && map_mirror.map();
+    return hybrid.map() && map_mirror.map();
   }
 
   messaging::Participant participant;
   messaging::EventLoop loop;
   messaging::Reader<msg::MapElement> elements{participant};
-  messaging::Reader<msg::GridTile> tiles{participant};
-  messaging::Reader<msg::HybridMap> maps{participant};
   service::MapMirror map_mirror;
-  service::HybridMapMirror mirror;
+  service::LiveHybridMap hybrid{
+      participant, loop, [](const auto& message, const char*, const auto& use) { use(message); }};
 };
 
 void expect_same(const planning::HybridMap& got, const planning::HybridMap& expected) {
@@ -161,7 +156,7 @@ TEST_F(MapStoreShows, AStoredMapToWhoeverComesLate) {
   LateReader reader(own_domain(), partition_);
   ASSERT_TRUE(reader.wait());
   const storage::MapDocument document = two_rooms();
-  expect_same(*reader.mirror.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
+  expect_same(*reader.hybrid.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
   const topomap::GlobalMap global = reader.map_mirror.map().value();
   EXPECT_EQ(global.version, 3U);
   ASSERT_EQ(global.nodes.size(), 3U);
@@ -188,8 +183,8 @@ TEST_F(MapStoreShows, ADrawingOverAMap) {
   storage::MapDocument document = two_rooms();
   pipeline::lay_over(document.drawing,
                      pipeline::read_drawing(world, {}, 0.1, {-9.0, 1.0, 1.5707963267948966}));
-  expect_same(*reader.mirror.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
-  EXPECT_EQ(reader.mirror.map()->places().size(), 3U);
+  expect_same(*reader.hybrid.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
+  EXPECT_EQ(reader.hybrid.map()->places().size(), 3U);
 }
 
 // What a drive makes, sent as local mapper and localizer do.
@@ -229,14 +224,14 @@ TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   const auto patience = std::chrono::steady_clock::now() + kPatience;
   const planning::HybridMap hybrid = pipeline::make_hybrid_map(pipeline::parts_of(expected), {});
   const auto is_final = [&] {
-    const auto map = reader.mirror.map();
+    const auto map = reader.hybrid.map();
     return map && map->nodes().size() == hybrid.nodes().size() &&
            map->zones().zone_of_cell == hybrid.zones().zone_of_cell;
   };
   while (!is_final() && std::chrono::steady_clock::now() < patience) {
     static_cast<void>(reader.loop.run_for(std::chrono::milliseconds(20)));
   }
-  expect_same(*reader.mirror.map(), hybrid);
+  expect_same(*reader.hybrid.map(), hybrid);
   EXPECT_TRUE(storage::map_file_bytes(expected) == read_file(scratch_ / "out" / "map.pb"));
 }
 
