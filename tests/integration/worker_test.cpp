@@ -49,6 +49,11 @@ class WorkerTest : public ::testing::Test {
     return client.results[id];
   }
 
+  void publish_both(WorkerClient& client) const {
+    client.publish(zero_);
+    client.publish(one_);
+  }
+
   static std::string random_name() {
     std::random_device device;
     return "t" + std::to_string(device());
@@ -68,8 +73,7 @@ TEST_F(WorkerTest, TwoOfOneNameAreTwo) {
   const auto peer = client();
   ASSERT_TRUE(peer->wait_until([&] { return peer->named(name_).size() == 2; }));
   ASSERT_TRUE(peer->reach(2));
-  peer->publish(zero_);
-  peer->publish(one_);
+  publish_both(*peer);
   std::uint64_t id = 0;
   for (const std::string& worker : peer->named(name_)) {
     EXPECT_THAT(worker, ::testing::StartsWith(name_ + "#"));
@@ -83,8 +87,7 @@ TEST_F(WorkerTest, TwoOfOneNameAreTwo) {
 TEST_F(WorkerTest, HasTheLocalMapsOfBeforeItsTimeFromEveryPartition) {
   for (const char* partition : {"topogeo", "run-7-abc"}) {
     const auto peer = client(partition);
-    peer->publish(zero_);
-    peer->publish(one_);
+    publish_both(*peer);
     const auto process = start();
     const std::string worker = peer->find(name_);
     const MatchTask wanted = task(*zero_, *one_, 1);
@@ -216,8 +219,7 @@ TEST_F(WorkerTest, AClientWithALongQueueDoesNotKeepAnotherWaiting) {
   const auto modest = client();
   const std::string worker = greedy->find(name_);
   ASSERT_EQ(modest->find(name_), worker);
-  greedy->publish(zero_);
-  greedy->publish(one_);
+  publish_both(*greedy);
   constexpr std::uint64_t kMany = 120;
   MatchTask long_task = task(*zero_, *one_, 0);
   long_task.genetic.generations = 500;  // sending takes less time than the work
@@ -239,8 +241,7 @@ TEST_F(WorkerTest, RefusesAnotherVersionAnotherMatcherAndAnotherConfiguration) {
   const auto peer = client();
   const std::string worker = peer->find(name_);
   EXPECT_EQ(peer->workers[worker].config_fingerprint(), fingerprint);
-  peer->publish(zero_);
-  peer->publish(one_);
+  publish_both(*peer);
   const service::MatchAddress good = [&] {
     service::MatchAddress address = peer->address;
     address.config_fingerprint = fingerprint;
@@ -278,8 +279,7 @@ TEST_F(WorkerTest, WithoutAConfigurationAnyWillDo) {
   const auto peer = client();
   const std::string worker = peer->find(name_);
   EXPECT_EQ(peer->workers[worker].config_fingerprint(), 0U);
-  peer->publish(zero_);
-  peer->publish(one_);
+  publish_both(*peer);
   peer->address.config_fingerprint = 0xDEF;
   const MatchTask wanted = task(*zero_, *one_, 1);
   peer->send(worker, wanted);
@@ -290,8 +290,7 @@ TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
   const auto process = start({"--slots", "2"});
   const auto peer = client();
   const std::string worker = peer->find(name_);
-  peer->publish(zero_);
-  peer->publish(one_);
+  publish_both(*peer);
   const msg::WorkerStatus idle = peer->workers[worker];
   EXPECT_EQ(idle.slots(), 2U);
   EXPECT_FALSE(idle.draining());
@@ -334,8 +333,7 @@ TEST_F(WorkerTest, FinishesWhatItHasInHandBeforeItGoes) {
   const auto process = start();
   const auto peer = client();
   const std::string worker = peer->find(name_);
-  peer->publish(zero_);
-  peer->publish(one_);
+  publish_both(*peer);
   bool draining = false;
   peer->on_status = [&](const msg::WorkerStatus& status) {
     draining = draining || (status.draining() && status.slots() == 0);
@@ -356,8 +354,7 @@ TEST_F(WorkerTest, ASecondSignalEndsItAtOnce) {
   const auto process = start();
   const auto peer = client();
   const std::string worker = peer->find(name_);
-  peer->publish(zero_);
-  peer->publish(one_);
+  publish_both(*peer);
   MatchTask long_task = task(*zero_, *one_, 0);
   long_task.genetic.generations = 2000;
   for (; long_task.task_id < 120; ++long_task.task_id) peer->send(worker, long_task);
@@ -380,8 +377,7 @@ TEST_F(WorkerTest, HasRoomForEverNewClients) {
     for (int k = 0; k < kAtATime; ++k) peers.push_back(client());
     for (const auto& peer : peers) {
       const std::string worker = peer->find(name_);
-      peer->publish(zero_);
-      peer->publish(one_);
+      publish_both(*peer);
       const MatchTask wanted = task(*zero_, *one_, 1);
       peer->send(worker, wanted);
       ASSERT_NO_FATAL_FAILURE(expect_right(*peer, wanted, zero_, one_)) << "round " << i;
