@@ -64,6 +64,7 @@ void write(const simulation::SimulatedLog& log, const std::filesystem::path& log
 }
 
 int show_demo(DemoOptions options) {
+  static_cast<void>(check_inputs(options.run.job));
   const simulation::World world = read_world(options.world);
   support::check_writable_directory(options.run.job.out);
   const simulation::SimulatedLog log = simulate(world);
@@ -77,16 +78,10 @@ int show_demo(DemoOptions options) {
 }
 
 /// The map of a drive through the world, with its places, as it comes out of one process.
-storage::MapDocument make_map(const DemoOptions& options, const simulation::World& world) {
+storage::MapDocument make_map(const DemoOptions& options, const pipeline::Config& config,
+                              const simulation::World& world) {
   const simulation::SimulatedLog log = simulate(world);
-  const pipeline::LoadedConfig config = [&] {
-    try {
-      return pipeline::load_config(options.run.job.config);
-    } catch (const std::exception& error) {
-      throw service::UsageError(error.what());
-    }
-  }();
-  pipeline::MappingRun mapping(config.config, options.run.job.robot_id);
+  pipeline::MappingRun mapping(config, options.run.job.robot_id);
   for (const scan::Scan& scan : log.scans) mapping.add(scan);
   storage::MapDocument document = mapping.finish();
   const geometry::Pose2 T_map_world = geometry::inverse(log.T_world_robot.front());
@@ -106,11 +101,14 @@ std::filesystem::path world_file(const DemoOptions& options) {
 
 /// Sends a simulated robot to a place on the floor, in the map of a drive before.
 int show_goto(DemoOptions options) {
+  static_cast<void>(to_goal(options.goal));
+  check_picture(options.goal.picture);
+  const Inputs inputs = check_inputs(options.run.job);
   const simulation::World world = read_world(options.world);
   support::check_writable_directory(options.run.job.out);
   std::cerr << "mapping '" << world.name << "' from a simulated drive\n";
   options.run.job.map = options.run.job.out / "floor.map.pb";
-  storage::write_map_file(*options.run.job.map, make_map(options, world));
+  storage::write_map_file(*options.run.job.map, make_map(options, inputs.config.config, world));
   options.simulation.world = world_file(options);
   options.run.simulation = options.simulation;
   options.run.goal = options.goal;
@@ -122,6 +120,7 @@ int show_goto(DemoOptions options) {
 
 /// The same floor through the serial lines of emulated devices, in real time.
 int show_devices(DemoOptions options) {
+  static_cast<void>(check_inputs(options.run.job));
   support::check_writable_directory(options.run.job.out);
   options.simulation.world = world_file(options);
   options.run.simulation = options.simulation;

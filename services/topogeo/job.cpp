@@ -26,24 +26,11 @@ pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
   }
 }
 
-Job read_inputs(const JobOptions& options) {
-  pipeline::LoadedConfig config = load(options.config);
-  if (options.continued && config.config.localizer.mode != localization::LocalizerMode::kGraph) {
-    throw service::UsageError("--continue: expected localizer.mode graph in the configuration");
-  }
+Job open_log(const JobOptions& options, Inputs inputs) {
   try {
-    if (options.reference) (void)storage::read_trajectory_tum(*options.reference);
-    scan::CarmenLogReader reader(options.log, config.config.log);
+    scan::CarmenLogReader reader(options.log, inputs.config.config.log);
     const std::uint64_t laser_lines = scan::count_scans(options.log);
-    std::shared_ptr<const localization::StoredMap> map;
-    if (options.map) map = pipeline::load_stored_map(*options.map);
-    std::shared_ptr<const storage::MapDocument> continued;
-    if (options.continued) {
-      continued =
-          pipeline::load_map_to_continue(*options.continued, config.config, options.robot_id);
-    }
-    return {options,        std::move(config),    std::move(reader),
-            std::move(map), std::move(continued), laser_lines};
+    return {options, std::move(inputs), std::move(reader), laser_lines};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
@@ -130,11 +117,30 @@ void add_map_options(CLI::App& app, JobOptions& options, StoredMapUse use) {
       ->type_name("X,Y,DEG");
 }
 
-Job prepare(const JobOptions& options) {
+Inputs check_inputs(const JobOptions& options) {
   if (options.initial_pose && !options.map && !options.continued) {
     throw service::UsageError("--initial-pose: expected with a stored map, --map or --continue");
   }
-  Job job = read_inputs(options);
+  Inputs inputs{load(options.config), nullptr, nullptr};
+  const pipeline::Config& config = inputs.config.config;
+  if (options.continued && config.localizer.mode != localization::LocalizerMode::kGraph) {
+    throw service::UsageError("--continue: expected localizer.mode graph in the configuration");
+  }
+  try {
+    if (options.reference) (void)storage::read_trajectory_tum(*options.reference);
+    if (options.map) inputs.map = pipeline::load_stored_map(*options.map);
+    if (options.continued) {
+      inputs.continued =
+          pipeline::load_map_to_continue(*options.continued, config, options.robot_id);
+    }
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+  return inputs;
+}
+
+Job prepare(const JobOptions& options) {
+  Job job = open_log(options, check_inputs(options));
   support::check_writable_directory(options.out);
   return job;
 }

@@ -44,18 +44,27 @@ enum class StoredMapUse : std::uint8_t {
 /// Adds them and --initial-pose.
 void add_map_options(CLI::App& app, JobOptions& options, StoredMapUse use);
 
-struct Job {
-  JobOptions options;
+/// What mapping needs besides scans.
+struct Inputs {
   pipeline::LoadedConfig config;
-  scan::CarmenLogReader reader;                           ///< before its first scan
   std::shared_ptr<const localization::StoredMap> map;     ///< of JobOptions::map
   std::shared_ptr<const storage::MapDocument> continued;  ///< of JobOptions::continued
+};
+
+/// Finds out before the work starts whether configuration, stored map and reference can be used,
+/// wherever the scans come from. Throws service::UsageError for options and configuration,
+/// service::BadInputError for the others.
+Inputs check_inputs(const JobOptions& options);
+
+struct Job {
+  JobOptions options;
+  Inputs inputs;
+  scan::CarmenLogReader reader;   ///< before its first scan
   std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
 };
 
-/// Finds out before the work starts whether it can be done: reads the configuration, opens the log
-/// and makes the output directory. Throws service::UsageError, service::BadInputError and
-/// std::runtime_error for these three.
+/// The same for a log, which it opens, and makes the output directory. Throws the same, and
+/// std::runtime_error for the directory.
 Job prepare(const JobOptions& options);
 
 /// Says on stderr what was left out of the log; nothing when that is nothing.

@@ -98,7 +98,7 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   storage::Report report;
   report.command = run.map_localizer() != nullptr ? "localize" : "map";
   report.log = job.options.log.filename().string();
-  report.configuration = job.config.effective;
+  report.configuration = job.inputs.config.effective;
   pipeline::add_map(report, document);
   pipeline::add_matches(report, run.match_counts());
   pipeline::add_loop_candidates(report, run.loop_decisions());
@@ -106,7 +106,7 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   if (run.map_localizer() != nullptr) {
     report.localization = pipeline::localization_counts(*run.map_localizer());
   }
-  if (job.continued) report.continuation = pipeline::continuation_counts(*run.session());
+  if (job.inputs.continued) report.continuation = pipeline::continuation_counts(*run.session());
   return report;
 }
 
@@ -114,13 +114,14 @@ std::unique_ptr<pipeline::MappingRun> make_run(const Job& job) {
   const JobOptions& options = job.options;
   std::optional<geometry::Pose2> initial_pose;
   if (options.initial_pose) initial_pose = pipeline::parse_pose(*options.initial_pose);
-  if (job.continued) {
-    return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id,
-                                                  job.continued, initial_pose);
+  if (job.inputs.continued) {
+    return std::make_unique<pipeline::MappingRun>(job.inputs.config.config, options.robot_id,
+                                                  job.inputs.continued, initial_pose);
   }
-  if (!job.map) return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id);
-  return std::make_unique<pipeline::MappingRun>(job.config.config, options.robot_id, job.map,
-                                                initial_pose);
+  if (!job.inputs.map)
+    return std::make_unique<pipeline::MappingRun>(job.inputs.config.config, options.robot_id);
+  return std::make_unique<pipeline::MappingRun>(job.inputs.config.config, options.robot_id,
+                                                job.inputs.map, initial_pose);
 }
 
 /// Says on stderr why stops are not in the map; nothing when all are or none was to be.
@@ -141,7 +142,7 @@ int map_log(const JobOptions& options, bool stages) {
   tell_skipped(job.reader.statistics());
 
   if (interruption.received() != 0) return kSignalBase + interruption.received();
-  if (!job.map) std::cerr << "matching revisited places\n";
+  if (!job.inputs.map) std::cerr << "matching revisited places\n";
   storage::MapDocument document;
   {
     const Interruption::Immediate immediate(interruption);
@@ -158,7 +159,7 @@ int map_log(const JobOptions& options, bool stages) {
     if (stages) {
       std::cerr << "drawing the stages of the correction\n";
       const Interruption::Immediate immediate(interruption);
-      pipeline::write_stage_pictures(options.out, job.config.config, document,
+      pipeline::write_stage_pictures(options.out, job.inputs.config.config, document,
                                      options.log.filename().string());
     }
   }

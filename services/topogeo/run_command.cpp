@@ -154,7 +154,7 @@ int run_log(const RunOptions& options) {
   }
   if (!result.finished) throw std::runtime_error(result.failure);
 
-  storage::Report report = make_report(options, job.config.effective, result);
+  storage::Report report = make_report(options, job.inputs.config.effective, result);
   while (job.reader.next()) {  // to learn what the gateway skipped
   }
   pipeline::add_log(report, job.reader.statistics());
@@ -188,14 +188,17 @@ void add_run_command(CLI::App& app, int& exit_code) {
           ->excludes(log)
           ->excludes(devices);
   add_simulation_options(*command, *simulation, sim);
-  command
-      ->add_flag(
-          "--explore", options->explore,
-          "with --sim or --devices: drive where the robot has not been until nothing is left")
-      ->excludes(log);
+  CLI::Option* explore =
+      command
+          ->add_flag(
+              "--explore", options->explore,
+              "with --sim or --devices: drive where the robot has not been until nothing is left")
+          ->excludes(log)
+          ->excludes(command->get_option("--map"));
   auto goal = std::make_shared<GoalOptions>();
   auto unknown_start = std::make_shared<bool>(false);
   add_goal_run_options(*command, *goal, *unknown_start, sim);
+  explore->excludes(command->get_option("--goto"));
   command->callback([=, &exit_code] {
     if (log->count() + devices->count() + sim->count() == 0) {
       throw service::UsageError("run: expected --log, --devices or --sim (see --help)");

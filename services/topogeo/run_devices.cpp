@@ -1,9 +1,7 @@
 // topogeo run with devices in place of a log: real ones, or those of a simulated robot.
-#include <algorithm>
-#include <fstream>
 #include <iostream>
-#include <optional>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,15 +9,16 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/geometry/pose2.hpp"
-#include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/simulation/world.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/topomap/pose_at.hpp"
 
 #include "commands.hpp"
+#include "device_config.hpp"
 #include "run_log.hpp"
 
 namespace topogeo::cli {
@@ -30,29 +29,57 @@ using topomap::StampedPose;
 /// The devices of a simulation, as a file for the gateway.
 void write_devices(const RunOptions& options) {
   const SimulationOptions& simulation = *options.simulation;
-  support::write_file_atomically(
-      options.devices, fmt::format("laser: {{port: '{}', baud: {}, kind: pls}}\n"
-                                   "base:\n"
-                                   "  port: '{}'\n"
-                                   "  baud: {}\n"
-                                   "  dialect: binary\n"
-                                   "  largest_linear_mps: {}\n"
-                                   "  largest_angular_radps: {}\n"
-                                   "  linear_acceleration_mps2: {}\n"
-                                   "  angular_acceleration_radps2: {}\n",
-                                   simulated_port(options, "laser").string(), simulation.laser_baud,
-                                   simulated_port(options, "base").string(), kSimulatedBaseBaud,
-                                   simulation.speed_m_per_s, kSimulatedTurn_rad_s,
-                                   kSimulatedAcceleration, 2.0 * kSimulatedTurn_rad_s));
+  sensor_gateway::DeviceFile file;
+  const support::ConfigSchema schema = describe(file);  // with the defaults as they are
+  file.laser.port = simulated_port(options, "laser").string();
+  file.laser.settings.baud = simulation.laser_baud;
+  file.laser.kind = sensor_gateway::DeviceFile::Laser::Kind::kPls;
+  file.base.port = simulated_port(options, "base").string();
+  devices::BaseSettings& base = file.base.settings;
+  base.line.baud = kSimulatedBaseBaud;
+  base.dialect = devices::BaseDialect::kBinary;
+  base.limits.linear_mps = simulation.speed_m_per_s;
+  base.limits.angular_radps = kSimulatedTurn_rad_s;
+  base.limits.linear_mps2 = kSimulatedAcceleration;
+  base.limits.angular_radps2 = 2.0 * kSimulatedTurn_rad_s;
+  std::ostringstream text;
+  support::write_yaml(schema, text);
+  support::write_file_atomically(options.devices, text.str());
 }
 
 /// Finds out before anything starts whether the world can be driven through.
 void check_world(const SimulationOptions& simulation) {
+  const simulation::World world = [&] {
+    try {
+      return simulation::load_world(simulation.world);
+    } catch (const std::exception& error) {
+      throw service::BadInputError(error.what());
+    }
+  }();
+  simulation::RobotOptions robot;
+  robot.seed = simulation.seed;
+  robot.wanderers = simulation.people;
   try {
-    const simulation::World world = simulation::load_world(simulation.world);
-    static_cast<void>(simulation::TourFollower(world.tour_m, {}));
+    const simulation::SimulatedRobot at_start(world, robot);
   } catch (const std::exception& error) {
-    throw service::BadInputError(error.what());
+    throw service::BadInputError(simulation.world.string() + ": " + error.what());
+  }
+}
+
+/// Finds out before anything starts whether the devices are those that a run needs.
+void check_devices(const RunOptions& options) {
+  const auto check = [&options](const std::string& port, const char* key, const char* why) {
+    if (port.empty()) {
+      throw std::runtime_error(
+          fmt::format("{}: key '{}': expected a port, {}", options.devices.string(), key, why));
+    }
+  };
+  try {
+    const sensor_gateway::DeviceConfig devices = sensor_gateway::load_devices(options.devices);
+    check(devices.laser_port, "laser.port", "as maps are made of a laser's scans");
+    if (options.explore) check(devices.base_port, "base.port", "as the robot is to drive");
+  } catch (const std::runtime_error& error) {
+    throw service::UsageError(error.what());
   }
 }
 
@@ -71,17 +98,9 @@ std::vector<StampedPose> truth_at(std::span<const StampedPose> poses,
                                   std::span<const StampedPose> truth) {
   std::vector<StampedPose> found;
   for (const StampedPose& pose : poses) {
-    const auto after = std::lower_bound(
-        truth.begin(), truth.end(), pose.stamp_ns,
-        [](const StampedPose& known, std::int64_t stamp_ns) { return known.stamp_ns < stamp_ns; });
-    if (after == truth.begin() || after == truth.end()) continue;
-    const StampedPose& before = *(after - 1);
-    const double share = static_cast<double>(pose.stamp_ns - before.stamp_ns) /
-                         static_cast<double>(after->stamp_ns - before.stamp_ns);
-    const geometry::Pose2 step = geometry::between(before.pose, after->pose);
-    found.push_back({pose.sequence, pose.stamp_ns,
-                     before.pose * geometry::Pose2{share * step.x_m, share * step.y_m,
-                                                   share * step.theta_rad}});
+    if (const auto at = topomap::pose_at(truth, pose.stamp_ns)) {
+      found.push_back({pose.sequence, pose.stamp_ns, *at});
+    }
   }
   return found;
 }
@@ -109,13 +128,12 @@ void add_simulation_options(CLI::App& app, SimulationOptions& options, CLI::Opti
 
 int run_devices(RunOptions options) {
   const double start_s = support::monotonic_s();
-  pipeline::LoadedConfig config;
-  try {
-    config = pipeline::load_config(options.job.config);
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
+  const Inputs inputs = check_inputs(options.job);
+  if (options.simulation) {
+    prepare_simulation(options);
+  } else {
+    check_devices(options);
   }
-  if (options.simulation) prepare_simulation(options);
   support::check_writable_directory(options.job.out);
   const RunResult result = RunSupervisor(options, 0).run();
   if (result.signal_number != 0) {
@@ -124,7 +142,7 @@ int run_devices(RunOptions options) {
   }
   if (!result.finished) throw std::runtime_error(result.failure);
 
-  storage::Report report = make_report(options, config.effective, result);
+  storage::Report report = make_report(options, inputs.config.effective, result);
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
   print_pool(std::cout, result.services);

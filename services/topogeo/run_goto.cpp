@@ -10,11 +10,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"
-#include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
-#include "topogeo/support/atomic_file.hpp"
 
 #include "commands.hpp"
 #include "goto_run.hpp"
@@ -24,21 +21,6 @@ namespace topogeo::cli {
 namespace {
 
 using topomap::StampedPose;
-
-/// Finds out before anything starts whether configuration, goal and map can be used.
-void check_inputs(const RunOptions& options) {
-  static_cast<void>(to_goal(*options.goal));
-  try {
-    static_cast<void>(pipeline::load_config(options.job.config));
-  } catch (const std::exception& error) {
-    throw service::UsageError(error.what());
-  }
-  try {
-    static_cast<void>(storage::read_map_file(*options.job.map));
-  } catch (const std::exception& error) {
-    throw service::BadInputError(error.what());
-  }
-}
 
 /// How far what the robot believed on its way was from the truth.
 void print_pose_errors(const std::vector<StampedPose>& believed,
@@ -85,7 +67,9 @@ void print_arrival(const RunOptions& options, const GotoResult& result) {
 }  // namespace
 
 int run_goto(RunOptions options) {
-  check_inputs(options);
+  static_cast<void>(to_goal(*options.goal));
+  check_picture(options.goal->picture);
+  static_cast<void>(check_inputs(options.job));
   if (!options.goal->picture) options.goal->picture = options.job.out / "route.png";
   prepare_simulation(options);
   const GotoResult result = GotoRun(options).run();

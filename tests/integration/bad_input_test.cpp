@@ -37,6 +37,19 @@ class BadInputTest : public testing::Test {
     return {code, program.err()};
   }
 
+  /// The command ends with this code and one line that names what is wrong, before it does a thing.
+  void expect_refused(std::vector<std::string> words, const std::vector<std::string>& more,
+                      int code, const std::string& named) {
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--out", out_, "--domain", own_domain()});
+    Program program(scratch_, "topogeo", words);
+    EXPECT_EQ(program.wait(), code) << named;
+    const std::string err = program.err();
+    EXPECT_THAT(err, HasSubstr(named));
+    EXPECT_EQ(err.find('\n'), err.size() - 1) << err;
+    EXPECT_FALSE(std::filesystem::exists(out_)) << "work was begun: " << named;
+  }
+
   std::string file(const std::string& name, const std::string& content) {
     std::ofstream(scratch_ / name, std::ios::binary) << content;
     return scratch_ / name;
@@ -173,6 +186,49 @@ TEST_F(BadInputTest, ConfigurationFaultsNameTheLine) {
     EXPECT_THAT(of_value.err, AllOf(HasSubstr(range + ":2:"), HasSubstr("between 0.1 and 10 m")));
     EXPECT_FALSE(std::filesystem::exists(out_));
   }
+}
+
+// Whatever the scans come from, nothing is begun with inputs that cannot be used.
+TEST_F(BadInputTest, RunsOnDevicesCheckTheirInputsBeforeAnythingStarts) {
+  const std::string world = std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml";
+  const std::string devices = file("robot.yaml", "laser.port: /dev/laser\n");
+  const std::string text = file("text", "neither map nor trajectory\n");
+  struct Case {
+    std::vector<std::string> more;
+    int code;
+    std::string named;
+  };
+  const std::vector<Case> cases = {
+      {{"--config", file("range.yaml", "stop:\n  distance_m: 99\n")}, 2, "range.yaml:2:"},
+      {{"--reference", scratch_ / "none.tum"}, 3, "none.tum"},
+      {{"--map", text}, 3, text},
+      {{"--continue", text}, 3, text},
+      {{"--initial-pose", "1,2,90"}, 2, "--initial-pose"},
+  };
+  for (const std::vector<std::string>& source :
+       {std::vector<std::string>{"run", "--sim", world}, {"run", "--devices", devices}}) {
+    for (const Case& bad : cases) expect_refused(source, bad.more, bad.code, bad.named);
+  }
+  const Case& configuration = cases.front();
+  expect_refused({"demo", "--sim"}, configuration.more, configuration.code, configuration.named);
+}
+
+TEST_F(BadInputTest, DevicesThatARunCannotUseAreNamedBeforeAnythingStarts) {
+  const auto run = [this](const std::string& devices, const std::vector<std::string>& more,
+                          const std::string& named) {
+    expect_refused({"run", "--devices", devices}, more, 2, named);
+  };
+  run(scratch_ / "none.yaml", {}, "none.yaml");
+  run(file("key.yaml", "laser:\n  port: /dev/laser\n  bauds: 9600\n"), {}, "key.yaml:3:");
+  run(file("blind.yaml", "base.port: /dev/base\n"), {}, "'laser.port'");
+  run(file("still.yaml", "laser.port: /dev/laser\n"), {"--explore"}, "'base.port'");
+}
+
+TEST_F(BadInputTest, AWorldWhoseTourBeginsInAWallIsNamedBeforeAnythingStarts) {
+  const std::string world = file("wall.yaml",
+                                 "name: wall\nwalls: [{from: [0, 0], to: [8, 0]}]\n"
+                                 "tour: [[1, 0.1], [6, 0.1]]\n");
+  expect_refused({"run", "--sim", world}, {}, 3, world + ": wall: the robot overlaps");
 }
 
 }  // namespace
