@@ -111,6 +111,23 @@ void GatewayOnDevices::strike(msg::SimulatedFault fault, msg::SimulatedDevice de
   message.duration_s(duration_s);
   message.linear_mps(0.2);
   ASSERT_TRUE(faults_.write(message));
+  ++strikes_;
+}
+
+bool GatewayOnDevices::wait_for_begin() {
+  return wait_for([&] {
+    const std::string log = simulator_->err();
+    int begun = 0;
+    for (std::size_t at = 0; (at = log.find("as test wants it", at)) != std::string::npos; ++at) {
+      ++begun;
+    }
+    return begun == strikes_;
+  });
+}
+
+bool GatewayOnDevices::wait_in_world(double duration_s) {
+  const double end_s = truth_->time_s() + duration_s;
+  return wait_for([&] { return truth_->time_s() > end_s; });
 }
 
 double GatewayOnDevices::counter(std::string_view name) const {

@@ -64,6 +64,10 @@ class GatewayOnDevices : public testing::Test {
   void command(double linear_mps, double angular_radps);
   void tell_base(msg::BaseCommandKind kind);
   void strike(msg::SimulatedFault fault, msg::SimulatedDevice device, double duration_s);
+  /// Waits until all faults have begun; false when they do not within kPatience.
+  bool wait_for_begin();
+  /// Lets that time pass in the simulated world, which stands still when the machine is busy.
+  bool wait_in_world(double duration_s);
 
   [[nodiscard]] bool base_is(msg::BaseState state) const {
     return base_status_ && base_status_->state() == state;
@@ -97,6 +101,7 @@ class GatewayOnDevices : public testing::Test {
   std::optional<msg::ServiceStatus> gateway_status_;
   std::optional<msg::StreamEnd> end_;
   std::uint64_t commands_ = 0;
+  int strikes_ = 0;
 
   std::unique_ptr<Program> simulator_;
   std::unique_ptr<Program> gateway_;
