@@ -50,7 +50,7 @@ std::optional<TourGoal> ExplorationTour::step(const NavigatorStatus& navigator,
 
 void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_ns) {
   const bool changed = std::exchange(judged_version_, map_.version) != map_.version;
-  if (changed && !explorer_.open(*target_, *map_.graph, *map_.map)) {
+  if (changed && !explorer_.open(*target_, *map_.map)) {
     target_.reset();
     return;
   }
@@ -65,7 +65,7 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
       return;
     case NavigatorState::kStopped:
       if (navigator.reason == HaltReason::kNoRoute) {
-        explorer_.give_up(*target_);
+        explorer_.put_off(*target_);
         target_.reset();
         return;
       }
@@ -94,8 +94,7 @@ void ExplorationTour::arrived() {
     return;
   }
   geometry::Pose2 T_map_goal = target_->T_map_view;
-  T_map_goal.theta_rad =
-      geometry::wrap_angle(T_map_goal.theta_rad + (looks_ % 2 == 1 ? kAside_rad : -kAside_rad));
+  T_map_goal.theta_rad = geometry::wrap_angle(T_map_goal.theta_rad + kAside_rad);
   again_ = give(T_map_goal);
 }
 
@@ -105,6 +104,9 @@ std::optional<TourGoal> ExplorationTour::choose(const geometry::Pose2& T_map_rob
       idle_ns_ && static_cast<double>(now_ns - *idle_ns_) >= kNanoseconds * config_.settle_s;
   if (std::exchange(chosen_version_, map_.version) != map_.version || !idle_ns_) {
     target_ = explorer_.next(*map_.graph, *map_.map, *planner_, T_map_robot);
+    if (!target_ && explorer_.resume()) {
+      target_ = explorer_.next(*map_.graph, *map_.map, *planner_, T_map_robot);
+    }
   }
   if (!target_) {
     if (!idle_ns_) idle_ns_ = now_ns;

@@ -1,6 +1,5 @@
 #include "grid_view.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,9 +19,10 @@ Cell around(const GridFrame& frame, const Eigen::Vector2d& point_m) {
           static_cast<std::int32_t>(std::floor(in_cells.y()))};
 }
 
-/// Calls `visit` for every cell of the grid whose middle is at most `reach_m` from the point.
+/// Calls `visit` for every cell of the grid whose middle is at most `reach_m` from the point, until
+/// it returns true; whether it did.
 template <class Visit>
-void visit_disc(const GridFrame& frame, const Eigen::Vector2d& point_m, double reach_m,
+bool visit_disc(const GridFrame& frame, const Eigen::Vector2d& point_m, double reach_m,
                 Visit visit) {
   const Cell middle = around(frame, point_m);
   const auto reach = static_cast<std::int32_t>(std::ceil(reach_m / frame.resolution_m));
@@ -30,9 +30,10 @@ void visit_disc(const GridFrame& frame, const Eigen::Vector2d& point_m, double r
     for (std::int32_t column = middle.column - reach; column <= middle.column + reach; ++column) {
       const Cell cell{column, row};
       if (!frame.contains(cell)) continue;
-      if ((frame.center_m(cell) - point_m).norm() <= reach_m) visit(cell);
+      if ((frame.center_m(cell) - point_m).norm() <= reach_m && visit(cell)) return true;
     }
   }
+  return false;
 }
 
 }  // namespace
@@ -44,9 +45,11 @@ std::optional<Cell> best_cell(const GridFrame& frame, const Eigen::Vector2d& poi
   double best_cost = std::numeric_limits<double>::infinity();
   visit_disc(frame, point_m, reach_m, [&](const Cell& cell) {
     const double cell_cost = cost(frame.center_m(cell));
-    if (cell_cost >= best_cost || !good(cell)) return;
-    best = cell;
-    best_cost = cell_cost;
+    if (cell_cost < best_cost && good(cell)) {
+      best = cell;
+      best_cost = cell_cost;
+    }
+    return false;
   });
   return best;
 }
@@ -63,41 +66,41 @@ std::optional<Cell> nearest_passable(const planning::FreeSpace& space,
                       [&](const Cell& cell) { return space.passable(cell); });
 }
 
+std::vector<bool> reachable_zones(const planning::HybridMap& map, const Eigen::Vector2d& from_m) {
+  std::vector<bool> zones(map.zones().zones.size(), false);
+  const auto cell = nearest_passable(map.space(), from_m, 0.5);
+  const planning::ZoneId own = cell ? map.zone_of(*cell) : planning::kNoZone;
+  if (own == planning::kNoZone) return zones;
+  zones[own] = true;
+  std::vector<planning::GraphAccess> entries;
+  for (const std::uint32_t node : map.nodes_of(own)) entries.push_back({node, 0.0});
+  if (entries.empty()) return zones;
+  const std::vector<bool> nodes = map.graph().reached(entries);
+  for (const planning::BorderNode& node : map.nodes()) {
+    if (!nodes[node.id]) continue;
+    for (const planning::ZoneId zone : node.zones) zones[zone] = true;
+  }
+  return zones;
+}
+
 bool nothing_between(const OccupancyGrid& grid, const Eigen::Vector2d& a_m,
                      const Eigen::Vector2d& b_m) {
   constexpr double kStepsPerCell = 3.0;
-  const double length_m = (b_m - a_m).norm();
-  const double steps = std::ceil(kStepsPerCell * length_m / grid.frame().resolution_m);
+  const Eigen::Vector2d a = grid.frame().in_cells(a_m);
+  const Eigen::Vector2d b = grid.frame().in_cells(b_m);
+  const double steps = std::ceil(kStepsPerCell * (b - a).norm());
   for (double step = 0.0; step <= steps; step += 1.0) {
-    const Eigen::Vector2d at_m = steps > 0.0 ? a_m + (step / steps) * (b_m - a_m) : a_m;
-    const auto cell = grid.frame().cell_of(at_m);
-    if (cell && grid.at(*cell) == CellState::kOccupied) return false;
+    const Eigen::Vector2d at = steps > 0.0 ? a + (step / steps) * (b - a) : a;
+    const Cell cell{static_cast<std::int32_t>(std::floor(at.x())),
+                    static_cast<std::int32_t>(std::floor(at.y()))};
+    if (grid.frame().contains(cell) && grid.at(cell) == CellState::kOccupied) return false;
   }
   return true;
 }
 
-bool beside_unknown(const OccupancyGrid& grid, const Cell& cell) {
-  constexpr std::array<Cell, 4> kBeside = {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}};
-  for (const Cell& step : kBeside) {
-    const Cell other{cell.column + step.column, cell.row + step.row};
-    if (!grid.frame().contains(other) || grid.at(other) == CellState::kUnknown) return true;
-  }
-  return false;
-}
-
 bool any_unknown(const OccupancyGrid& grid, const Eigen::Vector2d& point_m, double reach_m) {
-  bool found = false;
-  visit_disc(grid.frame(), point_m, reach_m,
-             [&](const Cell& cell) { found = found || grid.at(cell) == CellState::kUnknown; });
-  return found;
-}
-
-bool unknown_near(const OccupancyGrid& grid, const Eigen::Vector2d& point_m, double reach_m) {
-  return nearest_cell(grid.frame(), point_m, reach_m,
-                      [&](const Cell& cell) {
-                        return grid.at(cell) == CellState::kFree && beside_unknown(grid, cell);
-                      })
-      .has_value();
+  return visit_disc(grid.frame(), point_m, reach_m,
+                    [&](const Cell& cell) { return grid.at(cell) == CellState::kUnknown; });
 }
 
 Eigen::Vector2d toward_unknown(const OccupancyGrid& grid, const Eigen::Vector2d& point_m,
@@ -105,6 +108,7 @@ Eigen::Vector2d toward_unknown(const OccupancyGrid& grid, const Eigen::Vector2d&
   Eigen::Vector2d sum_m = Eigen::Vector2d::Zero();
   visit_disc(grid.frame(), point_m, reach_m, [&](const Cell& cell) {
     if (grid.at(cell) == CellState::kUnknown) sum_m += grid.frame().center_m(cell) - point_m;
+    return false;
   });
   if (sum_m.norm() < 1e-6) return Eigen::Vector2d::UnitX();
   return sum_m;

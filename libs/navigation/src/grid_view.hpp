@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "topogeo/planning/free_space.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
 
 namespace topogeo::navigation {
@@ -26,20 +28,16 @@ std::optional<planning::Cell> best_cell(const planning::GridFrame& frame,
 std::optional<planning::Cell> nearest_passable(const planning::FreeSpace& space,
                                                const Eigen::Vector2d& point_m, double reach_m);
 
+/// Which zones can be got to from a point, by index; none when nothing passable is near it.
+std::vector<bool> reachable_zones(const planning::HybridMap& map, const Eigen::Vector2d& from_m);
+
 /// Whether no occupied cell lies on the straight line between two points of the map frame.
 bool nothing_between(const planning::OccupancyGrid& grid, const Eigen::Vector2d& a_m,
                      const Eigen::Vector2d& b_m);
 
-/// Whether one of the four cells beside it is unknown; cells beyond the grid are.
-bool beside_unknown(const planning::OccupancyGrid& grid, const planning::Cell& cell);
-
 /// Whether an unknown cell of the grid is at most `reach_m` away.
 bool any_unknown(const planning::OccupancyGrid& grid, const Eigen::Vector2d& point_m,
                  double reach_m);
-
-/// Whether a free cell beside an unknown one is at most `reach_m` away.
-bool unknown_near(const planning::OccupancyGrid& grid, const Eigen::Vector2d& point_m,
-                  double reach_m);
 
 /// From a point to the mean of the unknown cells at most `reach_m` away; (1, 0) without any.
 Eigen::Vector2d toward_unknown(const planning::OccupancyGrid& grid, const Eigen::Vector2d& point_m,

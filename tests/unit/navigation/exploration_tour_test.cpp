@@ -94,11 +94,13 @@ class TextRobot {
   }
 
   bool refuses = false;
+  int refusals = 0;  // for the next goals
   std::size_t drives = 0;
 
  private:
   void drive() {
-    if (refuses) {
+    if (refuses || refusals > 0) {
+      if (refusals > 0) --refusals;
       status_.state = NavigatorState::kStopped;
       status_.reason = HaltReason::kNoRoute;
       return;
@@ -157,6 +159,8 @@ TourConfig config() {
   TourConfig config;
   config.explorer.sure_m = 0.2;
   config.explorer.least_gap_m = kCell_m;  // coarse cells
+  config.explorer.least_area_m2 = 0.01;
+  config.explorer.worth_m_per_m2 = 10000.0;
   return config;
 }
 
@@ -191,6 +195,20 @@ TEST(ExplorationTour, EndsWhenTheNavigatorGetsNowhere) {
   EXPECT_TRUE(tour.done());
   EXPECT_GT(tour.given_up(), 0U);
   EXPECT_EQ(robot.drives, 0U);
+}
+
+TEST(ExplorationTour, WhereThereWasNoWayAtFirstItGoesLater) {
+  TextRobot robot;
+  robot.refusals = 12;
+  ExplorationTour tour(config());
+  std::optional<TourGoal> goal;
+  for (int i = 0; i < 4000 && !tour.done(); ++i) {
+    tour.set_map(robot.map());
+    goal = tour.step(robot.step(goal), i * kStep_ns);
+  }
+  EXPECT_TRUE(tour.done());
+  EXPECT_EQ(robot.refusals, 0);
+  EXPECT_EQ(robot.unknown(), 0U);
 }
 
 TEST(ExplorationTour, ATargetWithoutProgressIsGivenUp) {

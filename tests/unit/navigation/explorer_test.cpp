@@ -195,7 +195,7 @@ TEST(Explorer, WhatWasGivenUpDoesNotComeAgain) {
   for (int i = 0; i < 20; ++i) {
     const auto target = next(explorer, map, pose_at(3, 3));
     if (!target) break;
-    EXPECT_TRUE(explorer.open(*target, {}, map));
+    EXPECT_TRUE(explorer.open(*target, map));
     explorer.give_up(*target);
   }
   EXPECT_FALSE(next(explorer, map, pose_at(3, 3)));
@@ -209,8 +209,133 @@ TEST(Explorer, ATargetIsClosedWhenTheMapShowsIt) {
   explorer.set_visited({pose_at(3, 3)});
   const auto target = next(explorer, map, pose_at(3, 3));
   ASSERT_TRUE(target);
-  EXPECT_TRUE(explorer.open(*target, {}, map));
-  EXPECT_FALSE(explorer.open(*target, {}, later));
+  EXPECT_TRUE(explorer.open(*target, map));
+  EXPECT_FALSE(explorer.open(*target, later));
+}
+
+TEST(Explorer, WhatShowsThroughAHoleTooSmallForTheRobotIsNoTarget) {
+  // The left wall has holes of one cell, behind which much is unknown.
+  const std::vector<std::string> lines = {
+      "??????##################", "??????#................#", "????????...............#",
+      "??????#................#", "??????#................#", "????????...............#",
+      "??????#................#", "??????##################",
+  };
+  ExplorerConfig config = small();
+  config.least_gap_m = kCell_m;
+  Explorer explorer(config);
+  explorer.set_visited({pose_at(12, 3)});
+  EXPECT_FALSE(next(explorer, map_of(lines), pose_at(12, 3)));
+  EXPECT_FALSE(next(explorer, map_of(lines), pose_at(12, 3), with_end(at(8, 2))));
+  std::vector<std::string> wide = lines;
+  for (const std::size_t line : {3U, 4U}) wide[line] = "????????...............#";
+  EXPECT_TRUE(next(explorer, map_of(wide), pose_at(12, 3)));
+}
+
+TEST(Explorer, ALittleUnknownFloorIsNotGoneToFromFarAway) {
+  // Half a square metre at the left end.
+  const planning::HybridMap map = map_of({
+      "##################################################",
+      "#??..............................................#",
+      "#??..............................................#",
+      "#??..............................................#",
+      "#??..............................................#",
+      "#................................................#",
+      "##################################################",
+  });
+  ExplorerConfig config = small();
+  config.worth_m_per_m2 = 5.0;
+  Explorer explorer(config);
+  for (const int column : {5, 45}) {
+    explorer.set_visited({pose_at(column, 3)});
+    EXPECT_EQ(next(explorer, map, pose_at(column, 3)).has_value(), column == 5);
+  }
+  config.worth_m_per_m2 = 100.0;
+  Explorer keen(config);
+  keen.set_visited({pose_at(45, 3)});
+  EXPECT_TRUE(next(keen, map, pose_at(45, 3)));
+  config.least_area_m2 = 0.6;
+  Explorer lazy(config);
+  lazy.set_visited({pose_at(5, 3)});
+  EXPECT_FALSE(next(lazy, map, pose_at(5, 3)));
+}
+
+TEST(Explorer, TheFirstOfAShortTourComesNextAndNotTheNearest) {
+  // From the robot 3.5 m to the opening above, 5 m to the left end, 9 m to the right end: after the
+  // nearest one it would come back along the whole corridor.
+  std::vector<std::string> lines(7, "?" + std::string(54, '.') + "?");
+  lines[0] = std::string(56, '?');
+  lines[1] = std::string(33, '#') + "....." + std::string(18, '#');
+  lines[6] = std::string(56, '#');
+  const planning::HybridMap map = map_of(lines);
+  ExplorerConfig config = small();
+  config.least_area_m2 = 0.05;
+  config.worth_m_per_m2 = 1000.0;
+  Explorer explorer(config);
+  explorer.set_visited({pose_at(20, 2)});
+  const auto first = next(explorer, map, pose_at(20, 2));
+  ASSERT_TRUE(first);
+  EXPECT_LT(first->position_m.x(), at(3, 0).x());
+  config.tour = 1;
+  Explorer greedy(config);
+  greedy.set_visited({pose_at(20, 2)});
+  const auto nearest = next(greedy, map, pose_at(20, 2));
+  ASSERT_TRUE(nearest);
+  EXPECT_NEAR(nearest->position_m.x(), at(35, 0).x(), 0.6);
+  EXPECT_LT(nearest->way_m, first->way_m);
+}
+
+TEST(Explorer, AnEntranceThatNoiseHasNarrowedIsLookedAtLast) {
+  const std::vector<std::string> lines = {
+      "###########################", "#.........#...............#", "#.........#...............#",
+      "#.........................#", "#.........................#", "#.........................#",
+      "#.........#...............#", "#.........#...............#", "###########################",
+  };
+  std::vector<std::string> filled = lines;
+  filled[4][10] = '#';
+  const planning::HybridMap map = map_of(filled);
+  ASSERT_EQ(map.zones().zones.size(), 2U);
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(4, 4)});
+  const auto target = next(explorer, map, pose_at(4, 4));
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->kind, TargetKind::kBlocked);
+  EXPECT_GT(target->position_m.x(), at(10, 4).x());
+  EXPECT_LT(target->T_map_view.x_m, at(10, 4).x());
+  EXPECT_TRUE(explorer.open(*target, map));
+  EXPECT_FALSE(explorer.open(*target, map_of(lines)));
+  // What is unknown elsewhere comes first.
+  filled[4][0] = filled[3][0] = filled[5][0] = '?';
+  ExplorerConfig config = small();
+  config.least_area_m2 = 0.01;
+  config.least_gap_m = kCell_m;
+  Explorer other(config);
+  other.set_visited({pose_at(4, 4)});
+  const auto gap = next(other, map_of(filled), pose_at(4, 4));
+  ASSERT_TRUE(gap);
+  EXPECT_EQ(gap->kind, TargetKind::kGap);
+  // Nobody gets through a wall.
+  std::vector<std::string> closed = lines;
+  for (std::string& line : closed) line[10] = '#';
+  EXPECT_FALSE(next(explorer, map_of(closed), pose_at(4, 4)));
+  explorer.give_up(*target);
+  EXPECT_FALSE(next(explorer, map, pose_at(4, 4)));
+}
+
+TEST(Explorer, WhatWasPutOffComesAgainOnce) {
+  const planning::HybridMap map = map_of(kOpenRight);
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(3, 3)});
+  EXPECT_FALSE(explorer.resume());
+  std::size_t put_off = 0;
+  for (int round = 0; round < 2; ++round) {
+    while (const auto target = next(explorer, map, pose_at(3, 3))) {
+      explorer.put_off(*target);
+      ASSERT_LT(++put_off, 100U);
+    }
+    EXPECT_GT(put_off, 0U);
+    EXPECT_EQ(explorer.resume(), round == 0);
+  }
+  EXPECT_GT(explorer.given_up(), 0U);
 }
 
 TEST(Explorer, ARobotOffTheMapGoesNowhere) {
