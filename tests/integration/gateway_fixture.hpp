@@ -78,6 +78,8 @@ class GatewayOnDevices : public testing::Test {
   /// Of the gateway's status; 0 if it has none of that name.
   [[nodiscard]] double counter(std::string_view name) const;
 
+  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
   std::string domain_ = own_domain();
   messaging::Participant participant_;
