@@ -76,6 +76,8 @@ class NavigatorOnRobot : public testing::Test {
   /// Of the navigator's status; 0 if it has none of that name.
   [[nodiscard]] double counter(std::string_view name) const;
 
+  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
   std::string domain_ = own_domain();
   simulation::SimulatedRobot robot_;
