@@ -59,20 +59,22 @@ Run carry_out(const Options& options, const std::string& floor, std::uint64_t se
   return run;
 }
 
+std::string line_of(const Run& run) {
+  const ExplorationResult& r = run.result;
+  return fmt::format(
+      "| {} | {} | {:.2f} % | {} of {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {} | {} | {} | "
+      "{:.3f} | {} |\n",
+      run.floor, run.seed, 100.0 * r.seen, r.entered, r.rooms, r.collisions, r.way_m, r.scripted_m,
+      r.way_m / r.scripted_m, r.time_s, r.targets, r.given_up, r.stops, r.pose_error_m,
+      r.done ? "done" : r.end);
+}
+
 void print(const std::vector<Run>& runs) {
   std::cout
       << "| floor | start | seen | rooms | collisions | way m | scripted m | ratio | time s | "
          "targets | given up | stops | pose rms m | end |\n"
          "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Run& run : runs) {
-    const ExplorationResult& r = run.result;
-    std::cout << fmt::format(
-        "| {} | {} | {:.2f} % | {} of {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {} | {} | {} | "
-        "{:.3f} | {} |\n",
-        run.floor, run.seed, 100.0 * r.seen, r.entered, r.rooms, r.collisions, r.way_m,
-        r.scripted_m, r.way_m / r.scripted_m, r.time_s, r.targets, r.given_up, r.stops,
-        r.pose_error_m, r.done ? "done" : r.end);
-  }
+  for (const Run& run : runs) std::cout << line_of(run);
 }
 
 int run_all(const Options& options) {
@@ -89,8 +91,7 @@ int run_all(const Options& options) {
     jobs.push_back(std::async(std::launch::async, [&, job] {
       for (std::size_t i = job; i < wanted.size(); i += options.jobs) {
         runs[i] = carry_out(options, wanted[i].first, wanted[i].second);
-        std::cerr << fmt::format("{} {}: {:.1f} % seen\n", runs[i].floor, runs[i].seed,
-                                 100.0 * runs[i].result.seen);
+        std::cerr << line_of(runs[i]);
       }
     }));
   }
