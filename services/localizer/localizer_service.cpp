@@ -91,15 +91,12 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
   loop.add<msg::Odometry>(
       odometry_,
       [this](const msg::Odometry& message, const messaging::SampleInfo&) { on_odometry(message); });
-  loop.add<msg::TrackedPose>(tracked_poses_,
-                             [this](const msg::TrackedPose& message, const messaging::SampleInfo&) {
-                               if (!service_.is_own(message)) return;
-                               try {
-                                 tracked_ = {message.local_map_id(), service::from_msg(message)};
-                               } catch (const std::invalid_argument& error) {
-                                 service_.status().fault("invalid tracked pose", error.what());
-                               }
-                             });
+  loop.add<msg::TrackedPose>(
+      tracked_poses_, [this](const msg::TrackedPose& message, const messaging::SampleInfo&) {
+        service_.take(message, "tracked pose", [this](const msg::TrackedPose& pose) {
+          tracked_ = {pose.local_map_id(), service::from_msg(pose)};
+        });
+      });
   loop.add<msg::StreamEnd>(ends_in_,
                            [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
                              on_stream_end(message);
