@@ -76,13 +76,14 @@ std::optional<Eigen::Vector2d> corridor_of(const localization::MatchFeatures& fe
 /// How often two points of a stop lie so far from each other: the same from wherever it is seen.
 using Shape = std::array<double, 40>;
 
-Shape shape_of(const std::vector<Eigen::Vector2d>& points) {
+Shape shape_of(const std::vector<localization::SurfacePoint>& points) {
   constexpr double kBin_m = 0.5;
   Shape shape{};
   double sum = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const auto bin = static_cast<std::size_t>((points[i] - points[j]).norm() / kBin_m);
+      const auto bin =
+          static_cast<std::size_t>((points[i].position_m - points[j].position_m).norm() / kBin_m);
       if (bin >= shape.size()) continue;
       shape[bin] += 1.0;
       sum += 1.0;
@@ -188,7 +189,7 @@ std::vector<StopPair> apart_pairs(const MatchingRun& run, std::size_t count, Ran
 std::vector<StopPair> look_alike_pairs(MatchingRun& run, std::size_t count) {
   constexpr std::size_t kCandidates = 4;
   std::vector<Shape> shapes;
-  for (std::size_t i = 0; i < run.size(); ++i) shapes.push_back(shape_of(run.features(i).coarse_m));
+  for (std::size_t i = 0; i < run.size(); ++i) shapes.push_back(shape_of(run.features(i).coarse));
   const std::size_t stops = std::min(count, run.size());
   std::vector<StopPair> pairs;
   for (std::size_t k = 0; k < stops; ++k) {

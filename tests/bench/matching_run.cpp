@@ -58,11 +58,11 @@ Pose2 MatchingRun::tracked(std::size_t earlier, std::size_t later) const {
 double MatchingRun::in_view(std::size_t viewer, std::size_t seen, const Pose2& T_viewer_seen,
                             double tolerance_m) const {
   using View = localization::RangeProfile::View;
-  const auto& points = features_[seen].coarse_m;
+  const auto& points = features_[seen].coarse;
   if (points.empty()) return 0.0;
   std::size_t count = 0;
-  for (const Eigen::Vector2d& point : points) {
-    const View view = features_[viewer].profile.view(T_viewer_seen * point, tolerance_m);
+  for (const localization::SurfacePoint& point : points) {
+    const View view = features_[viewer].profile.view(T_viewer_seen * point.position_m, tolerance_m);
     if (view == View::kFree || view == View::kSurface) ++count;
   }
   return static_cast<double>(count) / static_cast<double>(points.size());

@@ -34,11 +34,17 @@ constexpr std::size_t kAligned = 8;
 constexpr double kNearStop_m = 6.0;
 
 /// At most about `count`, spread over the scan.
-std::vector<Eigen::Vector2d> spread(const std::vector<Eigen::Vector2d>& points_m,
-                                    std::size_t count) {
-  const std::size_t stride = std::max<std::size_t>(1, (points_m.size() + count - 1) / count);
+std::vector<SurfacePoint> spread(const std::vector<SurfacePoint>& points, std::size_t count) {
+  const std::size_t stride = std::max<std::size_t>(1, (points.size() + count - 1) / count);
+  std::vector<SurfacePoint> out;
+  for (std::size_t i = 0; i < points.size(); i += stride) out.push_back(points[i]);
+  return out;
+}
+
+std::vector<Eigen::Vector2d> positions_of(const std::vector<SurfacePoint>& points) {
   std::vector<Eigen::Vector2d> out;
-  for (std::size_t i = 0; i < points_m.size(); i += stride) out.push_back(points_m[i]);
+  out.reserve(points.size());
+  for (const SurfacePoint& point : points) out.push_back(point.position_m);
   return out;
 }
 
@@ -231,8 +237,8 @@ std::vector<GlobalLocalizer::Seed> GlobalLocalizer::best_seeds(
 }
 
 std::vector<Climbed> GlobalLocalizer::places(const MatchFeatures& query, std::size_t count) const {
-  const std::vector<Eigen::Vector2d> coarse = spread(query.coarse_m, kCoarsePoints);
-  const std::vector<Eigen::Vector2d> fine = spread(query.coarse_m, kFinePoints);
+  const std::vector<Eigen::Vector2d> coarse = positions_of(spread(query.coarse, kCoarsePoints));
+  const std::vector<Eigen::Vector2d> fine = positions_of(spread(query.coarse, kFinePoints));
   std::vector<Climbed> climbed;
   for (const Seed& seed : best_seeds(coarse)) {
     if (seed.score > 0) climbed.push_back(climb(fine_, fine, pose_of(seed)));
@@ -252,7 +258,7 @@ std::vector<Climbed> GlobalLocalizer::places(const MatchFeatures& query, std::si
 
 std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& T_map_robot,
                                        double& share) const {
-  const std::vector<Eigen::Vector2d> outline = spread(query.coarse_m, 40);
+  const std::vector<SurfacePoint> outline = spread(query.coarse, 40);
   std::size_t best = 0;
   std::size_t most = 0;
   double nearest_m2 = 1e300;
@@ -267,9 +273,9 @@ std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& 
     const Pose2 T = geometry::between(stops_[i].T_map_robot, T_map_robot);
     const geometry::SinCos r = geometry::sincos(T.theta_rad);
     std::size_t seen = 0;
-    for (const Eigen::Vector2d& p : outline) {
-      const auto view = stops_[i].profile.view(
-          {T.x_m + r.cos * p.x() - r.sin * p.y(), T.y_m + r.sin * p.x() + r.cos * p.y()}, 0.4);
+    for (const SurfacePoint& point : outline) {
+      const SurfacePoint p = moved(point, T, r);
+      const auto view = stops_[i].profile.view_of_face(p.position_m, p.normal, 0.4);
       if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
     }
     if (seen > most || (seen == most && seen > 0 && apart_m2 < nearest_m2)) {
@@ -283,7 +289,7 @@ std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& 
 }
 
 double GlobalLocalizer::fitness(const MatchFeatures& query, const Pose2& T_map_robot) const {
-  return mean_kernel(fine_, query.coarse_m, T_map_robot);
+  return mean_kernel(fine_, positions_of(query.coarse), T_map_robot);
 }
 
 // Aligns a place with the stop that sees it best, and says what is seen there.
@@ -328,7 +334,7 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
                                    const Pose2& T_robot_laser) const {
   GlobalAnswer answer;
   const MatchFeatures query = extract_scan_features(points, T_robot_laser);
-  if (query.coarse_m.size() < config_.fewest_points) return answer;
+  if (query.coarse.size() < config_.fewest_points) return answer;
   std::vector<GlobalPose> found;
   for (const Climbed& place : places(query, kAligned)) found.push_back(aligned(query, place));
   const auto value = [](const GlobalPose& p) {

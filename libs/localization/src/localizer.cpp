@@ -46,7 +46,7 @@ Localizer::Stop Localizer::described(std::shared_ptr<const LocalMap> map) {
   stop.hash = topomap::content_hash(*map);
   MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
   stop.profile = std::move(features.profile);
-  stop.outline_m = outline_of(features.coarse_m);
+  stop.outline = outline_of(features.coarse);
   stop.map = std::move(map);
   return stop;
 }

@@ -59,7 +59,7 @@ std::vector<Localizer::Candidate> Localizer::candidates(std::uint32_t stop,
     }
     const double least = config_.smallest_expected_overlap;
     const double overlap =
-        expected_overlap(stops_[stop].profile, stops_[i].outline_m, relative[i], least);
+        expected_overlap(stops_[stop].profile, stops_[i].outline, relative[i], least);
     if (overlap >= least) found.push_back({i, overlap});
   }
   std::stable_sort(found.begin(), found.end(),
@@ -145,9 +145,9 @@ std::vector<Localizer::Answer> Localizer::run(const std::vector<MatchTask>& task
     const bool uncertain =
         result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution;
     if (evidence != nullptr) {
-      const double foreseen = expected_overlap(stops_[task.reference_map_id].profile,
-                                               stops_[task.query_map_id].outline_m,
-                                               {task.T_reference_query, task.covariance});
+      const double foreseen =
+          expected_overlap(stops_[task.reference_map_id].profile, stops_[task.query_map_id].outline,
+                           {task.T_reference_query, task.covariance});
       evidence->push_back(step_match(task, result, foreseen, task.query_map_id));
     }
     const bool solved = result.status == MatchStatus::kSolved;

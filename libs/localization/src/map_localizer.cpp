@@ -117,7 +117,7 @@ void MapLocalizer::track(const Query& query) {
   }
   const std::vector<MatchResult> results = pool_.match(tasks);
   StepEvidence evidence;
-  evidence.points = query.features.coarse_m.size();
+  evidence.points = query.features.coarse.size();
   evidence.way_m = query.way_m;
   last_step_.emplace().predicted = pose_;
   bool sure = false;
@@ -213,13 +213,13 @@ std::optional<topomap::StopPose> MapLocalizer::last_stop() const {
 std::vector<MapLocalizer::Candidate> MapLocalizer::candidates(const Query& query,
                                                               const UncertainPose& T_map_robot,
                                                               std::size_t count) const {
-  const std::vector<Eigen::Vector2d> outline_m = outline_of(query.features.coarse_m);
+  const std::vector<SurfacePoint> outline = outline_of(query.features.coarse);
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < global_.stops().size(); ++i) {
     const StoredStop& stop = global_.stops()[i];
     const Pose2 T = geometry::between(stop.T_map_robot, T_map_robot.T_a_b);
     if (T.position_m().squaredNorm() > kFarthest_m * kFarthest_m) continue;
-    const double overlap = expected_overlap(stop.profile, outline_m, {T, T_map_robot.covariance});
+    const double overlap = expected_overlap(stop.profile, outline, {T, T_map_robot.covariance});
     if (overlap >= config_.smallest_expected_overlap) found.push_back({i, overlap});
   }
   std::stable_sort(found.begin(), found.end(),

@@ -52,7 +52,7 @@ void MapLocalizer::search_step(const Query& query) {
 
 // Adds the places of the whole map that fit this scan and that nothing before spoke for.
 void MapLocalizer::propose(const Query& query) {
-  if (query.features.coarse_m.size() < kFewestPoints) return;
+  if (query.features.coarse.size() < kFewestPoints) return;
   for (const Climbed& place : global_.places(query.features, kPlaces)) {
     const bool known = std::any_of(
         hypotheses_.begin(), hypotheses_.end(),
@@ -69,7 +69,7 @@ void MapLocalizer::propose(const Query& query) {
 
 // Matches each place with the stored stop that sees it best, as tasks of the pool.
 void MapLocalizer::weigh(const Query& query) {
-  if (query.features.coarse_m.size() < kFewestPoints || hypotheses_.empty()) return;
+  if (query.features.coarse.size() < kFewestPoints || hypotheses_.empty()) return;
   std::vector<MatchTask> tasks;
   std::vector<std::size_t> stops;
   for (const Hypothesis& hypothesis : hypotheses_) {

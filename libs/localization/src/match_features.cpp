@@ -71,13 +71,15 @@ SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t
   const double largest = 0.5 * (xx + yy) + spread;
   // Eigenvector of the smallest eigenvalue, from the row of (S - smallest I) that is better
   // conditioned.
-  Eigen::Vector2d normal = xx - smallest > yy - smallest ? Eigen::Vector2d(-xy, xx - smallest)
-                                                         : Eigen::Vector2d(yy - smallest, -xy);
+  const Eigen::Vector2d normal = xx - smallest > yy - smallest
+                                     ? Eigen::Vector2d(-xy, xx - smallest)
+                                     : Eigen::Vector2d(yy - smallest, -xy);
   const double length = std::sqrt(normal.squaredNorm());
   const bool on_line = count >= kFewestNeighbours && length > 0.0 && smallest < 0.1 * largest &&
                        smallest <= count * kLargestThickness_m * kLargestThickness_m;
-  if (length > 0.0) normal /= length;
-  return {centre, normal, on_line};
+  if (!on_line) return {centre};
+  const bool seen_from_behind = normal.dot(laser_m - centre) < 0.0;
+  return {centre, normal / (seen_from_behind ? -length : length), true};
 }
 
 // Finer where that costs little: a grid over a hall would take longer to fill than the match.
@@ -161,7 +163,8 @@ Eigen::Vector2d RangeProfile::in_laser_frame(const Eigen::Vector2d& p) const {
 }
 
 RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_robot_laser)
-    : T_laser_robot_(geometry::inverse(T_robot_laser)),
+    : laser_m_(T_robot_laser.position_m()),
+      T_laser_robot_(geometry::inverse(T_robot_laser)),
       rotation_(geometry::sincos(T_laser_robot_.theta_rad)),
       near_m_(kBins, 0.0F),
       far_m_(kBins, 0.0F) {
@@ -209,6 +212,21 @@ RangeProfile::View RangeProfile::view(const Eigen::Vector2d& point_robot_m,
   return range <= static_cast<double>(far_m_[bin]) + tolerance_m ? View::kSurface : View::kHidden;
 }
 
+bool RangeProfile::turned_away(const Eigen::Vector2d& point_robot_m,
+                               const Eigen::Vector2d& normal) const {
+  constexpr double kGrazing = 0.17364818;  // of 10 degrees: the side of a face is not sure below
+  const Eigen::Vector2d to_laser_m = laser_m_ - point_robot_m;
+  const double along_m = to_laser_m.dot(normal);
+  return along_m < 0.0 && along_m * along_m > kGrazing * kGrazing * to_laser_m.squaredNorm();
+}
+
+RangeProfile::View RangeProfile::view_of_face(const Eigen::Vector2d& point_robot_m,
+                                              const Eigen::Vector2d& normal,
+                                              double tolerance_m) const {
+  const View seen = view(point_robot_m, tolerance_m);
+  return seen == View::kSurface && turned_away(point_robot_m, normal) ? View::kHidden : seen;
+}
+
 MatchFeatures extract_scan_features(std::span<const ScanPoint> points, const Pose2& T_robot_laser) {
   MatchFeatures features;
   const std::vector<Eigen::Vector2d> all = to_vectors(points);
@@ -221,9 +239,10 @@ MatchFeatures extract_scan_features(std::span<const ScanPoint> points, const Pos
         far_enough(features.surface.back().position_m, all[i], MatchFeatures::kFineSpacing_m)) {
       features.surface.push_back(fit_surface(all, i, laser_m));
     }
-    if (features.coarse_m.empty() ||
-        far_enough(features.coarse_m.back(), all[i], MatchFeatures::kCoarseSpacing_m)) {
-      features.coarse_m.push_back(all[i]);
+    if (features.coarse.empty() ||
+        far_enough(features.coarse.back().position_m, all[i], MatchFeatures::kCoarseSpacing_m)) {
+      const bool kept = features.surface.back().position_m == all[i];
+      features.coarse.push_back(kept ? features.surface.back() : fit_surface(all, i, laser_m));
     }
   }
   features.profile = RangeProfile(points, T_robot_laser);
@@ -251,12 +270,14 @@ Reference make_reference(MatchFeatures features) {
   const double cell_m = grid_cell_m(features.surface);
   std::vector<Eigen::Vector2d> positions_m;
   positions_m.reserve(std::max(features.surface.size(), features.branches.size()));
-  reference.surface_m.reserve(features.surface.size() + 1);
+  reference.surfaces.reserve(features.surface.size() + 1);
   for (const SurfacePoint& p : features.surface) {
     positions_m.push_back(p.position_m);
-    reference.surface_m.emplace_back(p.position_m.cast<float>());
+    const Eigen::Vector2f at_m = p.position_m.cast<float>();
+    const Eigen::Vector2f normal = p.normal.cast<float>();
+    reference.surfaces.push_back({at_m.x(), at_m.y(), normal.x(), normal.y()});
   }
-  reference.surface_m.emplace_back(kFarAway_m, kFarAway_m);
+  reference.surfaces.push_back({kFarAway_m, kFarAway_m, 0.0F, 0.0F});
   reference.surface_grid.build(positions_m, cell_m, kReach_m);
   positions_m.clear();
   reference.branches.reserve(features.branches.size() + 1);

@@ -22,6 +22,7 @@ constexpr double kCauchy_m = 0.05;
 constexpr double kResidualSigma_m = 0.08;
 constexpr double kInlier_m = 0.15;
 constexpr double kViewTolerance_m = 0.30;
+constexpr double kSameFace = 0.70710678;  // cosine between two normals of one surface
 
 struct NormalEquations {
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
@@ -52,11 +53,11 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
     const double ox = T.x_m + dx - other.position_m.x();
     const double oy = T.y_m + dy - other.position_m.y();
     if (ox * ox + oy * oy > gate_m * gate_m || !other.on_line) continue;
-    if (point.on_line) {  // two walls that stand across each other are not one surface
+    if (point
+            .on_line) {  // neither two walls across each other nor the faces of one are one surface
       const double nx = r.cos * point.normal.x() - r.sin * point.normal.y();
       const double ny = r.sin * point.normal.x() + r.cos * point.normal.y();
-      const double cosine = nx * other.normal.x() + ny * other.normal.y();
-      if (cosine * cosine < 0.5) continue;
+      if (nx * other.normal.x() + ny * other.normal.y() < kSameFace) continue;
     }
     const double residual = other.normal.x() * ox + other.normal.y() * oy;
     const double u = residual / kCauchy_m;
@@ -89,12 +90,9 @@ ReverseView look_back(const Reference& reference, const MatchFeatures& query, co
   const Pose2 T_query_reference = geometry::inverse(T);
   const geometry::SinCos r = geometry::sincos(T_query_reference.theta_rad);
   for (const SurfacePoint& point : reference.features.surface) {
-    const double x = point.position_m.x();
-    const double y = point.position_m.y();
+    const SurfacePoint p = moved(point, T_query_reference, r);
     const RangeProfile::View view =
-        query.profile.view({T_query_reference.x_m + r.cos * x - r.sin * y,
-                            T_query_reference.y_m + r.sin * x + r.cos * y},
-                           kViewTolerance_m);
+        query.profile.view_of_face(p.position_m, p.normal, kViewTolerance_m);
     if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++counts.in_view;
     if (view == RangeProfile::View::kFree) ++counts.violations;
   }
@@ -110,10 +108,11 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
   std::size_t violations = 0;
   double squared = 0.0;
   for (const SurfacePoint& point : query.surface) {
-    const Eigen::Vector2d p(T.x_m + r.cos * point.position_m.x() - r.sin * point.position_m.y(),
-                            T.y_m + r.sin * point.position_m.x() + r.cos * point.position_m.y());
+    const SurfacePoint here = moved(point, T, r);
+    const Eigen::Vector2d& p = here.position_m;
     const std::int32_t found = reference.surface_grid.find(p.x(), p.y());
-    if (found != NearestPointGrid::kNone) {
+    const RangeProfile& profile = reference.features.profile;
+    if (found != NearestPointGrid::kNone && !profile.turned_away(p, here.normal)) {
       const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
       const Eigen::Vector2d o = p - other.position_m;
       const double across =
@@ -126,7 +125,7 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
         continue;
       }
     }
-    const RangeProfile::View view = reference.features.profile.view(p, kViewTolerance_m);
+    const RangeProfile::View view = profile.view_of_face(p, here.normal, kViewTolerance_m);
     if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++in_view;
     if (view == RangeProfile::View::kFree) ++violations;
   }

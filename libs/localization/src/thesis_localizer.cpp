@@ -50,7 +50,7 @@ void ThesisLocalizer::append(std::shared_ptr<const LocalMap> map) {
   stop.view = field_of_view(*map);
   MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
   stop.profile = std::move(features.profile);
-  stop.outline_m = outline_of(features.coarse_m);
+  stop.outline = outline_of(features.coarse);
   if (!stops_.empty()) {
     const Stop& previous = stops_.back();
     stop.T_previous_this =
@@ -84,7 +84,7 @@ std::vector<ThesisLocalizer::Neighbour> ThesisLocalizer::neighbours(
     }
     const Pose2 T_earlier_new = geometry::between(graph_.poses()[i], T_map_predicted);
     if (!overlap(seen_from(now.view, T_earlier_new, half), before.view)) continue;
-    const double share = expected_overlap(now.profile, before.outline_m, pose);
+    const double share = expected_overlap(now.profile, before.outline, pose);
     if (share >= config_.smallest_expected_overlap || i + 1 == stop) {
       found.push_back({i, pose, share});
     }

@@ -71,12 +71,16 @@ TEST(ScanFitnessTest, ByHand) {
   for (int i = 0; i <= 8; ++i) wall.surface.push_back({{0.5 * i, 0.0}, {0.0, 1.0}, true});
   const Reference reference = make_reference(wall);
   MatchFeatures query;
-  query.coarse_m = {{1.0, 0.0}, {2.0, 0.15}, {3.0, -0.15}, {1.5, 0.31}, {2.5, 5.0}};
+  query.coarse = {
+      {{1.0, 0.0}}, {{2.0, 0.15}, {0.0, 1.0}, true}, {{3.0, -0.15}}, {{1.5, 0.31}}, {{2.5, 5.0}}};
   const ScanFitness fitness(reference, query);
   EXPECT_NEAR(fitness({}), (1.0 + 2.0 * 0.75 * 0.75) / 5.0, kFloat);
   // 0.15 m up: distances 0.15, 0.3, 0, 0.46 and 5.15 m.
   EXPECT_NEAR(fitness({0.0, 0.15, 0.0}), (0.75 * 0.75 + 1.0) / 5.0, kFloat);
   EXPECT_NEAR(fitness({0.0, 0.0, std::numbers::pi / 2}), 0.0, kFloat);
+  // The second point's wall seen from the other side is another face.
+  query.coarse[1].normal = {0.0, -1.0};
+  EXPECT_NEAR(ScanFitness(reference, query)({}), (1.0 + 0.75 * 0.75) / 5.0, kFloat);
 }
 
 TEST(ScanFitnessTest, IsWhatAComparisonWithEveryPointGives) {
@@ -84,18 +88,18 @@ TEST(ScanFitnessTest, IsWhatAComparisonWithEveryPointGives) {
   const MatchFeatures query = test::features_at(test::l_room(), {0.3, 0.2, 0.2});
   const Reference reference = make_reference(features);
   const ScanFitness fitness(reference, query);
-  ASSERT_GT(query.coarse_m.size(), 64U) << "more than one block";
+  ASSERT_GT(query.coarse.size(), 64U) << "more than one block";
   for (const Pose2& T : {Pose2{0.3, 0.2, 0.2}, Pose2{0.2, 0.3, 0.1}, Pose2{-0.2, -0.1, 0.4}}) {
     double sum = 0.0;
-    for (const Eigen::Vector2d& p : query.coarse_m) {
+    for (const SurfacePoint& p : query.coarse) {
       double nearest2 = 0.09;
       for (const SurfacePoint& other : features.surface) {
-        nearest2 = std::min(nearest2, (T * p - other.position_m).squaredNorm());
+        nearest2 = std::min(nearest2, (T * p.position_m - other.position_m).squaredNorm());
       }
       sum += (1.0 - nearest2 / 0.09) * (1.0 - nearest2 / 0.09);
     }
     // The grid may take the second-nearest point near the border of a cell.
-    EXPECT_NEAR(fitness(T), sum / static_cast<double>(query.coarse_m.size()), 0.03);
+    EXPECT_NEAR(fitness(T), sum / static_cast<double>(query.coarse.size()), 0.03);
   }
 }
 

@@ -19,20 +19,20 @@ TEST(MatchFeaturesTest, PointsAreThinnedToTheirSpacing) {
   const auto points = test::exact_points(test::l_room(), {});
   const MatchFeatures features = extract_scan_features(points, {});
   ASSERT_GT(features.surface.size(), 100U);
-  ASSERT_GT(features.coarse_m.size(), 50U);
+  ASSERT_GT(features.coarse.size(), 50U);
   for (std::size_t i = 1; i < features.surface.size(); ++i) {
     EXPECT_GE((features.surface[i].position_m - features.surface[i - 1].position_m).norm(),
               MatchFeatures::kFineSpacing_m - 1e-9);
   }
-  for (std::size_t i = 1; i < features.coarse_m.size(); ++i) {
-    EXPECT_GE((features.coarse_m[i] - features.coarse_m[i - 1]).norm(),
+  for (std::size_t i = 1; i < features.coarse.size(); ++i) {
+    EXPECT_GE((features.coarse[i].position_m - features.coarse[i - 1].position_m).norm(),
               MatchFeatures::kCoarseSpacing_m - 1e-9);
   }
   // No point was dropped further from a kept one than the spacing.
   for (const auto& p : points) {
     double nearest_m = 1e9;
-    for (const Eigen::Vector2d& kept : features.coarse_m) {
-      nearest_m = std::min(nearest_m, (kept - Eigen::Vector2d(p.x_m, p.y_m)).norm());
+    for (const SurfacePoint& kept : features.coarse) {
+      nearest_m = std::min(nearest_m, (kept.position_m - Eigen::Vector2d(p.x_m, p.y_m)).norm());
     }
     EXPECT_LT(nearest_m, MatchFeatures::kCoarseSpacing_m);
   }
@@ -81,7 +81,7 @@ TEST(MatchFeaturesTest, LonelyPointsAreOnNoLine) {
 TEST(MatchFeaturesTest, NothingComesOfNothing) {
   const MatchFeatures features = extract_scan_features({}, {});
   EXPECT_TRUE(features.surface.empty());
-  EXPECT_TRUE(features.coarse_m.empty());
+  EXPECT_TRUE(features.coarse.empty());
   EXPECT_EQ(features.profile.view({1.0, 0.0}, 0.3), View::kUnknown);
   EXPECT_EQ(RangeProfile().view({1.0, 0.0}, 0.3), View::kUnknown);
 }

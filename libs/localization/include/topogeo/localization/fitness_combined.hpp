@@ -16,7 +16,7 @@
 namespace topogeo::localization {
 
 /// Mean over the query's thinned scan points of a soft kernel of the distance to the nearest point
-/// of the reference.
+/// of the reference; 0 where that was seen from the other side.
 class ScanFitness : public Fitness {
  public:
   /// bind() before use.
@@ -33,6 +33,8 @@ class ScanFitness : public Fitness {
   const Reference* reference_ = nullptr;
   LaneArray x_m_;
   LaneArray y_m_;
+  LaneArray normal_x_;
+  LaneArray normal_y_;
   double per_point_ = 0.0;
 };
 

@@ -118,7 +118,7 @@ class Localizer : public Slam {
     std::uint64_t hash = 0;
     double way_m = 0.0;  // along the odometry from the first stop
     RangeProfile profile;
-    std::vector<Eigen::Vector2d> outline_m;  // some of its points, to foresee overlap
+    std::vector<SurfacePoint> outline;  // some of its points, to foresee overlap
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     std::map<std::uint32_t, Comparison> compared;  // with earlier stops, by id
   };

@@ -15,12 +15,25 @@
 
 namespace topogeo::localization {
 
-/// A point of the scan. `normal` is the unit normal of the line through its neighbours.
+/// A point of the scan. Two that lie together are of one surface only if they were seen from the
+/// same side: a wall has two faces, and so has a rack.
 struct SurfacePoint {
   Eigen::Vector2d position_m;
-  Eigen::Vector2d normal;
-  bool on_line = false;  ///< the neighbours lie on a line; else `normal` means nothing
+  /// Unit normal of the line through its neighbours, on the side that the laser saw; 0 where they
+  /// do not lie on a line.
+  Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+  bool on_line = false;  ///< the neighbours lie on a line
 };
+
+/// The same point in frame a, from frame b; `heading` of T_a_b.
+inline SurfacePoint moved(const SurfacePoint& point, const geometry::Pose2& T_a_b,
+                          const geometry::SinCos& heading) {
+  const auto turned = [&](const Eigen::Vector2d& v) {
+    return Eigen::Vector2d(heading.cos * v.x() - heading.sin * v.y(),
+                           heading.sin * v.x() + heading.cos * v.y());
+  };
+  return {T_a_b.position_m() + turned(point.position_m), turned(point.normal), point.on_line};
+}
 
 /// How far the laser saw in each direction.
 class RangeProfile {
@@ -38,11 +51,21 @@ class RangeProfile {
   /// kSurface.
   [[nodiscard]] View view(const Eigen::Vector2d& point_robot_m, double tolerance_m) const;
 
+  /// Whether a surface with this normal (SurfacePoint::normal, robot frame) turns its back on the
+  /// laser, by more than 10 degrees. The laser cannot have seen that face. False for normal 0.
+  [[nodiscard]] bool turned_away(const Eigen::Vector2d& point_robot_m,
+                                 const Eigen::Vector2d& normal) const;
+
+  /// As view(), but a face that is turned away is hidden, unless the laser saw past it.
+  [[nodiscard]] View view_of_face(const Eigen::Vector2d& point_robot_m,
+                                  const Eigen::Vector2d& normal, double tolerance_m) const;
+
  private:
   static constexpr int kBins = 720;  // half a degree
   static int bin_of(const Eigen::Vector2d& point_laser_m);
   [[nodiscard]] Eigen::Vector2d in_laser_frame(const Eigen::Vector2d& point_robot_m) const;
 
+  Eigen::Vector2d laser_m_ = Eigen::Vector2d::Zero();  // robot frame
   geometry::Pose2 T_laser_robot_;
   geometry::SinCos rotation_{0.0, 1.0};  // of T_laser_robot_
   std::vector<float>
@@ -70,8 +93,8 @@ struct MatchFeatures {
   static constexpr double kBranchSpacing_m = 0.20;
   static constexpr double kCurveSpacing_m = 0.10;
 
-  std::vector<SurfacePoint> surface;      ///< at least kFineSpacing_m apart along the scan
-  std::vector<Eigen::Vector2d> coarse_m;  ///< at least kCoarseSpacing_m apart along the scan
+  std::vector<SurfacePoint> surface;  ///< at least kFineSpacing_m apart along the scan
+  std::vector<SurfacePoint> coarse;   ///< at least kCoarseSpacing_m apart along the scan
   RangeProfile profile;
   std::vector<topomap::LocalNode>
       nodes;  ///< real nodes and states of a branch; none fictitious or virtual
@@ -94,10 +117,14 @@ struct Reference {
     float direction_x, direction_y;
     float clearance_m;
   };
+  struct Surface {
+    float x_m, y_m;
+    float normal_x, normal_y;
+  };
   MatchFeatures features;
   NearestPointGrid surface_grid;  ///< on features.surface
   NearestPointGrid branch_grid;   ///< on features.branches
-  std::vector<Eigen::Vector2f> surface_m;
+  std::vector<Surface> surfaces;
   std::vector<Branch> branches;
 };
 

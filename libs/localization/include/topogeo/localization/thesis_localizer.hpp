@@ -72,7 +72,7 @@ class ThesisLocalizer : public Slam {
     double way_m = 0.0;  // along the odometry from the first stop
     FieldOfView view;
     RangeProfile profile;
-    std::vector<Eigen::Vector2d> outline_m;
+    std::vector<SurfacePoint> outline;
     UncertainPose T_previous_this;                         // by odometry
     std::vector<std::uint32_t> overlaps;                   // MS, ascending
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the pose in the map
