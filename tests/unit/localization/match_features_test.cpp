@@ -55,6 +55,7 @@ TEST(MatchFeaturesTest, NormalsStandOnTheWalls) {
     EXPECT_TRUE(point.on_line) << p.transpose();
     EXPECT_NEAR(point.normal.norm(), 1.0, 1e-9);
     EXPECT_GT(std::fabs(along_x ? point.normal.y() : point.normal.x()), 0.999) << p.transpose();
+    EXPECT_LT(point.normal.dot(p), 0.0) << "on the side of the laser: " << p.transpose();
     ++checked;
   }
   EXPECT_GT(checked, 50);
@@ -101,6 +102,23 @@ TEST(RangeProfileTest, TellsFreeSpaceFromSurfacesAndWhatIsBehind) {
   EXPECT_EQ(profile.view({0.5, -1.0}, 0.1), View::kFree);
   EXPECT_EQ(profile.view({0.5, 3.0}, 0.1), View::kHidden);
   EXPECT_EQ(profile.view({-1.0, 0.3}, 0.1), View::kUnknown);
+}
+
+TEST(RangeProfileTest, TellsTheFaceThatItSawFromTheOneBehind) {
+  const RangeProfile profile(
+      test::exact_points(test::lines({{{2, -4}, {2, 4}}}), {}, {-45, 45, 0.5, 8}), {});
+  const Eigen::Vector2d near{-1.0, 0.0};
+  const Eigen::Vector2d far{1.0, 0.0};
+  EXPECT_FALSE(profile.turned_away({2.0, 0.5}, near));
+  EXPECT_TRUE(profile.turned_away({2.0, 0.5}, far));
+  EXPECT_FALSE(profile.turned_away({2.0, 0.5}, Eigen::Vector2d::Zero())) << "of no side";
+  // Nine and eleven degrees behind the edge of the wall's plane.
+  EXPECT_FALSE(profile.turned_away({2.0, 0.0}, {std::sin(9 * kDegree), std::cos(9 * kDegree)}));
+  EXPECT_TRUE(profile.turned_away({2.0, 0.0}, {std::sin(11 * kDegree), std::cos(11 * kDegree)}));
+  EXPECT_EQ(profile.view_of_face({2.1, 0.5}, near, 0.2), View::kSurface);
+  EXPECT_EQ(profile.view_of_face({2.1, 0.5}, far, 0.2), View::kHidden);
+  EXPECT_EQ(profile.view_of_face({1.0, 0.5}, far, 0.2), View::kFree) << "it looked past it";
+  EXPECT_EQ(profile.view_of_face({-1.0, 0.5}, far, 0.2), View::kUnknown);
 }
 
 TEST(RangeProfileTest, SmallGapsBetweenBeamsBelongToTheNearerReading) {
@@ -197,11 +215,16 @@ TEST(MatchFeaturesTest, TheArraysOfAReferenceAreItsFeaturesAndOneFarAway) {
   MatchFeatures features = test::features_at(test::l_room(), {});
   features.branches = {test::sample(1.0, 2.0, 0.5, 0.7)};
   const Reference reference = make_reference(features);
-  ASSERT_EQ(reference.surface_m.size(), features.surface.size() + 1);
+  ASSERT_EQ(reference.surfaces.size(), features.surface.size() + 1);
   for (std::size_t i = 0; i < features.surface.size(); ++i) {
-    EXPECT_EQ(reference.surface_m[i], features.surface[i].position_m.cast<float>());
+    const Eigen::Vector2f at_m = features.surface[i].position_m.cast<float>();
+    const Eigen::Vector2f normal = features.surface[i].normal.cast<float>();
+    EXPECT_EQ(reference.surfaces[i].x_m, at_m.x());
+    EXPECT_EQ(reference.surfaces[i].y_m, at_m.y());
+    EXPECT_EQ(reference.surfaces[i].normal_x, normal.x());
+    EXPECT_EQ(reference.surfaces[i].normal_y, normal.y());
   }
-  EXPECT_GT(reference.surface_m.back().norm(), 1e8F);
+  EXPECT_GT(reference.surfaces.back().x_m, 1e8F);
   ASSERT_EQ(reference.branches.size(), 2U);
   EXPECT_EQ(reference.branches[0].x_m, 1.0F);
   EXPECT_EQ(reference.branches[0].y_m, 2.0F);
@@ -209,7 +232,7 @@ TEST(MatchFeaturesTest, TheArraysOfAReferenceAreItsFeaturesAndOneFarAway) {
   EXPECT_EQ(reference.branches[0].direction_y, static_cast<float>(std::sin(0.5)));
   EXPECT_EQ(reference.branches[0].clearance_m, 0.7F);
   EXPECT_GT(reference.branches[1].x_m, 1e8F);
-  EXPECT_EQ(make_reference({}).surface_m.size(), 1U);
+  EXPECT_EQ(make_reference({}).surfaces.size(), 1U);
 }
 
 }  // namespace
