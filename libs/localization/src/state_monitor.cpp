@@ -48,9 +48,9 @@ double contradiction_of(const StepMatch& match) {
     case Reason::kSecondSolution:
       return 0.0;
     case Reason::kNothingInCommon:
-    case Reason::kLittleOverlap:
     case Reason::kFewInliers:
       return 1.0;
+    case Reason::kLittleOverlap:  // what little is in view may fit well
     case Reason::kDoubtful:
     case Reason::kImplausible:
       return std::min(1.0, std::max(match.violations / 0.12, (1.0 - match.inliers) / 0.5));

@@ -117,6 +117,27 @@ TEST(StateMonitor, AlongABareCorridorConfidenceFallsWithTheCovariance) {
   EXPECT_EQ(monitor.belief().state, LocalizationState::kAmbiguous);
 }
 
+TEST(StateMonitor, LittleInViewThatFitsContradictsNothing) {
+  StepMatch little;
+  little.reason = Reason::kLittleOverlap;
+  little.inliers = 1.0;
+  little.expected_overlap = 0.8;
+  EXPECT_EQ(contradiction(step({little})), 0.0);
+  little.violations = 0.06;
+  EXPECT_NEAR(contradiction(step({little})), 0.5, 1e-12);
+  little.inliers = 0.4;
+  EXPECT_EQ(contradiction(step({little})), 1.0);
+  StateMonitor monitor;
+  drive(monitor, 20);
+  little = StepMatch{};
+  little.reason = Reason::kLittleOverlap;
+  little.inliers = 0.97;
+  little.expected_overlap = 0.8;
+  for (int i = 0; i < 5; ++i) monitor.add(step({little}));
+  EXPECT_EQ(monitor.belief().state, LocalizationState::kAmbiguous);
+  EXPECT_GT(monitor.belief().confidence, 0.8);
+}
+
 TEST(StateMonitor, AnInitialPoseRestartsIt) {
   StateMonitor monitor;
   drive(monitor, 3);
