@@ -142,6 +142,22 @@ void compare_views(const Reference& reference, const MatchFeatures& query, const
   if (inliers > 0) result.residual_rms_m = std::sqrt(squared / static_cast<double>(inliers));
 }
 
+// Without the part along the direction in which the position is hardly known. There a pull of
+// centimetres would become metres, and the pose weighs nothing anyway.
+Eigen::Vector2d known_part(const Eigen::Vector2d& step_m, const Eigen::Matrix2d& covariance_m2) {
+  constexpr double kKnown_m2 = 0.25;
+  const double half_difference = 0.5 * (covariance_m2(0, 0) - covariance_m2(1, 1));
+  const double mean = 0.5 * (covariance_m2(0, 0) + covariance_m2(1, 1));
+  const double spread =
+      std::sqrt(half_difference * half_difference + covariance_m2(0, 1) * covariance_m2(0, 1));
+  if (mean + spread <= kKnown_m2) return step_m;
+  if (mean - spread > kKnown_m2) return Eigen::Vector2d::Zero();
+  const geometry::SinCos widest =
+      geometry::sincos(0.5 * geometry::atan2(covariance_m2(0, 1), half_difference));
+  const Eigen::Vector2d along(widest.cos, widest.sin);
+  return step_m - along * along.dot(step_m);
+}
+
 }  // namespace
 
 Eigen::Matrix3d information_at(const Reference& reference, const MatchFeatures& query,
@@ -189,7 +205,8 @@ Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
   constexpr double kFarthest_rad = 0.05;
   const Eigen::Vector3d pull =
       prior.information * geometry::difference(T_aligned, prior.T_reference_query);
-  const Eigen::Vector3d step = covariance * pull;
+  Eigen::Vector3d step = covariance * pull;
+  step.head<2>() = known_part(step.head<2>(), covariance.topLeftCorner<2, 2>());
   if (std::fabs(step.x()) > kFarthest_m || std::fabs(step.y()) > kFarthest_m ||
       std::fabs(step.z()) > kFarthest_rad) {
     return T_aligned;

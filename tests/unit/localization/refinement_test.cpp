@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "topogeo/localization/fitness_combined.hpp"
+
 #include "hand_scenes.hpp"
 
 namespace topogeo::localization {
@@ -55,6 +57,34 @@ TEST(RefinementTest, AlongABareCorridorThePriorStands) {
   const Refinement free = refine(reference, query, {0.3, 0.0, 0.05}, no_prior());
   EXPECT_NEAR(free.T_reference_query.x_m, 0.3, 0.02);
   EXPECT_NEAR(free.T_reference_query.y_m, 0.1, 0.01);
+}
+
+// A rack of 0.4 m across the way, seen from both ends of a hall: its two long faces, and the walls
+// at the sides. Laid on each other, the faces would put the robot 0.4 m wrong.
+TEST(RefinementTest, TheTwoFacesOfARackAreNotLaidOnEachOther) {
+  const simulation::World hall = test::lines({{{-8, -3}, {8, -3}},
+                                              {{-8, 3}, {8, 3}},
+                                              {{-0.2, -1}, {-0.2, 1}},
+                                              {{0.2, -1}, {0.2, 1}},
+                                              {{-0.2, -1}, {0.2, -1}},
+                                              {{-0.2, 1}, {0.2, 1}}});
+  const Pose2 T_world_reference{-4.0, 0.0, 0.0};
+  const Pose2 T_world_query{4.0, 0.2, 180.0 * kDegree};
+  const test::Sweep ahead{-50.0, 50.0, 0.5, 8.0};
+  const Reference reference = make_reference(test::features_at(hall, T_world_reference, ahead));
+  const MatchFeatures query = test::features_at(hall, T_world_query, ahead);
+  const Pose2 truth = geometry::between(T_world_reference, T_world_query);
+  const Pose2 laid_on_each_other{truth.x_m - 0.4, truth.y_m, truth.theta_rad};
+  const Eigen::Matrix3d weak = Eigen::Matrix3d::Identity();
+  const Refinement wrong = refine(reference, query, laid_on_each_other, {laid_on_each_other, weak});
+  const Refinement right = refine(reference, query, truth, {truth, weak});
+  // Nothing says where along the hall it is: neither pose draws, and no face counts as in common.
+  EXPECT_LT(wrong.information(0, 0), 0.02 * wrong.information(1, 1));
+  EXPECT_LT(right.information(0, 0), 0.02 * right.information(1, 1));
+  EXPECT_LT(test::distance_m(right.T_reference_query, truth), 0.05);
+  EXPECT_LT(wrong.overlap, right.overlap + 0.01);
+  const ScanFitness fitness(reference, query);
+  EXPECT_LT(fitness(laid_on_each_other), fitness(truth) + 0.02);
 }
 
 TEST(RefinementTest, AStrongPriorHoldsThePose) {
@@ -112,7 +142,7 @@ std::vector<double> residuals(const Reference& reference, const MatchFeatures& q
     if (!other.on_line || (at - other.position_m).norm() > 0.2) continue;
     const Pose2 only_turn{0.0, 0.0, T_association.theta_rad};
     const double cosine = (only_turn * point.normal).dot(other.normal);
-    if (point.on_line && cosine * cosine < 0.5) continue;
+    if (point.on_line && cosine < std::sqrt(0.5)) continue;
     out.push_back(other.normal.dot(T * point.position_m - other.position_m));
   }
   return out;
@@ -145,6 +175,22 @@ TEST(RefinementTest, WithoutPriorComesBackToWhatTheScansSay) {
 }
 
 // Along a corridor the scans say next to nothing: what they "want" there is not to be believed.
+TEST(RefinementTest, WithoutPriorStaysAlongWhatTheScansHardlyKnow) {
+  // Along a corridor that runs at 30 degrees the scans know the way to 1 m, across to 2 cm.
+  const double angle = 30.0 * kDegree;
+  const Eigen::Vector3d along(std::cos(angle), std::sin(angle), 0.0);
+  const Eigen::Vector3d across(-std::sin(angle), std::cos(angle), 0.0);
+  Eigen::Matrix3d covariance = along * along.transpose() + 4e-4 * across * across.transpose();
+  covariance(2, 2) = 1e-4;
+  PosePrior prior{{}, Eigen::Matrix3d::Identity() * 400.0};
+  prior.information(2, 2) = 1e4;
+  const Eigen::Vector3d shift = 5e-4 * along + 0.02 * across;
+  const Pose2 free = without_prior({shift.x(), shift.y(), 0.0}, covariance, prior);
+  const Eigen::Vector3d step = Eigen::Vector3d(free.x_m, free.y_m, 0.0) - shift;
+  EXPECT_NEAR(step.dot(along), 0.0, 1e-9);
+  EXPECT_NEAR(step.dot(across), 4e-4 * 400.0 * 0.02, 1e-9);
+}
+
 TEST(RefinementTest, WithoutPriorDoesNotGoFar) {
   const PosePrior prior{{0.2, 0.0, 0.0}, Eigen::Vector3d(100, 100, 100).asDiagonal()};
   const Pose2 aligned{0.1, 0.0, 0.0};

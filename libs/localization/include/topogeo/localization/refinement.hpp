@@ -52,7 +52,8 @@ Alignment align(const Reference& reference, const MatchFeatures& query,
 /// What the scans alone say: align() ends where scans and prior balance, so whoever uses the prior
 /// as a measurement of its own would count it twice. `covariance` is that of the scans at
 /// T_aligned. One Newton step away from the prior, which is exact as long as the scans' information
-/// stays the same on the way; a step beyond 0.3 m or 0.05 rad is not taken.
+/// stays the same on the way; a step beyond 0.3 m or 0.05 rad is not taken. Along a direction in
+/// which the scans leave the position uncertain by more than 0.5 m the pose stays where it is.
 geometry::Pose2 without_prior(const geometry::Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                               const PosePrior& prior);
 
