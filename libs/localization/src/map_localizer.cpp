@@ -147,11 +147,10 @@ void MapLocalizer::track(const Query& query) {
   belief_ = monitor_.add(evidence);
   if (belief_.state != LocalizationState::kLost) return;
   // This stop's scan is where the search begins.
-  has_pose_ = false;
-  hypotheses_.clear();
-  ++searches_;
+  begin_search();
   propose(query);
   weigh(query);
+  ++searched_;
 }
 
 // How much better the scan fits another place of the map, if that is a place to be accepted. A
@@ -189,10 +188,15 @@ void MapLocalizer::start_after(const topomap::LocalMap& map, const Pose2& T_map_
   T_odom_last_ = map.T_odom_robot;
 }
 
-void MapLocalizer::search() {
+void MapLocalizer::begin_search() {
   has_pose_ = false;
   hypotheses_.clear();
+  searched_ = 0;
   ++searches_;
+}
+
+void MapLocalizer::search() {
+  begin_search();
   belief_ = {LocalizationState::kSearching, 0.0};
 }
 

@@ -25,7 +25,9 @@ constexpr double kNewWeight = 0.05;         // of a place that nothing before sp
 constexpr double kForgotten = 1e-4;
 constexpr double kSure = 0.95;
 constexpr std::uint32_t kSeenOften = 2;  // believed stops before a place is taken
-constexpr double kLeastWay_m = 0.3;      // between the first and the last of them
+// More of them for a place that the stops of this search before did not speak for.
+constexpr std::uint32_t kSeenMoreOften = 4;
+constexpr double kLeastWay_m = 0.3;  // between the first and the last of them
 constexpr std::uint32_t kMissedOften = 3;
 
 bool same_hypothesis(const Pose2& a, const Pose2& b) {
@@ -47,6 +49,7 @@ void MapLocalizer::search_step(const Query& query) {
   }
   propose(query);
   weigh(query);
+  ++searched_;
   decide();
 }
 
@@ -63,6 +66,7 @@ void MapLocalizer::propose(const Query& query) {
                                                           kSigma_rad * kSigma_rad)
                                               .asDiagonal()};
     hypothesis.weight = kNewWeight;
+    hypothesis.wanted = std::min(kSeenMoreOften, kSeenOften + searched_);
     hypotheses_.push_back(hypothesis);
   }
 }
@@ -116,6 +120,7 @@ void MapLocalizer::weigh(const Query& query) {
         same->seen = hypothesis.seen;
         same->way_m = hypothesis.way_m;
       }
+      same->wanted = std::min(same->wanted, hypothesis.wanted);
     } else if (hypothesis.weight >= kForgotten && hypothesis.missed < kMissedOften &&
                kept.size() < kMostHypotheses) {
       kept.push_back(hypothesis);
@@ -138,7 +143,7 @@ void MapLocalizer::decide() {
     belief_.state = LocalizationState::kAmbiguous;
     believed_ = best->missed == 0 ? 1 : 0;
   }
-  if (best->weight < kSure || best->seen < kSeenOften || best->missed > 0 ||
+  if (best->weight < kSure || best->seen < best->wanted || best->missed > 0 ||
       best->way_m < kLeastWay_m) {
     return;
   }

@@ -103,6 +103,7 @@ class MapLocalizer : public Slam {
     UncertainPose pose;        // T_map_robot
     double weight = 0.0;       // probability, together with the others and "elsewhere" 1
     std::uint32_t seen = 0;    // stops that were matched there and believed
+    std::uint32_t wanted = 0;  // as many before it is taken
     double way_m = 0.0;        // driven since the first of them
     std::uint32_t missed = 0;  // stops in succession that were not believed there
   };
@@ -114,6 +115,7 @@ class MapLocalizer : public Slam {
 
   void track(const Query& query);
   [[nodiscard]] double better_elsewhere(const Query& query) const;
+  void begin_search();
   void search_step(const Query& query);
   void propose(const Query& query);
   void weigh(const Query& query);
@@ -135,6 +137,7 @@ class MapLocalizer : public Slam {
   UncertainPose pose_;  // T_map_robot at the last stop
   bool has_pose_ = false;
   std::vector<Hypothesis> hypotheses_;
+  std::uint32_t searched_ = 0;                  // stops of the search in hand
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
   std::vector<LocalizedStop> stops_;
   std::optional<TrackedStep> last_step_;
