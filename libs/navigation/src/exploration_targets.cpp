@@ -10,6 +10,7 @@
 #include "topogeo/planning/zones.hpp"
 
 #include "grid_view.hpp"
+#include "rooms.hpp"
 #include "unknown_floor.hpp"
 
 namespace topogeo::navigation {
@@ -23,20 +24,11 @@ constexpr double kEntrance_m = 1.5;  // of an entrance that noise has made too n
 constexpr std::array<Cell, 8> kAround = {Cell{1, 0},  Cell{1, 1},   Cell{0, 1},  Cell{-1, 1},
                                          Cell{-1, 0}, Cell{-1, -1}, Cell{0, -1}, Cell{1, -1}};
 
-/// On the threshold: that is not inside.
-bool at_border(const planning::HybridMap& map, planning::ZoneId zone,
-               const Eigen::Vector2d& point_m) {
-  constexpr double kThreshold_m = 0.5;
-  const std::vector<std::uint32_t>& nodes = map.nodes_of(zone);
-  return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
-    return (map.nodes()[node].position_m - point_m).norm() < kThreshold_m;
-  });
-}
-
 }  // namespace
 
 std::vector<Explorer::Candidate> Explorer::candidates(const topomap::GlobalMap& graph,
-                                                      const planning::HybridMap& map) const {
+                                                      const planning::HybridMap& map,
+                                                      const Rooms& rooms) const {
   const UnknownFloor unknown(map.space());
   std::vector<Candidate> found;
   const auto add = [&](TargetKind kind, const std::vector<Eigen::Vector2d>& positions_m) {
@@ -50,14 +42,18 @@ std::vector<Explorer::Candidate> Explorer::candidates(const topomap::GlobalMap& 
   add(TargetKind::kBranchEnd, branch_ends(graph));
   add(TargetKind::kPassage, passage_sides(graph, map));
   add(TargetKind::kGap, gaps(map, unknown));
-  add_rooms(map, found);
+  add_rooms(map, rooms, found);
   return found;
 }
 
 bool Explorer::open(const ExplorationTarget& target, const planning::HybridMap& map) const {
   const auto cell = map.frame().cell_of(target.position_m);
+  if (target.kind == TargetKind::kRoom) {
+    const Rooms rooms(map);
+    const planning::ZoneId room = cell ? rooms.at(*cell) : planning::kNoZone;
+    return room != planning::kNoZone && !rooms.entered(room, visited_);
+  }
   const planning::ZoneId zone = cell ? map.zone_of(*cell) : planning::kNoZone;
-  if (target.kind == TargetKind::kRoom) return zone != planning::kNoZone && !entered(map, zone);
   if (target.kind == TargetKind::kBlocked) {
     return zone != planning::kNoZone && !reachable_zones(map, target.T_map_view.position_m())[zone];
   }
@@ -132,29 +128,14 @@ std::vector<Eigen::Vector2d> Explorer::gaps(const planning::HybridMap& map,
   return found_m;
 }
 
-bool Explorer::entered(const planning::HybridMap& map, planning::ZoneId zone) const {
-  return std::any_of(visited_.begin(), visited_.end(), [&](const geometry::Pose2& pose) {
-    const auto cell = map.frame().cell_of(pose.position_m());
-    return cell && map.zone_of(*cell) == zone && !at_border(map, zone, pose.position_m());
-  });
-}
-
-// The zones that no visited pose lies in, each at the cell that is furthest from everything.
-void Explorer::add_rooms(const planning::HybridMap& map, std::vector<Candidate>& found) const {
+// The rooms that no visited pose lies in, each at the cell that is furthest from everything.
+void Explorer::add_rooms(const planning::HybridMap& map, const Rooms& rooms,
+                         std::vector<Candidate>& found) const {
   const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
-  for (const planning::Zone& zone : map.zones().zones) {
-    if (static_cast<double>(zone.cells) * cell_m2 < config_.least_zone_m2) continue;
-    if (entered(map, zone.id)) continue;
-    std::optional<Cell> widest;
-    for (std::int32_t row = zone.box.low.row; row <= zone.box.high.row; ++row) {
-      for (std::int32_t column = zone.box.low.column; column <= zone.box.high.column; ++column) {
-        const Cell cell{column, row};
-        if (map.zone_of(cell) != zone.id) continue;
-        if (!widest || map.space().clearance_m(cell) > map.space().clearance_m(*widest)) {
-          widest = cell;
-        }
-      }
-    }
+  for (const planning::Zone& room : rooms.all()) {
+    if (static_cast<double>(room.cells) * cell_m2 < config_.least_room_m2) continue;
+    if (rooms.entered(room.id, visited_)) continue;
+    const std::optional<Cell> widest = rooms.widest(room);
     if (!widest || dropped(TargetKind::kRoom, map.frame().center_m(*widest))) continue;
     found.push_back({TargetKind::kRoom, map.frame().center_m(*widest),
                      std::numeric_limits<double>::infinity()});
@@ -194,7 +175,7 @@ std::vector<Explorer::Candidate> Explorer::blocked_zones(const planning::HybridM
   std::vector<Candidate> found;
   for (const planning::Zone& zone : map.zones().zones) {
     const double area_m2 = static_cast<double>(zone.cells) * resolution_m * resolution_m;
-    if (reachable[zone.id] || !entrances[zone.id] || area_m2 < config_.least_zone_m2) continue;
+    if (reachable[zone.id] || !entrances[zone.id] || area_m2 < config_.least_room_m2) continue;
     const Eigen::Vector2d at_m = map.frame().center_m(*entrances[zone.id]);
     if (dropped(TargetKind::kBlocked, at_m)) continue;
     found.push_back({TargetKind::kBlocked, at_m, config_.worth_m_per_m2 * area_m2});

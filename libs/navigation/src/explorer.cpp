@@ -8,6 +8,7 @@
 #include "topogeo/geometry/portable_math.hpp"
 
 #include "grid_view.hpp"
+#include "rooms.hpp"
 #include "settings_check.hpp"
 #include "short_tour.hpp"
 
@@ -47,7 +48,7 @@ void check(const ExplorerConfig& config) {
   check_range("exploration", "explorer.sure_m", config.sure_m, 0.0, 2.0);
   check_range("exploration", "explorer.together_m", config.together_m, 0.0, 10.0);
   check_range("exploration", "explorer.tour", static_cast<double>(config.tour), 1.0, 30.0);
-  check_range("exploration", "explorer.least_zone_m2", config.least_zone_m2, 0.0, 100.0);
+  check_range("exploration", "explorer.least_room_m2", config.least_room_m2, 0.0, 100.0);
 }
 
 std::string_view describe(TargetKind kind) {
@@ -79,17 +80,22 @@ struct Explorer::Option {
   double worth_m;
 };
 
+struct Explorer::Scene {
+  const planning::HybridMap& map;
+  const Rooms& rooms;
+  const planning::HybridPlanner& planner;
+  std::vector<bool> reachable;  // zones
+  Eigen::Vector2d robot_m;
+};
+
 // Those that can be reached and are worth their way, the nearest first, as many as the tour takes.
 std::vector<Explorer::Option> Explorer::options(const std::vector<Candidate>& candidates,
-                                                const std::vector<bool>& reachable,
-                                                const planning::HybridMap& map,
-                                                const planning::HybridPlanner& planner,
-                                                const Eigen::Vector2d& robot_m) const {
+                                                const Scene& scene) const {
   std::vector<Option> seen;
   for (const Candidate& candidate : candidates) {
-    const auto T_map_view = view_of(candidate, map, reachable, robot_m);
+    const auto T_map_view = view_of(candidate, scene);
     if (!T_map_view) continue;
-    const double straight_m = (T_map_view->position_m() - robot_m).norm();
+    const double straight_m = (T_map_view->position_m() - scene.robot_m).norm();
     seen.push_back(
         {{candidate.kind, candidate.position_m, *T_map_view, straight_m}, candidate.worth_m});
   }
@@ -108,7 +114,7 @@ std::vector<Explorer::Option> Explorer::options(const std::vector<Candidate>& ca
     });
     if (together) continue;
     const planning::HybridRoute route =
-        planner.plan(robot_m, option.target.T_map_view.position_m());
+        scene.planner.plan(scene.robot_m, option.target.T_map_view.position_m());
     if (!route.found() || route.length_m > option.worth_m) continue;
     option.target.way_m = route.length_m;
     found.insert(std::upper_bound(found.begin(), found.end(), option, nearer), option);
@@ -122,11 +128,10 @@ std::optional<ExplorationTarget> Explorer::next(const topomap::GlobalMap& graph,
                                                 const planning::HybridPlanner& planner,
                                                 const geometry::Pose2& T_map_robot) const {
   const Eigen::Vector2d robot_m = T_map_robot.position_m();
-  const std::vector<bool> reachable = reachable_zones(map, robot_m);
-  std::vector<Option> found = options(candidates(graph, map), reachable, map, planner, robot_m);
-  if (found.empty()) {
-    found = options(blocked_zones(map, reachable), reachable, map, planner, robot_m);
-  }
+  const Rooms rooms(map);
+  const Scene scene{map, rooms, planner, reachable_zones(map, robot_m), robot_m};
+  std::vector<Option> found = options(candidates(graph, map, rooms), scene);
+  if (found.empty()) found = options(blocked_zones(map, scene.reachable), scene);
   if (found.empty()) return std::nullopt;
   if (found.size() == 1) return found.front().target;
   WayTable ways_m(found.size());
@@ -166,18 +171,16 @@ bool Explorer::dropped(TargetKind kind, const Eigen::Vector2d& position_m) const
 // Where the robot is sent: near to the target, in its sight and, of such places, the one nearest to
 // the robot; a room is entered where it is wide, and a blocked entrance looked at from nearest.
 std::optional<geometry::Pose2> Explorer::view_of(const Candidate& candidate,
-                                                 const planning::HybridMap& map,
-                                                 const std::vector<bool>& reachable,
-                                                 const Eigen::Vector2d& robot_m) const {
-  const planning::FreeSpace& space = map.space();
-  const planning::GridFrame& frame = map.frame();
+                                                 const Scene& scene) const {
+  const planning::FreeSpace& space = scene.map.space();
+  const planning::GridFrame& frame = scene.map.frame();
   const auto room = frame.cell_of(candidate.position_m);
   const double wide_m =
       candidate.kind == TargetKind::kRoom && room ? kWide * space.clearance_m(*room) : 0.0;
   const auto good = [&](const planning::Cell& cell) {
-    if (!space.passable(cell) || !reachable[map.zone_of(cell)]) return false;
+    if (!space.passable(cell) || !scene.reachable[scene.map.zone_of(cell)]) return false;
     if (candidate.kind == TargetKind::kRoom) {
-      return map.zone_of(cell) == map.zone_of(*room) &&
+      return scene.rooms.at(cell) == scene.rooms.at(*room) &&
              space.clearance_m(cell) >= std::min(wide_m, kWideEnough_m);
     }
     if (candidate.kind == TargetKind::kBlocked) return true;
@@ -188,7 +191,7 @@ std::optional<geometry::Pose2> Explorer::view_of(const Candidate& candidate,
   std::optional<planning::Cell> cell;
   if (candidate.kind != TargetKind::kBlocked) {
     cell = best_cell(frame, candidate.position_m, config_.approach_m, good,
-                     [&](const Eigen::Vector2d& at_m) { return (at_m - robot_m).norm(); });
+                     [&](const Eigen::Vector2d& at_m) { return (at_m - scene.robot_m).norm(); });
   }
   if (!cell) cell = nearest_cell(frame, candidate.position_m, config_.view_m, good);
   if (!cell) return std::nullopt;

@@ -39,7 +39,7 @@ ExplorerConfig small() {
   ExplorerConfig config;
   config.sure_m = 0.2;
   config.least_gap_m = 0.5;
-  config.least_zone_m2 = 0.5;
+  config.least_room_m2 = 0.5;
   return config;
 }
 
@@ -137,6 +137,37 @@ TEST(Explorer, ARoomThatWasSeenIsEnteredToo) {
   EXPECT_TRUE(next(explorer, map, pose_at(4, 4)));
   explorer.set_visited({pose_at(4, 4), pose_at(16, 4)});
   EXPECT_FALSE(next(explorer, map, pose_at(4, 4)));
+}
+
+TEST(Explorer, ARoomWhoseDoorTheGraphDoesNotHaveIsEnteredToo) {
+  const planning::HybridMap map = map_of({
+      "############################",
+      "#............#.............#",
+      "#............#.............#",
+      "#............#.............#",
+      "#............#.............#",
+      "#..........................#",
+      "#..........................#",
+      "#..........................#",
+      "#............#.............#",
+      "#............#.............#",
+      "#............#.............#",
+      "#............#.............#",
+      "############################",
+  });
+  ASSERT_EQ(map.zones().zones.size(), 1U);
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(4, 6)});
+  const auto target = next(explorer, map, pose_at(4, 6));
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->kind, TargetKind::kRoom);
+  EXPECT_GT(target->T_map_view.x_m, at(13, 6).x());
+  EXPECT_TRUE(explorer.open(*target, map));
+  explorer.set_visited({pose_at(4, 6), pose_at(13, 6)});  // the threshold is not inside
+  EXPECT_TRUE(explorer.open(*target, map));
+  explorer.set_visited({pose_at(4, 6), pose_at(20, 6)});
+  EXPECT_FALSE(explorer.open(*target, map));
+  EXPECT_FALSE(next(explorer, map, pose_at(4, 6)));
 }
 
 TEST(Explorer, ASideOfAPassageThatWasNotSeenIsGoneTo) {

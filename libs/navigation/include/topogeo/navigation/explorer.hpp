@@ -24,6 +24,7 @@
 
 namespace topogeo::navigation {
 
+class Rooms;
 class UnknownFloor;
 
 struct ExplorerConfig {
@@ -44,7 +45,7 @@ struct ExplorerConfig {
   double together_m = 1.5;   ///< targets seen from places nearer than this are one on the tour that
                              ///< decides on their order, [0, 10]
   std::size_t tour = 10;     ///< so many of the nearest targets are ordered, [1, 30]
-  double least_zone_m2 = 1.0;  ///< smaller zones need not be entered, [0, 100]
+  double least_room_m2 = 1.0;  ///< smaller rooms need not be entered, [0, 100]
 };
 
 /// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
@@ -54,7 +55,7 @@ enum class TargetKind : std::uint8_t {
   kBranchEnd = 0,  ///< of an outer branch
   kPassage = 1,    ///< a door or narrowing of which a side was not seen
   kGap = 2,        ///< free cells next to unknown ones
-  kRoom = 3,       ///< a zone that was never entered
+  kRoom = 3,       ///< a wide part of the floor that was never entered
   kBlocked = 4,    ///< a zone that was seen, but the map shows no way into it; often it does when
                    ///< the entrance is looked at from near, so these come last
 };
@@ -104,8 +105,10 @@ class Explorer {
     double worth_m;  // longest way that it is worth
   };
   struct Option;
+  struct Scene;  // what is planned on
   [[nodiscard]] std::vector<Candidate> candidates(const topomap::GlobalMap& graph,
-                                                  const planning::HybridMap& map) const;
+                                                  const planning::HybridMap& map,
+                                                  const Rooms& rooms) const;
   [[nodiscard]] std::vector<Candidate> blocked_zones(const planning::HybridMap& map,
                                                      const std::vector<bool>& reachable) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> branch_ends(const topomap::GlobalMap& graph) const;
@@ -113,17 +116,12 @@ class Explorer {
                                                            const planning::HybridMap& map) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> gaps(const planning::HybridMap& map,
                                                   const UnknownFloor& unknown) const;
-  void add_rooms(const planning::HybridMap& map, std::vector<Candidate>& found) const;
-  [[nodiscard]] bool entered(const planning::HybridMap& map, planning::ZoneId zone) const;
+  void add_rooms(const planning::HybridMap& map, const Rooms& rooms,
+                 std::vector<Candidate>& found) const;
   [[nodiscard]] std::vector<Option> options(const std::vector<Candidate>& candidates,
-                                            const std::vector<bool>& reachable,
-                                            const planning::HybridMap& map,
-                                            const planning::HybridPlanner& planner,
-                                            const Eigen::Vector2d& robot_m) const;
+                                            const Scene& scene) const;
   [[nodiscard]] std::optional<geometry::Pose2> view_of(const Candidate& candidate,
-                                                       const planning::HybridMap& map,
-                                                       const std::vector<bool>& reachable,
-                                                       const Eigen::Vector2d& robot_m) const;
+                                                       const Scene& scene) const;
   [[nodiscard]] bool dropped(TargetKind kind, const Eigen::Vector2d& position_m) const;
 
   ExplorerConfig config_;
