@@ -102,7 +102,8 @@ std::vector<MeasuredMotion> motions_from_reference(const LocalMaps& maps,
   const std::vector<OdometryStretch> stretches = odometry_stretches(maps);
   std::vector<std::optional<Pose2>> poses;
   poses.reserve(maps.size());
-  for (const auto& map : maps) poses.push_back(topomap::pose_at(reference, map->stamp_ns, kLongestGap_ns));
+  for (const auto& map : maps)
+    poses.push_back(topomap::pose_at(reference, map->stamp_ns, kLongestGap_ns));
   std::vector<MeasuredMotion> motions;
   for (std::uint32_t first = 0; first + 1 < maps.size(); ++first) {
     if (!poses[first]) continue;
