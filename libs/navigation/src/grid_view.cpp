@@ -1,5 +1,6 @@
 #include "grid_view.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -60,20 +61,41 @@ std::optional<Cell> nearest_cell(const GridFrame& frame, const Eigen::Vector2d& 
                    [&](const Eigen::Vector2d& at_m) { return (at_m - point_m).norm(); });
 }
 
-std::optional<Cell> nearest_passable(const planning::FreeSpace& space,
-                                     const Eigen::Vector2d& point_m, double reach_m) {
-  return nearest_cell(space.frame(), point_m, reach_m,
-                      [&](const Cell& cell) { return space.passable(cell); });
+namespace {
+
+/// The zones that a robot may be in: that of its cell or, where that is not passable, or noise has
+/// shut it in, all of those that it sees near by. It may have come from any of them.
+std::vector<planning::ZoneId> zones_around(const planning::HybridMap& map,
+                                           const Eigen::Vector2d& from_m) {
+  constexpr double kNear_m = 0.5;
+  constexpr double kPocket_m2 = 1.0;
+  std::vector<planning::ZoneId> zones;
+  const auto own = map.frame().cell_of(from_m);
+  if (own && map.space().passable(*own)) {
+    const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
+    const planning::ZoneId zone = map.zone_of(*own);
+    if (static_cast<double>(map.zones().zones[zone].cells) * cell_m2 > kPocket_m2) return {zone};
+  }
+  visit_disc(map.frame(), from_m, kNear_m, [&](const Cell& cell) {
+    const planning::ZoneId zone = map.zone_of(cell);
+    if (zone != planning::kNoZone && std::find(zones.begin(), zones.end(), zone) == zones.end() &&
+        nothing_between(map.space().grid(), from_m, map.frame().center_m(cell))) {
+      zones.push_back(zone);
+    }
+    return false;
+  });
+  return zones;
 }
+
+}  // namespace
 
 std::vector<bool> reachable_zones(const planning::HybridMap& map, const Eigen::Vector2d& from_m) {
   std::vector<bool> zones(map.zones().zones.size(), false);
-  const auto cell = nearest_passable(map.space(), from_m, 0.5);
-  const planning::ZoneId own = cell ? map.zone_of(*cell) : planning::kNoZone;
-  if (own == planning::kNoZone) return zones;
-  zones[own] = true;
   std::vector<planning::GraphAccess> entries;
-  for (const std::uint32_t node : map.nodes_of(own)) entries.push_back({node, 0.0});
+  for (const planning::ZoneId zone : zones_around(map, from_m)) {
+    zones[zone] = true;
+    for (const std::uint32_t node : map.nodes_of(zone)) entries.push_back({node, 0.0});
+  }
   if (entries.empty()) return zones;
   const std::vector<bool> nodes = map.graph().reached(entries);
   for (const planning::BorderNode& node : map.nodes()) {

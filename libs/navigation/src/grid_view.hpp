@@ -25,10 +25,9 @@ std::optional<planning::Cell> best_cell(const planning::GridFrame& frame,
                                         const std::function<bool(const planning::Cell&)>& good,
                                         const std::function<double(const Eigen::Vector2d&)>& cost);
 
-std::optional<planning::Cell> nearest_passable(const planning::FreeSpace& space,
-                                               const Eigen::Vector2d& point_m, double reach_m);
-
-/// Which zones can be got to from a point, by index; none when nothing passable is near it.
+/// Which zones can be got to from a point, by index; from one where a robot must not be, or is shut
+/// in, those that can be got to from any passable cell that it sees within 0.5 m. None when there
+/// is no such cell.
 std::vector<bool> reachable_zones(const planning::HybridMap& map, const Eigen::Vector2d& from_m);
 
 /// Whether no occupied cell lies on the straight line between two points of the map frame.

@@ -58,11 +58,71 @@ std::optional<Cell> start_of(const FreeSpace& space, const SearchWindow& window,
   return nearest_in_sight(space.frame(), robot_m, snap_m, open, clear);
 }
 
+// Whether next to nothing can be got to from an open cell: at most a square metre.
+bool shut_in(const SearchWindow& window, const Cell& from, double resolution_m) {
+  constexpr double kPocket_m2 = 1.0;
+  const auto most = static_cast<std::size_t>(kPocket_m2 / (resolution_m * resolution_m));
+  std::vector<Cell> found{from};
+  for (std::size_t i = 0; i < found.size() && found.size() <= most; ++i) {
+    const Cell cell = found[i];
+    for (const Cell& next : {Cell{cell.column + 1, cell.row}, Cell{cell.column - 1, cell.row},
+                             Cell{cell.column, cell.row + 1}, Cell{cell.column, cell.row - 1}}) {
+      const bool known = std::find(found.begin(), found.end(), next) != found.end();
+      if (!known && window.open(next)) found.push_back(next);
+    }
+  }
+  return found.size() <= most;
+}
+
+// Instead of a start from which no way leads: the open cell nearest to the robot, in its sight,
+// that a way leads to from `to`. Only for a robot whose cell is not open, or that is shut in.
+std::optional<Cell> start_with_way(const FreeSpace& space, const SearchWindow& window,
+                                   const std::vector<Cell>& obstacles,
+                                   const Eigen::Vector2d& robot_m, double snap_m, const Cell& to) {
+  const GridFrame& frame = space.frame();
+  const Cell robot = frame.cell_of(robot_m).value();
+  if (window.open(robot) && !shut_in(window, robot, frame.resolution_m)) return std::nullopt;
+  const auto reach = static_cast<std::int32_t>(snap_m / frame.resolution_m) + 1;
+  const CellBox box = grown({robot, robot}, reach, frame);
+  std::vector<Cell> near;
+  for (std::int32_t row = box.low.row; row <= box.high.row; ++row) {
+    for (std::int32_t column = box.low.column; column <= box.high.column; ++column) {
+      if (window.open({column, row})) near.push_back({column, row});
+    }
+  }
+  const auto paths = shortest_paths(window, to, near);
+  std::vector<Cell> joined;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (paths[i]) joined.push_back(near[i]);
+  }
+  sort_cells(joined);
+  return nearest_in_sight(
+      frame, robot_m, snap_m, [&](const Cell& cell) { return has_cell(joined, cell); },
+      [&](const Cell& cell) {
+        return space.grid().at(cell) != CellState::kOccupied && !has_cell(obstacles, cell);
+      });
+}
+
 Detour failure(DetourStatus status, const char* reason) {
   Detour detour;
   detour.status = status;
   detour.reason = reason;
   return detour;
+}
+
+// The candidate by which the way to the end of the route is shortest; they are its last cells.
+std::optional<std::size_t> cheapest(const std::vector<std::optional<CellPath>>& paths,
+                                    std::span<const Cell> candidates) {
+  std::optional<std::size_t> best;
+  double best_cells = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    if (!paths[k]) continue;
+    const double total = paths[k]->cost_cells + cost_cells(candidates.subspan(k));
+    if (total >= best_cells) continue;
+    best = k;
+    best_cells = total;
+  }
+  return best;
 }
 
 // Cells of the route from `from` on that lie in the window without a gap: [from, end).
@@ -117,15 +177,15 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
     return failure(DetourStatus::kBlocked, "the route is blocked as far as the window goes");
   }
   const std::span<const Cell> candidates = route.subspan(behind, end - behind);
-  const auto paths = shortest_paths(window, *start, candidates);
-  std::optional<std::size_t> best;
-  double best_cells = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    if (!paths[k]) continue;
-    const double total = paths[k]->cost_cells + cost_cells(candidates.subspan(k));
-    if (total >= best_cells) continue;
-    best = k;
-    best_cells = total;
+  auto paths = shortest_paths(window, *start, candidates);
+  std::optional<std::size_t> best = cheapest(paths, candidates);
+  if (!best) {
+    const auto other =
+        start_with_way(space, window, obstacles, robot_m, config.start_snap_m, candidates.front());
+    if (other) {
+      paths = shortest_paths(window, *other, candidates);
+      best = cheapest(paths, candidates);
+    }
   }
   if (!best) return failure(DetourStatus::kBlocked, "no way leads round within the window");
   Detour detour;

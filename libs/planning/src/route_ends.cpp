@@ -33,12 +33,12 @@ std::optional<Cell> EndFinder::find(const std::string& what, const Eigen::Vector
     failure = no_route(outside, what + " is outside of the grid");
     return std::nullopt;
   }
-  const auto open = [this](const Cell& c) { return space_.passable(c) && !cells_.forbids(c); };
   if (open(*cell)) return cell;
-  const auto clear = [this](const Cell& c) {
-    return space_.grid().at(c) != CellState::kOccupied && !cells_.filled(c);
-  };
-  if (const auto near = nearest_in_sight(space_.frame(), point_m, snap_m, open, clear)) return near;
+  const auto is_open = [this](const Cell& c) { return open(c); };
+  const auto is_clear = [this](const Cell& c) { return clear(c); };
+  if (const auto near = nearest_in_sight(space_.frame(), point_m, snap_m, is_open, is_clear)) {
+    return near;
+  }
   const CellState state = space_.grid().at(*cell);
   if (state == CellState::kUnknown) {
     failure = no_route(outside, what + " is where nothing is known");
@@ -61,6 +61,23 @@ std::optional<Cell> EndFinder::start(const Eigen::Vector2d& point_m, double snap
                                      HybridRoute& failure) const {
   return find("the start " + shown(point_m), point_m, snap_m, RouteStatus::kStartOutside,
               RouteStatus::kStartOccupied, failure);
+}
+
+std::optional<Cell> EndFinder::start_apart(const HybridMap& map, const Eigen::Vector2d& point_m,
+                                           double snap_m, const std::vector<ZoneId>& zones) const {
+  constexpr double kPocket_m2 = 1.0;
+  const auto own = space_.frame().cell_of(point_m);
+  if (!own) return std::nullopt;
+  if (open(*own)) {
+    const double cell_m2 = space_.frame().resolution_m * space_.frame().resolution_m;
+    const auto cells = static_cast<double>(map.zones().zones[map.zone_of(*own)].cells);
+    if (cells * cell_m2 > kPocket_m2) return std::nullopt;
+  }
+  const auto apart = [&](const Cell& c) {
+    return open(c) && std::find(zones.begin(), zones.end(), map.zone_of(c)) == zones.end();
+  };
+  return nearest_in_sight(space_.frame(), point_m, snap_m, apart,
+                          [this](const Cell& c) { return clear(c); });
 }
 
 std::optional<Cell> EndFinder::goal(const Eigen::Vector2d& point_m, double snap_m,

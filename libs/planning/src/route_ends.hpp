@@ -29,7 +29,13 @@ class EndFinder {
   [[nodiscard]] std::optional<Cell> start(const Eigen::Vector2d& point_m, double snap_m,
                                           HybridRoute& failure) const;
 
-  /// The same for a route that ends there.
+  /// Where else a route may begin whose start is not open, or in a zone of at most a square metre,
+  /// as noise parts from the floor around it: as start(), of the cells in none of the zones given.
+  [[nodiscard]] std::optional<Cell> start_apart(const HybridMap& map,
+                                                const Eigen::Vector2d& point_m, double snap_m,
+                                                const std::vector<ZoneId>& zones) const;
+
+  /// The same as start() for a route that ends there.
   [[nodiscard]] std::optional<Cell> goal(const Eigen::Vector2d& point_m, double snap_m,
                                          HybridRoute& failure) const;
 
@@ -37,6 +43,13 @@ class EndFinder {
   [[nodiscard]] std::optional<Cell> find(const std::string& what, const Eigen::Vector2d& point_m,
                                          double snap_m, RouteStatus outside, RouteStatus occupied,
                                          HybridRoute& failure) const;
+
+  [[nodiscard]] bool open(const Cell& cell) const {
+    return space_.passable(cell) && !cells_.forbids(cell);
+  }
+  [[nodiscard]] bool clear(const Cell& cell) const {
+    return space_.grid().at(cell) != CellState::kOccupied && !cells_.filled(cell);
+  }
 
   const FreeSpace& space_;
   const ClosedCells& cells_;

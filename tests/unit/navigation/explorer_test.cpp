@@ -170,6 +170,25 @@ TEST(Explorer, ARoomWhoseDoorTheGraphDoesNotHaveIsEnteredToo) {
   EXPECT_FALSE(next(explorer, map, pose_at(4, 6)));
 }
 
+TEST(Explorer, InATightPlaceAllThatIsSeenNearByCanBeReached) {
+  const planning::HybridMap map = map_of({
+      "################????",
+      "#...#...........????",
+      "#...#...........????",
+      "#...............????",
+      "#...#...........????",
+      "#...#...........????",
+      "################????",
+  });
+  Explorer explorer(small());
+  explorer.set_visited({pose_at(2, 3), pose_at(8, 3)});
+  // In the gap, nearer to the closet than to the open room.
+  const auto target = next(explorer, map, {kCell_m * 4.3, kCell_m * 3.5, 0.0});
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->kind, TargetKind::kGap);
+  EXPECT_GT(target->T_map_view.x_m, at(5, 3).x());
+}
+
 TEST(Explorer, ASideOfAPassageThatWasNotSeenIsGoneTo) {
   const planning::HybridMap map = map_of({
       "#########????????",

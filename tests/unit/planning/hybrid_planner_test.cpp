@@ -56,6 +56,39 @@ TEST(HybridMap, HasANodeInEachDoorAndAnEdgeThroughTheRoomBetween) {
   EXPECT_DOUBLE_EQ(map.edges()[0].cost_m, 4.0 + std::numbers::sqrt2 + 1.0);
 }
 
+// Two rooms that noise has parted: the door between them is too narrow on the map. A robot in it
+// came from one of them, not from the one whose cells happen to be nearer.
+TEST(HybridPlanner, FromADoorThatTheMapShowsTooNarrowItLeavesToEitherSide) {
+  InflationConfig inflation;
+  inflation.forbidden_cells = 1.0;
+  FreeSpace space(grid_of_text(
+                      {
+                          "........#........",
+                          "........#........",
+                          ".................",
+                          "........#........",
+                          "........#........",
+                      },
+                      0.25),
+                  inflation);
+  ZoneConfig config;
+  config.min_area_m2 = 0.0;
+  ZoneMap zones = zones_between(space, {}, config);
+  ASSERT_THAT(zones.zones, SizeIs(2));
+  const HybridMap map(std::move(space), std::move(zones));
+  const HybridPlanner planner(map);
+  const double y_m = 2.5 * 0.25;
+  for (const double from_m : {8.4 * 0.25, 8.6 * 0.25}) {
+    for (const double to_m : {2.5 * 0.25, 14.5 * 0.25}) {
+      const HybridRoute route = planner.plan({from_m, y_m}, Eigen::Vector2d(to_m, y_m));
+      EXPECT_TRUE(route.found()) << from_m << " to " << to_m << ": " << route.reason;
+    }
+  }
+  // From a room there is no way into the other one.
+  const HybridRoute route = planner.plan({2.5 * 0.25, y_m}, Eigen::Vector2d(14.5 * 0.25, y_m));
+  EXPECT_EQ(route.status, RouteStatus::kUnreachable);
+}
+
 TEST(HybridMap, HasItsNodeInTheMiddleOfAWideBorder) {
   InflationConfig inflation;
   inflation.forbidden_cells = 0.0;

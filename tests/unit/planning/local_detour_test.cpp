@@ -117,6 +117,22 @@ TEST(LocalDetour, StartsOnTheRobotsSideOfAWall) {
   EXPECT_EQ(free.cells.front(), (Cell{30, 18}));
 }
 
+// The robot stands in a gap between two obstacles, nearer to the side that it comes from.
+TEST(LocalDetour, LeavesATightPlaceToTheSideOfTheRoute) {
+  const FreeSpace space = corridor();
+  const HybridRoute route = plan_on_grid(space, kStart_m, kGoal_m);
+  std::vector<Eigen::Vector2d> gap_m = wall_m(5.0, 0.1, 1.25);
+  const std::vector<Eigen::Vector2d> upper_m = wall_m(5.0, 1.85, 2.9);
+  gap_m.insert(gap_m.end(), upper_m.begin(), upper_m.end());
+  DetourConfig config;
+  config.half_side_m = 2.0;
+  const Eigen::Vector2d robot_m(5.02, 1.55);
+  const Detour detour = plan_detour(space, route.cells, robot_m, kGoal_m, gap_m, config);
+  ASSERT_EQ(detour.status, DetourStatus::kFound) << detour.reason;
+  EXPECT_GT(space.frame().center_m(detour.cells.front()).x(), 5.0);
+  EXPECT_EQ(detour.cells.back(), route.cells.back());
+}
+
 TEST(LocalDetour, RefusesBadInput) {
   const FreeSpace space = corridor();
   EXPECT_THROW(plan_detour(space, {}, kStart_m, kGoal_m, {}), std::invalid_argument);

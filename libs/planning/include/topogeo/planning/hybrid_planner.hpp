@@ -25,7 +25,7 @@ namespace topogeo::planning {
 struct HybridPlannerConfig {
   /// A robot that stands in a forbidden cell starts from the nearest passable one this near, if no
   /// obstacle is between, [0, 5].
-  double start_snap_m = 0.35;
+  double start_snap_m = 0.5;
   double goal_snap_m = 0.0;  ///< the same for goals, [0, 5]; 0: they must be passable
   /// A route that is longer than the straight way is planned again whole when all ways shorter than
   /// it lie in a window of at most so many cells, [0, 1e8]; 0: never, as the source.

@@ -17,7 +17,7 @@ namespace topogeo::planning {
 
 struct DetourConfig {
   double half_side_m = 3.0;    ///< of the window around the robot, [0.5, 20]
-  double start_snap_m = 0.35;  ///< as HybridPlannerConfig::start_snap_m: obstacles seen now can be
+  double start_snap_m = 0.5;  ///< as HybridPlannerConfig::start_snap_m: obstacles seen now can be
                                ///< nearer than the forbidden cells, [0, 5]
 };
 
