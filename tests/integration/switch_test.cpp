@@ -71,6 +71,8 @@ class SwitchTest : public ::testing::Test {
   }
   [[nodiscard]] std::size_t stops_in_map() const { return assembly_.newest().stops.size(); }
 
+  // A killed program leaves a part of /dev/shm behind that others may still wait at.
+  const bool udp_only_ = (use_udp_only(), true);
   std::string partition_ = random_partition();
   Scratch scratch_;
   Maps maps_ = maps_of_room();

@@ -59,6 +59,7 @@ class WorkerTest : public ::testing::Test {
     return "t" + std::to_string(device());
   }
 
+  const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
   std::string domain_ = own_domain();
   std::string name_ = random_name();
