@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/matching/match.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::ga_worker {

@@ -5,7 +5,7 @@
 #include <list>
 #include <string>
 
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 
 #include "job.hpp"
 

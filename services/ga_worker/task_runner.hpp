@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/matching/match.hpp"
 
 #include "fair_queue.hpp"
 #include "job.hpp"

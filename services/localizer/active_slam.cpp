@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 
 namespace topogeo::localizer {

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/map_localizer.hpp"
-#include "topogeo/localization/mapping_session.hpp"
-#include "topogeo/localization/slam.hpp"
+#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/mapping_session.hpp"
 
 #include "background_optimizer.hpp"
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/graph_optimization.hpp"
+#include "topogeo/localization/mapping/graph_optimization.hpp"
 
 namespace topogeo::localizer {
 

@@ -5,8 +5,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "topogeo/localization/live_pose.hpp"
-#include "topogeo/localization/match_gate.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/tracking/live_pose.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/matching/match.hpp"
 
 #include "recovery.hpp"
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/matching/match.hpp"
 
 #include "recovery.hpp"
 #include "task_batch.hpp"

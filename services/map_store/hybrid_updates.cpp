@@ -9,7 +9,7 @@ namespace topogeo::map_store {
 namespace {
 
 /// Equal but for what changes with every update.
-bool same_content(msg::HybridMap a, const msg::HybridMap& b) {
+bool same_tile(msg::HybridMap a, const msg::HybridMap& b) {
   a.stamp_ns(b.stamp_ns());
   a.sequence_number(b.sequence_number());
   a.version(b.version());
@@ -37,8 +37,7 @@ HybridUpdates::Update HybridUpdates::update_to(const planning::HybridMap& map,
     if (number >= messages.tiles.size()) update.gone.push_back(tile);
   }
   messages.summary.sequence_number(summaries_);
-  if (!sent_summary_ || !update.changed.empty() ||
-      !same_content(messages.summary, *sent_summary_)) {
+  if (!sent_summary_ || !update.changed.empty() || !same_tile(messages.summary, *sent_summary_)) {
     ++version_;
     update.summary = std::move(messages.summary);
   }

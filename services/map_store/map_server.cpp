@@ -9,7 +9,7 @@ namespace topogeo::map_store {
 
 namespace {
 
-constexpr std::chrono::milliseconds kRetryPeriod{500};
+constexpr std::chrono::milliseconds kServerRetryPeriod{500};
 
 }  // namespace
 
@@ -19,7 +19,7 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
   if (!document_.local_maps.empty()) stamp_ns_ = document_.local_maps.back().stamp_ns;
   hybrid_.publish(hybrid, stamp_ns_);
   send();
-  service_.loop().add_timer(kRetryPeriod, [this] { send(); });
+  service_.loop().add_timer(kServerRetryPeriod, [this] { send(); });
   service_.status().set_counter("local_maps", static_cast<double>(document_.local_maps.size()));
   service_.status().set_state(msg::kServiceRunning);
   spdlog::info("serves a map of {} local maps, {} zones and {} places", document_.local_maps.size(),

@@ -3,7 +3,7 @@
 #include <exception>
 #include <vector>
 
-#include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/results/outputs.hpp"
 #include "topogeo/service/service_options.hpp"
 
 namespace topogeo::map_store {
@@ -38,7 +38,7 @@ void write_results(const fs::path& directory, const storage::MapDocument& docume
   const fs::path unfinished = directory / ".unfinished";
   fs::remove_all(unfinished);
   fs::create_directory(unfinished);
-  pipeline::write_map_outputs(unfinished, document, title);
+  results::write_map_outputs(unfinished, document, title);
   std::vector<fs::path> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(unfinished)) {
     if (entry.path().filename() != "map.pb") names.push_back(entry.path().filename());

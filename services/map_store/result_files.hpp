@@ -17,7 +17,7 @@ namespace topogeo::map_store {
 storage::MapDatabase fresh_database(const std::filesystem::path& path, const std::string& robot_id,
                                     std::uint64_t seed);
 
-/// Writes what pipeline::write_map_outputs does, and map.pb last, so that where map.pb is new the
+/// Writes what results::write_map_outputs does, and map.pb last, so that where map.pb is new the
 /// others are too. Throws std::runtime_error naming the file.
 void write_results(const std::filesystem::path& directory, const storage::MapDocument& document,
                    const std::string& title);

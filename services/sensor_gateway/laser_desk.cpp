@@ -10,7 +10,7 @@ namespace topogeo::sensor_gateway {
 
 namespace {
 
-constexpr std::chrono::milliseconds kStatusPeriod{500};
+constexpr std::chrono::milliseconds kLaserStatusPeriod{500};
 constexpr std::int64_t kRateWindow_ns = 4'000'000'000;
 
 /// What was dropped, by reason, in words that are the same everywhere.
@@ -64,7 +64,7 @@ LaserDesk::LaserDesk(service::Service& service, const DeviceConfig& config, cons
       line_(service.loop(), driver_, PortOptions{config.laser_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
   service_.loop().add(statuses_);
-  timer_ = service_.loop().add_timer(kStatusPeriod, [this] { publish_status(); });
+  timer_ = service_.loop().add_timer(kLaserStatusPeriod, [this] { publish_status(); });
 }
 
 LaserDesk::~LaserDesk() {

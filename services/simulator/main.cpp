@@ -69,9 +69,9 @@ void go_first() {
   static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNiceness));
 }
 
-simulation::World load(const std::filesystem::path& path) {
+world::World load(const std::filesystem::path& path) {
   try {
-    return simulation::load_world(path);
+    return world::load_world(path);
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
         simulation::RobotOptions& robot = arguments.options.devices.robot;
         robot.T_robot_laser = setup.config.config.local_mapper.T_robot_laser;
         robot.odometry = drift(arguments.odometry, robot.seed);
-        const simulation::World world = load(arguments.world);
+        const world::World world = load(arguments.world);
         go_first();
         service::Service service(setup);
         const simulator::SimulatorService simulator(service, world, arguments.options);

@@ -36,7 +36,7 @@ std::uint16_t bumper_bits(double direction_rad) {
   return static_cast<std::uint16_t>(1U << static_cast<unsigned>(which));
 }
 
-SimulatedDevices::SimulatedDevices(simulation::World world, const DeviceOptions& options)
+SimulatedDevices::SimulatedDevices(world::World world, const DeviceOptions& options)
     : robot_(std::move(world), options.robot),
       laser_(laser_settings(options.robot.seed), [this](std::int64_t) { return robot_.scan(); }),
       base_(base_settings(options)),

@@ -9,7 +9,7 @@
 #include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/simulation/pls_emulator.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 #include "pseudo_terminal.hpp"
 
@@ -29,7 +29,7 @@ class SimulatedDevices {
  public:
   /// The devices are switched on at 0, their ports are there. Throws like SimulatedRobot,
   /// PseudoTerminal::plug and the emulators.
-  SimulatedDevices(simulation::World world, const DeviceOptions& options);
+  SimulatedDevices(world::World world, const DeviceOptions& options);
 
   /// Lets the world and the devices run until `now_ns` and exchanges bytes with the ports.
   void run_until(std::int64_t now_ns);

@@ -27,7 +27,7 @@ std::int64_t nanoseconds(std::chrono::nanoseconds duration) {
 
 }  // namespace
 
-SimulatorService::SimulatorService(service::Service& service, simulation::World world,
+SimulatorService::SimulatorService(service::Service& service, world::World world,
                                    const SimulatorOptions& options)
     : service_(service),
       time_factor_(options.time_factor),

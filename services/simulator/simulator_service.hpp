@@ -26,8 +26,7 @@ struct SimulatorOptions {
 class SimulatorService {
  public:
   /// Throws like SimulatedDevices.
-  SimulatorService(service::Service& service, simulation::World world,
-                   const SimulatorOptions& options);
+  SimulatorService(service::Service& service, world::World world, const SimulatorOptions& options);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -27,7 +27,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-struct Request {
+struct BaseRequest {
   DomainView view;
   std::string robot_id = "robot";
   double wait_s = 5.0;
@@ -60,7 +60,7 @@ std::string_view name(msg::BaseState state) {
   return "offline";
 }
 
-void print(const msg::BaseStatus& status) {
+void print_base(const msg::BaseStatus& status) {
   std::cout << status.robot_id().c_str() << ": " << name(status.state());
   if (status.reason().size() > 0) std::cout << ": " << status.reason().c_str();
   if (status.battery_v() > 0.0F) {
@@ -73,7 +73,7 @@ void print(const msg::BaseStatus& status) {
 
 /// The next status of the base for which `wanted` holds, within the request's time.
 std::optional<msg::BaseStatus> next_status(
-    messaging::Reader<msg::BaseStatus>& reader, const Request& request,
+    messaging::Reader<msg::BaseStatus>& reader, const BaseRequest& request,
     const std::function<bool(const msg::BaseStatus&)>& wanted) {
   const auto end = std::chrono::steady_clock::now() +
                    milliseconds(static_cast<std::int64_t>(1000.0 * request.wait_s));
@@ -89,17 +89,17 @@ std::optional<msg::BaseStatus> next_status(
   return found;
 }
 
-int show(const Request& request) {
+int show(const BaseRequest& request) {
   const messaging::Participant participant = join(request.view, "topogeo/base");
   messaging::Reader<msg::BaseStatus> reader(participant);
   const auto status = next_status(reader, request, [](const msg::BaseStatus&) { return true; });
   if (!status) throw std::runtime_error(nothing_alive(request.view, "base"));
-  print(*status);
+  print_base(*status);
   return service::kOk;
 }
 
 /// Sends the command and shows what the base is like afterwards.
-int send(Request request) {
+int send_base_command(BaseRequest request) {
   const messaging::Participant participant = join(request.view, "topogeo/base");
   messaging::Reader<msg::BaseStatus> reader(participant);
   messaging::Writer<msg::BaseCommand> writer(participant);
@@ -122,11 +122,11 @@ int send(Request request) {
     throw std::runtime_error("robot '" + request.robot_id + "' did not do it within " +
                              std::to_string(patience.count()) + " ms");
   }
-  print(*status);
+  print_base(*status);
   return service::kOk;
 }
 
-void add_options(CLI::App& app, Request& request) {
+void add_base_options(CLI::App& app, BaseRequest& request) {
   app.add_option("--robot,--robot-id", request.robot_id, "whose base")->capture_default_str();
   add_domain_options(app, request.view);
   constexpr double kLongestWait_s = 3600.0;
@@ -135,7 +135,7 @@ void add_options(CLI::App& app, Request& request) {
       ->capture_default_str();
 }
 
-void add_limits(CLI::App& group, const std::shared_ptr<Request>& request, int& exit_code) {
+void add_limits(CLI::App& group, const std::shared_ptr<BaseRequest>& request, int& exit_code) {
   CLI::App* limits = group.add_subcommand("limits", "Set its largest speeds and accelerations");
   auto values = std::make_shared<std::array<double, 4>>();
   constexpr double kMost = 100.0;
@@ -145,14 +145,14 @@ void add_limits(CLI::App& group, const std::shared_ptr<Request>& request, int& e
   limits->add_option("linear-acceleration", (*values)[2], "m/s^2")->required()->check(range);
   limits->add_option("angular-acceleration", (*values)[3], "rad/s^2")->required()->check(range);
   limits->footer("Never over those of the gateway's file of devices.");
-  add_options(*limits, *request);
+  add_base_options(*limits, *request);
   limits->callback([request, values, &exit_code] {
     request->command.kind(msg::kBaseSetLimits);
     request->command.largest_linear_mps((*values)[0]);
     request->command.largest_angular_radps((*values)[1]);
     request->command.linear_acceleration_mps2((*values)[2]);
     request->command.angular_acceleration_radps2((*values)[3]);
-    exit_code = send(*request);
+    exit_code = send_base_command(*request);
   });
 }
 
@@ -162,22 +162,22 @@ void add_base_command(CLI::App& app, int& exit_code) {
   CLI::App* group =
       app.add_subcommand("base", "Show the base of a robot, halt it, let it go again");
   group->require_subcommand(1);
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<BaseRequest>();
   CLI::App* status = group->add_subcommand("status", "What state it is in");
-  add_options(*status, *request);
+  add_base_options(*status, *request);
   status->callback([request, &exit_code] { exit_code = show(*request); });
   CLI::App* halt = group->add_subcommand("halt", "Stop it; it refuses to move until reset");
-  add_options(*halt, *request);
+  add_base_options(*halt, *request);
   halt->callback([request, &exit_code] {
     request->command.kind(msg::kBaseHalt);
-    exit_code = send(*request);
+    exit_code = send_base_command(*request);
   });
   CLI::App* reset =
       group->add_subcommand("reset", "It may move again, after a halt or an emergency stop");
-  add_options(*reset, *request);
+  add_base_options(*reset, *request);
   reset->callback([request, &exit_code] {
     request->command.kind(msg::kBaseReset);
-    exit_code = send(*request);
+    exit_code = send_base_command(*request);
   });
   add_limits(*group, request, exit_code);
 }

@@ -14,8 +14,8 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/localization/laser_calibration.hpp"
-#include "topogeo/localization/odometry_calibration_samples.hpp"
+#include "topogeo/localization/calibration/laser_calibration.hpp"
+#include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -31,7 +31,7 @@ using geometry::Pose2;
 using localization::LaserCalibration;
 using localization::MountingEstimate;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kMountingDegrees = 180.0 / std::numbers::pi;
 
 struct CalibrateLaserOptions {
   std::filesystem::path log;
@@ -85,7 +85,7 @@ Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Confi
 
 /// Scans are matched again with the mounting found, until that changes no more: with a wrong
 /// mounting the best matches, those of long ways and large turns, are not found.
-Found calibrate(const CalibrateLaserOptions& options, const pipeline::Config& config) {
+Found calibrate_laser(const CalibrateLaserOptions& options, const pipeline::Config& config) {
   constexpr int kMostRounds = 6;
   constexpr double kSmallShift_m = 0.003;
   constexpr double kSmallShift_rad = 0.002;
@@ -121,14 +121,14 @@ void print_part(const char* name, const MountingEstimate& part, double factor, c
                            factor * part.value, unit);
 }
 
-std::string yaml_block(const LaserCalibration& laser) {
+std::string laser_yaml(const LaserCalibration& laser) {
   return fmt::format("laser:\n  x_m: {:.4f}\n  y_m: {:.4f}\n  yaw_rad: {:.5f}\n", laser.x_m.value,
                      laser.y_m.value, laser.yaw_rad.value);
 }
 
-int calibrate_log(const CalibrateLaserOptions& options) {
+int calibrate_laser_log(const CalibrateLaserOptions& options) {
   const pipeline::LoadedConfig config = load_for_calibration(options.config, options.out);
-  const Found found = calibrate(options, config.config);
+  const Found found = calibrate_laser(options, config.config);
   const LaserCalibration& laser = found.laser;
   const std::string name = options.log.filename().string();
   std::cout << fmt::format("{}: {}\n", name, describe_drive(found.log.maps))
@@ -138,9 +138,9 @@ int calibrate_log(const CalibrateLaserOptions& options) {
   constexpr const char* kTurn = "0.2 rad of turn";
   print_part("x", laser.x_m, 1.0, "m forward", laser.with_turn, kTurn);
   print_part("y", laser.y_m, 1.0, "m to the left", laser.with_turn, kTurn);
-  print_part("yaw", laser.yaw_rad, kDegrees, "degrees counter-clockwise", laser.with_way,
+  print_part("yaw", laser.yaw_rad, kMountingDegrees, "degrees counter-clockwise", laser.with_way,
              "0.2 m of way");
-  const std::string block = yaml_block(laser);
+  const std::string block = laser_yaml(laser);
   std::cout << '\n' << block;
   if (options.out) {
     const std::string comment = "Laser of " + name + ", by topogeo calibrate-laser.";
@@ -178,7 +178,7 @@ void add_calibrate_laser_command(CLI::App& app, int& exit_code) {
       "Example:\n"
       "  topogeo calibrate-laser drive.clf.gz --out robot.yaml\n"
       "  topogeo map --log drive.clf.gz --config robot.yaml --out map");
-  command->callback([options, &exit_code] { exit_code = calibrate_log(*options); });
+  command->callback([options, &exit_code] { exit_code = calibrate_laser_log(*options); });
 }
 
 }  // namespace topogeo::cli

@@ -14,8 +14,8 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/localization/odometry_calibration.hpp"
-#include "topogeo/localization/odometry_calibration_samples.hpp"
+#include "topogeo/localization/calibration/odometry_calibration.hpp"
+#include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"

@@ -10,8 +10,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/localization/localizer.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"

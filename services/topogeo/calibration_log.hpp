@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/localization/odometry_calibration_samples.hpp"
+#include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/support/progress_bar.hpp"

@@ -34,7 +34,7 @@ double degrees(double angle_rad) {
   return angle_rad * 180.0 / std::numbers::pi;
 }
 
-void print_text(const std::string& path, const scan::LogCheck& check) {
+void print_faults(const std::string& path, const scan::LogCheck& check) {
   for (const scan::LogFinding& finding : check.findings) {
     std::cout << fmt::format("{}:{}: {}: {}\n", path, finding.line, describe(finding.fault),
                              finding.text);
@@ -66,7 +66,7 @@ void print_text(const std::string& path, const scan::LogCheck& check) {
   std::cout << '\n';
 }
 
-void print_json(const std::string& path, const scan::LogCheck& check) {
+void print_faults_json(const std::string& path, const scan::LogCheck& check) {
   nlohmann::ordered_json out;
   out["log"] = path;
   out["lines"] = check.lines;
@@ -100,13 +100,13 @@ void print_json(const std::string& path, const scan::LogCheck& check) {
   std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 
-struct Request {
+struct LogRequest {
   std::string log;
   bool json = false;
   scan::LogCheckOptions options;
 };
 
-int check_log(const Request& request) {
+int check_log(const LogRequest& request) {
   scan::LogCheck check;
   try {
     check = scan::check_carmen_log(request.log, request.options);
@@ -115,9 +115,9 @@ int check_log(const Request& request) {
     return kUnreadable;
   }
   if (request.json) {
-    print_json(request.log, check);
+    print_faults_json(request.log, check);
   } else {
-    print_text(request.log, check);
+    print_faults(request.log, check);
   }
   return check.faults() == 0 ? kClean : kFaulty;
 }
@@ -126,7 +126,7 @@ int check_log(const Request& request) {
 
 void add_check_log_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check-log", "Look for what is wrong with a log");
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<LogRequest>();
   constexpr double kMost = 1e6;
   command->add_option("log", request->log, "CARMEN log, plain or gzip")->required();
   command->add_flag("--json", request->json, "print everything as JSON");

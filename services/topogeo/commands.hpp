@@ -7,6 +7,9 @@
 
 namespace topogeo::cli {
 
+/// Exit code of a program that a signal has ended, less the signal, as in shells.
+inline constexpr int kSignalBase = 128;
+
 void add_run_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);
 void add_localize_command(CLI::App& app, int& exit_code);

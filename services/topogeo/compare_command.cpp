@@ -29,7 +29,7 @@ using pipeline::RelationSpread;
 using pipeline::RelativeError;
 using pipeline::TrajectoryError;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 struct CompareOptions {
   std::filesystem::path estimate;
@@ -85,14 +85,14 @@ Figures figures_of(const CompareOptions& options) {
 }
 
 std::string text(const RelativeError& error) {
-  return fmt::format("{:.3f} m {:.2f} deg over {} pairs", error.mean_m, kDegrees * error.mean_rad,
-                     error.pairs);
+  return fmt::format("{:.3f} m {:.2f} deg over {} pairs", error.mean_m,
+                     kDegreesPerRadian * error.mean_rad, error.pairs);
 }
 
 std::string text(const RelationSpread& error) {
   return fmt::format("{:.4f} +- {:.4f} m  {:.3f} +- {:.3f} deg over {} pairs", error.mean_m,
-                     error.deviation_m, kDegrees * error.mean_rad, kDegrees * error.deviation_rad,
-                     error.pairs);
+                     error.deviation_m, kDegreesPerRadian * error.mean_rad,
+                     kDegreesPerRadian * error.deviation_rad, error.pairs);
 }
 
 template <typename Error>
@@ -100,7 +100,7 @@ std::string text(const std::optional<Error>& error) {
   return error ? text(*error) : "none";
 }
 
-void print_text(const Figures& figures) {
+void print_errors(const Figures& figures) {
   const TrajectoryError& e = figures.error;
   std::cout << fmt::format("matched {:.3f}  path {:.0f} m\n", e.matched, e.path_m)
             << fmt::format("ate     {:.3f} m\n", e.rms_m)
@@ -114,14 +114,14 @@ void print_text(const Figures& figures) {
 }
 
 nlohmann::ordered_json json(const RelativeError& error) {
-  return {{"m", error.mean_m}, {"deg", kDegrees * error.mean_rad}, {"pairs", error.pairs}};
+  return {{"m", error.mean_m}, {"deg", kDegreesPerRadian * error.mean_rad}, {"pairs", error.pairs}};
 }
 
 nlohmann::ordered_json json(const RelationSpread& error) {
   return {{"m", error.mean_m},
           {"m_std", error.deviation_m},
-          {"deg", kDegrees * error.mean_rad},
-          {"deg_std", kDegrees * error.deviation_rad},
+          {"deg", kDegreesPerRadian * error.mean_rad},
+          {"deg_std", kDegreesPerRadian * error.deviation_rad},
           {"pairs", error.pairs}};
 }
 
@@ -130,7 +130,7 @@ nlohmann::ordered_json json(const std::optional<Error>& error) {
   return error ? json(*error) : nlohmann::ordered_json(nullptr);
 }
 
-void print_json(const Figures& figures) {
+void print_errors_json(const Figures& figures) {
   const TrajectoryError& e = figures.error;
   nlohmann::ordered_json all = {{"matched", e.matched}, {"ate", e.rms_m}, {"local", json(e.local)},
                                 {"loop", json(e.loop)}, {"end", e.end_m}, {"path", e.path_m}};
@@ -145,9 +145,9 @@ void print_json(const Figures& figures) {
 int compare_files(const CompareOptions& options) {
   const Figures figures = figures_of(options);
   if (options.json) {
-    print_json(figures);
+    print_errors_json(figures);
   } else {
-    print_text(figures);
+    print_errors(figures);
   }
   return service::kOk;
 }

@@ -16,7 +16,8 @@
 namespace topogeo::cli {
 namespace {
 
-void print(const support::ConfigSchema& schema, const std::optional<std::filesystem::path>& file) {
+void print_config(const support::ConfigSchema& schema,
+                  const std::optional<std::filesystem::path>& file) {
   try {
     if (file) support::load_yaml_file(*file, schema);
   } catch (const std::exception& error) {
@@ -28,10 +29,10 @@ void print(const support::ConfigSchema& schema, const std::optional<std::filesys
 void print_config(const std::optional<std::filesystem::path>& file, bool devices) {
   if (devices) {
     sensor_gateway::DeviceFile values;
-    print(describe(values), file);
+    print_config(describe(values), file);
   } else {
     pipeline::Config values;
-    print(pipeline::describe(values), file);
+    print_config(pipeline::describe(values), file);
   }
 }
 

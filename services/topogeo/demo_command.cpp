@@ -13,10 +13,10 @@
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/world/world.hpp"
 
 #include "commands.hpp"
 #include "demo_world.hpp"
@@ -34,16 +34,15 @@ struct DemoOptions {
   SimulationOptions simulation{};
 };
 
-simulation::World read_world(const std::optional<std::filesystem::path>& file) {
+world::World read_world(const std::optional<std::filesystem::path>& file) {
   try {
-    return file ? simulation::load_world(*file)
-                : simulation::parse_world(kDemoWorld, "built-in floor");
+    return file ? world::load_world(*file) : world::parse_world(kDemoWorld, "built-in floor");
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
 }
 
-simulation::SimulatedLog simulate(const simulation::World& world) {
+simulation::SimulatedLog simulate(const world::World& world) {
   try {
     return simulation::simulate_log(world, {});
   } catch (const std::exception& error) {  // a world that cannot be driven through
@@ -65,7 +64,7 @@ void write(const simulation::SimulatedLog& log, const std::filesystem::path& log
 
 int show_demo(DemoOptions options) {
   static_cast<void>(check_inputs(options.run.job));
-  const simulation::World world = read_world(options.world);
+  const world::World world = read_world(options.world);
   support::check_writable_directory(options.run.job.out);
   const simulation::SimulatedLog log = simulate(world);
   options.run.job.log = options.run.job.out / "floor.clf.gz";
@@ -79,13 +78,13 @@ int show_demo(DemoOptions options) {
 
 /// The map of a drive through the world, with its places, as it comes out of one process.
 storage::MapDocument make_map(const DemoOptions& options, const pipeline::Config& config,
-                              const simulation::World& world) {
+                              const world::World& world) {
   const simulation::SimulatedLog log = simulate(world);
   pipeline::MappingRun mapping(config, options.run.job.robot_id);
   for (const scan::Scan& scan : log.scans) mapping.add(scan);
   storage::MapDocument document = mapping.finish();
   const geometry::Pose2 T_map_world = geometry::inverse(log.T_world_robot.front());
-  for (const simulation::NamedPlace& place : world.places) {
+  for (const world::NamedPlace& place : world.places) {
     document.drawing.places.push_back({place.name, T_map_world * place.position_m});
   }
   return document;
@@ -104,7 +103,7 @@ int show_goto(DemoOptions options) {
   static_cast<void>(to_goal(options.goal));
   check_picture(options.goal.picture);
   const Inputs inputs = check_inputs(options.run.job);
-  const simulation::World world = read_world(options.world);
+  const world::World world = read_world(options.world);
   support::check_writable_directory(options.run.job.out);
   std::cerr << "mapping '" << world.name << "' from a simulated drive\n";
   options.run.job.map = options.run.job.out / "floor.map.pb";

@@ -75,7 +75,7 @@ class ScanViews {
   voronoi::LocalVoronoi diagram_maker_;
 };
 
-scan::CarmenLogReader open_log(const DvlOptions& options, const pipeline::Config& config) {
+scan::CarmenLogReader open_scans(const DvlOptions& options, const pipeline::Config& config) {
   try {
     return scan::CarmenLogReader(options.log, config.log);
   } catch (const std::exception& error) {
@@ -93,7 +93,7 @@ std::uint64_t count_usable(scan::CarmenLogReader reader, std::uint64_t laser_lin
 }
 
 std::string picture_of_scan(const DvlOptions& options, const pipeline::Config& config) {
-  scan::CarmenLogReader reader = open_log(options, config);
+  scan::CarmenLogReader reader = open_scans(options, config);
   SlowProgress progress("looking for the scan");
   std::uint64_t read = 0;
   while (const std::optional<scan::Scan> scan = reader.next()) {
@@ -132,9 +132,9 @@ std::vector<std::uint64_t> chosen_scans(const DvlOptions& options, std::uint64_t
 
 std::string sheet_of_log(const DvlOptions& options, const pipeline::Config& config) {
   const std::uint64_t scans =
-      count_usable(open_log(options, config), scan::count_scans(options.log));
+      count_usable(open_scans(options, config), scan::count_scans(options.log));
   const std::vector<std::uint64_t> chosen = chosen_scans(options, scans);
-  scan::CarmenLogReader reader = open_log(options, config);
+  scan::CarmenLogReader reader = open_scans(options, config);
   ScanViews maker(config.local_mapper);
   SlowProgress progress("drawing");
   std::vector<render::ScanView> views;

@@ -5,7 +5,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/localization/localization_state.hpp"
+#include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
@@ -14,7 +14,7 @@
 namespace topogeo::cli {
 namespace {
 
-constexpr std::chrono::milliseconds kTick{50};
+constexpr std::chrono::milliseconds kGotoTick{50};
 constexpr double kStart_s = 120.0;  // for the services to start and the robot to find its place
 constexpr double kCallOff_s = 5.0;  // for the robot to stop
 
@@ -40,7 +40,7 @@ GotoRun::GotoRun(const RunOptions& options, const std::string& partition)
   loop_.add<msg::LivePose>(poses_, [this](const msg::LivePose& pose, const messaging::SampleInfo&) {
     if (pose.robot_id() == options_.job.robot_id.c_str()) on_pose(pose);
   });
-  loop_.add_timer(kTick, [this] { tick(); });
+  loop_.add_timer(kGotoTick, [this] { tick(); });
 }
 
 // A second signal stops everything.

@@ -25,7 +25,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-struct Request {
+struct LocalizerRequest {
   DomainView view;
   std::string robot_id = "robot";
   std::string pose;
@@ -35,7 +35,7 @@ struct Request {
 
 /// Sends the command and waits for its answer, which is printed. Throws std::runtime_error when
 /// nobody answers.
-int send(const Request& request, service::LocalizationCommand command) {
+int send_localizer_command(const LocalizerRequest& request, service::LocalizationCommand command) {
   command.client_id = support::process_name();
   command.request_id = std::random_device{}();
   const messaging::Participant participant = join(request.view, "topogeo/localizer");
@@ -69,7 +69,7 @@ int send(const Request& request, service::LocalizationCommand command) {
   return reply->accepted() ? service::kOk : service::kFailure;
 }
 
-void add_request_options(CLI::App& app, Request& request) {
+void add_request_options(CLI::App& app, LocalizerRequest& request) {
   app.add_option("--robot,--robot-id", request.robot_id, "whose localizer")->capture_default_str();
   add_domain_options(app, request.view);
   constexpr double kLongestWait_s = 3600.0;
@@ -83,7 +83,7 @@ void add_request_options(CLI::App& app, Request& request) {
 void add_localizer_command(CLI::App& app, int& exit_code) {
   CLI::App* group = app.add_subcommand("localizer", "Tell a running localizer what to do");
   group->require_subcommand(1);
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<LocalizerRequest>();
 
   CLI::App* set_pose = group->add_subcommand("set-pose", "The robot is there");
   set_pose->add_option("pose", request->pose, "x,y,degrees in the map")->required();
@@ -97,7 +97,7 @@ void add_localizer_command(CLI::App& app, int& exit_code) {
       throw service::UsageError(error.what());
     }
     command.covariance = pipeline::given_pose_covariance();
-    exit_code = send(*request, command);
+    exit_code = send_localizer_command(*request, command);
   });
 
   CLI::App* search = group->add_subcommand("search", "Forget the pose, search the whole map");
@@ -105,7 +105,7 @@ void add_localizer_command(CLI::App& app, int& exit_code) {
   search->callback([request, &exit_code] {
     service::LocalizationCommand command;
     command.kind = msg::kCommandSearch;
-    exit_code = send(*request, command);
+    exit_code = send_localizer_command(*request, command);
   });
 
   CLI::App* mode = group->add_subcommand("mode", "Map, or localize in the map as it is");
@@ -117,7 +117,7 @@ void add_localizer_command(CLI::App& app, int& exit_code) {
     service::LocalizationCommand command;
     command.kind = request->mode == "mapping" ? msg::kCommandSwitchToMapping
                                               : msg::kCommandSwitchToLocalization;
-    exit_code = send(*request, command);
+    exit_code = send_localizer_command(*request, command);
   });
 }
 

@@ -14,8 +14,8 @@
 
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
-#include "topogeo/pipeline/outputs.hpp"
-#include "topogeo/pipeline/stages.hpp"
+#include "topogeo/results/outputs.hpp"
+#include "topogeo/results/stages.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"
@@ -25,8 +25,6 @@
 
 namespace topogeo::cli {
 namespace {
-
-constexpr int kSignalBase = 128;  // exit code of a program that a signal has ended, as in shells
 
 /// Ctrl-C: asks the work to end after the scan in hand; where the work cannot be asked, ends the
 /// program at once, which loses nothing because nothing has been written.
@@ -99,10 +97,10 @@ storage::Report make_report(const Job& job, const pipeline::MappingRun& run,
   report.command = run.map_localizer() != nullptr ? "localize" : "map";
   report.log = job.options.log.filename().string();
   report.configuration = job.inputs.config.effective;
-  pipeline::add_map(report, document);
-  pipeline::add_matches(report, run.match_counts());
-  pipeline::add_loop_candidates(report, run.loop_decisions());
-  pipeline::add_log(report, job.reader.statistics());
+  results::add_map(report, document);
+  results::add_matches(report, run.match_counts());
+  results::add_loop_candidates(report, run.loop_decisions());
+  results::add_log(report, job.reader.statistics());
   if (run.map_localizer() != nullptr) {
     report.localization = pipeline::localization_counts(*run.map_localizer());
   }
@@ -151,7 +149,7 @@ int map_log(const JobOptions& options, bool stages) {
   tell_unmapped(run.session());
   {
     const auto scope = times.measure("writing");
-    pipeline::write_map_outputs(options.out, document, options.log.filename().string());
+    results::write_map_outputs(options.out, document, options.log.filename().string());
     if (run.map_localizer() != nullptr) {
       support::write_file_atomically(options.out / "localization.csv",
                                      pipeline::localization_csv(run.map_localizer()->stops()));
@@ -159,8 +157,8 @@ int map_log(const JobOptions& options, bool stages) {
     if (stages) {
       std::cerr << "drawing the stages of the correction\n";
       const Interruption::Immediate immediate(interruption);
-      pipeline::write_stage_pictures(options.out, job.inputs.config.config, document,
-                                     options.log.filename().string());
+      results::write_stage_pictures(options.out, job.inputs.config.config, document,
+                                    options.log.filename().string());
     }
   }
 

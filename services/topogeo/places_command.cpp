@@ -106,7 +106,7 @@ std::string zone_text(const planning::HybridMap& map, const Eigen::Vector2d& pos
   return name.empty() ? fmt::format("zone {}", id) : fmt::format("zone {} ({})", id, name);
 }
 
-void print(const planning::HybridMap& map) {
+void print_places(const planning::HybridMap& map) {
   for (const planning::Place& place : map.places()) {
     std::cout << fmt::format("{:20} {:8.2f} {:8.2f}  {}\n", place.name, place.position_m.x(),
                              place.position_m.y(), zone_text(map, place.position_m));
@@ -136,7 +136,7 @@ void print_file(const PlacesOptions& options) {
     }
   }();
   try {
-    print(pipeline::make_hybrid_map(pipeline::parts_of(floor), config));
+    print_places(pipeline::make_hybrid_map(pipeline::parts_of(floor), config));
   } catch (const std::invalid_argument& error) {
     throw service::BadInputError(options.source + ": " + error.what());
   }
@@ -172,7 +172,7 @@ int places(const PlacesOptions& options) {
   if (!options.added.empty() || !options.removed.empty()) edit(options);
   if (options.source == kLive) {
     if (options.zones) throw service::UsageError("--zones goes with a file");
-    print(*live_map(options));
+    print_places(*live_map(options));
   } else {
     print_file(options);
   }

@@ -29,7 +29,7 @@ struct PlanOptions {
   bool json = false;
 };
 
-pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
+pipeline::LoadedConfig load_map(const std::optional<std::filesystem::path>& file) {
   try {
     return pipeline::load_config(file);
   } catch (const std::exception& error) {
@@ -72,7 +72,7 @@ void print_json(const planning::Route& route) {
 int plan_route(const PlanOptions& options) {
   const Eigen::Vector2d from_m = point_for("--from", options.from);
   const Eigen::Vector2d to_m = point_for("--to", options.to);
-  const pipeline::LoadedConfig config = load(options.config);
+  const pipeline::LoadedConfig config = load_map(options.config);
   const storage::MapDocument document = read_map(options.map);
   const planning::PlanResult result =
       planning::plan(document.global_map, from_m, to_m, config.config.planning);

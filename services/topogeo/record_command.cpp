@@ -31,9 +31,9 @@ using Clock = std::chrono::steady_clock;
 
 /// Scans that a stream end speaks of and that have not come by then will not come any more.
 constexpr std::chrono::seconds kPatience{5};
-constexpr milliseconds kTick{50};
+constexpr milliseconds kRecordTick{50};
 
-struct Request {
+struct RecordRequest {
   DomainView view;
   std::string robot_id = "robot";
   std::filesystem::path out;
@@ -49,7 +49,7 @@ scan::CarmenLogWriter open(const std::filesystem::path& path) {
 
 class Recorder {
  public:
-  explicit Recorder(const Request& request)
+  explicit Recorder(const RecordRequest& request)
       : request_(request),
         log_(open(request.out)),
         participant_(join(request.view, "topogeo/record")),
@@ -65,7 +65,7 @@ class Recorder {
           expected_ = end.count();
           last_news_ = Clock::now();
         });
-    loop_.add_timer(kTick, [this] { stop_at_end(); });
+    loop_.add_timer(kRecordTick, [this] { stop_at_end(); });
   }
 
   /// Until the end of the stream or a signal. Throws std::runtime_error when the log cannot be
@@ -108,7 +108,7 @@ class Recorder {
     if (next_ >= *expected_ || Clock::now() - last_news_ > kPatience) loop_.stop();
   }
 
-  Request request_;
+  RecordRequest request_;
   scan::CarmenLogWriter log_;
   messaging::Participant participant_;
   messaging::Reader<msg::Scan> scans_;
@@ -127,7 +127,7 @@ class Recorder {
 void add_record_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("record", "Write the scans that a sensor gateway gives as a log");
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<RecordRequest>();
   request->view.partition = messaging::kDefaultPartition;
   command->add_option("--out", request->out, "log to write, gzip when its name ends in .gz")
       ->required()

@@ -6,6 +6,7 @@
 
 #include "topogeo/messaging/signal_stop.hpp"
 
+#include "commands.hpp"
 #include "run_log.hpp"
 
 namespace topogeo::cli {

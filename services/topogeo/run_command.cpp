@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "topogeo/localization/localization_state.hpp"
-#include "topogeo/localization/match_gate.hpp"
-#include "topogeo/pipeline/outputs.hpp"
+#include "topogeo/localization/mapping/localization_state.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/results/outputs.hpp"
 #include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -86,9 +86,9 @@ storage::Report make_report(const RunOptions& options, const support::EffectiveC
   report.log = source_name(options);
   report.workers = options.workers;
   report.configuration = config;
-  pipeline::add_map(report, storage::read_map_file(options.job.out / "map.pb"));
+  results::add_map(report, storage::read_map_file(options.job.out / "map.pb"));
   add_matches(report, result.services);
-  pipeline::add_loop_candidates(report, result.loop_decisions);
+  results::add_loop_candidates(report, result.loop_decisions);
   if (options.job.map) add_localization(report, result.services);
   if (options.job.continued) add_continuation(report, result.services);
   report.stages = result.times;
@@ -157,7 +157,7 @@ int run_log(const RunOptions& options) {
   storage::Report report = make_report(options, job.inputs.config.effective, result);
   while (job.reader.next()) {  // to learn what the gateway skipped
   }
-  pipeline::add_log(report, job.reader.statistics());
+  results::add_log(report, job.reader.statistics());
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
   tell_skipped(job.reader.statistics());

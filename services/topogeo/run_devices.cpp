@@ -11,11 +11,11 @@
 
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/topomap/pose_at.hpp"
+#include "topogeo/world/world.hpp"
 
 #include "commands.hpp"
 #include "device_config.hpp"
@@ -49,9 +49,9 @@ void write_devices(const RunOptions& options) {
 
 /// Finds out before anything starts whether the world can be driven through.
 void check_world(const SimulationOptions& simulation) {
-  const simulation::World world = [&] {
+  const world::World world = [&] {
     try {
-      return simulation::load_world(simulation.world);
+      return world::load_world(simulation.world);
     } catch (const std::exception& error) {
       throw service::BadInputError(error.what());
     }

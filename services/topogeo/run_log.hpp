@@ -37,9 +37,6 @@ void prepare_simulation(RunOptions& options);
 std::vector<topomap::StampedPose> truth_at(std::span<const topomap::StampedPose> poses,
                                            std::span<const topomap::StampedPose> truth);
 
-/// Exit code of a program that a signal has ended, less the signal, as in shells.
-inline constexpr int kSignalBase = 128;
-
 /// All that is known of a run but its wall time and what was skipped of a log.
 storage::Report make_report(const RunOptions& options, const support::EffectiveConfig& config,
                             const RunResult& result);

@@ -9,7 +9,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -76,7 +76,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
   drive.acceleration_m_per_s2 = kShareOfAcceleration * kSimulatedAcceleration;
   drive.turn_gain_per_s = 2.0;
   tour_.emplace(participant_, loop_, options_.job.robot_id,
-                simulation::load_world(options_.simulation->world).tour_m, drive);
+                world::load_world(options_.simulation->world).tour_m, drive);
 }
 
 // A second signal stops everything.

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/loop_decision.hpp"
+#include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"

@@ -35,7 +35,7 @@ const std::vector<std::pair<std::string, msg::SimulatedFault>> kFaults = {
     {"joystick", msg::kSimulatedJoystick},
     {"emergency-stop", msg::kSimulatedEmergencyStop}};
 
-struct Request {
+struct SimulatorRequest {
   DomainView view;
   std::string robot_id = "robot";
   msg::SimulatedFault fault = msg::kSimulatedSilence;
@@ -45,7 +45,7 @@ struct Request {
   double angular_radps = 0.0;
 };
 
-int send(const Request& request) {
+int send_simulator_command(const SimulatorRequest& request) {
   constexpr std::chrono::seconds kPatience{5};
   const messaging::Participant participant = join(request.view, "topogeo/simulator");
   messaging::Writer<msg::SimulatorCommand> commands(participant);
@@ -66,7 +66,7 @@ int send(const Request& request) {
   return service::kOk;
 }
 
-void add_options(CLI::App& app, Request& request) {
+void add_simulator_options(CLI::App& app, SimulatorRequest& request) {
   app.add_option("fault", request.fault,
                  "bad-crc, truncated, silence, garbage, unplug or restart (off and on again) of "
                  "the laser or, with --base, of the base; stuck-scan or contaminated of the laser; "
@@ -93,9 +93,9 @@ void add_options(CLI::App& app, Request& request) {
 void add_simulator_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("simulator", "Make something go wrong in a running simulator");
-  auto request = std::make_shared<Request>();
-  add_options(*command, *request);
-  command->callback([request, &exit_code] { exit_code = send(*request); });
+  auto request = std::make_shared<SimulatorRequest>();
+  add_simulator_options(*command, *request);
+  command->callback([request, &exit_code] { exit_code = send_simulator_command(*request); });
 }
 
 }  // namespace topogeo::cli

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/service/service_options.hpp"

@@ -65,11 +65,11 @@ class Canvas {
     cairo_stroke(cairo_.get());
   }
 
-  void world_surfaces(const simulation::World& scene) {
-    for (const simulation::Segment& segment : scene.segments) {
+  void world_surfaces(const world::World& scene) {
+    for (const world::Segment& segment : scene.segments) {
       line({T_map_world_ * segment.a_m, T_map_world_ * segment.b_m});
     }
-    for (const simulation::Circle& round : scene.circles) {
+    for (const world::Circle& round : scene.circles) {
       circle(T_map_world_ * round.center_m, round.radius_m);
     }
   }
@@ -115,8 +115,8 @@ void draw_grid(Canvas& canvas, const planning::OccupancyGrid& grid) {
   }
 }
 
-simulation::World obstacle_of(const MappedFloor& floor, const ArrivalTask& task) {
-  simulation::World world;
+world::World obstacle_of(const MappedFloor& floor, const ArrivalTask& task) {
+  world::World world;
   for (std::size_t i = floor.world.changing.size(); i < task.world.changing.size(); ++i) {
     world.segments = task.world.changing[i].segments;
     world.circles = task.world.changing[i].circles;
@@ -134,7 +134,7 @@ void write_arrival_picture(const std::filesystem::path& file, const MappedFloor&
   draw_grid(canvas, floor.map->space().grid());
   canvas.width(1.0);
   canvas.colour({0.0, 0.0, 0.0});
-  canvas.world_surfaces(simulation::scene_at(floor.world, 0.0));
+  canvas.world_surfaces(world::scene_at(floor.world, 0.0));
   canvas.width(2.5);
   canvas.colour({1.0, 0.55, 0.0});
   canvas.world_surfaces(obstacle_of(floor, task));

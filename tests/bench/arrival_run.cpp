@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "topogeo/localization/map_localizer.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/tracking/map_localizer.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/support/seed.hpp"

@@ -12,7 +12,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/navigation/navigator.hpp"
 #include "topogeo/pipeline/config.hpp"
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 #include "navigation_floors.hpp"
 
@@ -34,7 +34,7 @@ struct ArrivalTask {
   ObstacleKind obstacle = ObstacleKind::kNone;
   Eigen::Vector2d obstacle_m = Eigen::Vector2d::Zero();  ///< its middle, world frame
   bool appears = false;                                  ///< when the robot is 1.5 to 3 m before it
-  simulation::World world;                               ///< with the obstacle
+  world::World world;                                    ///< with the obstacle
 };
 
 struct ArrivalConfig {

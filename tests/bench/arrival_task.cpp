@@ -45,7 +45,7 @@ Pose2 draw_pose(const MappedFloor& floor, const ArrivalConfig& config, support::
     if (!space.passable(index) || space.clearance_m(cell) < config.goal_clearance_m) continue;
     const Eigen::Vector2d point_m = space.frame().center_m(cell);
     const Eigen::Vector2d world_m = floor.T_world_map() * point_m;
-    if (simulation::clearance_m(floor.world, world_m) < devices::kB21Radius_m + 0.03) continue;
+    if (world::clearance_m(floor.world, world_m) < devices::kB21Radius_m + 0.03) continue;
     return {point_m.x(), point_m.y(), heading_rad};
   }
   throw std::runtime_error(floor.world.name + ": no place for the robot");
@@ -123,7 +123,7 @@ void put(const MappedFloor& floor, const Obstacle& obstacle, support::Random& ra
   task.obstacle_m = at_m;
   task.appears = random.uniform() < 0.5;
   const double before_m = random.uniform(1.5, 3.0);
-  simulation::ChangingPart part;
+  world::ChangingPart part;
   const double from_m = way_to(task.route_m, obstacle.at_m) - before_m;
   part.present.push_back(
       {task.appears ? std::max(from_m, 0.0) : 0.0, std::numeric_limits<double>::infinity()});

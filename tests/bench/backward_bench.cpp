@@ -4,9 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/backward_correction.hpp"
+#include "topogeo/localization/mapping/backward_correction.hpp"
 
-#include "../unit/localization/backward_problems.hpp"
+#include "localization/mapping/backward_problems.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // The faults of a base and its line on a simulated clock, as a table in Markdown: how often each
 // was injected, wrong odometry, unsafe motion, the longest recovery.
-#include "../unit/devices/base_faults.hpp"
+#include "devices/base_faults.hpp"
 
 #include <array>
 #include <cstddef>

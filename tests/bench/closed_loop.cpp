@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/live_pose.hpp"
+#include "topogeo/localization/tracking/live_pose.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::bench {
@@ -21,7 +21,7 @@ std::int64_t nanoseconds(double time_s) {
 
 }  // namespace
 
-ClosedLoop::ClosedLoop(simulation::World world, const ClosedLoopConfig& config,
+ClosedLoop::ClosedLoop(world::World world, const ClosedLoopConfig& config,
                        localization::Slam& localizer)
     : config_(config),
       robot_(std::move(world), config.robot),

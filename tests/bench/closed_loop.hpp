@@ -11,15 +11,15 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
-#include "topogeo/localization/slam.hpp"
+#include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/navigation/navigator.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/topomap/local_map.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::bench {
 
@@ -47,8 +47,7 @@ class ClosedLoop {
 
   /// The localizer, one for mapping or in a stored map, must outlive the loop. Throws like
   /// SimulatedRobot and Navigator.
-  ClosedLoop(simulation::World world, const ClosedLoopConfig& config,
-             localization::Slam& localizer);
+  ClosedLoop(world::World world, const ClosedLoopConfig& config, localization::Slam& localizer);
 
   void set_map(std::shared_ptr<const planning::HybridMap> map, std::uint64_t version);
   void set_goal(const LoopGoal& goal);

@@ -10,8 +10,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/localization/localizer.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/world_grid.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
@@ -31,7 +31,7 @@ using planning::Cell;
 /// The truth: where a robot can get to from its start, and what its body covers there.
 class Reach {
  public:
-  Reach(const simulation::World& world, std::uint64_t seed)
+  Reach(const world::World& world, std::uint64_t seed)
       : space_(planning::grid_of(pipeline::drawing_of(world))), zones_(zones_by_width(space_)) {
     const planning::ZoneMap parts = planning::zones_between(space_, {});
     const auto origin = space_.frame().cell_of(world.tour_m.front());
@@ -184,7 +184,7 @@ ClosedLoopConfig loop_config(const ExplorationConfig& config, const Pose2& T_wor
   return loop;
 }
 
-double scripted_m(simulation::World world, const Pose2& T_world_start) {
+double scripted_m(world::World world, const Pose2& T_world_start) {
   world.tour_m = {T_world_start.position_m()};
   const std::vector<Eigen::Vector2d> tour_m = tour_of_everything(world);
   double length_m = 0.0;
@@ -206,7 +206,7 @@ double rms_m(const topomap::Trajectory& trajectory, const std::vector<Pose2>& T_
 
 ExplorationResult explore(std::string_view floor, const ExplorationConfig& config,
                           std::uint64_t seed, ExplorationRecord* record) {
-  const simulation::World world = navigation_floor(floor);
+  const world::World world = navigation_floor(floor);
   const Reach reach(world, seed);
   localization::InProcessPool pool;
   const auto slam = localization::make_slam(config.system.localizer, pool);

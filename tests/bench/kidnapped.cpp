@@ -20,8 +20,8 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Cholesky>
 
-#include "topogeo/localization/map_localizer.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/tracking/map_localizer.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
@@ -62,7 +62,7 @@ struct Samples {
   std::vector<Sample> predictions;
 };
 
-simulation::World floor_of(std::uint64_t seed) {
+world::World floor_of(std::uint64_t seed) {
   switch (seed % 3) {
     case 0:
       return simulation::cyclic_floor(seed);
@@ -145,7 +145,7 @@ void collect(const localization::TrackedStep& step, const Pose2& truth, Samples&
 
 /// A floor that was mapped in one drive.
 struct MappedFloor {
-  simulation::World world;
+  world::World world;
   simulation::SimulatedLog drive;
   std::shared_ptr<const localization::StoredMap> map;
   TruthInMap truth;

@@ -7,7 +7,7 @@
 
 #include "topogeo/topomap/local_map_builder.hpp"
 
-#include "../unit/voronoi/test_world.hpp"
+#include "voronoi/test_world.hpp"
 
 namespace {
 

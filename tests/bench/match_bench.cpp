@@ -2,16 +2,16 @@
 // task of the search pool costs. The source took 10-30 s for 100 x 50 on a 400 MHz PC.
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 
-#include "../unit/localization/simulated_maps.hpp"
+#include "localization/simulated_maps.hpp"
 
 namespace {
 
 using namespace topogeo;
 
 void match(benchmark::State& state, std::uint32_t individuals, std::uint32_t generations) {
-  const simulation::World floor = localization::test::world("floor");
+  const world::World floor = localization::test::world("floor");
   const topomap::LocalMap reference = localization::test::map_at(floor, {8.6, 1.2, 0.1}, 0);
   const topomap::LocalMap query = localization::test::map_at(floor, {9.1, 1.2, 0.4}, 1);
   localization::Matcher matcher;

@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/refinement.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 namespace topogeo::bench {

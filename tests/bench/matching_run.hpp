@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/localizer.hpp"
-#include "topogeo/localization/match_features.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/config.hpp"
 
 #include "recordings.hpp"

@@ -123,19 +123,19 @@ simulation::RobotOptions b21_robot(const geometry::Pose2& T_world_start,
   return robot;
 }
 
-simulation::World navigation_floor(std::string_view name) {
+world::World navigation_floor(std::string_view name) {
   if (name == kNavigationFloors[0]) {
-    return simulation::load_world(TOPOGEO_SOURCE_DIR "/tests/data/floor.world.yaml");
+    return world::load_world(TOPOGEO_SOURCE_DIR "/tests/data/floor.world.yaml");
   }
   if (name == kNavigationFloors[1]) {
-    return simulation::load_world(TOPOGEO_SOURCE_DIR "/tests/data/hall.world.yaml");
+    return world::load_world(TOPOGEO_SOURCE_DIR "/tests/data/hall.world.yaml");
   }
   if (name == kNavigationFloors[2]) return simulation::two_loops(kLoopsSeed);
   throw std::invalid_argument("floor '" + std::string(name) +
                               "': expected office, warehouse or two loops");
 }
 
-std::vector<Eigen::Vector2d> tour_of_everything(const simulation::World& world) {
+std::vector<Eigen::Vector2d> tour_of_everything(const world::World& world) {
   const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(world)));
   const Eigen::Vector2d start_m = world.tour_m.front();
   const std::optional<Cell> start = space.frame().cell_of(start_m);
@@ -157,7 +157,7 @@ std::vector<Eigen::Vector2d> tour_of_everything(const simulation::World& world) 
   return tour_m;
 }
 
-std::vector<Eigen::Vector2d> mapping_tour(const simulation::World& world) {
+std::vector<Eigen::Vector2d> mapping_tour(const world::World& world) {
   const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(world)));
   std::vector<Eigen::Vector2d> tour_m = world.tour_m;
   drive_to(space, *space.frame().cell_of(world.tour_m.front()), tour_m);
@@ -184,7 +184,7 @@ MappedFloor map_floor(std::string_view name, const pipeline::Config& config, Whe
   const double begin_s = support::monotonic_s();
   MappedFloor floor;
   floor.world = navigation_floor(name);
-  simulation::World toured = floor.world;
+  world::World toured = floor.world;
   toured.tour_m = mapping_tour(floor.world);
   for (std::size_t i = 1; i < toured.tour_m.size(); ++i) {
     floor.tour_m += (toured.tour_m[i] - toured.tour_m[i - 1]).norm();

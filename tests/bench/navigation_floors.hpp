@@ -13,12 +13,12 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/stored_map.hpp"
+#include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/simulation/odometry.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::bench {
 
@@ -39,18 +39,18 @@ simulation::RobotOptions b21_robot(const geometry::Pose2& T_world_start,
                                    double slip_per_m, std::uint64_t seed);
 
 /// A floor of kNavigationFloors. Throws std::invalid_argument for another name, and as load_world.
-simulation::World navigation_floor(std::string_view name);
+world::World navigation_floor(std::string_view name);
 
 /// Way points from the first point of the world's tour past everything that can be reached, and
 /// back: each cell of the free space comes within 4 m in plain sight.
-std::vector<Eigen::Vector2d> tour_of_everything(const simulation::World& world);
+std::vector<Eigen::Vector2d> tour_of_everything(const world::World& world);
 
 /// The tour of the world, which closes the long loops, back to its start, then the tour of
 /// everything: what somebody drives who makes a map.
-std::vector<Eigen::Vector2d> mapping_tour(const simulation::World& world);
+std::vector<Eigen::Vector2d> mapping_tour(const world::World& world);
 
 struct MappedFloor {
-  simulation::World world;
+  world::World world;
   std::shared_ptr<const localization::StoredMap> stored;
   std::shared_ptr<const planning::HybridMap> map;
   std::vector<geometry::Pose2> T_world_stop;  ///< the truth of each stop of the map

@@ -10,7 +10,7 @@
 #include "topogeo/planning/route_graph.hpp"
 #include "topogeo/support/random.hpp"
 
-#include "../unit/planning/floors.hpp"
+#include "planning/floors.hpp"
 
 namespace {
 

@@ -30,7 +30,8 @@ std::vector<std::uint8_t> scan(support::Random& random, std::uint64_t most_cm) {
 
 // Whole scans of 361 values, in parts as a port hands them on; a stream that begins in mid-scan
 // when `late` bytes of it are missing.
-void decode(benchmark::State& state, std::size_t part, std::uint64_t most_cm, std::size_t late) {
+void decode_scans(benchmark::State& state, std::size_t part, std::uint64_t most_cm,
+                  std::size_t late) {
   support::Random random(1);
   std::vector<std::uint8_t> stream;
   for (std::size_t i = 0; i < kScans; ++i) {
@@ -60,7 +61,7 @@ void check_word(benchmark::State& state) {
 
 }  // namespace
 
-BENCHMARK_CAPTURE(decode, pls, 4096, 5000, 0)->Name("pls/decode");
-BENCHMARK_CAPTURE(decode, pls_parts_of_16, 16, 5000, 0)->Name("pls/decode_parts_of_16");
-BENCHMARK_CAPTURE(decode, pls_false_starts, 4096, 0, 10)->Name("pls/decode_false_starts");
+BENCHMARK_CAPTURE(decode_scans, pls, 4096, 5000, 0)->Name("pls/decode");
+BENCHMARK_CAPTURE(decode_scans, pls_parts_of_16, 16, 5000, 0)->Name("pls/decode_parts_of_16");
+BENCHMARK_CAPTURE(decode_scans, pls_false_starts, 4096, 0, 10)->Name("pls/decode_false_starts");
 BENCHMARK(check_word)->Name("pls/check_word");

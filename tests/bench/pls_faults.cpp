@@ -1,6 +1,6 @@
 // The faults of a laser and its line on a simulated clock, as a table in Markdown: how often each
 // was injected, wrong scans, the longest recovery.
-#include "../unit/devices/pls_faults.hpp"
+#include "devices/pls_faults.hpp"
 
 #include <cstdint>
 #include <exception>

@@ -28,7 +28,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 #include "pool_peers.hpp"

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/matching/match.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 
-#include "../unit/localization/simulated_maps.hpp"
 #include "child_process.hpp"
+#include "localization/simulated_maps.hpp"
 #include "remote_pool.hpp"
 
 namespace topogeo::bench {

@@ -18,7 +18,7 @@ std::string stem(const std::string& file) {
 }  // namespace
 
 Recording simulated(const std::string& world_file) {
-  simulation::SimulatedLog log = simulation::simulate_log(simulation::load_world(world_file), {});
+  simulation::SimulatedLog log = simulation::simulate_log(world::load_world(world_file), {});
   Recording recording{stem(world_file), std::move(log.scans), {}};
   recording.T_world_robot.assign(log.T_world_robot.begin(), log.T_world_robot.end());
   return recording;

@@ -17,7 +17,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "topogeo/localization/global_localization.hpp"
+#include "topogeo/localization/tracking/global_localization.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/support/cpu_time.hpp"

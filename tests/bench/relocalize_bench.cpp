@@ -6,7 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/global_localization.hpp"
+#include "topogeo/localization/tracking/global_localization.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using namespace topogeo;
 
-std::filesystem::path csail_log() {
+std::filesystem::path csail_file() {
   const char* folder = std::getenv("TOPOGEO_LOG_DIR");
   return (folder != nullptr
               ? std::filesystem::path(folder)
@@ -24,7 +24,7 @@ std::filesystem::path csail_log() {
 }
 
 void relocalize_csail(benchmark::State& state) {
-  scan::CarmenLogReader log(csail_log());
+  scan::CarmenLogReader log(csail_file());
   const pipeline::Config config;
   pipeline::MappingRun run(config, "robot");
   std::vector<std::vector<topomap::ScanPoint>> scans;
@@ -46,7 +46,7 @@ void relocalize_csail(benchmark::State& state) {
 }
 
 [[maybe_unused]] const bool kWithLogs = [] {
-  if (!std::filesystem::exists(csail_log())) return false;
+  if (!std::filesystem::exists(csail_file())) return false;
   benchmark::RegisterBenchmark("relocalize/csail", relocalize_csail)->Unit(benchmark::kMillisecond);
   return true;
 }();

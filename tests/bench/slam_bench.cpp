@@ -7,12 +7,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/localizer.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 
-#include "../unit/localization/simulated_maps.hpp"
+#include "localization/simulated_maps.hpp"
 
 namespace {
 

@@ -17,7 +17,7 @@
 namespace topogeo::bench {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr double kEarlier_m = 15.0;  // of way, for an older place to count as seen before
 
 std::vector<topomap::StampedPose> truth_of(const simulation::SimulatedLog& log) {
@@ -137,7 +137,7 @@ void count_loops(const Stops& stops, const std::vector<bool>& closed, SyntheticR
 void judge_loops(const storage::MapDocument& document, const Stops& stops,
                  SyntheticResult& result) {
   constexpr double kWrong_m = 0.5;
-  constexpr double kWrong_rad = 10.0 * kDegree;
+  constexpr double kWrong_rad = 10.0 * kDegree_rad;
   std::vector<bool> closed(stops.way_m.size(), false);
   for (const topomap::LoopClosure& loop : document.loop_closures) {
     const geometry::Pose2 truth =
@@ -168,11 +168,11 @@ const std::vector<SyntheticFloor>& synthetic_floors() {
   return kFloors;
 }
 
-simulation::SimulatedLog synthetic_drive(const simulation::World& world, std::uint64_t seed) {
+simulation::SimulatedLog synthetic_drive(const world::World& world, std::uint64_t seed) {
   simulation::SimulationOptions options;
   options.seed = seed;
   options.scan_step_m = 0.35;
-  options.scan_step_rad = 10.0 * kDegree;
+  options.scan_step_rad = 10.0 * kDegree_rad;
   options.odometry = simulation::b21_odometry(seed);
   return simulation::simulate_log(world, options);
 }

@@ -17,7 +17,7 @@ namespace topogeo::bench {
 
 struct SyntheticFloor {
   std::string name;
-  std::function<simulation::World(std::uint64_t seed)> draw;
+  std::function<world::World(std::uint64_t seed)> draw;
 };
 
 /// The five floors of the synthetic table, in its order.
@@ -25,7 +25,7 @@ const std::vector<SyntheticFloor>& synthetic_floors();
 
 /// The drive of a seed through a floor: a scan each 0.35 m or 10 degrees, odometry as of
 /// simulation::b21_odometry.
-simulation::SimulatedLog synthetic_drive(const simulation::World& world, std::uint64_t seed);
+simulation::SimulatedLog synthetic_drive(const world::World& world, std::uint64_t seed);
 
 /// An accepted loop closure that is off from the truth.
 struct FalseLoop {

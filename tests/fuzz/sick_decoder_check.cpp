@@ -14,18 +14,18 @@
 namespace topogeo::fuzz {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using SickBytes = std::vector<std::uint8_t>;
 using devices::SickDecoder;
 using devices::SickEvent;
 
 constexpr std::int64_t kByteGap_ns = 35'000'000;
 /// A silence after every so many bytes, so that the driver also gives up and asks again.
-constexpr std::size_t kPart_bytes = 97;
+constexpr std::size_t kSickPart_bytes = 97;
 
-std::vector<Bytes> events(SickDecoder& decoder) {
-  std::vector<Bytes> found;
+std::vector<SickBytes> events(SickDecoder& decoder) {
+  std::vector<SickBytes> found;
   while (const auto event = decoder.next()) {
-    Bytes bytes{static_cast<std::uint8_t>(event->kind)};
+    SickBytes bytes{static_cast<std::uint8_t>(event->kind)};
     if (event->kind == SickEvent::Kind::kTelegram) {
       const devices::SickTelegram& telegram = event->telegram;
       bytes = telegram.address < 0x80
@@ -38,9 +38,9 @@ std::vector<Bytes> events(SickDecoder& decoder) {
   return found;
 }
 
-std::vector<Bytes> decode(SickDecoder& decoder, std::span<const std::uint8_t> bytes,
-                          std::size_t part) {
-  std::vector<Bytes> found;
+std::vector<SickBytes> decode(SickDecoder& decoder, std::span<const std::uint8_t> bytes,
+                              std::size_t part) {
+  std::vector<SickBytes> found;
   for (std::size_t at = 0; at < bytes.size(); at += part) {
     decoder.push(bytes.subspan(at, std::min(part, bytes.size() - at)), 0);
     std::ranges::move(events(decoder), std::back_inserter(found));
@@ -51,9 +51,9 @@ std::vector<Bytes> decode(SickDecoder& decoder, std::span<const std::uint8_t> by
 }
 
 /// What is found stands in the stream, in its order, each byte of it used once.
-void check_found(std::span<const std::uint8_t> bytes, const std::vector<Bytes>& found) {
+void check_found(std::span<const std::uint8_t> bytes, const std::vector<SickBytes>& found) {
   auto rest = bytes.begin();
-  for (const Bytes& event : found) {
+  for (const SickBytes& event : found) {
     if (event.size() == 1) continue;
     const auto start = std::search(rest, bytes.end(), event.begin(), event.end());
     require(start != bytes.end(), "a telegram stands in the stream, behind the one before");
@@ -68,18 +68,18 @@ void check_counts(const devices::SickCounters& counters, std::size_t size) {
 
 void check_listener(std::span<const std::uint8_t> bytes, SickDecoder::Listener listener) {
   SickDecoder whole(listener, kByteGap_ns);
-  const std::vector<Bytes> found = decode(whole, bytes, bytes.size() + 1);
+  const std::vector<SickBytes> found = decode(whole, bytes, bytes.size() + 1);
   check_found(bytes, found);
   check_counts(whole.counters(), bytes.size());
   SickDecoder parts(listener, kByteGap_ns);
   require(decode(parts, bytes, 3) == found, "the cut of the stream does not matter");
   require(parts.counters() == whole.counters(), "nor does it for what is counted");
   // A good telegram behind anything, after a silence, is found, and in the end nothing waits.
-  const Bytes good = devices::sick_reply(0xA0, Bytes{0}, 0);
-  const Bytes question = devices::sick_command(0x31);
-  const Bytes& last = listener == SickDecoder::Listener::kHost ? good : question;
+  const SickBytes good = devices::sick_reply(0xA0, SickBytes{0}, 0);
+  const SickBytes question = devices::sick_command(0x31);
+  const SickBytes& last = listener == SickDecoder::Listener::kHost ? good : question;
   whole.push(last, 3 * kByteGap_ns);
-  const std::vector<Bytes> behind = events(whole);
+  const std::vector<SickBytes> behind = events(whole);
   require(behind.size() == 1 && behind.front() == last, "what follows a silence is found");
 }
 
@@ -93,13 +93,13 @@ void check_scan(const devices::PlsScan& scan, std::int64_t last_ns) {
 }
 
 /// The driver, with the bytes as what the sensor says, and time for it to ask and be disappointed.
-void check_driver(std::span<const std::uint8_t> bytes) {
+void check_pls_driver(std::span<const std::uint8_t> bytes) {
   devices::PlsDriver driver({});
   std::int64_t now_ns = 0;
   std::int64_t last_ns = -10'000'000'000;
   driver.opened(now_ns);
-  for (std::size_t at = 0; at < bytes.size(); at += kPart_bytes) {
-    driver.receive(bytes.subspan(at, std::min(kPart_bytes, bytes.size() - at)), now_ns);
+  for (std::size_t at = 0; at < bytes.size(); at += kSickPart_bytes) {
+    driver.receive(bytes.subspan(at, std::min(kSickPart_bytes, bytes.size() - at)), now_ns);
     (void)driver.take_orders();
     for (const devices::PlsScan& scan : driver.take_scans()) {
       check_scan(scan, last_ns);
@@ -114,10 +114,10 @@ void check_driver(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 std::size_t check_sick_decoder(std::string_view text) {
-  const Bytes bytes(text.begin(), text.end());
+  const SickBytes bytes(text.begin(), text.end());
   check_listener(bytes, SickDecoder::Listener::kHost);
   check_listener(bytes, SickDecoder::Listener::kSensor);
-  check_driver(bytes);
+  check_pls_driver(bytes);
   SickDecoder decoder(SickDecoder::Listener::kHost, kByteGap_ns);
   (void)decode(decoder, bytes, bytes.size() + 1);
   return decoder.counters().telegrams;

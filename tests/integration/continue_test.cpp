@@ -24,7 +24,7 @@ using testing::HasSubstr;
 void write_part(const std::string& world, const std::filesystem::path& log, double from,
                 double to) {
   const auto file = std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml");
-  const auto simulated = simulation::simulate_log(simulation::load_world(file), {});
+  const auto simulated = simulation::simulate_log(world::load_world(file), {});
   const auto count = static_cast<double>(simulated.scans.size());
   scan::CarmenLogWriter writer(log);
   for (auto i = static_cast<std::size_t>(from * count); i < static_cast<std::size_t>(to * count);

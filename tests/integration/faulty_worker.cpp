@@ -14,7 +14,7 @@
 
 #include <unistd.h>
 
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const Eigen::Vector2d kGoal_m(3.5, 1.0);  // the robot starts at (1, 1) and looks along x
+const Eigen::Vector2d kNorthGoal_m(3.5, 1.0);  // the robot starts at (1, 1) and looks along x
 
 class GotoCommand : public NavigatorOnRobot {
  protected:
@@ -30,7 +30,7 @@ TEST_F(GotoCommand, EndsWithZeroWhenTheRobotIsThere) {
   Program command(scratch_, "topogeo", words);
   EXPECT_EQ(wait_for_end(command), 0) << command.err();
   EXPECT_THAT(command.err(), HasSubstr("arrived"));
-  EXPECT_LT((robot_.T_world_robot().position_m() - kGoal_m).norm(), 0.1);
+  EXPECT_LT((robot_.T_world_robot().position_m() - kNorthGoal_m).norm(), 0.1);
   EXPECT_TRUE(std::filesystem::exists(scratch_ / "way.png"));
 }
 

@@ -1,5 +1,5 @@
 // The localizer as a process: local maps in any order in, the trajectory of one process out.
-#include "topogeo/localization/localizer.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
 
 #include <algorithm>
 #include <csignal>

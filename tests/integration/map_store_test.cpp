@@ -20,8 +20,8 @@
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/map_mirror.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/storage/map_file.hpp"
+#include "topogeo/world/world.hpp"
 
 #include "program.hpp"
 
@@ -192,8 +192,7 @@ TEST_F(MapStoreShows, ADrawingOverAMap) {
 // What a drive makes, sent as local mapper and localizer do.
 TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   pipeline::MappingRun run({}, "robot");
-  const simulation::World world =
-      simulation::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+  const world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
   for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
   storage::MapDocument expected = run.finish();
   const auto names = write("names.yaml", "places: [{name: start, at: [0, 0]}]\n");

@@ -22,8 +22,8 @@ constexpr std::chrono::milliseconds kMove{20};
 constexpr std::int64_t kScanPeriod_ns = 100'000'000;
 constexpr std::uint64_t kMapVersion = 3;
 
-simulation::World room() {
-  return simulation::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+world::World room() {
+  return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
 }
 
 simulation::RobotOptions robot_options() {

@@ -16,7 +16,7 @@
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::test {
 
@@ -42,7 +42,7 @@ messaging::ParticipantOptions own_options() {
 Drive::Drive(const Scratch& scratch) : log_(scratch / "log.clf.gz"), out_(scratch / "expected") {
   const auto world = std::filesystem::path(TOPOGEO_TEST_DATA) / "floor.world.yaml";
   scan::CarmenLogWriter writer(log_);
-  const auto simulated = simulation::simulate_log(simulation::load_world(world), {});
+  const auto simulated = simulation::simulate_log(world::load_world(world), {});
   for (std::size_t i = 0; i < std::min(kScans, simulated.scans.size()); ++i) {
     writer.write(simulated.scans[i]);
   }

@@ -15,8 +15,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/identical.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/matching/identical.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -28,8 +28,8 @@
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/support/version.hpp"
+#include "topogeo/world/world.hpp"
 
 #include "program.hpp"
 #include "remote_pool.hpp"
@@ -43,8 +43,7 @@ constexpr std::chrono::seconds kPatience{30};
 using Maps = std::vector<std::shared_ptr<const topomap::LocalMap>>;
 
 inline Maps maps_of_room() {
-  const simulation::World world =
-      simulation::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+  const world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
   pipeline::LocalMapper mapper({}, "robot");
   Maps maps;
   for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) {

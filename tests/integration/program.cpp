@@ -18,8 +18,8 @@
 
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/storage/tum.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -188,7 +188,7 @@ void use_udp_only() {
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth, const simulation::SimulationOptions& options) {
   const auto file = std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml");
-  const auto simulated = simulation::simulate_log(simulation::load_world(file), options);
+  const auto simulated = simulation::simulate_log(world::load_world(file), options);
   scan::CarmenLogWriter writer(log);
   std::vector<topomap::StampedPose> poses;
   for (std::size_t i = 0; i < simulated.scans.size(); ++i) {

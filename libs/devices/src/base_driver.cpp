@@ -38,7 +38,7 @@ std::variant<McpAsciiDecoder, McpBinaryDecoder> decoder_of(const BaseSettings& s
   return McpBinaryDecoder(settings.checksum);
 }
 
-const BaseSettings& checked(const BaseSettings& settings) {
+const BaseSettings& checked_base(const BaseSettings& settings) {
   check(settings);
   return settings;
 }
@@ -46,7 +46,7 @@ const BaseSettings& checked(const BaseSettings& settings) {
 }  // namespace
 
 BaseDriver::BaseDriver(const BaseSettings& settings)
-    : settings_(checked(settings)),
+    : settings_(checked_base(settings)),
       units_(settings.calibration),
       period_ns_(ticks_ns(report_period_ticks(settings))),
       decoder_(decoder_of(settings)),

@@ -58,7 +58,7 @@ constexpr std::array kEventNames{
     EventName{"%WDT", false, McpEventKind::kWatchdogExpired},
 };
 
-std::optional<McpEvent> event_of(std::string_view line) {
+std::optional<McpEvent> event_of_line(std::string_view line) {
   constexpr std::string_view kBump = "%BS ";
   if (line.starts_with(kBump)) {
     const auto value = hexadecimal(without_leading(line.substr(kBump.size()), " "));
@@ -164,7 +164,7 @@ void McpAsciiDecoder::take_spontaneous(std::string_view line, std::vector<McpMes
   if (line == "%PSR") {
     if (in_report_) drop_report();
     start_report();
-  } else if (const auto event = event_of(line)) {
+  } else if (const auto event = event_of_line(line)) {
     messages.emplace_back(*event);
   } else if (in_report_) {
     drop_report();

@@ -40,7 +40,7 @@ constexpr std::array kErrorBits{McpEventKind::kTranslateError, McpEventKind::kTr
                                 McpEventKind::kRotateError,    McpEventKind::kRotateCurrent,
                                 McpEventKind::kBatteryHigh,    McpEventKind::kBatteryLow};
 
-std::optional<McpEventKind> event_of(std::uint8_t code) {
+std::optional<McpEventKind> event_of_code(std::uint8_t code) {
   switch (code) {
     case opcode(McpCommand::kSync):
       return McpEventKind::kLostSync;
@@ -215,7 +215,7 @@ void McpBinaryDecoder::interpret(std::span<const std::uint8_t> payload,
     for (std::size_t i = 0; i < kErrorBits.size(); ++i) {
       if ((bits >> i & 1U) != 0) messages.emplace_back(McpEvent{kErrorBits.at(i), 0});
     }
-  } else if (const auto event = event_of(code); fits && event) {
+  } else if (const auto event = event_of_code(code); fits && event) {
     messages.emplace_back(McpEvent{*event, big_endian(data)});
   } else if (fits && is_query(static_cast<McpCommand>(code))) {
     messages.emplace_back(McpAnswer{static_cast<McpCommand>(code), big_endian(data)});

@@ -12,7 +12,7 @@ namespace {
 /// The longest telegram, a whole scan of 361 beams.
 constexpr std::size_t kScan_bytes = 732;
 
-const PlsSettings& checked(const PlsSettings& settings) {
+const PlsSettings& checked_laser(const PlsSettings& settings) {
   settings.check();
   return settings;
 }
@@ -37,7 +37,7 @@ const char* to_string(PlsState state) {
 
 PlsDriver::PlsDriver(PlsSettings settings)
     : settings_(std::move(settings)),
-      decoder_(SickDecoder::Listener::kHost, checked(settings_).byte_gap_ns),
+      decoder_(SickDecoder::Listener::kHost, checked_laser(settings_).byte_gap_ns),
       maker_(settings_) {}
 
 void PlsDriver::opened(std::int64_t now_ns) {

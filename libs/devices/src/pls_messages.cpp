@@ -15,7 +15,7 @@ constexpr std::uint16_t kProtectiveField = 1U << 15;
 constexpr std::uint8_t kScanWhole = 0x01;
 
 constexpr std::size_t kCount_bytes = 2;
-constexpr unsigned kCountMask = 0x3FF;
+constexpr unsigned kValuesMask = 0x3FF;
 constexpr unsigned kPartShift = 11;
 constexpr unsigned kPartMask = 0x3;
 constexpr unsigned kUnitShift = 14;
@@ -93,7 +93,7 @@ std::optional<PlsMeasuredValues> pls_measured_values(const SickTelegram& telegra
   const unsigned count = telegram.data[0] | static_cast<unsigned>(telegram.data[1]) << 8;
   PlsMeasuredValues values;
   values.bytes = telegram.data.subspan(kCount_bytes);
-  if (values.bytes.size() != std::size_t{2} * (count & kCountMask)) return std::nullopt;
+  if (values.bytes.size() != std::size_t{2} * (count & kValuesMask)) return std::nullopt;
   values.part = count >> kPartShift & kPartMask;
   values.unit_m = kUnits_m[count >> kUnitShift];
   values.health = pls_health(telegram.status);

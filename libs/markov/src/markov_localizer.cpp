@@ -12,24 +12,24 @@
 namespace topogeo::markov {
 namespace {
 
-void check(const std::string& field, double value, double low, double high) {
+void check_state(const std::string& field, double value, double low, double high) {
   if (std::isfinite(value) && value >= low && value <= high) return;
   throw std::invalid_argument(field + " is " + std::to_string(value) + ", must be in [" +
                               std::to_string(low) + ", " + std::to_string(high) + "]");
 }
 
 void check_pose(const std::string& name, const geometry::Pose2& pose) {
-  check(name + ".x_m", pose.x_m, -1e6, 1e6);
-  check(name + ".y_m", pose.y_m, -1e6, 1e6);
-  check(name + ".theta_rad", pose.theta_rad, -1e5, 1e5);
+  check_state(name + ".x_m", pose.x_m, -1e6, 1e6);
+  check_state(name + ".y_m", pose.y_m, -1e6, 1e6);
+  check_state(name + ".theta_rad", pose.theta_rad, -1e5, 1e5);
 }
 
 void check_move(const Move& move) {
   constexpr double kMost = 1000.0;
   if (move.kind == MoveKind::kAdvance) {
-    check("advance, metres,", move.amount, -kMost, kMost);
+    check_state("advance, metres,", move.amount, -kMost, kMost);
   } else {
-    check("turn, radians,", move.amount, 0.0, kMost);
+    check_state("turn, radians,", move.amount, 0.0, kMost);
   }
 }
 
@@ -57,15 +57,15 @@ bool meets_obstacle(const ObstacleCells& map, const Eigen::Vector2d& from_m,
 }  // namespace
 
 void validate(const MarkovConfig& config) {
-  check("MarkovConfig.window_cells", config.window_cells, BeliefGrid::kSmallest,
-        BeliefGrid::kLargest);
+  check_state("MarkovConfig.window_cells", config.window_cells, BeliefGrid::kSmallest,
+              BeliefGrid::kLargest);
   if (config.window_cells % 2 == 0) {
     throw std::invalid_argument("MarkovConfig.window_cells is " +
                                 std::to_string(config.window_cells) + ", must be odd");
   }
   validate(config.transition);
   validate(config.sonar);
-  check("MarkovConfig.perceptual_weight", config.perceptual_weight, 0.0, 1.0);
+  check_state("MarkovConfig.perceptual_weight", config.perceptual_weight, 0.0, 1.0);
 }
 
 MarkovLocalizer::MarkovLocalizer(const MarkovConfig& config, ObstacleCells map,

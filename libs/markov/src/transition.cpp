@@ -11,7 +11,7 @@
 namespace topogeo::markov {
 namespace {
 
-void check(const std::string& field, double value, double low, double high) {
+void check_transition(const std::string& field, double value, double low, double high) {
   if (std::isfinite(value) && value >= low && value <= high) return;
   throw std::invalid_argument("TransitionModel." + field + " is " + std::to_string(value) +
                               ", must be in [" + std::to_string(low) + ", " + std::to_string(high) +
@@ -19,7 +19,7 @@ void check(const std::string& field, double value, double low, double high) {
 }
 
 void check_side(const std::string& field, int side) {
-  check(field, side, 1, 21);
+  check_transition(field, side, 1, 21);
   if (side % 2 == 0) {
     throw std::invalid_argument("TransitionModel." + field + " is " + std::to_string(side) +
                                 ", must be odd");
@@ -38,10 +38,10 @@ void check_matrix(const std::string& name, const TransitionMatrix& matrix) {
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < cells; ++i) {
-    check(name + ".values[" + std::to_string(i) + "]", matrix.values[i], 0.0, 1.01);
+    check_transition(name + ".values[" + std::to_string(i) + "]", matrix.values[i], 0.0, 1.01);
     sum += matrix.values[i];
   }
-  check(name + ": sum of values", sum, 0.1, 1.01);
+  check_transition(name + ": sum of values", sum, 0.1, 1.01);
 }
 
 /// Values on a square of cells around the expected place, from which the taps are read off.
@@ -104,8 +104,9 @@ void validate(const TransitionModel& model) {
   check_matrix("advance", model.advance);
   check_matrix("left", model.left);
   check_matrix("right", model.right);
-  if (model.advance_step_m != 0.0) check("advance_step_m", model.advance_step_m, 0.01, 100.0);
-  if (model.turn_step_rad != 0.0) check("turn_step_rad", model.turn_step_rad, 0.01, 6.3);
+  if (model.advance_step_m != 0.0)
+    check_transition("advance_step_m", model.advance_step_m, 0.01, 100.0);
+  if (model.turn_step_rad != 0.0) check_transition("turn_step_rad", model.turn_step_rad, 0.01, 6.3);
 }
 
 std::vector<Tap> turned(const TransitionMatrix& matrix, ArrowSense sense, double heading_rad) {

@@ -15,8 +15,8 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStill_m_s = 1e-6;
-constexpr double kNanoseconds = 1e-9;
+constexpr double kStanding_m_s = 1e-6;
+constexpr double kNsToSeconds = 1e-9;
 
 bool heard(const SonarReading& reading) {
   return reading.range_m > scan::Scan::kNoReturn;
@@ -109,7 +109,7 @@ bool CollisionGuard::laser_sees(const SonarReading& reading, double up_to_m) con
 }
 
 bool CollisionGuard::fresh(std::int64_t stamp_ns, std::int64_t now_ns) const {
-  return static_cast<double>(now_ns - stamp_ns) * kNanoseconds <= config_.oldest_scan_s;
+  return static_cast<double>(now_ns - stamp_ns) * kNsToSeconds <= config_.oldest_scan_s;
 }
 
 HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) const {
@@ -118,7 +118,7 @@ HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) con
     return reason;
   };
   const auto age_s = [&](std::int64_t stamp_ns) {
-    return static_cast<double>(now_ns - stamp_ns) * kNanoseconds;
+    return static_cast<double>(now_ns - stamp_ns) * kNsToSeconds;
   };
   if (config_.needs_scan && !scan_) return because(HaltReason::kNoScan, "no scan has come yet");
   if (config_.needs_scan && !fresh(scan_->stamp_ns, now_ns)) {
@@ -133,7 +133,7 @@ HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) con
                    say("the last reading of the sonars is %.1f s old", age_s(sonar_->stamp_ns)));
   }
   if (silent_since_ns_ && age_s(sonar_->stamp_ns) <= config_.silent_s &&
-      static_cast<double>(sonar_->stamp_ns - *silent_since_ns_) * kNanoseconds >=
+      static_cast<double>(sonar_->stamp_ns - *silent_since_ns_) * kNsToSeconds >=
           config_.silent_s) {
     return because(HaltReason::kSonarSilent,
                    say("no sonar has heard anything for %.1f s, though the laser sees something "
@@ -169,7 +169,7 @@ geometry::Velocity CollisionGuard::driven() const {
     const auto before = odometry_.at(last_->stamp_ns - back_ns);
     if (!before) continue;
     const geometry::Pose2 step = between(before->T_odom_robot, last_->T_odom_robot);
-    const double time_s = static_cast<double>(back_ns) * kNanoseconds;
+    const double time_s = static_cast<double>(back_ns) * kNsToSeconds;
     return {step.x_m / time_s, step.theta_rad / time_s};
   }
   return {};
@@ -189,7 +189,7 @@ GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_
   }
   const std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
   const double body_m = config_.radius_m + std::min(config_.margin_m, config_.side_margin_m);
-  const bool still = std::fabs(wanted.linear_m_per_s) < kStill_m_s;
+  const bool still = std::fabs(wanted.linear_m_per_s) < kStanding_m_s;
   const SweptWay way =
       sweep(still ? geometry::Velocity{1.0, 0.0} : wanted, points_m, body_m, kFarthest_m);
   verdict.free_way_m = way.way_m;

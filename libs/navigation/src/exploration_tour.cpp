@@ -10,10 +10,10 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kNanoseconds = 1e9;
+constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kNearer_m = 0.1;   // progress
 constexpr double kAside_rad = 0.5;  // enough turn for another stop
-constexpr int kLooks = 2;           // at a target that stays open
+constexpr int kLooksAtTarget = 2;   // at a target that stays open
 
 }  // namespace
 
@@ -58,7 +58,8 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
   switch (navigator.state) {
     case NavigatorState::kArrived:
       // Its last scan may not be in the map yet.
-      if (changed || static_cast<double>(now_ns - nearest_ns_) > kNanoseconds * config_.settle_s) {
+      if (changed ||
+          static_cast<double>(now_ns - nearest_ns_) > kNanosecondsPerSecond * config_.settle_s) {
         arrived();
         nearest_ns_ = now_ns;
       }
@@ -79,7 +80,8 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
   if (way_m < nearest_m_ - kNearer_m || navigator.state == NavigatorState::kRelocalizing) {
     nearest_m_ = way_m;
     nearest_ns_ = now_ns;
-  } else if (static_cast<double>(now_ns - nearest_ns_) > kNanoseconds * config_.patience_s) {
+  } else if (static_cast<double>(now_ns - nearest_ns_) >
+             kNanosecondsPerSecond * config_.patience_s) {
     explorer_.give_up(*target_);
     target_.reset();
   }
@@ -88,7 +90,7 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
 // It is there and the target is open all the same: another look, a little to the side, so that a
 // stop is made.
 void ExplorationTour::arrived() {
-  if (++looks_ >= kLooks) {
+  if (++looks_ >= kLooksAtTarget) {
     explorer_.give_up(*target_);
     target_.reset();
     return;
@@ -100,8 +102,8 @@ void ExplorationTour::arrived() {
 
 std::optional<TourGoal> ExplorationTour::choose(const geometry::Pose2& T_map_robot,
                                                 std::int64_t now_ns) {
-  const bool waited =
-      idle_ns_ && static_cast<double>(now_ns - *idle_ns_) >= kNanoseconds * config_.settle_s;
+  const bool waited = idle_ns_ && static_cast<double>(now_ns - *idle_ns_) >=
+                                      kNanosecondsPerSecond * config_.settle_s;
   if (std::exchange(chosen_version_, map_.version) != map_.version || !idle_ns_) {
     target_ = explorer_.next(*map_.graph, *map_.map, *planner_, T_map_robot);
     if (!target_ && explorer_.resume()) {

@@ -13,7 +13,7 @@
 namespace topogeo::navigation {
 namespace {
 
-MarkovTrackerConfig checked(const MarkovTrackerConfig& config) {
+MarkovTrackerConfig checked_tracker(const MarkovTrackerConfig& config) {
   check(config);
   return config;
 }
@@ -76,7 +76,7 @@ SonarRound laser_round(const ScanPoints& scan, double step_rad) {
 }
 
 MarkovTracker::MarkovTracker(const planning::OccupancyGrid& grid, const MarkovTrackerConfig& config)
-    : config_(checked(config)),
+    : config_(checked_tracker(config)),
       cells_(cells_of(grid, config.cell_m)),
       T_map_grid_(grid.frame().T_map_grid) {}
 

@@ -12,8 +12,8 @@ namespace {
 constexpr double kSees_m = 2.5;       // what is further along the path does not matter yet
 constexpr double kKeepsOff_m = 0.15;  // stops so far before the place where it would touch
 constexpr double kWaiting_m_s = 0.05;
-constexpr double kBrake = 0.6;       // of the acceleration, when something is in the way
-constexpr double kSeeing_s = 0.15;   // from a measurement until a command follows, about
+constexpr double kObstacleBrake = 0.6;  // of the acceleration, when something is in the way
+constexpr double kSeeing_s = 0.15;      // from a measurement until a command follows, about
 constexpr double kProgress_m = 0.1;  // so far on, and it does not wait for that obstacle any more
 constexpr double kWaiting_rad_s = 0.1;
 constexpr double kPlanEvery_s = 0.3;
@@ -151,7 +151,7 @@ double Navigator::State::speed_past_obstacles(const geometry::Pose2& T_map_robot
   block_ahead_m = block->ahead_m;
   return std::min(config.speed_m_per_s,
                   stopping_speed(block->ahead_m - kKeepsOff_m, config.delay_s + kSeeing_s,
-                                 kBrake * config.acceleration_m_per_s2));
+                                 kObstacleBrake * config.acceleration_m_per_s2));
 }
 
 // Another path, when there is one; the old one stays otherwise.

@@ -12,7 +12,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kNanoseconds = 1e-9;
+constexpr double kSecondsPerNanosecond = 1e-9;
 constexpr double kBrake = 0.7;      // of the acceleration: stops are planned with a reserve
 constexpr double kTurnBrake = 0.6;  // the same of turns
 constexpr double kSlowest_m_s = 0.03;
@@ -149,8 +149,8 @@ geometry::Pose2 PathFollower::predicted(const geometry::Pose2& T_map_robot,
     const std::int64_t begin_ns = std::max(commands_[i].stamp_ns, from_ns);
     const std::int64_t end_ns = i + 1 < commands_.size() ? commands_[i + 1].stamp_ns : now_ns;
     if (end_ns <= begin_ns) continue;
-    pose =
-        pose * moved(commands_[i].velocity, static_cast<double>(end_ns - begin_ns) * kNanoseconds);
+    pose = pose * moved(commands_[i].velocity,
+                        static_cast<double>(end_ns - begin_ns) * kSecondsPerNanosecond);
   }
   return pose;
 }
@@ -314,8 +314,9 @@ geometry::Velocity PathFollower::ramped(const geometry::Velocity& wanted,
   double time_s = 0.05;
   if (!commands_.empty()) {
     last = commands_.back().velocity;
-    time_s = std::clamp(static_cast<double>(now_ns - commands_.back().stamp_ns) * kNanoseconds, 0.0,
-                        kLongest_s);
+    time_s =
+        std::clamp(static_cast<double>(now_ns - commands_.back().stamp_ns) * kSecondsPerNanosecond,
+                   0.0, kLongest_s);
   }
   const double up = config_.acceleration_m_per_s2 * time_s;
   const double turn = config_.turn_acceleration_rad_per_s2 * time_s;

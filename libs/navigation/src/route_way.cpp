@@ -16,8 +16,8 @@ constexpr double kLeastBeside_m = 0.07;  // the same in tight bends
 constexpr double kNear_m = 0.3;          // so near to the goal the way is straight
 
 // The cells that a polyline passes, neighbours each.
-std::vector<planning::Cell> cells_of(const planning::GridFrame& frame,
-                                     const std::vector<Eigen::Vector2d>& points_m) {
+std::vector<planning::Cell> cells_under(const planning::GridFrame& frame,
+                                        const std::vector<Eigen::Vector2d>& points_m) {
   std::vector<planning::Cell> cells;
   const auto add = [&](const Eigen::Vector2d& point_m) {
     const auto cell = frame.cell_of(point_m);
@@ -49,7 +49,7 @@ std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_
 RouteWay::RouteWay(const NavigatorConfig& config) : config_(config) {}
 
 bool RouteWay::take(const RoutePlan& route) {
-  std::vector<planning::Cell> cells = cells_of(map_->frame(), route.points_m);
+  std::vector<planning::Cell> cells = cells_under(map_->frame(), route.points_m);
   if (cells.empty()) return false;
   route_ = route;
   cells_ = std::move(cells);
@@ -58,7 +58,7 @@ bool RouteWay::take(const RoutePlan& route) {
 
 bool RouteWay::fits(const RoutePlan& route) const {
   constexpr double kEnds_m = 0.5;
-  const std::vector<planning::Cell> cells = cells_of(map_->frame(), route.points_m);
+  const std::vector<planning::Cell> cells = cells_under(map_->frame(), route.points_m);
   return !cells.empty() && std::all_of(cells.begin(), cells.end(), [&](const planning::Cell& cell) {
     const Eigen::Vector2d middle_m = map_->frame().center_m(cell);
     return map_->space().passable(cell) || (middle_m - route.points_m.front()).norm() < kEnds_m ||

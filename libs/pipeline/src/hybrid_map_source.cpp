@@ -80,13 +80,13 @@ storage::MapDrawing drawing_of_file(const std::filesystem::path& file, double re
     drawing.grid = planning::read_grid(file);
     return drawing;
   }
-  const simulation::World world = simulation::load_world(file);
+  const world::World world = world::load_world(file);
   try {
     drawing.grid = planning::grid_of(drawing_of(world), resolution_m);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(file.string() + ": " + error.what());
   }
-  for (const simulation::NamedPlace& place : world.places) {
+  for (const world::NamedPlace& place : world.places) {
     drawing.places.push_back({place.name, place.position_m});
   }
   return drawing;

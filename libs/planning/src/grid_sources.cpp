@@ -128,7 +128,7 @@ void keep_reached(OccupancyGrid& grid, const std::vector<Eigen::Vector2d>& seeds
   }
 }
 
-void check_range(const char* field, double value, double low, double high) {
+void check_grid_range(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;
   std::ostringstream text;
   text << "grid from scans: " << field << " is " << value << ", allowed are " << low << " to "
@@ -236,12 +236,12 @@ OccupancyGrid grid_of(const Drawing& drawing, double resolution_m, double margin
 }
 
 void check(const ScanGridConfig& config) {
-  check_range("resolution_m", config.resolution_m, 0.01, 1.0);
-  check_range("margin_m", config.margin_m, 0.0, 100.0);
-  check_range("snap_cells", config.snap_cells, 1, 1024);
-  check_range("hit", config.hit, 1, 1000);
-  check_range("miss", config.miss, 1, 1000);
-  check_range("limit", config.limit, 1, 10000);
+  check_grid_range("resolution_m", config.resolution_m, 0.01, 1.0);
+  check_grid_range("margin_m", config.margin_m, 0.0, 100.0);
+  check_grid_range("snap_cells", config.snap_cells, 1, 1024);
+  check_grid_range("hit", config.hit, 1, 1000);
+  check_grid_range("miss", config.miss, 1, 1000);
+  check_grid_range("limit", config.limit, 1, 10000);
 }
 
 OccupancyGrid grid_from_scans(std::span<const topomap::LocalMap> maps,

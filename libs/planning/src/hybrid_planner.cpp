@@ -17,7 +17,7 @@
 namespace topogeo::planning {
 namespace {
 
-void check_range(const char* field, double value, double high) {
+void check_planner_range(const char* field, double value, double high) {
   if (value >= 0.0 && value <= high) return;
   std::ostringstream text;
   text << "planner: " << field << " is " << value << " m, allowed are 0 to " << high << " m";
@@ -97,9 +97,9 @@ Goal resolve(const HybridMap& map, const Target& to) {
 }  // namespace
 
 void check(const HybridPlannerConfig& config) {
-  check_range("start_snap_m", config.start_snap_m, 5.0);
-  check_range("goal_snap_m", config.goal_snap_m, 5.0);
-  check_range("piece_m", config.piece_m, 50.0);
+  check_planner_range("start_snap_m", config.start_snap_m, 5.0);
+  check_planner_range("goal_snap_m", config.goal_snap_m, 5.0);
+  check_planner_range("piece_m", config.piece_m, 50.0);
   constexpr double kMostCells = 1e8;
   if (!(config.exact_window_cells >= 0.0 && config.exact_window_cells <= kMostCells)) {
     throw std::invalid_argument("planner: exact_window_cells is " +

@@ -17,7 +17,7 @@
 namespace topogeo::planning {
 namespace {
 
-void check_range(const char* field, double value, double low, double high) {
+void check_detour_range(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;
   std::ostringstream text;
   text << "detour: " << field << " is " << value << " m, allowed are " << low << " to " << high
@@ -136,8 +136,8 @@ std::size_t end_in_window(const SearchWindow& window, std::span<const Cell> rout
 }  // namespace
 
 void check(const DetourConfig& config) {
-  check_range("half_side_m", config.half_side_m, 0.5, 20.0);
-  check_range("start_snap_m", config.start_snap_m, 0.0, 5.0);
+  check_detour_range("half_side_m", config.half_side_m, 0.5, 20.0);
+  check_detour_range("start_snap_m", config.start_snap_m, 0.0, 5.0);
 }
 
 std::string_view describe(DetourStatus status) {

@@ -11,7 +11,7 @@
 namespace topogeo::planning {
 namespace {
 
-void check_range(const char* field, double value, double low, double high) {
+void check_primitive_range(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;
   std::ostringstream text;
   text << "motion primitives: " << field << " is " << value << ", allowed are " << low << " to "
@@ -68,11 +68,12 @@ std::vector<MotionPrimitive> motion_primitives(std::span<const Eigen::Vector2d> 
                                                double heading_rad,
                                                std::optional<double> final_heading_rad,
                                                const PrimitiveConfig& config) {
-  check_range("min_turn_rad", config.min_turn_rad, 0.0, 1.0);
-  check_range("min_advance_m", config.min_advance_m, 0.0, 1.0);
+  check_primitive_range("min_turn_rad", config.min_turn_rad, 0.0, 1.0);
+  check_primitive_range("min_advance_m", config.min_advance_m, 0.0, 1.0);
   constexpr double kMost_rad = 1e5;
-  check_range("heading_rad", heading_rad, -kMost_rad, kMost_rad);
-  check_range("final_heading_rad", final_heading_rad.value_or(0.0), -kMost_rad, kMost_rad);
+  check_primitive_range("heading_rad", heading_rad, -kMost_rad, kMost_rad);
+  check_primitive_range("final_heading_rad", final_heading_rad.value_or(0.0), -kMost_rad,
+                        kMost_rad);
   std::vector<MotionPrimitive> primitives;
   double heading = heading_rad;
   for (std::size_t i = 0, at = 0; i < points_m.size(); ++i) {

@@ -28,7 +28,7 @@ std::size_t index_in(const CellBox& box, const Cell& cell) {
          static_cast<std::size_t>(cell.column - box.low.column);
 }
 
-std::array<Cell, 4> beside(const Cell& cell) {
+std::array<Cell, 4> neighbours_of(const Cell& cell) {
   return {Cell{cell.column + 1, cell.row}, Cell{cell.column, cell.row + 1},
           Cell{cell.column - 1, cell.row}, Cell{cell.column, cell.row - 1}};
 }
@@ -129,7 +129,7 @@ void OpenNetwork::find_parts() {
         while (!edge.empty()) {
           const Cell cell = edge.back();
           edge.pop_back();
-          for (const Cell& next : beside(cell)) reach(next);
+          for (const Cell& next : neighbours_of(cell)) reach(next);
         }
         ++parts.count;
       }
@@ -159,7 +159,7 @@ void OpenNetwork::place_node(const BorderNode& border) {
   };
   for (const Cell& near : border.border[0]) {
     if (cells_.forbids(near)) continue;
-    for (const Cell& far : beside(near)) {
+    for (const Cell& far : neighbours_of(near)) {
       if (map_.zone_of(far) != border.zones[1] || cells_.forbids(far)) continue;
       const PartPair parts{part_of(border.zones[0], near), part_of(border.zones[1], far)};
       const std::array<Cell, 2> cells{near, far};

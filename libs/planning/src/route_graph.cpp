@@ -15,7 +15,7 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 struct Directed {
@@ -23,8 +23,9 @@ struct Directed {
   std::uint32_t edge = 0;  // index among the edges given
 };
 
-using Graph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property, Directed,
-                                                 boost::no_property, std::uint32_t, std::uint32_t>;
+using CompressedGraph =
+    boost::compressed_sparse_row_graph<boost::directedS, boost::no_property, Directed,
+                                       boost::no_property, std::uint32_t, std::uint32_t>;
 
 void check_index(const char* what, std::uint32_t index, std::size_t count) {
   if (index < count) return;
@@ -49,13 +50,13 @@ class ExitVisitor : public boost::default_dijkstra_visitor {
     std::vector<std::uint32_t> edge_before;
     std::vector<double> exit_cost;
     std::vector<double> cost;
-    double best = kInfinity;
+    double best = kUnreached;
     std::uint32_t best_exit = kNone;
   };
 
   explicit ExitVisitor(Record& record) : record_(&record) {}
 
-  void examine_vertex(std::uint32_t node, const Graph& /*graph*/) {
+  void examine_vertex(std::uint32_t node, const CompressedGraph& /*graph*/) {
     if (record_->cost[node] >= record_->best) throw BestKnown{};
     const double total = record_->cost[node] + record_->exit_cost[node];
     if (total >= record_->best) return;
@@ -64,7 +65,7 @@ class ExitVisitor : public boost::default_dijkstra_visitor {
   }
 
   template <typename Edge>
-  void edge_relaxed(const Edge& edge, const Graph& graph) {
+  void edge_relaxed(const Edge& edge, const CompressedGraph& graph) {
     record_->edge_before[target(edge, graph)] = graph[edge].edge;
   }
 
@@ -75,7 +76,7 @@ class ExitVisitor : public boost::default_dijkstra_visitor {
 }  // namespace
 
 struct RouteGraph::State {
-  Graph graph;
+  CompressedGraph graph;
   std::vector<GraphEdge> edges;
 
   [[nodiscard]] std::size_t nodes() const { return num_vertices(graph); }
@@ -85,7 +86,7 @@ struct RouteGraph::State {
     for (std::size_t i = 0; i < edges.size(); ++i) costs[i] = edges[i].cost;
     for (const std::uint32_t edge : closed.edges) {
       check_index("closed edge", edge, edges.size());
-      costs[edge] = kInfinity;
+      costs[edge] = kUnreached;
     }
     if (closed.nodes.empty()) return costs;
     std::vector<bool> shut(nodes(), false);
@@ -94,7 +95,7 @@ struct RouteGraph::State {
       shut[node] = true;
     }
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      if (shut[edges[i].node_a] || shut[edges[i].node_b]) costs[i] = kInfinity;
+      if (shut[edges[i].node_a] || shut[edges[i].node_b]) costs[i] = kUnreached;
     }
     return costs;
   }
@@ -108,8 +109,8 @@ struct RouteGraph::State {
                              std::vector<std::uint32_t>& before) const {
     ExitVisitor::Record record;
     record.edge_before.assign(nodes(), kNone);
-    record.exit_cost.assign(nodes(), kInfinity);
-    record.cost.assign(nodes(), kInfinity);
+    record.exit_cost.assign(nodes(), kUnreached);
+    record.cost.assign(nodes(), kUnreached);
     before.resize(nodes());
     std::vector<std::uint32_t> starts;
     starts.reserve(entries.size());
@@ -123,20 +124,20 @@ struct RouteGraph::State {
       check_index("entry", entry.node, nodes());
       check_cost("an entry", entry.cost);
       if (is_closed(closed, entry.node)) continue;
-      if (record.cost[entry.node] == kInfinity) starts.push_back(entry.node);
+      if (record.cost[entry.node] == kUnreached) starts.push_back(entry.node);
       record.cost[entry.node] = std::min(record.cost[entry.node], entry.cost);
       before[entry.node] = entry.node;
     }
     const std::vector<double> costs = edge_costs(closed);
-    const auto weight = boost::make_function_property_map<Graph::edge_descriptor>(
-        [&](const Graph::edge_descriptor& edge) { return costs[graph[edge].edge]; });
+    const auto weight = boost::make_function_property_map<CompressedGraph::edge_descriptor>(
+        [&](const CompressedGraph::edge_descriptor& edge) { return costs[graph[edge].edge]; });
     const auto index = get(boost::vertex_index, graph);
     try {
       boost::dijkstra_shortest_paths_no_init(
           graph, starts.begin(), starts.end(),
           boost::make_iterator_property_map(before.begin(), index),
           boost::make_iterator_property_map(record.cost.begin(), index), weight, index,
-          std::less<>(), boost::closed_plus<double>(kInfinity), 0.0, ExitVisitor(record));
+          std::less<>(), boost::closed_plus<double>(kUnreached), 0.0, ExitVisitor(record));
     } catch (const BestKnown&) {
       return record;
     }
@@ -161,8 +162,8 @@ RouteGraph::RouteGraph(std::size_t nodes, std::span<const GraphEdge> edges)
     properties.insert(properties.end(), 2, directed);
   }
   state_->edges.assign(edges.begin(), edges.end());
-  state_->graph = Graph(boost::edges_are_unsorted_multi_pass, ends.begin(), ends.end(),
-                        properties.begin(), static_cast<std::uint32_t>(nodes));
+  state_->graph = CompressedGraph(boost::edges_are_unsorted_multi_pass, ends.begin(), ends.end(),
+                                  properties.begin(), static_cast<std::uint32_t>(nodes));
 }
 
 RouteGraph::RouteGraph(RouteGraph&&) noexcept = default;
@@ -193,7 +194,7 @@ std::vector<bool> RouteGraph::reached(std::span<const GraphAccess> entries,
   std::vector<std::uint32_t> before;
   const ExitVisitor::Record record = state_->search(entries, {}, closed, before);
   std::vector<bool> result(state_->nodes());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = record.cost[i] < kInfinity;
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = record.cost[i] < kUnreached;
   return result;
 }
 

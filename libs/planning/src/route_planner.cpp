@@ -28,13 +28,13 @@ struct Piece {
   double length_m = 0.0;
 };
 
-struct GraphEdge {
+struct RouteEdge {
   double length_m = 0.0;
   std::size_t piece = 0;
 };
 
 using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
-                                    boost::no_property, GraphEdge>;
+                                    boost::no_property, RouteEdge>;
 using Vertex = boost::graph_traits<Graph>::vertex_descriptor;
 
 __attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
@@ -96,7 +96,7 @@ class RoadNetwork {
     std::vector<Vertex> before(num_vertices(graph_));
     std::vector<double> distance_m(num_vertices(graph_));
     boost::dijkstra_shortest_paths(graph_, from,
-                                   boost::weight_map(get(&GraphEdge::length_m, graph_))
+                                   boost::weight_map(get(&RouteEdge::length_m, graph_))
                                        .predecessor_map(boost::make_iterator_property_map(
                                            before.begin(), get(boost::vertex_index, graph_)))
                                        .distance_map(boost::make_iterator_property_map(
@@ -138,7 +138,7 @@ class RoadNetwork {
     pieces_.push_back(piece);
     pieces_.back().length_m = length_of(piece.points);
     piece_starts_.push_back(from);
-    add_edge(from, to, GraphEdge{pieces_.back().length_m, pieces_.size() - 1}, graph_);
+    add_edge(from, to, RouteEdge{pieces_.back().length_m, pieces_.size() - 1}, graph_);
   }
 
   [[nodiscard]] Route route_along(const std::vector<Vertex>& way) const {
@@ -157,7 +157,7 @@ class RoadNetwork {
 
   // Two nodes can have several branches between them.
   [[nodiscard]] std::size_t shortest_edge(Vertex from, Vertex to) const {
-    std::optional<GraphEdge> best;
+    std::optional<RouteEdge> best;
     const auto [begin, end] = out_edges(from, graph_);
     for (auto it = begin; it != end; ++it) {
       if (target(*it, graph_) != to) continue;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStraight_rad = 1e-6;
 
-void check_range(const char* field, double value, double low, double high) {
+void check_path_range(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;
   std::ostringstream text;
   text << "smooth path: " << field << " is " << value << " m, allowed are " << low << " to " << high
@@ -147,9 +147,9 @@ class Smoother {
 }  // namespace
 
 void check(const SmoothPathConfig& config) {
-  check_range("min_radius_m", config.min_radius_m, 0.01, 10.0);
-  check_range("max_radius_m", config.max_radius_m, config.min_radius_m, 100.0);
-  check_range("step_m", config.step_m, 0.005, 10.0);
+  check_path_range("min_radius_m", config.min_radius_m, 0.01, 10.0);
+  check_path_range("max_radius_m", config.max_radius_m, config.min_radius_m, 100.0);
+  check_path_range("step_m", config.step_m, 0.005, 10.0);
 }
 
 std::vector<PathSample> smooth_path(const FreeSpace& space,

@@ -13,7 +13,7 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr double kMaxCoordinate_m = 1e6;
+constexpr double kMaxDrawn_m = 1e6;
 
 class DrawingReader {
  public:
@@ -68,8 +68,8 @@ class DrawingReader {
     if (!node.IsDefined() || !node.IsSequence() || node.size() != 2) {
       fail_in_yaml(source_, node, field, "[x, y]");
     }
-    return {number_in_yaml(source_, node[0], field, -kMaxCoordinate_m, kMaxCoordinate_m, "m"),
-            number_in_yaml(source_, node[1], field, -kMaxCoordinate_m, kMaxCoordinate_m, "m")};
+    return {number_in_yaml(source_, node[0], field, -kMaxDrawn_m, kMaxDrawn_m, "m"),
+            number_in_yaml(source_, node[1], field, -kMaxDrawn_m, kMaxDrawn_m, "m")};
   }
 
   [[nodiscard]] std::vector<Eigen::Vector2d> polygon(const YAML::Node& node) const {

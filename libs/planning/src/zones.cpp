@@ -20,7 +20,7 @@ using topomap::NodeKind;
 // Directions are taken over this distance from a node: the first points of a branch jitter.
 constexpr double kTangentReach_m = 0.4;
 
-void check_range(const char* field, double value, double low, double high, const char* unit) {
+void check_zone_range(const char* field, double value, double low, double high, const char* unit) {
   if (value >= low && value <= high) return;
   std::ostringstream text;
   text << "zones: " << field << " is " << value << ", allowed are " << low << " to " << high << ' '
@@ -102,9 +102,9 @@ ZoneLabels no_labels(const FreeSpace& space) {
 }  // namespace
 
 void check(const ZoneConfig& config) {
-  check_range("min_area_m2", config.min_area_m2, 0.0, 1000.0, "m2");
-  check_range("passage_half_width_m", config.passage_half_width_m, 0.01, 5.0, "m");
-  check_range("cut_reach_m", config.cut_reach_m, 0.0, 5.0, "m");
+  check_zone_range("min_area_m2", config.min_area_m2, 0.0, 1000.0, "m2");
+  check_zone_range("passage_half_width_m", config.passage_half_width_m, 0.01, 5.0, "m");
+  check_zone_range("cut_reach_m", config.cut_reach_m, 0.0, 5.0, "m");
 }
 
 std::vector<Passage> passages_of(const GlobalMap& map) {

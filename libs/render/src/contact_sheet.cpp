@@ -14,14 +14,14 @@
 namespace topogeo::render {
 namespace {
 
-constexpr double kMargin_px = 20.0;
-constexpr double kHeader_px = 46.0;
+constexpr double kSheetMargin_px = 20.0;
+constexpr double kSheetHeader_px = 46.0;
 constexpr double kLegend_px = 52.0;
 constexpr double kGap_px = 8.0;
 constexpr double kCaption_px = 18.0;
-constexpr double kWanted_px = 252.0;       // width of a thumbnail
-constexpr double kShape = 0.8;             // height to width
-constexpr double kLargestScale_px = 40.0;  // of one metre
+constexpr double kWanted_px = 252.0;     // width of a thumbnail
+constexpr double kShape = 0.8;           // height to width
+constexpr double kSheetScale_px = 40.0;  // of one metre
 
 struct Sheet {
   std::size_t columns = 1;
@@ -29,7 +29,7 @@ struct Sheet {
   double height_px = 0.0;  ///< of a thumbnail without its caption
 
   Sheet(std::size_t count, double width_px) {
-    const double inner_px = width_px - 2 * kMargin_px + kGap_px;
+    const double inner_px = width_px - 2 * kSheetMargin_px + kGap_px;
     columns = std::clamp<std::size_t>(static_cast<std::size_t>(inner_px / (kWanted_px + kGap_px)),
                                       1, std::max<std::size_t>(count, 1));
     cell_px = std::min(inner_px / static_cast<double>(columns) - kGap_px, 1.5 * kWanted_px);
@@ -39,14 +39,15 @@ struct Sheet {
   [[nodiscard]] Rect thumbnail(std::size_t i) const {
     const std::size_t row = i / columns;
     const std::size_t column = i % columns;
-    return {kMargin_px + static_cast<double>(column) * (cell_px + kGap_px),
-            kHeader_px + kCaption_px + static_cast<double>(row) * row_px(), cell_px, height_px};
+    return {kSheetMargin_px + static_cast<double>(column) * (cell_px + kGap_px),
+            kSheetHeader_px + kCaption_px + static_cast<double>(row) * row_px(), cell_px,
+            height_px};
   }
 };
 
 void draw_thumbnail(cairo_t* cr, const ScanView& view, const Rect& rect) {
   constexpr double kText_px = 12.0;
-  const PlanFrame frame = fit(extent_of(view), rect, kLargestScale_px);
+  const PlanFrame frame = fit(extent_of(view), rect, kSheetScale_px);
   draw_local_map_thumbnail(cr, view, frame);
   set_colour(cr, kLaserPoints);
   cairo_set_line_width(cr, 0.75);
@@ -80,20 +81,21 @@ std::string contact_sheet(const std::vector<ScanView>& views, const std::string&
   const double width_px = options.max_width_px;
   const Sheet sheet(views.size(), width_px);
   const std::size_t rows = (views.size() + sheet.columns - 1) / sheet.columns;
-  const double height_px = kHeader_px + static_cast<double>(rows) * sheet.row_px() + kLegend_px;
+  const double height_px =
+      kSheetHeader_px + static_cast<double>(rows) * sheet.row_px() + kLegend_px;
   return draw_page(
       format, options.max_width_px, static_cast<std::uint32_t>(std::ceil(height_px)),
       [&](cairo_t* cr) {
         start_page(cr);
         set_colour(cr, kInk);
-        draw_text(cr, title, kMargin_px, 28.0, 18.0);
+        draw_text(cr, title, kSheetMargin_px, 28.0, 18.0);
         for (std::size_t i = 0; i < views.size(); ++i) {
           draw_thumbnail(cr, views[i], sheet.thumbnail(i));
         }
         std::vector<LegendItem> items = thumbnail_legend();
         items.push_back(line_item("1 m (x forward is up, y left to the left)", kInk, 2.0, false));
-        draw_legend_items(cr, items, {kMargin_px, height_px - kLegend_px + 20.0},
-                          width_px - kMargin_px);
+        draw_legend_items(cr, items, {kSheetMargin_px, height_px - kLegend_px + 20.0},
+                          width_px - kSheetMargin_px);
       });
 }
 

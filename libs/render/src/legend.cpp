@@ -10,7 +10,7 @@
 namespace topogeo::render {
 namespace {
 
-constexpr double kMargin_px = 24.0;
+constexpr double kLegendMargin_px = 24.0;
 constexpr double kScaleBarSpace_px = 190.0;
 
 LegendItem laser_item() {
@@ -54,13 +54,13 @@ std::vector<LegendItem> legend_items(const MapPicture& picture) {
 
 void draw_legend(cairo_t* cr, const MapPicture& picture, const Layout& layout) {
   const double top_px = layout.height_px - kLegendHeight_px;
-  const double right_px = layout.width_px - kMargin_px - kScaleBarSpace_px;
-  draw_legend_items(cr, legend_items(picture), {kMargin_px, top_px + 18.0}, right_px);
+  const double right_px = layout.width_px - kLegendMargin_px - kScaleBarSpace_px;
+  draw_legend_items(cr, legend_items(picture), {kLegendMargin_px, top_px + 18.0}, right_px);
 
   const double longest_m = (kScaleBarSpace_px - 40.0) / layout.scale_px_per_m;
   const double length_m = round_length_m(std::min(longest_m, layout.max_m.x() - layout.min_m.x()));
   draw_scale_bar(cr, length_m, layout.scale_px_per_m,
-                 {layout.width_px - kMargin_px, top_px + 34.0});
+                 {layout.width_px - kLegendMargin_px, top_px + 34.0});
 }
 
 }  // namespace topogeo::render

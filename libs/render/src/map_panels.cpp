@@ -26,7 +26,8 @@ void draw_points(cairo_t* cr, const LocalMap& map, const PlanFrame& frame, doubl
   cairo_fill(cr);
 }
 
-void draw_branches(cairo_t* cr, const LocalMap& map, const PlanFrame& frame, double width_px) {
+void draw_panel_branches(cairo_t* cr, const LocalMap& map, const PlanFrame& frame,
+                         double width_px) {
   for (const bool main : {false, true}) {  // the main graph on top
     for (const LocalBranch& branch : map.branches) {
       if (branch.in_main_graph != main) continue;
@@ -40,7 +41,7 @@ void draw_branches(cairo_t* cr, const LocalMap& map, const PlanFrame& frame, dou
   set_dashes(cr, false);
 }
 
-void draw_nodes(cairo_t* cr, const LocalMap& map, const PlanFrame& frame) {
+void draw_panel_nodes(cairo_t* cr, const LocalMap& map, const PlanFrame& frame) {
   for (const LocalNode& node : map.nodes) {
     const Eigen::Vector2d px = frame.to_px(node.position_m);
     draw_node_marker(cr, node.kind, {snapped(px.x()), snapped(px.y())},
@@ -74,9 +75,9 @@ void draw_local_map_panel(cairo_t* cr, const ScanView& view, const PlanFrame& fr
   cairo_save(cr);
   clip_to(cr, frame.rect_px);
   draw_points(cr, view.map, frame, 2.0);
-  draw_branches(cr, view.map, frame, 2.5);
+  draw_panel_branches(cr, view.map, frame, 2.5);
   draw_robot_marker(cr, frame.to_px({0.0, 0.0}), 1.0);
-  draw_nodes(cr, view.map, frame);
+  draw_panel_nodes(cr, view.map, frame);
   draw_numbers(cr, view.map, frame);
   cairo_restore(cr);
   draw_border(cr, frame.rect_px);
@@ -86,9 +87,9 @@ void draw_local_map_thumbnail(cairo_t* cr, const ScanView& view, const PlanFrame
   cairo_save(cr);
   clip_to(cr, frame.rect_px);
   draw_points(cr, view.map, frame, 1.5);
-  draw_branches(cr, view.map, frame, 1.75);
+  draw_panel_branches(cr, view.map, frame, 1.75);
   draw_robot_marker(cr, frame.to_px({0.0, 0.0}), 0.7);
-  draw_nodes(cr, view.map, frame);
+  draw_panel_nodes(cr, view.map, frame);
   cairo_restore(cr);
 }
 

@@ -13,7 +13,7 @@
 namespace topogeo::render {
 namespace {
 
-void check(const MapPicture& picture) {
+void check_picture(const MapPicture& picture) {
   if (picture.stops.size() > picture.local_maps.size()) {
     throw std::invalid_argument(fmt::format("picture with {} stops but {} local maps",
                                             picture.stops.size(), picture.local_maps.size()));
@@ -23,7 +23,7 @@ void check(const MapPicture& picture) {
 std::string map_bytes(const MapPicture& picture, const PictureOptions& options,
                       PictureFormat format) {
   check(options);
-  check(picture);
+  check_picture(picture);
   const auto outlines = outlines_in_map(picture);
   const Layout layout = make_layout(picture, outlines, options);
   return draw_page(format, layout.width_px, layout.height_px,

@@ -14,8 +14,8 @@ using planning::Cell;
 using planning::CellState;
 using planning::HybridMap;
 
-constexpr double kMargin_px = 20.0;
-constexpr double kHeader_px = 40.0;
+constexpr double kRouteMargin_px = 20.0;
+constexpr double kRouteHeader_px = 40.0;
 constexpr Colour kFilled{0.95, 0.55, 0.10};
 constexpr Colour kForbidden{0.78, 0.78, 0.78};
 constexpr std::array<Colour, 6> kTints{{{0.90, 0.94, 1.00},
@@ -41,18 +41,18 @@ Colour colour_of(const HybridMap& map, const Cell& cell) {
 class RouteDrawing {
  public:
   RouteDrawing(const HybridMap& map, double width_px)
-      : map_(map), scale_((width_px - 2 * kMargin_px) / map.frame().columns) {}
+      : map_(map), scale_((width_px - 2 * kRouteMargin_px) / map.frame().columns) {}
 
   [[nodiscard]] std::uint32_t height_px() const {
     return static_cast<std::uint32_t>(
-        std::ceil(map_.frame().rows * scale_ + kHeader_px + kMargin_px));
+        std::ceil(map_.frame().rows * scale_ + kRouteHeader_px + kRouteMargin_px));
   }
 
   void draw(cairo_t* cr, const planning::HybridRoute& route, const std::string& title,
             std::span<const Cell> filled) const {
     start_page(cr);
     set_colour(cr, kInk);
-    draw_text(cr, title, kMargin_px, kHeader_px - 14.0, 16.0);
+    draw_text(cr, title, kRouteMargin_px, kRouteHeader_px - 14.0, 16.0);
     draw_cells(cr);
     set_colour(cr, kFilled);
     for (const Cell& cell : filled) {
@@ -74,7 +74,8 @@ class RouteDrawing {
 
  private:
   [[nodiscard]] Eigen::Vector2d cells_to_px(const Eigen::Vector2d& cells) const {
-    return {kMargin_px + cells.x() * scale_, kHeader_px + (map_.frame().rows - cells.y()) * scale_};
+    return {kRouteMargin_px + cells.x() * scale_,
+            kRouteHeader_px + (map_.frame().rows - cells.y()) * scale_};
   }
   [[nodiscard]] Eigen::Vector2d to_px(const Eigen::Vector2d& point_m) const {
     return cells_to_px(map_.frame().in_cells(point_m));

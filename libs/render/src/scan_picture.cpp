@@ -12,12 +12,12 @@
 namespace topogeo::render {
 namespace {
 
-constexpr double kMargin_px = 20.0;
-constexpr double kHeader_px = 66.0;
+constexpr double kScanMargin_px = 20.0;
+constexpr double kScanHeader_px = 66.0;
 constexpr double kPanelTitle_px = 24.0;
 constexpr double kClearance_px = 190.0;
 constexpr double kLegendSpace_px = 76.0;
-constexpr double kLargestScale_px = 160.0;  // of one metre
+constexpr double kScanScale_px = 160.0;  // of one metre
 
 /// Where the panels lie: polar | groups, diagram | local map, clearance over the full width.
 struct Panels {
@@ -31,19 +31,20 @@ struct Panels {
 };
 
 Panels arrange(const Extent& extent, double width_px) {
-  const double plot_px = 0.5 * (width_px - 3 * kMargin_px) - kAxisLeft_px;
+  const double plot_px = 0.5 * (width_px - 3 * kScanMargin_px) - kAxisLeft_px;
   const Eigen::Vector2d size_m = extent.max_m - extent.min_m;
   const double height_px = std::round(plot_px * std::clamp(size_m.x() / size_m.y(), 0.5, 1.0));
-  const double left_px = kMargin_px + kAxisLeft_px;
-  const double second_px = left_px + plot_px + kMargin_px + kAxisLeft_px;
-  const double top_px = kHeader_px + kPanelTitle_px;
+  const double left_px = kScanMargin_px + kAxisLeft_px;
+  const double second_px = left_px + plot_px + kScanMargin_px + kAxisLeft_px;
+  const double top_px = kScanHeader_px + kPanelTitle_px;
   const double row_px = height_px + kAxisBelow_px + kPanelTitle_px + 4.0;
   Panels panels;
   panels.polar = {left_px, top_px, plot_px, height_px};
   panels.groups = {second_px, top_px, plot_px, height_px};
   panels.diagram = {left_px, top_px + row_px, plot_px, height_px};
   panels.local_map = {second_px, top_px + row_px, plot_px, height_px};
-  panels.clearance = {left_px, top_px + 2 * row_px, width_px - kMargin_px - left_px, kClearance_px};
+  panels.clearance = {left_px, top_px + 2 * row_px, width_px - kScanMargin_px - left_px,
+                      kClearance_px};
   panels.legend_top = panels.clearance.bottom() + kAxisBelow_px;
   panels.height_px = static_cast<std::uint32_t>(std::ceil(panels.legend_top + kLegendSpace_px));
   return panels;
@@ -58,20 +59,20 @@ void draw_scan(cairo_t* cr, const ScanView& view, const std::string& log_name, c
                const Extent& extent) {
   start_page(cr);
   set_colour(cr, kInk);
-  draw_text(cr, scan_title(view, log_name), kMargin_px, 28.0, 18.0);
-  draw_text(cr, scan_counts(view), kMargin_px, 50.0, 13.0);
+  draw_text(cr, scan_title(view, log_name), kScanMargin_px, 28.0, 18.0);
+  draw_text(cr, scan_counts(view), kScanMargin_px, 50.0, 13.0);
 
   draw_panel_title(cr, panels.polar, "Readings, in polar coordinates");
   draw_polar_panel(cr, view, panels.polar);
   draw_panel_title(cr, panels.groups, "Generator groups and space known to be free");
-  draw_groups_panel(cr, view, fit(extent, panels.groups, kLargestScale_px));
+  draw_groups_panel(cr, view, fit(extent, panels.groups, kScanScale_px));
   draw_panel_title(cr, panels.diagram, "Local Voronoi diagram");
-  draw_diagram_panel(cr, view, fit(extent, panels.diagram, kLargestScale_px));
+  draw_diagram_panel(cr, view, fit(extent, panels.diagram, kScanScale_px));
   draw_panel_title(cr, panels.local_map, "Local topo-geometric map");
-  draw_local_map_panel(cr, view, fit(extent, panels.local_map, kLargestScale_px));
+  draw_local_map_panel(cr, view, fit(extent, panels.local_map, kScanScale_px));
   draw_panel_title(cr, panels.clearance, "Clearance along the branches, one behind the other");
   draw_clearance_panel(cr, view, panels.clearance);
-  draw_legend_items(cr, scan_legend(view), {kMargin_px, panels.legend_top + 18.0},
+  draw_legend_items(cr, scan_legend(view), {kScanMargin_px, panels.legend_top + 18.0},
                     panels.clearance.right());
 }
 

@@ -7,13 +7,13 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoContact_m = std::numeric_limits<double>::infinity();
 constexpr double kTouch_m = 1e-9;    // nearer than this to touching is touching
 constexpr double kOverlap_m = 1e-4;  // less is what touching comes to by rounding
 // A move along a wall is none towards it, whatever rounding says.
 constexpr double kSidelong = 1e-6;
 
-Eigen::Vector2d nearest_m(const Segment& segment, const Eigen::Vector2d& point_m) {
+Eigen::Vector2d nearest_m(const world::Segment& segment, const Eigen::Vector2d& point_m) {
   const Eigen::Vector2d along = segment.b_m - segment.a_m;
   const double length2 = along.squaredNorm();
   const double share =
@@ -26,15 +26,15 @@ double way_to_circle(const Eigen::Vector2d& center_m, double radius_m,
                      const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d to_m = center_m - from_m;
   const double along_m = to_m.dot(direction);
-  if (along_m <= 0.0) return kInfinity;
+  if (along_m <= 0.0) return kNoContact_m;
   // Brushing past it is no contact, nor is what rounding makes of that.
   const double beside_m = (to_m - along_m * direction).norm();
-  if (beside_m >= radius_m - kTouch_m) return kInfinity;
+  if (beside_m >= radius_m - kTouch_m) return kNoContact_m;
   return std::max(along_m - std::sqrt(radius_m * radius_m - beside_m * beside_m), 0.0);
 }
 
 // The same for a segment, from a point more than `radius_m` away from it.
-double way_to_segment(const Segment& segment, double radius_m, const Eigen::Vector2d& from_m,
+double way_to_segment(const world::Segment& segment, double radius_m, const Eigen::Vector2d& from_m,
                       const Eigen::Vector2d& direction) {
   const Eigen::Vector2d span_m = segment.b_m - segment.a_m;
   const double length_m = span_m.norm();
@@ -84,10 +84,10 @@ class Way {
 
 }  // namespace
 
-FreeWay free_way(const World& scene, const Eigen::Vector2d& from_m,
+FreeWay free_way(const world::World& scene, const Eigen::Vector2d& from_m,
                  const Eigen::Vector2d& direction, double length_m, double radius_m) {
   Way way(from_m, direction, length_m);
-  for (const Segment& segment : scene.segments) {
+  for (const world::Segment& segment : scene.segments) {
     const Eigen::Vector2d nearest = nearest_m(segment, from_m);
     if (way.settled(nearest, (nearest - from_m).norm() - radius_m)) continue;
     const double way_m = way_to_segment(segment, radius_m, from_m, direction);
@@ -95,7 +95,7 @@ FreeWay free_way(const World& scene, const Eigen::Vector2d& from_m,
       way.stop(way_m, nearest_m(segment, from_m + way_m * direction));
     }
   }
-  for (const Circle& circle : scene.circles) {
+  for (const world::Circle& circle : scene.circles) {
     const double apart_m = (circle.center_m - from_m).norm();
     if (way.settled(circle.center_m, apart_m - circle.radius_m - radius_m)) continue;
     const double way_m =
@@ -108,7 +108,7 @@ FreeWay free_way(const World& scene, const Eigen::Vector2d& from_m,
   return way.free();
 }
 
-std::optional<Eigen::Vector2d> overlap_m(const World& scene, const Eigen::Vector2d& center_m,
+std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const Eigen::Vector2d& center_m,
                                          double radius_m) {
   std::optional<Eigen::Vector2d> found;
   double least_m = radius_m - kOverlap_m;
@@ -117,11 +117,11 @@ std::optional<Eigen::Vector2d> overlap_m(const World& scene, const Eigen::Vector
     least_m = apart_m;
     found = nearest;
   };
-  for (const Segment& segment : scene.segments) {
+  for (const world::Segment& segment : scene.segments) {
     const Eigen::Vector2d nearest = nearest_m(segment, center_m);
     look(nearest, (nearest - center_m).norm());
   }
-  for (const Circle& circle : scene.circles) {
+  for (const world::Circle& circle : scene.circles) {
     look(circle.center_m, (circle.center_m - center_m).norm() - circle.radius_m);
   }
   return found;

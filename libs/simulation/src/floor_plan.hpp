@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/support/random.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
@@ -21,7 +21,7 @@ struct Side {
 
 class FloorPlan {
  public:
-  explicit FloorPlan(World& world) : world_(world) {}
+  explicit FloorPlan(world::World& world) : world_(world) {}
 
   void line(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) const;
   /// A box with one edge from `a` to `b`, `depth_m` deep along `out`; no line on that edge.
@@ -53,7 +53,7 @@ class FloorPlan {
   void furniture(const Side& side, const Piece& piece, double depth_m,
                  support::Random& random) const;
 
-  World& world_;
+  world::World& world_;
 };
 
 }  // namespace topogeo::simulation

@@ -19,7 +19,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 // Distance from the origin along the unit vector `beam`; infinity for a miss. A segment that the
 // beam runs along is met at its nearer end.
-double distance_to(const Segment& segment, const Eigen::Vector2d& beam) {
+double distance_to(const world::Segment& segment, const Eigen::Vector2d& beam) {
   const double side_a = cross(beam, segment.a_m);
   const double side_b = cross(beam, segment.b_m);
   if ((side_a > 0.0 && side_b > 0.0) || (side_a < 0.0 && side_b < 0.0)) return kInfinity;
@@ -35,7 +35,7 @@ double distance_to(const Segment& segment, const Eigen::Vector2d& beam) {
   return distance_m >= 0.0 ? distance_m : kInfinity;
 }
 
-double distance_to(const Circle& circle, const Eigen::Vector2d& beam) {
+double distance_to(const world::Circle& circle, const Eigen::Vector2d& beam) {
   const double along_m = beam.dot(circle.center_m);
   const double beside_m = cross(beam, circle.center_m);
   const double half2 = circle.radius_m * circle.radius_m - beside_m * beside_m;
@@ -45,7 +45,7 @@ double distance_to(const Circle& circle, const Eigen::Vector2d& beam) {
   return along_m + half_m >= 0.0 ? along_m + half_m : kInfinity;
 }
 
-double distance_m(const Segment& segment) {
+double distance_m(const world::Segment& segment) {
   const Eigen::Vector2d along = segment.b_m - segment.a_m;
   const double length2 = along.squaredNorm();
   const double share =
@@ -56,7 +56,7 @@ double distance_m(const Segment& segment) {
 // Calls `use` with every beam that can meet a segment, and with some more: two at each end of it,
 // or all where the sensor is as good as on it. So the angles need not be exact.
 template <typename Use>
-void for_beams_of(const Segment& segment, double heading_rad, const BeamPattern& beams,
+void for_beams_of(const world::Segment& segment, double heading_rad, const BeamPattern& beams,
                   const Use& use) {
   constexpr double kOnIt_m = 1e-3;
   constexpr double kMargin = 2.0;  // beams
@@ -83,7 +83,7 @@ void for_beams_of(const Segment& segment, double heading_rad, const BeamPattern&
 
 }  // namespace
 
-std::vector<double> raycast(const World& world, const geometry::Pose2& T_world_laser,
+std::vector<double> raycast(const world::World& world, const geometry::Pose2& T_world_laser,
                             const BeamPattern& beams) {
   const Eigen::Vector2d origin_m = T_world_laser.position_m();
   std::vector<Eigen::Vector2d> directions;
@@ -94,15 +94,15 @@ std::vector<double> raycast(const World& world, const geometry::Pose2& T_world_l
     directions.emplace_back(direction.cos, direction.sin);
   }
   std::vector<double> ranges_m(beams.count, kInfinity);
-  for (const Segment& segment : world.segments) {
-    const Segment seen{segment.a_m - origin_m, segment.b_m - origin_m};
+  for (const world::Segment& segment : world.segments) {
+    const world::Segment seen{segment.a_m - origin_m, segment.b_m - origin_m};
     if (distance_m(seen) >= beams.range_max_m) continue;
     for_beams_of(seen, T_world_laser.theta_rad, beams, [&](std::size_t i) {
       ranges_m[i] = std::min(ranges_m[i], distance_to(seen, directions[i]));
     });
   }
-  for (const Circle& circle : world.circles) {
-    const Circle seen{circle.center_m - origin_m, circle.radius_m};
+  for (const world::Circle& circle : world.circles) {
+    const world::Circle seen{circle.center_m - origin_m, circle.radius_m};
     for (std::size_t i = 0; i < beams.count; ++i) {
       ranges_m[i] = std::min(ranges_m[i], distance_to(seen, directions[i]));
     }

@@ -35,7 +35,7 @@ Eigen::Vector2d place_on(const std::vector<Eigen::Vector2d>& tour_m, support::Ra
 
 }  // namespace
 
-Eigen::Vector2d position_m(const Person& person, double time_s) {
+Eigen::Vector2d position_m(const world::Person& person, double time_s) {
   const std::vector<Eigen::Vector2d>& path_m = person.path_m;
   double length_m = 0.0;
   for (std::size_t i = 1; i < path_m.size(); ++i) length_m += (path_m[i] - path_m[i - 1]).norm();
@@ -51,7 +51,7 @@ Eigen::Vector2d position_m(const Person& person, double time_s) {
   return path_m.back();
 }
 
-People::People(const World& world, std::size_t wanderers, std::uint64_t seed)
+People::People(const world::World& world, std::size_t wanderers, std::uint64_t seed)
     : world_(world), waited_s_(world.people.size(), 0.0) {
   for (std::size_t i = 0; i < wanderers && !world.tour_m.empty(); ++i) {
     support::Random random(support::derive_seed(seed, "people", {i}));
@@ -67,7 +67,7 @@ People::People(const World& world, std::size_t wanderers, std::uint64_t seed)
   }
 }
 
-void People::step(Wanderer& wanderer, const World& scene, const Eigen::Vector2d& robot_m) {
+void People::step(Wanderer& wanderer, const world::World& scene, const Eigen::Vector2d& robot_m) {
   constexpr double kFromWalls_m = kWandererRadius_m + 0.1;
   constexpr double kNewMind = 0.01;  // of somebody who walks on another way all of a sudden
   const Eigen::Vector2d next_m =
@@ -85,14 +85,14 @@ void People::step(Wanderer& wanderer, const World& scene, const Eigen::Vector2d&
 }
 
 void People::yield(std::size_t person, const Eigen::Vector2d& robot_m) {
-  const Person& walker = world_.people[person];
+  const world::Person& walker = world_.people[person];
   const double at_s = static_cast<double>(steps_) * kStep_s - waited_s_[person];
   const double now_m = (position_m(walker, at_s) - robot_m).norm();
   const double next_m = (position_m(walker, at_s + kStep_s) - robot_m).norm();
   if (next_m < kFromRobot_m && next_m < now_m) waited_s_[person] += kStep_s;
 }
 
-void People::walk(double time_s, const World& scene, const Eigen::Vector2d& robot_m) {
+void People::walk(double time_s, const world::World& scene, const Eigen::Vector2d& robot_m) {
   time_s_ = time_s;
   for (; static_cast<double>(steps_ + 1) * kStep_s <= time_s; ++steps_) {
     for (Wanderer& wanderer : wanderers_) step(wanderer, scene, robot_m);
@@ -102,10 +102,10 @@ void People::walk(double time_s, const World& scene, const Eigen::Vector2d& robo
   }
 }
 
-std::vector<Circle> People::circles() const {
-  std::vector<Circle> all;
+std::vector<world::Circle> People::circles() const {
+  std::vector<world::Circle> all;
   for (std::size_t i = 0; i < world_.people.size(); ++i) {
-    const Person& person = world_.people[i];
+    const world::Person& person = world_.people[i];
     const double at_s =
         person.yields ? static_cast<double>(steps_) * kStep_s - waited_s_[i] : time_s_;
     all.push_back({position_m(person, at_s), person.radius_m});

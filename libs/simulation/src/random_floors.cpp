@@ -54,9 +54,9 @@ support::Random random_of(const char* floor, std::uint64_t seed) {
 
 }  // namespace
 
-World cyclic_floor(std::uint64_t seed) {
+world::World cyclic_floor(std::uint64_t seed) {
   support::Random random = random_of("cyclic floor", seed);
-  World world;
+  world::World world;
   world.name = "cyclic floor";
   const double wide_m = random.uniform(26.0, 30.0);  // of the middle line of the corridor
   const double high_m = random.uniform(16.0, 18.0);
@@ -71,9 +71,9 @@ World cyclic_floor(std::uint64_t seed) {
   return world;
 }
 
-World corridor_there_and_back(std::uint64_t seed) {
+world::World corridor_there_and_back(std::uint64_t seed) {
   support::Random random = random_of("corridor", seed);
-  World world;
+  world::World world;
   world.name = "corridor there and back";
   const double long_m = random.uniform(30.0, 42.0);
   const double half_m = random.uniform(1.0, 1.3);
@@ -87,9 +87,9 @@ World corridor_there_and_back(std::uint64_t seed) {
   return world;
 }
 
-World two_loops(std::uint64_t seed) {
+world::World two_loops(std::uint64_t seed) {
   support::Random random = random_of("two loops", seed);
-  World world;
+  world::World world;
   world.name = "two loops";
   const double left_m = random.uniform(14.0, 18.0);
   const double right_m = left_m + random.uniform(14.0, 18.0);
@@ -104,9 +104,9 @@ World two_loops(std::uint64_t seed) {
   return world;
 }
 
-World bare_corridor(std::uint64_t seed) {
+world::World bare_corridor(std::uint64_t seed) {
   support::Random random = random_of("bare corridor", seed);
-  World world;
+  world::World world;
   world.name = "bare corridor";
   const double long_m = random.uniform(34.0, 42.0);
   const double half_m = random.uniform(1.0, 1.3);
@@ -132,9 +132,9 @@ World bare_corridor(std::uint64_t seed) {
   return world;
 }
 
-World symmetric_building(std::uint64_t seed) {
+world::World symmetric_building(std::uint64_t seed) {
   support::Random random = random_of("symmetric building", seed);
-  World world;
+  world::World world;
   world.name = "symmetric building";
   const double apart_m = random.uniform(13.0, 16.0);
   const double wing_m = random.uniform(11.0, 14.0);
@@ -165,14 +165,14 @@ World symmetric_building(std::uint64_t seed) {
   return world;
 }
 
-World large_floor(std::uint64_t seed, double way_m) {
+world::World large_floor(std::uint64_t seed, double way_m) {
   if (!(way_m >= 50.0 && way_m <= 20'000.0)) {
     throw std::invalid_argument("way_m: expected a number in [50, 20000], got " +
                                 std::to_string(way_m));
   }
   constexpr std::size_t kBlocks = 4;
   support::Random random = random_of("large floor", seed);
-  World world;
+  world::World world;
   world.name = "large floor";
   const double half_m = 1.2;
   std::array<double, kBlocks + 1> x_m{};  // middle lines of the streets

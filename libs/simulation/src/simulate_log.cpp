@@ -14,42 +14,43 @@
 namespace topogeo::simulation {
 namespace {
 
-void check(bool ok, const std::string& name, const std::string& expected) {
+void check_option(bool ok, const std::string& name, const std::string& expected) {
   if (!ok) throw std::invalid_argument(name + ": expected " + expected);
 }
 
-void check(const SimulationOptions& o) {
-  check(o.scan_step_m >= 0.01 && o.scan_step_m <= 10.0, "scan_step_m", "[0.01, 10] m");
-  check(o.scan_step_rad >= 0.01 && o.scan_step_rad <= std::numbers::pi, "scan_step_rad",
-        "[0.01, pi] rad");
-  check(o.start_stamp_ns >= 0, "start_stamp_ns", "a number >= 0");
-  check(o.beams.count >= 2 && o.beams.count <= 2048, "beams.count", "[2, 2048]");
-  check(o.beams.angle_step_rad > 0.0 && std::isfinite(o.beams.angle_step_rad),
-        "beams.angle_step_rad", "a number > 0");
-  check(o.beams.range_max_m > 0.0, "beams.range_max_m", "a number > 0");
-  check(o.laser.sigma_m >= 0.0 && o.laser.bound_m >= 0.0 && o.laser.resolution_m >= 0.0, "laser",
-        "sigma_m, bound_m and resolution_m >= 0");
+void check_option(const SimulationOptions& o) {
+  check_option(o.scan_step_m >= 0.01 && o.scan_step_m <= 10.0, "scan_step_m", "[0.01, 10] m");
+  check_option(o.scan_step_rad >= 0.01 && o.scan_step_rad <= std::numbers::pi, "scan_step_rad",
+               "[0.01, pi] rad");
+  check_option(o.start_stamp_ns >= 0, "start_stamp_ns", "a number >= 0");
+  check_option(o.beams.count >= 2 && o.beams.count <= 2048, "beams.count", "[2, 2048]");
+  check_option(o.beams.angle_step_rad > 0.0 && std::isfinite(o.beams.angle_step_rad),
+               "beams.angle_step_rad", "a number > 0");
+  check_option(o.beams.range_max_m > 0.0, "beams.range_max_m", "a number > 0");
+  check_option(o.laser.sigma_m >= 0.0 && o.laser.bound_m >= 0.0 && o.laser.resolution_m >= 0.0,
+               "laser", "sigma_m, bound_m and resolution_m >= 0");
   // Errors are drawn again until they lie within the bound, which must not take for ever.
-  check(o.laser.bound_m == 0.0 || o.laser.sigma_m <= 10.0 * o.laser.bound_m, "laser.sigma_m",
-        "at most ten times bound_m");
-  check(o.laser.dropout_probability >= 0.0 && o.laser.dropout_probability <= 1.0,
-        "laser.dropout_probability", "[0, 1]");
+  check_option(o.laser.bound_m == 0.0 || o.laser.sigma_m <= 10.0 * o.laser.bound_m, "laser.sigma_m",
+               "at most ten times bound_m");
+  check_option(o.laser.dropout_probability >= 0.0 && o.laser.dropout_probability <= 1.0,
+               "laser.dropout_probability", "[0, 1]");
   for (std::size_t i = 0; i < o.kidnappings.size(); ++i) {
-    check(o.kidnappings[i].at_way_m >= (i > 0 ? o.kidnappings[i - 1].at_way_m : 0.0),
-          "kidnappings.at_way_m", "numbers >= 0 in ascending order");
-    check(o.kidnappings[i].to_way_m >= 0.0, "kidnappings.to_way_m", "a number >= 0");
+    check_option(o.kidnappings[i].at_way_m >= (i > 0 ? o.kidnappings[i - 1].at_way_m : 0.0),
+                 "kidnappings.at_way_m", "numbers >= 0 in ascending order");
+    check_option(o.kidnappings[i].to_way_m >= 0.0, "kidnappings.to_way_m", "a number >= 0");
   }
   for (const Blinding& blinding : o.blindings) {
-    check(blinding.way.from_m < blinding.way.to_m, "blindings.way", "from_m < to_m");
-    check(!blinding.reading_m || (*blinding.reading_m > 0.0 && std::isfinite(*blinding.reading_m)),
-          "blindings.reading_m", "a number > 0");
+    check_option(blinding.way.from_m < blinding.way.to_m, "blindings.way", "from_m < to_m");
+    check_option(
+        !blinding.reading_m || (*blinding.reading_m > 0.0 && std::isfinite(*blinding.reading_m)),
+        "blindings.reading_m", "a number > 0");
   }
 }
 
 // The drive with its kidnappings: poses one tick apart, some of them after a jump.
 class Journey {
  public:
-  Journey(const World& world, const SimulationOptions& options)
+  Journey(const world::World& world, const SimulationOptions& options)
       : poses_(drive(world.tour_m, options.drive)), kidnappings_(options.kidnappings) {
     way_m_.push_back(0.0);
     for (std::size_t i = 1; i < poses_.size(); ++i) {
@@ -58,8 +59,8 @@ class Journey {
       way_m_.push_back(way_m_.back() + step.position_m().norm());
     }
     for (const Kidnapping& kidnapping : kidnappings_) {
-      check(kidnapping.to_way_m <= way_m_.back(), "kidnappings.to_way_m",
-            "at most the way of the tour, " + std::to_string(way_m_.back()) + " m");
+      check_option(kidnapping.to_way_m <= way_m_.back(), "kidnappings.to_way_m",
+                   "at most the way of the tour, " + std::to_string(way_m_.back()) + " m");
     }
   }
 
@@ -108,7 +109,7 @@ class Journey {
   geometry::Pose2 T_world_left_;
 };
 
-std::vector<float> readings(const World& scene, const geometry::Pose2& T_world_robot,
+std::vector<float> readings(const world::World& scene, const geometry::Pose2& T_world_robot,
                             double driven_m, const SimulationOptions& options,
                             support::Random& random) {
   std::vector<float> ranges_m = measure(
@@ -122,9 +123,9 @@ std::vector<float> readings(const World& scene, const geometry::Pose2& T_world_r
   return ranges_m;
 }
 
-void add_people(const People& people, const Eigen::Vector2d& laser_m, World& scene) {
+void add_people(const People& people, const Eigen::Vector2d& laser_m, world::World& scene) {
   constexpr double kNotSeen_m = 0.15;
-  for (const Circle& person : people.circles()) {
+  for (const world::Circle& person : people.circles()) {
     if ((person.center_m - laser_m).norm() < person.radius_m + kNotSeen_m) continue;
     scene.circles.push_back(person);
   }
@@ -132,10 +133,10 @@ void add_people(const People& people, const Eigen::Vector2d& laser_m, World& sce
 
 }  // namespace
 
-SimulatedLog simulate_log(const World& given_world, const SimulationOptions& options) {
-  check(options);
+SimulatedLog simulate_log(const world::World& given_world, const SimulationOptions& options) {
+  check_option(options);
   Journey journey(given_world, options);
-  const World world = draw_changes(given_world, options.seed, journey.end_s());
+  const world::World world = draw_changes(given_world, options.seed, journey.end_s());
   // Separate seeds: a change to the laser leaves the odometry as it was, and the other way round.
   support::Random laser_random(support::derive_seed(options.seed, "laser", {}));
   OdometryModel odometry(options.odometry,
@@ -158,7 +159,7 @@ SimulatedLog simulate_log(const World& given_world, const SimulationOptions& opt
     turned_rad = 0.0;
     const geometry::Pose2& T_world_robot = journey.T_world_robot();
     const double time_s = static_cast<double>(journey.time_ns()) * 1e-9;
-    World scene = scene_at(world, journey.driven_m(), time_s);
+    world::World scene = scene_at(world, journey.driven_m(), time_s);
     people.walk(time_s, scene, T_world_robot.position_m());
     add_people(people, (T_world_robot * options.T_robot_laser).position_m(), scene);
     scan::Scan scan;

@@ -16,27 +16,28 @@ namespace {
 
 constexpr double kPiece_s = 0.02;
 
-void check(bool ok, const char* name, const char* expected) {
+void check_robot(bool ok, const char* name, const char* expected) {
   if (!ok) throw std::invalid_argument(std::string(name) + ": expected " + expected);
 }
 
-RobotOptions checked(const World& world, RobotOptions o) {
-  check(o.radius_m > 0.0 && o.radius_m <= 5.0, "radius_m", "(0, 5] m");
-  check(o.acceleration_m_per_s2 > 0.0, "acceleration_m_per_s2", "a number > 0");
-  check(o.angular_acceleration_rad_per_s2 > 0.0, "angular_acceleration_rad_per_s2", "a number > 0");
-  check(o.slip.per_m >= 0.0 && o.slip.per_m <= 10.0, "slip.per_m", "[0, 10]");
-  check(o.slip.length_m > 0.0 && o.slip.length_m <= 10.0, "slip.length_m", "(0, 10] m");
-  check(o.slip.lost_share >= 0.0 && o.slip.lost_share <= 1.0, "slip.lost_share", "[0, 1]");
-  check(o.beams.count >= 2 && o.beams.count <= 2048, "beams.count", "[2, 2048]");
-  check(o.beams.angle_step_rad > 0.0 && o.beams.range_max_m > 0.0, "beams",
-        "angle_step_rad and range_max_m > 0");
+RobotOptions checked(const world::World& world, RobotOptions o) {
+  check_robot(o.radius_m > 0.0 && o.radius_m <= 5.0, "radius_m", "(0, 5] m");
+  check_robot(o.acceleration_m_per_s2 > 0.0, "acceleration_m_per_s2", "a number > 0");
+  check_robot(o.angular_acceleration_rad_per_s2 > 0.0, "angular_acceleration_rad_per_s2",
+              "a number > 0");
+  check_robot(o.slip.per_m >= 0.0 && o.slip.per_m <= 10.0, "slip.per_m", "[0, 10]");
+  check_robot(o.slip.length_m > 0.0 && o.slip.length_m <= 10.0, "slip.length_m", "(0, 10] m");
+  check_robot(o.slip.lost_share >= 0.0 && o.slip.lost_share <= 1.0, "slip.lost_share", "[0, 1]");
+  check_robot(o.beams.count >= 2 && o.beams.count <= 2048, "beams.count", "[2, 2048]");
+  check_robot(o.beams.angle_step_rad > 0.0 && o.beams.range_max_m > 0.0, "beams",
+              "angle_step_rad and range_max_m > 0");
   for (const devices::SonarMount& sonar : o.sonars) {
-    check(sonar.half_cone_rad > 0.0 && sonar.half_cone_rad < std::numbers::pi / 2.0,
-          "sonars.half_cone_rad", "(0, pi/2)");
+    check_robot(sonar.half_cone_rad > 0.0 && sonar.half_cone_rad < std::numbers::pi / 2.0,
+                "sonars.half_cone_rad", "(0, pi/2)");
   }
-  check(o.sonar.sigma_m >= 0.0 && o.sonar.resolution_m >= 0.0 && o.sonar.range_min_m >= 0.0 &&
-            o.sonar.range_max_m > o.sonar.range_min_m,
-        "sonar", "sigma_m, resolution_m and range_min_m >= 0, range_max_m > range_min_m");
+  check_robot(o.sonar.sigma_m >= 0.0 && o.sonar.resolution_m >= 0.0 && o.sonar.range_min_m >= 0.0 &&
+                  o.sonar.range_max_m > o.sonar.range_min_m,
+              "sonar", "sigma_m, resolution_m and range_min_m >= 0, range_max_m > range_min_m");
   if (!o.T_world_start) o.T_world_start = TourFollower(world.tour_m, {}).start();
   return o;
 }
@@ -66,7 +67,7 @@ geometry::Pose2 arc(double forward_m, double turn_rad) {
 
 }  // namespace
 
-SimulatedRobot::SimulatedRobot(World world, const RobotOptions& options)
+SimulatedRobot::SimulatedRobot(world::World world, const RobotOptions& options)
     : options_(checked(world, options)),
       world_(std::move(world)),
       people_(world_, options.wanderers, options.seed),
@@ -76,9 +77,9 @@ SimulatedRobot::SimulatedRobot(World world, const RobotOptions& options)
       errors_(of_robot(options.odometry), random_for(options, "odometry")),
       T_world_robot_(*options_.T_world_start) {
   for (std::size_t i = 0; i < world_.changing.size(); ++i) {
-    ChangingPart& part = world_.changing[i];
+    world::ChangingPart& part = world_.changing[i];
     if (!part.random) continue;
-    turns_.push_back({i, DrawnTurns(*part.random, options.seed, i)});
+    turns_.push_back({i, world::DrawnTurns(*part.random, options.seed, i)});
     part.present_s.push_back(turns_.back().drawn.next());
     part.random.reset();
   }
@@ -91,9 +92,9 @@ SimulatedRobot::SimulatedRobot(World world, const RobotOptions& options)
 }
 
 EncoderStep SimulatedRobot::step(const Velocity& command, double dt_s) {
-  check(std::isfinite(command.linear_m_per_s) && std::isfinite(command.angular_rad_per_s),
-        "velocity", "finite numbers");
-  check(std::isfinite(dt_s) && dt_s >= 0.0, "dt_s", "a number >= 0");
+  check_robot(std::isfinite(command.linear_m_per_s) && std::isfinite(command.angular_rad_per_s),
+              "velocity", "finite numbers");
+  check_robot(std::isfinite(dt_s) && dt_s >= 0.0, "dt_s", "a number >= 0");
   // A little more than a whole number of pieces is rounding.
   const double pieces = std::max(1.0, std::ceil(dt_s / kPiece_s - 1e-6));
   EncoderStep sum;
@@ -176,7 +177,7 @@ void SimulatedRobot::carry(const geometry::Pose2& T_world_robot) {
 
 void SimulatedRobot::draw_turns() {
   for (Turns& turns : turns_) {
-    TimeInterval& turn = world_.changing[turns.part].present_s.back();
+    world::TimeInterval& turn = world_.changing[turns.part].present_s.back();
     while (turn.to_s <= time_s_) turn = turns.drawn.next();
   }
 }
@@ -219,8 +220,8 @@ double SimulatedRobot::free_ahead_m(double limit_m) const {
   return free_way(people_scene_, from_m, direction, way_m, options_.radius_m).way_m;
 }
 
-World SimulatedRobot::scene() const {
-  World all = scene_;
+world::World SimulatedRobot::scene() const {
+  world::World all = scene_;
   all.circles.insert(all.circles.end(), people_scene_.circles.begin(), people_scene_.circles.end());
   return all;
 }

@@ -18,7 +18,7 @@ class Cone {
 
   [[nodiscard]] const Echo& nearest() const { return nearest_; }
 
-  void hear(const Segment& segment) {
+  void hear(const world::Segment& segment) {
     // The part of the segment between the two edges: shares [first, last] of it.
     double first = 0.0;
     double last = 1.0;
@@ -39,7 +39,7 @@ class Cone {
     hear(point_m, edge ? point_m : Eigen::Vector2d(-along.y(), along.x()));
   }
 
-  void hear(const Circle& circle) {
+  void hear(const world::Circle& circle) {
     const Eigen::Vector2d& center_m = circle.center_m;
     const double apart_m = center_m.norm();
     if (apart_m <= circle.radius_m) return hear({0.0, 0.0}, {1.0, 0.0});
@@ -70,7 +70,7 @@ class Cone {
 
 }  // namespace
 
-Echo echo(const World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
+Echo echo(const world::World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
           double range_max_m) {
   const geometry::Pose2 T_sonar_world = geometry::inverse(T_world_sonar);
   const geometry::SinCos turn = geometry::sincos(T_sonar_world.theta_rad);
@@ -79,8 +79,10 @@ Echo echo(const World& scene, const geometry::Pose2& T_world_sonar, double half_
                            T_sonar_world.y_m + turn.sin * point_m.x() + turn.cos * point_m.y());
   };
   Cone cone(half_cone_rad, range_max_m);
-  for (const Segment& segment : scene.segments) cone.hear({seen(segment.a_m), seen(segment.b_m)});
-  for (const Circle& circle : scene.circles) cone.hear({seen(circle.center_m), circle.radius_m});
+  for (const world::Segment& segment : scene.segments)
+    cone.hear({seen(segment.a_m), seen(segment.b_m)});
+  for (const world::Circle& circle : scene.circles)
+    cone.hear({seen(circle.center_m), circle.radius_m});
   return cone.nearest();
 }
 

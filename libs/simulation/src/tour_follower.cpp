@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kArrived_m = 0.05;
 
-void check(const char* name, double value, double low, double high) {
+void check_drive(const char* name, double value, double low, double high) {
   if (value >= low && value <= high) return;
   throw std::invalid_argument(std::string(name) + ": expected a number in [" + std::to_string(low) +
                               ", " + std::to_string(high) + "], got " + std::to_string(value));
@@ -29,12 +29,12 @@ double share_of_speed(double heading_error_rad) {
 
 TourFollower::TourFollower(const std::vector<Eigen::Vector2d>& tour_m, const DriveOptions& options)
     : options_(options) {
-  check("speed_m_per_s", options.speed_m_per_s, 0.01, 10.0);
-  check("turn_rad_per_s", options.turn_rad_per_s, 0.01, 10.0);
-  check("acceleration_m_per_s2", options.acceleration_m_per_s2, 0.01, 10.0);
-  check("lookahead_m", options.lookahead_m, 0.05, 5.0);
-  check("turn_gain_per_s", options.turn_gain_per_s, 0.01, 10.0);
-  check("keep_off_m", options.keep_off_m, 0.0, 5.0);
+  check_drive("speed_m_per_s", options.speed_m_per_s, 0.01, 10.0);
+  check_drive("turn_rad_per_s", options.turn_rad_per_s, 0.01, 10.0);
+  check_drive("acceleration_m_per_s2", options.acceleration_m_per_s2, 0.01, 10.0);
+  check_drive("lookahead_m", options.lookahead_m, 0.05, 5.0);
+  check_drive("turn_gain_per_s", options.turn_gain_per_s, 0.01, 10.0);
+  check_drive("keep_off_m", options.keep_off_m, 0.0, 5.0);
   for (const Eigen::Vector2d& point_m : tour_m) {
     if (path_m_.empty() || point_m != path_m_.back()) path_m_.push_back(point_m);
   }

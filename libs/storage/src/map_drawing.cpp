@@ -21,7 +21,7 @@ constexpr double kMaxCoordinate_m = 1e6;
 constexpr std::size_t kLeastCorners = 3;
 
 template <typename... Args>
-void require(bool condition, fmt::format_string<Args...> format, Args&&... args) {
+void require_drawing(bool condition, fmt::format_string<Args...> format, Args&&... args) {
   if (!condition) throw std::runtime_error(fmt::format(format, std::forward<Args>(args)...));
 }
 
@@ -37,17 +37,18 @@ bool is_printable(const std::string& text) {
 }
 
 void check_name(const char* what, const std::string& name, std::set<std::string>& taken) {
-  require(is_printable(name), "{} with a name that is no printable UTF-8", what);
-  require(!name.empty() && name.size() <= kMaxNameBytes,
-          "{} '{}': expected a name of 1 to {} bytes", what, name, kMaxNameBytes);
-  require(taken.insert(name).second, "{} '{}': the name is taken", what, name);
+  require_drawing(is_printable(name), "{} with a name that is no printable UTF-8", what);
+  require_drawing(!name.empty() && name.size() <= kMaxNameBytes,
+                  "{} '{}': expected a name of 1 to {} bytes", what, name, kMaxNameBytes);
+  require_drawing(taken.insert(name).second, "{} '{}': the name is taken", what, name);
 }
 
 void check_point(const char* what, const std::string& name, const Eigen::Vector2d& point_m) {
   for (const double value : {point_m.x(), point_m.y()}) {
     // Also false for what is not a number.
-    require(std::fabs(value) <= kMaxCoordinate_m, "{} '{}': coordinate {}, allowed are {} to {} m",
-            what, name, value, -kMaxCoordinate_m, kMaxCoordinate_m);
+    require_drawing(std::fabs(value) <= kMaxCoordinate_m,
+                    "{} '{}': coordinate {}, allowed are {} to {} m", what, name, value,
+                    -kMaxCoordinate_m, kMaxCoordinate_m);
   }
 }
 
@@ -57,7 +58,7 @@ std::string compressed(std::span<const planning::CellState> cells) {
   const int code = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
                              reinterpret_cast<const Bytef*>(cells.data()),
                              static_cast<uLong>(cells.size()), Z_DEFAULT_COMPRESSION);
-  require(code == Z_OK, "drawn grid: cannot be compressed (zlib: {})", zError(code));
+  require_drawing(code == Z_OK, "drawn grid: cannot be compressed (zlib: {})", zError(code));
   out.resize(size);
   return out;
 }
@@ -65,15 +66,15 @@ std::string compressed(std::span<const planning::CellState> cells) {
 std::vector<std::uint8_t> uncompressed(const std::string& bytes, std::size_t cells) {
   // The format shrinks nothing by more, so that a few bytes cannot ask for much memory.
   constexpr std::size_t kMostCellsInAByte = 1100;
-  require(cells / kMostCellsInAByte <= bytes.size(), "drawn grid: {} bytes, too few for {} cells",
-          bytes.size(), cells);
+  require_drawing(cells / kMostCellsInAByte <= bytes.size(),
+                  "drawn grid: {} bytes, too few for {} cells", bytes.size(), cells);
   std::vector<std::uint8_t> out(cells);
   uLongf size = static_cast<uLongf>(cells);
   uLong used = static_cast<uLong>(bytes.size());
   const int code =
       uncompress2(out.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()), &used);
-  require(code == Z_OK && size == cells && used == bytes.size(),
-          "drawn grid: its bytes are not {} cells in the format of zlib", cells);
+  require_drawing(code == Z_OK && size == cells && used == bytes.size(),
+                  "drawn grid: its bytes are not {} cells in the format of zlib", cells);
   return out;
 }
 
@@ -95,8 +96,8 @@ planning::OccupancyGrid grid_from_proto(const proto::DrawnGrid& in) {
   const std::vector<std::uint8_t> cells = uncompressed(in.cells(), frame.size());
   planning::OccupancyGrid grid(frame);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    require(cells[i] <= static_cast<std::uint8_t>(planning::CellState::kUnknown),
-            "drawn grid: cell {} is {}, expected 0 to 2", i, cells[i]);
+    require_drawing(cells[i] <= static_cast<std::uint8_t>(planning::CellState::kUnknown),
+                    "drawn grid: cell {} is {}, expected 0 to 2", i, cells[i]);
     grid.set(frame.cell_at(i), static_cast<planning::CellState>(cells[i]));
   }
   return grid;
@@ -105,21 +106,21 @@ planning::OccupancyGrid grid_from_proto(const proto::DrawnGrid& in) {
 }  // namespace
 
 void check(const MapDrawing& drawing) {
-  require(drawing.places.size() <= kMaxPlaces, "{} places, allowed are {}", drawing.places.size(),
-          kMaxPlaces);
+  require_drawing(drawing.places.size() <= kMaxPlaces, "{} places, allowed are {}",
+                  drawing.places.size(), kMaxPlaces);
   std::set<std::string> taken;
   for (const planning::Place& place : drawing.places) {
     check_name("place", place.name, taken);
     check_point("place", place.name, place.position_m);
   }
-  require(drawing.zones.size() <= kMaxDrawnZones, "{} zones, allowed are {}", drawing.zones.size(),
-          kMaxDrawnZones);
+  require_drawing(drawing.zones.size() <= kMaxDrawnZones, "{} zones, allowed are {}",
+                  drawing.zones.size(), kMaxDrawnZones);
   taken.clear();
   for (const planning::DrawnZone& zone : drawing.zones) {
     check_name("zone", zone.name, taken);
-    require(zone.polygon_m.size() >= kLeastCorners && zone.polygon_m.size() <= kMaxCorners,
-            "zone '{}': {} corners, allowed are {} to {}", zone.name, zone.polygon_m.size(),
-            kLeastCorners, kMaxCorners);
+    require_drawing(zone.polygon_m.size() >= kLeastCorners && zone.polygon_m.size() <= kMaxCorners,
+                    "zone '{}': {} corners, allowed are {} to {}", zone.name, zone.polygon_m.size(),
+                    kLeastCorners, kMaxCorners);
     for (const Eigen::Vector2d& corner : zone.polygon_m) check_point("zone", zone.name, corner);
   }
 }
@@ -155,8 +156,9 @@ MapDrawing from_proto(const proto::Drawing& in) {
     drawing.places.push_back({place.name(), {place.x_m(), place.y_m()}});
   }
   for (const proto::DrawnZone& zone : in.zones()) {
-    require(zone.corners_size() % 2 == 0, "zone '{}' with {} numbers: expected two per corner",
-            zone.name(), zone.corners_size());
+    require_drawing(zone.corners_size() % 2 == 0,
+                    "zone '{}' with {} numbers: expected two per corner", zone.name(),
+                    zone.corners_size());
     planning::DrawnZone& entry = drawing.zones.emplace_back();
     entry.name = zone.name();
     for (int i = 0; i < zone.corners_size(); i += 2) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLargestAngle_rad = 1e4;
 
-Relation parse_line(std::string_view line, const std::string& where) {
+Relation parse_relation(std::string_view line, const std::string& where) {
   static constexpr std::array<const char*, 6> kNames{"x", "y", "z", "roll", "pitch", "yaw"};
   Relation relation;
   relation.stamp_a_ns = take_stamp(line, where, "t1");
@@ -34,7 +34,7 @@ Relation parse_line(std::string_view line, const std::string& where) {
 std::vector<Relation> parse_relations(std::string_view text, const std::string& name) {
   std::vector<Relation> relations;
   for_each_line(text, name, [&](std::string_view line, const std::string& where) {
-    relations.push_back(parse_line(line, where));
+    relations.push_back(parse_relation(line, where));
   });
   return relations;
 }

@@ -15,7 +15,7 @@
 namespace topogeo::storage {
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+constexpr std::int64_t kStampSecond_ns = 1'000'000'000;
 
 /// Fixed decimals without the minus of a value that rounds to zero.
 std::string fixed(double value, int decimals) {
@@ -29,7 +29,7 @@ double heading_rad(double qx, double qy, double qz, double qw) {
   return geometry::atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz);
 }
 
-topomap::StampedPose parse_line(std::string_view line, const std::string& where) {
+topomap::StampedPose parse_pose(std::string_view line, const std::string& where) {
   static constexpr std::array<const char*, 7> kNames{"x", "y", "z", "qx", "qy", "qz", "qw"};
   const std::int64_t stamp_ns = take_stamp(line, where, "stamp");
   std::array<double, 7> values{};
@@ -50,8 +50,8 @@ std::string stamp_text(std::int64_t stamp_ns) {
   // Unsigned, because the most negative stamp has no positive counterpart.
   const std::uint64_t magnitude = stamp_ns < 0 ? 0 - static_cast<std::uint64_t>(stamp_ns)
                                                : static_cast<std::uint64_t>(stamp_ns);
-  const std::uint64_t seconds = magnitude / static_cast<std::uint64_t>(kNsPerSecond);
-  const std::uint64_t ns = magnitude % static_cast<std::uint64_t>(kNsPerSecond);
+  const std::uint64_t seconds = magnitude / static_cast<std::uint64_t>(kStampSecond_ns);
+  const std::uint64_t ns = magnitude % static_cast<std::uint64_t>(kStampSecond_ns);
   const char* sign = stamp_ns < 0 ? "-" : "";
   if (ns % 1000 == 0) return fmt::format("{}{}.{:06}", sign, seconds, ns / 1000);
   return fmt::format("{}{}.{:09}", sign, seconds, ns);
@@ -82,7 +82,7 @@ std::vector<topomap::StampedPose> parse_trajectory_tum(std::string_view text,
                                                        const std::string& name) {
   std::vector<topomap::StampedPose> poses;
   for_each_line(text, name, [&](std::string_view line, const std::string& where) {
-    poses.push_back(parse_line(line, where));
+    poses.push_back(parse_pose(line, where));
     poses.back().sequence = poses.size() - 1;
   });
   return poses;

@@ -222,7 +222,7 @@ void drop_small_components(RidgeGraph& graph, const GlobalMapConfig& config) {
 }
 
 // A place on the graph: a node, or a point of an edge.
-struct Place {
+struct RidgePlace {
   std::size_t edge = 0;
   std::optional<std::size_t> point;  // of the edge; none: the node
   std::uint32_t node = 0;
@@ -231,7 +231,7 @@ struct Place {
 struct Gap {
   double distance_m = 0.0;
   std::uint32_t end = 0;
-  Place other;
+  RidgePlace other;
 };
 
 // The nearest place of another part that the free end can reach in a straight line: where the free
@@ -240,7 +240,7 @@ std::optional<Gap> nearest_gap(const RidgeGraph& graph, std::uint32_t end, Compo
                                const GlobalMapConfig& config) {
   const RidgePoint& from = graph.nodes[end];
   std::optional<Gap> best;
-  const auto look_at = [&](const RidgePoint& to, const Place& place) {
+  const auto look_at = [&](const RidgePoint& to, const RidgePlace& place) {
     const double distance = (to.position_m - from.position_m).norm();
     if (distance > config.join_m || distance > from.clearance_m + to.clearance_m) return;
     if (!best || distance < best->distance_m) best = Gap{distance, end, place};
@@ -256,7 +256,7 @@ std::optional<Gap> nearest_gap(const RidgeGraph& graph, std::uint32_t end, Compo
 }
 
 // Makes a node of a point of an edge and returns it.
-std::uint32_t split(RidgeGraph& graph, const Place& place) {
+std::uint32_t split(RidgeGraph& graph, const RidgePlace& place) {
   if (!place.point) return place.node;
   const auto node = static_cast<std::uint32_t>(graph.nodes.size());
   RidgeEdge& first = graph.edges[place.edge];

@@ -40,14 +40,14 @@ struct Scene {
 };
 
 /// Returns when the fault is over.
-using Inject = std::int64_t (*)(Scene&);
-using Count = std::uint64_t (*)(const BaseStatus&);
+using InjectInBase = std::int64_t (*)(Scene&);
+using BaseCount = std::uint64_t (*)(const BaseStatus&);
 
-struct Fault {
+struct BaseFault {
   const char* name;
   const char* counted_as;
-  Count count;
-  Inject inject;
+  BaseCount count;
+  InjectInBase inject;
   std::int64_t allowed_ns = 0;  ///< 0: two report periods
   double right_m = 0.03;
 };
@@ -68,7 +68,7 @@ std::uint64_t echoes(const BaseStatus& status) {
   return status.echoes;
 }
 /// Faults of which the state speaks, see must_be().
-std::uint64_t anything(const BaseStatus& /*status*/) {
+std::uint64_t anything_at_all(const BaseStatus& /*status*/) {
   static std::uint64_t calls = 0;
   return ++calls;
 }
@@ -79,7 +79,7 @@ void must_be(BaseState state, Scene& scene) {
 }
 
 /// Until the base has sent what it was told to damage.
-std::int64_t strike(Scene& scene, unsigned reports) {
+std::int64_t strike_base(Scene& scene, unsigned reports) {
   const std::uint64_t last = scene.all.base.mcp.reports() + reports;
   while (scene.all.base.mcp.reports() < last) scene.drive(10 * kMs);
   // The last of them is on its way.
@@ -90,13 +90,13 @@ std::int64_t strike(Scene& scene, unsigned reports) {
 std::int64_t corrupt(Scene& scene) {
   const unsigned reports = scene.few();
   scene.all.base.mcp.corrupt_reports(reports);
-  return strike(scene, reports);
+  return strike_base(scene, reports);
 }
 
 std::int64_t truncate(Scene& scene) {
   const unsigned reports = scene.few();
   scene.all.base.mcp.truncate_reports(reports);
-  return strike(scene, reports);
+  return strike_base(scene, reports);
 }
 
 std::int64_t garbage(Scene& scene) {
@@ -121,7 +121,7 @@ std::int64_t long_silence(Scene& scene) {
   return scene.all.line.now_ns();
 }
 
-std::int64_t unplug(Scene& scene) {
+std::int64_t unplug_base(Scene& scene) {
   scene.all.line.unplug();
   const std::int64_t gone_ns = scene.some(kMs, 6 * kSecond);
   scene.drive(gone_ns);
@@ -131,7 +131,7 @@ std::int64_t unplug(Scene& scene) {
   return scene.all.line.now_ns();
 }
 
-std::int64_t restart(Scene& scene) {
+std::int64_t restart_base(Scene& scene) {
   // How far it goes on between its last report and the end of its power nobody knows.
   if (scene.random.below(2) == 0) scene.all.pass(kHalting);
   const geometry::Pose2 before = scene.all.T_odom_robot;
@@ -219,7 +219,7 @@ std::int64_t joystick(Scene& scene) {
   return scene.all.line.now_ns();
 }
 
-BaseSettings settings_for(const BaseFaultLine& line) {
+BaseSettings base_settings_for(const BaseFaultLine& line) {
   BaseSettings settings;
   settings.dialect = line.dialect;
   settings.line.baud = line.baud;
@@ -227,27 +227,27 @@ BaseSettings settings_for(const BaseFaultLine& line) {
 }
 
 std::int64_t period_ns(const BaseFaultLine& line) {
-  return ticks_ns(report_period_ticks(settings_for(line)));
+  return ticks_ns(report_period_ticks(base_settings_for(line)));
 }
 
-std::vector<Fault> faults(const BaseFaultLine& line) {
+std::vector<BaseFault> base_faults(const BaseFaultLine& line) {
   const bool ascii = line.dialect == BaseDialect::kAscii;
   // There is no checksum: for one report a wrong digit passes as far as the robot may have driven,
   // and those after it are doubted first.
-  std::vector<Fault> all{
-      {"a bit of a report wrong", ascii ? "" : "drops", ascii ? anything : drops, corrupt,
+  std::vector<BaseFault> all{
+      {"a bit of a report wrong", ascii ? "" : "drops", ascii ? anything_at_all : drops, corrupt,
        ascii ? 3 * period_ns(line) : 0, ascii ? 0.4 : 0.03},
       {"truncated report", "drops", drops, truncate},
       {"garbage", "drops", drops, garbage},
-      {"silence below the limit", "", anything, short_silence},
-      {"silence of 1 to 10 s", "", anything, long_silence},
-      {"port unplugged", "starts", starts, unplug, kSecond},
+      {"silence below the limit", "", anything_at_all, short_silence},
+      {"silence of 1 to 10 s", "", anything_at_all, long_silence},
+      {"port unplugged", "starts", starts, unplug_base, kSecond},
       // It is looked for every twentieth of how long it has been silent.
-      {"base restarts", "restarts", restarts, restart, kSecond + kLongestOff / 20},
+      {"base restarts", "restarts", restarts, restart_base, kSecond + kLongestOff / 20},
       {"watchdog expires", "watchdog_expirations", expirations, other_watchdog},
-      {"motion commands cease", "", anything, commands_cease},
-      {"emergency stop", "", anything, emergency_stop},
-      {"joystick taken", "", anything, joystick},
+      {"motion commands cease", "", anything_at_all, commands_cease},
+      {"emergency stop", "", anything_at_all, emergency_stop},
+      {"joystick taken", "", anything_at_all, joystick},
   };
   if (ascii) all.push_back({"echo on", "echoes", echoes, echo_on});
   return all;
@@ -257,7 +257,7 @@ std::vector<Fault> faults(const BaseFaultLine& line) {
 
 std::vector<BaseFaultTest> base_fault_tests(const BaseFaultLine& line) {
   std::vector<BaseFaultTest> tests;
-  for (const Fault& fault : faults(line)) {
+  for (const BaseFault& fault : base_faults(line)) {
     tests.push_back({fault.name, fault.counted_as,
                      fault.allowed_ns == 0 ? 2 * period_ns(line) : fault.allowed_ns,
                      fault.right_m});
@@ -267,11 +267,11 @@ std::vector<BaseFaultTest> base_fault_tests(const BaseFaultLine& line) {
 
 BaseFaultResult run_base_fault(const BaseFaultTest& test, const BaseFaultLine& line,
                                std::size_t times, std::uint64_t seed) {
-  const std::vector<Fault> all = faults(line);
-  const auto fault = std::ranges::find(all, test.name, &Fault::name);
+  const std::vector<BaseFault> all = base_faults(line);
+  const auto fault = std::ranges::find(all, test.name, &BaseFault::name);
   if (fault == all.end()) throw std::invalid_argument("no fault is called " + test.name);
   Random random(seed);
-  BaseOnLine base(settings_for(line), {.seed = seed});
+  BaseOnLine base(base_settings_for(line), {.seed = seed});
   base.right_m = base.right_rad = test.right_m;
   if (!base.start()) throw std::logic_error("the base does not start");
   BaseFaultResult result;
@@ -282,7 +282,7 @@ BaseFaultResult run_base_fault(const BaseFaultTest& test, const BaseFaultLine& l
     const std::uint64_t counted = fault->count(base.driver.status());
     const std::uint64_t odometries = base.all_odometries;
     const std::int64_t end_ns = fault->inject(scene);
-    const bool waited = fault->inject == restart && base.all_odometries > odometries;
+    const bool waited = fault->inject == restart_base && base.all_odometries > odometries;
     if (!waited && !base.pass_to_odometry(100 * kSecond)) throw std::logic_error("no recovery");
     const std::int64_t recovery_ns = base.line.now_ns() - end_ns;
     result.worst_recovery_ns = std::max(result.worst_recovery_ns, recovery_ns);

@@ -39,7 +39,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-std::string name_of(const testing::TestParamInfo<Case>& info) {
+std::string name_of_base_fault(const testing::TestParamInfo<Case>& info) {
   std::string name = info.param.first.dialect == BaseDialect::kAscii ? "ascii" : "binary";
   for (const char c : info.param.second.name) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0) name.push_back(c);
@@ -53,7 +53,7 @@ TEST_P(BaseFaults, AThousandTimes) {
   expect_no_harm(GetParam().second, GetParam().first, 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BaseFaults, testing::ValuesIn(cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(All, BaseFaults, testing::ValuesIn(cases()), name_of_base_fault);
 
 TEST(BaseFaults, OnFasterLines) {
   for (const BaseFaultLine& line : {kLines[1], kLines[3]}) {

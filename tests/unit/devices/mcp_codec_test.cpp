@@ -295,7 +295,7 @@ McpReport random_report(std::uint32_t mask, std::mt19937_64& random) {
 }
 
 /// Bytes that the protocol is made of more often than others.
-Bytes noise(std::span<const std::uint8_t> favourites, std::mt19937_64& random) {
+Bytes line_noise(std::span<const std::uint8_t> favourites, std::mt19937_64& random) {
   Bytes bytes(random() % 60);
   for (std::uint8_t& byte : bytes) {
     byte = random() % 2 == 0 ? favourites[random() % favourites.size()]
@@ -334,7 +334,7 @@ TEST(McpNoise, EveryBinaryFrameAmongNoiseIsRead) {
     std::vector<McpReport> sent;
     Bytes stream;
     for (int i = 0; i < 100; ++i) {
-      const Bytes between = noise(kFavourites, random);
+      const Bytes between = line_noise(kFavourites, random);
       stream.insert(stream.end(), between.begin(), between.end());
       sent.push_back(random_report(static_cast<std::uint32_t>(random()) | 1U, random));
       append_binary_frame(binary_payload(sent.back(), McpCommand::kReportMask), stream);
@@ -352,7 +352,7 @@ TEST(McpNoise, EveryAsciiReportAmongNoiseIsRead) {
     std::vector<McpReport> sent;
     Bytes stream;
     for (int i = 0; i < 30; ++i) {
-      const Bytes between = noise(favourites, random);
+      const Bytes between = line_noise(favourites, random);
       stream.insert(stream.end(), between.begin(), between.end());
       sent.push_back(random_report(mask, random));
       append_ascii(sent.back(), {.line_end = run % 2 == 0 ? "\r\n" : "\r"}, stream);

@@ -12,7 +12,7 @@
 namespace topogeo::devices {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn_rad = std::numbers::pi;
 
 McpReport at(std::uint16_t x, std::uint16_t y, std::uint16_t heading) {
   McpReport report;
@@ -26,15 +26,15 @@ TEST(McpUnits, ConvertsByTheGearingOfTheB21) {
   const McpUnits units{McpCalibration{}};
   EXPECT_EQ(units.counts(0.1), 2812);
   EXPECT_DOUBLE_EQ(units.metres(2812), 0.1);
-  EXPECT_NEAR(units.position_m(0x6E), 1.0, 0.005);  // 110 units of 9.10 mm
-  EXPECT_EQ(units.rotation_counts(-kPi / 2), 256);  // clockwise
-  EXPECT_DOUBLE_EQ(units.radians(256), -kPi / 2);
+  EXPECT_NEAR(units.position_m(0x6E), 1.0, 0.005);            // 110 units of 9.10 mm
+  EXPECT_EQ(units.rotation_counts(-kHalfTurn_rad / 2), 256);  // clockwise
+  EXPECT_DOUBLE_EQ(units.radians(256), -kHalfTurn_rad / 2);
 }
 
 TEST(McpUnits, TurnsSignsAsCalibrated) {
   const McpUnits units{{.clockwise_positive = false, .reversed = true}};
   EXPECT_EQ(units.counts(0.1), -2812);
-  EXPECT_EQ(units.rotation_counts(kPi / 2), 256);
+  EXPECT_EQ(units.rotation_counts(kHalfTurn_rad / 2), 256);
 }
 
 TEST(McpUnits, TakesTheSignOfASpeedFromTheStatus) {
@@ -43,11 +43,11 @@ TEST(McpUnits, TakesTheSignOfASpeedFromTheStatus) {
   report.fields[9] = 2812;
   report.fields[17] = 128;
   EXPECT_DOUBLE_EQ(units.linear_mps(report), 0.1);
-  EXPECT_DOUBLE_EQ(units.angular_radps(report), -kPi / 4);
+  EXPECT_DOUBLE_EQ(units.angular_radps(report), -kHalfTurn_rad / 4);
   report.fields[11] = 0x0800;
   report.fields[19] = 0x0800;
   EXPECT_DOUBLE_EQ(units.linear_mps(report), -0.1);
-  EXPECT_DOUBLE_EQ(units.angular_radps(report), kPi / 4);
+  EXPECT_DOUBLE_EQ(units.angular_radps(report), kHalfTurn_rad / 4);
 }
 
 TEST(McpUnits, RefusesCalibrationsThatCannotBe) {
@@ -63,7 +63,7 @@ TEST(McpPoseTracker, LooksAheadAlongY) {
   const geometry::Pose2 pose = tracker.track(at(0x8000 + 100, 0x8000 + 200, 256));
   EXPECT_DOUBLE_EQ(pose.x_m, 2.0);
   EXPECT_DOUBLE_EQ(pose.y_m, -1.0);
-  EXPECT_DOUBLE_EQ(pose.theta_rad, -kPi / 2);
+  EXPECT_DOUBLE_EQ(pose.theta_rad, -kHalfTurn_rad / 2);
 }
 
 TEST(McpPoseTracker, FollowsRegistersOverTheirEnds) {
@@ -94,15 +94,16 @@ TEST(SonarRing, LooksAllAroundFromTheRim) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const SonarMount& mount = ring[i];
     EXPECT_NEAR(mount.T_robot_sonar.position_m().norm(), kB21Radius_m, 1e-12);
-    const geometry::Pose2 bearing{0, 0, (static_cast<double>(i) * 15.0 + 7.5) * kPi / 180.0};
+    const geometry::Pose2 bearing{0, 0,
+                                  (static_cast<double>(i) * 15.0 + 7.5) * kHalfTurn_rad / 180.0};
     EXPECT_NEAR(geometry::between(bearing, mount.T_robot_sonar).theta_rad, 0.0, 1e-12);
   }
   const auto six = macondo_sonars();
   ASSERT_EQ(six.size(), 6U);
   EXPECT_EQ(six[0].T_robot_sonar.theta_rad, 0.0);
   EXPECT_GT(six[2].T_robot_sonar.y_m, 0.2);
-  EXPECT_DOUBLE_EQ(six[2].T_robot_sonar.theta_rad, kPi / 2);
-  EXPECT_DOUBLE_EQ(six[5].T_robot_sonar.theta_rad, -kPi / 2);
+  EXPECT_DOUBLE_EQ(six[2].T_robot_sonar.theta_rad, kHalfTurn_rad / 2);
+  EXPECT_DOUBLE_EQ(six[5].T_robot_sonar.theta_rad, -kHalfTurn_rad / 2);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST_P(PlsFaults, AThousandTimesAtFullRate) {
                              << GetParam().allowed_ns << " ns";
 }
 
-std::string name_of(const ::testing::TestParamInfo<PlsFaultTest>& info) {
+std::string name_of_pls_fault(const ::testing::TestParamInfo<PlsFaultTest>& info) {
   std::string name;
   for (const char c : info.param.name) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0) name.push_back(c);
@@ -29,7 +29,8 @@ std::string name_of(const ::testing::TestParamInfo<PlsFaultTest>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PlsFaults, ::testing::ValuesIn(pls_fault_tests(500'000)), name_of);
+INSTANTIATE_TEST_SUITE_P(All, PlsFaults, ::testing::ValuesIn(pls_fault_tests(500'000)),
+                         name_of_pls_fault);
 
 TEST(PlsFaults, OfTheLineAtLowerRates) {
   for (const std::uint32_t baud : {9600U, 38400U}) {

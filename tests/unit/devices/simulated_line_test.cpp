@@ -12,7 +12,7 @@
 namespace topogeo::devices {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using LineBytes = std::vector<std::uint8_t>;
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
 constexpr LineSettings kFast{38400, Parity::kEven};
 
@@ -40,7 +40,7 @@ class Caller final : public SerialDriver {
   std::vector<std::int64_t> opened_ns;
   std::vector<std::int64_t> lost_ns;
   std::vector<std::int64_t> ticked_ns;
-  Bytes received;
+  LineBytes received;
   std::int64_t received_ns = 0;
 
  private:
@@ -59,7 +59,7 @@ class Echo final : public simulation::SerialDevice {
   [[nodiscard]] std::int64_t due_ns() const override {
     return std::numeric_limits<std::int64_t>::max();
   }
-  [[nodiscard]] Bytes take_output(const LineSettings& host, std::int64_t now_ns) override {
+  [[nodiscard]] LineBytes take_output(const LineSettings& host, std::int64_t now_ns) override {
     return output.take(host, now_ns);
   }
 
@@ -77,7 +77,7 @@ TEST(SimulatedLine, WritesAtTheRateOfThePortAndReadsWhatComesBack) {
   const std::int64_t first_ns = line_time_ns(1, {});
   const std::int64_t second_ns = first_ns + line_time_ns(3, kFast);
   EXPECT_EQ(echo.heard_ns, (std::vector<std::int64_t>{first_ns, second_ns}));
-  EXPECT_EQ(caller.received, (Bytes{'a', 'b', 'c'}));
+  EXPECT_EQ(caller.received, (LineBytes{'a', 'b', 'c'}));
   EXPECT_GE(caller.received_ns, second_ns + line_time_ns(3, kFast));
   EXPECT_LE(caller.received_ns, second_ns + line_time_ns(3, kFast) + SimulatedLine::kReadPeriod_ns);
 }
@@ -104,32 +104,32 @@ TEST(SerialOutput, LeavesByteByByte) {
   const std::int64_t byte_ns = line_time_ns(1, kFast);
   EXPECT_EQ(output.send({1, 2, 3}, kFast, 1000), 1000 + line_time_ns(3, kFast));
   EXPECT_EQ(output.send({4}, kFast, 0), 1000 + line_time_ns(4, kFast));
-  EXPECT_EQ(output.take(kFast, 1000), Bytes{});
-  EXPECT_EQ(output.take(kFast, 1000 + byte_ns), Bytes{1});
-  EXPECT_EQ(output.take(kFast, 1000 + byte_ns), Bytes{});
-  EXPECT_EQ(output.take(kFast, 1000 + 10 * byte_ns), (Bytes{2, 3, 4}));
+  EXPECT_EQ(output.take(kFast, 1000), LineBytes{});
+  EXPECT_EQ(output.take(kFast, 1000 + byte_ns), LineBytes{1});
+  EXPECT_EQ(output.take(kFast, 1000 + byte_ns), LineBytes{});
+  EXPECT_EQ(output.take(kFast, 1000 + 10 * byte_ns), (LineBytes{2, 3, 4}));
   output.send({5}, kFast, 0);
   output.clear();
-  EXPECT_EQ(output.take(kFast, 1000 + 100 * byte_ns), Bytes{});
+  EXPECT_EQ(output.take(kFast, 1000 + 100 * byte_ns), LineBytes{});
 }
 
 TEST(SerialOutput, ReadsAsOtherBytesWithOtherSettings) {
-  const Bytes sent(400, 0x55);
+  const LineBytes sent(400, 0x55);
   const auto read = [&](const LineSettings& host, std::int64_t step_ns) {
     simulation::SerialOutput output;
     const std::int64_t end_ns = output.send(sent, kFast, 0);
-    Bytes all;
+    LineBytes all;
     for (std::int64_t now_ns = 0; now_ns < end_ns + step_ns; now_ns += step_ns) {
-      const Bytes part = output.take(host, now_ns);
+      const LineBytes part = output.take(host, now_ns);
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;
   };
   EXPECT_EQ(read(kFast, 100'000), sent);
-  const Bytes parity = read({38400, Parity::kNone}, 100'000'000'000);
+  const LineBytes parity = read({38400, Parity::kNone}, 100'000'000'000);
   EXPECT_EQ(parity.size(), 440U);
   EXPECT_EQ(parity, read({38400, Parity::kNone}, 100'000)) << "however it is taken";
-  EXPECT_NE(Bytes(parity.begin(), parity.begin() + 400), sent);
+  EXPECT_NE(LineBytes(parity.begin(), parity.begin() + 400), sent);
   EXPECT_EQ(read({9600, Parity::kEven}, 100'000).size(), 100U);
   EXPECT_EQ(read({500000, Parity::kEven}, 100'000).size(), 2000U);
 }

@@ -10,7 +10,7 @@
 namespace topogeo::geometry {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn_rad = std::numbers::pi;
 
 class RandomPoses {
  public:
@@ -19,9 +19,12 @@ class RandomPoses {
   }
   // Two draws by Box and Muller's method would share a call; one is enough here.
   double normal() {
-    return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) * std::cos(uniform(0.0, 2.0 * kPi));
+    return std::sqrt(-2.0 * std::log(uniform(1e-12, 1.0))) *
+           std::cos(uniform(0.0, 2.0 * kHalfTurn_rad));
   }
-  Pose2 pose() { return {uniform(-20, 20), uniform(-20, 20), uniform(-kPi, kPi)}; }
+  Pose2 pose() {
+    return {uniform(-20, 20), uniform(-20, 20), uniform(-kHalfTurn_rad, kHalfTurn_rad)};
+  }
 
  private:
   std::mt19937_64 random_{17};
@@ -34,17 +37,17 @@ void expect_near(const Pose2& a, const Pose2& b, double tolerance) {
 }
 
 TEST(WrapAngle, LeavesWhatIsInRangeAsItIs) {
-  for (const double angle : {0.0, 1.0, -3.0, kPi, std::nextafter(-kPi, 0.0)}) {
+  for (const double angle : {0.0, 1.0, -3.0, kHalfTurn_rad, std::nextafter(-kHalfTurn_rad, 0.0)}) {
     EXPECT_EQ(wrap_angle(angle), angle);
   }
 }
 
 TEST(WrapAngle, HasOneNameForTheHalfTurn) {
-  EXPECT_EQ(wrap_angle(-kPi), kPi);
-  EXPECT_NEAR(wrap_angle(3.0 * kPi), kPi, 1e-14);
-  EXPECT_NEAR(std::fabs(wrap_angle(-3.0 * kPi)), kPi, 1e-14);
-  EXPECT_NEAR(wrap_angle(kPi + 0.1), -kPi + 0.1, 1e-15);
-  EXPECT_NEAR(wrap_angle(-kPi - 0.1), kPi - 0.1, 1e-15);
+  EXPECT_EQ(wrap_angle(-kHalfTurn_rad), kHalfTurn_rad);
+  EXPECT_NEAR(wrap_angle(3.0 * kHalfTurn_rad), kHalfTurn_rad, 1e-14);
+  EXPECT_NEAR(std::fabs(wrap_angle(-3.0 * kHalfTurn_rad)), kHalfTurn_rad, 1e-14);
+  EXPECT_NEAR(wrap_angle(kHalfTurn_rad + 0.1), -kHalfTurn_rad + 0.1, 1e-15);
+  EXPECT_NEAR(wrap_angle(-kHalfTurn_rad - 0.1), kHalfTurn_rad - 0.1, 1e-15);
 }
 
 TEST(WrapAngle, StaysInRangeAndKeepsTheDirection) {
@@ -52,28 +55,28 @@ TEST(WrapAngle, StaysInRangeAndKeepsTheDirection) {
   for (int i = 0; i < 20000; ++i) {
     const double angle = random.uniform(-1e5, 1e5);
     const double wrapped = wrap_angle(angle);
-    ASSERT_GT(wrapped, -kPi) << angle;
-    ASSERT_LE(wrapped, kPi) << angle;
+    ASSERT_GT(wrapped, -kHalfTurn_rad) << angle;
+    ASSERT_LE(wrapped, kHalfTurn_rad) << angle;
     ASSERT_NEAR(std::sin(wrapped), std::sin(angle), 1e-10);
     ASSERT_NEAR(std::cos(wrapped), std::cos(angle), 1e-10);
   }
   for (int k = -1000; k <= 1000; ++k) {
-    for (const double angle :
-         {kPi * k, std::nextafter(kPi * k, 1e9), std::nextafter(kPi * k, -1e9)}) {
-      EXPECT_GT(wrap_angle(angle), -kPi) << k;
-      EXPECT_LE(wrap_angle(angle), kPi) << k;
+    for (const double angle : {kHalfTurn_rad * k, std::nextafter(kHalfTurn_rad * k, 1e9),
+                               std::nextafter(kHalfTurn_rad * k, -1e9)}) {
+      EXPECT_GT(wrap_angle(angle), -kHalfTurn_rad) << k;
+      EXPECT_LE(wrap_angle(angle), kHalfTurn_rad) << k;
     }
   }
 }
 
 TEST(Pose2, ComposesAQuarterTurnByHand) {
   // One metre ahead of a robot at (2, 3) that looks along +y.
-  const Pose2 T_a_b{2, 3, kPi / 2.0};
-  expect_near(T_a_b * Pose2{1, 0, 0}, {2, 4, kPi / 2.0}, 1e-15);
+  const Pose2 T_a_b{2, 3, kHalfTurn_rad / 2.0};
+  expect_near(T_a_b * Pose2{1, 0, 0}, {2, 4, kHalfTurn_rad / 2.0}, 1e-15);
   EXPECT_NEAR((T_a_b * Eigen::Vector2d(0, 1)).x(), 1.0, 1e-15);
   EXPECT_NEAR((T_a_b * Eigen::Vector2d(0, 1)).y(), 3.0, 1e-15);
-  expect_near(inverse(T_a_b), {-3, 2, -kPi / 2.0}, 1e-15);
-  expect_near(between(T_a_b, {2, 5, kPi}), {2, 0, kPi / 2.0}, 1e-15);
+  expect_near(inverse(T_a_b), {-3, 2, -kHalfTurn_rad / 2.0}, 1e-15);
+  expect_near(between(T_a_b, {2, 5, kHalfTurn_rad}), {2, 0, kHalfTurn_rad / 2.0}, 1e-15);
 }
 
 TEST(Pose2, IsAGroup) {
@@ -97,9 +100,10 @@ TEST(Pose2, IsAGroup) {
 
 TEST(Pose2, KeepsTheAngleInRangeAcrossTheHalfTurn) {
   const Pose2 sum = Pose2{0, 0, 3.0} * Pose2{0, 0, 0.5};
-  EXPECT_NEAR(sum.theta_rad, 3.5 - 2.0 * kPi, 1e-15);
-  EXPECT_EQ(inverse(Pose2{0, 0, kPi}).theta_rad, kPi);
-  EXPECT_EQ((Pose2{0, 0, kPi / 2.0} * Pose2{0, 0, kPi / 2.0}).theta_rad, kPi);
+  EXPECT_NEAR(sum.theta_rad, 3.5 - 2.0 * kHalfTurn_rad, 1e-15);
+  EXPECT_EQ(inverse(Pose2{0, 0, kHalfTurn_rad}).theta_rad, kHalfTurn_rad);
+  EXPECT_EQ((Pose2{0, 0, kHalfTurn_rad / 2.0} * Pose2{0, 0, kHalfTurn_rad / 2.0}).theta_rad,
+            kHalfTurn_rad);
 }
 
 using Function = std::function<Pose2(const Eigen::Vector3d&)>;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/match_features.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/simulation/laser.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
@@ -23,7 +23,7 @@ struct Sweep {
 };
 
 /// Exact points of a world from a pose, in the frame of the robot, whose laser is at its origin.
-inline std::vector<topomap::ScanPoint> exact_points(const simulation::World& world,
+inline std::vector<topomap::ScanPoint> exact_points(const world::World& world,
                                                     const geometry::Pose2& T_world_robot,
                                                     const Sweep& sweep = {}) {
   simulation::BeamPattern beams;
@@ -44,8 +44,8 @@ inline std::vector<topomap::ScanPoint> exact_points(const simulation::World& wor
   return points;
 }
 
-inline simulation::World lines(std::vector<simulation::Segment> segments) {
-  simulation::World world;
+inline world::World lines(std::vector<world::Segment> segments) {
+  world::World world;
   world.segments = std::move(segments);
   return world;
 }
@@ -57,7 +57,7 @@ inline simulation::World lines(std::vector<simulation::Segment> segments) {
 ///     |        (2,0)--(4,0)
 ///     |          |
 ///   (-2,-2)---(2,-2)
-inline simulation::World l_room() {
+inline world::World l_room() {
   return lines({{{-2, -2}, {2, -2}},
                 {{2, -2}, {2, 0}},
                 {{2, 0}, {4, 0}},
@@ -67,12 +67,12 @@ inline simulation::World l_room() {
 }
 
 /// Two walls along x at y = -1 and y = 1, longer than the laser sees.
-inline simulation::World endless_corridor() {
+inline world::World endless_corridor() {
   return lines({{{-40, -1}, {40, -1}}, {{-40, 1}, {40, 1}}});
 }
 
-inline MatchFeatures features_at(const simulation::World& world,
-                                 const geometry::Pose2& T_world_robot, const Sweep& sweep = {}) {
+inline MatchFeatures features_at(const world::World& world, const geometry::Pose2& T_world_robot,
+                                 const Sweep& sweep = {}) {
   return extract_scan_features(exact_points(world, T_world_robot, sweep), {});
 }
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/match.hpp"
-#include "topogeo/localization/odometry_model.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/support/random.hpp"
@@ -20,13 +20,13 @@
 namespace topogeo::localization::test {
 
 /// tests/data/NAME.world.yaml.
-inline simulation::World world(const std::string& name) {
-  return simulation::load_world(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "tests" / "data" /
-                                (name + ".world.yaml"));
+inline world::World world(const std::string& name) {
+  return world::load_world(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "tests" / "data" /
+                           (name + ".world.yaml"));
 }
 
 /// What the laser at the robot's origin reads at a true pose.
-inline scan::Scan scan_at(const simulation::World& world, const geometry::Pose2& T_world_robot,
+inline scan::Scan scan_at(const world::World& world, const geometry::Pose2& T_world_robot,
                           std::uint64_t seed) {
   const simulation::BeamPattern beams;
   support::Random random(seed);
@@ -39,8 +39,8 @@ inline scan::Scan scan_at(const simulation::World& world, const geometry::Pose2&
 }
 
 /// The local map of one stop at a true pose, which its odometry is, too.
-inline topomap::LocalMap map_at(const simulation::World& world,
-                                const geometry::Pose2& T_world_robot, std::uint32_t id) {
+inline topomap::LocalMap map_at(const world::World& world, const geometry::Pose2& T_world_robot,
+                                std::uint32_t id) {
   const scan::Scan scan = scan_at(world, T_world_robot, 100 + id);
   voronoi::LocalVoronoi voronoi{voronoi::VoronoiConfig{}};
   voronoi::LocalVoronoiDiagram diagram;
@@ -80,7 +80,7 @@ struct DrivenMaps {
 };
 
 /// Drives `tour_m` (the world's own tour when empty) with the simulation's usual drift.
-inline DrivenMaps drive(simulation::World world, const std::vector<Eigen::Vector2d>& tour_m,
+inline DrivenMaps drive(world::World world, const std::vector<Eigen::Vector2d>& tour_m,
                         double scan_step_m = 0.33) {
   if (!tour_m.empty()) world.tour_m = tour_m;
   simulation::SimulationOptions options;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@
 #include "topogeo/markov/range_sensor.hpp"
 
 namespace topogeo::markov::test {
+
+inline constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
 
 /// The upper line is the highest row; '#' is an obstacle. Cell (0, 0) is at the lower left, its
 /// outer corner at the origin of the map.

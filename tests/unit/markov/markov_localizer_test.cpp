@@ -13,7 +13,6 @@
 namespace topogeo::markov {
 namespace {
 
-constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
 const std::vector<float> kNothing(6, scan::Scan::kNoReturn);
 
 void expect_probabilities(const BeliefGrid& belief) {
@@ -64,21 +63,21 @@ TEST(MarkovLocalizer, TheExpectedPoseAndTheWindowFollowTheMoves) {
   localizer.initialize({5.05, 5.05, 0.0}, kNothing);
   localizer.move({MoveKind::kAdvance, 0.5});
   EXPECT_EQ(localizer.belief().centre(), (Cell{55, 50}));
-  localizer.move({MoveKind::kTurnLeft, kQuarter_rad});
+  localizer.move({MoveKind::kTurnLeft, test::kQuarter_rad});
   localizer.move({MoveKind::kAdvance, 1.0});
   EXPECT_EQ(localizer.belief().centre(), (Cell{55, 60}));
-  localizer.move({MoveKind::kTurnRight, 2 * kQuarter_rad});
+  localizer.move({MoveKind::kTurnRight, 2 * test::kQuarter_rad});
   localizer.move({MoveKind::kAdvance, -0.3});
   EXPECT_EQ(localizer.belief().centre(), (Cell{55, 63}));
   EXPECT_NEAR(localizer.expected().x_m, 5.55, 1e-9);
   EXPECT_NEAR(localizer.expected().y_m, 6.35, 1e-9);
-  EXPECT_NEAR(localizer.expected().theta_rad, -kQuarter_rad, 1e-9);
+  EXPECT_NEAR(localizer.expected().theta_rad, -test::kQuarter_rad, 1e-9);
   expect_probabilities(localizer.belief());
 }
 
 TEST(MarkovLocalizer, AnAdvanceOfACellIsTheWorkedExampleNormalized) {
   MarkovLocalizer localizer{{}, test::open_space(100, 100), test::macondo_ring()};
-  localizer.initialize({5.05, 5.05, kQuarter_rad}, kNothing);
+  localizer.initialize({5.05, 5.05, test::kQuarter_rad}, kNothing);
   const MovementReport report = localizer.move({MoveKind::kAdvance, 0.1});
   constexpr double kSum = .7929 + 3 * .0625 + 2 * .0078;
   EXPECT_NEAR(report.kept_share, kSum, 1e-12);
@@ -108,9 +107,9 @@ TEST(MarkovLocalizer, EachPrimitiveHasItsMatrix) {
     return localizer.estimate()->offset;
   };
   EXPECT_EQ(after({MoveKind::kAdvance, 0.1}), (Cell{1, 0}));
-  EXPECT_EQ(after({MoveKind::kTurnLeft, kQuarter_rad}), (Cell{0, 1}));
-  EXPECT_EQ(after({MoveKind::kTurnRight, kQuarter_rad}), (Cell{0, -1}));
-  EXPECT_EQ(after({MoveKind::kTurnLeft, 3 * kQuarter_rad}), (Cell{0, 3}));
+  EXPECT_EQ(after({MoveKind::kTurnLeft, test::kQuarter_rad}), (Cell{0, 1}));
+  EXPECT_EQ(after({MoveKind::kTurnRight, test::kQuarter_rad}), (Cell{0, -1}));
+  EXPECT_EQ(after({MoveKind::kTurnLeft, 3 * test::kQuarter_rad}), (Cell{0, 3}));
 }
 
 TEST(MarkovLocalizer, EntropyAndSpreadOfThreeEqualCells) {

@@ -11,8 +11,6 @@
 namespace topogeo::markov {
 namespace {
 
-constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
-
 geometry::Pose2 after(const geometry::Pose2& start, const Move& move) {
   switch (move.kind) {
     case MoveKind::kAdvance:
@@ -115,11 +113,11 @@ TEST(Relocalization, TurnAdvanceTurn) {
   ASSERT_TRUE(back);
   ASSERT_EQ(back->moves.size(), 3U);
   EXPECT_EQ(back->moves[0].kind, MoveKind::kTurnRight);
-  EXPECT_NEAR(back->moves[0].amount, kQuarter_rad, 1e-9);
+  EXPECT_NEAR(back->moves[0].amount, test::kQuarter_rad, 1e-9);
   EXPECT_EQ(back->moves[1].kind, MoveKind::kAdvance);
   EXPECT_NEAR(back->moves[1].amount, 0.2, 1e-9);
   EXPECT_EQ(back->moves[2].kind, MoveKind::kTurnLeft);
-  EXPECT_NEAR(back->moves[2].amount, kQuarter_rad, 1e-9);
+  EXPECT_NEAR(back->moves[2].amount, test::kQuarter_rad, 1e-9);
 }
 
 TEST(Relocalization, AnObstacleOnTheWayBackIsTold) {
@@ -153,12 +151,12 @@ TEST(Relocalization, ALaserDoesTheSame) {
   const test::Room room{60, 20};
   const geometry::Pose2 T_robot_laser{0.1, 0.0, 0.0};
   scan::Scan scan;
-  scan.angle_min_rad = -kQuarter_rad;
-  scan.angle_step_rad = kQuarter_rad / 90.0;
+  scan.angle_min_rad = -test::kQuarter_rad;
+  scan.angle_step_rad = test::kQuarter_rad / 90.0;
   scan.ranges_m.assign(181, scan::Scan::kNoReturn);
   const std::vector<RangeSensor> beams = laser_sensors(T_robot_laser, scan, 20);
   ASSERT_EQ(beams.size(), 10U);
-  EXPECT_NEAR(beams[9].T_robot_sensor.theta_rad, kQuarter_rad, 1e-9);
+  EXPECT_NEAR(beams[9].T_robot_sensor.theta_rad, test::kQuarter_rad, 1e-9);
   EXPECT_EQ(laser_ranges(scan, 20).size(), 10U);
   EXPECT_THROW(laser_ranges(scan, 0), std::invalid_argument);
   for (const Cell offset : kOffsets) {

@@ -15,17 +15,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kCells = std::size_t{21} * 21;  // of the window
-constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
 
 /// Six sonars at the edge of a body of 3 x 3 cells, numbered like MACONDO's: front left, front
 /// right, left front, left rear, right front, right rear.
 std::vector<RangeSensor> six_at_the_edge() {
   return {{.T_robot_sensor = {0.15, 0.1, 0.0}},
           {.T_robot_sensor = {0.15, -0.1, 0.0}},
-          {.T_robot_sensor = {0.1, 0.15, kQuarter_rad}},
-          {.T_robot_sensor = {-0.1, 0.15, kQuarter_rad}},
-          {.T_robot_sensor = {0.1, -0.15, -kQuarter_rad}},
-          {.T_robot_sensor = {-0.1, -0.15, -kQuarter_rad}}};
+          {.T_robot_sensor = {0.1, 0.15, test::kQuarter_rad}},
+          {.T_robot_sensor = {-0.1, 0.15, test::kQuarter_rad}},
+          {.T_robot_sensor = {0.1, -0.15, -test::kQuarter_rad}},
+          {.T_robot_sensor = {-0.1, -0.15, -test::kQuarter_rad}}};
 }
 
 TEST(SonarModel, VirtualReadingsCountTheCellsAsInFigure8) {

@@ -14,8 +14,6 @@
 namespace topogeo::markov {
 namespace {
 
-constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
-
 class Tour {
  public:
   Tour(std::uint32_t seed, bool localize) : localize_(localize), random_(seed) {
@@ -26,7 +24,7 @@ class Tour {
   Eigen::Vector2d drive() {
     for (int leg = 0; leg < 8; ++leg) {
       execute({MoveKind::kAdvance, 2.0});
-      execute({MoveKind::kTurnLeft, kQuarter_rad});
+      execute({MoveKind::kTurnLeft, test::kQuarter_rad});
       if (localize_) correct();
     }
     return truth_.position_m() - localizer_.expected().position_m();

@@ -13,8 +13,6 @@
 namespace topogeo::markov {
 namespace {
 
-constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
-
 std::vector<RowBits> all_free(int size) {
   std::vector<RowBits> free;
   free_cells_of_window(test::open_space(size, size), {size / 2, size / 2}, size, free);
@@ -76,7 +74,7 @@ TEST(Transition, ASecondAdvanceSpreadsEveryCellOfTheFirst) {
 TEST(Transition, QuartersTurnTheMatrixExactly) {
   // Heading up the map: what was ahead (right column) is above, what was left is to the left.
   const TransitionMatrix matrix{3, 3, {.01, .02, .03, .04, .5, .06, .07, .08, .09}};
-  const std::vector<Tap> up = turned(matrix, ArrowSense::kRight, kQuarter_rad);
+  const std::vector<Tap> up = turned(matrix, ArrowSense::kRight, test::kQuarter_rad);
   EXPECT_EQ(value_at(up, {0, 1}), .06);
   EXPECT_EQ(value_at(up, {-1, 0}), .02);
   EXPECT_EQ(value_at(up, {-1, 1}), .03);
@@ -84,10 +82,10 @@ TEST(Transition, QuartersTurnTheMatrixExactly) {
   const std::vector<Tap> back = turned(matrix, ArrowSense::kRight, std::numbers::pi);
   EXPECT_EQ(value_at(back, {-1, 0}), .06);
   EXPECT_EQ(value_at(back, {0, -1}), .02);
-  const std::vector<Tap> down = turned(matrix, ArrowSense::kRight, -kQuarter_rad);
+  const std::vector<Tap> down = turned(matrix, ArrowSense::kRight, -test::kQuarter_rad);
   EXPECT_EQ(value_at(down, {0, -1}), .06);
   EXPECT_EQ(value_at(down, {1, 0}), .02);
-  const std::vector<Tap> around = turned(matrix, ArrowSense::kRight, 4 * kQuarter_rad);
+  const std::vector<Tap> around = turned(matrix, ArrowSense::kRight, 4 * test::kQuarter_rad);
   EXPECT_EQ(value_at(around, {1, 0}), .06);
   EXPECT_EQ(around.size(), 9U);
 }
@@ -122,7 +120,7 @@ TEST(Transition, OtherAnglesKeepSumAndMean) {
 TEST(Transition, AtHalfARightAngleAValueIsSharedAmongFour) {
   // One cell ahead at 45 degrees: (0.7071, 0.7071).
   const TransitionMatrix ahead{1, 3, {0, 0, 1}};
-  const std::vector<Tap> taps = turned(ahead, ArrowSense::kRight, 0.5 * kQuarter_rad);
+  const std::vector<Tap> taps = turned(ahead, ArrowSense::kRight, 0.5 * test::kQuarter_rad);
   const double part = std::numbers::sqrt2 / 2.0;
   EXPECT_NEAR(value_at(taps, {1, 1}), part * part, 1e-12);
   EXPECT_NEAR(value_at(taps, {1, 0}), part * (1 - part), 1e-12);

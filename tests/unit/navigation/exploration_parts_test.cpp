@@ -7,7 +7,7 @@
 
 #include "topogeo/support/random.hpp"
 
-#include "../planning/floors.hpp"
+#include "planning/floors.hpp"
 #include "short_tour.hpp"
 #include "unknown_floor.hpp"
 

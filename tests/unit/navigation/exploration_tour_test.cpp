@@ -9,7 +9,7 @@
 
 #include "topogeo/planning/motion_primitives.hpp"
 
-#include "../planning/floors.hpp"
+#include "planning/floors.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -18,7 +18,7 @@ using planning::Cell;
 using planning::CellState;
 using planning::OccupancyGrid;
 
-constexpr double kCell_m = 0.25;
+constexpr double kToured_m = 0.25;
 constexpr std::int64_t kStep_ns = 200'000'000;
 
 // clang-format off
@@ -50,7 +50,9 @@ const std::vector<std::string> kFloor = {
 
 class TextRobot {
  public:
-  TextRobot() : truth_(planning::grid_of_text(kFloor, kCell_m)), known_(truth_.frame()) { look(); }
+  TextRobot() : truth_(planning::grid_of_text(kFloor, kToured_m)), known_(truth_.frame()) {
+    look();
+  }
 
   /// Drives on toward the goal by a step of the planned way; tells what a navigator would tell.
   NavigatorStatus step(const std::optional<TourGoal>& goal) {
@@ -158,7 +160,7 @@ class TextRobot {
 TourConfig config() {
   TourConfig config;
   config.explorer.sure_m = 0.2;
-  config.explorer.least_gap_m = kCell_m;  // coarse cells
+  config.explorer.least_gap_m = kToured_m;  // coarse cells
   config.explorer.least_area_m2 = 0.01;
   config.explorer.worth_m_per_m2 = 10000.0;
   return config;

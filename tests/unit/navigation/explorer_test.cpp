@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../planning/floors.hpp"
+#include "planning/floors.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -12,13 +12,13 @@ namespace {
 using planning::grid_of_text;
 using testing::HasSubstr;
 
-constexpr double kCell_m = 0.25;
+constexpr double kExplored_m = 0.25;
 
-planning::HybridMap map_of(const std::vector<std::string>& lines,
-                           const std::vector<planning::Passage>& passages = {}) {
+planning::HybridMap drawn_map(const std::vector<std::string>& lines,
+                              const std::vector<planning::Passage>& passages = {}) {
   planning::InflationConfig inflation;
   inflation.forbidden_cells = 1.0;
-  planning::FreeSpace space(grid_of_text(lines, kCell_m), inflation);
+  planning::FreeSpace space(grid_of_text(lines, kExplored_m), inflation);
   planning::ZoneConfig zones;
   zones.min_area_m2 = 0.2;
   planning::ZoneMap cut = planning::zones_between(space, passages, zones);
@@ -26,12 +26,12 @@ planning::HybridMap map_of(const std::vector<std::string>& lines,
 }
 
 /// The middle of the cell that a line and column of the text name, counted from the last line.
-Eigen::Vector2d at(int column, int row) {
-  return {kCell_m * (column + 0.5), kCell_m * (row + 0.5)};
+Eigen::Vector2d explored_at(int column, int row) {
+  return {kExplored_m * (column + 0.5), kExplored_m * (row + 0.5)};
 }
 
 geometry::Pose2 pose_at(int column, int row, double theta_rad = 0.0) {
-  const Eigen::Vector2d point_m = at(column, row);
+  const Eigen::Vector2d point_m = explored_at(column, row);
   return {point_m.x(), point_m.y(), theta_rad};
 }
 
@@ -51,9 +51,9 @@ std::optional<ExplorationTarget> next(const Explorer& explorer, const planning::
 
 topomap::GlobalMap with_end(const Eigen::Vector2d& end_m) {
   topomap::GlobalMap graph;
-  graph.nodes = {{1, topomap::NodeKind::kReal, at(2, 2), 0.5, 1},
+  graph.nodes = {{1, topomap::NodeKind::kReal, explored_at(2, 2), 0.5, 1},
                  {2, topomap::NodeKind::kFictitious, end_m, 0.5, 1}};
-  graph.branches = {{1, 1, 2, false, 1, {{at(2, 2), 0.5}, {end_m, 0.5}}}};
+  graph.branches = {{1, 1, 2, false, 1, {{explored_at(2, 2), 0.5}, {end_m, 0.5}}}};
   return graph;
 }
 
@@ -69,13 +69,13 @@ const std::vector<std::string> kClosed = {
 };
 
 TEST(Explorer, GoesWhereTheKnownEnds) {
-  const planning::HybridMap map = map_of(kOpenRight);
+  const planning::HybridMap map = drawn_map(kOpenRight);
   Explorer explorer(small());
   explorer.set_visited({pose_at(3, 3)});
   const auto target = next(explorer, map, pose_at(3, 3));
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kGap);
-  EXPECT_NEAR(target->position_m.x(), at(17, 3).x(), 0.01);
+  EXPECT_NEAR(target->position_m.x(), explored_at(17, 3).x(), 0.01);
   // It is looked at from the known side and toward the unknown.
   EXPECT_LT(target->T_map_view.x_m, target->position_m.x());
   EXPECT_NEAR(target->T_map_view.theta_rad, 0.0, 1.0);
@@ -83,27 +83,27 @@ TEST(Explorer, GoesWhereTheKnownEnds) {
 }
 
 TEST(Explorer, TheEndOfABranchIsAFrontierOnlyWhereSomethingIsUnknown) {
-  const planning::HybridMap map = map_of(kOpenRight);
+  const planning::HybridMap map = drawn_map(kOpenRight);
   ExplorerConfig config = small();
   config.least_gap_m = 10.0;  // no gaps
   Explorer explorer(config);
   explorer.set_visited({pose_at(3, 3)});
-  const auto target = next(explorer, map, pose_at(3, 3), with_end(at(17, 3)));
+  const auto target = next(explorer, map, pose_at(3, 3), with_end(explored_at(17, 3)));
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kBranchEnd);
-  EXPECT_EQ(target->position_m, at(17, 3));
-  EXPECT_FALSE(next(explorer, map, pose_at(3, 3), with_end(at(9, 3))));
+  EXPECT_EQ(target->position_m, explored_at(17, 3));
+  EXPECT_FALSE(next(explorer, map, pose_at(3, 3), with_end(explored_at(9, 3))));
 }
 
 TEST(Explorer, NothingIsLeftOfAFloorThatIsKnown) {
   Explorer explorer(small());
   explorer.set_visited({pose_at(3, 3)});
-  EXPECT_FALSE(next(explorer, map_of(kClosed), pose_at(3, 3), with_end(at(16, 3))));
+  EXPECT_FALSE(next(explorer, drawn_map(kClosed), pose_at(3, 3), with_end(explored_at(16, 3))));
 }
 
 TEST(Explorer, WhatCannotBeReachedIsNoTarget) {
   // The right part is open to the unknown, but behind a wall.
-  const planning::HybridMap map = map_of({
+  const planning::HybridMap map = drawn_map({
       "#########################",
       "#.........#.........?????",
       "#.........#.........?????",
@@ -125,14 +125,15 @@ TEST(Explorer, ARoomThatWasSeenIsEnteredToo) {
       "#.......................#", "#.......................#", "#.......................#",
       "#.........#.............#", "#.........#.............#", "#########################",
   };
-  const planning::HybridMap map = map_of(lines, {{at(10, 4), Eigen::Vector2d::UnitX(), 0.4}});
+  const planning::HybridMap map =
+      drawn_map(lines, {{explored_at(10, 4), Eigen::Vector2d::UnitX(), 0.4}});
   ASSERT_EQ(map.zones().zones.size(), 2U);
   Explorer explorer(small());
   explorer.set_visited({pose_at(4, 4)});
   const auto target = next(explorer, map, pose_at(4, 4));
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kRoom);
-  EXPECT_GT(target->T_map_view.x_m, at(11, 4).x());
+  EXPECT_GT(target->T_map_view.x_m, explored_at(11, 4).x());
   explorer.set_visited({pose_at(4, 4), pose_at(11, 4)});  // the threshold is not inside
   EXPECT_TRUE(next(explorer, map, pose_at(4, 4)));
   explorer.set_visited({pose_at(4, 4), pose_at(16, 4)});
@@ -140,7 +141,7 @@ TEST(Explorer, ARoomThatWasSeenIsEnteredToo) {
 }
 
 TEST(Explorer, ARoomWhoseDoorTheGraphDoesNotHaveIsEnteredToo) {
-  const planning::HybridMap map = map_of({
+  const planning::HybridMap map = drawn_map({
       "############################",
       "#............#.............#",
       "#............#.............#",
@@ -161,7 +162,7 @@ TEST(Explorer, ARoomWhoseDoorTheGraphDoesNotHaveIsEnteredToo) {
   const auto target = next(explorer, map, pose_at(4, 6));
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kRoom);
-  EXPECT_GT(target->T_map_view.x_m, at(13, 6).x());
+  EXPECT_GT(target->T_map_view.x_m, explored_at(13, 6).x());
   EXPECT_TRUE(explorer.open(*target, map));
   explorer.set_visited({pose_at(4, 6), pose_at(13, 6)});  // the threshold is not inside
   EXPECT_TRUE(explorer.open(*target, map));
@@ -171,7 +172,7 @@ TEST(Explorer, ARoomWhoseDoorTheGraphDoesNotHaveIsEnteredToo) {
 }
 
 TEST(Explorer, InATightPlaceAllThatIsSeenNearByCanBeReached) {
-  const planning::HybridMap map = map_of({
+  const planning::HybridMap map = drawn_map({
       "################????",
       "#...#...........????",
       "#...#...........????",
@@ -183,14 +184,14 @@ TEST(Explorer, InATightPlaceAllThatIsSeenNearByCanBeReached) {
   Explorer explorer(small());
   explorer.set_visited({pose_at(2, 3), pose_at(8, 3)});
   // In the gap, nearer to the closet than to the open room.
-  const auto target = next(explorer, map, {kCell_m * 4.3, kCell_m * 3.5, 0.0});
+  const auto target = next(explorer, map, {kExplored_m * 4.3, kExplored_m * 3.5, 0.0});
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kGap);
-  EXPECT_GT(target->T_map_view.x_m, at(5, 3).x());
+  EXPECT_GT(target->T_map_view.x_m, explored_at(5, 3).x());
 }
 
 TEST(Explorer, ASideOfAPassageThatWasNotSeenIsGoneTo) {
-  const planning::HybridMap map = map_of({
+  const planning::HybridMap map = drawn_map({
       "#########????????",
       "#........????????",
       "#........????????",
@@ -206,17 +207,17 @@ TEST(Explorer, ASideOfAPassageThatWasNotSeenIsGoneTo) {
   Explorer explorer(config);
   explorer.set_visited({pose_at(3, 4)});
   topomap::GlobalMap graph;
-  graph.nodes = {{1, topomap::NodeKind::kReal, at(3, 4), 0.8, 1},
-                 {2, topomap::NodeKind::kDoor, at(9, 7), 0.4, 1}};
-  graph.branches = {{1, 1, 2, false, 1, {{at(3, 7), 0.8}, {at(9, 7), 0.4}}}};
+  graph.nodes = {{1, topomap::NodeKind::kReal, explored_at(3, 4), 0.8, 1},
+                 {2, topomap::NodeKind::kDoor, explored_at(9, 7), 0.4, 1}};
+  graph.branches = {{1, 1, 2, false, 1, {{explored_at(3, 7), 0.8}, {explored_at(9, 7), 0.4}}}};
   const auto target = next(explorer, map, pose_at(3, 4), graph);
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kPassage);
-  EXPECT_GT(target->position_m.x(), at(9, 7).x());
+  EXPECT_GT(target->position_m.x(), explored_at(9, 7).x());
 }
 
 TEST(Explorer, TheCheapestComesFirst) {
-  const planning::HybridMap map = map_of({
+  const planning::HybridMap map = drawn_map({
       "?????????????????????????????",
       "#....########################",
       "#....#......................?",
@@ -234,12 +235,12 @@ TEST(Explorer, TheCheapestComesFirst) {
     explorer.set_visited({pose_at(column, 2)});
     const auto target = next(explorer, map, pose_at(column, 2));
     ASSERT_TRUE(target) << column;
-    EXPECT_EQ(target->position_m.x() > at(13, 2).x(), column == 22);
+    EXPECT_EQ(target->position_m.x() > explored_at(13, 2).x(), column == 22);
   }
 }
 
 TEST(Explorer, WhatWasGivenUpDoesNotComeAgain) {
-  const planning::HybridMap map = map_of(kOpenRight);
+  const planning::HybridMap map = drawn_map(kOpenRight);
   Explorer explorer(small());
   explorer.set_visited({pose_at(3, 3)});
   for (int i = 0; i < 20; ++i) {
@@ -253,8 +254,8 @@ TEST(Explorer, WhatWasGivenUpDoesNotComeAgain) {
 }
 
 TEST(Explorer, ATargetIsClosedWhenTheMapShowsIt) {
-  const planning::HybridMap map = map_of(kOpenRight);
-  const planning::HybridMap later = map_of(kClosed);
+  const planning::HybridMap map = drawn_map(kOpenRight);
+  const planning::HybridMap later = drawn_map(kClosed);
   Explorer explorer(small());
   explorer.set_visited({pose_at(3, 3)});
   const auto target = next(explorer, map, pose_at(3, 3));
@@ -271,19 +272,19 @@ TEST(Explorer, WhatShowsThroughAHoleTooSmallForTheRobotIsNoTarget) {
       "??????#................#", "??????##################",
   };
   ExplorerConfig config = small();
-  config.least_gap_m = kCell_m;
+  config.least_gap_m = kExplored_m;
   Explorer explorer(config);
   explorer.set_visited({pose_at(12, 3)});
-  EXPECT_FALSE(next(explorer, map_of(lines), pose_at(12, 3)));
-  EXPECT_FALSE(next(explorer, map_of(lines), pose_at(12, 3), with_end(at(8, 2))));
+  EXPECT_FALSE(next(explorer, drawn_map(lines), pose_at(12, 3)));
+  EXPECT_FALSE(next(explorer, drawn_map(lines), pose_at(12, 3), with_end(explored_at(8, 2))));
   std::vector<std::string> wide = lines;
   for (const std::size_t line : {3U, 4U}) wide[line] = "????????...............#";
-  EXPECT_TRUE(next(explorer, map_of(wide), pose_at(12, 3)));
+  EXPECT_TRUE(next(explorer, drawn_map(wide), pose_at(12, 3)));
 }
 
 TEST(Explorer, ALittleUnknownFloorIsNotGoneToFromFarAway) {
   // Half a square metre at the left end.
-  const planning::HybridMap map = map_of({
+  const planning::HybridMap map = drawn_map({
       "##################################################",
       "#??..............................................#",
       "#??..............................................#",
@@ -316,7 +317,7 @@ TEST(Explorer, TheFirstOfAShortTourComesNextAndNotTheNearest) {
   lines[0] = std::string(56, '?');
   lines[1] = std::string(33, '#') + "....." + std::string(18, '#');
   lines[6] = std::string(56, '#');
-  const planning::HybridMap map = map_of(lines);
+  const planning::HybridMap map = drawn_map(lines);
   ExplorerConfig config = small();
   config.least_area_m2 = 0.05;
   config.worth_m_per_m2 = 1000.0;
@@ -324,13 +325,13 @@ TEST(Explorer, TheFirstOfAShortTourComesNextAndNotTheNearest) {
   explorer.set_visited({pose_at(20, 2)});
   const auto first = next(explorer, map, pose_at(20, 2));
   ASSERT_TRUE(first);
-  EXPECT_LT(first->position_m.x(), at(3, 0).x());
+  EXPECT_LT(first->position_m.x(), explored_at(3, 0).x());
   config.tour = 1;
   Explorer greedy(config);
   greedy.set_visited({pose_at(20, 2)});
   const auto nearest = next(greedy, map, pose_at(20, 2));
   ASSERT_TRUE(nearest);
-  EXPECT_NEAR(nearest->position_m.x(), at(35, 0).x(), 0.6);
+  EXPECT_NEAR(nearest->position_m.x(), explored_at(35, 0).x(), 0.6);
   EXPECT_LT(nearest->way_m, first->way_m);
 }
 
@@ -342,37 +343,37 @@ TEST(Explorer, AnEntranceThatNoiseHasNarrowedIsLookedAtLast) {
   };
   std::vector<std::string> filled = lines;
   filled[4][10] = '#';
-  const planning::HybridMap map = map_of(filled);
+  const planning::HybridMap map = drawn_map(filled);
   ASSERT_EQ(map.zones().zones.size(), 2U);
   Explorer explorer(small());
   explorer.set_visited({pose_at(4, 4)});
   const auto target = next(explorer, map, pose_at(4, 4));
   ASSERT_TRUE(target);
   EXPECT_EQ(target->kind, TargetKind::kBlocked);
-  EXPECT_GT(target->position_m.x(), at(10, 4).x());
-  EXPECT_LT(target->T_map_view.x_m, at(10, 4).x());
+  EXPECT_GT(target->position_m.x(), explored_at(10, 4).x());
+  EXPECT_LT(target->T_map_view.x_m, explored_at(10, 4).x());
   EXPECT_TRUE(explorer.open(*target, map));
-  EXPECT_FALSE(explorer.open(*target, map_of(lines)));
+  EXPECT_FALSE(explorer.open(*target, drawn_map(lines)));
   // What is unknown elsewhere comes first.
   filled[4][0] = filled[3][0] = filled[5][0] = '?';
   ExplorerConfig config = small();
   config.least_area_m2 = 0.01;
-  config.least_gap_m = kCell_m;
+  config.least_gap_m = kExplored_m;
   Explorer other(config);
   other.set_visited({pose_at(4, 4)});
-  const auto gap = next(other, map_of(filled), pose_at(4, 4));
+  const auto gap = next(other, drawn_map(filled), pose_at(4, 4));
   ASSERT_TRUE(gap);
   EXPECT_EQ(gap->kind, TargetKind::kGap);
   // Nobody gets through a wall.
   std::vector<std::string> closed = lines;
   for (std::string& line : closed) line[10] = '#';
-  EXPECT_FALSE(next(explorer, map_of(closed), pose_at(4, 4)));
+  EXPECT_FALSE(next(explorer, drawn_map(closed), pose_at(4, 4)));
   explorer.give_up(*target);
   EXPECT_FALSE(next(explorer, map, pose_at(4, 4)));
 }
 
 TEST(Explorer, WhatWasPutOffComesAgainOnce) {
-  const planning::HybridMap map = map_of(kOpenRight);
+  const planning::HybridMap map = drawn_map(kOpenRight);
   Explorer explorer(small());
   explorer.set_visited({pose_at(3, 3)});
   EXPECT_FALSE(explorer.resume());
@@ -390,7 +391,7 @@ TEST(Explorer, WhatWasPutOffComesAgainOnce) {
 
 TEST(Explorer, ARobotOffTheMapGoesNowhere) {
   Explorer explorer(small());
-  EXPECT_FALSE(next(explorer, map_of(kOpenRight), {-50.0, 3.0, 0.0}));
+  EXPECT_FALSE(next(explorer, drawn_map(kOpenRight), {-50.0, 3.0, 0.0}));
 }
 
 TEST(Explorer, BadSettingsAreNamed) {

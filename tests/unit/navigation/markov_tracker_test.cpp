@@ -43,7 +43,7 @@ class MarkovDrive : public testing::Test {
     return (tracker.fix()->T_map_robot.position_m() - robot->T_world_robot().position_m()).norm();
   }
 
-  simulation::World world = two_doors();
+  world::World world = two_doors();
   std::optional<simulation::SimulatedRobot> robot;
   MarkovTracker tracker{map_of(world)->space().grid()};
   std::int64_t stamp_ns = 0;

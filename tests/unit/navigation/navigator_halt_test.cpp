@@ -108,7 +108,7 @@ TEST_F(NavigatorHalt, ARouteOfAnOlderMapThatIsNoMoreFreeIsNone) {
   drive.go_to({6.5, 4.5});
   drive.send_route();
   drive.planner_answers = false;
-  simulation::World walled = drive.world;
+  world::World walled = drive.world;
   walled.segments.push_back({{4.0, 0.0}, {4.0, 5.0}});
   drive.navigator.set_map(map_of(walled), 2);
   expect_halt(HaltReason::kWaitsForRoute, NavigatorState::kStopped, 0.1);
@@ -268,7 +268,7 @@ TEST_F(NavigatorHalt, AMapWithRoomForTheRouteDoesNotStopIt) {
 TEST_F(NavigatorHalt, AMapWithAWallAcrossTheRouteStopsIt) {
   drive_off();
   drive.planner_answers = false;
-  simulation::World walled = drive.world;
+  world::World walled = drive.world;
   walled.segments.push_back({{4.0, 0.0}, {4.0, 5.0}});
   drive.map = map_of(walled);
   drive.map_version = 2;

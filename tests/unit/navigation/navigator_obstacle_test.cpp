@@ -11,16 +11,16 @@ namespace {
 
 using testing::HasSubstr;
 
-DriveSettings from(double x_m, double y_m, double heading_rad) {
+DriveSettings starting_from(double x_m, double y_m, double heading_rad) {
   DriveSettings settings;
   settings.T_world_start = {x_m, y_m, heading_rad};
   settings.navigator.detour.half_side_m = 2.0;  // the other door is not in sight
   return settings;
 }
 
-simulation::ChangingPart box(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m,
-                             double from_s, double to_s) {
-  simulation::ChangingPart part;
+world::ChangingPart box(const Eigen::Vector2d& low_m, const Eigen::Vector2d& high_m, double from_s,
+                        double to_s) {
+  world::ChangingPart part;
   const Eigen::Vector2d right_m(high_m.x(), low_m.y());
   const Eigen::Vector2d left_m(low_m.x(), high_m.y());
   part.segments = {{low_m, right_m}, {right_m, high_m}, {high_m, left_m}, {left_m, low_m}};
@@ -31,9 +31,9 @@ simulation::ChangingPart box(const Eigen::Vector2d& low_m, const Eigen::Vector2d
 constexpr double kEver_s = 1e6;
 
 TEST(NavigatorObstacle, ABoxInTheRoomIsGoneRound) {
-  simulation::World world = room();
+  world::World world = room();
   world.changing.push_back(box({3.5, 2.0}, {4.3, 3.0}, 0.0, kEver_s));
-  TestDrive drive(world, from(1.0, 2.5, 0.0));
+  TestDrive drive(world, starting_from(1.0, 2.5, 0.0));
   drive.go_to({7.0, 2.5});
   ASSERT_TRUE(drive.arrives(60.0)) << drive.status().message;
   EXPECT_LT(drive.off_m(), 0.05);
@@ -45,9 +45,9 @@ TEST(NavigatorObstacle, ABoxInTheRoomIsGoneRound) {
 }
 
 TEST(NavigatorObstacle, ADoorThatIsShutForAWhileIsWaitedFor) {
-  simulation::World world = two_doors();
+  world::World world = two_doors();
   world.changing.push_back(box({4.95, 0.5}, {5.05, 2.5}, 0.0, 7.5));
-  TestDrive drive(world, from(2.0, 1.5, 0.0));
+  TestDrive drive(world, starting_from(2.0, 1.5, 0.0));
   drive.go_to({8.5, 1.5});
   ASSERT_TRUE(
       drive.run_until([&] { return drive.status().state == NavigatorState::kBlocked; }, 20.0));
@@ -59,9 +59,9 @@ TEST(NavigatorObstacle, ADoorThatIsShutForAWhileIsWaitedFor) {
 }
 
 TEST(NavigatorObstacle, ADoorThatStaysShutIsReportedAndAnotherWayTaken) {
-  simulation::World world = two_doors();
+  world::World world = two_doors();
   world.changing.push_back(box({4.95, 0.5}, {5.05, 2.5}, 0.0, kEver_s));
-  TestDrive drive(world, from(2.0, 1.5, 0.0));
+  TestDrive drive(world, starting_from(2.0, 1.5, 0.0));
   drive.go_to({8.5, 1.5});
   ASSERT_TRUE(drive.arrives(120.0)) << drive.status().message;
   EXPECT_LT(drive.off_m(), 0.05);
@@ -71,10 +71,10 @@ TEST(NavigatorObstacle, ADoorThatStaysShutIsReportedAndAnotherWayTaken) {
 }
 
 TEST(NavigatorObstacle, WithoutAnotherWayItStaysBlockedUntilTheDoorOpens) {
-  simulation::World world = two_doors();
+  world::World world = two_doors();
   world.changing.push_back(box({4.95, 0.5}, {5.05, 2.5}, 0.0, 60.0));
   world.changing.push_back(box({4.95, 3.5}, {5.05, 5.5}, 0.0, kEver_s));
-  TestDrive drive(world, from(2.0, 1.5, 0.0));
+  TestDrive drive(world, starting_from(2.0, 1.5, 0.0));
   drive.go_to({8.5, 1.5});
   ASSERT_TRUE(drive.run_until([&] { return drive.halted(HaltReason::kNoRoute); }, 60.0))
       << drive.status().message;
@@ -86,13 +86,13 @@ TEST(NavigatorObstacle, WithoutAnotherWayItStaysBlockedUntilTheDoorOpens) {
 }
 
 TEST(NavigatorObstacle, SomebodyWhoWalksAcrossIsLetPass) {
-  simulation::World world = room();
-  simulation::Person person;
+  world::World world = room();
+  world::Person person;
   person.path_m = {{4.0, 0.4}, {4.0, 5.6}};
   person.speed_m_per_s = 0.8;
   person.yields = true;
   world.people.push_back(person);
-  TestDrive drive(world, from(1.0, 2.5, 0.0));
+  TestDrive drive(world, starting_from(1.0, 2.5, 0.0));
   drive.go_to({7.0, 2.5});
   ASSERT_TRUE(drive.arrives(60.0)) << drive.status().message;
   EXPECT_EQ(drive.robot.collisions(), 0U);
@@ -102,24 +102,24 @@ TEST(NavigatorObstacle, SomebodyWhoWalksAcrossIsLetPass) {
 }
 
 TEST(NavigatorObstacle, SomebodyWhoStepsInFrontOfItStopsIt) {
-  simulation::World world = room();
-  simulation::ChangingPart person;
+  world::World world = room();
+  world::ChangingPart person;
   person.circles = {{{3.6, 2.5}, 0.25}};
   person.present_s = {{3.2, 8.0}};
   world.changing.push_back(person);
-  TestDrive drive(world, from(1.0, 2.5, 0.0));
+  TestDrive drive(world, starting_from(1.0, 2.5, 0.0));
   drive.go_to({7.0, 2.5});
   ASSERT_TRUE(drive.arrives(60.0)) << drive.status().message;
   EXPECT_EQ(drive.robot.collisions(), 0U);
 }
 
 TEST(NavigatorObstacle, WhatOnlySonarsHearStopsItAndIsGoneRound) {
-  simulation::World world = room();
-  simulation::ChangingPart glass;
+  world::World world = room();
+  world::ChangingPart glass;
   glass.circles = {{{4.0, 2.6}, 0.3}};
   glass.present_s = {{0.0, kEver_s}};
   world.changing.push_back(glass);
-  TestDrive drive(world, from(1.0, 2.5, 0.0));
+  TestDrive drive(world, starting_from(1.0, 2.5, 0.0));
   drive.glass = glass.circles.front();
   drive.go_to({7.0, 2.5});
   ASSERT_TRUE(drive.arrives(120.0)) << drive.status().message;
@@ -132,12 +132,12 @@ TEST(NavigatorObstacle, WhatOnlySonarsHearStopsItAndIsGoneRound) {
 TEST(NavigatorObstacle, WhatTheGuardMetIsForgottenWithThePoseAndTheMap) {
   enum class Change { kMap, kJump, kLost };
   for (const Change change : {Change::kMap, Change::kJump, Change::kLost}) {
-    simulation::World world = room();
-    simulation::ChangingPart glass;
+    world::World world = room();
+    world::ChangingPart glass;
     glass.circles = {{{4.0, 2.6}, 0.3}};
     glass.present_s = {{0.0, kEver_s}};
     world.changing.push_back(glass);
-    TestDrive drive(world, from(1.0, 2.5, 0.0));
+    TestDrive drive(world, starting_from(1.0, 2.5, 0.0));
     drive.glass = glass.circles.front();
     drive.go_to({7.0, 2.5});
     ASSERT_TRUE(drive.run_until([&] { return drive.status().guard_stops > 0; }, 20.0));
@@ -160,9 +160,9 @@ TEST(NavigatorObstacle, WhatTheGuardMetIsForgottenWithThePoseAndTheMap) {
 }
 
 TEST(NavigatorObstacle, AGoalThatIsFilledIsRefusedInTheEnd) {
-  simulation::World world = room();
+  world::World world = room();
   world.changing.push_back(box({6.5, 2.4}, {7.1, 3.0}, 0.0, kEver_s));
-  TestDrive drive(world, from(1.0, 2.5, 0.0));
+  TestDrive drive(world, starting_from(1.0, 2.5, 0.0));
   drive.go_to({6.8, 2.7});
   ASSERT_TRUE(drive.run_until([&] { return drive.halted(HaltReason::kNoRoute); }, 60.0))
       << drive.status().message;

@@ -20,7 +20,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kOneSecond_ns = 1'000'000'000;
 
 TEST(ArcSweep, StraightToAPoint) {
   const std::vector<Eigen::Vector2d> points_m = {{2.0, 0.3}, {1.5, 0.6}};
@@ -133,7 +133,7 @@ TEST(ObstacleMemory, KeepsWhatStandsAndForgetsWhatHasGone) {
   memory.add(scan_of_post(2.0, now_ns), T_map_robot, map->space());
   EXPECT_TRUE(memory.all().empty());  // seen once
   for (int i = 1; i < 10; ++i) {
-    now_ns += kSecond_ns / 10;
+    now_ns += kOneSecond_ns / 10;
     memory.add(scan_of_post(2.0, now_ns), T_map_robot, map->space());
   }
   ASSERT_FALSE(standing_m(memory).empty());
@@ -146,7 +146,7 @@ TEST(ObstacleMemory, KeepsWhatStandsAndForgetsWhatHasGone) {
   memory.add(away, T_map_robot * geometry::Pose2{0.0, 0.0, 3.0}, map->space());
   EXPECT_FALSE(standing_m(memory).empty());
   for (int i = 0; i < 4; ++i) {
-    now_ns += kSecond_ns / 10;
+    now_ns += kOneSecond_ns / 10;
     memory.add(scan_of_post(6.0, now_ns), T_map_robot, map->space());
   }
   EXPECT_TRUE(memory.all().empty());
@@ -158,7 +158,7 @@ TEST(ObstacleMemory, WallsOfTheMapAreNoObstaclesWithSomeErrorOfPose) {
   ScanPoints scan;
   for (int i = -50; i <= 50; ++i) scan.points_m.emplace_back(2.0, 0.05 * i);
   for (int k = 0; k < 20; ++k) {
-    scan.stamp_ns = k * kSecond_ns / 10;
+    scan.stamp_ns = k * kOneSecond_ns / 10;
     memory.add(scan, {5.9, 3.0, 0.01}, map->space());  // the wall is at 8 m
   }
   EXPECT_TRUE(memory.all().empty());
@@ -168,7 +168,7 @@ TEST(ObstacleMemory, WhatMovesDoesNotStand) {
   const auto map = map_of(room());
   ObstacleMemory memory{MemoryConfig{}};
   for (int k = 0; k < 15; ++k) {
-    memory.add(scan_of_post(1.0 + 0.08 * k, k * kSecond_ns / 10), {2.0, 3.0, 0.0}, map->space());
+    memory.add(scan_of_post(1.0 + 0.08 * k, k * kOneSecond_ns / 10), {2.0, 3.0, 0.0}, map->space());
   }
   EXPECT_TRUE(standing_m(memory).empty());
 }
@@ -180,8 +180,8 @@ TEST(ContactMemory, TheSameContactAgainPushesNoOtherOut) {
   ASSERT_EQ(contacts.points_m(50).size(), 2U);
   EXPECT_EQ(contacts.points_m(50).front(), Eigen::Vector2d(1.0, 0.0));
   // Twelve seconds after it was met last a contact counts no more.
-  EXPECT_EQ(contacts.points_m(12 * kSecond_ns).size(), 1U);
-  EXPECT_TRUE(contacts.points_m(12 * kSecond_ns + 50).empty());
+  EXPECT_EQ(contacts.points_m(12 * kOneSecond_ns).size(), 1U);
+  EXPECT_TRUE(contacts.points_m(12 * kOneSecond_ns + 50).empty());
   for (int i = 0; i < 30; ++i) contacts.add({0.1 * i, 5.0}, 60);
   EXPECT_EQ(contacts.points_m(60).size(), ContactMemory::kMost);
   contacts.clear();
@@ -197,11 +197,11 @@ TEST(Blockade, CountsItsChanges) {
   EXPECT_EQ(blockade.report().version, 1U);
   ASSERT_EQ(blockade.report().points_m.size(), 2U);  // two are in one cell
   EXPECT_NEAR(blockade.report().points_m[0].x(), 2.05, 1e-9);
-  EXPECT_FALSE(blockade.add(points_m, frame, 30 * kSecond_ns));
+  EXPECT_FALSE(blockade.add(points_m, frame, 30 * kOneSecond_ns));
   EXPECT_EQ(blockade.report().version, 1U);
-  blockade.expire(80 * kSecond_ns);  // seen 50 s ago
+  blockade.expire(80 * kOneSecond_ns);  // seen 50 s ago
   EXPECT_EQ(blockade.report().version, 1U);
-  blockade.expire(91 * kSecond_ns);
+  blockade.expire(91 * kOneSecond_ns);
   EXPECT_EQ(blockade.report().version, 2U);
   EXPECT_TRUE(blockade.report().points_m.empty());
 }
@@ -226,24 +226,24 @@ TEST(Blockade, WhatIsSeenFreeIsTakenBack) {
 
 TEST(PoseKeeper, CarriesAnOldFixOnByOdometry) {
   PoseKeeper keeper{PoseKeeperConfig{}};
-  keeper.add(OdometrySample{kSecond_ns, {0.0, 0.0, 0.0}});
-  keeper.add(OdometrySample{2 * kSecond_ns, {1.0, 0.0, 0.0}});
+  keeper.add(OdometrySample{kOneSecond_ns, {0.0, 0.0, 0.0}});
+  keeper.add(OdometrySample{2 * kOneSecond_ns, {1.0, 0.0, 0.0}});
   PoseFix fix;
-  fix.stamp_ns = kSecond_ns + kSecond_ns / 2;  // odometry was at 0.5 m
+  fix.stamp_ns = kOneSecond_ns + kOneSecond_ns / 2;  // odometry was at 0.5 m
   fix.T_map_robot = {10.0, 5.0, 0.5 * std::numbers::pi};
   fix.tracking = true;
   keeper.add(fix);
-  const auto pose = keeper.good_pose(2 * kSecond_ns);
+  const auto pose = keeper.good_pose(2 * kOneSecond_ns);
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->x_m, 10.0, 1e-9);
   EXPECT_NEAR(pose->y_m, 5.5, 1e-9);
   // A fix that is newer than all odometry waits for it.
-  fix.stamp_ns = 3 * kSecond_ns;
+  fix.stamp_ns = 3 * kOneSecond_ns;
   fix.T_map_robot = {0.0, 0.0, 0.0};
   keeper.add(fix);
-  EXPECT_NEAR(keeper.good_pose(2 * kSecond_ns)->y_m, 5.5, 1e-9);
-  keeper.add(OdometrySample{3 * kSecond_ns, {2.0, 0.0, 0.0}});
-  EXPECT_NEAR(keeper.good_pose(3 * kSecond_ns)->x_m, 0.0, 1e-9);
+  EXPECT_NEAR(keeper.good_pose(2 * kOneSecond_ns)->y_m, 5.5, 1e-9);
+  keeper.add(OdometrySample{3 * kOneSecond_ns, {2.0, 0.0, 0.0}});
+  EXPECT_NEAR(keeper.good_pose(3 * kOneSecond_ns)->x_m, 0.0, 1e-9);
   EXPECT_NEAR(keeper.take_jump_m(), std::hypot(10.0, 6.5), 1e-9);
 }
 
@@ -251,12 +251,12 @@ TEST(BaseWatch, NoticesABaseThatDoesNotMove) {
   BaseWatch watch(2.0);
   const geometry::Velocity told{0.3, 0.0};
   EXPECT_FALSE(watch.stuck(told, {}, 0));
-  EXPECT_FALSE(watch.stuck(told, {0.005, 0.0, 0.0}, 1 * kSecond_ns));
-  EXPECT_TRUE(watch.stuck(told, {0.005, 0.0, 0.0}, 2 * kSecond_ns));
-  EXPECT_FALSE(watch.stuck(told, {0.1, 0.0, 0.0}, 3 * kSecond_ns));
-  EXPECT_FALSE(watch.stuck({}, {0.1, 0.0, 0.0}, 9 * kSecond_ns));
-  EXPECT_FALSE(watch.stuck({0.0, 0.5}, {0.1, 0.0, 0.0}, 10 * kSecond_ns));
-  EXPECT_TRUE(watch.stuck({0.0, 0.5}, {0.1, 0.0, 0.0}, 12 * kSecond_ns));
+  EXPECT_FALSE(watch.stuck(told, {0.005, 0.0, 0.0}, 1 * kOneSecond_ns));
+  EXPECT_TRUE(watch.stuck(told, {0.005, 0.0, 0.0}, 2 * kOneSecond_ns));
+  EXPECT_FALSE(watch.stuck(told, {0.1, 0.0, 0.0}, 3 * kOneSecond_ns));
+  EXPECT_FALSE(watch.stuck({}, {0.1, 0.0, 0.0}, 9 * kOneSecond_ns));
+  EXPECT_FALSE(watch.stuck({0.0, 0.5}, {0.1, 0.0, 0.0}, 10 * kOneSecond_ns));
+  EXPECT_TRUE(watch.stuck({0.0, 0.5}, {0.1, 0.0, 0.0}, 12 * kOneSecond_ns));
 }
 
 TEST(PathBand, KeepsOffWallsAndBendsGently) {
@@ -269,9 +269,9 @@ TEST(PathBand, KeepsOffWallsAndBendsGently) {
   ASSERT_GT(way_m.size(), 20U);
   EXPECT_EQ(way_m.front(), points_m.front());
   EXPECT_EQ(way_m.back(), points_m.back());
-  const simulation::World world = two_doors();
+  const world::World world = two_doors();
   for (const Eigen::Vector2d& point_m : way_m) {
-    EXPECT_GT(simulation::clearance_m(world, point_m), config.least_m);
+    EXPECT_GT(world::clearance_m(world, point_m), config.least_m);
   }
   for (const auto& sample : samples_of(way_m, 0.9)) {
     EXPECT_EQ(sample.turn_on_spot_rad, 0.0);

@@ -25,7 +25,7 @@ simulation::RobotOptions options_of(const DriveSettings& settings) {
   return options;
 }
 
-planning::Drawing drawing_of(const simulation::World& world) {
+planning::Drawing drawing_of(const world::World& world) {
   planning::Drawing drawing;
   for (const auto& segment : world.segments) drawing.lines.push_back({segment.a_m, segment.b_m});
   for (const auto& circle : world.circles) {
@@ -37,7 +37,7 @@ planning::Drawing drawing_of(const simulation::World& world) {
 
 }  // namespace
 
-std::shared_ptr<const planning::HybridMap> map_of(const simulation::World& world,
+std::shared_ptr<const planning::HybridMap> map_of(const world::World& world,
                                                   const std::vector<Eigen::Vector2d>& filled_m) {
   planning::OccupancyGrid grid = planning::grid_of(drawing_of(world));
   for (const Eigen::Vector2d& point_m : filled_m) {
@@ -50,7 +50,7 @@ std::shared_ptr<const planning::HybridMap> map_of(const simulation::World& world
   return std::make_shared<planning::HybridMap>(std::move(space), std::move(zones));
 }
 
-TestDrive::TestDrive(simulation::World floor, const DriveSettings& drive)
+TestDrive::TestDrive(world::World floor, const DriveSettings& drive)
     : world(std::move(floor)),
       settings(drive),
       robot(world, options_of(drive)),
@@ -152,9 +152,8 @@ void TestDrive::step() {
   robot.step(moves ? simulation::Velocity{obeyed.linear_m_per_s, obeyed.angular_rad_per_s}
                    : simulation::Velocity{},
              static_cast<double>(kStep_ns) * 1e-9);
-  shortest_clearance_m =
-      std::min(shortest_clearance_m,
-               simulation::clearance_m(robot.scene(), robot.T_world_robot().position_m()));
+  shortest_clearance_m = std::min(
+      shortest_clearance_m, world::clearance_m(robot.scene(), robot.T_world_robot().position_m()));
   now_ns += kStep_ns;
   ++steps_;
 }
@@ -176,8 +175,8 @@ double TestDrive::off_m() const {
   return (robot.T_world_robot().position_m() - goal_m).norm();
 }
 
-simulation::World room() {
-  return simulation::parse_world(R"(
+world::World room() {
+  return world::parse_world(R"(
 name: room
 walls:
   - {from: [0, 0], to: [8, 0]}
@@ -186,11 +185,11 @@ walls:
   - {from: [0, 6], to: [0, 0]}
 tour: [[1, 1], [7, 5]]
 )",
-                                 "room");
+                            "room");
 }
 
-simulation::World two_doors() {
-  return simulation::parse_world(R"(
+world::World two_doors() {
+  return world::parse_world(R"(
 name: two doors
 walls:
   - {from: [0, 0], to: [10, 0]}
@@ -200,7 +199,7 @@ walls:
   - {from: [5, 0], to: [5, 6], doors: [{at: 1.5, width: 1.0}, {at: 4.5, width: 1.0}]}
 tour: [[1, 1], [9, 1]]
 )",
-                                 "two doors");
+                            "two doors");
 }
 
 }  // namespace topogeo::navigation

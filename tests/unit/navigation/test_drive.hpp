@@ -20,7 +20,7 @@ inline constexpr std::int64_t kStep_ns = 50'000'000;
 
 /// The hybrid map of a world's surfaces that never change, with zones by width.
 std::shared_ptr<const planning::HybridMap> map_of(
-    const simulation::World& world, const std::vector<Eigen::Vector2d>& filled_m = {});
+    const world::World& world, const std::vector<Eigen::Vector2d>& filled_m = {});
 
 struct DriveSettings {
   geometry::Pose2 T_world_start;
@@ -32,7 +32,7 @@ struct DriveSettings {
 
 class TestDrive {
  public:
-  TestDrive(simulation::World world, const DriveSettings& settings);
+  TestDrive(world::World world, const DriveSettings& settings);
 
   /// One step of 50 ms: sensors, navigator, planner, base.
   void step();
@@ -47,7 +47,7 @@ class TestDrive {
   [[nodiscard]] double off_m() const;
   [[nodiscard]] double time_s() const { return static_cast<double>(now_ns) * 1e-9; }
 
-  simulation::World world;
+  world::World world;
   DriveSettings settings;
   simulation::SimulatedRobot robot;
   std::shared_ptr<const planning::HybridMap> map;
@@ -67,7 +67,7 @@ class TestDrive {
   bool base_obeys = true;
   bool planner_answers = true;
   double sigma_m = 0.02;
-  std::optional<simulation::Circle> glass{};  ///< the laser gets no echo of it
+  std::optional<world::Circle> glass{};  ///< the laser gets no echo of it
 
   std::uint64_t goal_id = 0;
   Eigen::Vector2d goal_m = Eigen::Vector2d::Zero();
@@ -89,8 +89,8 @@ class TestDrive {
 };
 
 /// A room of 8 x 6 m with its lower left corner in the origin.
-simulation::World room();
+world::World room();
 /// Two rooms of 5 x 6 m, side by side from the origin, with doors of 1 m at y = 1.5 and y = 4.5.
-simulation::World two_doors();
+world::World two_doors();
 
 }  // namespace topogeo::navigation

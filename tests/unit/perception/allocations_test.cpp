@@ -8,8 +8,8 @@
 #include "topogeo/topomap/local_map_builder.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
 
-#include "../counted_allocations.hpp"
-#include "../voronoi/test_world.hpp"
+#include "counted_allocations.hpp"
+#include "voronoi/test_world.hpp"
 
 namespace topogeo {
 namespace {

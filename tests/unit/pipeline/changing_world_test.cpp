@@ -9,8 +9,8 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/topomap/trajectory.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::pipeline {
 namespace {
@@ -28,7 +28,7 @@ struct Mapped {
   double worst_loop_m = 0.0;  ///< largest error of a loop closure
 };
 
-Mapped map_world(const simulation::World& world, std::size_t wanderers) {
+Mapped map_world(const world::World& world, std::size_t wanderers) {
   simulation::SimulationOptions options;
   options.wanderers = wanderers;
   Mapped mapped;
@@ -75,12 +75,12 @@ std::size_t nodes_near(const Mapped& mapped, const Eigen::Vector2d& point_m, dou
   return count;
 }
 
-simulation::World floor_world() {
-  return simulation::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / "floor.world.yaml");
+world::World floor_world() {
+  return world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / "floor.world.yaml");
 }
 
 TEST(ChangingWorldTest, PeopleWhoWalkAboutNeitherBendTheMapNorEnterIt) {
-  const simulation::World world = floor_world();
+  const world::World world = floor_world();
   const Mapped empty = map_world(world, 0);
   const Mapped busy = map_world(world, 5);
   EXPECT_LT(busy.error.rms_m, 1.5 * empty.error.rms_m + 0.02);
@@ -114,7 +114,7 @@ std::string corridor(const std::string& door) {
 
 TEST(ChangingWorldTest, ADoorThatOpensLaterEntersTheMapAndDoesNotBendIt) {
   const auto mapped = [](const std::string& door) {
-    return map_world(simulation::parse_world(corridor(door), "test"), 0);
+    return map_world(world::parse_world(corridor(door), "test"), 0);
   };
   const Mapped shut = mapped("{at: 10, width: 1.0, open: []}");
   // Shut on the first of the four passes: a branch needs 40 % of the votes, those of the newest

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/simulation/laser.hpp"
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::pipeline {
 namespace {
@@ -42,7 +42,7 @@ class LocalMapperTest : public testing::Test {
     return result;
   }
 
-  simulation::World world_ = simulation::parse_world(
+  world::World world_ = world::parse_world(
       "walls:\n"
       "  - {from: [0, 0], to: [8, 0]}\n"
       "  - {from: [8, 0], to: [8, 6]}\n"

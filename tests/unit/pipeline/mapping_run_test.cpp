@@ -6,12 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/pipeline/outputs.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
+#include "topogeo/results/outputs.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/topomap/trajectory.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::pipeline {
 namespace {
@@ -20,8 +20,7 @@ using topomap::StampedPose;
 
 simulation::SimulatedLog simulated(const std::string& world) {
   return simulation::simulate_log(
-      simulation::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml")),
-      {});
+      world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml")), {});
 }
 
 storage::MapDocument mapped(const simulation::SimulatedLog& log) {

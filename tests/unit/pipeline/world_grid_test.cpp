@@ -10,7 +10,7 @@ namespace {
 using planning::CellState;
 
 TEST(WorldGrid, IsFreeInsideAndUnknownBehindTheWalls) {
-  const simulation::World world = simulation::parse_world(
+  const world::World world = world::parse_world(
       "walls:\n"
       "  - {from: [0, 0], to: [6, 0]}\n"
       "  - {from: [6, 0], to: [6, 4]}\n"
@@ -34,8 +34,8 @@ TEST(WorldGrid, IsFreeInsideAndUnknownBehindTheWalls) {
 // Along the tour of the office floor there is a way between any two points, hardly longer than the
 // shortest one.
 TEST(WorldGrid, HasWaysBetweenAllPlacesOfATour) {
-  const simulation::World world =
-      simulation::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+  const world::World world =
+      world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
   const planning::FreeSpace space(planning::grid_of(drawing_of(world)));
   const planning::HybridMap map(space, planning::zones_by_width(space));
   EXPECT_GT(map.zones().zones.size(), 10U);

@@ -36,7 +36,7 @@ struct Ring {
   }
 };
 
-Ring ring() {
+Ring ring_with_door() {
   BlockPlan plan;
   plan.columns = 2;
   plan.rows = 2;
@@ -89,7 +89,7 @@ HybridPlannerConfig as_the_source() {
 }
 
 TEST(Closures, OneShutDoorOfARingSendsTheRobotRoundTheOtherSide) {
-  const Ring floor = ring();
+  const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
   const HybridRoute open = planner.plan(kRoom0_m, kRoom1_m);
   ASSERT_THAT(open.nodes, SizeIs(1));
@@ -105,7 +105,7 @@ TEST(Closures, OneShutDoorOfARingSendsTheRobotRoundTheOtherSide) {
 }
 
 TEST(Closures, AllDoorsShutLeaveTheRobotInItsRoom) {
-  const Ring floor = ring();
+  const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
   Closures shut;
   for (const BorderNode& node : floor.map.nodes()) {
@@ -123,7 +123,7 @@ TEST(Closures, AllDoorsShutLeaveTheRobotInItsRoom) {
 
 // The whole way planned again on the grid is shorter through the closed edge.
 TEST(Closures, PlanningAgainDoesNotLeadBackThroughAClosedEdge) {
-  const Ring floor = ring();
+  const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
   const HybridRoute open = planner.plan(kRoom0_m, kRoom3_m);
   ASSERT_THAT(open.edges, SizeIs(1));
@@ -192,7 +192,7 @@ TEST(Closures, AWideBorderIsCrossedWhereItIsOpen) {
 
 // Something across a whole room with two doors: from one part of it to the other round the ring.
 TEST(Closures, AZoneThatIsCutInTwoIsLeftAndEnteredAgain) {
-  const Ring floor = ring();
+  const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
   // Room 0 is 5 x 4 m; its doors are on the right and above.
   const auto nodes = floor.map.nodes_of(floor.zone_at(kRoom0_m.x(), kRoom0_m.y()));
@@ -233,7 +233,7 @@ TEST(Closures, ARobotBeforeAnObstacleStartsOnItsSideOfIt) {
 }
 
 TEST(Closures, AGoalThatSomethingFillsIsOccupiedAndHasAPlaceNearIt) {
-  const Ring floor = ring();
+  const Ring floor = ring_with_door();
   Closures closed;
   closed.cells = {floor.map.frame().cell_of(kRoom1_m).value()};
   const HybridPlanner planner(floor.map);
@@ -248,7 +248,7 @@ TEST(Closures, AGoalThatSomethingFillsIsOccupiedAndHasAPlaceNearIt) {
 }
 
 TEST(Closures, CellsOnWallsAndBeyondTheGridChangeNothing) {
-  const Ring floor = ring();
+  const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
   Closures closed;
   closed.cells = {{0, 0}, {-50, 3}, {5000, 5000}};

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "topogeo/localization/identical.hpp"
+#include "topogeo/localization/matching/identical.hpp"
 
 #include "task_board.hpp"
 

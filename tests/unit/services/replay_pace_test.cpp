@@ -7,7 +7,7 @@
 namespace topogeo::sensor_gateway {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kOneSecond_ns = 1'000'000'000;
 
 TEST(ReplayRate, WordsAndFactors) {
   EXPECT_EQ(service::parse_rate("lossless"), std::nullopt);
@@ -20,33 +20,33 @@ TEST(ReplayRate, WordsAndFactors) {
 
 TEST(Pace, GapsAreAsInTheLog) {
   ReplayPace pace(1.0);
-  EXPECT_DOUBLE_EQ(pace.next(100 * kSecond_ns).after_s, 0.0);
-  EXPECT_DOUBLE_EQ(pace.next(100 * kSecond_ns + kSecond_ns / 2).after_s, 0.5);
-  EXPECT_DOUBLE_EQ(pace.next(103 * kSecond_ns).after_s, 3.0);
+  EXPECT_DOUBLE_EQ(pace.next(100 * kOneSecond_ns).after_s, 0.0);
+  EXPECT_DOUBLE_EQ(pace.next(100 * kOneSecond_ns + kOneSecond_ns / 2).after_s, 0.5);
+  EXPECT_DOUBLE_EQ(pace.next(103 * kOneSecond_ns).after_s, 3.0);
 }
 
 TEST(Pace, FactorDividesThem) {
   ReplayPace pace(4.0);
   pace.next(0);
-  EXPECT_DOUBLE_EQ(pace.next(2 * kSecond_ns).after_s, 0.5);
+  EXPECT_DOUBLE_EQ(pace.next(2 * kOneSecond_ns).after_s, 0.5);
 }
 
 TEST(Pace, LongGapsAreShortenedAndTold) {
   ReplayPace pace(1.0);
   pace.next(0);
-  const ReplayPace::Due kept = pace.next(60 * kSecond_ns);
+  const ReplayPace::Due kept = pace.next(60 * kOneSecond_ns);
   EXPECT_DOUBLE_EQ(kept.after_s, 60.0);
   EXPECT_DOUBLE_EQ(kept.shortened_gap_s, 0.0);
-  const ReplayPace::Due cut = pace.next(160 * kSecond_ns);
+  const ReplayPace::Due cut = pace.next(160 * kOneSecond_ns);
   EXPECT_DOUBLE_EQ(cut.after_s, 61.0);
   EXPECT_DOUBLE_EQ(cut.shortened_gap_s, 100.0);
-  EXPECT_DOUBLE_EQ(pace.next(161 * kSecond_ns).after_s, 62.0);
+  EXPECT_DOUBLE_EQ(pace.next(161 * kOneSecond_ns).after_s, 62.0);
 }
 
 TEST(Pace, LosslessNeverWaits) {
   ReplayPace pace(std::nullopt);
   pace.next(0);
-  const ReplayPace::Due due = pace.next(1000 * kSecond_ns);
+  const ReplayPace::Due due = pace.next(1000 * kOneSecond_ns);
   EXPECT_DOUBLE_EQ(due.after_s, 0.0);
   EXPECT_DOUBLE_EQ(due.shortened_gap_s, 0.0);
 }

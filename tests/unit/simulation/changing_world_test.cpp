@@ -36,7 +36,7 @@ SimulationOptions exact() {
 }
 
 TEST(ChangingWorld, ADoorIsShutButForItsIntervals) {
-  const World world = parse_world(kCorridor, "w");
+  const world::World world = world::parse_world(kCorridor, "w");
   ASSERT_EQ(world.changing.size(), 1U);
   const Eigen::Vector2d in_the_door(5.0, 1.0);
   for (const double way_m : {0.0, 1.99, 4.0, 5.9, 7.0, 100.0}) {
@@ -48,7 +48,7 @@ TEST(ChangingWorld, ADoorIsShutButForItsIntervals) {
 }
 
 TEST(ChangingWorld, FurnitureIsThereForItsIntervals) {
-  const World world = parse_world(
+  const world::World world = world::parse_world(
       "boxes: [{from: [0, 0], to: [1, 1], present: [[0, 5]]}]\n"
       "columns: [{center: [9, 0], radius: 0.5, present: [[5, 9]]}]\n",
       "w");
@@ -59,7 +59,7 @@ TEST(ChangingWorld, FurnitureIsThereForItsIntervals) {
 }
 
 TEST(ChangingWorld, DoorsAndFurnitureChangeWithTheTimeToo) {
-  const World world = parse_world(
+  const world::World world = world::parse_world(
       "walls: [{from: [0, 0], to: [4, 0], doors: [{at: 2, width: 1, open: [[5, 6]], "
       "open_s: [[10, 20]]}]}]\n"
       "columns: [{center: [9, 0], radius: 0.5, present_s: [[3, 4]]}]\n",
@@ -74,10 +74,10 @@ TEST(ChangingWorld, DoorsAndFurnitureChangeWithTheTimeToo) {
 }
 
 TEST(ChangingWorld, RandomDoorsOpenAndShutByTurns) {
-  const World world = parse_world(
+  const world::World world = world::parse_world(
       "walls: [{from: [0, 0], to: [4, 0], doors: [{at: 2, width: 1, random: [20, 10]}]}]\n", "w");
   EXPECT_EQ(scene_at(world, 0.0, 50.0).segments.size(), 3U);  // not drawn yet
-  const World drawn = draw_changes(world, 3, 10000.0);
+  const world::World drawn = draw_changes(world, 3, 10000.0);
   int open = 0;
   int changes = 0;
   bool before = true;
@@ -89,22 +89,22 @@ TEST(ChangingWorld, RandomDoorsOpenAndShutByTurns) {
   }
   EXPECT_NEAR(open, 6667, 400);
   EXPECT_NEAR(changes, 667, 60);
-  const auto first = [](const World& w) { return w.changing[0].present_s.front().to_s; };
+  const auto first = [](const world::World& w) { return w.changing[0].present_s.front().to_s; };
   EXPECT_EQ(first(drawn), first(draw_changes(world, 3, 10000.0)));
   EXPECT_NE(first(drawn), first(draw_changes(world, 4, 10000.0)));
-  EXPECT_THROW(parse_world("boxes: [{from: [0, 0], to: [1, 1], random: [0, 1]}]", "w"),
+  EXPECT_THROW(world::parse_world("boxes: [{from: [0, 0], to: [1, 1], random: [0, 1]}]", "w"),
                std::runtime_error);
-  EXPECT_THROW(parse_world("boxes: [{from: [0, 0], to: [1, 1], random: 3}]", "w"),
+  EXPECT_THROW(world::parse_world("boxes: [{from: [0, 0], to: [1, 1], random: 3}]", "w"),
                std::runtime_error);
 }
 
 TEST(ChangingWorld, RandomDoorsNeverCeaseToChangeBesideARobot) {
-  const World world = parse_world(
+  const world::World world = world::parse_world(
       "walls: [{from: [0, 0], to: [8, 0], doors: [{at: 4, width: 1, random: [20, 10]}]}]\n"
       "tour: [[1, 1], [7, 1]]\n",
       "w");
   constexpr int kHours = 3;
-  const World drawn = draw_changes(world, 3, 3600.0 * kHours);
+  const world::World drawn = draw_changes(world, 3, 3600.0 * kHours);
   SimulatedRobot robot(world, {.seed = 3});
   for (int second = 0; second < 3600 * kHours; second += 10) {
     ASSERT_EQ(robot.scene().segments.size(), scene_at(drawn, 0.0, robot.time_s()).segments.size())
@@ -114,7 +114,7 @@ TEST(ChangingWorld, RandomDoorsNeverCeaseToChangeBesideARobot) {
 }
 
 TEST(ChangingWorld, TheLaserSeesTheDoorAsItIs) {
-  const World world = parse_world(kCorridor, "w");
+  const world::World world = world::parse_world(kCorridor, "w");
   const SimulatedLog log = simulate_log(world, exact());
   std::size_t open = 0;
   std::size_t shut = 0;
@@ -139,19 +139,19 @@ TEST(ChangingWorld, TheLaserSeesTheDoorAsItIs) {
 }
 
 TEST(People, WalkTheirPathToAndFro) {
-  const Person person{
+  const world::Person person{
       .path_m = {{0, 0}, {4, 0}, {4, 2}}, .speed_m_per_s = 2.0, .radius_m = 0.2, .start_s = 1.0};
   EXPECT_EQ(position_m(person, 0.0), Eigen::Vector2d(0, 0));
   EXPECT_EQ(position_m(person, 2.0), Eigen::Vector2d(2, 0));
   EXPECT_EQ(position_m(person, 3.5), Eigen::Vector2d(4, 1));
   EXPECT_EQ(position_m(person, 4.5), Eigen::Vector2d(4, 1));  // on the way back
   EXPECT_EQ(position_m(person, 7.0), Eigen::Vector2d(0, 0));
-  const Person stands{.path_m = {{3, 4}}};
+  const world::Person stands{.path_m = {{3, 4}}};
   EXPECT_EQ(position_m(stands, 100.0), Eigen::Vector2d(3, 4));
 }
 
 TEST(People, OneAheadIsSeenAtItsDistance) {
-  World world = parse_world(kCorridor, "w");
+  world::World world = world::parse_world(kCorridor, "w");
   world.people.push_back({.path_m = {{8, 0}}, .radius_m = 0.25});
   const SimulatedLog log = simulate_log(world, exact());
   EXPECT_NEAR(static_cast<double>(log.scans[0].ranges_m[kAhead]), 7.75, 1e-5);
@@ -165,19 +165,19 @@ TEST(People, OneAheadIsSeenAtItsDistance) {
 }
 
 TEST(People, WanderersWalkWithinTheirRoomAndKeepOffTheRobot) {
-  const World room = parse_world(
+  const world::World room = world::parse_world(
       "walls: [{from: [0, 0], to: [9, 0]}, {from: [9, 0], to: [9, 9]}, {from: [9, 9], to: [0, 9]}, "
       "{from: [0, 9], to: [0, 0]}]\ntour: [[1, 1], [8, 8]]\n",
       "w");
   const Eigen::Vector2d robot_m(1.0, 1.0);
   People people(room, 4, 7);
   std::vector<double> walked_m(4, 0.0);
-  std::vector<Circle> before = people.circles();
+  std::vector<world::Circle> before = people.circles();
   ASSERT_EQ(before.size(), 4U);
-  for (const Circle& person : before) EXPECT_GE((person.center_m - robot_m).norm(), 3.0);
+  for (const world::Circle& person : before) EXPECT_GE((person.center_m - robot_m).norm(), 3.0);
   for (int i = 1; i <= 600; ++i) {
     people.walk(0.1 * i, room, robot_m);
-    const std::vector<Circle> now = people.circles();
+    const std::vector<world::Circle> now = people.circles();
     for (std::size_t k = 0; k < now.size(); ++k) {
       const double step_m = (now[k].center_m - before[k].center_m).norm();
       ASSERT_LE(step_m, 0.31);  // two steps at most, by rounding of the time
@@ -191,7 +191,7 @@ TEST(People, WanderersWalkWithinTheirRoomAndKeepOffTheRobot) {
 }
 
 TEST(People, ASeedGivesTheSameWays) {
-  const World world = parse_world(kCorridor, "w");
+  const world::World world = world::parse_world(kCorridor, "w");
   SimulationOptions options = exact();
   options.wanderers = 3;
   const SimulatedLog first = simulate_log(world, options);
@@ -207,7 +207,7 @@ TEST(People, ASeedGivesTheSameWays) {
 }
 
 TEST(Kidnapping, MovesTheRobotButNotItsOdometry) {
-  const World world = parse_world(kCorridor, "w");
+  const world::World world = world::parse_world(kCorridor, "w");
   SimulationOptions options = exact();
   options.kidnappings = {{.at_way_m = 3.0, .to_way_m = 7.0}, {.at_way_m = 5.0, .to_way_m = 1.0}};
   const SimulatedLog log = simulate_log(world, options);
@@ -228,7 +228,7 @@ TEST(Kidnapping, MovesTheRobotButNotItsOdometry) {
 }
 
 TEST(Blinding, ScansOfThatPartSeeNothing) {
-  const World world = parse_world(kCorridor, "w");
+  const world::World world = world::parse_world(kCorridor, "w");
   SimulationOptions options = exact();
   options.blindings = {{{1.0, 2.0}, {}}, {{4.0, 5.0}, 0.1}};
   const SimulatedLog log = simulate_log(world, options);
@@ -246,7 +246,7 @@ TEST(Blinding, ScansOfThatPartSeeNothing) {
 }
 
 TEST(SimulateLog, TheLaserMayBeMountedAnywhere) {
-  const World world = parse_world(kCorridor, "w");
+  const world::World world = world::parse_world(kCorridor, "w");
   SimulationOptions options = exact();
   options.T_robot_laser = {0.3, 0.2, std::numbers::pi};
   const SimulatedLog log = simulate_log(world, options);
@@ -256,7 +256,7 @@ TEST(SimulateLog, TheLaserMayBeMountedAnywhere) {
 }
 
 TEST(ChangingWorld, OptionsOutOfRangeAreErrors) {
-  const World world = parse_world(kCorridor, "w");
+  const world::World world = world::parse_world(kCorridor, "w");
   const auto refused = [&](auto change) {
     SimulationOptions options;
     change(options);

@@ -10,8 +10,8 @@
 namespace topogeo::simulation {
 namespace {
 
-World with(std::vector<Segment> segments, std::vector<Circle> circles = {}) {
-  World world;
+world::World with(std::vector<world::Segment> segments, std::vector<world::Circle> circles = {}) {
+  world::World world;
   world.segments = std::move(segments);
   world.circles = std::move(circles);
   return world;
@@ -22,7 +22,7 @@ Eigen::Vector2d direction(double angle_rad) {
 }
 
 TEST(FreeWay, EndsWhereTheDiscTouches) {
-  const World wall = with({{{2, -1}, {2, 1}}});
+  const world::World wall = with({{{2, -1}, {2, 1}}});
   const FreeWay ahead = free_way(wall, {0, 0}, {1, 0}, 5.0, 0.5);
   EXPECT_NEAR(ahead.way_m, 1.5, 1e-12);
   ASSERT_TRUE(ahead.contact_m);
@@ -38,7 +38,7 @@ TEST(FreeWay, EndsWhereTheDiscTouches) {
 }
 
 TEST(FreeWay, ColumnsAreSolid) {
-  const World column = with({}, {{{3, 0}, 0.5}});
+  const world::World column = with({}, {{{3, 0}, 0.5}});
   const FreeWay ahead = free_way(column, {0, 0}, {1, 0}, 5.0, 0.5);
   EXPECT_NEAR(ahead.way_m, 2.0, 1e-12);
   ASSERT_TRUE(ahead.contact_m);
@@ -48,7 +48,7 @@ TEST(FreeWay, ColumnsAreSolid) {
 }
 
 TEST(FreeWay, WhatIsTouchedLetsTheDiscGoAwayAndAlong) {
-  const World wall = with({{{1, -9}, {1, 9}}});
+  const world::World wall = with({{{1, -9}, {1, 9}}});
   EXPECT_EQ(free_way(wall, {0.5, 0}, {1, 0}, 1.0, 0.5).way_m, 0.0);
   EXPECT_EQ(free_way(wall, {0.5, 0}, {0, 1}, 1.0, 0.5).way_m, 1.0);
   EXPECT_EQ(free_way(wall, {0.5, 0}, {-1, 0}, 1.0, 0.5).way_m, 1.0);
@@ -63,7 +63,7 @@ TEST(FreeWay, IsThatOfADiscThatCreeps) {
   support::Random random(5);
   int stopped = 0;
   for (int round = 0; round < 200; ++round) {
-    World world;
+    world::World world;
     for (int i = 0; i < 6; ++i) {
       const Eigen::Vector2d a_m(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0));
       const double angle_rad = random.uniform(0.0, 2.0 * std::numbers::pi);

@@ -14,8 +14,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-World box_6x4() {
-  return parse_world("boxes: [{from: [0, 0], to: [6, 4]}]", "box");
+world::World box_6x4() {
+  return world::parse_world("boxes: [{from: [0, 0], to: [6, 4]}]", "box");
 }
 
 // Distance from inside the box to its border: the nearer of the two sides that a beam heads for.
@@ -28,7 +28,7 @@ double box_oracle(double x, double y, double angle) {
 }
 
 TEST(Raycast, AgreesWithTheAnalyticBox) {
-  const World world = box_6x4();
+  const world::World world = box_6x4();
   const BeamPattern beams;
   for (const double x : {0.3, 2.0, 5.9}) {
     for (const double y : {0.1, 2.0, 3.5}) {
@@ -45,7 +45,7 @@ TEST(Raycast, AgreesWithTheAnalyticBox) {
 }
 
 TEST(Raycast, AgreesWithTheAnalyticBoxAllRoundAndMoreThanOnce) {
-  const World world = box_6x4();
+  const world::World world = box_6x4();
   // One turn and a half, from an angle that is no multiple of the step.
   const BeamPattern beams{.angle_min_rad = -4.4, .angle_step_rad = 0.0137, .count = 688};
   for (double theta = -3.1; theta < 3.1; theta += 0.37) {
@@ -58,7 +58,7 @@ TEST(Raycast, AgreesWithTheAnalyticBoxAllRoundAndMoreThanOnce) {
 }
 
 TEST(Raycast, SeesTheNearSideOfAColumn) {
-  const World world = parse_world("columns: [{center: [3, 0], radius: 0.5}]", "w");
+  const world::World world = world::parse_world("columns: [{center: [3, 0], radius: 0.5}]", "w");
   // Straight ahead, past the edge of the column (asin(0.5 / 3) = 9.59 degrees), and from inside.
   const BeamPattern ahead{.angle_min_rad = 0.0, .angle_step_rad = kPi / 180.0, .count = 11};
   const auto ranges_m = raycast(world, {0.0, 0.0, 0.0}, ahead);
@@ -71,7 +71,8 @@ TEST(Raycast, SeesTheNearSideOfAColumn) {
 }
 
 TEST(Raycast, NothingBehindOrBeyondTheMaximumIsSeen) {
-  const World world = parse_world("segments: [[-5, -1, -5, 1], [20, -1, 20, 1]]", "w");
+  const world::World world =
+      world::parse_world("segments: [[-5, -1, -5, 1], [20, -1, 20, 1]]", "w");
   const BeamPattern one{
       .angle_min_rad = 0.0, .angle_step_rad = 1.0, .count = 1, .range_max_m = 20.0};
   EXPECT_EQ(raycast(world, {0.0, 0.0, 0.0}, one)[0], kInfinity);
@@ -79,7 +80,7 @@ TEST(Raycast, NothingBehindOrBeyondTheMaximumIsSeen) {
 }
 
 TEST(Raycast, TheNearestOfSeveralSurfacesCounts) {
-  const World world = parse_world(
+  const world::World world = world::parse_world(
       "segments: [[9, -1, 9, 1], [4, -1, 4, 1]]\ncolumns: [{center: [7, 0], radius: 1}]", "w");
   const BeamPattern one{.angle_min_rad = 0.0, .angle_step_rad = 1.0, .count = 1};
   EXPECT_NEAR(raycast(world, {0.0, 0.0, 0.0}, one)[0], 4.0, 1e-12);

@@ -7,14 +7,14 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr OdometryDrift kPerfect{.range_scale_error = 0.0,
-                                 .range_sigma_m_per_sqrt_m = 0.0,
-                                 .heading_drift_rad_per_m = 0.0,
-                                 .heading_sigma_rad_per_sqrt_m = 0.0,
-                                 .turn_sigma_rad_per_sqrt_rad = 0.0};
+constexpr OdometryDrift kPerfectWheels{.range_scale_error = 0.0,
+                                       .range_sigma_m_per_sqrt_m = 0.0,
+                                       .heading_drift_rad_per_m = 0.0,
+                                       .heading_sigma_rad_per_sqrt_m = 0.0,
+                                       .turn_sigma_rad_per_sqrt_rad = 0.0};
 
 TEST(Odometry, WithoutDriftItIsTheTruthSeenFromTheStart) {
-  OdometryModel model(kPerfect, support::Random(1));
+  OdometryModel model(kPerfectWheels, support::Random(1));
   const geometry::Pose2 start{5.0, -3.0, 2.0};
   EXPECT_EQ(model.advance(start), geometry::Pose2());
   for (int i = 1; i < 200; ++i) {
@@ -29,13 +29,13 @@ TEST(Odometry, WithoutDriftItIsTheTruthSeenFromTheStart) {
 }
 
 TEST(Odometry, SystematicErrorsFollowThePath) {
-  OdometryDrift drift = kPerfect;
+  OdometryDrift drift = kPerfectWheels;
   drift.range_scale_error = 0.02;
   OdometryModel scaled(drift, support::Random(1));
   scaled.advance({});
   EXPECT_NEAR(scaled.advance({10.0, 0.0, 0.0}).x_m, 10.2, 1e-12);
 
-  drift = kPerfect;
+  drift = kPerfectWheels;
   drift.heading_drift_rad_per_m = 0.01;
   OdometryModel bent(drift, support::Random(1));
   geometry::Pose2 odometry;
@@ -47,7 +47,7 @@ TEST(Odometry, SystematicErrorsFollowThePath) {
 
 // The random walk must not depend on how often the odometry is read.
 TEST(Odometry, RandomHeadingGrowsWithTheRootOfThePath) {
-  OdometryDrift drift = kPerfect;
+  OdometryDrift drift = kPerfectWheels;
   drift.heading_sigma_rad_per_sqrt_m = 0.01;
   for (const int steps : {4, 64}) {
     double sum2 = 0.0;
@@ -63,7 +63,7 @@ TEST(Odometry, RandomHeadingGrowsWithTheRootOfThePath) {
 }
 
 TEST(Odometry, TurningOnTheSpotErrsInHeadingOnly) {
-  OdometryDrift drift = kPerfect;
+  OdometryDrift drift = kPerfectWheels;
   drift.turn_sigma_rad_per_sqrt_rad = 0.02;
   OdometryModel model(drift, support::Random(9));
   model.advance({});
@@ -75,7 +75,7 @@ TEST(Odometry, TurningOnTheSpotErrsInHeadingOnly) {
 }
 
 TEST(Odometry, ATurnScaleIsTakenOfTheTurnWithItsSign) {
-  OdometryDrift drift = kPerfect;
+  OdometryDrift drift = kPerfectWheels;
   drift.turn_scale_error = 0.1;
   OdometryModel model(drift, support::Random(1));
   model.advance({});
@@ -84,7 +84,7 @@ TEST(Odometry, ATurnScaleIsTakenOfTheTurnWithItsSign) {
 }
 
 TEST(Odometry, SlipsGrowWithTheRootOfWayAndTurn) {
-  OdometryDrift drift = kPerfect;
+  OdometryDrift drift = kPerfectWheels;
   drift.lateral_sigma_m_per_sqrt_m = 0.03;
   drift.turn_shift_sigma_m_per_sqrt_rad = 0.02;
   double across2 = 0.0;
@@ -104,7 +104,7 @@ TEST(Odometry, SlipsGrowWithTheRootOfWayAndTurn) {
 }
 
 TEST(Odometry, DoesNotNoticeThatItIsCarried) {
-  OdometryModel model(kPerfect, support::Random(1));
+  OdometryModel model(kPerfectWheels, support::Random(1));
   model.advance({});
   model.advance({1.0, 0.0, 0.0});
   model.carry({50.0, 20.0, 1.0});

@@ -14,7 +14,7 @@ namespace {
 
 struct Floor {
   const char* name;
-  std::function<World(std::uint64_t)> draw;
+  std::function<world::World(std::uint64_t)> draw;
   double shortest_m;  // of the tour
   double longest_m;
 };
@@ -24,7 +24,7 @@ std::ostream& operator<<(std::ostream& out, const Floor& floor) {
   return out << floor.name;
 }
 
-double length_m(const World& world) {
+double length_m(const world::World& world) {
   double sum_m = 0.0;
   for (std::size_t i = 1; i < world.tour_m.size(); ++i) {
     sum_m += (world.tour_m[i] - world.tour_m[i - 1]).norm();
@@ -36,7 +36,7 @@ class RandomFloors : public ::testing::TestWithParam<Floor> {};
 
 TEST_P(RandomFloors, TheTourKeepsClearOfEverythingWhateverTheSeed) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const World world = GetParam().draw(seed);
+    const world::World world = GetParam().draw(seed);
     EXPECT_GE(length_m(world), GetParam().shortest_m) << seed;
     EXPECT_LE(length_m(world), GetParam().longest_m) << seed;
     const auto poses = drive(world.tour_m, {});
@@ -52,7 +52,7 @@ TEST_P(RandomFloors, AreClosed) {
   const BeamPattern all_round{
       .angle_min_rad = -3.1, .angle_step_rad = 0.0155, .count = 400, .range_max_m = 200.0};
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const World world = GetParam().draw(seed);
+    const world::World world = GetParam().draw(seed);
     for (const Eigen::Vector2d& place_m : world.tour_m) {
       for (const double range_m : raycast(world, {place_m.x(), place_m.y(), 0.0}, all_round)) {
         ASSERT_FALSE(std::isinf(range_m)) << "seed " << seed << ": " << place_m.transpose();
@@ -62,9 +62,9 @@ TEST_P(RandomFloors, AreClosed) {
 }
 
 TEST_P(RandomFloors, DependOnTheSeedAlone) {
-  const World first = GetParam().draw(5);
-  const World again = GetParam().draw(5);
-  const World other = GetParam().draw(6);
+  const world::World first = GetParam().draw(5);
+  const world::World again = GetParam().draw(5);
+  const world::World other = GetParam().draw(6);
   ASSERT_EQ(first.segments.size(), again.segments.size());
   for (std::size_t i = 0; i < first.segments.size(); ++i) {
     ASSERT_EQ(first.segments[i].a_m, again.segments[i].a_m);
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(SymmetricBuilding, ALaserSeesTheSameInBothWings) {
-  const World world = symmetric_building(3);
+  const world::World world = symmetric_building(3);
   const double apart_m = world.tour_m[4].x() - world.tour_m[1].x();
   ASSERT_GE(apart_m, 13.0);
   const BeamPattern beams;
@@ -97,7 +97,7 @@ TEST(SymmetricBuilding, ALaserSeesTheSameInBothWings) {
 }
 
 TEST(BareCorridor, NothingStandsOnItsWalls) {
-  const World world = bare_corridor(4);
+  const world::World world = bare_corridor(4);
   const double half_m = clearance_m(world, {15.0, 0.0});
   for (double x_m = 2.0; x_m < 32.0; x_m += 0.1) {
     ASSERT_NEAR(clearance_m(world, {x_m, 0.0}), half_m, 1e-9) << x_m;

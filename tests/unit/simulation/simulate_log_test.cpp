@@ -8,8 +8,8 @@
 namespace topogeo::simulation {
 namespace {
 
-World shipped(const char* name) {
-  return load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name);
+world::World shipped(const char* name) {
+  return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name);
 }
 
 // FNV-1a over everything that a log holds.
@@ -51,7 +51,7 @@ TEST(SimulateLog, ScansAreWellFormedAndSpacedAsAsked) {
 }
 
 TEST(SimulateLog, RangesAreThoseOfTheTruePose) {
-  const World world = shipped("room.world.yaml");
+  const world::World world = shipped("room.world.yaml");
   SimulationOptions options;
   options.laser.dropout_probability = 0.0;
   const SimulatedLog log = simulate_log(world, options);
@@ -64,7 +64,7 @@ TEST(SimulateLog, RangesAreThoseOfTheTruePose) {
 }
 
 TEST(SimulateLog, ASeedGivesTheSameBytesEverywhere) {
-  const World world = shipped("corridor.world.yaml");
+  const world::World world = shipped("corridor.world.yaml");
   const auto first = digest(simulate_log(world, {.seed = 7}));
   EXPECT_EQ(first, digest(simulate_log(world, {.seed = 7})));
   EXPECT_NE(first, digest(simulate_log(world, {.seed = 8})));
@@ -73,7 +73,7 @@ TEST(SimulateLog, ASeedGivesTheSameBytesEverywhere) {
 }
 
 TEST(SimulateLog, LaserAndOdometryNoiseAreIndependent) {
-  const World world = shipped("room.world.yaml");
+  const world::World world = shipped("room.world.yaml");
   SimulationOptions quiet;
   quiet.laser.sigma_m = 0.0;
   const SimulatedLog a = simulate_log(world, {});
@@ -84,7 +84,7 @@ TEST(SimulateLog, LaserAndOdometryNoiseAreIndependent) {
 }
 
 TEST(SimulateLog, OptionsOutOfRangeAreErrors) {
-  const World world = shipped("room.world.yaml");
+  const world::World world = shipped("room.world.yaml");
   const auto refused = [&](auto change) {
     SimulationOptions options;
     change(options);
@@ -97,13 +97,13 @@ TEST(SimulateLog, OptionsOutOfRangeAreErrors) {
   refused([](SimulationOptions& o) { o.laser.sigma_m = 9.0; });
   refused([](SimulationOptions& o) { o.laser.dropout_probability = 1.5; });
   refused([](SimulationOptions& o) { o.drive.speed_m_per_s = 0.0; });
-  EXPECT_THROW(simulate_log(parse_world("segments: [[0, 0, 1, 1]]", "w"), {}),
+  EXPECT_THROW(simulate_log(world::parse_world("segments: [[0, 0, 1, 1]]", "w"), {}),
                std::invalid_argument);
 }
 
 // The floor that the demo maps.
 TEST(Floor, TourKeepsClearOfEverythingAndIsLongEnough) {
-  const World world = shipped("floor.world.yaml");
+  const world::World world = shipped("floor.world.yaml");
   double path_m = 0.0;
   const auto poses = drive(world.tour_m, {});
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -119,7 +119,7 @@ TEST(Floor, TourKeepsClearOfEverythingAndIsLongEnough) {
 
 // Without drift there would be nothing to correct; with too much, nothing could.
 TEST(Floor, OdometryDriftsByMetresAndDegrees) {
-  const World world = shipped("floor.world.yaml");
+  const world::World world = shipped("floor.world.yaml");
   SimulationOptions options;
   options.beams.count = 2;  // the odometry alone matters here
   const SimulatedLog log = simulate_log(world, options);

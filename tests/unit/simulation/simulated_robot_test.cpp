@@ -11,11 +11,11 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr OdometryDrift kPerfect{.range_scale_error = 0.0,
-                                 .range_sigma_m_per_sqrt_m = 0.0,
-                                 .heading_drift_rad_per_m = 0.0,
-                                 .heading_sigma_rad_per_sqrt_m = 0.0,
-                                 .turn_sigma_rad_per_sqrt_rad = 0.0};
+constexpr OdometryDrift kPerfectRobot{.range_scale_error = 0.0,
+                                      .range_sigma_m_per_sqrt_m = 0.0,
+                                      .heading_drift_rad_per_m = 0.0,
+                                      .heading_sigma_rad_per_sqrt_m = 0.0,
+                                      .turn_sigma_rad_per_sqrt_rad = 0.0};
 
 // A room of 6 x 4 m with a box in it.
 constexpr const char* kRoom =
@@ -25,12 +25,12 @@ constexpr const char* kRoom =
     "boxes: [{from: [4, 1.5], to: [5, 2.5]}]\n"
     "tour: [[1, 2], [3, 2]]\n";
 
-World shipped(const char* name) {
-  return load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name);
+world::World shipped_world(const char* name) {
+  return world::load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name);
 }
 
 TEST(SimulatedRobot, DrivesAsTold) {
-  SimulatedRobot robot(parse_world(kRoom, "w"), {.odometry = kPerfect});
+  SimulatedRobot robot(world::parse_world(kRoom, "w"), {.odometry = kPerfectRobot});
   EXPECT_EQ(robot.T_world_robot(), (geometry::Pose2{1, 2, 0}));
   const EncoderStep ahead = robot.step({0.5, 0.0}, 1.0);
   EXPECT_NEAR(ahead.forward_m, 0.5, 1e-12);
@@ -46,8 +46,8 @@ TEST(SimulatedRobot, DrivesAsTold) {
 }
 
 TEST(SimulatedRobot, GainsSpeedWithItsAcceleration) {
-  SimulatedRobot robot(parse_world(kRoom, "w"),
-                       {.acceleration_m_per_s2 = 0.5, .odometry = kPerfect});
+  SimulatedRobot robot(world::parse_world(kRoom, "w"),
+                       {.acceleration_m_per_s2 = 0.5, .odometry = kPerfectRobot});
   robot.step({1.0, 0.0}, 1.0);
   EXPECT_NEAR(robot.velocity().linear_m_per_s, 0.5, 1e-9);
   EXPECT_NEAR(robot.T_world_robot().x_m - 1.0, 0.25, 0.01);
@@ -56,7 +56,7 @@ TEST(SimulatedRobot, GainsSpeedWithItsAcceleration) {
 }
 
 TEST(SimulatedRobot, AContactStopsTheWayAheadAndNothingElse) {
-  SimulatedRobot robot(parse_world(kRoom, "w"), {.odometry = kPerfect});
+  SimulatedRobot robot(world::parse_world(kRoom, "w"), {.odometry = kPerfectRobot});
   EXPECT_NEAR(robot.free_ahead_m(9.0), 3.0 - 0.267, 1e-9);
   EXPECT_NEAR(robot.free_ahead_m(1.0), 1.0, 1e-9);
   EncoderStep seen = robot.step({1.0, 0.0}, 4.0);
@@ -78,7 +78,7 @@ TEST(SimulatedRobot, AContactStopsTheWayAheadAndNothingElse) {
 // Driven at random in the rooms of the shipped floor, with slip, doors and people, it never gets
 // into anything; free_way is not asked here.
 TEST(SimulatedRobot, NeverGetsIntoAWall) {
-  const World floor = shipped("floor.world.yaml");
+  const world::World floor = shipped_world("floor.world.yaml");
   std::uint64_t collisions = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     RobotOptions options{.seed = seed, .slip = {.per_m = 0.2}};
@@ -100,7 +100,7 @@ TEST(SimulatedRobot, NeverGetsIntoAWall) {
 }
 
 TEST(SimulatedRobot, EncoderStepsAddUpToItsOdometry) {
-  SimulatedRobot robot(shipped("room.world.yaml"), {.seed = 4});
+  SimulatedRobot robot(shipped_world("room.world.yaml"), {.seed = 4});
   support::Random random(9);
   geometry::Pose2 sum;
   for (int i = 0; i < 2000; ++i) {
@@ -116,7 +116,7 @@ TEST(SimulatedRobot, EncoderStepsAddUpToItsOdometry) {
 }
 
 TEST(SimulatedRobot, PerfectWheelsWithoutSlipKnowTheWay) {
-  SimulatedRobot robot(shipped("room.world.yaml"), {.odometry = kPerfect});
+  SimulatedRobot robot(shipped_world("room.world.yaml"), {.odometry = kPerfectRobot});
   const geometry::Pose2 start = robot.T_world_robot();
   support::Random random(2);
   for (int i = 0; i < 500; ++i) {
@@ -129,8 +129,9 @@ TEST(SimulatedRobot, PerfectWheelsWithoutSlipKnowTheWay) {
 }
 
 TEST(SimulatedRobot, SlippingWheelsRollFartherThanTheRobotGoes) {
-  SimulatedRobot robot(parse_world("segments: [[0, 5, 100, 5]]\ntour: [[0, 0], [90, 0]]\n", "w"),
-                       {.odometry = kPerfect, .slip = {.per_m = 1.0, .length_m = 0.2}});
+  SimulatedRobot robot(
+      world::parse_world("segments: [[0, 5, 100, 5]]\ntour: [[0, 0], [90, 0]]\n", "w"),
+      {.odometry = kPerfectRobot, .slip = {.per_m = 1.0, .length_m = 0.2}});
   const EncoderStep rolled = robot.step({1.0, 0.0}, 80.0);
   EXPECT_NEAR(rolled.forward_m, 80.0, 1e-6);
   // Of every 1.2 m, 0.2 are slippery and half of these lost.
@@ -138,14 +139,14 @@ TEST(SimulatedRobot, SlippingWheelsRollFartherThanTheRobotGoes) {
 }
 
 TEST(SimulatedRobot, SeesWhatIsThere) {
-  World world = shipped("floor.world.yaml");
+  world::World world = shipped_world("floor.world.yaml");
   world.people.push_back({.path_m = {{4, 1.2}, {8, 1.2}}, .speed_m_per_s = 0.5});
   RobotOptions options;
   options.laser = {.sigma_m = 0.0, .bound_m = 0.0, .resolution_m = 0.0, .dropout_probability = 0.0};
   options.T_robot_laser = {0.1, 0.02, 0.05};
   SimulatedRobot robot(world, options);
   robot.step({0.4, 0.1}, 3.0);
-  const World scene = robot.scene();
+  const world::World scene = robot.scene();
   EXPECT_EQ(scene.circles.size(), world.circles.size() + 1);
   EXPECT_NEAR(scene.circles.back().center_m.x(), 5.5, 1e-9);
   const auto expected_m =
@@ -176,7 +177,7 @@ TEST(SimulatedRobot, DoorsAndPeopleRunIntoIt) {
       "walls: [{from: [0, -1], to: [9, -1]}, {from: [4, -1], to: [4, 1], "
       "doors: [{at: 1, width: 0.9, open_s: [[2, 6]]}]}]\n"
       "tour: [[3, 0], [8, 0]]\n";
-  SimulatedRobot robot(parse_world(corridor, "w"), {.odometry = kPerfect});
+  SimulatedRobot robot(world::parse_world(corridor, "w"), {.odometry = kPerfectRobot});
   EXPECT_NEAR(robot.free_ahead_m(5.0), 1.0 - 0.267, 1e-9);
   robot.step({0.5, 0.0}, 2.5);
   EXPECT_EQ(robot.collisions(), 1U);  // it was shut for two seconds
@@ -187,7 +188,7 @@ TEST(SimulatedRobot, DoorsAndPeopleRunIntoIt) {
   robot.step({-0.5, 0.0}, 1.0);
   EXPECT_FALSE(robot.bumped_rad());
 
-  World world = parse_world(kRoom, "w");
+  world::World world = world::parse_world(kRoom, "w");
   world.people.push_back({.path_m = {{1, 1}, {1, 3}}, .speed_m_per_s = 1.0});
   SimulatedRobot stands(world, {});
   stands.step({}, 2.0);
@@ -202,7 +203,7 @@ TEST(SimulatedRobot, DoorsAndPeopleRunIntoIt) {
 TEST(SimulatedRobot, ASeedGivesTheSameDrive) {
   const auto end_of = [](std::uint64_t seed) {
     RobotOptions options{.seed = seed, .slip = {.per_m = 0.5}, .wanderers = 2};
-    SimulatedRobot robot(shipped("floor.world.yaml"), options);
+    SimulatedRobot robot(shipped_world("floor.world.yaml"), options);
     std::vector<float> readings;
     for (int i = 0; i < 200; ++i) {
       robot.step({0.4, i % 2 == 0 ? 0.3 : -0.3}, 0.1);
@@ -216,7 +217,7 @@ TEST(SimulatedRobot, ASeedGivesTheSameDrive) {
 }
 
 TEST(SimulatedRobot, RefusesWhatMakesNoSense) {
-  const World room = parse_world(kRoom, "w");
+  const world::World room = world::parse_world(kRoom, "w");
   const auto refused = [&](auto change) {
     RobotOptions options;
     change(options);
@@ -227,7 +228,7 @@ TEST(SimulatedRobot, RefusesWhatMakesNoSense) {
   refused([](RobotOptions& o) { o.slip.lost_share = 2.0; });
   refused([](RobotOptions& o) { o.T_world_start = geometry::Pose2{0.1, 0.1, 0.0}; });
   refused([](RobotOptions& o) { o.sonars.front().half_cone_rad = 2.0; });
-  EXPECT_THROW(SimulatedRobot(parse_world("segments: [[0, 0, 1, 1]]", "w"), {}),
+  EXPECT_THROW(SimulatedRobot(world::parse_world("segments: [[0, 0, 1, 1]]", "w"), {}),
                std::invalid_argument);
   SimulatedRobot robot(room, {});
   EXPECT_THROW(robot.step({std::nan(""), 0.0}, 0.1), std::invalid_argument);
@@ -237,8 +238,8 @@ TEST(SimulatedRobot, RefusesWhatMakesNoSense) {
 // A base that gains and loses speed slowly follows the tour of the demo by velocities alone.
 TEST(TourFollower, BringsARobotThroughTheFloorWithoutACollision) {
   RobotOptions options{.acceleration_m_per_s2 = 0.6, .angular_acceleration_rad_per_s2 = 3.0};
-  SimulatedRobot robot(shipped("floor.world.yaml"), options);
-  TourFollower follower(shipped("floor.world.yaml").tour_m, {.speed_m_per_s = 0.8});
+  SimulatedRobot robot(shipped_world("floor.world.yaml"), options);
+  TourFollower follower(shipped_world("floor.world.yaml").tour_m, {.speed_m_per_s = 0.8});
   // The command comes a tenth of a second late.
   Velocity late;
   while (const auto velocity = follower.next(robot.T_world_robot(), 0.1, robot.free_ahead_m(3.0))) {
@@ -255,7 +256,7 @@ TEST(TourFollower, WaitsForPeopleAndDoors) {
       "{from: [6, -1], to: [6, 1], doors: [{at: 1, width: 0.9, open_s: [[30, 90]]}]}]\n"
       "people: [{path: [[12, 0], [12, 0.9]], speed: 0.2, yields: true}]\n"
       "tour: [[1, 0], [18, 0]]\n";
-  const World world = parse_world(corridor, "w");
+  const world::World world = world::parse_world(corridor, "w");
   SimulatedRobot robot(world, {.acceleration_m_per_s2 = 0.5});
   TourFollower follower(world.tour_m, {});
   bool waited = false;

@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-World with(std::vector<Segment> segments, std::vector<Circle> circles = {}) {
-  World world;
+world::World with_wall(std::vector<world::Segment> segments,
+                       std::vector<world::Circle> circles = {}) {
+  world::World world;
   world.segments = std::move(segments);
   world.circles = std::move(circles);
   return world;
@@ -23,39 +24,40 @@ World with(std::vector<Segment> segments, std::vector<Circle> circles = {}) {
 TEST(Echo, ComesFromTheNearestPointInTheCone) {
   const geometry::Pose2 origin;
   // A wall across the cone: its foot; one beside it: where the cone's edge meets it.
-  const Echo across = echo(with({{{2, -5}, {2, 5}}}), origin, 30.0 * kDegree, 9.0);
+  const Echo across = echo(with_wall({{{2, -5}, {2, 5}}}), origin, 30.0 * kDegree, 9.0);
   EXPECT_NEAR(across.range_m, 2.0, 1e-12);
   EXPECT_NEAR(across.incidence_rad, 0.0, 1e-12);
-  const Echo beside = echo(with({{{-5, 1}, {5, 1}}}), origin, 30.0 * kDegree, 9.0);
+  const Echo beside = echo(with_wall({{{-5, 1}, {5, 1}}}), origin, 30.0 * kDegree, 9.0);
   EXPECT_NEAR(beside.range_m, 2.0, 1e-12);  // 1 / sin 30
   EXPECT_NEAR(beside.incidence_rad, 60.0 * kDegree, 1e-12);
   // The end of a wall is an edge, which throws sound back into all directions.
-  const Echo end = echo(with({{{3, 0.5}, {3, 5}}}), origin, 30.0 * kDegree, 9.0);
+  const Echo end = echo(with_wall({{{3, 0.5}, {3, 5}}}), origin, 30.0 * kDegree, 9.0);
   EXPECT_NEAR(end.range_m, std::hypot(3.0, 0.5), 1e-12);
   EXPECT_NEAR(end.incidence_rad, 0.0, 1e-12);
 }
 
 TEST(Echo, HearsNothingBehindBesideOrTooFar) {
   const geometry::Pose2 origin;
-  EXPECT_TRUE(std::isinf(echo(with({{{-1, -1}, {-1, 1}}}), origin, 0.3, 9.0).range_m));
-  EXPECT_TRUE(std::isinf(echo(with({{{1, 2}, {2, 2}}}), origin, 0.3, 9.0).range_m));
-  EXPECT_TRUE(std::isinf(echo(with({{{9, -1}, {9, 1}}}), origin, 0.3, 9.0).range_m));
-  EXPECT_TRUE(std::isinf(echo(with({}, {{{-2, 0}, 0.5}}), origin, 0.3, 9.0).range_m));
+  EXPECT_TRUE(std::isinf(echo(with_wall({{{-1, -1}, {-1, 1}}}), origin, 0.3, 9.0).range_m));
+  EXPECT_TRUE(std::isinf(echo(with_wall({{{1, 2}, {2, 2}}}), origin, 0.3, 9.0).range_m));
+  EXPECT_TRUE(std::isinf(echo(with_wall({{{9, -1}, {9, 1}}}), origin, 0.3, 9.0).range_m));
+  EXPECT_TRUE(std::isinf(echo(with_wall({}, {{{-2, 0}, 0.5}}), origin, 0.3, 9.0).range_m));
 }
 
 TEST(Echo, ComesFromColumns) {
-  EXPECT_NEAR(echo(with({}, {{{3, 0.2}, 0.5}}), {}, 0.3, 9.0).range_m, std::hypot(3.0, 0.2) - 0.5,
-              1e-12);
+  EXPECT_NEAR(echo(with_wall({}, {{{3, 0.2}, 0.5}}), {}, 0.3, 9.0).range_m,
+              std::hypot(3.0, 0.2) - 0.5, 1e-12);
   // Its near side lies outside of the cone: the cone's edge is a tangent at 60 degrees.
   const Echo brushed =
-      echo(with({}, {{{2.0 * std::cos(0.6), 2.0 * std::sin(0.6)}, 1.0}}), {}, 0.3, 9.0);
+      echo(with_wall({}, {{{2.0 * std::cos(0.6), 2.0 * std::sin(0.6)}, 1.0}}), {}, 0.3, 9.0);
   EXPECT_NEAR(brushed.range_m,
               2.0 * std::cos(0.3) - std::sqrt(1.0 - std::pow(2.0 * std::sin(0.3), 2)), 1e-12);
 }
 
 // Against a fan of thousands of rays on the shipped floor.
 TEST(Echo, IsTheNearestOfManyRays) {
-  const World floor = load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+  const world::World floor =
+      world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
   constexpr double kHalf_rad = 15.0 * kDegree;
   constexpr double kMax_m = 5.0;
   support::Random random(3);

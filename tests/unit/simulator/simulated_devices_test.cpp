@@ -47,7 +47,7 @@ class SimulatedDevicesTest : public testing::Test {
   }
   double way_m() { return devices_.robot().way_m(); }
 
-  SimulatedDevices devices_{simulation::parse_world(kCorridor, "w"), options()};
+  SimulatedDevices devices_{world::parse_world(kCorridor, "w"), options()};
   FaultDesk faults_{devices_};
   HostPort laser_{devices_.port(Device::kLaser).link()};
   HostPort base_{devices_.port(Device::kBase).link()};

@@ -12,7 +12,7 @@
 
 #include "topogeo/topomap/local_map_builder.hpp"
 
-#include "../voronoi/figure_scenes.hpp"
+#include "voronoi/figure_scenes.hpp"
 
 namespace topogeo::figure_scenes {
 

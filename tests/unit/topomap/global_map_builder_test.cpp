@@ -88,7 +88,7 @@ std::size_t degree(const GlobalMap& map, std::uint32_t node) {
 }
 
 // Distance from a point to the nearest branch point of the map.
-double distance_m(const GlobalMap& map, const Eigen::Vector2d& point_m) {
+double distance_to_map_m(const GlobalMap& map, const Eigen::Vector2d& point_m) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const MapBranch& b : map.branches) {
     for (const BranchPoint& p : b.points) {
@@ -232,7 +232,7 @@ TEST(GlobalMapBuilder, DoorSeenOpenLaterAddsItsBranchAndNode) {
   explore(builder, room_behind_door(false), drive({0, 0}, 0.0, 11));
   const GlobalMap closed = builder.snapshot(1);
   ASSERT_EQ(closed.branches.size(), 1U);
-  EXPECT_GT(distance_m(closed, {6, 2}), 1.5);
+  EXPECT_GT(distance_to_map_m(closed, {6, 2}), 1.5);
 
   // Passing it once more and looking in; most views of the corridor before it were of a closed
   // door.
@@ -240,7 +240,7 @@ TEST(GlobalMapBuilder, DoorSeenOpenLaterAddsItsBranchAndNode) {
   explore(builder, room_behind_door(true), drive({6, 0}, kQuarter, 2, 0.5));
   const GlobalMap open = builder.snapshot(2);
   expect_well_formed(open);
-  EXPECT_LT(distance_m(open, {6, 2.5}), 0.2);
+  EXPECT_LT(distance_to_map_m(open, {6, 2.5}), 0.2);
   const MapNode* junction = node_near(open, {6, 0}, 0.3);
   ASSERT_NE(junction, nullptr);
   EXPECT_EQ(degree(open, junction->id), 3U);
@@ -257,11 +257,11 @@ TEST(GlobalMapBuilder, FalseBranchSeenOnceIsOutvoted) {
   person.branches.push_back({{6, 0.6}, {7, 0}, 0.4});
   GlobalMapBuilder builder;
   explore(builder, person, {{2, 0, 0}});
-  EXPECT_LT(distance_m(builder.snapshot(1), {6, 0.6}), 0.2);
+  EXPECT_LT(distance_to_map_m(builder.snapshot(1), {6, 0.6}), 0.2);
   explore(builder, corridor(12), drive({0, 0}, 0.0, 5));
   const GlobalMap map = builder.snapshot(2);
   EXPECT_EQ(map.branches.size(), 1U);
-  EXPECT_GT(distance_m(map, {6, 0.6}), 0.5);
+  EXPECT_GT(distance_to_map_m(map, {6, 0.6}), 0.5);
 }
 
 TEST(GlobalMapBuilder, BranchOutOfViewIsNotOutvoted) {
@@ -269,7 +269,7 @@ TEST(GlobalMapBuilder, BranchOutOfViewIsNotOutvoted) {
   GlobalMapBuilder builder;
   explore(builder, t_junction(), {{10, 0, kQuarter}, {10, 0, 0}});
   explore(builder, t_junction(), drive({12, 0}, 0.0, 7, 0.25));
-  EXPECT_LT(distance_m(builder.snapshot(1), {10, 4}), 0.2);
+  EXPECT_LT(distance_to_map_m(builder.snapshot(1), {10, 4}), 0.2);
 }
 
 TEST(GlobalMapBuilder, LoopOfCorridorsIsOneCycle) {

@@ -7,7 +7,7 @@
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 
-#include "../recorded_logs.hpp"
+#include "recorded_logs.hpp"
 
 namespace topogeo::topomap {
 namespace {

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../voronoi/test_world.hpp"
+#include "voronoi/test_world.hpp"
 #include "well_formed.hpp"
 
 namespace topogeo::topomap {

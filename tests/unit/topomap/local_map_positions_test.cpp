@@ -36,7 +36,7 @@ boxes: [{from: [-9, -9], to: [9, 9]}])",
   voronoi::VoronoiConfig config = figure_scenes::source_config();
   config.join_hidden_zones = false;
   for (const DoorScene& scene : scenes) {
-    const simulation::World world = simulation::parse_world(scene.text, "scene");
+    const world::World world = world::parse_world(scene.text, "scene");
     SCOPED_TRACE(world.name);
     std::mt19937 random(17);
     const auto uniform = [&](double half) {

@@ -15,15 +15,15 @@ namespace {
 using voronoi::DiagramPoint;
 using voronoi::LocalVoronoiDiagram;
 
-void add_branch(LocalVoronoiDiagram& diagram, const std::vector<DiagramPoint>& points,
-                std::array<std::uint16_t, 2> groups = {0, 1}) {
+void add_traced_branch(LocalVoronoiDiagram& diagram, const std::vector<DiagramPoint>& points,
+                       std::array<std::uint16_t, 2> groups = {0, 1}) {
   const auto begin = static_cast<std::uint32_t>(diagram.points.size());
   diagram.points.insert(diagram.points.end(), points.begin(), points.end());
   const auto end = static_cast<std::uint32_t>(diagram.points.size());
   diagram.branches.push_back({.base_groups = groups, .points = {begin, end}});
 }
 
-LocalMap map_of(const LocalVoronoiDiagram& diagram, const LocalMapConfig& config) {
+LocalMap map_of_branches(const LocalVoronoiDiagram& diagram, const LocalMapConfig& config) {
   LocalMap map;
   build_local_map(diagram, scan::Scan{}, {}, config, map);
   return map;
@@ -33,9 +33,9 @@ LocalMap map_of(const LocalVoronoiDiagram& diagram, const LocalMapConfig& config
 std::vector<LocalNode> states_of(const std::vector<DiagramPoint>& points,
                                  const LocalMapConfig& config) {
   LocalVoronoiDiagram diagram;
-  add_branch(diagram, points);
+  add_traced_branch(diagram, points);
   std::vector<LocalNode> states;
-  for (const LocalNode& node : map_of(diagram, config).nodes) {
+  for (const LocalNode& node : map_of_branches(diagram, config).nodes) {
     if (node.kind != NodeKind::kFictitious) states.push_back(node);
   }
   return states;
@@ -116,14 +116,14 @@ std::vector<DiagramPoint> level(double from_x_m, double to_x_m, double y_m) {
 
 TEST(MainGraph, AStubBesideTheRobotIsNotTheWayToGo) {
   LocalVoronoiDiagram diagram;
-  add_branch(diagram, level(0.0, 0.8, 0.2), {0, 1});
-  add_branch(diagram, level(0.0, 1.2, -1.0), {1, 2});
-  add_branch(diagram, level(0.0, 3.0, -2.0), {2, 3});
+  add_traced_branch(diagram, level(0.0, 0.8, 0.2), {0, 1});
+  add_traced_branch(diagram, level(0.0, 1.2, -1.0), {1, 2});
+  add_traced_branch(diagram, level(0.0, 3.0, -2.0), {2, 3});
   LocalMapConfig config;
   config.min_main_graph_m = 1.0;
   const auto main_branches = [&] {
     std::vector<std::uint32_t> ids;
-    for (const LocalBranch& branch : map_of(diagram, config).branches) {
+    for (const LocalBranch& branch : map_of_branches(diagram, config).branches) {
       if (branch.in_main_graph) ids.push_back(branch.id);
     }
     return ids;
@@ -139,7 +139,7 @@ TEST(MainGraph, AStubBesideTheRobotIsNotTheWayToGo) {
   config.min_main_graph_m = 5.0;  // where none is long enough, the nearest of all
   EXPECT_EQ(main_branches(), Ids{0});
   // The length is that of all branches of the graph.
-  add_branch(diagram, level(1.0, 1.5, 0.2), {0, 1});
+  add_traced_branch(diagram, level(1.0, 1.5, 0.2), {0, 1});
   config.min_main_graph_m = 1.0;
   EXPECT_EQ(main_branches(), (Ids{0, 3}));
 }

@@ -12,7 +12,7 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kQuarter = std::numbers::pi / 2.0;
+constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
 // Stop 0, two scans on the way, stop 1, one scan, stop 2; odometry drifts.
 std::vector<LocalMap> three_stops() {
@@ -20,16 +20,16 @@ std::vector<LocalMap> three_stops() {
   for (std::uint32_t i = 0; i < 3; ++i) maps[i].id = i;
   maps[0].sequence = 0;
   maps[0].stamp_ns = 100;
-  maps[0].T_odom_robot = {5, 5, kQuarter};
-  maps[1].track = {{1, 200, {5, 5.5, kQuarter}, {0.4, 0, 0}, true},
-                   {2, 300, {5, 6, kQuarter}, {0.8, 0.1, 0}, true}};
+  maps[0].T_odom_robot = {5, 5, kQuarterTurn};
+  maps[1].track = {{1, 200, {5, 5.5, kQuarterTurn}, {0.4, 0, 0}, true},
+                   {2, 300, {5, 6, kQuarterTurn}, {0.8, 0.1, 0}, true}};
   maps[1].sequence = 3;
   maps[1].stamp_ns = 400;
-  maps[1].T_odom_robot = {5, 6.5, kQuarter};
-  maps[2].track = {{4, 500, {5, 7, kQuarter}, {0.5, 0, 0.1}, false}};
+  maps[1].T_odom_robot = {5, 6.5, kQuarterTurn};
+  maps[2].track = {{4, 500, {5, 7, kQuarterTurn}, {0.5, 0, 0.1}, false}};
   maps[2].sequence = 5;
   maps[2].stamp_ns = 600;
-  maps[2].T_odom_robot = {5, 7.5, kQuarter};
+  maps[2].T_odom_robot = {5, 7.5, kQuarterTurn};
   return maps;
 }
 
@@ -42,8 +42,8 @@ void expect_pose(const Pose2& pose, double x, double y, double theta) {
 TEST(ExpandTrajectory, MovesTheScansBetweenWithTheStopBeforeThem) {
   Trajectory trajectory;
   trajectory.stops.resize(3);
-  trajectory.stops[1].T_map_robot = {1, 0, kQuarter};
-  trajectory.stops[2].T_map_robot = {1, 2, kQuarter};
+  trajectory.stops[1].T_map_robot = {1, 0, kQuarterTurn};
+  trajectory.stops[2].T_map_robot = {1, 2, kQuarterTurn};
   const std::vector<StampedPose> poses = expand_trajectory(trajectory, three_stops());
   ASSERT_EQ(poses.size(), 6U);
   for (std::size_t i = 0; i < 6; ++i) {
@@ -53,9 +53,9 @@ TEST(ExpandTrajectory, MovesTheScansBetweenWithTheStopBeforeThem) {
   expect_pose(poses[0].pose, 0, 0, 0);
   expect_pose(poses[1].pose, 0.4, 0, 0);
   expect_pose(poses[2].pose, 0.8, 0.1, 0);
-  expect_pose(poses[3].pose, 1, 0, kQuarter);
-  expect_pose(poses[4].pose, 1, 0.5, kQuarter + 0.1);
-  expect_pose(poses[5].pose, 1, 2, kQuarter);
+  expect_pose(poses[3].pose, 1, 0, kQuarterTurn);
+  expect_pose(poses[4].pose, 1, 0.5, kQuarterTurn + 0.1);
+  expect_pose(poses[5].pose, 1, 2, kQuarterTurn);
 }
 
 TEST(ExpandTrajectory, NeedsOnePoseForEachMap) {
@@ -85,11 +85,11 @@ TEST(ExpandOdometry, BeginsEachLaterDriveWhereTheTrajectoryHasIt) {
   maps[2].track.clear();
   Trajectory trajectory;
   trajectory.stops.resize(3);
-  trajectory.stops[2].T_map_robot = {7, 8, kQuarter};
+  trajectory.stops[2].T_map_robot = {7, 8, kQuarterTurn};
   const std::vector<StampedPose> poses = expand_odometry(trajectory, maps);
   ASSERT_EQ(poses.size(), 5U);
   expect_pose(poses[3].pose, 1.5, 0, 0);
-  expect_pose(poses[4].pose, 7, 8, kQuarter);
+  expect_pose(poses[4].pose, 7, 8, kQuarterTurn);
 }
 
 TEST(ExpandOdometry, StartsAtTheIdentityAndKeepsTheDrift) {
@@ -103,13 +103,13 @@ TEST(ExpandOdometry, StartsAtTheIdentityAndKeepsTheDrift) {
 
 TEST(PoseAt, LiesOnTheWayBetweenItsNeighbours) {
   const std::vector<StampedPose> poses = {
-      {0, 100, {0, 0, 0}}, {1, 200, {1, 2, kQuarter}}, {2, 900, {1, 3, kQuarter}}};
+      {0, 100, {0, 0, 0}}, {1, 200, {1, 2, kQuarterTurn}}, {2, 900, {1, 3, kQuarterTurn}}};
   EXPECT_EQ(pose_at(poses, 100), poses[0].pose);
   EXPECT_EQ(pose_at(poses, 200), poses[1].pose);
   EXPECT_EQ(pose_at(poses, 900), poses[2].pose);
   const auto between = pose_at(poses, 125);
   ASSERT_TRUE(between);
-  expect_pose(*between, 0.25, 0.5, kQuarter / 4);
+  expect_pose(*between, 0.25, 0.5, kQuarterTurn / 4);
   EXPECT_FALSE(pose_at(poses, 99));
   EXPECT_FALSE(pose_at(poses, 901));
   EXPECT_TRUE(pose_at(poses, 899));

@@ -79,7 +79,7 @@ const MapNode& node(const GlobalMap& map, std::uint32_t id) {
   return *std::ranges::find(map.nodes, id, &MapNode::id);
 }
 
-void expect_well_formed(const GlobalMap& map) {
+void expect_linked_well(const GlobalMap& map) {
   for (std::size_t i = 1; i < map.nodes.size(); ++i) {
     EXPECT_LT(map.nodes[i - 1].id, map.nodes[i].id);
   }
@@ -111,7 +111,7 @@ Drive covered_in_the_middle() {
 
 TEST(VirtualLink, JoinsWhatACoveredLaserLeftApart) {
   const GlobalMap map = covered_in_the_middle().map();
-  expect_well_formed(map);
+  expect_linked_well(map);
   ASSERT_EQ(links(map).size(), 1U);
   const MapBranch link = links(map)[0];
   // Between the two ends of what was seen, along the way that was driven.
@@ -162,7 +162,7 @@ TEST(VirtualLink, FollowsTheDrivenWayAndMeetsTheMiddleOfABranch) {
   for (int x = 11; x <= 20; ++x) drive.stop_at({static_cast<double>(x), -10.0, 0}, true);
   for (int x = 21; x <= 29; ++x) drive.stop_at({static_cast<double>(x), -10.0, 0});
   const GlobalMap map = drive.map();
-  expect_well_formed(map);
+  expect_linked_well(map);
   ASSERT_EQ(links(map).size(), 1U);
   const MapBranch link = links(map)[0];
   const MapNode& start = node(map, link.node_a);

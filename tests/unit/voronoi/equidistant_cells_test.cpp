@@ -22,7 +22,7 @@
 #include "topogeo/voronoi/distance_error.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
 
-#include "../recorded_logs.hpp"
+#include "recorded_logs.hpp"
 #include "test_world.hpp"
 
 namespace topogeo::voronoi {

@@ -14,14 +14,14 @@ namespace {
 /// Readings are stored as float: farther from a surface than this they are not on it.
 constexpr double kOnSurface_m = 1e-4;
 
-double distance_m(const simulation::Segment& segment, const Eigen::Vector2d& point_m) {
+double distance_m(const world::Segment& segment, const Eigen::Vector2d& point_m) {
   const Eigen::Vector2d along = segment.b_m - segment.a_m;
   const double t = std::clamp((point_m - segment.a_m).dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (segment.a_m + t * along - point_m).norm();
 }
 
 /// Letters of the surfaces that a point lies on: two in a corner.
-std::string surfaces_at(const simulation::World& world, const Eigen::Vector2d& point_m) {
+std::string surfaces_at(const world::World& world, const Eigen::Vector2d& point_m) {
   std::string letters;
   for (std::size_t i = 0; i < world.segments.size(); ++i) {
     if (distance_m(world.segments[i], point_m) < kOnSurface_m) {
@@ -36,7 +36,7 @@ std::string surfaces_at(const simulation::World& world, const Eigen::Vector2d& p
 }
 
 std::string name_of_group(const voronoi::GeneratorGroups& groups, const voronoi::PointRun& run,
-                          const simulation::World& world, const geometry::Pose2& T_world_laser) {
+                          const world::World& world, const geometry::Pose2& T_world_laser) {
   std::string name;
   for (std::uint32_t i = run.begin; i < run.end; ++i) {
     const std::string at = surfaces_at(world, T_world_laser * groups.points[i].position_m);
@@ -51,8 +51,8 @@ std::string name_of_group(const voronoi::GeneratorGroups& groups, const voronoi:
 
 Scene load_scene(const std::string& number) {
   Scene scene;
-  scene.world = simulation::load_world(std::string(TOPOGEO_TEST_DATA) + "/figures/figure_" +
-                                       number + ".world.yaml");
+  scene.world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/figures/figure_" + number +
+                                  ".world.yaml");
   for (const Eigen::Vector2d& at : scene.world.tour_m) {
     scene.T_world_laser.push_back({at.x(), at.y(), 0.0});
   }
@@ -68,11 +68,11 @@ const std::vector<std::string>& scene_numbers() {
 
 Scene mirrored(const Scene& scene) {
   Scene result = scene;
-  for (simulation::Segment& segment : result.world.segments) {
+  for (world::Segment& segment : result.world.segments) {
     segment.a_m.y() = -segment.a_m.y();
     segment.b_m.y() = -segment.b_m.y();
   }
-  for (simulation::Circle& circle : result.world.circles) {
+  for (world::Circle& circle : result.world.circles) {
     circle.center_m.y() = -circle.center_m.y();
   }
   for (geometry::Pose2& pose : result.T_world_laser) pose.y_m = -pose.y_m;
@@ -84,7 +84,7 @@ simulation::BeamPattern full_turn() {
       .angle_min_rad = -std::numbers::pi, .angle_step_rad = std::numbers::pi / 360.0, .count = 720};
 }
 
-scan::Scan scan_of(const simulation::World& world, const geometry::Pose2& T_world_laser,
+scan::Scan scan_of(const world::World& world, const geometry::Pose2& T_world_laser,
                    const simulation::BeamPattern& beams) {
   scan::Scan scan;
   scan.angle_min_rad = beams.angle_min_rad;
@@ -168,7 +168,7 @@ std::string sorted_joined(std::vector<std::string> names) {
 }
 
 std::vector<std::string> group_names(const voronoi::LocalVoronoiDiagram& diagram,
-                                     const simulation::World& world,
+                                     const world::World& world,
                                      const geometry::Pose2& T_world_laser) {
   std::vector<std::string> names;
   for (const voronoi::PointRun& run : diagram.groups.groups) {
@@ -177,7 +177,7 @@ std::vector<std::string> group_names(const voronoi::LocalVoronoiDiagram& diagram
   return names;
 }
 
-Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const simulation::World& world,
+Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const world::World& world,
               const geometry::Pose2& T_world_laser) {
   Seen seen;
   seen.is_virtual = diagram.is_virtual;

@@ -17,13 +17,13 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/simulation/laser.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::figure_scenes {
 
 struct Scene {
-  simulation::World world;
+  world::World world;
   /// Where the laser stands: each point of the tour, looking along x.
   std::vector<geometry::Pose2> T_world_laser;
 };
@@ -43,7 +43,7 @@ inline simulation::BeamPattern half_turn() {
 simulation::BeamPattern full_turn();
 
 /// Exact readings, no noise.
-scan::Scan scan_of(const simulation::World& world, const geometry::Pose2& T_world_laser,
+scan::Scan scan_of(const world::World& world, const geometry::Pose2& T_world_laser,
                    const simulation::BeamPattern& beams = half_turn());
 
 /// The rules of the source with its range limit and its cells. The source prints no thresholds:
@@ -75,13 +75,13 @@ struct Seen : NamedNodes {
 
 /// Names of the groups of a diagram that was made at T_world_laser.
 std::vector<std::string> group_names(const voronoi::LocalVoronoiDiagram& diagram,
-                                     const simulation::World& world,
+                                     const world::World& world,
                                      const geometry::Pose2& T_world_laser);
 /// "A|BC|D" for a list of group indices.
 template <typename Groups>
 std::string joined_names(const Groups& groups, const std::vector<std::string>& names);
 
-Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const simulation::World& world,
+Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const world::World& world,
               const geometry::Pose2& T_world_laser);
 /// Diagram of the scene from place `at`, in words.
 Seen see(const Scene& scene, const voronoi::VoronoiConfig& config,

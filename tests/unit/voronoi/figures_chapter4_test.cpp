@@ -231,8 +231,8 @@ TEST(FiguresOfChapter4, Figure16HiddenZonesLoseOpeningsFromAfarButNotNearBy) {
   EXPECT_THAT(nearer.branches, testing::ElementsAreArray(branches));
 }
 
-double distance_to_group(const LocalVoronoiDiagram& diagram, std::uint16_t group,
-                         const Eigen::Vector2d& at) {
+double distance_to_set(const LocalVoronoiDiagram& diagram, std::uint16_t group,
+                       const Eigen::Vector2d& at) {
   double nearest_m = 1e9;
   const PointRun& run = diagram.groups.groups[group];
   for (std::uint32_t i = run.begin; i < run.end; ++i) {
@@ -256,14 +256,13 @@ TEST(FiguresOfChapter4, Figure20NodeAndBranchesAreEquallyFarFromTheirBaseGroups)
   const LocalVoronoiDiagram diagram = voronoi.compute(scan_of(scene.world, {}));
   const double limit_m = 2.0 * largest_distance_error_m(0.05);
   for (std::uint16_t group = 0; group < 3; ++group) {
-    EXPECT_NEAR(distance_to_group(diagram, group, diagram.nodes[0].position_m),
+    EXPECT_NEAR(distance_to_set(diagram, group, diagram.nodes[0].position_m),
                 diagram.nodes[0].clearance_m, limit_m);
   }
   for (const DiagramBranch& branch : diagram.branches) {
     for (const DiagramPoint& point : diagram.points_of(branch)) {
       for (const std::uint16_t group : branch.base_groups) {
-        EXPECT_NEAR(distance_to_group(diagram, group, point.position_m), point.clearance_m,
-                    limit_m);
+        EXPECT_NEAR(distance_to_set(diagram, group, point.position_m), point.clearance_m, limit_m);
       }
     }
   }

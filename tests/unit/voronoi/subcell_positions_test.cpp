@@ -87,10 +87,10 @@ struct Foot {
   double distance_m = std::numeric_limits<double>::infinity();
 };
 
-Foot foot_on(const simulation::World& world, const std::string& walls, const Eigen::Vector2d& p_m) {
+Foot foot_on(const world::World& world, const std::string& walls, const Eigen::Vector2d& p_m) {
   Foot best;
   for (const char wall : walls) {
-    const simulation::Segment& s = world.segments[static_cast<std::size_t>(wall - 'A')];
+    const world::Segment& s = world.segments[static_cast<std::size_t>(wall - 'A')];
     const Eigen::Vector2d along = s.b_m - s.a_m;
     const double t = std::clamp((p_m - s.a_m).dot(along) / along.squaredNorm(), 0.0, 1.0);
     const Eigen::Vector2d at_m = s.a_m + t * along;
@@ -101,7 +101,7 @@ Foot foot_on(const simulation::World& world, const std::string& walls, const Eig
 
 /// One diagram with what is needed to judge it, in the world frame.
 struct Judge {
-  simulation::World world;
+  world::World world;
   Pose2 T_world_laser;
   LocalVoronoiDiagram diagram;
   std::vector<std::string> names;
@@ -164,7 +164,7 @@ struct Judge {
 
 Judge judge_at(const PositionScene& scene, const Pose2& T_world_laser) {
   Judge judge;
-  judge.world = simulation::parse_world(
+  judge.world = world::parse_world(
       scene.text + "\nboxes: [{from: [-9, -9], to: [9, 9]}]\nname: " + scene.name, scene.name);
   judge.T_world_laser = T_world_laser;
   VoronoiConfig config = figure_scenes::source_config();

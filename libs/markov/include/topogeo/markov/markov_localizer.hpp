@@ -14,20 +14,13 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/markov/belief_grid.hpp"
+#include "topogeo/markov/markov_config.hpp"
 #include "topogeo/markov/obstacle_cells.hpp"
 #include "topogeo/markov/range_sensor.hpp"
 #include "topogeo/markov/sonar_model.hpp"
 #include "topogeo/markov/transition.hpp"
 
 namespace topogeo::markov {
-
-struct MarkovConfig {
-  int window_cells = 21;  ///< of a side; odd, in [5, 101]
-  TransitionModel transition{};
-  SonarModelConfig sonar{};
-  /// Weight of the perceptual model when the readings are wholly reliable, in [0, 1].
-  double perceptual_weight = 0.6;
-};
 
 /// Throws std::invalid_argument naming the field and the allowed range.
 void validate(const MarkovConfig& config);

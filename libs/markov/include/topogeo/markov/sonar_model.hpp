@@ -14,41 +14,11 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/markov/markov_config.hpp"
 #include "topogeo/markov/obstacle_cells.hpp"
 #include "topogeo/markov/range_sensor.hpp"
 
 namespace topogeo::markov {
-
-/// Probability from the mean absolute difference d of the compared readings, scale s (not
-/// normalized). The source only says that it falls when the difference grows.
-enum class PerceptualFormula {
-  kExponential,  ///< exp(-d / s)
-  kInverse,      ///< 1 / (1 + d / s)
-  kLinear,       ///< max(0, 1 - d / s)
-};
-
-/// Up to this expected distance (and beyond that of the band before) a reading is that reliable.
-struct ReliabilityBand {
-  double up_to_m = 0.0;
-  double reliability = 0.0;
-};
-
-struct SonarModelConfig {
-  /// Virtual and real readings beyond are taken for this. Not below the last band.
-  double max_range_m = 5.0;
-  /// Rays across a cone that is not 0, edges included; odd, so that one is the axis.
-  int rays_per_cone = 5;
-  /// Ascending; beyond the last the reliability is 0.
-  std::vector<ReliabilityBand> bands = {{2.5, 1.0}, {5.0, 0.25}};
-  PerceptualFormula formula = PerceptualFormula::kExponential;
-  double scale_m = 0.05;
-  /// A larger difference counts as this much, so that one sensor that meets a person or no echo
-  /// does not outvote the others.
-  double difference_cap_m = 0.5;
-  /// Weighs each difference by the reliability of its reading. The source does not: there
-  /// reliability decides only how much the whole vector counts.
-  bool weigh_by_reliability = false;
-};
 
 /// Throws std::invalid_argument naming the field: max_range_m not in [0.5, 20], rays_per_cone not
 /// odd or not in [1, 31], bands empty, not ascending, beyond max_range_m or with a reliability not

@@ -15,39 +15,9 @@
 #include <vector>
 
 #include "topogeo/markov/belief_grid.hpp"
+#include "topogeo/markov/markov_config.hpp"
 
 namespace topogeo::markov {
-
-struct TransitionMatrix {
-  int rows = 0;                ///< odd
-  int columns = 0;             ///< odd
-  std::vector<double> values;  ///< rows x columns, the upper row first
-};
-
-/// Fig. 6, an advance. It sums to 0.9961: the source rounds. Nothing here makes it sum to one; the
-/// localizer normalizes the state after each update.
-TransitionMatrix macondo_advance();
-
-/// Of a quarter turn on the spot: 0.9 to stay, 0.02 for each neighbour, 0.005 for each diagonal
-/// one. The source has no figures for its turns.
-TransitionMatrix quarter_turn();
-
-/// Which way the arrow of fig. 6 points, which cannot be read in the source.
-enum class ArrowSense {
-  kRight,  ///< the right column is ahead of the robot: it rather goes too far
-  kLeft,   ///< the right column is behind it: it rather slips
-};
-
-struct TransitionModel {
-  TransitionMatrix advance = macondo_advance();
-  TransitionMatrix left = quarter_turn();
-  TransitionMatrix right = quarter_turn();
-  ArrowSense sense = ArrowSense::kRight;
-  /// Length and angle of the step that a matrix stands for; 0: the matrix is applied once for
-  /// a primitive, however long it is.
-  double advance_step_m = 0.10;
-  double turn_step_rad = 0.5 * std::numbers::pi;
-};
 
 /// Throws std::invalid_argument naming the field: sides of a matrix not odd or not in [1, 21],
 /// values of another number, negative or not finite, a sum not in [0.1, 1.01], a step that is

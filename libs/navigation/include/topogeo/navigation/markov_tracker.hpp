@@ -13,16 +13,11 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/markov/markov_localizer.hpp"
+#include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
 
 namespace topogeo::navigation {
-
-struct MarkovTrackerConfig {
-  markov::MarkovConfig markov;
-  double cell_m = 0.1;  ///< of the belief; cells of the map are joined up to it, [0.01, 1]
-  double heading_sigma_rad = 0.05;  ///< of the heading, which is taken from odometry, [0.001, 1]
-};
 
 /// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
 void check(const MarkovTrackerConfig& config);

@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <optional>
 
-#include "topogeo/localization/localizer.hpp"
-#include "topogeo/navigation/navigator.hpp"
-#include "topogeo/pipeline/hybrid_map_source.hpp"
-#include "topogeo/pipeline/local_mapper.hpp"
-#include "topogeo/planning/hybrid_planner.hpp"
-#include "topogeo/planning/route_planner.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/navigation/navigator_config.hpp"
+#include "topogeo/pipeline/hybrid_map_config.hpp"
+#include "topogeo/pipeline/local_mapper_config.hpp"
+#include "topogeo/planning/hybrid_planner_config.hpp"
+#include "topogeo/planning/planning_config.hpp"
+#include "topogeo/scan/carmen_log_config.hpp"
 #include "topogeo/support/config_schema.hpp"
-#include "topogeo/topomap/global_map_builder.hpp"
+#include "topogeo/topomap/global_map_config.hpp"
 
 namespace topogeo::pipeline {
 

@@ -12,23 +12,12 @@
 #include <span>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/pipeline/hybrid_map_config.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/storage/map_document.hpp"
 
 namespace topogeo::pipeline {
-
-/// Side of the tiles that a grid is sent in: a map that grows must not shift them.
-inline constexpr std::int32_t kTileCells = 64;
-
-struct HybridMapConfig {
-  planning::ScanGridConfig grid{.snap_cells = kTileCells};
-  planning::InflationConfig inflation;
-  planning::ZoneConfig zones;
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const HybridMapConfig& config);
 
 /// What a hybrid map is made of; it is looked at during the call only. What is missing is empty.
 struct HybridMapParts {
@@ -47,7 +36,7 @@ bool has_grid(const HybridMapParts& parts);
 /// left corner of a grid of scans lies at a multiple of config.grid.snap_cells.
 planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config);
 
-/// A drawn floor: the grid and the places of a world file (.world.yaml, see simulation/world.hpp)
+/// A drawn floor: the grid and the places of a world file (.world.yaml, see world/world.hpp)
 /// with cells of `resolution_m`, or the grid of a YAML file (see planning/grid_file.hpp). The names
 /// of `zones` (see planning::read_zone_drawing), in the frame of the drawing, are added to it. All
 /// is taken to the map frame. Throws std::runtime_error naming file, line or field.

@@ -7,23 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/scan_tracker.hpp"
+#include "topogeo/localization/tracking/scan_tracker.hpp"
+#include "topogeo/pipeline/local_mapper_config.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
 
 namespace topogeo::pipeline {
-
-struct LocalMapperConfig {
-  double stop_distance_m = 1.0;       ///< a stop is made this far from the one before
-  double stop_turn_rad = 0.35;        ///< or after this much turn
-  std::uint32_t longest_track = 256;  ///< scans between two stops; also the bound on the wire
-  voronoi::VoronoiConfig voronoi;
-  topomap::LocalMapConfig local_map;
-  geometry::Pose2 T_robot_laser;  ///< mounting of the laser
-  localization::ScanTrackerConfig tracker;
-};
 
 class LocalMapper {
  public:

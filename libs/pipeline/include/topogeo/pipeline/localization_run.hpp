@@ -8,8 +8,8 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/map_localizer.hpp"
-#include "topogeo/localization/mapping_session.hpp"
+#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/mapping_session.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/localizer.hpp"
-#include "topogeo/localization/map_localizer.hpp"
-#include "topogeo/localization/mapping_session.hpp"
-#include "topogeo/localization/matcher.hpp"
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/localization/tracking/mapping_session.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/scan/scan.hpp"

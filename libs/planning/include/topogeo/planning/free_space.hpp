@@ -9,19 +9,10 @@
 #include <limits>
 #include <vector>
 
+#include "topogeo/planning/grid_config.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
 
 namespace topogeo::planning {
-
-struct InflationConfig {
-  double forbidden_cells = 3.0;  ///< a cell is forbidden when the middle of an occupied one is at
-                                 ///< most so many cells away, [0, 100]
-  bool inflate_unknown = false;  ///< unknown cells are always forbidden; true: also the cells near
-                                 ///< them
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const InflationConfig& config);
 
 class FreeSpace {
  public:

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/planning/grid_config.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -35,20 +36,6 @@ struct Drawing {
 /// Every cell that a line or disc touches is occupied. Throws std::invalid_argument for an empty
 /// drawing, a coordinate that is not finite and a grid out of range (see check(GridFrame)).
 OccupancyGrid grid_of(const Drawing& drawing, double resolution_m = 0.1, double margin_m = 1.0);
-
-struct ScanGridConfig {
-  double resolution_m = 0.1;    ///< [0.01, 1]
-  double margin_m = 1.0;        ///< around what was seen, [0, 100]
-  std::int32_t snap_cells = 1;  ///< the lower left corner is at multiples of so many cells, [1,
-                                ///< 1024], so that a map that grows seldom shifts
-  // Log-odds in hundredths, kept within +-limit so that a door that is shut later becomes a wall.
-  std::int32_t hit = 85;     ///< added where a beam ends, [1, 1000]
-  std::int32_t miss = 40;    ///< taken off where one passes, [1, 1000]
-  std::int32_t limit = 350;  ///< [1, 10000]
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const ScanGridConfig& config);
 
 /// What the scans of the located stops saw, in the order of the stops: a cell is occupied when its
 /// log-odds are above zero, free when they are below, unknown at zero and where no beam went. Only

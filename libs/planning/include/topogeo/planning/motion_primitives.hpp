@@ -11,6 +11,7 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/planning/free_space.hpp"
+#include "topogeo/planning/motion_config.hpp"
 
 namespace topogeo::planning {
 
@@ -34,12 +35,6 @@ struct MotionPrimitive {
   double amount = 0.0;  ///< metres of an advance, radians of a turn; > 0
 };
 
-struct PrimitiveConfig {
-  double min_turn_rad = 1e-3;   ///< smaller turns are left out, [0, 1]; what they add up to is
-                                ///< made good at the next turn
-  double min_advance_m = 1e-3;  ///< points nearer together count as one, [0, 1]
-};
-
 /// Primitives that take a robot along a polyline: `heading_rad` is where it looks at the start,
 /// `final_heading_rad` where it shall look in the end. Throws std::invalid_argument for points or
 /// angles that are not finite and a configuration out of range.
@@ -51,16 +46,6 @@ std::vector<MotionPrimitive> motion_primitives(std::span<const Eigen::Vector2d> 
 /// Where primitives take a robot.
 geometry::Pose2 pose_after(const geometry::Pose2& T_map_robot,
                            std::span<const MotionPrimitive> primitives);
-
-struct SmoothPathConfig {
-  double min_radius_m = 0.2;  ///< tightest arc; corners with no room for it are turned on the spot,
-                              ///< [0.01, 10]
-  double max_radius_m = 1.0;  ///< arcs are as wide as fits, up to this, [min_radius_m, 100]
-  double step_m = 0.1;        ///< between samples at most, [0.005, 10]
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const SmoothPathConfig& config);
 
 struct PathSample {
   geometry::Pose2 T_map_robot;    ///< heading along the path, after the turn on the spot

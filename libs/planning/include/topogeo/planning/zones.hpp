@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/planning/free_space.hpp"
+#include "topogeo/planning/grid_config.hpp"
 #include "topogeo/planning/grid_search.hpp"
 #include "topogeo/topomap/global_map.hpp"
 
@@ -34,19 +35,6 @@ struct ZoneMap {
   std::vector<ZoneId> zone_of_cell;  ///< row by row; kNoZone for cells that are not passable
   std::vector<Zone> zones;
 };
-
-struct ZoneConfig {
-  double min_area_m2 = 2.0;  ///< zones that are smaller join the neighbour with the longest border,
-                             ///< drawn ones excepted, [0, 1000]
-  /// For zones_by_width: where less than this is free on either side, a passage is narrow, (0, 5].
-  double passage_half_width_m = 0.6;
-  /// For zones_between: how much further than the passage's clearance a cut may have to go to meet
-  /// forbidden cells, [0, 5] m. A passage whose cut ends in the open is no border.
-  double cut_reach_m = 0.6;
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const ZoneConfig& config);
 
 /// A place of least clearance, with the direction of the way through it.
 struct Passage {

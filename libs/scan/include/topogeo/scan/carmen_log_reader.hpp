@@ -19,16 +19,10 @@
 #include <string_view>
 #include <vector>
 
+#include "topogeo/scan/carmen_log_config.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::scan {
-
-struct CarmenLogOptions {
-  double range_max_m = 49.9;  ///< readings at or above it become Scan::kNoReturn; > 0
-  /// A stamp further than this after its predecessor (or the very first one) must be confirmed by
-  /// the next scan; otherwise it, and not the rest of the log, is taken to be wrong. Seconds, > 0.
-  double jump_s = 60.0;
-};
 
 /// Why a line was left out.
 enum class SkipReason : std::uint8_t {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
@@ -19,12 +19,12 @@ struct FreeWay {
 /// Columns and people are solid. A surface that the disc touches or overlaps already (a door has
 /// shut on it) stops it at once if the move would bring it nearer and lets it go otherwise. What
 /// changes does not count: see scene_at.
-FreeWay free_way(const World& scene, const Eigen::Vector2d& from_m,
+FreeWay free_way(const world::World& scene, const Eigen::Vector2d& from_m,
                  const Eigen::Vector2d& direction, double length_m, double radius_m);
 
 /// The point nearest to the disc's centre of all that overlaps the disc by more than 0.1 mm;
 /// nothing if nothing does.
-std::optional<Eigen::Vector2d> overlap_m(const World& scene, const Eigen::Vector2d& center_m,
+std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const Eigen::Vector2d& center_m,
                                          double radius_m);
 
 }  // namespace topogeo::simulation

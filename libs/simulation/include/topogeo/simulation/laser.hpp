@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/support/random.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
@@ -21,7 +21,7 @@ struct BeamPattern {
 
 /// Exact distance along each beam to the first surface, metres; infinity where no surface is nearer
 /// than range_max_m. A beam that grazes the end of a segment hits it.
-std::vector<double> raycast(const World& world, const geometry::Pose2& T_world_laser,
+std::vector<double> raycast(const world::World& world, const geometry::Pose2& T_world_laser,
                             const BeamPattern& beams);
 
 struct LaserNoise {

@@ -7,27 +7,27 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/support/random.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
 /// Where a person who follows its path is at a time since the start of the drive, if nobody makes
 /// it wait.
-Eigen::Vector2d position_m(const Person& person, double time_s);
+Eigen::Vector2d position_m(const world::Person& person, double time_s);
 
 /// The people of a world and `wanderers` more, who walk about at random.
 class People {
  public:
   /// The world must outlive this. Wanderers start near its tour, at least 3 m from its start if
   /// there is such a place. The seed decides about their places, speeds and ways.
-  People(const World& world, std::size_t wanderers, std::uint64_t seed);
+  People(const world::World& world, std::size_t wanderers, std::uint64_t seed);
 
   /// Lets them walk until `time_s`, which never goes back, in a scene (scene_at) with the robot.
-  void walk(double time_s, const World& scene, const Eigen::Vector2d& robot_m);
+  void walk(double time_s, const world::World& scene, const Eigen::Vector2d& robot_m);
 
   /// Everybody where they are now.
-  [[nodiscard]] std::vector<Circle> circles() const;
+  [[nodiscard]] std::vector<world::Circle> circles() const;
 
  private:
   struct Wanderer {
@@ -36,9 +36,9 @@ class People {
     double speed_m_per_s = 1.0;
     support::Random random;
   };
-  static void step(Wanderer& wanderer, const World& scene, const Eigen::Vector2d& robot_m);
+  static void step(Wanderer& wanderer, const world::World& scene, const Eigen::Vector2d& robot_m);
 
-  const World& world_;
+  const world::World& world_;
   std::vector<Wanderer> wanderers_;
   // Lets somebody who yields walk from step `steps_` to the next one, or wait.
   void yield(std::size_t person, const Eigen::Vector2d& robot_m);

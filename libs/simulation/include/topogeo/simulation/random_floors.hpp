@@ -6,33 +6,33 @@
 #include <cstdint>
 
 #include "topogeo/simulation/odometry.hpp"
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
 /// A corridor round a block of rooms, 84 to 96 m about, driven once round and on over the first
 /// quarter: the source's experiment 2.
-World cyclic_floor(std::uint64_t seed);
+world::World cyclic_floor(std::uint64_t seed);
 
 /// A corridor of 30 to 42 m with rooms on both sides, driven to its end and back: experiment 1.
-World corridor_there_and_back(std::uint64_t seed);
+world::World corridor_there_and_back(std::uint64_t seed);
 
 /// Two blocks side by side with corridors round both and between them; each is driven round, the
 /// corridor between them once with each.
-World two_loops(std::uint64_t seed);
+world::World two_loops(std::uint64_t seed);
 
 /// A corridor of 34 to 42 m with nothing on its walls between a hall at each end, driven there and
 /// back. Its ends are in range of a laser of 50 m.
-World bare_corridor(std::uint64_t seed);
+world::World bare_corridor(std::uint64_t seed);
 
 /// A corridor with two wings that are copies of each other down to the furniture, 13 to 16 m apart;
 /// the corridor before them is the same as well.
-World symmetric_building(std::uint64_t seed);
+world::World symmetric_building(std::uint64_t seed);
 
 /// Four by four blocks with streets of corridor round them; the tour goes about `way_m` metres
 /// through them, at each crossing another way than the one it came. `way_m` in [50, 20000]; throws
 /// std::invalid_argument otherwise.
-World large_floor(std::uint64_t seed, double way_m);
+world::World large_floor(std::uint64_t seed, double way_m);
 
 /// Odometry that errs like that of the B21 of a recorded log, whose steps were compared with those
 /// of its reference trajectory: random 5.7 cm along and 3.7 cm across for the root of each metre,

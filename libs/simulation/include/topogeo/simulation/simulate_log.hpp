@@ -12,7 +12,7 @@
 #include "topogeo/simulation/drive.hpp"
 #include "topogeo/simulation/laser.hpp"
 #include "topogeo/simulation/odometry.hpp"
-#include "topogeo/simulation/world.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
@@ -25,7 +25,7 @@ struct Kidnapping {
 
 /// Scans on a part of the way driven that see nothing of the world.
 struct Blinding {
-  WayInterval way;
+  world::WayInterval way;
   /// What every beam reads then; without it no beam has an echo.
   std::optional<double> reading_m;
 };
@@ -57,6 +57,6 @@ struct SimulatedLog {
 /// a person within 0.15 m of the laser is left out of a scan. The result depends on the arguments
 /// alone, to the last bit. Throws std::invalid_argument for an option out of range or a world
 /// without a tour, std::runtime_error when the tour cannot be driven (see drive).
-SimulatedLog simulate_log(const World& world, const SimulationOptions& options);
+SimulatedLog simulate_log(const world::World& world, const SimulationOptions& options);
 
 }  // namespace topogeo::simulation

@@ -16,8 +16,8 @@
 #include "topogeo/simulation/people.hpp"
 #include "topogeo/simulation/sonar.hpp"
 #include "topogeo/simulation/tour_follower.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/support/random.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
@@ -57,7 +57,7 @@ class SimulatedRobot {
  public:
   /// Throws std::invalid_argument for an option out of range, a world without a tour where no start
   /// is given, and a start where the robot overlaps something.
-  SimulatedRobot(World world, const RobotOptions& options);
+  SimulatedRobot(world::World world, const RobotOptions& options);
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
@@ -96,7 +96,7 @@ class SimulatedRobot {
   [[nodiscard]] double free_ahead_m(double limit_m) const;
 
   /// Everything that is there now, people included.
-  [[nodiscard]] World scene() const;
+  [[nodiscard]] world::World scene() const;
   [[nodiscard]] const RobotOptions& options() const { return options_; }
 
  private:
@@ -111,15 +111,15 @@ class SimulatedRobot {
   /// Something that changes at random: of its times, the world has the one that is not over yet.
   struct Turns {
     std::size_t part;
-    DrawnTurns drawn;
+    world::DrawnTurns drawn;
   };
   void draw_turns();
 
   RobotOptions options_;
-  World world_;
+  world::World world_;
   std::vector<Turns> turns_;
-  World scene_;  // without people
-  World people_scene_;
+  world::World scene_;  // without people
+  world::World people_scene_;
   std::vector<bool> present_;
   People people_;
   support::Random laser_random_;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/simulation/world.hpp"
 #include "topogeo/support/random.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::simulation {
 
@@ -20,7 +20,7 @@ struct Echo {
 
 /// Exact; `range_max_m`: what is as far or farther is not heard. What changes does not count: see
 /// scene_at.
-Echo echo(const World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
+Echo echo(const world::World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
           double range_max_m);
 
 struct SonarNoise {

@@ -16,9 +16,9 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/localization_state.hpp"
-#include "topogeo/localization/loop_decision.hpp"
-#include "topogeo/localization/match.hpp"
+#include "topogeo/localization/mapping/localization_state.hpp"
+#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/matching/match.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/map_update.h"
 #include "topogeo/msg/match.h"

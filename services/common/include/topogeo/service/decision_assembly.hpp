@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "topogeo/localization/loop_decision.hpp"
+#include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/msg/trajectory.h"
 
 namespace topogeo::service {

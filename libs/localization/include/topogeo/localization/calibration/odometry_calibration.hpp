@@ -1,0 +1,122 @@
+// Finds the parameters of OdometryNoise of a robot from a log (spec A3): from motions of which both
+// what the odometry said and what really happened are known.
+//
+// The residual of a motion is its odometry less its measurement, in the frame of its first pose.
+// Its covariance is linear in the parameters (the sum that `advance` makes of all steps) plus the
+// covariance of the measurement, so the parameters are those of largest likelihood of normally
+// distributed residuals. Motions of different length tell apart what grows with the way or the turn
+// from what every measurement adds: the stated covariances of the measurements are scaled by one
+// factor that is estimated too, as neither matches nor reference trajectories know theirs exactly.
+// The search starts from a fit with Student's t distribution, so that outlying measurements do not
+// lead it, and leaves out motions beyond `largest_mahalanobis2` of what it finds.
+//
+// Every parameter comes twice. `as_is` counts systematic errors (a wrong wheel diameter, a drift to
+// one side) as noise: what a localizer has to expect of this odometry today, and what the
+// configuration wants. `corrected` is what would be left if the systematic errors, which are
+// estimated as well, were taken out of the odometry.
+//
+// A value that cannot be told from zero is given as its upper end: too little noise makes a
+// localizer search in the wrong place, too much only costs it time.
+//
+// Motions overlap and errors of successive matches are related, so the spread is not that of the
+// likelihood but of refits to random choices of blocks of the log (block bootstrap).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+
+namespace topogeo::localization {
+
+/// Steps of odometry (T_before_after) from one stop to the next.
+using OdometryStretch = std::vector<geometry::Pose2>;
+
+/// The relative pose of two stops by something other than odometry.
+struct MeasuredMotion {
+  std::uint32_t first = 0;  ///< stops; stretch i leads from stop i to stop i + 1
+  std::uint32_t last = 0;   ///< > first
+  geometry::Pose2 T_first_last;
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Identity();  ///< of T_first_last, in the frame of `first`
+};
+
+/// A field of OdometryNoise.
+struct NoiseParameter {
+  const char* key;  ///< below "odometry." in the configuration
+  const char* unit;
+  double OdometryNoise::*field;
+  bool per_turn;  ///< grows with the turn; else with the way
+};
+
+inline constexpr std::size_t kNoiseParameters = 5;
+
+/// In the order of the configuration file.
+extern const std::array<NoiseParameter, kNoiseParameters> kOdometryParameters;
+
+struct OdometryCalibrationConfig {
+  OdometryNoise fallback;              ///< for what the log says nothing of
+  double largest_mahalanobis2 = 25.0;  ///< of a residual (3 d.o.f.); as the gate of matches
+  std::uint32_t blocks = 20;           ///< of the bootstrap, 4 to 1000
+  std::uint32_t resamples = 100;       ///< of the bootstrap, 2 to 100000
+  std::uint64_t seed = 1;              ///< of the bootstrap
+};
+
+struct Estimate {
+  double value = 0.0;
+  double spread = 0.0;   ///< one standard deviation
+  bool at_most = false;  ///< cannot be told from 0; `value` is then one spread above what was found
+};
+
+struct NoiseEstimate {
+  bool known = false;         ///< false: the log says nothing of it, both values are `fallback`
+  std::size_t stretches = 0;  ///< with enough way (0.2 m) or turn (0.2 rad) to say something
+  Estimate as_is;             ///< with systematic errors taken for noise
+  Estimate corrected;         ///< without them
+};
+
+/// Errors of odometry that repeat; positive: the odometry says too much.
+struct SystematicErrors {
+  Estimate way;                ///< per metre of way: 0.02 where 1 m is measured as 1.02 m
+  Estimate heading_rad_per_m;  ///< counter-clockwise turn measured on a straight way
+  Estimate turn;               ///< per radian of turn, as `way`; 0 +- 0 in a log without turns
+  // Where the laser (what is measured) sits, seen from where it should on the robot. The first two
+  // are 0 +- 0 without turns, the last without way.
+  Estimate ahead_m;
+  Estimate left_m;
+  Estimate yaw_rad;  ///< counter-clockwise
+};
+
+struct OdometryCalibration {
+  OdometryNoise noise;  ///< the `as_is` values
+  std::array<NoiseEstimate, kNoiseParameters> parameters;
+  SystematicErrors systematic;
+  /// Covariance of `systematic`'s (ahead, left, yaw), m and rad: by the bootstrap, and by the
+  /// likelihood alone. The second is close to 1 where the log says nothing, which the first cannot
+  /// tell: without anything to go by all resamples agree on 0.
+  Eigen::Matrix3d mounting_covariance = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d mounting_likelihood_covariance = Eigen::Matrix3d::Identity();
+  std::size_t motions = 0;         ///< used
+  std::size_t outlying = 0;        ///< left out of the `as_is` fit
+  double measurement_scale = 1.0;  ///< estimated over stated deviations of the measurements
+};
+
+/// Stretches that say something of a parameter, at least, for it to be estimated.
+inline constexpr std::size_t kFewestStretches = 20;
+
+/// `progress`, if any, hears how many of the refits are done. Throws std::invalid_argument when a
+/// motion names no stretch or its pose or covariance is none, std::runtime_error when the motions
+/// cover fewer than `kFewestStretches` stretches or nothing moves.
+OdometryCalibration calibrate_odometry(
+    std::span<const OdometryStretch> stretches, std::span<const MeasuredMotion> motions,
+    const OdometryCalibrationConfig& config,
+    const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+}  // namespace topogeo::localization

@@ -1,0 +1,58 @@
+// Least squares over a pose graph as a job apart, so that it need not hold up the robot.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/pose_graph.hpp"
+
+namespace topogeo::localization {
+
+/// What a job needs; a copy, so that the graph can grow meanwhile.
+struct GraphProblem {
+  std::vector<geometry::Pose2> T_map_robot;  ///< index: stop
+  std::vector<PoseGraphEdge> edges;
+};
+
+struct GraphSolution {
+  OptimizationSummary summary;               ///< of the last optimisation
+  std::vector<geometry::Pose2> T_map_robot;  ///< of the stops of the problem
+  std::vector<PoseGraphEdge> outvoted;       ///< loops that the rest contradicts: left out
+  std::vector<Eigen::Matrix3d> covariance;   ///< of each pose in the map frame
+};
+
+/// Optimises, leaves out the loops that are outvoted by then and optimises again without them. Says
+/// the same for the same problem. An unusable result gives the poses as they were.
+GraphSolution solve(const GraphProblem& problem);
+
+/// Where the jobs are done. One at a time.
+class GraphOptimizer {
+ public:
+  virtual ~GraphOptimizer() = default;
+
+  /// Throws std::logic_error when the job before was not fetched.
+  virtual void start(GraphProblem problem) = 0;
+  /// Waits for the result. Throws std::logic_error when nothing was started.
+  virtual GraphSolution fetch() = 0;
+
+ protected:
+  GraphOptimizer() = default;
+  GraphOptimizer(const GraphOptimizer&) = default;
+  GraphOptimizer& operator=(const GraphOptimizer&) = default;
+};
+
+/// Does the job when its result is asked for, in the same thread.
+class InPlaceOptimizer : public GraphOptimizer {
+ public:
+  void start(GraphProblem problem) override;
+  GraphSolution fetch() override;
+
+ private:
+  std::optional<GraphProblem> problem_;
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,42 @@
+// What was decided of a place that the robot may have come back to, and why.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/match.hpp"
+
+namespace topogeo::localization {
+
+enum class LoopOutcome : std::uint8_t {
+  kAccepted = 0,
+  kGate = 1,         ///< the match itself is not believed: see LoopDecision::reason
+  kUnconfirmed = 2,  ///< moves the robot far and nothing agrees with it so far
+  kNoClosing = 3,    ///< no way back along the loop fits what was seen on it
+  kOutvoted = 4,     ///< was accepted; the rest contradicted it after the optimisation
+};
+
+inline constexpr std::size_t kLoopOutcomes = 5;
+
+/// "accepted", "match not believed", "unconfirmed", "no consistent closing", "outvoted".
+const char* to_string(LoopOutcome outcome);
+
+struct LoopDecision {
+  std::uint32_t step = 0;  ///< local map id of the stop at which it was decided; the last one: also
+                           ///< after the end of the log
+  std::uint32_t earlier_id = 0;  ///< local map ids
+  std::uint32_t later_id = 0;
+  LoopOutcome outcome = LoopOutcome::kGate;
+  Reason reason = Reason::kNone;    ///< of the match
+  geometry::Pose2 T_earlier_later;  ///< as matched; as predicted when nothing was in common
+  double correction_m = 0.0;        ///< how far the match moves the later stop in the map
+  double correction_rad = 0.0;
+  double fitness = 0.0;  ///< of the match, [0, 1]
+};
+
+/// Outcome and reason in words, as in reports: "accepted", "match not believed: few inliers", ...
+std::string explanation(const LoopDecision& decision);
+
+}  // namespace topogeo::localization

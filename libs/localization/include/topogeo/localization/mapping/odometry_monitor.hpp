@@ -1,0 +1,44 @@
+// Watches how far odometry is off while the robot drives, so that one that is worse than configured
+// gets a wider covariance instead of breaking the map.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+
+namespace topogeo::localization {
+
+/// Factors of the configured variances, from the squared differences between odometry and believed
+/// matches over the last steps. Never below 1: the configuration is a floor, because a covariance
+/// that is too small costs more than one that is too large.
+class OdometryMonitor {
+ public:
+  /// What odometry says of a step with its configured covariance, and what a believed match says
+  /// with its own; both of the same two poses, covariances in the frame of the first.
+  void add(const UncertainPose& odometry, const UncertainPose& match);
+
+  /// The covariance as the last steps have it.
+  [[nodiscard]] Eigen::Matrix3d widened(const Eigen::Matrix3d& configured) const;
+
+  [[nodiscard]] double translation_factor() const { return translation_.factor(); }
+  [[nodiscard]] double heading_factor() const { return heading_.factor(); }
+
+ private:
+  /// A mean over about kMemory steps, the older ones fading.
+  class Ratio {
+   public:
+    /// `squared`: of the difference; the variances that odometry and the match state of it.
+    void add(double squared, double odometry_variance, double match_variance);
+    [[nodiscard]] double factor() const;
+
+   private:
+    static constexpr double kMemory = 20.0;
+    double weighted_ = kMemory;  // starts as if so many steps had been as configured
+    double weight_ = kMemory;
+  };
+  Ratio translation_;
+  Ratio heading_;
+};
+
+}  // namespace topogeo::localization

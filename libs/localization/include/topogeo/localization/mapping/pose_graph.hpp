@@ -1,0 +1,123 @@
+// Poses of all stops and the relative poses measured between them; least squares spreads a closed
+// loop over them, which a discrete search cannot.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <boost/graph/adjacency_list.hpp>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+
+namespace topogeo::localization {
+
+enum class EdgeKind : std::uint8_t {
+  kOdometry = 0,
+  kSequential = 1,  ///< match with a stop shortly before
+  kRevisit = 2,     ///< match with a stop of an earlier visit: closes a loop
+};
+
+struct PoseGraphEdge {
+  std::uint32_t from = 0;  ///< stop ids; from < to
+  std::uint32_t to = 0;
+  EdgeKind kind = EdgeKind::kOdometry;
+  geometry::Pose2 T_from_to;
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Identity();  ///< of T_from_to, in the frame of `from`
+};
+
+struct OptimizationSummary {
+  bool usable = false;  ///< false: the poses are as they were
+  bool converged = false;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  int iterations = 0;
+};
+
+class PoseGraph {
+ public:
+  /// Appends a stop; the first one stays where it is for ever.
+  std::uint32_t add_pose(const geometry::Pose2& T_map_robot);
+  void add_edge(const PoseGraphEdge& edge);
+
+  [[nodiscard]] const std::vector<geometry::Pose2>& poses() const { return poses_; }
+  [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const { return edges_; }
+
+  /// Puts the first poses where an optimisation wants them, and moves those after them rigidly with
+  /// the last of them. Throws std::invalid_argument without any or with too many.
+  void move(std::span<const geometry::Pose2> T_map_robot);
+
+  /// Squared Mahalanobis distance between an edge and the poses as they are.
+  [[nodiscard]] double disagreement(const PoseGraphEdge& edge) const;
+
+  /// Earlier stops with an edge to `stop`, each with the covariance of all edges between the two
+  /// together, in the frame of the earlier one.
+  [[nodiscard]] std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> links_to(
+      std::uint32_t stop) const;
+
+  /// Places the last pose alone by the edges that end at it, the others held.
+  void place_last_pose();
+
+  /// Least squares over all poses. Matches have a Cauchy loss, so that a wrong one that came
+  /// through the gates bends the map a little instead of folding it. Single-threaded, so that
+  /// results repeat.
+  OptimizationSummary optimize();
+
+  /// Removes edges of a kind whose disagreement exceeds the limit; returns them.
+  std::vector<PoseGraphEdge> remove_edges(EdgeKind kind, double largest_disagreement);
+  /// Removes all edges that are of the same kind between the same stops as one of these.
+  void remove_edges(std::span<const PoseGraphEdge> like);
+
+  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+  /// How far a search along the graph goes.
+  struct Reach {
+    std::uint32_t first_stop = 0;      ///< only this stop and those after it are asked for
+    double largest_cost = kUnlimited;  ///< see path_cost()
+  };
+
+  /// Relative pose of the stops seen from `origin` with its covariance, each along the path on
+  /// which the variance grows least (spec A6). All edges between two stops count together: along a
+  /// bare corridor a match knows only the way across, odometry the way along. Stops that `reach`
+  /// leaves out or that are not connected may have a covariance of kUnreached_m2.
+  [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin,
+                                                       const Reach& reach) const;
+  [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const {
+    return relative_to(origin, Reach{});
+  }
+  static constexpr double kUnreached_m2 = 1e6;
+
+  /// Length of a path with this covariance at its end, m^2: the variance of where things are that
+  /// are seen from there.
+  static double path_cost(const Eigen::Matrix3d& covariance);
+
+ private:
+  /// All edges between one pair of stops taken together.
+  struct Link {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // of T_from_to, in the frame of `from`
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    double cost = 0.0;
+  };
+  struct LinkIndex {
+    std::uint32_t value = 0;
+  };
+  using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
+                                        boost::no_property, LinkIndex>;
+  void add_to_link(const PoseGraphEdge& edge);
+  void rebuild_links();
+
+  std::vector<geometry::Pose2> poses_;
+  std::vector<PoseGraphEdge> edges_;
+  std::vector<Link> links_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> link_of_;  // index into links_
+  Network network_;
+};
+
+}  // namespace topogeo::localization

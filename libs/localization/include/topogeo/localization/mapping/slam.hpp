@@ -1,0 +1,73 @@
+// What maps and follows a robot from stop to stop, whichever algorithm does it: the pose graph over
+// all believed matches (localizer.hpp) or the source's own (thesis_localizer.hpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "topogeo/localization/mapping/localization_state.hpp"
+#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::localization {
+
+struct LocalizerConfig;
+
+struct SlamCounts {
+  std::uint64_t tasks = 0;
+  std::uint64_t evaluations = 0;
+  std::array<std::uint64_t, kReasons> reasons{};  ///< index: Reason; kNone: accepted
+  std::uint64_t steps_in_doubt =
+      0;  ///< no recent match was accepted; an uncertain one or odometry stood in
+  std::uint64_t unconfirmed_loops = 0;  ///< large corrections that nothing else agreed with
+  std::uint64_t optimizations = 0;
+  std::uint64_t failed_optimizations = 0;  ///< of those, without a usable result: poses kept
+  std::uint64_t removed_loops = 0;         ///< outvoted by the rest after optimisation
+};
+
+class Slam {
+ public:
+  virtual ~Slam() = default;
+
+  /// One forward step. Maps must come in order of their ids, from 0, of one robot; throws
+  /// std::invalid_argument otherwise. True when earlier poses were moved too.
+  virtual bool add(std::shared_ptr<const topomap::LocalMap> map) = 0;
+
+  /// After the last map: works off what can only be done, or done better, with all of them. Maps
+  /// may follow all the same.
+  virtual void finish() = 0;
+
+  [[nodiscard]] virtual topomap::Trajectory trajectory() const = 0;
+  /// Where the robot was at its last stop; nothing before the first.
+  [[nodiscard]] virtual std::optional<topomap::StopPose> last_stop() const = 0;
+  [[nodiscard]] virtual std::vector<topomap::LoopClosure> loop_closures() const = 0;
+  /// Every loop that was considered so far, in the order of the decisions.
+  [[nodiscard]] virtual const std::vector<LoopDecision>& loop_decisions() const = 0;
+  /// How well the pose of the last stop is known.
+  [[nodiscard]] virtual Belief belief() const = 0;
+  [[nodiscard]] virtual const SlamCounts& counts() const = 0;
+
+ protected:
+  Slam() = default;
+  Slam(const Slam&) = default;
+  Slam& operator=(const Slam&) = default;
+};
+
+/// That `map` is the next one of the robot: throws std::invalid_argument unless its id is `next_id`
+/// and its robot that of `first`, if there is one before it.
+void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap::LocalMap* first);
+
+class GraphOptimizer;
+
+/// The algorithm that `config.mode` names. The pool and the optimizer (see Localizer) must outlive
+/// it.
+std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
+                                GraphOptimizer* optimizer = nullptr);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,87 @@
+// The fitness that localization uses: the topological form and the agreement of the scan points,
+// times what odometry says of the pose.
+//
+// Nodes and branches say where a place is like another one, scan points how well it lies on it;
+// without the odometry either takes the robot to a look-alike.
+#pragma once
+
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "topogeo/localization/matching/fitness.hpp"
+#include "topogeo/localization/matching/fitness_points.hpp"
+#include "topogeo/localization/matching/fitness_topological.hpp"
+
+namespace topogeo::localization {
+
+/// Mean over the query's thinned scan points of a soft kernel of the distance to the nearest point
+/// of the reference; 0 where that was seen from the other side.
+class ScanFitness : public Fitness {
+ public:
+  /// bind() before use.
+  ScanFitness() = default;
+  ScanFitness(const Reference& reference, const MatchFeatures& query) { bind(reference, query); }
+
+  /// Both must live as long as they are used. Allocates only for more points than ever before.
+  void bind(const Reference& reference, const MatchFeatures& query);
+
+  [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
+                          const geometry::SinCos& heading) const override;
+
+ private:
+  const Reference* reference_ = nullptr;
+  LaneArray x_m_;
+  LaneArray y_m_;
+  LaneArray normal_x_;
+  LaneArray normal_y_;
+  double per_point_ = 0.0;
+};
+
+/// 1 at the predicted pose, falling with the Mahalanobis distance from it but never to 0: an
+/// optimistic odometry covariance must not veto the scans.
+class OdometryPrior {
+ public:
+  /// bind() before use.
+  OdometryPrior() = default;
+  explicit OdometryPrior(const MatchTask& task) { bind(task); }
+  void bind(const MatchTask& task);
+
+  /// In (0, 1] at T_reference_query.
+  [[nodiscard]] double operator()(const geometry::Pose2& T_reference_query) const;
+
+ private:
+  geometry::Pose2 T_predicted_;
+  Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
+};
+
+class CombinedFitness : public Fitness {
+ public:
+  /// bind() before use.
+  CombinedFitness() = default;
+  CombinedFitness(const Reference& reference, const MatchFeatures& query, const MatchTask& task) {
+    bind(reference, query, task);
+  }
+
+  /// The maps must live as long as they are used. Allocates only for a larger map than ever before.
+  void bind(const Reference& reference, const MatchFeatures& query, const MatchTask& task);
+
+  [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
+                          const geometry::SinCos& heading) const override;
+
+  /// What the maps say of a pose; odometry does not count.
+  [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
+                               const geometry::SinCos& heading) const;
+
+  /// The parts of it.
+  [[nodiscard]] const TopologicalFitness& topological() const { return topological_; }
+  [[nodiscard]] const ScanFitness& scan() const { return scan_; }
+  [[nodiscard]] const OdometryPrior& prior() const { return prior_; }
+
+ private:
+  TopologicalFitness topological_;
+  ScanFitness scan_;
+  OdometryPrior prior_;
+};
+
+}  // namespace topogeo::localization

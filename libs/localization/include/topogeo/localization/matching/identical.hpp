@@ -1,0 +1,15 @@
+// Equality to the last bit, for what must not differ between machines: unlike ==, tells 0 from -0
+// and not a number from itself never.
+#pragma once
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/match.hpp"
+
+namespace topogeo::localization {
+
+bool identical(double a, double b);
+bool identical(const geometry::Pose2& a, const geometry::Pose2& b);
+/// Every field.
+bool identical(const MatchResult& a, const MatchResult& b);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,115 @@
+// What a search for the relative pose of two local maps needs and gives (design, the search pool).
+//
+// A task says everything that its answer depends on, so the answer is the same wherever it is
+// worked on. Poses are T_reference_query: the robot at the query map's stop, in the frame of the
+// reference map's stop.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/match_config.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+struct MatchTask {
+  std::uint64_t task_id = 0;  ///< unique within one run of one robot
+  std::uint32_t reference_map_id = 0;
+  std::uint32_t query_map_id = 0;
+  std::uint64_t reference_hash = 0;  ///< content_hash of the maps that are meant
+  std::uint64_t query_hash = 0;
+  geometry::Pose2 T_reference_query;  ///< predicted; centre of the search space
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Zero();  ///< of the prediction, (x, y, theta) in the reference frame
+  Eigen::Vector3d half_width = Eigen::Vector3d::Zero();  ///< of the search space: m, m, rad
+  GeneticParameters genetic;
+  FitnessForm fitness_form = FitnessForm::kCombined;
+  std::vector<geometry::Pose2>
+      initial_individuals;             ///< T_reference_query candidates beside the prediction
+  std::uint32_t solutions_wanted = 3;  ///< n best distinct solutions, 1 to 40
+  GateConfig gate;
+  std::uint64_t seed = 0;
+};
+
+struct MatchSolution {
+  geometry::Pose2 T_reference_query;
+  double fitness = 0.0;  ///< in [0, 1]
+};
+
+enum class MatchStatus : std::uint8_t {
+  kSolved = 0,
+  kNothingInCommon = 1,  ///< no point of the query map falls into the view of the reference map
+};
+
+/// Whether a match is believed.
+enum class Verdict : std::uint8_t {
+  kAccepted = 0,
+  kAmbiguous = 1,  ///< another place fits nearly as well
+  kRejected = 2,
+};
+
+/// Why a match is not believed.
+enum class Reason : std::uint8_t {
+  kNone = 0,  ///< it is
+  kNothingInCommon,
+  kLittleOverlap,
+  kFewInliers,
+  kDoubtful,
+  kImplausible,     ///< far from the prediction
+  kSecondSolution,  ///< the maps allow it as well; the reason of kAmbiguous
+};
+
+inline constexpr std::size_t kReasons = 7;
+
+/// A pose with all the evidence for it. Everything but `second`, `solutions` (as a selection) and
+/// `evaluations` can be computed again from the task and the poses: see Matcher::verify.
+struct MatchResult {
+  std::uint64_t task_id = 0;
+  MatchStatus status = MatchStatus::kNothingInCommon;
+  std::vector<MatchSolution> solutions;  ///< best first, distinct, before refinement
+  geometry::Pose2
+      T_reference_query;  ///< best solution after point-to-line refinement with the prior
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Zero();  ///< of T_reference_query from the data alone (inverse Hessian with
+                                ///< a floor), (x, y, theta) in the reference frame; zero unless
+                                ///< solved
+  double overlap = 0.0;  ///< share of the query's points inside the view of the reference, [0, 1]
+  double inliers = 0.0;  ///< of those, share within the inlier distance of a reference line, [0, 1]
+  double violations = 0.0;  ///< of those, share where the reference saw free space instead, [0, 1]
+  double residual_rms_m = 0.0;
+  double scan_fitness = 0.0;         ///< of the refined pose, without the prior, [0, 1]
+  double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
+  double fitness = 0.0;              ///< of the refined pose, [0, 1]
+  MatchSolution second;  ///< the pose elsewhere in the search space that the maps allow best,
+                         ///< whatever odometry says of it; fitness 0: none
+  std::uint32_t evaluations = 0;
+  std::uint64_t seed = 0;  ///< of the task
+  Verdict verdict = Verdict::kRejected;
+  Reason reason = Reason::kNothingInCommon;
+};
+
+/// Works on match tasks: in this process or on as many machines as there are.
+class MatchPool {
+ public:
+  MatchPool() = default;
+  MatchPool(const MatchPool&) = delete;
+  MatchPool& operator=(const MatchPool&) = delete;
+  virtual ~MatchPool() = default;
+
+  /// Makes a local map known, to be named in tasks from now on.
+  virtual void add_map(std::shared_ptr<const topomap::LocalMap> map) = 0;
+
+  /// Results in the order of the tasks, whatever the order in which they were worked on. Every map
+  /// that a task names must have been added before. Throws std::runtime_error when it cannot
+  /// answer.
+  virtual std::vector<MatchResult> match(std::span<const MatchTask> tasks) = 0;
+};
+
+}  // namespace topogeo::localization

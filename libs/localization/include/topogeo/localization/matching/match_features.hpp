@@ -1,0 +1,137 @@
+// What matching reads of a local map, made once per map: thinned scan points with the direction of
+// the wall under them, what was seen from the stop, and the nodes and branches.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/nearest_point_grid.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+/// A point of the scan. Two that lie together are of one surface only if they were seen from the
+/// same side: a wall has two faces, and so has a rack.
+struct SurfacePoint {
+  Eigen::Vector2d position_m;
+  /// Unit normal of the line through its neighbours, on the side that the laser saw; 0 where they
+  /// do not lie on a line.
+  Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+  bool on_line = false;  ///< the neighbours lie on a line
+};
+
+/// The same point in frame a, from frame b; `heading` of T_a_b.
+inline SurfacePoint moved(const SurfacePoint& point, const geometry::Pose2& T_a_b,
+                          const geometry::SinCos& heading) {
+  const auto turned = [&](const Eigen::Vector2d& v) {
+    return Eigen::Vector2d(heading.cos * v.x() - heading.sin * v.y(),
+                           heading.sin * v.x() + heading.cos * v.y());
+  };
+  return {T_a_b.position_m() + turned(point.position_m), turned(point.normal), point.on_line};
+}
+
+/// How far the laser saw in each direction.
+class RangeProfile {
+ public:
+  RangeProfile() = default;
+  RangeProfile(std::span<const topomap::ScanPoint> points, const geometry::Pose2& T_robot_laser);
+
+  enum class View : std::uint8_t {
+    kUnknown,  ///< no reading in that direction
+    kFree,     ///< the laser saw past it
+    kSurface,  ///< about where the laser saw something
+    kHidden,   ///< behind what the laser saw
+  };
+  /// What the scan says of a point in the robot frame. `tolerance_m` is the half-thickness of
+  /// kSurface.
+  [[nodiscard]] View view(const Eigen::Vector2d& point_robot_m, double tolerance_m) const;
+
+  /// Whether a surface with this normal (SurfacePoint::normal, robot frame) turns its back on the
+  /// laser, by more than 10 degrees. The laser cannot have seen that face. False for normal 0.
+  [[nodiscard]] bool turned_away(const Eigen::Vector2d& point_robot_m,
+                                 const Eigen::Vector2d& normal) const;
+
+  /// As view(), but a face that is turned away is hidden, unless the laser saw past it.
+  [[nodiscard]] View view_of_face(const Eigen::Vector2d& point_robot_m,
+                                  const Eigen::Vector2d& normal, double tolerance_m) const;
+
+ private:
+  static constexpr int kBins = 720;  // half a degree
+  static int bin_of(const Eigen::Vector2d& point_laser_m);
+  [[nodiscard]] Eigen::Vector2d in_laser_frame(const Eigen::Vector2d& point_robot_m) const;
+
+  Eigen::Vector2d laser_m_ = Eigen::Vector2d::Zero();  // robot frame
+  geometry::Pose2 T_laser_robot_;
+  geometry::SinCos rotation_{0.0, 1.0};  // of T_laser_robot_
+  std::vector<float>
+      near_m_;  // smallest and largest range over a bin and its neighbours; 0: no reading
+  std::vector<float> far_m_;
+};
+
+/// A point on a branch, every `kBranchSpacing_m`.
+struct BranchSample {
+  Eigen::Vector2d position_m;
+  Eigen::Vector2d direction;  ///< unit vector; its sign means nothing
+  double clearance_m = 0.0;
+};
+
+/// A branch from end to end, as the equations of the source need it.
+struct BranchCurve {
+  std::vector<Eigen::Vector2d>
+      points_m;              ///< about kCurveSpacing_m apart, both ends included; at least two
+  double clearance_m = 0.0;  ///< mean
+};
+
+struct MatchFeatures {
+  static constexpr double kFineSpacing_m = 0.05;
+  static constexpr double kCoarseSpacing_m = 0.20;
+  static constexpr double kBranchSpacing_m = 0.20;
+  static constexpr double kCurveSpacing_m = 0.10;
+
+  std::vector<SurfacePoint> surface;  ///< at least kFineSpacing_m apart along the scan
+  std::vector<SurfacePoint> coarse;   ///< at least kCoarseSpacing_m apart along the scan
+  RangeProfile profile;
+  std::vector<topomap::LocalNode>
+      nodes;  ///< real nodes and states of a branch; none fictitious or virtual
+  std::vector<BranchSample> branches;  ///< of all confirmed branches that are not virtual
+  std::vector<BranchCurve> curves;     ///< the same branches whole
+};
+
+MatchFeatures extract_features(const topomap::LocalMap& map);
+
+/// Only the scan's part of the features, for tracking between stops.
+MatchFeatures extract_scan_features(std::span<const topomap::ScanPoint> points,
+                                    const geometry::Pose2& T_robot_laser);
+
+/// Features of the reference map of a match together with the look-up grids on them. The arrays in
+/// single precision are what the genetic search reads; each ends with one element more, far away,
+/// for places that have no neighbour.
+struct Reference {
+  struct Branch {
+    float x_m, y_m;
+    float direction_x, direction_y;
+    float clearance_m;
+  };
+  struct Surface {
+    float x_m, y_m;
+    float normal_x, normal_y;
+  };
+  MatchFeatures features;
+  NearestPointGrid surface_grid;  ///< on features.surface
+  NearestPointGrid branch_grid;   ///< on features.branches
+  std::vector<Surface> surfaces;
+  std::vector<Branch> branches;
+};
+
+/// Further apart than this, in metres, nothing is looked up in a reference.
+inline constexpr double kReach_m = 0.60;
+
+/// Throws std::invalid_argument when the points lie too far apart (see NearestPointGrid::build).
+Reference make_reference(MatchFeatures features);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,79 @@
+// Works on one match task at a time: genetic search, then refinement of the winners. What a
+// ga_worker runs, and what a localizer runs itself when it has no worker.
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "topogeo/localization/matching/fitness_forms.hpp"
+#include "topogeo/localization/matching/genetic_search.hpp"
+#include "topogeo/localization/matching/genetic_search_hypotheses.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+class Matcher {
+ public:
+  /// Keeps the features of the map (some 20 kB) under its id; a later map of the same id replaces
+  /// it.
+  void add_map(const topomap::LocalMap& map);
+
+  /// True when a map of this id and content is known.
+  [[nodiscard]] bool has_map(std::uint32_t id, std::uint64_t hash) const;
+
+  /// Throws std::out_of_range when a map that the task names is not known or has another content,
+  /// std::invalid_argument when a number in the task is not finite, the covariance not positive
+  /// definite, the search space empty, the resolution not positive or solutions_wanted not 1 to 40.
+  MatchResult solve(const MatchTask& task);
+
+  /// Computes again, from the task's maps and the poses in `result`, all that the result says of
+  /// them: fitness, evidence, covariance, verdict. What is wrong with it, for people; empty when it
+  /// is right to the last bit. A result that is right may still be poorer than that of solve():
+  /// only a second answer to the task shows that. Throws like solve().
+  [[nodiscard]] std::string verify(const MatchTask& task, const MatchResult& result);
+
+ private:
+  struct KnownMap {
+    std::uint64_t hash = 0;
+    MatchFeatures features;
+  };
+  struct CachedReference {
+    std::uint32_t id = 0;
+    std::uint64_t hash = 0;
+    Reference reference;
+  };
+
+  const KnownMap& known(std::uint32_t id, std::uint64_t hash) const;
+  const Reference& reference(std::uint32_t id, std::uint64_t hash);
+
+  std::map<std::uint32_t, KnownMap> maps_;
+  std::list<CachedReference>
+      references_;  // most recently used first; grids are large, so only a few
+  // What a match works with, kept for its memory.
+  FitnessForms forms_;
+  BranchHypotheses hypotheses_;
+  GeneticSearch search_;
+  std::vector<MatchSolution> starts_;
+};
+
+/// Hash of what solve() makes of a small built-in task: two programs that differ in it would give
+/// different answers to the same task (other constants, another compiler's arithmetic).
+std::uint64_t matcher_fingerprint();
+
+/// Solves all tasks here, one after the other.
+class InProcessPool : public MatchPool {
+ public:
+  void add_map(std::shared_ptr<const topomap::LocalMap> map) override { matcher_.add_map(*map); }
+  std::vector<MatchResult> match(std::span<const MatchTask> tasks) override;
+
+ private:
+  Matcher matcher_;
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,42 @@
+// Uncertainty of odometry and the search space that follows from it (spec A3, thesis 6.2.1).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/odometry_config.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+/// A relative pose with its covariance of (x, y, theta) in the frame of its first index; m and rad.
+struct UncertainPose {
+  geometry::Pose2 T_a_b;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// T_a_c and its covariance, of two that know nothing of each other's errors.
+UncertainPose compose(const UncertainPose& T_a_b, const UncertainPose& T_b_c);
+/// T_b_a.
+UncertainPose inverse(const UncertainPose& T_a_b);
+
+/// Adds one step of odometry to a relative pose (6.4, 6.6, 6.7).
+UncertainPose advance(const UncertainPose& from, const geometry::Pose2& T_before_after,
+                      const OdometryNoise& noise);
+
+/// Odometry from the previous stop to the stop of `map`, through all scans between.
+/// `T_odom_previous` is the odometry at the previous stop.
+UncertainPose odometry_between_stops(const geometry::Pose2& T_odom_previous,
+                                     const topomap::LocalMap& map, const OdometryNoise& noise);
+
+/// The covariance with a centimetre and a fifth of a degree more: a standing robot has no odometry
+/// error, but what weighs or searches by a covariance has to invert it.
+Eigen::Matrix3d invertible(Eigen::Matrix3d covariance);
+
+/// Half-widths (m, m, rad) of the rectangle around the error ellipse of the given probability
+/// (6.22; error_ellipse.hpp) and of `heading_sigmas` standard deviations of heading (6.23).
+/// 0 < probability < 1.
+Eigen::Vector3d search_half_width(const Eigen::Matrix3d& covariance, double probability,
+                                  double heading_sigmas);
+
+}  // namespace topogeo::localization

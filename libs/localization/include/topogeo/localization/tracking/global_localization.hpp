@@ -1,0 +1,117 @@
+// Where in a finished map a scan was taken, without any idea of it before (spec A9).
+//
+// Poses in every place that was seen free, in every heading, are scored against a coarse field of
+// the whole map; the best of them climb in a fine one, the best of those are aligned point to line
+// with the stored stops that look the same way. What is seen there is the evidence, and the best
+// pose elsewhere the rival: in a corridor another place fits as well, and the verdict says so.
+// Seeds on branches and nodes alone, as the source has them, were no better on real logs and miss a
+// robot in the middle of a hall.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/localization/tracking/map_field.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::localization {
+
+struct GlobalLocalizationConfig {
+  std::uint32_t poses_wanted = 5;    ///< distinct poses in the answer, at least 2
+  double smallest_fitness = 0.60;    ///< below it a pose is rejected
+  double largest_doubt = 2.2;        ///< the same above it; see doubt()
+  double largest_rivalry = 0.85;     ///< fitness of the best pose elsewhere over that of the best
+  std::uint32_t fewest_points = 25;  ///< of the scan, thinned; fewer prove nothing
+};
+
+/// A pose that fits, with the evidence.
+struct GlobalPose {
+  geometry::Pose2 T_map_robot;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
+  double fitness = 0.0;     ///< share of the scan that lies on what the map has, softly, [0, 1]
+  double inliers = 0.0;     ///< against the stored stop that sees most of the scan, [0, 1]
+  double violations = 0.0;  ///< the same
+  double doubt = 0.0;       ///< the same
+  std::uint32_t stop = 0;   ///< id of that stop
+};
+
+struct GlobalAnswer {
+  Verdict verdict = Verdict::kRejected;
+  double rivalry = 0.0;           ///< of the second pose, share of the first one's fitness
+  std::vector<GlobalPose> poses;  ///< distinct, best first
+};
+
+/// A stored stop as global localization needs it.
+struct StoredStop {
+  std::uint32_t id = 0;
+  geometry::Pose2 T_map_robot;
+  RangeProfile profile;
+};
+
+class GlobalLocalizer {
+ public:
+  /// `maps[i]` is the local map of `trajectory.stops[i]`; both must outlive the localizer. Throws
+  /// std::invalid_argument for a map without stops or points, or with fewer maps than stops.
+  GlobalLocalizer(const GlobalLocalizationConfig& config, std::span<const topomap::LocalMap> maps,
+                  const topomap::Trajectory& trajectory);
+
+  /// Where a scan (points in the robot frame) may have been taken. The same on every machine.
+  [[nodiscard]] GlobalAnswer find(std::span<const topomap::ScanPoint> points,
+                                  const geometry::Pose2& T_robot_laser) const;
+
+  /// The places that find() would look at more closely: the `count` best distinct ones by the fine
+  /// field alone, not aligned. For those who match them with stored maps themselves.
+  [[nodiscard]] std::vector<Climbed> places(const MatchFeatures& query, std::size_t count) const;
+
+  /// Index of the stored stop from which most of a scan is seen; nothing is seen from any: the
+  /// nearest one. `share` takes how much, [0, 1].
+  [[nodiscard]] std::size_t best_stop(const MatchFeatures& query,
+                                      const geometry::Pose2& T_map_robot, double& share) const;
+
+  [[nodiscard]] const std::vector<StoredStop>& stops() const { return stops_; }
+  /// Share of scan points on what the map has, softly, [0, 1].
+  [[nodiscard]] double fitness(const MatchFeatures& query,
+                               const geometry::Pose2& T_map_robot) const;
+
+ private:
+  /// Cells beside each other in one row of the coarse grid from which a scan may come.
+  struct Run {
+    int row = 0;
+    int first_column = 0;
+    int cells = 0;
+    std::size_t first_seed = 0;  ///< cells of the runs before
+  };
+  struct Seed {
+    std::uint16_t score = 0;
+    std::uint16_t heading = 0;
+    std::uint32_t cell = 0;  ///< counted through the runs
+  };
+
+  void find_free_cells();
+  [[nodiscard]] std::vector<Seed> best_seeds(std::span<const Eigen::Vector2d> points_m) const;
+  [[nodiscard]] geometry::Pose2 pose_of(const Seed& seed) const;
+  [[nodiscard]] GlobalPose examine(const MatchFeatures& query, const geometry::Pose2& T) const;
+  [[nodiscard]] GlobalPose aligned(const MatchFeatures& query, const Climbed& place) const;
+
+  GlobalLocalizationConfig config_;
+  std::span<const topomap::LocalMap> maps_;
+  std::vector<StoredStop> stops_;
+  KernelGrid coarse_;
+  KernelGrid fine_;
+  std::vector<Run> runs_;
+  std::size_t seed_cells_ = 0;
+};
+
+/// Two poses are one place when they are nearer than 0.5 m and 15 degrees.
+bool same_global_place(const geometry::Pose2& a, const geometry::Pose2& b);
+
+}  // namespace topogeo::localization

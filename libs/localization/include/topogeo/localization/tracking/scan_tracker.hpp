@@ -1,0 +1,42 @@
+// Follows the robot from scan to scan between two stops: each scan is compared with the scan of the
+// last stop (point to line, with the odometry as prior), so errors do not add up from scan to scan.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "topogeo/localization/mapping/odometry_monitor.hpp"
+#include "topogeo/localization/matching/fitness.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/tracking/scan_tracker_config.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+struct TrackedPose {
+  geometry::Pose2 T_stop_robot;
+  bool matched = false;  ///< false: odometry alone since the last matched scan
+};
+
+class ScanTracker {
+ public:
+  explicit ScanTracker(ScanTrackerConfig config) : config_(config) {}
+
+  /// Starts again at a stop: its scan points in the robot frame and its odometry.
+  void start(std::span<const topomap::ScanPoint> points, const geometry::Pose2& T_robot_laser,
+             const geometry::Pose2& T_odom_robot);
+
+  /// Places the next scan against the stop. Call start() first.
+  TrackedPose track(std::span<const topomap::ScanPoint> points,
+                    const geometry::Pose2& T_odom_robot);
+
+ private:
+  ScanTrackerConfig config_;
+  geometry::Pose2 T_robot_laser_;
+  Reference stop_;
+  UncertainPose last_;  // pose of the last scan in the frame of the stop
+  geometry::Pose2 T_odom_last_;
+  OdometryMonitor monitor_;
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,13 @@
+#include "topogeo/localization/mapping/localization_state.hpp"
+
+#include <array>
+
+namespace topogeo::localization {
+
+const char* to_string(LocalizationState state) {
+  static constexpr std::array<const char*, kLocalizationStates> kNames{"TRACKING", "AMBIGUOUS",
+                                                                       "SEARCHING", "LOST"};
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,21 @@
+#include "topogeo/localization/mapping/loop_decision.hpp"
+
+#include <array>
+
+#include "topogeo/localization/matching/match_gate.hpp"
+
+namespace topogeo::localization {
+
+const char* to_string(LoopOutcome outcome) {
+  static constexpr std::array<const char*, kLoopOutcomes> kNames{
+      "accepted", "match not believed", "unconfirmed", "no consistent closing", "outvoted"};
+  return kNames.at(static_cast<std::size_t>(outcome));
+}
+
+std::string explanation(const LoopDecision& decision) {
+  std::string text = to_string(decision.outcome);
+  if (decision.reason != Reason::kNone) text += std::string(": ") + to_string(decision.reason);
+  return text;
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,144 @@
+#include "match_evidence.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+constexpr std::uint32_t kFewestIndividuals = 4;
+constexpr std::uint32_t kMostIndividuals = 10'000;
+constexpr std::uint64_t kMostEvaluations = 1'000'000;  // a second of one core, 32 MB
+constexpr std::uint32_t kMostSolutions = 40;
+constexpr double kUnreachable_m = 1e6;
+constexpr double kMostTurned_rad = 1e4;
+constexpr double kWidest_m = 1000.0;
+constexpr double kWidest_rad = 4.0;  // a little over half a turn to both sides
+
+class Checker {
+ public:
+  explicit Checker(const MatchTask& task) : task_(task) {}
+
+  // Not a number is outside of every range.
+  void range(const char* name, double value, double low, double high) const {
+    if (value >= low && value <= high) return;
+    char text[160];
+    std::snprintf(text, sizeof text, "%s is %g, allowed are %g to %g", name, value, low, high);
+    fail(text);
+  }
+  void pose(const char* name, const Pose2& T) const {
+    if (std::fabs(T.x_m) <= kUnreachable_m && std::fabs(T.y_m) <= kUnreachable_m &&
+        std::fabs(T.theta_rad) <= kMostTurned_rad) {
+      return;
+    }
+    char text[200];
+    std::snprintf(text, sizeof text, "%s is (%g m, %g m, %g rad), allowed are %g m and %g rad",
+                  name, T.x_m, T.y_m, T.theta_rad, kUnreachable_m, kMostTurned_rad);
+    fail(text);
+  }
+  [[noreturn]] void fail(const char* complaint) const {
+    throw std::invalid_argument("match task " + std::to_string(task_.task_id) + ": " + complaint);
+  }
+
+ private:
+  const MatchTask& task_;
+};
+
+void check_genetic(const Checker& checker, const GeneticParameters& g) {
+  checker.range("individuals", g.individuals, kFewestIndividuals, kMostIndividuals);
+  const std::uint64_t most_generations = kMostEvaluations / g.individuals;
+  checker.range("generations", g.generations, 1.0, static_cast<double>(most_generations));
+  checker.range("crossover_rate", g.crossover_rate, 0.0, 1.0);
+  checker.range("mutation_rate", g.mutation_rate, 0.0, 0.5);
+  checker.range("elite", g.elite, 1.0, g.individuals - 1.0);
+  checker.range("branch_hypotheses", g.branch_hypotheses, 0.0, kMostIndividuals);
+  checker.range("resolution_m", g.resolution_m, 1e-6, 10.0);
+  checker.range("resolution_rad", g.resolution_rad, 1e-6, 4.0);
+}
+
+void check_gate(const Checker& checker, const GateConfig& gate) {
+  for (const auto& [name, value] : {std::pair{"smallest_overlap", gate.smallest_overlap},
+                                    std::pair{"smallest_inliers", gate.smallest_inliers},
+                                    std::pair{"largest_doubt", gate.largest_doubt},
+                                    std::pair{"doubt_per_search_m", gate.doubt_per_search_m},
+                                    std::pair{"largest_mahalanobis2", gate.largest_mahalanobis2},
+                                    std::pair{"largest_ambiguity", gate.largest_ambiguity}}) {
+    checker.range(name, value, 0.0, 1e9);
+  }
+}
+
+}  // namespace
+
+void check(const MatchTask& task) {
+  const Checker checker(task);
+  checker.pose("predicted pose", task.T_reference_query);
+  for (const Pose2& T : task.initial_individuals) checker.pose("initial individual", T);
+  const Eigen::Matrix3d& c = task.covariance;
+  const bool positive_definite = c.allFinite() && c(0, 0) > 0.0 &&
+                                 c.topLeftCorner<2, 2>().determinant() > 0.0 &&
+                                 c.determinant() > 0.0 && c.inverse().allFinite();
+  if (!positive_definite) checker.fail("the covariance is not positive definite");
+  checker.range("half_width.x", task.half_width.x(), 1e-6, kWidest_m);
+  checker.range("half_width.y", task.half_width.y(), 1e-6, kWidest_m);
+  checker.range("half_width.theta", task.half_width.z(), 1e-6, kWidest_rad);
+  check_genetic(checker, task.genetic);
+  check_gate(checker, task.gate);
+  checker.range("fitness_form", static_cast<double>(task.fitness_form), 0.0,
+                static_cast<double>(FitnessForm::kCombined));
+  checker.range("solutions_wanted", task.solutions_wanted, 1.0, kMostSolutions);
+}
+
+bool same_place(const Pose2& a, const Pose2& b) {
+  constexpr double kApart_m = 0.30;
+  constexpr double kApart_rad = 0.15;
+  return (a.position_m() - b.position_m()).squaredNorm() <= kApart_m * kApart_m &&
+         std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) <= kApart_rad;
+}
+
+void add_evidence(const MatchContext& context, MatchResult& result) {
+  const auto& [task, reference, query, forms] = context;
+  const Fitness& fitness = forms.chosen();
+  MatchResult said;  // starts from nothing, so that no field can be forgotten
+  said.task_id = task.task_id;
+  said.seed = task.seed;
+  said.evaluations = result.evaluations;
+  said.solutions = std::move(result.solutions);
+  for (MatchSolution& solution : said.solutions) {
+    solution.fitness = fitness(solution.T_reference_query);
+  }
+  if (!said.solutions.empty() && said.solutions.front().fitness > 0.0) {
+    const Pose2& T = result.T_reference_query;
+    const PoseEvidence evidence = evidence_at(reference, query, T);
+    said.T_reference_query = T;
+    said.fitness = fitness(T);
+    if (result.second.fitness > 0.0) {
+      said.second = {result.second.T_reference_query, fitness(result.second.T_reference_query)};
+    }
+    said.overlap = evidence.overlap;
+    said.inliers = evidence.inliers;
+    said.violations = evidence.violations;
+    said.residual_rms_m = evidence.residual_rms_m;
+    said.scan_fitness = forms.combined().scan()(T);
+    said.topological_fitness = forms.combined().topological()(T);
+    said.status = evidence.overlap > 0.0 ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
+    if (!evidence.information.isZero(0.0)) {
+      said.covariance = match_covariance(evidence.information, doubt(said));
+    }
+  }
+  const Judgement judgement = judge(task, said);
+  said.verdict = judgement.verdict;
+  said.reason = judgement.reason;
+  result = std::move(said);
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,296 @@
+#include "topogeo/localization/matching/match_features.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using topomap::ScanPoint;
+
+constexpr double kNeighbourhood_m =
+    0.30;  // wide enough for a normal in spite of centimetres of range noise
+constexpr int kFewestNeighbours = 4;
+constexpr double kLargestThickness_m = 0.05;
+
+std::vector<Eigen::Vector2d> to_vectors(std::span<const ScanPoint> points) {
+  std::vector<Eigen::Vector2d> out;
+  out.reserve(points.size());
+  for (const ScanPoint& p : points) out.emplace_back(p.x_m, p.y_m);
+  return out;
+}
+
+// Successive beams on one surface: the gap that a wall seen at a flat angle leaves grows with
+// range.
+bool contiguous(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double range_m) {
+  const double gap_m = std::max(0.15, 0.07 * range_m);
+  return (a - b).squaredNorm() <= gap_m * gap_m;
+}
+
+// Line through the neighbours of point i by principal components, in closed form.
+SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t i,
+                         const Eigen::Vector2d& laser_m) {
+  const Eigen::Vector2d& centre = points[i];
+  const double range_m = std::sqrt((centre - laser_m).squaredNorm());
+  const double reach_m = std::max(kNeighbourhood_m, 0.07 * range_m * 2.0);
+  const auto close = [&](std::size_t k) {
+    return (points[k] - centre).squaredNorm() <= reach_m * reach_m;
+  };
+  std::size_t first = i;
+  while (first > 0 && close(first - 1) && contiguous(points[first - 1], points[first], range_m))
+    --first;
+  std::size_t last = i;
+  while (last + 1 < points.size() && close(last + 1) &&
+         contiguous(points[last + 1], points[last], range_m)) {
+    ++last;
+  }
+  const auto count = static_cast<double>(last - first + 1);
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (std::size_t k = first; k <= last; ++k) mean += points[k];
+  mean /= count;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double dx = points[k].x() - mean.x();
+    const double dy = points[k].y() - mean.y();
+    xx += dx * dx;
+    xy += dx * dy;
+    yy += dy * dy;
+  }
+  const double spread = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
+  const double smallest = std::max(0.0, 0.5 * (xx + yy) - spread);
+  const double largest = 0.5 * (xx + yy) + spread;
+  // Eigenvector of the smallest eigenvalue, from the row of (S - smallest I) that is better
+  // conditioned.
+  const Eigen::Vector2d normal = xx - smallest > yy - smallest
+                                     ? Eigen::Vector2d(-xy, xx - smallest)
+                                     : Eigen::Vector2d(yy - smallest, -xy);
+  const double length = std::sqrt(normal.squaredNorm());
+  const bool on_line = count >= kFewestNeighbours && length > 0.0 && smallest < 0.1 * largest &&
+                       smallest <= count * kLargestThickness_m * kLargestThickness_m;
+  if (!on_line) return {centre};
+  const bool seen_from_behind = normal.dot(laser_m - centre) < 0.0;
+  return {centre, normal / (seen_from_behind ? -length : length), true};
+}
+
+// Finer where that costs little: a grid over a hall would take longer to fill than the match.
+double grid_cell_m(const std::vector<SurfacePoint>& points) {
+  constexpr double kFine_m = 0.10;
+  constexpr double kLargestFineExtent_m = 50.0;
+  if (points.empty()) return kFine_m;
+  Eigen::AlignedBox2d box;
+  for (const SurfacePoint& p : points) box.extend(p.position_m);
+  return box.sizes().maxCoeff() <= kLargestFineExtent_m ? kFine_m : 2.0 * kFine_m;
+}
+
+void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSample>& out) {
+  const auto& points = branch.points;
+  double since_m = MatchFeatures::kBranchSpacing_m;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    since_m += std::sqrt((points[i].position_m - points[i - 1].position_m).squaredNorm());
+    if (since_m < MatchFeatures::kBranchSpacing_m) continue;
+    since_m = 0.0;
+    const std::size_t before = i >= 3 ? i - 3 : 0;
+    const std::size_t after = std::min(points.size() - 1, i + 3);
+    Eigen::Vector2d direction = points[after].position_m - points[before].position_m;
+    const double length = std::sqrt(direction.squaredNorm());
+    if (length <= 0.0) continue;
+    out.push_back({points[i].position_m, direction / length, points[i].clearance_m});
+  }
+}
+
+BranchCurve whole_branch(const topomap::LocalBranch& branch) {
+  constexpr double kSpacing2 = MatchFeatures::kCurveSpacing_m * MatchFeatures::kCurveSpacing_m;
+  BranchCurve curve;
+  for (const topomap::BranchPoint& point : branch.points) {
+    curve.clearance_m += point.clearance_m;
+    if (curve.points_m.empty() ||
+        (point.position_m - curve.points_m.back()).squaredNorm() >= kSpacing2) {
+      curve.points_m.push_back(point.position_m);
+    }
+  }
+  curve.clearance_m /= static_cast<double>(branch.points.size());
+  if (curve.points_m.size() > 1) curve.points_m.pop_back();
+  curve.points_m.push_back(branch.points.back().position_m);
+  return curve;
+}
+
+}  // namespace
+
+// Looked up by the slope within the quadrant: a direction is asked for a thousand times in a match,
+// and half a degree needs no arc tangent.
+int RangeProfile::bin_of(const Eigen::Vector2d& p) {
+  constexpr int kPerQuadrant = 1024;
+  static const auto kBinOf = [] {
+    std::array<std::int16_t, std::size_t{4} * kPerQuadrant> bins{};
+    for (int i = 0; i < 4 * kPerQuadrant; ++i) {
+      // The inverse of `turn` below, in the middle of the cell.
+      const double in_quadrant = (i % kPerQuadrant + 0.5) / kPerQuadrant;
+      double x = 1.0 - in_quadrant;
+      double y = in_quadrant;
+      for (int quadrant = i / kPerQuadrant; quadrant > 0; --quadrant) {
+        x = std::exchange(y, x);
+        x = -x;
+      }
+      const double turn = geometry::atan2(y, x) / (2.0 * std::numbers::pi);
+      bins.at(static_cast<std::size_t>(i)) =
+          static_cast<std::int16_t>(static_cast<int>((turn + 0.5) * kBins) % kBins);
+    }
+    return bins;
+  }();
+  const double ax = std::fabs(p.x());
+  const double ay = std::fabs(p.y());
+  if (ax + ay == 0.0) return kBins / 2;
+  const double slope = ay / (ax + ay);  // 0 on the x axis, 1 on the y axis
+  double turn = p.x() >= 0.0 ? slope : 2.0 - slope;
+  if (p.y() < 0.0) turn = 4.0 - turn;
+  const int cell = std::min(static_cast<int>(turn * kPerQuadrant), 4 * kPerQuadrant - 1);
+  return kBinOf[static_cast<std::size_t>(cell)];
+}
+
+Eigen::Vector2d RangeProfile::in_laser_frame(const Eigen::Vector2d& p) const {
+  return {T_laser_robot_.x_m + rotation_.cos * p.x() - rotation_.sin * p.y(),
+          T_laser_robot_.y_m + rotation_.sin * p.x() + rotation_.cos * p.y()};
+}
+
+RangeProfile::RangeProfile(std::span<const ScanPoint> points, const Pose2& T_robot_laser)
+    : laser_m_(T_robot_laser.position_m()),
+      T_laser_robot_(geometry::inverse(T_robot_laser)),
+      rotation_(geometry::sincos(T_laser_robot_.theta_rad)),
+      near_m_(kBins, 0.0F),
+      far_m_(kBins, 0.0F) {
+  std::vector<float> range_m(kBins, 0.0F);
+  const auto put = [&](int bin, double range) {
+    float& cell = range_m[static_cast<std::size_t>(bin)];
+    if (cell == 0.0F || range < cell) cell = static_cast<float>(range);
+  };
+  int last_bin = -1;
+  double last_range_m = 0.0;
+  for (const ScanPoint& point : points) {
+    const Eigen::Vector2d p = in_laser_frame({point.x_m, point.y_m});
+    const double range = std::sqrt(p.squaredNorm());
+    const int bin = bin_of(p);
+    put(bin, range);
+    // A coarser laser leaves bins between two beams; up to two degrees they belong to the nearer
+    // reading.
+    if (last_bin >= 0 && bin > last_bin + 1 && bin <= last_bin + 4) {
+      for (int k = last_bin + 1; k < bin; ++k) put(k, std::min(range, last_range_m));
+    }
+    last_bin = bin;
+    last_range_m = range;
+  }
+  for (int k = 0; k < kBins; ++k) {
+    for (int d = -1; d <= 1; ++d) {
+      const float range = range_m[static_cast<std::size_t>((k + d + kBins) % kBins)];
+      if (range == 0.0F) continue;
+      float& near = near_m_[static_cast<std::size_t>(k)];
+      float& far = far_m_[static_cast<std::size_t>(k)];
+      near = near == 0.0F ? range : std::min(near, range);
+      far = std::max(far, range);
+    }
+  }
+}
+
+RangeProfile::View RangeProfile::view(const Eigen::Vector2d& point_robot_m,
+                                      double tolerance_m) const {
+  if (near_m_.empty()) return View::kUnknown;  // made of no scan
+  const Eigen::Vector2d p = in_laser_frame(point_robot_m);
+  const auto bin = static_cast<std::size_t>(bin_of(p));
+  const auto near = static_cast<double>(near_m_[bin]);
+  if (near == 0.0) return View::kUnknown;
+  const double range = std::sqrt(p.squaredNorm());
+  if (range < near - tolerance_m) return View::kFree;
+  return range <= static_cast<double>(far_m_[bin]) + tolerance_m ? View::kSurface : View::kHidden;
+}
+
+bool RangeProfile::turned_away(const Eigen::Vector2d& point_robot_m,
+                               const Eigen::Vector2d& normal) const {
+  constexpr double kGrazing = 0.17364818;  // of 10 degrees: the side of a face is not sure below
+  const Eigen::Vector2d to_laser_m = laser_m_ - point_robot_m;
+  const double along_m = to_laser_m.dot(normal);
+  return along_m < 0.0 && along_m * along_m > kGrazing * kGrazing * to_laser_m.squaredNorm();
+}
+
+RangeProfile::View RangeProfile::view_of_face(const Eigen::Vector2d& point_robot_m,
+                                              const Eigen::Vector2d& normal,
+                                              double tolerance_m) const {
+  const View seen = view(point_robot_m, tolerance_m);
+  return seen == View::kSurface && turned_away(point_robot_m, normal) ? View::kHidden : seen;
+}
+
+MatchFeatures extract_scan_features(std::span<const ScanPoint> points, const Pose2& T_robot_laser) {
+  MatchFeatures features;
+  const std::vector<Eigen::Vector2d> all = to_vectors(points);
+  const Eigen::Vector2d laser_m = T_robot_laser.position_m();
+  const auto far_enough = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b, double spacing_m) {
+    return (a - b).squaredNorm() >= spacing_m * spacing_m;
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (features.surface.empty() ||
+        far_enough(features.surface.back().position_m, all[i], MatchFeatures::kFineSpacing_m)) {
+      features.surface.push_back(fit_surface(all, i, laser_m));
+    }
+    if (features.coarse.empty() ||
+        far_enough(features.coarse.back().position_m, all[i], MatchFeatures::kCoarseSpacing_m)) {
+      const bool kept = features.surface.back().position_m == all[i];
+      features.coarse.push_back(kept ? features.surface.back() : fit_surface(all, i, laser_m));
+    }
+  }
+  features.profile = RangeProfile(points, T_robot_laser);
+  return features;
+}
+
+MatchFeatures extract_features(const topomap::LocalMap& map) {
+  MatchFeatures features = extract_scan_features(map.points, map.T_robot_laser);
+  for (const topomap::LocalNode& node : map.nodes) {
+    if (node.kind != topomap::NodeKind::kFictitious && node.kind != topomap::NodeKind::kVirtual) {
+      features.nodes.push_back(node);
+    }
+  }
+  for (const topomap::LocalBranch& branch : map.branches) {
+    if (branch.is_virtual || !branch.confirmed || branch.points.empty()) continue;
+    add_branch_samples(branch, features.branches);
+    features.curves.push_back(whole_branch(branch));
+  }
+  return features;
+}
+
+Reference make_reference(MatchFeatures features) {
+  constexpr float kFarAway_m = 1e9F;
+  Reference reference;
+  const double cell_m = grid_cell_m(features.surface);
+  std::vector<Eigen::Vector2d> positions_m;
+  positions_m.reserve(std::max(features.surface.size(), features.branches.size()));
+  reference.surfaces.reserve(features.surface.size() + 1);
+  for (const SurfacePoint& p : features.surface) {
+    positions_m.push_back(p.position_m);
+    const Eigen::Vector2f at_m = p.position_m.cast<float>();
+    const Eigen::Vector2f normal = p.normal.cast<float>();
+    reference.surfaces.push_back({at_m.x(), at_m.y(), normal.x(), normal.y()});
+  }
+  reference.surfaces.push_back({kFarAway_m, kFarAway_m, 0.0F, 0.0F});
+  reference.surface_grid.build(positions_m, cell_m, kReach_m);
+  positions_m.clear();
+  reference.branches.reserve(features.branches.size() + 1);
+  for (const BranchSample& s : features.branches) {
+    positions_m.push_back(s.position_m);
+    const Eigen::Vector2f p = s.position_m.cast<float>();
+    const Eigen::Vector2f d = s.direction.cast<float>();
+    reference.branches.push_back({p.x(), p.y(), d.x(), d.y(), static_cast<float>(s.clearance_m)});
+  }
+  reference.branches.push_back({kFarAway_m, kFarAway_m, 0.0F, 0.0F, 0.0F});
+  reference.branch_grid.build(positions_m, cell_m, kReach_m);
+  reference.features = std::move(features);
+  return reference;
+}
+
+}  // namespace topogeo::localization

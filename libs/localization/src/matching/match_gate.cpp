@@ -1,0 +1,105 @@
+#include "topogeo/localization/matching/match_gate.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/fitness_combined.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+constexpr double kOutweighed = 0.12;  // violations at which no match is believed, whatever fits
+
+}  // namespace
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAccepted:
+      return "accepted";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kRejected:
+      return "rejected";
+  }
+  return "unknown";
+}
+
+const char* to_string(Reason reason) {
+  switch (reason) {
+    case Reason::kNone:
+      return "accepted";
+    case Reason::kNothingInCommon:
+      return "nothing in common";
+    case Reason::kLittleOverlap:
+      return "little overlap";
+    case Reason::kFewInliers:
+      return "few inliers";
+    case Reason::kDoubtful:
+      return "doubtful";
+    case Reason::kImplausible:
+      return "far from the prediction";
+    case Reason::kSecondSolution:
+      return "second solution";
+  }
+  return "unknown";
+}
+
+double doubt(const MatchResult& result) {
+  return result.violations / 0.12 + std::max(0.0, 0.92 - result.inliers) / 0.20 +
+         result.residual_rms_m / 0.08 + std::max(0.0, 0.50 - result.scan_fitness) / 0.20;
+}
+
+double rivalry(const MatchTask& task, const MatchResult& result) {
+  if (!(result.second.fitness > 0.0 && result.fitness > 0.0)) return 0.0;
+  const double ratio = result.second.fitness / result.fitness;
+  if (task.fitness_form != FitnessForm::kCombined) return ratio;
+  const OdometryPrior prior(task);
+  return ratio * prior(result.T_reference_query) / prior(result.second.T_reference_query);
+}
+
+Judgement judge(const MatchTask& task, const MatchResult& result) {
+  const GateConfig& gate = task.gate;
+  const auto rejected = [](Reason reason) { return Judgement{Verdict::kRejected, reason}; };
+  if (result.status != MatchStatus::kSolved || result.covariance.isZero(0.0)) {
+    return rejected(Reason::kNothingInCommon);
+  }
+  if (result.overlap < gate.smallest_overlap) return rejected(Reason::kLittleOverlap);
+  if (result.inliers < gate.smallest_inliers) return rejected(Reason::kFewInliers);
+  const double search_m = std::max(task.half_width.x(), task.half_width.y());
+  if (doubt(result) > gate.largest_doubt - gate.doubt_per_search_m * search_m) {
+    return rejected(Reason::kDoubtful);
+  }
+  // Each of the two is seen at right matches too, both together hardly ever: where another pose
+  // fits nearly as well, little of what speaks against this one is enough
+  // (tests/bench/matching.sh).
+  const double rival = rivalry(task, result);
+  if (rival <= gate.largest_ambiguity && result.violations / kOutweighed + rival > 1.0) {
+    return rejected(Reason::kDoubtful);
+  }
+  const Eigen::Vector3d error =
+      geometry::difference(result.T_reference_query, task.T_reference_query);
+  if (error.dot(task.covariance.inverse() * error) > gate.largest_mahalanobis2) {
+    return rejected(Reason::kImplausible);
+  }
+  if (rival > gate.largest_ambiguity) return {Verdict::kAmbiguous, Reason::kSecondSolution};
+  return {Verdict::kAccepted, Reason::kNone};
+}
+
+Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doubt) {
+  constexpr double kFloor_m = 0.02;
+  constexpr double kFloor_rad = 0.0052;
+  constexpr double kLeastInformation =
+      0.25;  // along a bare corridor: a deviation of 2 m, not an infinite one
+  Eigen::Matrix3d known = information;
+  for (int i = 0; i < 3; ++i) known(i, i) += kLeastInformation;
+  const double widening = 0.5 + doubt;
+  Eigen::Matrix3d covariance = known.inverse() * (widening * widening);
+  covariance(0, 0) += kFloor_m * kFloor_m;
+  covariance(1, 1) += kFloor_m * kFloor_m;
+  covariance(2, 2) += kFloor_rad * kFloor_rad;
+  return covariance;
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,117 @@
+#include "topogeo/localization/matching/matcher.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/LU>
+
+#include "topogeo/localization/matching/genetic_search.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
+
+#include "match_evidence.hpp"
+#include "match_rivals.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+constexpr std::size_t kCachedReferences = 16;  // of about 150 kB
+constexpr std::size_t kRefined = 3;  // places that are refined before the winner is chosen
+
+// Refines the `starts` and takes the one with the largest fitness as the result's pose. Its second
+// is the pose elsewhere that the maps allow best, whatever odometry says of it.
+void choose(const MatchContext& context, const std::vector<MatchSolution>& starts,
+            MatchResult& result) {
+  const PosePrior prior{context.task.T_reference_query, context.task.covariance.inverse()};
+  std::array<MatchSolution, kRefined> refined;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Alignment aligned =
+        align(context.reference, context.query, starts[i].T_reference_query, prior);
+    refined[i] = {aligned.T_reference_query, context.forms.chosen()(aligned.T_reference_query)};
+    if (refined[i].fitness > refined[best].fitness) best = i;
+  }
+  result.T_reference_query = refined[best].T_reference_query;
+  result.second = strongest_rival(context, result.T_reference_query);
+  const CombinedFitness& combined = context.forms.combined();
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Pose2& T = refined[i].T_reference_query;
+    if (same_place(T, result.T_reference_query)) continue;
+    const double fitness = combined.of_maps(T, geometry::sincos(T.theta_rad));
+    if (fitness > result.second.fitness) result.second = {T, fitness};
+  }
+  if (result.second.fitness <= 0.0) return;
+  // It is told like every other solution, by the form that was asked for, which may find nothing.
+  result.second.fitness = context.forms.chosen()(result.second.T_reference_query);
+  if (result.second.fitness <= 0.0) result.second = {};
+}
+
+}  // namespace
+
+void Matcher::add_map(const topomap::LocalMap& map) {
+  maps_[map.id] = {topomap::content_hash(map), extract_features(map)};
+}
+
+bool Matcher::has_map(std::uint32_t id, std::uint64_t hash) const {
+  const auto found = maps_.find(id);
+  return found != maps_.end() && found->second.hash == hash;
+}
+
+const Matcher::KnownMap& Matcher::known(std::uint32_t id, std::uint64_t hash) const {
+  const auto found = maps_.find(id);
+  if (found == maps_.end())
+    throw std::out_of_range("local map " + std::to_string(id) + " is not known");
+  if (found->second.hash != hash) {
+    throw std::out_of_range("local map " + std::to_string(id) +
+                            " has another content than the task means");
+  }
+  return found->second;
+}
+
+const Reference& Matcher::reference(std::uint32_t id, std::uint64_t hash) {
+  const KnownMap& map = known(id, hash);
+  const auto found = std::find_if(references_.begin(), references_.end(), [&](const auto& cached) {
+    return cached.id == id && cached.hash == hash;
+  });
+  if (found != references_.end()) {
+    references_.splice(references_.begin(), references_, found);
+  } else {
+    references_.push_front({id, hash, make_reference(map.features)});
+    if (references_.size() > kCachedReferences) references_.pop_back();
+  }
+  return references_.front().reference;
+}
+
+MatchResult Matcher::solve(const MatchTask& task) {
+  check(task);
+  const MatchFeatures& query = known(task.query_map_id, task.query_hash).features;
+  const Reference& against = reference(task.reference_map_id, task.reference_hash);
+  forms_.bind(against, query, task);
+
+  MatchResult result;
+  result.evaluations =
+      search_.run(task, forms_.chosen(), hypotheses_.find(task, against.features, query));
+  result.solutions.reserve(task.solutions_wanted);
+  search_.best_distinct(
+      task.solutions_wanted,
+      [&](const Pose2& a, const Pose2& b) { return same_solution(task, a, b); }, result.solutions);
+  const MatchContext context{task, against, query, forms_};
+  if (!result.solutions.empty() && result.solutions.front().fitness > 0.0) {
+    search_.best_distinct(kRefined, same_place, starts_);
+    choose(context, starts_, result);
+  }
+  add_evidence(context, result);
+  return result;
+}
+
+std::vector<MatchResult> InProcessPool::match(std::span<const MatchTask> tasks) {
+  std::vector<MatchResult> results;
+  results.reserve(tasks.size());
+  for (const MatchTask& task : tasks) results.push_back(matcher_.solve(task));
+  return results;
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,136 @@
+// Matcher::verify: is what a result says of its poses true?
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "topogeo/localization/matching/genetic_search.hpp"
+#include "topogeo/localization/matching/identical.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
+
+#include "match_evidence.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+bool sane(const Pose2& T) {
+  constexpr double kFarthest_m = 2e6;
+  return std::fabs(T.x_m) <= kFarthest_m && std::fabs(T.y_m) <= kFarthest_m &&
+         std::fabs(T.theta_rad) <= std::numbers::pi;
+}
+
+std::string differs(const std::string& name, double said, double right) {
+  char text[160];
+  std::snprintf(text, sizeof text, " is said to be %.17g and is %.17g", said, right);
+  return name + text;
+}
+
+std::string nth(std::size_t i) {
+  return "solution " + std::to_string(i + 1);
+}
+
+// What can be wrong with a result before anything is computed from its poses.
+std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
+  if (result.task_id != task.task_id) return "the task_id is that of another task";
+  if (result.seed != task.seed) return "the seed is not that of the task";
+  if (result.solutions.empty()) return "there is no solution";
+  if (result.solutions.size() > task.solutions_wanted) {
+    return std::to_string(result.solutions.size()) + " solutions, wanted were " +
+           std::to_string(task.solutions_wanted);
+  }
+  const std::uint64_t most =
+      std::uint64_t{task.genetic.individuals} * std::uint64_t{task.genetic.generations};
+  if (result.evaluations < task.genetic.individuals || result.evaluations > most) {
+    return std::to_string(result.evaluations) + " evaluations, possible are " +
+           std::to_string(task.genetic.individuals) + " to " + std::to_string(most);
+  }
+  for (std::size_t i = 0; i < result.solutions.size(); ++i) {
+    const Pose2& T = result.solutions[i].T_reference_query;
+    if (!sane(T) || !in_search_space(task, T)) return nth(i) + " is outside of the search space";
+    for (std::size_t k = 0; k < i; ++k) {
+      if (same_solution(task, T, result.solutions[k].T_reference_query)) {
+        return nth(k) + " and " + nth(i) + " are one";
+      }
+    }
+  }
+  if (!sane(result.T_reference_query)) return "the refined pose is none";
+  if (!sane(result.second.T_reference_query)) return "the pose of the second is none";
+  return {};
+}
+
+// The first difference between what is said and what is right.
+std::string difference(const MatchResult& said, const MatchResult& right) {
+  for (std::size_t i = 0; i < right.solutions.size(); ++i) {
+    if (!identical(said.solutions[i].fitness, right.solutions[i].fitness)) {
+      return differs("the fitness of " + nth(i), said.solutions[i].fitness,
+                     right.solutions[i].fitness);
+    }
+  }
+  if (!identical(said.T_reference_query, right.T_reference_query)) {
+    return "there is a refined pose though no solution fits";
+  }
+  if (!identical(said.second.T_reference_query, right.second.T_reference_query)) {
+    return "there is a second pose without a fitness";
+  }
+  struct Number {
+    const char* name;
+    double said;
+    double right;
+  };
+  for (const Number& number :
+       {Number{"the fitness", said.fitness, right.fitness},
+        Number{"the fitness of the second", said.second.fitness, right.second.fitness},
+        Number{"the overlap", said.overlap, right.overlap},
+        Number{"the share of inliers", said.inliers, right.inliers},
+        Number{"the share of violations", said.violations, right.violations},
+        Number{"the residual", said.residual_rms_m, right.residual_rms_m},
+        Number{"the scan fitness", said.scan_fitness, right.scan_fitness},
+        Number{"the topological fitness", said.topological_fitness, right.topological_fitness}}) {
+    if (!identical(number.said, number.right))
+      return differs(number.name, number.said, number.right);
+  }
+  for (int i = 0; i < 9; ++i) {
+    if (!identical(said.covariance(i), right.covariance(i))) {
+      return differs("element " + std::to_string(i) + " of the covariance", said.covariance(i),
+                     right.covariance(i));
+    }
+  }
+  if (said.status != right.status) return "the status is wrong";
+  if (said.verdict != right.verdict) return "the verdict is wrong";
+  if (said.reason != right.reason) return "the reason is wrong";
+  return {};
+}
+
+// What holds for right numbers of poses that solve() would choose.
+std::string faults_of_choice(const MatchResult& right) {
+  for (std::size_t i = 1; i < right.solutions.size(); ++i) {
+    if (right.solutions[i].fitness > right.solutions[i - 1].fitness) {
+      return nth(i) + " is better than " + nth(i - 1);
+    }
+  }
+  // The second is the one that the maps allow best, so with odometry it may be the better one.
+  if (right.second.fitness == 0.0) return {};
+  if (same_place(right.second.T_reference_query, right.T_reference_query)) {
+    return "the second is the best one again";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string Matcher::verify(const MatchTask& task, const MatchResult& result) {
+  check(task);
+  const MatchFeatures& query = known(task.query_map_id, task.query_hash).features;
+  const Reference& against = reference(task.reference_map_id, task.reference_hash);
+  std::string fault = faults_of_form(task, result);
+  if (!fault.empty()) return fault;
+  forms_.bind(against, query, task);
+  MatchResult right = result;
+  add_evidence({task, against, query, forms_}, right);
+  fault = difference(result, right);
+  return fault.empty() ? faults_of_choice(right) : fault;
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,225 @@
+#include "topogeo/localization/matching/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "topogeo/geometry/portable_math.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+constexpr int kMaxIterations = 15;
+constexpr std::size_t kFewestPoints = 12;
+constexpr double kFirstGate_m = 0.50;  // shrinks to kLastGate_m while iterating
+constexpr double kLastGate_m = 0.20;
+constexpr double kCauchy_m = 0.05;
+// Deviation taken for one residual. More than the laser's noise, because the residuals of
+// neighbouring beams are not independent.
+constexpr double kResidualSigma_m = 0.08;
+constexpr double kInlier_m = 0.15;
+constexpr double kViewTolerance_m = 0.30;
+constexpr double kSameFace = 0.70710678;  // cosine between two normals of one surface
+
+struct NormalEquations {
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  std::size_t points = 0;
+
+  // Written out, because the order of the sums must be the same on every machine.
+  void add(const double jacobian[3], double residual, double weight) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) hessian(i, j) += weight * jacobian[i] * jacobian[j];
+      gradient(i) += weight * jacobian[i] * residual;
+    }
+    ++points;
+  }
+};
+
+NormalEquations linearize(const Reference& reference, const MatchFeatures& query, const Pose2& T,
+                          double gate_m) {
+  NormalEquations equations;
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
+  constexpr double kPerSigma2 = 1.0 / (kResidualSigma_m * kResidualSigma_m);
+  for (const SurfacePoint& point : query.surface) {
+    const double dx = r.cos * point.position_m.x() - r.sin * point.position_m.y();
+    const double dy = r.sin * point.position_m.x() + r.cos * point.position_m.y();
+    const std::int32_t found = reference.surface_grid.find(T.x_m + dx, T.y_m + dy);
+    if (found == NearestPointGrid::kNone) continue;
+    const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+    const double ox = T.x_m + dx - other.position_m.x();
+    const double oy = T.y_m + dy - other.position_m.y();
+    if (ox * ox + oy * oy > gate_m * gate_m || !other.on_line) continue;
+    if (point
+            .on_line) {  // neither two walls across each other nor the faces of one are one surface
+      const double nx = r.cos * point.normal.x() - r.sin * point.normal.y();
+      const double ny = r.sin * point.normal.x() + r.cos * point.normal.y();
+      if (nx * other.normal.x() + ny * other.normal.y() < kSameFace) continue;
+    }
+    const double residual = other.normal.x() * ox + other.normal.y() * oy;
+    const double u = residual / kCauchy_m;
+    const double jacobian[3] = {other.normal.x(), other.normal.y(),
+                                other.normal.y() * dx - other.normal.x() * dy};
+    equations.add(jacobian, residual, kPerSigma2 / (1.0 + u * u));
+  }
+  return equations;
+}
+
+// Adds what the prior says; both its error and the update are (x, y, theta) in the reference frame.
+void add_prior(NormalEquations& equations, const Pose2& T, const PosePrior& prior) {
+  const Eigen::Vector3d error = geometry::difference(T, prior.T_reference_query);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      equations.hessian(i, j) += prior.information(i, j);
+      equations.gradient(i) += prior.information(i, j) * error[j];
+    }
+  }
+}
+
+// Counts the reference's points that fall into what the query saw.
+struct ReverseView {
+  std::size_t in_view = 0;
+  std::size_t violations = 0;
+};
+
+ReverseView look_back(const Reference& reference, const MatchFeatures& query, const Pose2& T) {
+  ReverseView counts;
+  const Pose2 T_query_reference = geometry::inverse(T);
+  const geometry::SinCos r = geometry::sincos(T_query_reference.theta_rad);
+  for (const SurfacePoint& point : reference.features.surface) {
+    const SurfacePoint p = moved(point, T_query_reference, r);
+    const RangeProfile::View view =
+        query.profile.view_of_face(p.position_m, p.normal, kViewTolerance_m);
+    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++counts.in_view;
+    if (view == RangeProfile::View::kFree) ++counts.violations;
+  }
+  return counts;
+}
+
+// Overlap, inliers, violations and residual.
+void compare_views(const Reference& reference, const MatchFeatures& query, const Pose2& T,
+                   PoseEvidence& result) {
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
+  std::size_t in_view = 0;
+  std::size_t inliers = 0;
+  std::size_t violations = 0;
+  double squared = 0.0;
+  for (const SurfacePoint& point : query.surface) {
+    const SurfacePoint here = moved(point, T, r);
+    const Eigen::Vector2d& p = here.position_m;
+    const std::int32_t found = reference.surface_grid.find(p.x(), p.y());
+    const RangeProfile& profile = reference.features.profile;
+    if (found != NearestPointGrid::kNone && !profile.turned_away(p, here.normal)) {
+      const SurfacePoint& other = reference.features.surface[static_cast<std::size_t>(found)];
+      const Eigen::Vector2d o = p - other.position_m;
+      const double across =
+          other.on_line ? o.x() * other.normal.x() + o.y() * other.normal.y() : 0.0;
+      const double distance2 = other.on_line ? across * across : o.squaredNorm();
+      if (distance2 <= kInlier_m * kInlier_m && o.squaredNorm() <= 4.0 * kInlier_m * kInlier_m) {
+        ++in_view;
+        ++inliers;
+        squared += distance2;
+        continue;
+      }
+    }
+    const RangeProfile::View view = profile.view_of_face(p, here.normal, kViewTolerance_m);
+    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++in_view;
+    if (view == RangeProfile::View::kFree) ++violations;
+  }
+  if (query.surface.empty() || in_view == 0) return;
+  const auto seen = static_cast<double>(in_view);
+  result.overlap = seen / static_cast<double>(query.surface.size());
+  result.inliers = static_cast<double>(inliers) / seen;
+  result.violations = static_cast<double>(violations) / seen;
+  const ReverseView back = look_back(reference, query, T);
+  if (back.in_view > 0) {
+    result.violations = std::max(result.violations, static_cast<double>(back.violations) /
+                                                        static_cast<double>(back.in_view));
+  }
+  if (inliers > 0) result.residual_rms_m = std::sqrt(squared / static_cast<double>(inliers));
+}
+
+// Without the part along the direction in which the position is hardly known. There a pull of
+// centimetres would become metres, and the pose weighs nothing anyway.
+Eigen::Vector2d known_part(const Eigen::Vector2d& step_m, const Eigen::Matrix2d& covariance_m2) {
+  constexpr double kKnown_m2 = 0.25;
+  const double half_difference = 0.5 * (covariance_m2(0, 0) - covariance_m2(1, 1));
+  const double mean = 0.5 * (covariance_m2(0, 0) + covariance_m2(1, 1));
+  const double spread =
+      std::sqrt(half_difference * half_difference + covariance_m2(0, 1) * covariance_m2(0, 1));
+  if (mean + spread <= kKnown_m2) return step_m;
+  if (mean - spread > kKnown_m2) return Eigen::Vector2d::Zero();
+  const geometry::SinCos widest =
+      geometry::sincos(0.5 * geometry::atan2(covariance_m2(0, 1), half_difference));
+  const Eigen::Vector2d along(widest.cos, widest.sin);
+  return step_m - along * along.dot(step_m);
+}
+
+}  // namespace
+
+Eigen::Matrix3d information_at(const Reference& reference, const MatchFeatures& query,
+                               const Pose2& T_reference_query) {
+  const NormalEquations equations = linearize(reference, query, T_reference_query, kLastGate_m);
+  if (equations.points < kFewestPoints) return Eigen::Matrix3d::Zero();
+  return equations.hessian;
+}
+
+PoseEvidence evidence_at(const Reference& reference, const MatchFeatures& query,
+                         const Pose2& T_reference_query) {
+  PoseEvidence evidence;
+  evidence.information = information_at(reference, query, T_reference_query);
+  compare_views(reference, query, T_reference_query, evidence);
+  return evidence;
+}
+
+Alignment align(const Reference& reference, const MatchFeatures& query, const Pose2& T_first_guess,
+                const PosePrior& prior) {
+  Alignment result{T_first_guess, 0, false};
+  Pose2& T = result.T_reference_query;
+  for (int k = 0; k < kMaxIterations; ++k) {
+    const double gate_m = std::max(kLastGate_m, kFirstGate_m - 0.06 * k);
+    NormalEquations equations = linearize(reference, query, T, gate_m);
+    if (equations.points < kFewestPoints) return {T_first_guess, k, false};
+    add_prior(equations, T, prior);
+    // A little damping keeps a direction that nothing fixes (along a bare corridor) where it was.
+    for (int i = 0; i < 3; ++i) equations.hessian(i, i) += 1e-3;
+    const Eigen::Vector3d step = equations.hessian.inverse() * equations.gradient;
+    T = {T.x_m - step.x(), T.y_m - step.y(), geometry::wrap_angle(T.theta_rad - step.z())};
+    result.iterations = k + 1;
+    const bool still =
+        std::fabs(step.x()) < 1e-4 && std::fabs(step.y()) < 1e-4 && std::fabs(step.z()) < 1e-5;
+    if (still && gate_m <= kLastGate_m) {
+      result.converged = true;
+      break;
+    }
+  }
+  return result;
+}
+
+Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
+                    const PosePrior& prior) {
+  constexpr double kFarthest_m = 0.3;
+  constexpr double kFarthest_rad = 0.05;
+  const Eigen::Vector3d pull =
+      prior.information * geometry::difference(T_aligned, prior.T_reference_query);
+  Eigen::Vector3d step = covariance * pull;
+  step.head<2>() = known_part(step.head<2>(), covariance.topLeftCorner<2, 2>());
+  if (std::fabs(step.x()) > kFarthest_m || std::fabs(step.y()) > kFarthest_m ||
+      std::fabs(step.z()) > kFarthest_rad) {
+    return T_aligned;
+  }
+  return {T_aligned.x_m + step.x(), T_aligned.y_m + step.y(),
+          geometry::wrap_angle(T_aligned.theta_rad + step.z())};
+}
+
+Refinement refine(const Reference& reference, const MatchFeatures& query,
+                  const Pose2& T_first_guess, const PosePrior& prior) {
+  const Alignment aligned = align(reference, query, T_first_guess, prior);
+  return {evidence_at(reference, query, aligned.T_reference_query), aligned.T_reference_query,
+          aligned.iterations, aligned.converged};
+}
+
+}  // namespace topogeo::localization

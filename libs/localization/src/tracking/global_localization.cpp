@@ -1,0 +1,365 @@
+#include "topogeo/localization/tracking/global_localization.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+constexpr double kCoarseCell_m = 0.25;
+constexpr double kCoarseWidth_m = 0.60;
+constexpr double kFineCell_m = 0.05;
+constexpr double kFineWidth_m = 0.30;
+constexpr double kThinned_m = 0.05;  // of the map's points
+constexpr double kRobotRadius_m = 0.20;
+constexpr double kSeenFree_m = 8.0;  // how far from a stop a scan may come from
+constexpr int kHeadings = 72;
+constexpr int kHeadingsOfSector = 18;  // the best heading of each sector is kept for each cell
+constexpr int kSectors = kHeadings / kHeadingsOfSector;
+constexpr std::size_t kCoarsePoints = 64;
+constexpr std::size_t kFinePoints = 120;
+constexpr std::size_t kClimbing = 300;
+constexpr std::size_t kAligned = 8;
+constexpr double kNearStop_m = 6.0;
+
+/// At most about `count`, spread over the scan.
+std::vector<SurfacePoint> spread(const std::vector<SurfacePoint>& points, std::size_t count) {
+  const std::size_t stride = std::max<std::size_t>(1, (points.size() + count - 1) / count);
+  std::vector<SurfacePoint> out;
+  for (std::size_t i = 0; i < points.size(); i += stride) out.push_back(points[i]);
+  return out;
+}
+
+std::vector<Eigen::Vector2d> positions_of(const std::vector<SurfacePoint>& points) {
+  std::vector<Eigen::Vector2d> out;
+  out.reserve(points.size());
+  for (const SurfacePoint& point : points) out.push_back(point.position_m);
+  return out;
+}
+
+/// One point for each square of kThinned_m, in order.
+std::vector<Eigen::Vector2d> thinned(std::vector<Eigen::Vector2d> points_m) {
+  struct Entry {
+    std::int64_t column;
+    std::int64_t row;
+    std::size_t index;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(points_m.size());
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    entries.push_back({static_cast<std::int64_t>(std::floor(points_m[i].x() / kThinned_m)),
+                       static_cast<std::int64_t>(std::floor(points_m[i].y() / kThinned_m)), i});
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.row, a.column, a.index) < std::tie(b.row, b.column, b.index);
+  });
+  std::vector<Eigen::Vector2d> out;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (i > 0 && entries[i].row == entries[i - 1].row &&
+        entries[i].column == entries[i - 1].column) {
+      continue;
+    }
+    out.push_back(points_m[entries[i].index]);
+  }
+  return out;
+}
+
+std::vector<Eigen::Vector2d> map_points(std::span<const topomap::LocalMap> maps,
+                                        const topomap::Trajectory& trajectory) {
+  std::vector<Eigen::Vector2d> points_m;
+  for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
+    const Pose2& T = trajectory.stops[i].T_map_robot;
+    const geometry::SinCos r = geometry::sincos(T.theta_rad);
+    for (const topomap::ScanPoint& p : maps[i].points) {
+      const Eigen::Vector2d q(p.x_m, p.y_m);
+      points_m.emplace_back(T.x_m + r.cos * q.x() - r.sin * q.y(),
+                            T.y_m + r.sin * q.x() + r.cos * q.y());
+    }
+  }
+  return points_m;
+}
+
+}  // namespace
+
+bool same_global_place(const Pose2& a, const Pose2& b) {
+  constexpr double kApart_m = 0.5;
+  constexpr double kApart_rad = 0.2617993878;
+  return (a.position_m() - b.position_m()).squaredNorm() < kApart_m * kApart_m &&
+         std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) < kApart_rad;
+}
+
+GlobalLocalizer::GlobalLocalizer(const GlobalLocalizationConfig& config,
+                                 std::span<const topomap::LocalMap> maps,
+                                 const topomap::Trajectory& trajectory)
+    : config_(config), maps_(maps) {
+  if (trajectory.stops.empty() || maps.size() < trajectory.stops.size()) {
+    throw std::invalid_argument("global localization: " + std::to_string(maps.size()) +
+                                " local maps for " + std::to_string(trajectory.stops.size()) +
+                                " stops, expected at least one stop and a map for each");
+  }
+  for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
+    stops_.push_back({maps[i].id, trajectory.stops[i].T_map_robot,
+                      RangeProfile(maps[i].points, maps[i].T_robot_laser)});
+  }
+  const std::vector<Eigen::Vector2d> points_m = thinned(map_points(maps, trajectory));
+  if (points_m.empty()) {
+    throw std::invalid_argument("global localization: no stop of the map saw anything");
+  }
+  // No scan reaches farther than the stops' scans did.
+  double longest_m = 0.0;
+  for (const topomap::LocalMap& map : maps) {
+    for (const topomap::ScanPoint& p : map.points) {
+      longest_m = std::max(longest_m, std::sqrt(double{p.x_m} * p.x_m + double{p.y_m} * p.y_m));
+    }
+  }
+  coarse_ = KernelGrid(points_m, kCoarseCell_m, kCoarseWidth_m, longest_m + 1.0);
+  fine_ = KernelGrid(points_m, kFineCell_m, kFineWidth_m, 1.0);
+  find_free_cells();
+}
+
+// Cells that a stop saw free and that have room for a robot.
+void GlobalLocalizer::find_free_cells() {
+  const auto columns = static_cast<std::size_t>(coarse_.columns());
+  std::vector<std::uint8_t> free(columns * static_cast<std::size_t>(coarse_.rows()), 0);
+  // The robot's circle touches nothing: the kernel at this distance from a point.
+  const double u = 1.0 - kRobotRadius_m * kRobotRadius_m / (kFineWidth_m * kFineWidth_m);
+  const int occupied = static_cast<int>(255.0 * u * u);
+  for (const StoredStop& stop : stops_) {
+    const int reach = static_cast<int>(kSeenFree_m / coarse_.cell_m());
+    const int c = coarse_.column(stop.T_map_robot.x_m);
+    const int r = coarse_.row(stop.T_map_robot.y_m);
+    const Pose2 T_robot_map = geometry::inverse(stop.T_map_robot);
+    const geometry::SinCos turn = geometry::sincos(T_robot_map.theta_rad);
+    for (int y = std::max(0, r - reach); y <= std::min(coarse_.rows() - 1, r + reach); ++y) {
+      for (int x = std::max(0, c - reach); x <= std::min(coarse_.columns() - 1, c + reach); ++x) {
+        std::uint8_t& cell =
+            free[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)];
+        if (cell != 0) continue;
+        const Eigen::Vector2d p = coarse_.centre_m(x, y);
+        const Eigen::Vector2d q(T_robot_map.x_m + turn.cos * p.x() - turn.sin * p.y(),
+                                T_robot_map.y_m + turn.sin * p.x() + turn.cos * p.y());
+        const bool here = std::abs(x - c) <= 1 && std::abs(y - r) <= 1;
+        if (!here && stop.profile.view(q, kRobotRadius_m) != RangeProfile::View::kFree) continue;
+        if (here || fine_.at(p.x(), p.y()) < occupied) cell = 1;
+      }
+    }
+  }
+  for (int y = 0; y < coarse_.rows(); ++y) {
+    for (int x = 0; x < coarse_.columns();) {
+      const auto at = [&](int column) {
+        return free[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(column)] != 0;
+      };
+      if (!at(x)) {
+        ++x;
+        continue;
+      }
+      int end = x;
+      while (end < coarse_.columns() && at(end)) ++end;
+      runs_.push_back({y, x, end - x, seed_cells_});
+      seed_cells_ += static_cast<std::size_t>(end - x);
+      x = end;
+    }
+  }
+}
+
+Pose2 GlobalLocalizer::pose_of(const Seed& seed) const {
+  const auto after =
+      std::upper_bound(runs_.begin(), runs_.end(), std::size_t{seed.cell},
+                       [](std::size_t cell, const Run& run) { return cell < run.first_seed; });
+  const Run& run = *(after - 1);
+  const Eigen::Vector2d p =
+      coarse_.centre_m(run.first_column + static_cast<int>(seed.cell - run.first_seed), run.row);
+  return {
+      p.x(), p.y(),
+      geometry::wrap_angle(2.0 * std::numbers::pi / kHeadings * static_cast<double>(seed.heading))};
+}
+
+std::vector<GlobalLocalizer::Seed> GlobalLocalizer::best_seeds(
+    std::span<const Eigen::Vector2d> points_m) const {
+  std::vector<Seed> seeds(seed_cells_ * kSectors);
+  std::vector<std::uint16_t> sums;
+  struct Offset {
+    int column;
+    int row;
+  };
+  std::vector<Offset> offsets(points_m.size());
+  for (int heading = 0; heading < kHeadings; ++heading) {
+    const geometry::SinCos r = geometry::sincos(2.0 * std::numbers::pi / kHeadings * heading);
+    for (std::size_t i = 0; i < points_m.size(); ++i) {
+      const Eigen::Vector2d& p = points_m[i];
+      offsets[i] = {
+          static_cast<int>(std::floor((r.cos * p.x() - r.sin * p.y()) / coarse_.cell_m() + 0.5)),
+          static_cast<int>(std::floor((r.sin * p.x() + r.cos * p.y()) / coarse_.cell_m() + 0.5))};
+    }
+    for (const Run& run : runs_) {
+      const auto cells = static_cast<std::size_t>(run.cells);
+      sums.assign(cells, 0);
+      for (const Offset& offset : offsets) {
+        const int row = run.row + offset.row;
+        const int column = run.first_column + offset.column;
+        if (row < 0 || row >= coarse_.rows() || column < 0 ||
+            column + run.cells > coarse_.columns()) {
+          continue;
+        }
+        const std::uint8_t* from = coarse_.row_data(row) + column;
+        std::uint16_t* to = sums.data();
+        for (std::size_t k = 0; k < cells; ++k) to[k] = static_cast<std::uint16_t>(to[k] + from[k]);
+      }
+      Seed* const best = seeds.data() +
+                         static_cast<std::size_t>(heading / kHeadingsOfSector) * seed_cells_ +
+                         run.first_seed;
+      for (std::size_t k = 0; k < cells; ++k) {
+        if (sums[k] <= best[k].score) continue;
+        best[k] = {sums[k], static_cast<std::uint16_t>(heading),
+                   static_cast<std::uint32_t>(run.first_seed + k)};
+      }
+    }
+  }
+  const std::size_t kept = std::min(kClimbing, seeds.size());
+  std::partial_sort(seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(kept), seeds.end(),
+                    [](const Seed& a, const Seed& b) {
+                      return std::tie(b.score, a.cell, a.heading) <
+                             std::tie(a.score, b.cell, b.heading);
+                    });
+  seeds.resize(kept);
+  return seeds;
+}
+
+std::vector<Climbed> GlobalLocalizer::places(const MatchFeatures& query, std::size_t count) const {
+  const std::vector<Eigen::Vector2d> coarse = positions_of(spread(query.coarse, kCoarsePoints));
+  const std::vector<Eigen::Vector2d> fine = positions_of(spread(query.coarse, kFinePoints));
+  std::vector<Climbed> climbed;
+  for (const Seed& seed : best_seeds(coarse)) {
+    if (seed.score > 0) climbed.push_back(climb(fine_, fine, pose_of(seed)));
+  }
+  std::stable_sort(climbed.begin(), climbed.end(),
+                   [](const Climbed& a, const Climbed& b) { return a.value > b.value; });
+  std::vector<Climbed> distinct;
+  for (const Climbed& place : climbed) {
+    if (distinct.size() == count) break;
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Climbed& other) {
+      return same_global_place(other.T_map_robot, place.T_map_robot);
+    });
+    if (!known) distinct.push_back(place);
+  }
+  return distinct;
+}
+
+std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& T_map_robot,
+                                       double& share) const {
+  const std::vector<SurfacePoint> outline = spread(query.coarse, 40);
+  std::size_t best = 0;
+  std::size_t most = 0;
+  double nearest_m2 = 1e300;
+  for (std::size_t i = 0; i < stops_.size(); ++i) {
+    const double apart_m2 =
+        (stops_[i].T_map_robot.position_m() - T_map_robot.position_m()).squaredNorm();
+    if (most == 0 && apart_m2 < nearest_m2) {
+      best = i;
+      nearest_m2 = apart_m2;
+    }
+    if (apart_m2 > kNearStop_m * kNearStop_m) continue;
+    const Pose2 T = geometry::between(stops_[i].T_map_robot, T_map_robot);
+    const geometry::SinCos r = geometry::sincos(T.theta_rad);
+    std::size_t seen = 0;
+    for (const SurfacePoint& point : outline) {
+      const SurfacePoint p = moved(point, T, r);
+      const auto view = stops_[i].profile.view_of_face(p.position_m, p.normal, 0.4);
+      if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
+    }
+    if (seen > most || (seen == most && seen > 0 && apart_m2 < nearest_m2)) {
+      best = i;
+      most = seen;
+      nearest_m2 = apart_m2;
+    }
+  }
+  share = outline.empty() ? 0.0 : static_cast<double>(most) / static_cast<double>(outline.size());
+  return best;
+}
+
+double GlobalLocalizer::fitness(const MatchFeatures& query, const Pose2& T_map_robot) const {
+  return mean_kernel(fine_, positions_of(query.coarse), T_map_robot);
+}
+
+// Aligns a place with the stop that sees it best, and says what is seen there.
+GlobalPose GlobalLocalizer::aligned(const MatchFeatures& query, const Climbed& place) const {
+  double share = 0.0;
+  const std::size_t stop = best_stop(query, place.T_map_robot, share);
+  const topomap::LocalMap& map = maps_[stop];
+  const Reference reference = make_reference(extract_scan_features(map.points, map.T_robot_laser));
+  const Pose2 T_start = geometry::between(stops_[stop].T_map_robot, place.T_map_robot);
+  // A weak prior at the start: along a corridor nothing else holds the pose.
+  const PosePrior prior{T_start, Eigen::Vector3d(25.0, 25.0, 100.0).asDiagonal()};
+  const Refinement refined = refine(reference, query, T_start, prior);
+  MatchResult evidence;
+  evidence.violations = refined.violations;
+  evidence.inliers = refined.inliers;
+  evidence.residual_rms_m = refined.residual_rms_m;
+  GlobalPose pose;
+  pose.T_map_robot = stops_[stop].T_map_robot * refined.T_reference_query;
+  pose.fitness = fitness(query, pose.T_map_robot);
+  // Where the two scans share little the field of all stops knows better.
+  if (pose.fitness < place.value) {
+    const double climbed = fitness(query, place.T_map_robot);
+    if (climbed > pose.fitness + 0.02) {
+      pose.T_map_robot = place.T_map_robot;
+      pose.fitness = climbed;
+    }
+  }
+  evidence.scan_fitness = pose.fitness;
+  pose.inliers = refined.inliers;
+  pose.violations = refined.violations;
+  pose.doubt = doubt(evidence);
+  pose.stop = stops_[stop].id;
+  const Eigen::Matrix3d in_stop = match_covariance(refined.information, pose.doubt);
+  const geometry::SinCos r = geometry::sincos(stops_[stop].T_map_robot.theta_rad);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() << r.cos, -r.sin, r.sin, r.cos;
+  pose.covariance = turn * in_stop * turn.transpose();
+  return pose;
+}
+
+GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
+                                   const Pose2& T_robot_laser) const {
+  GlobalAnswer answer;
+  const MatchFeatures query = extract_scan_features(points, T_robot_laser);
+  if (query.coarse.size() < config_.fewest_points) return answer;
+  std::vector<GlobalPose> found;
+  for (const Climbed& place : places(query, kAligned)) found.push_back(aligned(query, place));
+  const auto value = [](const GlobalPose& p) {
+    return p.fitness * std::max(0.1, 1.0 - p.violations);
+  };
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const GlobalPose& a, const GlobalPose& b) { return value(a) > value(b); });
+  for (const GlobalPose& pose : found) {
+    if (answer.poses.size() == config_.poses_wanted) break;
+    const bool known =
+        std::any_of(answer.poses.begin(), answer.poses.end(), [&](const GlobalPose& other) {
+          return same_global_place(other.T_map_robot, pose.T_map_robot);
+        });
+    if (!known) answer.poses.push_back(pose);
+  }
+  if (answer.poses.empty()) return answer;
+  const GlobalPose& best = answer.poses.front();
+  if (answer.poses.size() > 1) answer.rivalry = value(answer.poses[1]) / value(best);
+  if (best.fitness < config_.smallest_fitness || best.doubt > config_.largest_doubt) {
+    answer.verdict = Verdict::kRejected;
+  } else {
+    answer.verdict =
+        answer.rivalry > config_.largest_rivalry ? Verdict::kAmbiguous : Verdict::kAccepted;
+  }
+  return answer;
+}
+
+}  // namespace topogeo::localization

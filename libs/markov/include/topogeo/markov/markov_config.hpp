@@ -1,0 +1,79 @@
+// Settings of Markov localization and its sensor model.
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+namespace topogeo::markov {
+
+struct TransitionMatrix {
+  int rows = 0;                ///< odd
+  int columns = 0;             ///< odd
+  std::vector<double> values;  ///< rows x columns, the upper row first
+};
+
+/// Fig. 6, an advance. It sums to 0.9961: the source rounds. Nothing here makes it sum to one; the
+/// localizer normalizes the state after each update.
+TransitionMatrix macondo_advance();
+
+/// Of a quarter turn on the spot: 0.9 to stay, 0.02 for each neighbour, 0.005 for each diagonal
+/// one. The source has no figures for its turns.
+TransitionMatrix quarter_turn();
+
+/// Which way the arrow of fig. 6 points, which cannot be read in the source.
+enum class ArrowSense {
+  kRight,  ///< the right column is ahead of the robot: it rather goes too far
+  kLeft,   ///< the right column is behind it: it rather slips
+};
+
+struct TransitionModel {
+  TransitionMatrix advance = macondo_advance();
+  TransitionMatrix left = quarter_turn();
+  TransitionMatrix right = quarter_turn();
+  ArrowSense sense = ArrowSense::kRight;
+  /// Length and angle of the step that a matrix stands for; 0: the matrix is applied once for
+  /// a primitive, however long it is.
+  double advance_step_m = 0.10;
+  double turn_step_rad = 0.5 * std::numbers::pi;
+};
+
+/// Probability from the mean absolute difference d of the compared readings, scale s (not
+/// normalized). The source only says that it falls when the difference grows.
+enum class PerceptualFormula {
+  kExponential,  ///< exp(-d / s)
+  kInverse,      ///< 1 / (1 + d / s)
+  kLinear,       ///< max(0, 1 - d / s)
+};
+
+/// Up to this expected distance (and beyond that of the band before) a reading is that reliable.
+struct ReliabilityBand {
+  double up_to_m = 0.0;
+  double reliability = 0.0;
+};
+
+struct SonarModelConfig {
+  /// Virtual and real readings beyond are taken for this. Not below the last band.
+  double max_range_m = 5.0;
+  /// Rays across a cone that is not 0, edges included; odd, so that one is the axis.
+  int rays_per_cone = 5;
+  /// Ascending; beyond the last the reliability is 0.
+  std::vector<ReliabilityBand> bands = {{2.5, 1.0}, {5.0, 0.25}};
+  PerceptualFormula formula = PerceptualFormula::kExponential;
+  double scale_m = 0.05;
+  /// A larger difference counts as this much, so that one sensor that meets a person or no echo
+  /// does not outvote the others.
+  double difference_cap_m = 0.5;
+  /// Weighs each difference by the reliability of its reading. The source does not: there
+  /// reliability decides only how much the whole vector counts.
+  bool weigh_by_reliability = false;
+};
+
+struct MarkovConfig {
+  int window_cells = 21;  ///< of a side; odd, in [5, 101]
+  TransitionModel transition{};
+  SonarModelConfig sonar{};
+  /// Weight of the perceptual model when the readings are wholly reliable, in [0, 1].
+  double perceptual_weight = 0.6;
+};
+
+}  // namespace topogeo::markov

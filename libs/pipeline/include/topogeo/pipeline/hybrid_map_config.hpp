@@ -1,0 +1,22 @@
+// Settings of the hybrid map: occupancy grid and zones.
+#pragma once
+
+#include <cstdint>
+
+#include "topogeo/planning/grid_config.hpp"
+
+namespace topogeo::pipeline {
+
+/// Side of the tiles that a grid is sent in: a map that grows must not shift them.
+inline constexpr std::int32_t kTileCells = 64;
+
+struct HybridMapConfig {
+  planning::ScanGridConfig grid{.snap_cells = kTileCells};
+  planning::InflationConfig inflation;
+  planning::ZoneConfig zones;
+};
+
+/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+void check(const HybridMapConfig& config);
+
+}  // namespace topogeo::pipeline

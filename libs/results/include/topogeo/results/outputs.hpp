@@ -1,0 +1,36 @@
+// The files that a run leaves behind, and the part of its report that follows from the map.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/storage/map_document.hpp"
+#include "topogeo/storage/report.hpp"
+
+namespace topogeo::results {
+
+/// Writes trajectory.tum, odometry.tum, map.pb, map.svg and map.png into an existing directory,
+/// each whole or not at all. Stops that are not located are in odometry.tum and map.pb alone. The
+/// first two and map.pb are the same bytes for the same log, seed and configuration. Throws
+/// std::runtime_error naming the file.
+void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
+                       const std::string& title);
+
+/// Fills robot, seed, scans, stops, nodes, branches, loop closures and distance of a report.
+void add_map(storage::Report& report, const storage::MapDocument& document);
+
+/// Fills the match counts of a report.
+void add_matches(storage::Report& report, const localization::SlamCounts& counts);
+
+/// Fills the loop candidates of a report.
+void add_loop_candidates(storage::Report& report,
+                         std::span<const localization::LoopDecision> decisions);
+
+/// Fills what was skipped of the log.
+void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics);
+
+}  // namespace topogeo::results

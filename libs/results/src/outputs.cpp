@@ -1,0 +1,97 @@
+#include "topogeo/results/outputs.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/render/map_picture.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/tum.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::results {
+
+namespace {
+
+/// The stops whose place is known.
+struct LocatedStops {
+  std::vector<topomap::LocalMap> maps;
+  std::vector<topomap::StopPose> stops;
+};
+
+LocatedStops located_stops(const storage::MapDocument& document) {
+  LocatedStops out;
+  for (std::size_t i = 0; i < document.trajectory.stops.size(); ++i) {
+    if (!document.trajectory.stops[i].located) continue;
+    out.maps.push_back(document.local_maps[i]);
+    out.stops.push_back(document.trajectory.stops[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
+                       const std::string& title) {
+  const auto corrected = topomap::expand_trajectory(document.trajectory, document.local_maps);
+  const auto odometry = topomap::expand_odometry(document.trajectory, document.local_maps);
+  storage::write_trajectory_tum(directory / "trajectory.tum", corrected);
+  storage::write_trajectory_tum(directory / "odometry.tum", odometry);
+  storage::write_map_file(directory / "map.pb", document);
+  const LocatedStops located = located_stops(document);
+  const render::MapPicture picture{located.maps, located.stops,          odometry,
+                                   corrected,    document.loop_closures, &document.global_map,
+                                   title};
+  render::draw_map_svg(directory / "map.svg", picture);
+  render::draw_map_png(directory / "map.png", picture);
+}
+
+void add_map(storage::Report& report, const storage::MapDocument& document) {
+  report.robot_id = document.robot_id;
+  report.seed = document.seed;
+  report.stops = document.local_maps.size();
+  report.nodes = document.global_map.nodes.size();
+  report.branches = document.global_map.branches.size();
+  report.loop_closures = document.loop_closures;
+  const auto poses = topomap::expand_trajectory(document.trajectory, document.local_maps);
+  report.scans = poses.size();
+  report.distance_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    report.distance_m +=
+        std::sqrt((poses[i].pose.position_m() - poses[i - 1].pose.position_m()).squaredNorm());
+  }
+}
+
+void add_matches(storage::Report& report, const localization::SlamCounts& counts) {
+  report.matches_tried = counts.tasks;
+  report.matches_accepted = counts.reasons[static_cast<std::size_t>(localization::Reason::kNone)];
+  report.matches_rejected.clear();
+  for (std::size_t i = 1; i < localization::kReasons; ++i) {
+    report.matches_rejected.emplace_back(
+        localization::to_string(static_cast<localization::Reason>(i)), counts.reasons[i]);
+  }
+}
+
+void add_loop_candidates(storage::Report& report,
+                         std::span<const localization::LoopDecision> decisions) {
+  report.loop_candidates.clear();
+  report.loop_candidates.reserve(decisions.size());
+  for (const localization::LoopDecision& d : decisions) {
+    report.loop_candidates.push_back({d.step, d.earlier_id, d.later_id,
+                                      localization::to_string(d.outcome),
+                                      localization::to_string(d.reason), d.T_earlier_later,
+                                      d.correction_m, d.correction_rad, d.fitness});
+  }
+}
+
+void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics) {
+  report.skipped_lines.clear();
+  for (std::size_t i = 0; i < scan::kSkipReasonCount; ++i) {
+    const auto reason = static_cast<scan::SkipReason>(i);
+    if (statistics.skipped_for(reason) > 0) {
+      report.skipped_lines.emplace_back(scan::describe(reason), statistics.skipped_for(reason));
+    }
+  }
+}
+
+}  // namespace topogeo::results

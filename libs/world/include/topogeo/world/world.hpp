@@ -1,0 +1,146 @@
+// A floor to drive in: everything a laser sees at its height, as segments and circles.
+//
+// The world file is YAML, metres, x to the right and y up in the drawing, counter-clockwise:
+//   name: two rooms
+//   wall_thickness: 0.1           # optional, default 0: a wall is one line
+//   walls:                        # each with doors as gaps; `at` is the distance of the door's
+//     - {from: [0, 0], to: [8, 0], doors: [{at: 2.5, width: 0.9}]}   # middle from `from`
+//   boxes: [{from: [1, 1], to: [2, 1.5]}]        # furniture: two opposite corners
+//   columns: [{center: [4, 4], radius: 0.3}]
+//   segments: [[0, 0, 1, 1]]      # single lines: x1, y1, x2, y2
+//   tour: [[1, 1], [6, 1]]        # way points of the drive
+//   places: [{name: room A, at: [1, 1]}]         # what people call them; each name once
+// What changes while the robot drives:
+//   doors: [{at: 2.5, width: 0.9, open: [[0, 12.5], [40, 60]]}]   # closed but for these parts of
+//                                 # the way driven; without `open` it stands open for ever
+//   boxes: [{from: [1, 1], to: [2, 1.5], present: [[0, 30]]}]     # also of columns: there for
+//                                 # these parts of the way driven only
+//   open_s: [[5, 20]], present_s: [[5, 20]]   # the same in seconds since the start; what is open
+//   or
+//                                 # there by the way or by the time is so
+//   random: [20, 10]              # also: on the average so many seconds open (present) and so many
+//                                 # shut (absent), by turns, as a seed draws them (draw_changes)
+//   people: [{path: [[1, 1], [6, 1]], speed: 1.2, radius: 0.2, start: 3, yields: true}]   # walk
+//   the
+//                                 # path to and fro, m/s (0: stand), seconds after the start of the
+//                                 # drive; who yields waits for the robot to leave the way
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::world {
+
+struct Segment {
+  Eigen::Vector2d a_m;
+  Eigen::Vector2d b_m;
+};
+
+struct Circle {
+  Eigen::Vector2d center_m;
+  double radius_m;
+};
+
+/// Part of the way that the robot drives, metres from its start: [from, to).
+struct WayInterval {
+  double from_m = 0.0;
+  double to_m = 0.0;
+};
+
+/// Seconds since the start of the drive: [from, to).
+struct TimeInterval {
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
+/// Mean times of something that changes by turns; each one lasts from half to one and a half of it.
+struct RandomTurns {
+  double inside_s = 0.0;   ///< present, or open for a door; > 0
+  double outside_s = 0.0;  ///< absent, or shut for a door; > 0
+};
+
+/// Surfaces that are there while the robot is on certain parts of its way or at certain times (a
+/// closed door, furniture that is moved).
+struct ChangingPart {
+  std::vector<Segment> segments{};
+  std::vector<Circle> circles{};
+  std::vector<WayInterval> present{};
+  bool otherwise = false;  ///< the surfaces are there outside of `present` and `present_s` instead:
+                           ///< a door that is open in these intervals
+  std::vector<TimeInterval> present_s{};
+  std::optional<RandomTurns> random{};  ///< see draw_changes
+};
+
+/// Somebody who walks along a path and back again, regardless of the robot.
+struct Person {
+  std::vector<Eigen::Vector2d> path_m{};  ///< one point: stands there
+  double speed_m_per_s = 1.2;
+  double radius_m = 0.2;
+  double start_s = 0.0;  ///< since the start of the drive; until then at the first point
+  bool yields = false;   ///< stands still where the next step would bring it too near to the robot
+};
+
+/// A place that has a name.
+struct NamedPlace {
+  std::string name;
+  Eigen::Vector2d position_m;
+};
+
+struct World {
+  std::string name{};
+  std::vector<Segment> segments{};
+  std::vector<Circle> circles{};
+  std::vector<Eigen::Vector2d> tour_m{};
+  std::vector<ChangingPart> changing{};
+  std::vector<Person> people{};
+  std::vector<NamedPlace> places{};
+};
+
+/// Reads a world file. Throws std::runtime_error naming file, line, key and what was expected: an
+/// unreadable file, broken YAML, an unknown key, a value out of range, a door outside its wall or
+/// overlapping another, a world without any surface.
+World load_world(const std::filesystem::path& path);
+
+/// The same from text; `source` stands for the file in messages.
+World parse_world(const std::string& text, const std::string& source);
+
+/// The surfaces that are there when the robot has driven `way_m` and `time_s` have passed: those
+/// that never change and the present ones of those that do, without people.
+World scene_at(const World& world, double way_m, double time_s = 0.0);
+
+/// Which of world.changing are there then.
+std::vector<bool> present_parts(const World& world, double way_m, double time_s);
+
+/// Draws when something that changes by turns is present or open, one time after the other, without
+/// end.
+class DrawnTurns {
+ public:
+  /// Of the part of this number in world.changing.
+  DrawnTurns(const RandomTurns& turns, std::uint64_t seed, std::size_t part);
+  /// The next time, which ends after the start of the drive.
+  TimeInterval next();
+
+ private:
+  [[nodiscard]] double draw_s(double mean_s) { return mean_s * random_.uniform(0.5, 1.5); }
+
+  RandomTurns turns_;
+  support::Random random_;
+  double at_s_;  // when the next time begins
+};
+
+/// The world with times drawn for what changes at random, up to `until_s`; before, and after that
+/// time, a random part is absent or shut.
+World draw_changes(World world, std::uint64_t seed, double until_s);
+
+/// Distance from a point to the nearest surface, metres; infinity in a world without surfaces. What
+/// changes does not count: see scene_at.
+double clearance_m(const World& world, const Eigen::Vector2d& point_m);
+
+}  // namespace topogeo::world

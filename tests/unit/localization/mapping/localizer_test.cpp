@@ -1,0 +1,307 @@
+#include "topogeo/localization/mapping/localizer.hpp"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <memory>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/matching/matcher.hpp"
+
+#include "localization/hand_scenes.hpp"
+#include "localization/simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::DrivenMaps;
+using test::round_trip;
+
+struct Outcome {
+  topomap::Trajectory trajectory;
+  std::vector<topomap::LoopClosure> closures;
+  SlamCounts counts;
+  int corrections = 0;  // steps that moved earlier poses
+};
+
+Outcome localize(const test::Maps& maps, MatchPool& pool, const LocalizerConfig& config = {}) {
+  Localizer localizer(config, pool);
+  Outcome outcome;
+  for (const auto& map : maps) outcome.corrections += localizer.add(map) ? 1 : 0;
+  localizer.finish();
+  outcome.trajectory = localizer.trajectory();
+  outcome.closures = localizer.loop_closures();
+  outcome.counts = localizer.counts();
+  return outcome;
+}
+
+Outcome localize(const test::Maps& maps, const LocalizerConfig& config = {}) {
+  InProcessPool pool;
+  return localize(maps, pool, config);
+}
+
+// Root mean square position error when the first poses coincide.
+double position_error_m(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    sum += (geometry::between(poses[0], poses[i]).position_m() -
+            geometry::between(truth[0], truth[i]).position_m())
+               .squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+std::vector<Pose2> poses_of(const topomap::Trajectory& trajectory) {
+  std::vector<Pose2> poses;
+  for (const topomap::StopPose& stop : trajectory.stops) poses.push_back(stop.T_map_robot);
+  return poses;
+}
+
+void expect_same(const Outcome& a, const Outcome& b) {
+  ASSERT_EQ(a.trajectory.stops.size(), b.trajectory.stops.size());
+  EXPECT_EQ(a.trajectory.version, b.trajectory.version);
+  for (std::size_t i = 0; i < a.trajectory.stops.size(); ++i) {
+    ASSERT_EQ(a.trajectory.stops[i].T_map_robot, b.trajectory.stops[i].T_map_robot) << i;
+    ASSERT_EQ(a.trajectory.stops[i].covariance, b.trajectory.stops[i].covariance) << i;
+  }
+  ASSERT_EQ(a.closures.size(), b.closures.size());
+  for (std::size_t i = 0; i < a.closures.size(); ++i) {
+    EXPECT_EQ(a.closures[i].earlier_id, b.closures[i].earlier_id);
+    EXPECT_EQ(a.closures[i].T_earlier_later, b.closures[i].T_earlier_later);
+  }
+  EXPECT_EQ(a.counts.evaluations, b.counts.evaluations);
+  EXPECT_EQ(a.counts.reasons, b.counts.reasons);
+}
+
+TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
+  const DrivenMaps& driven = round_trip();
+  ASSERT_GT(driven.maps.size(), 80U);
+  const Outcome outcome = localize(driven.maps);
+  std::vector<Pose2> odometry;
+  for (const auto& map : driven.maps) odometry.push_back(map->T_odom_robot);
+  const double before_m = position_error_m(odometry, driven.T_world_robot);
+  const double after_m = position_error_m(poses_of(outcome.trajectory), driven.T_world_robot);
+  EXPECT_GT(before_m, 1.0);
+  EXPECT_LT(after_m, 0.25);
+  EXPECT_LT(after_m, 0.1 * before_m);
+
+  EXPECT_GE(outcome.closures.size(), 5U);
+  EXPECT_GE(outcome.corrections, 1);
+  EXPECT_EQ(outcome.counts.removed_loops, 0U);
+  for (const topomap::LoopClosure& loop : outcome.closures) {
+    const Pose2 truth = geometry::between(driven.T_world_robot[loop.earlier_id],
+                                          driven.T_world_robot[loop.later_id]);
+    EXPECT_LT(loop.earlier_id, loop.later_id);
+    EXPECT_LT(test::distance_m(loop.T_earlier_later, truth), 0.5)
+        << loop.earlier_id << " - " << loop.later_id;
+  }
+  std::uint64_t judged = 0;
+  for (const std::uint64_t count : outcome.counts.reasons) judged += count;
+  EXPECT_EQ(judged, outcome.counts.tasks);
+  for (std::size_t i = 0; i < driven.maps.size(); ++i) {
+    const topomap::StopPose& stop = outcome.trajectory.stops[i];
+    EXPECT_EQ(stop.local_map_id, i);
+    EXPECT_EQ(stop.stamp_ns, driven.maps[i]->stamp_ns);
+    if (i > 0) {
+      EXPECT_GT(stop.covariance.diagonal().minCoeff(), 0.0);
+    }
+  }
+  EXPECT_EQ(outcome.trajectory.stops[0].T_map_robot, Pose2{});
+}
+
+TEST(LocalizerTest, WithoutRevisitsNoLoopIsClosed) {
+  LocalizerConfig config;
+  config.revisit_matches = 0;
+  const Outcome outcome = localize(round_trip().maps, config);
+  EXPECT_TRUE(outcome.closures.empty());
+  EXPECT_EQ(outcome.corrections, 0);
+}
+
+TEST(LocalizerTest, AStepWithoutALoopTouchesNothingOld) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  topomap::Trajectory before;
+  int untouched = 0;
+  for (const auto& map : round_trip().maps) {
+    const bool moved = localizer.add(map);
+    topomap::Trajectory after = localizer.trajectory();
+    for (std::size_t i = 0; !moved && i < before.stops.size(); ++i) {
+      ASSERT_EQ(after.stops[i].T_map_robot, before.stops[i].T_map_robot) << i;
+      ASSERT_EQ(after.stops[i].covariance, before.stops[i].covariance) << i;
+    }
+    untouched += moved ? 0 : 1;
+    before = std::move(after);
+  }
+  EXPECT_GT(untouched, 60);
+}
+
+// Works on the job in a thread of its own and is done sooner or later.
+class LateOptimizer : public GraphOptimizer {
+ public:
+  void start(GraphProblem problem) override {
+    ++jobs;
+    const std::chrono::milliseconds nap((jobs % 3) * 15);
+    job_ = std::async(std::launch::async, [problem = std::move(problem), nap] {
+      std::this_thread::sleep_for(nap);
+      return solve(problem);
+    });
+  }
+  GraphSolution fetch() override { return job_.get(); }
+  int jobs = 0;
+
+ private:
+  std::future<GraphSolution> job_;
+};
+
+TEST(LocalizerTest, HowLongTheOptimizationTakesDoesNotMatter) {
+  LateOptimizer late;
+  InProcessPool pool;
+  Localizer localizer({}, pool, &late);
+  Outcome outcome;
+  for (const auto& map : round_trip().maps) outcome.corrections += localizer.add(map) ? 1 : 0;
+  localizer.finish();
+  outcome.trajectory = localizer.trajectory();
+  outcome.closures = localizer.loop_closures();
+  outcome.counts = localizer.counts();
+  EXPECT_GT(late.jobs, 3);
+  expect_same(outcome, localize(round_trip().maps));
+}
+
+TEST(LocalizerTest, EveryLoopIsExplained) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  for (const auto& map : round_trip().maps) localizer.add(map);
+  localizer.finish();
+  std::set<std::pair<std::uint32_t, std::uint32_t>> standing;
+  std::size_t refused = 0;
+  for (const LoopDecision& decision : localizer.loop_decisions()) {
+    const std::pair loop{decision.earlier_id, decision.later_id};
+    EXPECT_LT(decision.earlier_id, decision.later_id);
+    EXPECT_LE(decision.later_id, decision.step);
+    if (decision.outcome == LoopOutcome::kAccepted) {
+      EXPECT_EQ(decision.reason, Reason::kNone);
+      standing.insert(loop);
+    } else if (decision.outcome == LoopOutcome::kOutvoted) {
+      standing.erase(loop);
+    } else {
+      ++refused;
+      EXPECT_EQ(decision.outcome == LoopOutcome::kGate, decision.reason != Reason::kNone);
+    }
+  }
+  EXPECT_GT(refused, 0U);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> closed;
+  for (const topomap::LoopClosure& loop : localizer.loop_closures()) {
+    closed.emplace(loop.earlier_id, loop.later_id);
+  }
+  EXPECT_EQ(standing, closed);
+}
+
+// Answers every batch backwards, each task on one of two matchers that take turns.
+class TwoWorkersBackwards : public MatchPool {
+ public:
+  void add_map(std::shared_ptr<const topomap::LocalMap> map) override {
+    for (Matcher& worker : workers_) worker.add_map(*map);
+  }
+  std::vector<MatchResult> match(std::span<const MatchTask> tasks) override {
+    std::vector<MatchResult> results(tasks.size());
+    for (std::size_t i = tasks.size(); i-- > 0;) results[i] = workers_[turn_++ % 2].solve(tasks[i]);
+    return results;
+  }
+
+ private:
+  std::array<Matcher, 2> workers_;
+  std::size_t turn_ = 0;
+};
+
+TEST(LocalizerTest, TheResultDependsNeitherOnTheRunNorOnWhoAnswersInWhichOrder) {
+  const test::Maps& maps = round_trip().maps;
+  const Outcome once = localize(maps);
+  expect_same(once, localize(maps));
+  TwoWorkersBackwards pool;
+  expect_same(once, localize(maps, pool));
+
+  LocalizerConfig other_seed;
+  other_seed.seed = 2;
+  EXPECT_NE(localize(maps, other_seed).trajectory.stops.back().T_map_robot,
+            once.trajectory.stops.back().T_map_robot);
+}
+
+TEST(LocalizerTest, RefusesMapsOutOfOrderAndOfAnotherRobot) {
+  const world::World room = test::world("room");
+  const auto map = [&](std::uint32_t id, const char* robot) {
+    topomap::LocalMap made = test::map_at(room, {1.0 + 0.5 * id, 1.0, 0.0}, id);
+    made.robot_id = robot;
+    return std::make_shared<const topomap::LocalMap>(std::move(made));
+  };
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  EXPECT_THROW(localizer.add(map(1, "robot")), std::invalid_argument);
+  localizer.add(map(0, "robot"));
+  EXPECT_THROW(localizer.add(map(0, "robot")), std::invalid_argument);
+  EXPECT_THROW(localizer.add(map(2, "robot")), std::invalid_argument);
+  EXPECT_THROW(localizer.add(map(1, "stranger")), std::invalid_argument);
+  EXPECT_EQ(localizer.trajectory().stops.size(), 1U);
+  EXPECT_NO_THROW(localizer.add(map(1, "robot")));
+  EXPECT_NEAR(localizer.trajectory().stops[1].T_map_robot.x_m, 0.5, 0.05);
+}
+
+TEST(LocalizerTest, NothingOrOneStopIsNoError) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  localizer.finish();
+  EXPECT_TRUE(localizer.trajectory().stops.empty());
+  localizer.add(round_trip().maps[0]);
+  localizer.finish();
+  EXPECT_EQ(localizer.trajectory().stops.size(), 1U);
+  EXPECT_TRUE(localizer.loop_closures().empty());
+}
+
+TEST(LocalizerTest, TheVersionGrowsWithEveryStep) {
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  std::uint64_t version = 0;
+  for (std::size_t i = 0; i < 12; ++i) {
+    localizer.add(round_trip().maps[i]);
+    EXPECT_GT(localizer.trajectory().version, version);
+    version = localizer.trajectory().version;
+  }
+}
+
+// The robot goes round the first half of the floor and back, then its scans come from a closed room
+// of another building while its odometry says that it drives the first corridor again.
+TEST(LocalizerTest, ScansOfAnotherWorldCloseNoLoop) {
+  const DrivenMaps floor = test::drive(
+      test::world("floor"), {{1.3, 1.2}, {15.0, 1.15}, {16.0, 1.2}, {15.0, 1.15}, {1.3, 1.2}});
+  const DrivenMaps room = test::drive(test::world("room"), {});
+  test::Maps maps = floor.maps;
+  const Pose2 T_odom_kidnapped = floor.maps.back()->T_odom_robot;
+  for (const auto& map : room.maps) {
+    topomap::LocalMap moved = *map;
+    moved.id = static_cast<std::uint32_t>(maps.size());
+    moved.T_odom_robot = T_odom_kidnapped * map->T_odom_robot;
+    for (topomap::TrackedScan& scan : moved.track) {
+      scan.T_odom_robot = T_odom_kidnapped * scan.T_odom_robot;
+    }
+    maps.push_back(std::make_shared<const topomap::LocalMap>(std::move(moved)));
+  }
+  const Outcome outcome = localize(maps);
+  const auto first_of_room = static_cast<std::uint32_t>(floor.maps.size());
+  for (const topomap::LoopClosure& loop : outcome.closures) {
+    EXPECT_FALSE(loop.earlier_id < first_of_room && loop.later_id >= first_of_room)
+        << loop.earlier_id << " - " << loop.later_id;
+  }
+  // The way there and back is closed all the same.
+  EXPECT_FALSE(outcome.closures.empty());
+}
+
+}  // namespace
+}  // namespace topogeo::localization

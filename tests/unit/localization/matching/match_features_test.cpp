@@ -1,0 +1,239 @@
+#include "topogeo/localization/matching/match_features.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "localization/hand_scenes.hpp"
+#include "localization/simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::kDegree;
+using View = RangeProfile::View;
+
+TEST(MatchFeaturesTest, PointsAreThinnedToTheirSpacing) {
+  const auto points = test::exact_points(test::l_room(), {});
+  const MatchFeatures features = extract_scan_features(points, {});
+  ASSERT_GT(features.surface.size(), 100U);
+  ASSERT_GT(features.coarse.size(), 50U);
+  for (std::size_t i = 1; i < features.surface.size(); ++i) {
+    EXPECT_GE((features.surface[i].position_m - features.surface[i - 1].position_m).norm(),
+              MatchFeatures::kFineSpacing_m - 1e-9);
+  }
+  for (std::size_t i = 1; i < features.coarse.size(); ++i) {
+    EXPECT_GE((features.coarse[i].position_m - features.coarse[i - 1].position_m).norm(),
+              MatchFeatures::kCoarseSpacing_m - 1e-9);
+  }
+  // No point was dropped further from a kept one than the spacing.
+  for (const auto& p : points) {
+    double nearest_m = 1e9;
+    for (const SurfacePoint& kept : features.coarse) {
+      nearest_m = std::min(nearest_m, (kept.position_m - Eigen::Vector2d(p.x_m, p.y_m)).norm());
+    }
+    EXPECT_LT(nearest_m, MatchFeatures::kCoarseSpacing_m);
+  }
+}
+
+TEST(MatchFeaturesTest, NormalsStandOnTheWalls) {
+  // The l-shaped room again: away from its corners every wall is along x or along y.
+  const MatchFeatures features = test::features_at(test::l_room(), {});
+  const std::vector<Eigen::Vector2d> corners{{-2, -2}, {2, -2}, {2, 0}, {4, 0}, {4, 3}, {-2, 3}};
+  int checked = 0;
+  for (const SurfacePoint& point : features.surface) {
+    double corner_m = 1e9;
+    for (const auto& corner : corners) {
+      corner_m = std::min(corner_m, (corner - point.position_m).norm());
+    }
+    if (corner_m < 0.8) continue;
+    const Eigen::Vector2d& p = point.position_m;
+    const bool along_x = std::min({std::fabs(p.y() + 2), std::fabs(p.y() - 3),
+                                   p.x() > 2 ? std::fabs(p.y()) : 9.0}) < 0.01;
+    EXPECT_TRUE(point.on_line) << p.transpose();
+    EXPECT_NEAR(point.normal.norm(), 1.0, 1e-9);
+    EXPECT_GT(std::fabs(along_x ? point.normal.y() : point.normal.x()), 0.999) << p.transpose();
+    EXPECT_LT(point.normal.dot(p), 0.0) << "on the side of the laser: " << p.transpose();
+    ++checked;
+  }
+  EXPECT_GT(checked, 50);
+}
+
+TEST(MatchFeaturesTest, NormalsOfASlantingWall) {
+  const world::World wall = test::lines({{{2, -4}, {6, 4}}});
+  const MatchFeatures features = test::features_at(wall, {});
+  ASSERT_GT(features.surface.size(), 20U);
+  const Eigen::Vector2d along = Eigen::Vector2d(4, 8).normalized();
+  for (const SurfacePoint& point : features.surface) {
+    EXPECT_TRUE(point.on_line);
+    EXPECT_NEAR(point.normal.dot(along), 0.0, 1e-3);
+  }
+}
+
+TEST(MatchFeaturesTest, LonelyPointsAreOnNoLine) {
+  const std::vector<topomap::ScanPoint> points{{2, -2}, {2, 0}, {2, 0.05F}, {2, 2}};
+  const MatchFeatures features = extract_scan_features(points, {});
+  ASSERT_EQ(features.surface.size(), 4U);
+  for (const SurfacePoint& point : features.surface) EXPECT_FALSE(point.on_line);
+}
+
+TEST(MatchFeaturesTest, NothingComesOfNothing) {
+  const MatchFeatures features = extract_scan_features({}, {});
+  EXPECT_TRUE(features.surface.empty());
+  EXPECT_TRUE(features.coarse.empty());
+  EXPECT_EQ(features.profile.view({1.0, 0.0}, 0.3), View::kUnknown);
+  EXPECT_EQ(RangeProfile().view({1.0, 0.0}, 0.3), View::kUnknown);
+}
+
+// The front half of a square room: walls at x = 2, y = 2 and y = -2.
+TEST(RangeProfileTest, TellsFreeSpaceFromSurfacesAndWhatIsBehind) {
+  const world::World room =
+      test::lines({{{-2, 2}, {2, 2}}, {{2, 2}, {2, -2}}, {{2, -2}, {-2, -2}}});
+  const test::Sweep front{-90.0, 90.0, 0.5, 8.0};
+  const RangeProfile profile(test::exact_points(room, {}, front), {});
+  EXPECT_EQ(profile.view({1.0, 0.3}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({1.85, 0.3}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({1.95, 0.3}, 0.1), View::kSurface);
+  EXPECT_EQ(profile.view({2.05, 0.3}, 0.1), View::kSurface);
+  EXPECT_EQ(profile.view({2.2, 0.3}, 0.1), View::kHidden);
+  EXPECT_EQ(profile.view({2.2, 0.3}, 0.3), View::kSurface);
+  EXPECT_EQ(profile.view({0.5, -1.0}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({0.5, 3.0}, 0.1), View::kHidden);
+  EXPECT_EQ(profile.view({-1.0, 0.3}, 0.1), View::kUnknown);
+}
+
+TEST(RangeProfileTest, TellsTheFaceThatItSawFromTheOneBehind) {
+  const RangeProfile profile(
+      test::exact_points(test::lines({{{2, -4}, {2, 4}}}), {}, {-45, 45, 0.5, 8}), {});
+  const Eigen::Vector2d near{-1.0, 0.0};
+  const Eigen::Vector2d far{1.0, 0.0};
+  EXPECT_FALSE(profile.turned_away({2.0, 0.5}, near));
+  EXPECT_TRUE(profile.turned_away({2.0, 0.5}, far));
+  EXPECT_FALSE(profile.turned_away({2.0, 0.5}, Eigen::Vector2d::Zero())) << "of no side";
+  // Nine and eleven degrees behind the edge of the wall's plane.
+  EXPECT_FALSE(profile.turned_away({2.0, 0.0}, {std::sin(9 * kDegree), std::cos(9 * kDegree)}));
+  EXPECT_TRUE(profile.turned_away({2.0, 0.0}, {std::sin(11 * kDegree), std::cos(11 * kDegree)}));
+  EXPECT_EQ(profile.view_of_face({2.1, 0.5}, near, 0.2), View::kSurface);
+  EXPECT_EQ(profile.view_of_face({2.1, 0.5}, far, 0.2), View::kHidden);
+  EXPECT_EQ(profile.view_of_face({1.0, 0.5}, far, 0.2), View::kFree) << "it looked past it";
+  EXPECT_EQ(profile.view_of_face({-1.0, 0.5}, far, 0.2), View::kUnknown);
+}
+
+TEST(RangeProfileTest, SmallGapsBetweenBeamsBelongToTheNearerReading) {
+  const world::World wall = test::lines({{{2, -4}, {2, 4}}});
+  const RangeProfile coarse(test::exact_points(wall, {}, {-45, 45, 1.5, 8}), {});
+  for (double angle = -44.0; angle <= 44.0; angle += 0.25) {
+    const Eigen::Vector2d toward(std::cos(angle * kDegree), std::sin(angle * kDegree));
+    EXPECT_EQ(coarse.view(toward, 0.1), View::kFree) << angle;
+  }
+  // Twenty degrees without reading are no gap between beams.
+  auto points = test::exact_points(wall, {}, {-45, -10, 0.5, 8});
+  for (const auto& p : test::exact_points(wall, {}, {10, 45, 0.5, 8})) points.push_back(p);
+  EXPECT_EQ(RangeProfile(points, {}).view({1.0, 0.0}, 0.1), View::kUnknown);
+}
+
+TEST(RangeProfileTest, LooksFromWhereTheLaserIsMounted) {
+  // The laser sits 1 m ahead of the robot's origin and looks left; it sees a wall 2 m before it.
+  const Pose2 T_robot_laser{1.0, 0.0, 90.0 * kDegree};
+  std::vector<topomap::ScanPoint> points;
+  for (double x = 0.0; x <= 2.0; x += 0.02) points.push_back({static_cast<float>(x), 2.0F});
+  const RangeProfile profile(points, T_robot_laser);
+  EXPECT_EQ(profile.view({1.0, 1.0}, 0.1), View::kFree);
+  EXPECT_EQ(profile.view({1.0, 2.0}, 0.1), View::kSurface);
+  EXPECT_EQ(profile.view({1.0, 2.5}, 0.1), View::kHidden);
+  EXPECT_EQ(profile.view({1.0, -1.0}, 0.1), View::kUnknown);
+  // From the robot's origin this place is seen free, from the laser it lies outside the wall seen.
+  EXPECT_EQ(profile.view({0.0, 0.5}, 0.1), View::kUnknown);
+}
+
+topomap::LocalBranch straight_branch(double step_m, std::size_t count, double clearance_m) {
+  topomap::LocalBranch branch;
+  for (std::size_t i = 0; i < count; ++i) {
+    branch.points.push_back({{step_m * static_cast<double>(i), 1.0}, clearance_m});
+  }
+  return branch;
+}
+
+TEST(BranchSamplesTest, LieEverySpacingWithDirectionAndClearance) {
+  topomap::LocalMap map;
+  map.branches.push_back(straight_branch(0.0625, 30, 0.8));
+  const MatchFeatures features = extract_features(map);
+  // The first step, then every fourth: 0.25 m is the first multiple of the step over 0.20 m.
+  ASSERT_EQ(features.branches.size(), 8U);
+  for (std::size_t i = 0; i < features.branches.size(); ++i) {
+    EXPECT_DOUBLE_EQ(features.branches[i].position_m.x(), 0.0625 + 0.25 * static_cast<double>(i));
+    EXPECT_NEAR(std::fabs(features.branches[i].direction.x()), 1.0, 1e-12);
+    EXPECT_DOUBLE_EQ(features.branches[i].clearance_m, 0.8);
+  }
+}
+
+TEST(BranchSamplesTest, VirtualBranchesAndImaginaryNodesAreLeftOut) {
+  topomap::LocalMap map;
+  map.branches.push_back(straight_branch(0.1, 30, 0.8));
+  map.branches.back().is_virtual = true;
+  using topomap::NodeKind;
+  for (const NodeKind kind : {NodeKind::kReal, NodeKind::kFictitious, NodeKind::kVirtual,
+                              NodeKind::kDoor, NodeKind::kNarrowing, NodeKind::kHallCorridor}) {
+    map.nodes.push_back(test::node(1.0, 2.0, 0.5, kind));
+  }
+  const MatchFeatures features = extract_features(map);
+  EXPECT_TRUE(features.branches.empty());
+  ASSERT_EQ(features.nodes.size(), 4U);
+  for (const topomap::LocalNode& node : features.nodes) {
+    EXPECT_NE(node.kind, NodeKind::kFictitious);
+    EXPECT_NE(node.kind, NodeKind::kVirtual);
+  }
+}
+
+TEST(MatchFeaturesTest, CurvesRunFromEndToEnd) {
+  topomap::LocalMap map;
+  topomap::LocalBranch branch;
+  for (int i = 0; i <= 21; ++i) branch.points.push_back({{0.05 * i, 1.0}, 0.5 + 0.1 * i});
+  map.branches.push_back(branch);
+  branch.is_virtual = true;
+  map.branches.push_back(branch);
+  branch.is_virtual = false;
+  branch.confirmed = false;
+  map.branches.push_back(branch);
+  const MatchFeatures features = extract_features(map);
+  ASSERT_EQ(features.curves.size(), 1U) << "neither virtual nor unconfirmed ones";
+  const BranchCurve& curve = features.curves.front();
+  EXPECT_EQ(curve.points_m.front(), Eigen::Vector2d(0.0, 1.0));
+  EXPECT_EQ(curve.points_m.back(), Eigen::Vector2d(0.05 * 21, 1.0));
+  EXPECT_NEAR(curve.clearance_m, 0.5 + 0.1 * 10.5, 1e-12);
+  for (std::size_t i = 1; i < curve.points_m.size(); ++i) {
+    const double step_m = (curve.points_m[i] - curve.points_m[i - 1]).norm();
+    EXPECT_GT(step_m, 0.09);
+    EXPECT_LT(step_m, 0.21);
+  }
+}
+
+// The last element is what a place without a neighbour finds: nothing may be near it.
+TEST(MatchFeaturesTest, TheArraysOfAReferenceAreItsFeaturesAndOneFarAway) {
+  MatchFeatures features = test::features_at(test::l_room(), {});
+  features.branches = {test::sample(1.0, 2.0, 0.5, 0.7)};
+  const Reference reference = make_reference(features);
+  ASSERT_EQ(reference.surfaces.size(), features.surface.size() + 1);
+  for (std::size_t i = 0; i < features.surface.size(); ++i) {
+    const Eigen::Vector2f at_m = features.surface[i].position_m.cast<float>();
+    const Eigen::Vector2f normal = features.surface[i].normal.cast<float>();
+    EXPECT_EQ(reference.surfaces[i].x_m, at_m.x());
+    EXPECT_EQ(reference.surfaces[i].y_m, at_m.y());
+    EXPECT_EQ(reference.surfaces[i].normal_x, normal.x());
+    EXPECT_EQ(reference.surfaces[i].normal_y, normal.y());
+  }
+  EXPECT_GT(reference.surfaces.back().x_m, 1e8F);
+  ASSERT_EQ(reference.branches.size(), 2U);
+  EXPECT_EQ(reference.branches[0].x_m, 1.0F);
+  EXPECT_EQ(reference.branches[0].y_m, 2.0F);
+  EXPECT_EQ(reference.branches[0].direction_x, static_cast<float>(std::cos(0.5)));
+  EXPECT_EQ(reference.branches[0].direction_y, static_cast<float>(std::sin(0.5)));
+  EXPECT_EQ(reference.branches[0].clearance_m, 0.7F);
+  EXPECT_GT(reference.branches[1].x_m, 1e8F);
+  EXPECT_EQ(make_reference({}).surfaces.size(), 1U);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

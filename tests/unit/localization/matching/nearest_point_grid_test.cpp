@@ -1,0 +1,146 @@
+#include "topogeo/localization/matching/nearest_point_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/support/random.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+struct Resolution {
+  double cell_m;
+  double reach_m;
+};
+
+std::ostream& operator<<(std::ostream& out, const Resolution& resolution) {
+  return out << resolution.cell_m << " m cells, " << resolution.reach_m << " m reach";
+}
+
+class NearestPointGridTest : public testing::TestWithParam<Resolution> {};
+
+TEST_P(NearestPointGridTest, IsNearlyAsGoodAsComparingWithEveryPoint) {
+  const auto [cell_m, reach_m] = GetParam();
+  support::Random random(3);
+  constexpr std::size_t kPoints = 250;
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
+  }
+  NearestPointGrid grid;
+  grid.build(points, cell_m, reach_m);
+  int near = 0;
+  int far = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector2d place(random.uniform(-6.0, 6.0), random.uniform(-5.0, 7.0));
+    double nearest_m = std::numeric_limits<double>::max();
+    for (const auto& p : points) nearest_m = std::min(nearest_m, (p - place).norm());
+    const std::int32_t found = grid.find(place.x(), place.y());
+    if (nearest_m <= reach_m) {
+      ++near;
+      ASSERT_NE(found, NearestPointGrid::kNone) << place.transpose() << ": " << nearest_m;
+      // The point nearest to the centre of the cell, which is half a diagonal away at most.
+      const double found_m = (points[static_cast<std::size_t>(found)] - place).norm();
+      ASSERT_LE(found_m, nearest_m + std::numbers::sqrt2 * cell_m + 1e-9) << place.transpose();
+    }
+    if (nearest_m > std::numbers::sqrt2 * (reach_m + 2.0 * cell_m)) {
+      ++far;
+      ASSERT_EQ(found, NearestPointGrid::kNone) << place.transpose() << ": " << nearest_m;
+    }
+  }
+  EXPECT_GT(near, 500);
+  EXPECT_GT(far, 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(Resolutions, NearestPointGridTest,
+                         testing::Values(Resolution{0.10, 0.60}, Resolution{0.10, 0.25},
+                                         Resolution{0.30, 0.30}, Resolution{0.07, 0.50}),
+                         [](const auto& resolution) {
+                           return "cell" +
+                                  std::to_string(std::lround(100 * resolution.param.cell_m)) +
+                                  "reach" +
+                                  std::to_string(std::lround(100 * resolution.param.reach_m));
+                         });
+
+// Single precision may put a place on a border into the cell beside.
+TEST_P(NearestPointGridTest, FourAtOnceAreTheSame) {
+  const auto [cell_m, reach_m] = GetParam();
+  support::Random random(5);
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(100);
+  for (int i = 0; i < 100; ++i) {
+    points.emplace_back(random.uniform(-4.0, 4.0), random.uniform(-3.0, 5.0));
+  }
+  NearestPointGrid grid;
+  grid.build(points, cell_m, reach_m);
+  int different = 0;
+  for (int i = 0; i < 5000; ++i) {
+    Eigen::Array4f x;
+    Eigen::Array4f y;
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      x[k] = static_cast<float>(random.uniform(-7.0, 7.0));
+      y[k] = static_cast<float>(random.uniform(-6.0, 8.0));
+    }
+    const auto found = grid.find_four(x, y);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      const std::int32_t one = grid.find(static_cast<double>(x[at]), static_cast<double>(y[at]));
+      const std::int32_t four =
+          found[k] == points.size() ? NearestPointGrid::kNone : static_cast<std::int32_t>(found[k]);
+      different += one != four ? 1 : 0;
+    }
+  }
+  EXPECT_LE(different, 5);
+}
+
+TEST(NearestPointGridEdgeTest, FindsNothingWithoutPointsOrFarAway) {
+  NearestPointGrid grid;
+  EXPECT_EQ(grid.find(0.0, 0.0), NearestPointGrid::kNone);
+  grid.build({{1.0, 1.0}}, 0.1, 0.5);
+  EXPECT_EQ(grid.find(1.0, 1.0), 0);
+  EXPECT_EQ(grid.find(1.0, 3.0), NearestPointGrid::kNone);
+  EXPECT_EQ(grid.find(-1e9, 1e9), NearestPointGrid::kNone);
+  EXPECT_EQ(grid.find(std::numeric_limits<double>::quiet_NaN(), 1.0), NearestPointGrid::kNone);
+}
+
+TEST(NearestPointGridEdgeTest, FourPlacesFarOutsideFindNothing) {
+  NearestPointGrid grid;
+  const Eigen::Array4f x(0.0F, -1e9F, 1e9F, 3.0F);
+  const Eigen::Array4f y(0.0F, 1e9F, -1e9F, 1e8F);
+  for (const std::size_t found : grid.find_four(x, y)) EXPECT_EQ(found, 0U);
+  grid.build({{1.0, 1.0}, {1.0, 1.1}}, 0.1, 0.5);
+  for (const std::size_t found : grid.find_four(x, y)) EXPECT_EQ(found, 2U);
+  EXPECT_EQ(grid.find_four(Eigen::Array4f::Constant(1.0F), Eigen::Array4f::Constant(1.0F))[2], 0U);
+}
+
+TEST(NearestPointGridEdgeTest, RefusesWhatMakesNoGrid) {
+  NearestPointGrid grid;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(grid.build({{0.0, 0.0}, {1e6, 1e6}}, 0.1, 0.5), std::invalid_argument);
+  EXPECT_THROW(grid.build({{0.0, 0.0}, {1e300, 0.0}}, 0.1, 0.5), std::invalid_argument);
+  EXPECT_THROW(grid.build({{nan, 0.0}, {0.0, 1.0}}, 0.1, 0.5), std::invalid_argument);
+  EXPECT_THROW(grid.build(std::vector<Eigen::Vector2d>(65535, {0.0, 0.0}), 0.1, 0.5),
+               std::invalid_argument);
+}
+
+TEST(NearestPointGridEdgeTest, BuildingAgainForgetsTheOldPoints) {
+  NearestPointGrid grid;
+  grid.build({{0.0, 0.0}, {5.0, 5.0}}, 0.1, 0.5);
+  grid.build({{2.0, 2.0}}, 0.1, 0.5);
+  EXPECT_EQ(grid.find(2.1, 2.0), 0);
+  EXPECT_EQ(grid.find(0.0, 0.0), NearestPointGrid::kNone);
+  grid.build({}, 0.1, 0.5);
+  EXPECT_EQ(grid.find(2.1, 2.0), NearestPointGrid::kNone);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

@@ -1,0 +1,132 @@
+#include "topogeo/localization/thesis/thesis_localizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/matching/matcher.hpp"
+
+#include "localization/simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::DrivenMaps;
+using test::round_trip;
+
+struct Outcome {
+  topomap::Trajectory trajectory;
+  std::vector<topomap::LoopClosure> closures;
+  std::vector<LoopDecision> decisions;
+  SlamCounts counts;
+  int corrections = 0;  // steps that moved earlier poses
+};
+
+Outcome localize(const test::Maps& maps, LocalizerConfig config = {}) {
+  InProcessPool pool;
+  config.mode = LocalizerMode::kThesis;
+  const std::unique_ptr<Slam> slam = make_slam(config, pool);
+  Outcome outcome;
+  for (const auto& map : maps) outcome.corrections += slam->add(map) ? 1 : 0;
+  slam->finish();
+  outcome.trajectory = slam->trajectory();
+  outcome.closures = slam->loop_closures();
+  outcome.decisions = slam->loop_decisions();
+  outcome.counts = slam->counts();
+  return outcome;
+}
+
+double end_error_m(const Outcome& outcome, const DrivenMaps& driven) {
+  const Pose2 found = outcome.trajectory.stops.back().T_map_robot;
+  const Pose2 truth = geometry::between(driven.T_world_robot.front(), driven.T_world_robot.back());
+  return (found.position_m() - truth.position_m()).norm();
+}
+
+TEST(ThesisLocalizer, ClosesTheCycleOfTheFloor) {
+  const Outcome outcome = localize(round_trip().maps);
+  ASSERT_EQ(outcome.trajectory.stops.size(), round_trip().maps.size());
+  EXPECT_EQ(outcome.trajectory.stops.front().T_map_robot, Pose2{});
+  EXPECT_GT(outcome.corrections, 0);
+  ASSERT_FALSE(outcome.closures.empty());
+  for (const topomap::LoopClosure& closure : outcome.closures) {
+    const Pose2 truth = geometry::between(round_trip().T_world_robot[closure.earlier_id],
+                                          round_trip().T_world_robot[closure.later_id]);
+    EXPECT_LT((closure.T_earlier_later.position_m() - truth.position_m()).norm(), 0.3);
+  }
+  LocalizerConfig open;
+  open.revisit_matches = 0;
+  const Outcome forward = localize(round_trip().maps, open);
+  EXPECT_TRUE(forward.closures.empty());
+  EXPECT_EQ(forward.corrections, 0);
+  EXPECT_LT(end_error_m(outcome, round_trip()), 0.3);
+  EXPECT_LT(end_error_m(outcome, round_trip()), end_error_m(forward, round_trip()));
+}
+
+TEST(ThesisLocalizer, ExplainsEveryLoopThatItConsidered) {
+  const Outcome outcome = localize(round_trip().maps);
+  std::size_t accepted = 0;
+  for (const LoopDecision& decision : outcome.decisions) {
+    EXPECT_LT(decision.earlier_id, decision.later_id);
+    EXPECT_EQ(decision.step, decision.later_id);
+    EXPECT_EQ(decision.outcome == LoopOutcome::kGate,
+              decision.reason != Reason::kNone && decision.reason != Reason::kSecondSolution);
+    if (decision.outcome == LoopOutcome::kAccepted) ++accepted;
+  }
+  EXPECT_GE(accepted, outcome.closures.size());
+}
+
+TEST(ThesisLocalizer, GivesTheSameBitsAgain) {
+  const test::Maps maps(round_trip().maps.begin(), round_trip().maps.begin() + 40);
+  const Outcome a = localize(maps);
+  const Outcome b = localize(maps);
+  EXPECT_EQ(a.trajectory.version, b.trajectory.version);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    EXPECT_EQ(a.trajectory.stops[i].T_map_robot, b.trajectory.stops[i].T_map_robot);
+    EXPECT_EQ(a.trajectory.stops[i].covariance, b.trajectory.stops[i].covariance);
+  }
+}
+
+// A blind laser: nothing to match, so odometry stands.
+TEST(ThesisLocalizer, GoesByOdometryWhereNothingMatches) {
+  test::Maps maps;
+  for (std::uint32_t id = 0; id < 3; ++id) {
+    auto map = std::make_shared<topomap::LocalMap>();
+    map->robot_id = "robot";
+    map->id = id;
+    map->T_odom_robot = {1.0 * id, 0.5 * id, 0.1 * id};
+    maps.push_back(map);
+  }
+  const Outcome outcome = localize(maps);
+  const Eigen::Vector3d off =
+      geometry::difference(outcome.trajectory.stops[2].T_map_robot, maps[2]->T_odom_robot);
+  EXPECT_LT(off.norm(), 1e-12);
+  EXPECT_EQ(outcome.counts.steps_in_doubt, 2U);
+  EXPECT_GT(outcome.trajectory.stops[2].covariance(0, 0), 0.0);
+}
+
+TEST(ThesisLocalizer, RefusesMapsOutOfOrderOrOfAnotherRobot) {
+  InProcessPool pool;
+  ThesisLocalizer localizer({}, pool);
+  auto second = std::make_shared<topomap::LocalMap>();
+  second->id = 1;
+  EXPECT_THROW(localizer.add(second), std::invalid_argument);
+  localizer.add(round_trip().maps[0]);
+  second->robot_id = "another";
+  EXPECT_THROW(localizer.add(second), std::invalid_argument);
+}
+
+TEST(MakeSlam, MakesWhatTheModeSays) {
+  InProcessPool pool;
+  LocalizerConfig config;
+  EXPECT_NE(dynamic_cast<Localizer*>(make_slam(config, pool).get()), nullptr);
+  config.mode = LocalizerMode::kThesis;
+  EXPECT_NE(dynamic_cast<ThesisLocalizer*>(make_slam(config, pool).get()), nullptr);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

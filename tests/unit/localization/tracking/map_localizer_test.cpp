@@ -1,0 +1,180 @@
+#include "topogeo/localization/tracking/map_localizer.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/matching/matcher.hpp"
+
+#include "localization/simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+const Eigen::Matrix3d kKnown = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
+
+/// The floor as one drive saw it, with its true poses, and another drive through it.
+class MapLocalizerTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const test::DrivenMaps first = test::drive(test::world("floor"), {});
+    auto map = std::make_shared<StoredMap>();
+    for (std::size_t i = 0; i < first.maps.size(); ++i) {
+      map->maps.push_back(*first.maps[i]);
+      map->trajectory.stops.push_back({first.maps[i]->id, first.maps[i]->stamp_ns,
+                                       first.T_world_robot[i], Eigen::Matrix3d::Zero()});
+    }
+    stored_ = map;
+    drive_ = new test::DrivenMaps(test::drive(test::world("floor"), {}, 0.41));
+  }
+  static void TearDownTestSuite() {
+    stored_.reset();
+    delete drive_;
+    drive_ = nullptr;
+  }
+
+  MapLocalizer make() { return MapLocalizer({}, stored_, pool_); }
+
+  /// The drive's stop, said to be the `id`th; odometry says that it is `T_step` from the last one.
+  void add(MapLocalizer& localizer, std::size_t stop, const Pose2& T_step) {
+    topomap::LocalMap map = *drive_->maps[stop];
+    map.id = static_cast<std::uint32_t>(localizer.stops().size());
+    T_odom_ = T_odom_ * T_step;
+    map.T_odom_robot = T_odom_;
+    map.T_previous_robot = T_step;
+    map.track.clear();
+    localizer.add(std::make_shared<const topomap::LocalMap>(map));
+  }
+  void follow(MapLocalizer& localizer, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const Pose2 T_step =
+          localizer.stops().empty()
+              ? Pose2{}
+              : geometry::between(drive_->maps[i - 1]->T_odom_robot, drive_->maps[i]->T_odom_robot);
+      add(localizer, i, T_step);
+    }
+  }
+  static bool right(const MapLocalizer& localizer, std::size_t stop) {
+    const Pose2 error =
+        geometry::between(localizer.stops().back().T_map_robot, drive_->T_world_robot[stop]);
+    return error.position_m().norm() < 0.1 && std::fabs(error.theta_rad) < 0.05;
+  }
+
+  static std::shared_ptr<const StoredMap> stored_;
+  static test::DrivenMaps* drive_;
+  InProcessPool pool_;
+  Pose2 T_odom_;
+};
+
+std::shared_ptr<const StoredMap> MapLocalizerTest::stored_;
+test::DrivenMaps* MapLocalizerTest::drive_ = nullptr;
+
+TEST_F(MapLocalizerTest, FollowsAnotherDriveFromAnInitialPose) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+  for (std::size_t i = 0; i < 60; ++i) {
+    follow(localizer, i, i + 1);
+    EXPECT_TRUE(right(localizer, i)) << i;
+    EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking) << i;
+    EXPECT_GT(localizer.belief().confidence, 0.8) << i;
+  }
+  EXPECT_EQ(localizer.searches(), 0U);
+}
+
+TEST_F(MapLocalizerTest, FindsItselfWithoutAPose) {
+  MapLocalizer localizer = make();
+  add(localizer, 40, {});
+  EXPECT_NE(localizer.belief().state, LocalizationState::kTracking);  // one scan is not enough
+  follow(localizer, 41, 48);
+  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(localizer, 47));
+}
+
+TEST_F(MapLocalizerTest, ACarriedRobotIsLostWithinThreeStopsAndFindsItself) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(localizer, 0, 12);
+  ASSERT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  const std::size_t elsewhere = 60;
+  add(localizer, elsewhere, {1.0, 0.0, 0.0});  // odometry noticed nothing
+  follow(localizer, elsewhere + 1, elsewhere + 3);
+  bool lost = false;
+  for (std::size_t i = 12; i < 15; ++i) {
+    lost |= localizer.stops()[i].belief.state == LocalizationState::kLost;
+  }
+  EXPECT_TRUE(lost);
+  follow(localizer, elsewhere + 3, elsewhere + 9);
+  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(localizer, elsewhere + 8));
+  EXPECT_EQ(localizer.searches(), 1U);
+}
+
+TEST_F(MapLocalizerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(localizer, 0, 10);
+  for (int i = 0; i < 3; ++i) {
+    topomap::LocalMap blind;
+    blind.robot_id = "robot";
+    blind.id = static_cast<std::uint32_t>(localizer.stops().size());
+    T_odom_ = T_odom_ * Pose2{0.1, 0.0, 0.0};
+    blind.T_odom_robot = T_odom_;
+    localizer.add(std::make_shared<const topomap::LocalMap>(blind));
+  }
+  EXPECT_FALSE(localizer.belief().state == LocalizationState::kTracking);
+  EXPECT_LT(localizer.belief().confidence, 0.3);
+  add(localizer, 14, {0.5, 0.0, 0.0});
+  follow(localizer, 15, 20);
+  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(localizer, 19));
+}
+
+TEST_F(MapLocalizerTest, InAnotherBuildingItNeverTracks) {
+  const test::DrivenMaps other = test::drive(test::world("room"), {});
+  MapLocalizer localizer = make();
+  for (std::size_t i = 0; i < std::min<std::size_t>(other.maps.size(), 20); ++i) {
+    localizer.add(other.maps[i]);
+    EXPECT_NE(localizer.belief().state, LocalizationState::kTracking) << i;
+  }
+}
+
+TEST_F(MapLocalizerTest, AWrongInitialPoseIsNotBelievedForLong) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[70], kKnown);
+  follow(localizer, 0, 12);
+  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(localizer, 11));
+}
+
+TEST_F(MapLocalizerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(localizer, 0, 5);
+  localizer.search();
+  EXPECT_EQ(localizer.belief().state, LocalizationState::kSearching);
+  follow(localizer, 5, 6);
+  localizer.set_pose(drive_->T_world_robot[5], kKnown);
+  follow(localizer, 6, 7);
+  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_TRUE(right(localizer, 6));
+}
+
+TEST_F(MapLocalizerTest, AMapOutOfTurnIsAnError) {
+  MapLocalizer localizer = make();
+  EXPECT_THROW(localizer.add(drive_->maps[1]), std::invalid_argument);
+}
+
+TEST(Fused, IsTheWeightedMean) {
+  UncertainPose a{{0.0, 0.0, 0.1}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal()};
+  UncertainPose b{{0.3, 0.0, 0.4}, Eigen::Vector3d(0.02, 0.01, 0.02).asDiagonal()};
+  const UncertainPose mean = fused({a, b});
+  EXPECT_NEAR(mean.T_a_b.x_m, 0.1, 1e-12);
+  EXPECT_NEAR(mean.T_a_b.theta_rad, 0.2, 1e-12);
+  EXPECT_NEAR(mean.covariance(0, 0), 0.02 / 3.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

@@ -1,0 +1,101 @@
+#include "topogeo/localization/tracking/scan_tracker.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "localization/hand_scenes.hpp"
+#include "localization/simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::kDegree;
+
+// A drive of 1.6 m along the south corridor past a junction, whose odometry measures 8 % too much
+// and creeps 3 degrees per metre to the left.
+class ScanTrackerTest : public testing::Test {
+ protected:
+  ScanTrackerTest() : floor_(test::world("floor")) {
+    for (int i = 0; i <= 8; ++i) T_stop_robot_.push_back({0.2 * i, 0.01 * i, 0.03 * i});
+    T_odom_.push_back({3.0, 4.0, 1.0});
+    for (std::size_t i = 1; i < T_stop_robot_.size(); ++i) {
+      Pose2 step = geometry::between(T_stop_robot_[i - 1], T_stop_robot_[i]);
+      step.x_m *= 1.08;
+      step.theta_rad += 0.2 * 3.0 * kDegree;
+      T_odom_.push_back(T_odom_.back() * step);
+    }
+    tracker_.start(points(0), {}, T_odom_[0]);
+  }
+
+  std::vector<topomap::ScanPoint> points(std::size_t i) const {
+    return test::map_at(floor_, kStart * T_stop_robot_[i], static_cast<std::uint32_t>(i)).points;
+  }
+  Pose2 odometry(std::size_t i) const { return geometry::between(T_odom_[0], T_odom_[i]); }
+
+  static constexpr Pose2 kStart{8.0, 1.2, 0.1};
+  world::World floor_;
+  std::vector<Pose2> T_stop_robot_;  // truth
+  std::vector<Pose2> T_odom_;
+  ScanTracker tracker_{{}};
+};
+
+TEST_F(ScanTrackerTest, FollowsTheTruthWhileOdometryDrifts) {
+  for (std::size_t i = 1; i < T_odom_.size(); ++i) {
+    const TrackedPose pose = tracker_.track(points(i), T_odom_[i]);
+    EXPECT_TRUE(pose.matched) << i;
+    EXPECT_LT(test::distance_m(pose.T_stop_robot, T_stop_robot_[i]), 0.03) << i;
+    EXPECT_LT(test::turn_rad(pose.T_stop_robot, T_stop_robot_[i]), 0.6 * kDegree) << i;
+  }
+  EXPECT_GT(test::distance_m(odometry(8), T_stop_robot_[8]), 0.12);
+  EXPECT_GT(test::turn_rad(odometry(8), T_stop_robot_[8]), 4.0 * kDegree);
+}
+
+TEST_F(ScanTrackerTest, AStandingRobotStaysWhereItIs) {
+  for (int i = 0; i < 5; ++i) {
+    const TrackedPose pose = tracker_.track(points(0), T_odom_[0]);
+    EXPECT_TRUE(pose.matched);
+    EXPECT_LT(test::distance_m(pose.T_stop_robot, {}), 0.005);
+  }
+}
+
+TEST_F(ScanTrackerTest, ABlindScanIsPlacedByOdometryAloneAndTheNextOneMatchesAgain) {
+  tracker_.track(points(1), T_odom_[1]);
+  const Pose2 before = tracker_.track(points(2), T_odom_[2]).T_stop_robot;
+  const TrackedPose blind = tracker_.track({}, T_odom_[3]);
+  EXPECT_FALSE(blind.matched);
+  const Pose2 by_odometry = before * geometry::between(T_odom_[2], T_odom_[3]);
+  EXPECT_LT(test::distance_m(blind.T_stop_robot, by_odometry), 1e-9);
+  const TrackedPose next = tracker_.track(points(4), T_odom_[4]);
+  EXPECT_TRUE(next.matched);
+  EXPECT_LT(test::distance_m(next.T_stop_robot, T_stop_robot_[4]), 0.03);
+}
+
+TEST_F(ScanTrackerTest, AScanOfAnotherPlaceDoesNotMatch) {
+  const auto elsewhere = test::map_at(test::world("room"), {3.0, 0.8, 0.4}, 1).points;
+  const TrackedPose pose = tracker_.track(elsewhere, T_odom_[1]);
+  EXPECT_FALSE(pose.matched);
+  EXPECT_LT(test::distance_m(pose.T_stop_robot, odometry(1)), 1e-9);
+}
+
+TEST_F(ScanTrackerTest, StartsAgainAtEachStop) {
+  for (std::size_t i = 1; i <= 4; ++i) tracker_.track(points(i), T_odom_[i]);
+  tracker_.start(points(4), {}, T_odom_[4]);
+  const TrackedPose pose = tracker_.track(points(6), T_odom_[6]);
+  EXPECT_TRUE(pose.matched);
+  EXPECT_LT(
+      test::distance_m(pose.T_stop_robot, geometry::between(T_stop_robot_[4], T_stop_robot_[6])),
+      0.03);
+}
+
+TEST(ScanTrackerStartTest, WithoutAStopThereIsOnlyOdometry) {
+  ScanTracker tracker{{}};
+  const auto points = test::exact_points(test::l_room(), {});
+  const TrackedPose pose = tracker.track(points, {0.5, 0.0, 0.0});
+  EXPECT_FALSE(pose.matched);
+  EXPECT_LT(test::distance_m(pose.T_stop_robot, {0.5, 0.0, 0.0}), 1e-9);
+}
+
+}  // namespace
+}  // namespace topogeo::localization
