@@ -10,6 +10,41 @@ function(topogeo_compile_options target)
   endif()
 endfunction()
 
+# Headers that most files include, parsed once for all libraries and services. Tests have their own set:
+# they add GoogleMock, and are compiled with less optimisation, which a precompiled header has to agree with.
+function(topogeo_add_precompiled_headers)
+  set(standard <algorithm> <array> <chrono> <cmath> <cstdint> <deque> <filesystem> <functional> <limits> <map>
+               <memory> <numbers> <numeric> <optional> <span> <sstream> <stdexcept> <string> <string_view>
+               <utility> <vector>)
+  set(empty ${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp)
+  file(CONFIGURE OUTPUT ${empty} CONTENT "// Compiled for its precompiled header alone.\n")
+
+  add_library(topogeo_precompiled OBJECT ${empty})
+  target_link_libraries(topogeo_precompiled PRIVATE Eigen3::Eigen)
+  target_precompile_headers(topogeo_precompiled PRIVATE ${standard} <Eigen/Core>)
+  topogeo_compile_options(topogeo_precompiled)
+
+  if(TOPOGEO_TESTS)
+    add_library(topogeo_precompiled_tests OBJECT ${empty})
+    target_link_libraries(topogeo_precompiled_tests PRIVATE Eigen3::Eigen GTest::gmock)
+    target_precompile_headers(topogeo_precompiled_tests PRIVATE ${standard} <Eigen/Core> <gmock/gmock.h>
+                              <gtest/gtest.h>)
+    topogeo_compile_options(topogeo_precompiled_tests)
+    target_compile_options(topogeo_precompiled_tests PRIVATE ${TOPOGEO_TEST_OPTIMIZATION})
+  endif()
+endfunction()
+
+# How fast a target is built: precompiled headers of `precompiled`, and its sources in units of several
+# files (presets say how many; names in anonymous namespaces are therefore unique within a target).
+function(topogeo_build_fast target precompiled)
+  target_precompile_headers(${target} REUSE_FROM ${precompiled})
+  # Sources keep their names in messages and databases, yet share what they include.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${TOPOGEO_UNITY}
+                                             UNITY_BUILD_BATCH_SIZE ${TOPOGEO_UNITY_BATCH})
+  # What GCC says of classes with parts in anonymous namespaces is meant for headers.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
+
 # topogeo_add_library(NAME geometry SOURCES a.cpp ... [DEPENDS targets...] [PRIVATE_DEPENDS targets...])
 # Public headers live in include/topogeo/<name>/.
 function(topogeo_add_library)
@@ -21,6 +56,7 @@ function(topogeo_add_library)
                                        PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   topogeo_compile_options(${target})
+  topogeo_build_fast(${target} topogeo_precompiled)
 endfunction()
 
 # topogeo_add_service(NAME map_store SOURCES main.cpp ... DEPENDS targets...): an executable in bin/.
@@ -30,24 +66,47 @@ function(topogeo_add_service)
   target_include_directories(${ARG_NAME} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(${ARG_NAME} PRIVATE ${ARG_DEPENDS})
   topogeo_compile_options(${ARG_NAME})
+  topogeo_build_fast(${ARG_NAME} topogeo_precompiled)
 endfunction()
 
-# topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [TIMEOUT s] [LABELS ...]): one test
-# program; each TEST in it is one ctest case. TOPOGEO_TEST_DATA names tests/data, TOPOGEO_BIN build/bin.
+# topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [TIMEOUT s] [LABELS ...] [PROCESSES]): one
+# test program. Each suite in it is one ctest test; with PROCESSES each case is, for programs that start
+# others or join DDS domains. TOPOGEO_TEST_DATA names tests/data, TOPOGEO_BIN build/bin. Helpers that
+# several programs share are included from tests/unit: "localization/simulated_maps.hpp".
 function(topogeo_add_test)
-  cmake_parse_arguments(ARG "" "NAME;TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "PROCESSES" "NAME;TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 60)
+    set(ARG_TIMEOUT 300)
   endif()
   add_executable(${ARG_NAME} ${ARG_SOURCES})
   set_target_properties(${ARG_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  target_include_directories(${ARG_NAME} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests/unit)
   target_link_libraries(${ARG_NAME} PRIVATE ${ARG_DEPENDS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${ARG_NAME} PRIVATE
     TOPOGEO_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data"
     TOPOGEO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     TOPOGEO_BIN="${CMAKE_BINARY_DIR}/bin")
   topogeo_compile_options(${ARG_NAME})
-  gtest_discover_tests(${ARG_NAME} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
-                       DISCOVERY_MODE PRE_TEST)
+  # GCC warns of these by an analysis that is wrong with less optimisation.
+  target_compile_options(${ARG_NAME} PRIVATE ${TOPOGEO_TEST_OPTIMIZATION}
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-maybe-uninitialized;-Wno-mismatched-new-delete>)
+  topogeo_build_fast(${ARG_NAME} topogeo_precompiled_tests)
+  if(ARG_PROCESSES)
+    gtest_discover_tests(${ARG_NAME} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
+                         DISCOVERY_MODE PRE_TEST)
+  else()
+    topogeo_discover_suites(${ARG_NAME} ${ARG_TIMEOUT} "${ARG_LABELS}")
+  endif()
 endfunction()
 include(GoogleTest)
+
+# Registers each test suite of a program under <program>.<suite>, listed anew whenever it was built.
+function(topogeo_discover_suites target timeout labels)
+  set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
+  add_custom_command(TARGET ${target} POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D NAME=${target} -D OUTPUT=${list}
+            -D TIMEOUT=${timeout} "-D LABELS=${labels}" -P ${PROJECT_SOURCE_DIR}/cmake/ListTestSuites.cmake
+    BYPRODUCTS ${list}
+    VERBATIM)
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${list})
+endfunction()
