@@ -1,0 +1,91 @@
+// YAML documents, read by the one who knows what they should hold: each question states what is
+// expected, and an answer that differs is an error "FILE:LINE: KEY: expected ..., got ...".
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace topogeo::support {
+
+struct YamlEntry;
+
+/// A value of a document or the place of one that is absent. Cheap to copy; keeps the document
+/// alive. All errors are std::runtime_error.
+class YamlNode {
+ public:
+  /// The key of the value, or what an item of a list or the whole document is called.
+  [[nodiscard]] const std::string& name() const;
+  /// The same value under another name, for messages.
+  [[nodiscard]] YamlNode named(std::string name) const;
+  /// From 1; of an absent value, the line of the map that lacks it.
+  [[nodiscard]] int line() const;
+
+  [[nodiscard]] bool exists() const;
+  /// Absent, or a key without a value.
+  [[nodiscard]] bool is_null() const;
+  [[nodiscard]] bool is_map() const;
+  [[nodiscard]] bool is_list() const;
+  [[nodiscard]] bool is_scalar() const;
+  /// "3" in quotes is a text and not a number.
+  [[nodiscard]] bool is_quoted() const;
+
+  /// Throws "FILE:LINE: NAME: expected EXPECTED, got GOT"; without `got`, the value.
+  [[noreturn]] void fail(const std::string& expected) const;
+  [[noreturn]] void fail(const std::string& expected, const std::string& got) const;
+  /// Throws "FILE:LINE: MESSAGE".
+  [[noreturn]] void fail_with(const std::string& message) const;
+
+  /// Fails unless the value is a map with none but these keys, each once.
+  void allow_keys(std::initializer_list<std::string_view> keys) const;
+  /// The value of a key; absent where the key is, fails where the value is no map.
+  [[nodiscard]] YamlNode at(const std::string& key) const;
+  /// The value of a key that must be there.
+  [[nodiscard]] YamlNode required(const std::string& key) const;
+  /// Keys and values of a map in the order of the file, repeated keys included. Fails for others.
+  [[nodiscard]] std::vector<YamlEntry> entries() const;
+
+  /// The items of a list, each called `item_name` or like the list; none of an absent list. Fails
+  /// for others.
+  [[nodiscard]] std::vector<YamlNode> items(const std::string& item_name = {}) const;
+  /// The items of a list that must have `size` of them, called like the list.
+  [[nodiscard]] std::vector<YamlNode> tuple(std::size_t size, const std::string& expected) const;
+
+  /// A scalar as it is written, without quotes; fails for lists, maps and absent values.
+  [[nodiscard]] std::string text() const;
+  /// The same; nothing for lists, maps and absent values.
+  [[nodiscard]] std::optional<std::string> scalar() const;
+  /// A number in [low, high]; `unit` (may be empty) is for the message.
+  [[nodiscard]] double number(double low, double high, std::string_view unit) const;
+  [[nodiscard]] bool boolean() const;
+
+ private:
+  struct Content;
+  explicit YamlNode(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+  [[nodiscard]] YamlNode child(Content content) const;
+
+  friend YamlNode parse_yaml(const std::string& text, const std::string& source,
+                             std::string root_name);
+
+  std::shared_ptr<const Content> content_;
+};
+
+struct YamlEntry {
+  YamlNode key;  ///< named like the map
+  YamlNode value;
+};
+
+/// The only document of a text; `source` stands for the file in messages, `root_name` for the
+/// document. An empty text is a document without a value. Fails with "FILE:LINE: not valid YAML:
+/// ..." or for more than one document.
+[[nodiscard]] YamlNode parse_yaml(const std::string& text, const std::string& source,
+                                  std::string root_name);
+
+/// A text as a scalar of a YAML file, in quotes where it would read as something else.
+[[nodiscard]] std::string yaml_scalar(const std::string& text);
+
+}  // namespace topogeo::support
