@@ -11,10 +11,8 @@ find_program(FASTDDSGEN fastddsgen REQUIRED)
 # takes most of its time to start. It writes into a staging folder and only what changed is copied,
 # so a changed file does not recompile the others.
 #
-# The generated constructors register the type's description every time, which costs 20 us for each
-# point of a map; sed takes that out, and libs/messaging registers it once. It also takes out
-# addresses in comments that differ from run to run, and has the buffer of a key cleared before each use:
-# what an earlier, longer key left in the padding would give one instance two handles.
+# sed takes out addresses in comments that differ from run to run, and has the buffer of a key cleared
+# before each use: what an earlier, longer key left in the padding would give one instance two handles.
 function(topogeo_add_idl)
   cmake_parse_arguments(ARG "" "NAME" "FILES" ${ARGN})
   set(staging ${CMAKE_CURRENT_BINARY_DIR}/staging)
@@ -30,7 +28,7 @@ function(topogeo_add_idl)
     cmake_path(GET file STEM stem)
     list(APPEND staged_types ${staging}/${stem}.cxx)
     list(APPEND staged_keys ${staging}/${stem}PubSubTypes.cxx)
-    foreach(name ${stem} ${stem}PubSubTypes ${stem}TypeObject)
+    foreach(name ${stem} ${stem}PubSubTypes)
       list(APPEND staged ${staging}/${name}.h ${staging}/${name}.cxx)
       list(APPEND outputs ${generated}/${name}.h ${generated}/${name}.cxx)
     endforeach()
@@ -40,10 +38,9 @@ function(topogeo_add_idl)
 
   add_custom_command(
     OUTPUT ${outputs}
-    COMMAND ${FASTDDSGEN} -replace -typeobject -cs -d ${staging} ${ARG_FILES} > ${staging}/log.txt
+    COMMAND ${FASTDDSGEN} -replace -cs -d ${staging} ${ARG_FILES} > ${staging}/log.txt
             || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
-    COMMAND sed -i -E -e "/^ +register[A-Za-z0-9_]+Types\\(\\)$<SEMICOLON>$/d"
-            -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
+    COMMAND sed -i -E -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
     COMMAND sed -i -E
             -e "s/^( +)p_type->serializeKey\\(ser\\)$<SEMICOLON>/\\1memset(m_keyBuffer, 0, p_type->getKeyMaxCdrSerializedSize())$<SEMICOLON>\\n&/"
             ${staged_keys}

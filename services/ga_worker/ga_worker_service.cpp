@@ -39,7 +39,7 @@ IntakeOptions intake_options(const WorkerOptions& options) {
 }
 
 messaging::ReaderOptions addressed_to(const std::string& worker_id) {
-  return {{}, {"worker_id = %0", {"'" + worker_id + "'"}}};
+  return {{}, worker_id};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace topogeo::ga_worker {
 
 namespace {
 
-// Quotes and percent signs mean something in a content filter, '#' ends the name in an id.
+// Quotes and percent signs would have to be escaped in scripts, '#' ends the name in an id.
 bool is_allowed(char c) {
   const auto code = static_cast<unsigned char>(c);
   return code > ' ' && code != 0x7F && c != '\'' && c != '"' && c != '%' && c != '#';

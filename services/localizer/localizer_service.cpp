@@ -22,11 +22,8 @@ constexpr std::chrono::milliseconds kCountPeriod{250};
 
 /// Different for every process that ever ran, as far as workers can remember.
 std::string unique_client_id() {
-  std::string name = support::process_name();
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '\'' || c == '"' || c == '%'; }, '-');
   const auto start = std::chrono::system_clock::now().time_since_epoch();
-  return name + "-" +
+  return support::process_name() + "-" +
          std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(start).count());
 }
 

@@ -19,7 +19,7 @@ constexpr std::size_t kMostPending = 256;
 MapSender::MapSender(const messaging::Participant& participant, messaging::EventLoop& loop,
                      const std::string& client_id, FaultHandler on_fault)
     : on_fault_(std::move(on_fault)),
-      requests_(participant, {{}, {"client_id = %0", {"'" + client_id + "'"}}}),
+      requests_(participant, {{}, client_id}),
       copies_(participant) {
   loop.on_event([this](const messaging::Event& event) { on_event(event); });
   loop.add<msg::MapRequest>(

@@ -47,7 +47,7 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
       registry_({options_.version, matcher_fingerprint_, options_.config_fingerprint}),
       news_(teller(options_.tell)),
       statuses_(participant),
-      results_(participant, {{}, {"client_id = %0", {"'" + options_.client_id + "'"}}}),
+      results_(participant, {{}, options_.client_id}),
       tasks_out_(participant),
       maps_(participant, loop, options_.client_id, on_fault_) {
   loop_.on_event([this](const messaging::Event& event) { on_event(event); });

@@ -106,8 +106,7 @@ class FaultyWorker {
 
  private:
   void join(const std::string& worker_id) {
-    tasks_.emplace(participant_,
-                   messaging::ReaderOptions{{}, {"worker_id = %0", {"'" + worker_id + "'"}}});
+    tasks_.emplace(participant_, messaging::ReaderOptions{{}, worker_id});
     loop_.add<msg::MatchTask>(*tasks_, [this](const msg::MatchTask& task, const auto&) {
       waiting_.push_back(task);
       answer_waiting();

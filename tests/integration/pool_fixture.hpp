@@ -106,7 +106,7 @@ class FakeWorker {
         statuses_(participant_),
         results_(participant_),
         requests_(participant_),
-        tasks_(participant_, {{}, {"worker_id = %0", {"'" + worker_id + "'"}}}) {
+        tasks_(participant_, {{}, worker_id}) {
     loop_.add<msg::MatchTask>(tasks_, [this, on_task](const msg::MatchTask& task, const auto&) {
       ++received;
       on_task(*this, task);

@@ -137,9 +137,7 @@ class WorkerClient {
     options.name = "test";
     return options;
   }
-  [[nodiscard]] messaging::ReaderOptions for_me() const {
-    return {{}, {"client_id = %0", {"'" + client_id_ + "'"}}};
-  }
+  [[nodiscard]] messaging::ReaderOptions for_me() const { return {{}, client_id_}; }
 
   std::string client_id_;
   messaging::Participant participant_;

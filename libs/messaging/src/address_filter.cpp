@@ -48,13 +48,8 @@ AddressFilterFactory::ReturnCode_t AddressFilterFactory::create_content_filter(
   // An update without parameters leaves the filter as it is.
   if (filter != nullptr && filter_parameters.length() == 0) return ReturnCode_t::RETCODE_OK;
   if (filter_parameters.length() != 1) return ReturnCode_t::RETCODE_BAD_PARAMETER;
-  const std::string_view quoted = filter_parameters[0];
-  if (quoted.size() < 2 || quoted.front() != '\'' || quoted.back() != '\'') {
-    return ReturnCode_t::RETCODE_BAD_PARAMETER;
-  }
-  dds::IContentFilter* const made =
-      new AddressFilter(std::string(quoted.substr(1, quoted.size() - 2)));  // NOLINT: theirs
-  delete static_cast<AddressFilter*>(filter);                               // NOLINT: as above
+  dds::IContentFilter* const made = new AddressFilter(filter_parameters[0]);  // NOLINT: theirs
+  delete static_cast<AddressFilter*>(filter);                                 // NOLINT: as above
   filter = made;
   return ReturnCode_t::RETCODE_OK;
 }

@@ -60,15 +60,6 @@ void load_profiles(const std::filesystem::path& requested) {
   loaded = file;
 }
 
-/// Content filters look the fields of a type up in a registry of the process, which is not safe
-/// against the threads of a participant: it is filled before there is one.
-void register_type_objects() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    for (const TopicInfo* topic : all_topics()) topic->register_type_object();
-  });
-}
-
 template <class Entity>
 Entity* require(Entity* entity, const std::string& what) {
   if (entity == nullptr) throw std::runtime_error("DDS: cannot create " + what);
@@ -87,7 +78,6 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");
   if (profile.empty()) profile = "topogeo";
 
-  register_type_objects();
   auto* factory = dds::DomainParticipantFactory::get_instance();
   dds::DomainParticipantQos qos;
   if (factory->get_participant_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
@@ -126,10 +116,6 @@ dds::Topic& ParticipantCore::topic(const TopicInfo& info) {
   if (const auto found = topics_.find(info.name); found != topics_.end()) return *found->second;
   const std::string name(info.name);
   const dds::TypeSupport type(info.make_type());
-  // Types are matched by name, which carries the version. Announced descriptions would be parsed by
-  // the discovery thread of every peer, into a registry that is not safe against its other threads.
-  type->auto_fill_type_object(false);
-  type->auto_fill_type_information(false);
   if (type.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
     throw std::runtime_error("DDS: cannot register the type of topic " + name);
   }
@@ -141,16 +127,19 @@ dds::Topic& ParticipantCore::topic(const TopicInfo& info) {
 }
 
 dds::ContentFilteredTopic& ParticipantCore::make_filtered(const TopicInfo& info,
-                                                          const detail::Filter& filter) {
+                                                          const std::string& addressee) {
+  if (info.addressee.empty()) {
+    throw std::runtime_error("DDS: topic " + std::string(info.name) + ": a reader for '" +
+                             addressee + "', but its messages have no addressee");
+  }
   dds::Topic& related = topic(info);
   const std::lock_guard lock(mutex_);
   const std::string name = std::string(info.name) + "/filter" + std::to_string(filters_made_++);
-  const bool by_address =
-      !info.addressee.empty() && filter.expression == std::string(info.addressee) + " = %0";
-  return *require(participant_->create_contentfilteredtopic(
-                      name, &related, filter.expression, filter.parameters,
-                      by_address ? kAddressFilterClass : FASTDDS_SQLFILTER_NAME),
-                  "filter '" + filter.expression + "' on topic " + std::string(info.name));
+  // Only the parameter counts; the expression says the same to other DDS programs.
+  const std::string expression = std::string(info.addressee) + " = %0";
+  return *require(participant_->create_contentfilteredtopic(name, &related, expression, {addressee},
+                                                            kAddressFilterClass),
+                  "filter '" + expression + "' on topic " + std::string(info.name));
 }
 
 void ParticipantCore::remove_filtered(dds::ContentFilteredTopic& topic) {

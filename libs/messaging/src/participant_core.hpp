@@ -31,8 +31,10 @@ class ParticipantCore {
 
   /// The topic, made on first use.
   eprosima::fastdds::dds::Topic& topic(const TopicInfo& info);
+  /// The part of the topic that is addressed to `addressee`. Throws std::runtime_error when its
+  /// messages have no addressee.
   eprosima::fastdds::dds::ContentFilteredTopic& make_filtered(const TopicInfo& info,
-                                                              const detail::Filter& filter);
+                                                              const std::string& addressee);
   void remove_filtered(eprosima::fastdds::dds::ContentFilteredTopic& topic);
 
  private:

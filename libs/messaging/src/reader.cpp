@@ -118,7 +118,7 @@ void ReaderCore::Impl::deliver(const dds::SampleInfo& dds_info, Endpoint::Shared
 }
 
 ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
-                       const std::string& role, const Filter& filter) {
+                       const std::string& role, const std::string& addressee) {
   shared_ = std::make_shared<Shared>(topic.name);
   impl_ = std::make_unique<Impl>(participant.core(), topic, shared_);
   dds::Subscriber& subscriber = impl_->participant->subscriber();
@@ -129,8 +129,8 @@ ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
                              " is not in the profiles file");
   }
   dds::TopicDescription* description = &impl_->participant->topic(topic);
-  if (!filter.expression.empty()) {
-    impl_->filtered = &impl_->participant->make_filtered(topic, filter);
+  if (!addressee.empty()) {
+    impl_->filtered = &impl_->participant->make_filtered(topic, addressee);
     description = impl_->filtered;
   }
   // Data is taken by whoever waits for it; only events come through the listener.

@@ -5,27 +5,16 @@
 #include <cstdint>
 
 #include "topogeo/msg/hybrid_mapPubSubTypes.h"
-#include "topogeo/msg/hybrid_mapTypeObject.h"
 #include "topogeo/msg/local_mapPubSubTypes.h"
-#include "topogeo/msg/local_mapTypeObject.h"
 #include "topogeo/msg/map_updatePubSubTypes.h"
-#include "topogeo/msg/map_updateTypeObject.h"
 #include "topogeo/msg/matchPubSubTypes.h"
-#include "topogeo/msg/matchTypeObject.h"
 #include "topogeo/msg/motionPubSubTypes.h"
-#include "topogeo/msg/motionTypeObject.h"
 #include "topogeo/msg/planningPubSubTypes.h"
-#include "topogeo/msg/planningTypeObject.h"
 #include "topogeo/msg/sensorPubSubTypes.h"
-#include "topogeo/msg/sensorTypeObject.h"
 #include "topogeo/msg/simulationPubSubTypes.h"
-#include "topogeo/msg/simulationTypeObject.h"
 #include "topogeo/msg/statusPubSubTypes.h"
-#include "topogeo/msg/statusTypeObject.h"
 #include "topogeo/msg/streamPubSubTypes.h"
-#include "topogeo/msg/streamTypeObject.h"
 #include "topogeo/msg/trajectoryPubSubTypes.h"
-#include "topogeo/msg/trajectoryTypeObject.h"
 
 #include "bounds.hpp"
 
@@ -58,20 +47,14 @@ std::optional<std::string> find_defect_of(const void* message) {
 }
 
 template <class T, class TypeSupport>
-TopicInfo make_info(std::string_view name, std::string_view role, void (*register_type_object)(),
-                    std::string_view replay_role = {}, std::string_view addressee = {}) {
-  return {name,
-          role,
-          replay_role,
-          addressee,
-          make_type<TypeSupport>,
-          register_type_object,
-          find_defect_of<T>};
+TopicInfo make_info(std::string_view name, std::string_view role, std::string_view replay_role = {},
+                    std::string_view addressee = {}) {
+  return {name, role, replay_role, addressee, make_type<TypeSupport>, find_defect_of<T>};
 }
 
 }  // namespace
 
-// One line for each topic: type, name, role, generated registration, role in replay, addressee.
+// One line for each topic: type, name, role, role in replay, addressee.
 #define TOPOGEO_TOPIC(Type, name, ...)                                                             \
   template <>                                                                                      \
   const TopicInfo& TopicTraits<msg::Type>::info() {                                                \
@@ -79,37 +62,37 @@ TopicInfo make_info(std::string_view name, std::string_view role, void (*registe
     return topic;                                                                                  \
   }
 
-TOPOGEO_TOPIC(Scan, kScan, "sensor_live", registersensorTypes, kReplayRole)
-TOPOGEO_TOPIC(Odometry, kOdometry, "motion_live", registersensorTypes, kReplayRole)
-TOPOGEO_TOPIC(Sonar, kSonar, "sensor_live", registersensorTypes, kReplayRole)
-TOPOGEO_TOPIC(BaseStatus, kBaseStatus, "sensor_live", registersensorTypes, kReplayRole)
-TOPOGEO_TOPIC(LaserStatus, kLaserStatus, "sensor_live", registersensorTypes, kReplayRole)
-TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state", registerstreamTypes)
-TOPOGEO_TOPIC(LocalMap, kLocalMap, "state", registerlocal_mapTypes)
-TOPOGEO_TOPIC(TrackedPose, kTrackedPose, "motion_live", registerlocal_mapTypes)
-TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", registermatchTypes, {}, "worker_id")
-TOPOGEO_TOPIC(MatchResult, kMatchResult, "result", registermatchTypes, {}, "client_id")
-TOPOGEO_TOPIC(MapRequest, kMapRequest, "result", registerlocal_mapTypes, {}, "client_id")
-TOPOGEO_TOPIC(MapCopy, kMapCopy, "task", registerlocal_mapTypes, {}, "worker_id")
-TOPOGEO_TOPIC(WorkerStatus, kWorkerStatus, "status", registerstatusTypes)
-TOPOGEO_TOPIC(ServiceStatus, kServiceStatus, "status", registerstatusTypes)
-TOPOGEO_TOPIC(LivePose, kLivePose, "motion_live", registertrajectoryTypes)
-TOPOGEO_TOPIC(TrajectorySegment, kTrajectorySegment, "state", registertrajectoryTypes)
-TOPOGEO_TOPIC(LoopClosures, kLoopClosures, "state", registertrajectoryTypes)
-TOPOGEO_TOPIC(LoopDecisions, kLoopDecisions, "state", registertrajectoryTypes)
-TOPOGEO_TOPIC(LocalizationCommand, kLocalizationCommand, "request", registertrajectoryTypes)
-TOPOGEO_TOPIC(LocalizationReply, kLocalizationReply, "request", registertrajectoryTypes)
-TOPOGEO_TOPIC(MapElement, kMapElement, "state", registermap_updateTypes)
-TOPOGEO_TOPIC(Goal, kGoal, "state", registerplanningTypes)
-TOPOGEO_TOPIC(Route, kRoute, "state", registerplanningTypes)
-TOPOGEO_TOPIC(Blockages, kBlockages, "state", registerplanningTypes)
-TOPOGEO_TOPIC(NavigatorStatus, kNavigatorStatus, "state", registerplanningTypes)
-TOPOGEO_TOPIC(GridTile, kGridTile, "state", registerhybrid_mapTypes)
-TOPOGEO_TOPIC(HybridMap, kHybridMap, "state", registerhybrid_mapTypes)
-TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command", registermotionTypes)
-TOPOGEO_TOPIC(BaseCommand, kBaseCommand, "request", registermotionTypes)
-TOPOGEO_TOPIC(GroundTruth, kGroundTruth, "motion_live", registersimulationTypes)
-TOPOGEO_TOPIC(SimulatorCommand, kSimulatorCommand, "request", registersimulationTypes)
+TOPOGEO_TOPIC(Scan, kScan, "sensor_live", kReplayRole)
+TOPOGEO_TOPIC(Odometry, kOdometry, "motion_live", kReplayRole)
+TOPOGEO_TOPIC(Sonar, kSonar, "sensor_live", kReplayRole)
+TOPOGEO_TOPIC(BaseStatus, kBaseStatus, "sensor_live", kReplayRole)
+TOPOGEO_TOPIC(LaserStatus, kLaserStatus, "sensor_live", kReplayRole)
+TOPOGEO_TOPIC(StreamEnd, kStreamEnd, "state")
+TOPOGEO_TOPIC(LocalMap, kLocalMap, "state")
+TOPOGEO_TOPIC(TrackedPose, kTrackedPose, "motion_live")
+TOPOGEO_TOPIC(MatchTask, kMatchTask, "task", {}, "worker_id")
+TOPOGEO_TOPIC(MatchResult, kMatchResult, "result", {}, "client_id")
+TOPOGEO_TOPIC(MapRequest, kMapRequest, "result", {}, "client_id")
+TOPOGEO_TOPIC(MapCopy, kMapCopy, "task", {}, "worker_id")
+TOPOGEO_TOPIC(WorkerStatus, kWorkerStatus, "status")
+TOPOGEO_TOPIC(ServiceStatus, kServiceStatus, "status")
+TOPOGEO_TOPIC(LivePose, kLivePose, "motion_live")
+TOPOGEO_TOPIC(TrajectorySegment, kTrajectorySegment, "state")
+TOPOGEO_TOPIC(LoopClosures, kLoopClosures, "state")
+TOPOGEO_TOPIC(LoopDecisions, kLoopDecisions, "state")
+TOPOGEO_TOPIC(LocalizationCommand, kLocalizationCommand, "request")
+TOPOGEO_TOPIC(LocalizationReply, kLocalizationReply, "request")
+TOPOGEO_TOPIC(MapElement, kMapElement, "state")
+TOPOGEO_TOPIC(Goal, kGoal, "state")
+TOPOGEO_TOPIC(Route, kRoute, "state")
+TOPOGEO_TOPIC(Blockages, kBlockages, "state")
+TOPOGEO_TOPIC(NavigatorStatus, kNavigatorStatus, "state")
+TOPOGEO_TOPIC(GridTile, kGridTile, "state")
+TOPOGEO_TOPIC(HybridMap, kHybridMap, "state")
+TOPOGEO_TOPIC(MotionCommand, kMotionCommand, "command")
+TOPOGEO_TOPIC(BaseCommand, kBaseCommand, "request")
+TOPOGEO_TOPIC(GroundTruth, kGroundTruth, "motion_live")
+TOPOGEO_TOPIC(SimulatorCommand, kSimulatorCommand, "request")
 
 #undef TOPOGEO_TOPIC
 

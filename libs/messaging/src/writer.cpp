@@ -15,7 +15,7 @@ namespace dds = eprosima::fastdds::dds;
 
 namespace {
 
-/// Readers whose filter the writer evaluates; beyond that each reader does it itself.
+/// Readers whose addressee the writer compares; beyond that each reader does it itself.
 constexpr std::size_t kMaxReaderFilters = 256;
 
 class Listener final : public dds::DataWriterListener {

@@ -12,12 +12,11 @@
 
 namespace topogeo::messaging {
 
-using detail::Filter;
-
 struct ReaderOptions {
   std::string role;  ///< replaces the role of the topic, for example kReplayRole
-  /// Only messages that match; empty expression: all. A filtered reader sees no disposals.
-  Filter filter;
+  /// Only messages to it, which the writer selects; empty: every message. A reader with an
+  /// addressee gets no disposals.
+  std::string addressee;
 };
 
 /// T is one of the types of topics.hpp. Include its header topogeo/msg/<file>.h to use it.
@@ -26,11 +25,11 @@ class Reader {
  public:
   using Handler = std::function<void(const T& message, const SampleInfo& info)>;
 
-  /// Throws std::runtime_error when there is no such profile, the filter does not fit the type or
-  /// the middleware refuses.
+  /// Throws std::runtime_error when there is no such profile, the messages of the topic have no
+  /// addressee or the middleware refuses.
   explicit Reader(const Participant& participant, const ReaderOptions& options = {})
       : core_(std::make_shared<detail::ReaderCore>(participant, TopicTraits<T>::info(),
-                                                   options.role, options.filter)) {}
+                                                   options.role, options.addressee)) {}
 
   /// Hands over at most `limit` samples, oldest first of each writer, and returns how many. With
   /// info.valid false the message is empty: only info.instance and info.state count.

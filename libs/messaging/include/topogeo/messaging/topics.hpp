@@ -97,8 +97,6 @@ struct TopicInfo {
 
   /// Makes the type support; the caller owns it.
   eprosima::fastdds::dds::TopicDataType* (*make_type)();
-  /// Makes the type known by its fields, which a content filter needs.
-  void (*register_type_object)();
   /// Why a message of this type must not travel: another schema version or a sequence over its
   /// bound. The generated code checks neither.
   std::optional<std::string> (*find_defect)(const void* message);

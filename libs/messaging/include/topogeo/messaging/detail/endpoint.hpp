@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -51,20 +50,12 @@ class WriterCore final : public Endpoint {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Field filter on the topic's type in SQL form, for example "worker_id = %0" with {"'pc1'"}. The
-/// writer evaluates it for each reader and message: the addressee of a topic (TopicInfo) alone in
-/// less than a microsecond, all else in about 90.
-struct Filter {
-  std::string expression;
-  std::vector<std::string> parameters;  ///< strings in single quotes
-};
-
 class ReaderCore final : public Endpoint {
  public:
   using Handler = std::function<void(const void* message, const SampleInfo&)>;
 
   ReaderCore(const Participant& participant, const TopicInfo& topic, const std::string& role,
-             const Filter& filter);
+             const std::string& addressee);
   ~ReaderCore() override;
 
   std::size_t take(std::size_t limit, const Handler& handler);
