@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scan_view.hpp"
+#include "scan_occupancy.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -37,20 +37,20 @@ void Blockade::see(const ScanPoints& scan, const geometry::Pose2& T_map_robot) {
   if (cells_.empty()) return;
   constexpr double kHalf_m = 0.05;
   constexpr double kFarthest_m = 5.0;
-  const ScanView view(scan);
+  const ScanOccupancy occupancy(scan);
   const geometry::Pose2 T_robot_map = inverse(T_map_robot);
   for (Filled& filled : cells_) {
     const Eigen::Vector2d seen_m = T_robot_map * filled.point_m;
     if (seen_m.norm() > kFarthest_m) continue;
-    switch (view.look(seen_m, kHalf_m)) {
-      case Sight::kFree:
+    switch (occupancy.at(seen_m, kHalf_m)) {
+      case Occupancy::kFree:
         ++filled.free;
         break;
-      case Sight::kOccupied:
+      case Occupancy::kOccupied:
         filled.free = 0;
         filled.last_ns = scan.stamp_ns;
         break;
-      case Sight::kUnseen:
+      case Occupancy::kUnseen:
         break;
     }
   }

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include <spdlog/fmt/fmt.h>
+
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/scan/scan.hpp"
 
 #include "arc_sweep.hpp"
-#include "say.hpp"
 #include "scan_smoothing.hpp"
 #include "settings_check.hpp"
 
@@ -122,23 +123,26 @@ HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) con
   };
   if (config_.needs_scan && !scan_) return because(HaltReason::kNoScan, "no scan has come yet");
   if (config_.needs_scan && !fresh(scan_->stamp_ns, now_ns)) {
-    return because(HaltReason::kNoScan, say("the last scan is %.1f s old", age_s(scan_->stamp_ns)));
+    return because(HaltReason::kNoScan,
+                   fmt::format("the last scan is {:.1f} s old", age_s(scan_->stamp_ns)));
   }
   const bool needs_sonar = config_.needs_sonar || !config_.needs_scan;
   if (needs_sonar && (!sonar_ || sonar_->readings.empty())) {
     return because(HaltReason::kSonarSilent, "no reading of the sonars has come yet");
   }
   if (needs_sonar && age_s(sonar_->stamp_ns) > std::max(config_.silent_s, config_.oldest_scan_s)) {
-    return because(HaltReason::kSonarSilent,
-                   say("the last reading of the sonars is %.1f s old", age_s(sonar_->stamp_ns)));
+    return because(
+        HaltReason::kSonarSilent,
+        fmt::format("the last reading of the sonars is {:.1f} s old", age_s(sonar_->stamp_ns)));
   }
   if (silent_since_ns_ && age_s(sonar_->stamp_ns) <= config_.silent_s &&
       static_cast<double>(sonar_->stamp_ns - *silent_since_ns_) * kNsToSeconds >=
           config_.silent_s) {
-    return because(HaltReason::kSonarSilent,
-                   say("no sonar has heard anything for %.1f s, though the laser sees something "
-                       "near",
-                       age_s(*silent_since_ns_)));
+    return because(
+        HaltReason::kSonarSilent,
+        fmt::format("no sonar has heard anything for {:.1f} s, though the laser sees something "
+                    "near",
+                    age_s(*silent_since_ns_)));
   }
   return HaltReason::kNone;
 }
@@ -220,7 +224,7 @@ GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_
     verdict.allowed = {};
     verdict.reason = HaltReason::kObstacle;
   }
-  verdict.message = say("something is %.2f m ahead of the body", way.way_m);
+  verdict.message = fmt::format("something is {:.2f} m ahead of the body", way.way_m);
   return verdict;
 }
 

@@ -82,14 +82,13 @@ bool MarkovMode::comes_to_node(double progress_m) {
   return true;
 }
 
-bool MarkovMode::look(std::int64_t now_ns, double& corrected_m) {
+std::optional<double> MarkovMode::look(std::int64_t now_ns) {
   constexpr std::int64_t kRollsOut_ns = 800'000'000;
-  if (!look_ns_ || !tracker_ || !tracker_->started() || !round_) return false;
-  if (round_->stamp_ns < *look_ns_ + kRollsOut_ns || now_ns < round_->stamp_ns) return false;
+  if (!look_ns_ || !tracker_ || !tracker_->started() || !round_) return std::nullopt;
+  if (round_->stamp_ns < *look_ns_ + kRollsOut_ns || now_ns < round_->stamp_ns) return std::nullopt;
   tracker_->perceive(*round_);
-  corrected_m = tracker_->corrected_m();
   look_ns_.reset();
-  return true;
+  return tracker_->corrected_m();
 }
 
 }  // namespace topogeo::navigation

@@ -10,7 +10,9 @@
 #include <Eigen/Core>
 
 #include "topogeo/navigation/markov_tracker.hpp"
-#include "topogeo/navigation/navigator.hpp"
+#include "topogeo/navigation/navigator_config.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/planning/motion_primitives.hpp"
 
 namespace topogeo::navigation {
 
@@ -39,9 +41,9 @@ class MarkovMode {
 
   void begin_look(std::int64_t now_ns) { look_ns_ = now_ns; }
   [[nodiscard]] bool looks() const { return look_ns_.has_value(); }
-  /// Looks as soon as a reading has come since the robot stands; true when it has. `corrected_m`
-  /// tells how far that has moved the pose.
-  bool look(std::int64_t now_ns, double& corrected_m);
+  /// Looks, if it is to, as soon as a reading has come since the robot stands; how far that has
+  /// moved the pose, metres. Nothing before.
+  std::optional<double> look(std::int64_t now_ns);
 
  private:
   const NavigatorConfig& config_;

@@ -1,19 +1,20 @@
 #include "obstacle_memory.hpp"
 
-#include "scan_view.hpp"
+#include "scan_occupancy.hpp"
 
 namespace topogeo::navigation {
 
 void ObstacleMemory::add(const ScanPoints& scan, const geometry::Pose2& T_map_robot,
                          const planning::FreeSpace& space) {
   const planning::GridFrame& frame = space.frame();
-  const ScanView view(scan);
+  const ScanOccupancy occupancy(scan);
   const geometry::Pose2 T_robot_map = inverse(T_map_robot);
   const auto forgotten_ns = static_cast<std::int64_t>(config_.forgotten_s * 1e9);
   constexpr int kMisses = 3;
   for (auto entry = cells_.begin(); entry != cells_.end();) {
     Obstacle& obstacle = entry->second;
-    if (view.look(T_robot_map * obstacle.point_m, 0.5 * frame.resolution_m) == Sight::kFree) {
+    if (occupancy.at(T_robot_map * obstacle.point_m, 0.5 * frame.resolution_m) ==
+        Occupancy::kFree) {
       ++obstacle.misses;
     }
     const bool gone = obstacle.misses >= (obstacle.hits < kMisses ? 1 : kMisses) ||

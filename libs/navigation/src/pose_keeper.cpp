@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "say.hpp"
+#include <spdlog/fmt/fmt.h>
 
 namespace topogeo::navigation {
 namespace {
@@ -109,15 +109,15 @@ std::optional<geometry::Pose2> PoseKeeper::good_pose(std::int64_t now_ns) const 
 std::string PoseKeeper::why_not(std::int64_t now_ns) const {
   if (!fix_) return "no pose has come yet";
   if (!usable()) {
-    return say("the localizer does not track the pose: %s",
-               fix_->state_text.empty() ? "no reason given" : fix_->state_text.c_str());
+    return fmt::format("the localizer does not track the pose: {}",
+                       fix_->state_text.empty() ? "no reason given" : fix_->state_text);
   }
   if (seconds(now_ns - fix_->stamp_ns) > config_.oldest_pose_s) {
-    return say("the last pose is %.1f s old", seconds(now_ns - fix_->stamp_ns));
+    return fmt::format("the last pose is {:.1f} s old", seconds(now_ns - fix_->stamp_ns));
   }
   if (!(sigma_m() <= config_.largest_sigma_m)) {
-    return say("the pose is only known to %.2f m, %.2f m are allowed", sigma_m(),
-               config_.largest_sigma_m);
+    return fmt::format("the pose is only known to {:.2f} m, {:.2f} m are allowed", sigma_m(),
+                       config_.largest_sigma_m);
   }
   return "no odometry";
 }

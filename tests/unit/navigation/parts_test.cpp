@@ -13,8 +13,8 @@
 #include "obstacle_memory.hpp"
 #include "path_band.hpp"
 #include "pose_keeper.hpp"
+#include "scan_occupancy.hpp"
 #include "scan_smoothing.hpp"
-#include "scan_view.hpp"
 #include "test_drive.hpp"
 
 namespace topogeo::navigation {
@@ -95,15 +95,15 @@ TEST(ScanSmoothing, TakesNoiseOffAWallAndLeavesLonePoints) {
   EXPECT_EQ(result.points_m.back(), scan.points_m.back());
 }
 
-TEST(ScanView, SeesFreeOccupiedAndHidden) {
+TEST(ScanOccupancy, SeesFreeOccupiedAndHidden) {
   ScanPoints scan;
   for (int i = -100; i <= 100; ++i) scan.points_m.emplace_back(2.0, 0.01 * i);
-  const ScanView view(scan);
-  EXPECT_EQ(view.look({1.0, 0.0}, 0.05), Sight::kFree);
-  EXPECT_EQ(view.look({2.0, 0.5}, 0.05), Sight::kOccupied);
-  EXPECT_EQ(view.look({3.0, 0.0}, 0.05), Sight::kUnseen);
-  EXPECT_EQ(view.look({-1.0, 0.0}, 0.05), Sight::kUnseen);
-  EXPECT_EQ(view.look({1.0, 1.0}, 0.05), Sight::kUnseen);  // beside the beams
+  const ScanOccupancy occupancy(scan);
+  EXPECT_EQ(occupancy.at({1.0, 0.0}, 0.05), Occupancy::kFree);
+  EXPECT_EQ(occupancy.at({2.0, 0.5}, 0.05), Occupancy::kOccupied);
+  EXPECT_EQ(occupancy.at({3.0, 0.0}, 0.05), Occupancy::kUnseen);
+  EXPECT_EQ(occupancy.at({-1.0, 0.0}, 0.05), Occupancy::kUnseen);
+  EXPECT_EQ(occupancy.at({1.0, 1.0}, 0.05), Occupancy::kUnseen);  // beside the beams
 }
 
 ScanPoints scan_of_post(double x_m, std::int64_t stamp_ns) {

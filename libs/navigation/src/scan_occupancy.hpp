@@ -1,4 +1,4 @@
-// What one scan says about a place: seen to be free, seen to be occupied, or not seen.
+// What one scan shows of a place: free, occupied, or not seen.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@
 
 namespace topogeo::navigation {
 
-enum class Sight { kUnseen, kFree, kOccupied };
+enum class Occupancy { kUnseen, kFree, kOccupied };
 
-class ScanView {
+class ScanOccupancy {
  public:
-  explicit ScanView(const ScanPoints& scan);
+  explicit ScanOccupancy(const ScanPoints& scan);
 
   /// `place_m` in the robot's frame at the time of the scan, as large as `radius_m`.
-  [[nodiscard]] Sight look(const Eigen::Vector2d& place_m, double radius_m) const;
+  [[nodiscard]] Occupancy at(const Eigen::Vector2d& place_m, double radius_m) const;
 
  private:
   struct Beam {

@@ -1,0 +1,85 @@
+#include "arrival.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/navigation/path_follower.hpp"
+
+#include "elapsed.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr int kCorrections = 5;  // an error that stays after these is one of the pose
+constexpr int kLooks = 3;        // a third of a circle each
+constexpr double kLookTurn_rad = 2.1;
+
+}  // namespace
+
+void Arrival::reset() {
+  settle_ns_.reset();
+  corrections_ = 0;
+  looks_ = 0;
+}
+
+void Arrival::begin(std::int64_t now_ns) {
+  settle_ns_ = now_ns;
+  looked_ = false;
+}
+
+void Arrival::accept_position() {
+  corrections_ = kCorrections;
+}
+
+ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
+  constexpr double kLongest = 3.0;  // of the time to settle, for a pose that does not come
+  constexpr double kStands = 0.5;   // of it, until the robot has come to rest
+  const double stood_s = elapsed_s(*settle_ns_, now_ns);
+  const bool seen = view.fix_ns.value_or(0) >=
+                    *settle_ns_ + static_cast<std::int64_t>(kStands * config_.settle_s * 1e9);
+  if (stood_s < config_.settle_s || (!seen && stood_s < kLongest * config_.settle_s)) {
+    return {ArrivalStep::Kind::kStands, {}, {}, "is there; looks where exactly"};
+  }
+  if (!view.tracking && looks_ < kLooks) return look_around(view);
+  const double off_m = (view.goal_m - view.T_map_robot.position_m()).norm();
+  const double off_rad =
+      view.heading_rad
+          ? std::fabs(geometry::wrap_angle(*view.heading_rad - view.T_map_robot.theta_rad))
+          : 0.0;
+  const bool there = off_m <= config_.arrival_m && off_rad <= config_.arrival_rad;
+  if (!there && corrections_ < kCorrections) return correct(view, off_m);
+  std::string message = fmt::format("has arrived, {:.2f} m", off_m);
+  if (view.heading_rad) {
+    message += fmt::format(" and {:.1f} degrees", off_rad * 180.0 / std::numbers::pi);
+  }
+  message += view.tracking ? " off by its own pose" : " off by a pose that it is not sure of";
+  return {ArrivalStep::Kind::kArrived, {}, {}, std::move(message)};
+}
+
+// Stops made while it turns confirm a pose that the localizer is not sure of, or change it.
+ArrivalStep Arrival::look_around(const ArrivalView& view) {
+  ++looks_;
+  settle_ns_.reset();
+  return {ArrivalStep::Kind::kMoves,
+          {},
+          geometry::wrap_angle(view.T_map_robot.theta_rad + kLookTurn_rad),
+          "is there by an unsure pose; turns to look around"};
+}
+
+ArrivalStep Arrival::correct(const ArrivalView& view, double off_m) {
+  ++corrections_;
+  settle_ns_.reset();
+  std::vector<planning::PathSample> path;
+  if (off_m > config_.arrival_m) {
+    const std::array<Eigen::Vector2d, 2> line = {view.T_map_robot.position_m(), view.goal_m};
+    path = straight_path(line);
+  }
+  return {ArrivalStep::Kind::kMoves, std::move(path), view.heading_rad,
+          fmt::format("corrects {:.2f} m at the goal", off_m)};
+}
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,71 @@
+// Arriving: the robot stands, finds out where it is, corrects what is left, and has arrived.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/navigation/navigator_config.hpp"
+#include "topogeo/planning/motion_primitives.hpp"
+
+namespace topogeo::navigation {
+
+/// Where the robot stands at the end of its path.
+struct ArrivalView {
+  geometry::Pose2 T_map_robot;
+  std::optional<std::int64_t> fix_ns;  ///< stamp of the last pose fix
+  bool tracking = false;               ///< the localizer is sure of it
+  Eigen::Vector2d goal_m = Eigen::Vector2d::Zero();
+  std::optional<double> heading_rad;  ///< wanted at the goal
+};
+
+struct ArrivalStep {
+  enum class Kind {
+    kStands,  ///< and waits for a pose of this place
+    kMoves,   ///< follows `path` and turns to `heading_rad`, and arrives again
+    kArrived,
+  };
+  Kind kind = Kind::kStands;
+  std::vector<planning::PathSample> path;
+  std::optional<double> heading_rad;
+  std::string message;  ///< one line for people
+};
+
+class Arrival {
+ public:
+  explicit Arrival(const NavigatorConfig& config) : config_(config) {}
+
+  /// Another goal or route: all attempts are still to come.
+  void reset();
+  /// It is at the end of its path and stands from now on.
+  void begin(std::int64_t now_ns);
+  /// It has to do something else first.
+  void interrupt() { settle_ns_.reset(); }
+  /// Something keeps it off the last centimetres: only its heading is still to be corrected.
+  void accept_position();
+  /// Markov localization has looked where it is.
+  void note_look() { looked_ = settling(); }
+
+  [[nodiscard]] bool settling() const { return settle_ns_.has_value(); }
+  /// Markov localization has still to look where it is.
+  [[nodiscard]] bool needs_look() const { return settling() && !looked_; }
+
+  /// What comes next, while it settles.
+  ArrivalStep step(const ArrivalView& view, std::int64_t now_ns);
+
+ private:
+  ArrivalStep look_around(const ArrivalView& view);
+  ArrivalStep correct(const ArrivalView& view, double off_m);
+
+  const NavigatorConfig& config_;
+  std::optional<std::int64_t> settle_ns_;  ///< since when it stands
+  bool looked_ = false;
+  int looks_ = 0;  ///< turns at the goal, for the localizer to become sure
+  int corrections_ = 0;
+};
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,52 @@
+#include "guarded_base.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "elapsed.hpp"
+
+namespace topogeo::navigation {
+
+GuardedBase::GuardedBase(const GuardConfig& guard, double stuck_s)
+    : stuck_s_(stuck_s), guard_(guard), watch_(stuck_s) {}
+
+HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const {
+  if (base_ && !base_->commands_taken) {
+    message = "the base takes no commands: " + base_->reason;
+    return HaltReason::kBaseNotReady;
+  }
+  if (stuck_) {
+    message = fmt::format(
+        "told to move for {:.1f} s, the base did not; drives on when told to resume", stuck_s_);
+    return HaltReason::kBaseStuck;
+  }
+  return guard_.health(now_ns, &message);
+}
+
+GuardedBase::Command GuardedBase::command(const geometry::Velocity& wanted,
+                                          const std::optional<geometry::Pose2>& T_odom_robot,
+                                          std::int64_t now_ns) {
+  Command command;
+  command.verdict = guard_.judge(wanted, now_ns);
+  const geometry::Velocity& allowed = command.verdict.allowed;
+  command.stopped = wanted.linear_m_per_s > 0.0 && allowed == geometry::Velocity{};
+  if (command.stopped && !stopped_ns_) {
+    stopped_ns_ = now_ns;
+    command.newly_stopped = true;
+  } else if (!command.stopped && wanted != geometry::Velocity{}) {
+    stopped_ns_.reset();
+  }
+  if (T_odom_robot) stuck_ = watch_.stuck(allowed, *T_odom_robot, now_ns);
+  return command;
+}
+
+bool GuardedBase::held(std::int64_t now_ns) const {
+  constexpr double kPatience_s = 0.7;
+  return stopped_ns_ && elapsed_s(*stopped_ns_, now_ns) > kPatience_s;
+}
+
+void GuardedBase::retry() {
+  stuck_ = false;
+  watch_.reset();
+}
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,60 @@
+// The base behind its collision guard: every velocity passes here, and every reason of base and
+// sensors not to move at all.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/geometry/velocity.hpp"
+#include "topogeo/navigation/collision_guard.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+
+#include "base_watch.hpp"
+
+namespace topogeo::navigation {
+
+class GuardedBase {
+ public:
+  GuardedBase(const GuardConfig& guard, double stuck_s);
+
+  void add(const OdometrySample& odometry) { guard_.add(odometry); }
+  void add(const ScanPoints& scan) { guard_.add(scan); }
+  void add(const SonarRound& sonar) { guard_.add(sonar); }
+  void add(const BaseCondition& base) { base_ = base; }
+
+  /// Why no motion at all is possible, with one line for people; kNone when it is.
+  HaltReason halted(std::int64_t now_ns, std::string& message) const;
+
+  struct Command {
+    GuardVerdict verdict;
+    bool stopped = false;        ///< the guard allows nothing of a motion ahead
+    bool newly_stopped = false;  ///< and allowed some of it before
+  };
+  /// What of a wanted velocity the base gets. Without odometry a base that does not move is not
+  /// noticed.
+  Command command(const geometry::Velocity& wanted,
+                  const std::optional<geometry::Pose2>& T_odom_robot, std::int64_t now_ns);
+  /// The base gets the order to stand.
+  void stand() { watch_.reset(); }
+
+  /// The guard has stopped the motion ahead for longer than it takes a passer-by to step aside.
+  [[nodiscard]] bool held(std::int64_t now_ns) const;
+  /// Another path or another order: what the guard has stopped before does not count any more.
+  void release() { stopped_ns_.reset(); }
+  /// A base that was stuck may be tried again.
+  void retry();
+
+  [[nodiscard]] const CollisionGuard& guard() const { return guard_; }
+
+ private:
+  double stuck_s_;
+  CollisionGuard guard_;
+  BaseWatch watch_;
+  std::optional<BaseCondition> base_;
+  bool stuck_ = false;
+  std::optional<std::int64_t> stopped_ns_;  ///< since when the guard stops the motion ahead
+};
+
+}  // namespace topogeo::navigation

@@ -1,0 +1,113 @@
+#include "local_planner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "topogeo/navigation/path_follower.hpp"
+
+#include "path_band.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+constexpr double kWishedBeside_m = 0.3;  // free beside the body, where there is room
+constexpr double kLeastBeside_m = 0.07;  // the same in tight bends
+constexpr double kNear_m = 0.3;          // so near to the goal the path is straight
+
+/// Each obstacle with four points around it.
+std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_m, double by_m) {
+  std::vector<Eigen::Vector2d> points_m(obstacles_m.begin(), obstacles_m.end());
+  for (const Eigen::Vector2d& obstacle_m : obstacles_m) {
+    points_m.emplace_back(obstacle_m + Eigen::Vector2d(by_m, 0.0));
+    points_m.emplace_back(obstacle_m - Eigen::Vector2d(by_m, 0.0));
+    points_m.emplace_back(obstacle_m + Eigen::Vector2d(0.0, by_m));
+    points_m.emplace_back(obstacle_m - Eigen::Vector2d(0.0, by_m));
+  }
+  return points_m;
+}
+
+}  // namespace
+
+std::vector<planning::PathSample> LocalPlanner::shape(
+    const planning::FreeSpace& space, std::span<const Eigen::Vector2d> points_m,
+    std::span<const Eigen::Vector2d> obstacles_m) const {
+  if (config_.motion == MotionStyle::kPrimitives) return straight_path(points_m);
+  constexpr double kCorner_rad = 0.9;  // sharper corners are turned on the spot
+  const double radius_m = config_.guard.radius_m;
+  const BandConfig wished{radius_m + kWishedBeside_m, radius_m + kLeastBeside_m};
+  auto banded_m = band(space, points_m, obstacles_m, wished);
+  if (banded_m.empty()) banded_m = band(space, points_m, {}, wished);
+  if (!banded_m.empty()) return samples_of(banded_m, kCorner_rad);
+  return planning::smooth_path(space, points_m, config_.smooth);
+}
+
+LocalPath LocalPlanner::plan(const RouteKeeper& route, const Eigen::Vector2d& robot_m,
+                             std::span<const Eigen::Vector2d> obstacles_m) const {
+  LocalPath local;
+  if ((route.goal_m() - robot_m).norm() < kNear_m) {
+    const std::array<Eigen::Vector2d, 2> line = {robot_m, route.goal_m()};
+    local.status = planning::DetourStatus::kClear;
+    local.path = straight_path(line);
+    return local;
+  }
+  const planning::FreeSpace& space = route.map()->space();
+  const auto detour_round = [&](std::span<const Eigen::Vector2d> avoided_m) {
+    return planning::plan_detour(space, route.cells(), robot_m, route.goal_m(), avoided_m,
+                                 config_.detour);
+  };
+  const auto found = [](const planning::Detour& detour) {
+    return detour.status == planning::DetourStatus::kClear ||
+           detour.status == planning::DetourStatus::kFound;
+  };
+  // First with room to spare round the obstacles, then as near to them as the map allows.
+  planning::Detour detour = detour_round(widened(obstacles_m, space.frame().resolution_m));
+  if (!found(detour) && !obstacles_m.empty()) detour = detour_round(obstacles_m);
+  local.status = detour.status;
+  if (found(detour)) local.path = shape(space, detour.points_m, obstacles_m);
+  return local;
+}
+
+std::optional<PathBlock> LocalPlanner::blocked(std::span<const planning::PathSample> path,
+                                               double from_m, const Eigen::Vector2d& robot_m,
+                                               std::span<const Eigen::Vector2d> obstacles_m,
+                                               double reach_m) const {
+  constexpr double kBeside_m = 0.04;  // it passes obstacles at this distance
+  constexpr double kNearer_m = 0.03;  // more is nearer than it is now
+  constexpr double kStep_m = 0.05;
+  const double body_m = config_.guard.radius_m + kBeside_m;
+  const auto touched = [&](const Eigen::Vector2d& at_m) {
+    return std::find_if(obstacles_m.begin(), obstacles_m.end(), [&](const auto& obstacle_m) {
+      return (at_m - obstacle_m).norm() <
+             std::min(body_m, (robot_m - obstacle_m).norm() - kNearer_m);
+    });
+  };
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const double piece_m = path[i + 1].distance_m - path[i].distance_m;
+    if (path[i + 1].distance_m < from_m) continue;
+    const Eigen::Vector2d begin_m = path[i].T_map_robot.position_m();
+    const Eigen::Vector2d vector_m = path[i + 1].T_map_robot.position_m() - begin_m;
+    const int steps = std::max(1, static_cast<int>(std::ceil(piece_m / kStep_m)));
+    for (int k = 1; k <= steps; ++k) {
+      const double share = static_cast<double>(k) / steps;
+      const double ahead_m = path[i].distance_m + share * piece_m - from_m;
+      if (ahead_m < 0.0) continue;
+      if (ahead_m > reach_m) return std::nullopt;
+      const auto obstacle = touched(begin_m + share * vector_m);
+      if (obstacle != obstacles_m.end()) return PathBlock{ahead_m, *obstacle};
+    }
+  }
+  return std::nullopt;
+}
+
+bool passable(const planning::FreeSpace& space, std::span<const planning::PathSample> path,
+              double from_m) {
+  constexpr double kHere_m = 0.5;
+  return std::all_of(path.begin(), path.end(), [&](const planning::PathSample& sample) {
+    if (sample.distance_m < from_m + kHere_m) return true;
+    const auto cell = space.frame().cell_of(sample.T_map_robot.position_m());
+    return cell && space.passable(*cell);
+  });
+}
+
+}  // namespace topogeo::navigation

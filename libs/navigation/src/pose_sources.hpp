@@ -1,0 +1,54 @@
+// Where poses come from: fixes of a localizer, or Markov localization on the map's grid; both
+// carried on by odometry.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "topogeo/navigation/navigator_config.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/planning/motion_primitives.hpp"
+
+#include "markov_mode.hpp"
+#include "pose_keeper.hpp"
+
+namespace topogeo::navigation {
+
+class PoseSources {
+ public:
+  explicit PoseSources(const NavigatorConfig& config);
+
+  void set_map(const planning::HybridMap* map) { markov_.set_map(map); }
+  void add(const PoseFix& pose);
+  void add(const OdometrySample& odometry);
+  void add(const ScanPoints& scan) { markov_.add(scan); }
+  void add(const SonarRound& sonar) { markov_.add(sonar); }
+
+  /// Once in each step. Markov localization follows the primitive that has been executed, and looks
+  /// where it is when that is due and readings have come since the robot stands. How far such a
+  /// look has moved the pose, metres; nothing without one.
+  std::optional<double> update(bool primitive_finished, std::int64_t now_ns);
+
+  [[nodiscard]] const PoseKeeper& keeper() const { return keeper_; }
+  double take_jump_m() { return keeper_.take_jump_m(); }
+  double take_driven_m() { return keeper_.take_driven_m(); }
+
+  /// The path that is followed and the border nodes of its route: Markov localization looks there.
+  void set_path(std::span<const planning::PathSample> path,
+                std::span<const Eigen::Vector2d> nodes_m);
+  /// Whether the robot has to stand now so that Markov localization can look: at the end of its
+  /// route, at a border node along the path, or because it was not sure. `progress_m` along the
+  /// path while one is followed.
+  bool must_stand(bool at_end, std::optional<double> progress_m, std::int64_t now_ns);
+
+ private:
+  double largest_sigma_m_;
+  PoseKeeper keeper_;
+  MarkovMode markov_;
+};
+
+}  // namespace topogeo::navigation

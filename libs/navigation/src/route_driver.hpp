@@ -1,0 +1,92 @@
+// Follows the route in hand: the path to follow, searched again where something is in its way, and
+// the speed that what is in the way allows.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/navigation/navigator_config.hpp"
+#include "topogeo/navigation/path_follower.hpp"
+
+#include "local_planner.hpp"
+#include "route_keeper.hpp"
+#include "surroundings.hpp"
+
+namespace topogeo::navigation {
+
+FollowerConfig follower_config(const NavigatorConfig& config);
+
+class RouteDriver {
+ public:
+  /// Between two searches for a path round an obstacle: each takes some milliseconds, and what a
+  /// laser shows of an obstacle has changed little before.
+  static constexpr double kPlanEvery_s = 0.3;
+
+  explicit RouteDriver(const NavigatorConfig& config);
+
+  /// What it drives by in one step.
+  struct Scene {
+    const RouteKeeper& route;  ///< has a map and a route
+    geometry::Pose2 T_map_robot;
+    const SeenObstacles& obstacles;
+    bool waited = false;  ///< what is in the way has had its time to move away
+    std::int64_t now_ns = 0;
+  };
+
+  /// Another path is needed from where the robot is.
+  void need_path() { needs_path_ = true; }
+  /// The pose was lost or has jumped: the route may be of no use from where the robot is.
+  void doubt_route() { doubts_route_ = true; }
+  void trust_route() { doubts_route_ = false; }
+  void forget() { follower_.forget(); }
+
+  [[nodiscard]] bool needs_path() const { return needs_path_; }
+  [[nodiscard]] bool doubts_route() const { return doubts_route_; }
+  [[nodiscard]] const PathFollower& follower() const { return follower_; }
+  PathFollower& follower() { return follower_; }
+
+  /// Whether the robot is far off its path and a route from where it is would be better.
+  bool astray(const Eigen::Vector2d& robot_m);
+
+  /// The last search for a path was less than kPlanEvery_s ago.
+  [[nodiscard]] bool just_planned(std::int64_t now_ns) const;
+  /// Searches a path and follows it from now on; false: there is none, or none that is better. A
+  /// detour that is much longer is only taken when what is in the way has not moved away.
+  bool find_path(const Scene& scene);
+
+  struct Step {
+    FollowerStep follower;
+    bool another_path = false;  ///< has been found
+    bool before_block = false;  ///< stands, or nearly, before something that is in the way
+  };
+  /// The next velocity along the path. `held`: the guard lets it go no further, so it searches
+  /// another path.
+  Step follow(const Scene& scene, bool held);
+
+  /// Detours taken since the last call.
+  std::uint32_t take_detours() { return std::exchange(detours_, 0); }
+  /// What is in the way; nothing when nothing was in the last step along the path.
+  [[nodiscard]] const std::optional<PathBlock>& block() const { return block_; }
+  /// The same, for people.
+  [[nodiscard]] std::string describe_block() const;
+
+ private:
+  bool go_round(const Scene& scene);
+  double speed_past_obstacles(const Scene& scene, bool& another_path);
+
+  const NavigatorConfig& config_;
+  LocalPlanner planner_;
+  PathFollower follower_;
+  bool needs_path_ = false;
+  bool doubts_route_ = false;
+  bool cut_off_ = false;         ///< the last search for a path did not even begin
+  std::int64_t planned_ns_ = 0;  ///< last search for a path
+  std::optional<PathBlock> block_;
+  std::uint32_t detours_ = 0;
+};
+
+}  // namespace topogeo::navigation

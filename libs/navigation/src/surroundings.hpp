@@ -1,0 +1,67 @@
+// What is near the robot and not on the map: seen by the laser, met by the collision guard, or
+// reported to the planner.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/planning/hybrid_map.hpp"
+
+#include "blockade.hpp"
+#include "contact_memory.hpp"
+#include "obstacle_memory.hpp"
+#include "pose_keeper.hpp"
+
+namespace topogeo::navigation {
+
+/// First what stands, then what may move away.
+struct SeenObstacles {
+  std::vector<Eigen::Vector2d> points_m;  ///< map frame
+  std::size_t standing = 0;
+
+  [[nodiscard]] std::span<const Eigen::Vector2d> standing_m() const {
+    return std::span(points_m).first(standing);
+  }
+};
+
+class Surroundings {
+ public:
+  explicit Surroundings(double blockage_s) : blockade_(blockage_s) {}
+
+  /// A scan, to be used in the next update(): its pose may be still to come.
+  void add(const ScanPoints& scan);
+  /// The collision guard has stopped before something there, map frame.
+  void add_contact(const Eigen::Vector2d& contact_m, std::int64_t now_ns) {
+    contacts_.add(contact_m, now_ns);
+  }
+
+  /// Once in each step: what the scans since the last one show. `map` null: there is no map, or the
+  /// pose is not known.
+  void update(const planning::HybridMap* map, const PoseKeeper& poses, std::int64_t now_ns);
+
+  /// Where something was seen means nothing any more: the pose was wrong, or the map is another.
+  void forget();
+  void forget_contacts() { contacts_.clear(); }
+
+  [[nodiscard]] SeenObstacles seen(std::int64_t now_ns) const;
+
+  /// Reports what fills the cells around a point (map frame); the planner answers again in any
+  /// case.
+  void report(const Eigen::Vector2d& around_m, double reach_m, const planning::GridFrame& frame,
+              std::int64_t now_ns);
+  [[nodiscard]] const BlockageReport& blockages() const { return blockade_.report(); }
+  [[nodiscard]] bool anything_reported() const { return !blockade_.empty(); }
+
+ private:
+  ObstacleMemory memory_{MemoryConfig{}};
+  ContactMemory contacts_;
+  Blockade blockade_;
+  std::vector<ScanPoints> scans_;
+};
+
+}  // namespace topogeo::navigation
