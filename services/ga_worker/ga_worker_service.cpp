@@ -32,8 +32,8 @@ std::size_t half_of_memory(const WorkerOptions& options) {
   return (std::size_t{options.memory_mb} << 20U) / 2;
 }
 
-IntakeOptions intake_options(const WorkerOptions& options) {
-  IntakeOptions intake;
+search_pool::IntakeOptions intake_options(const WorkerOptions& options) {
+  search_pool::IntakeOptions intake;
   intake.map_bytes = half_of_memory(options);
   return intake;
 }
@@ -57,7 +57,7 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
   runner_.emplace(options_.slots, std::max(per_slot, kLeastPerSlot_bytes),
-                  [this, &loop](TaskRunner::Outcome outcome) {
+                  [this, &loop](search_pool::TaskRunner::Outcome outcome) {
                     loop.post([this, outcome = std::move(outcome)] { on_outcome(outcome); });
                   });
   fill_status();
@@ -115,7 +115,7 @@ void GaWorkerService::keep(const msg::LocalMap& message, const char* what) {
   try {
     topomap::LocalMap map = service::from_msg(message);  // checks content_hash
     map.track = {};                                      // matching does not look at it
-    for (ReadyJob& job :
+    for (search_pool::ReadyJob& job :
          intake_.add_map(std::make_shared<const topomap::LocalMap>(std::move(map)))) {
       runner_->add(std::move(job));
     }
@@ -128,9 +128,9 @@ void GaWorkerService::look_for_maps() {
   if (look_timer_) service_.loop().cancel_timer(*look_timer_);
   look_timer_.reset();
   const Clock::time_point now = Clock::now();
-  const TaskIntake::Due due = intake_.look(now);
-  for (const TaskIntake::Request& wanted : due.requests) request(wanted);
-  for (const TaskIntake::GivenUp& given_up : due.given_up) {
+  const search_pool::TaskIntake::Due due = intake_.look(now);
+  for (const search_pool::TaskIntake::Request& wanted : due.requests) request(wanted);
+  for (const search_pool::TaskIntake::GivenUp& given_up : due.given_up) {
     if (auto asked = asked_.extract(given_up.job.ticket)) {
       refuse(asked.mapped(), msg::kMatchMapMissing, given_up.why);
     }
@@ -142,7 +142,7 @@ void GaWorkerService::look_for_maps() {
   }
 }
 
-void GaWorkerService::request(const TaskIntake::Request& request) {
+void GaWorkerService::request(const search_pool::TaskIntake::Request& request) {
   msg::MapRequest message;
   messaging::set_header(message, request.robot_id, request.stamp_ns, maps_requested_);
   messaging::set_text(message.client_id(), request.client_id, "client_id");
@@ -194,7 +194,8 @@ void GaWorkerService::on_task(const msg::MatchTask& message, const messaging::Sa
     refuse(asked, refusal->first, refusal->second);
     return;
   }
-  Job job{next_ticket_, client_id, asked.address.robot_id, message.stamp_ns(), {}};
+  search_pool::MatchJob job{
+      next_ticket_, client_id, asked.address.robot_id, message.stamp_ns(), {}};
   try {
     job.task = service::from_msg(message);
   } catch (const std::invalid_argument& error) {
@@ -202,14 +203,14 @@ void GaWorkerService::on_task(const msg::MatchTask& message, const messaging::Sa
     return;
   }
   asked_.emplace(next_ticket_++, std::move(asked));
-  if (std::optional<ReadyJob> ready = intake_.add(std::move(job), now)) {
+  if (std::optional<search_pool::ReadyJob> ready = intake_.add(std::move(job), now)) {
     runner_->add(std::move(*ready));
   } else {
     look_for_maps();
   }
 }
 
-void GaWorkerService::on_outcome(const TaskRunner::Outcome& outcome) {
+void GaWorkerService::on_outcome(const search_pool::TaskRunner::Outcome& outcome) {
   const auto asked = asked_.extract(outcome.ticket);
   if (!asked) return;  // its client is gone
   if (outcome.failed) {
@@ -276,10 +277,10 @@ void GaWorkerService::on_event(const messaging::Event& event) {
 }
 
 // Nobody waits for what is left to do for them.
-void GaWorkerService::forget(const std::vector<ClientBook::Entry>& gone) {
-  for (const ClientBook::Entry& entry : gone) {
+void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entry>& gone) {
+  for (const search_pool::ClientRegistry::Entry& entry : gone) {
     const std::string& client_id = entry.first;
-    const ClientBook::Client& client = entry.second;
+    const search_pool::ClientRegistry::Client& client = entry.second;
     spdlog::info("client {}, robot {}, is gone after {} answers", client_id, client.robot_id,
                  client.answered);
     for (const std::uint64_t ticket : runner_->remove(client_id)) asked_.erase(ticket);

@@ -18,13 +18,12 @@
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/match.h"
 #include "topogeo/msg/status.h"
+#include "topogeo/search_pool/client_registry.hpp"
+#include "topogeo/search_pool/task_intake.hpp"
+#include "topogeo/search_pool/task_runner.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/participant_id.hpp"
 #include "topogeo/service/service.hpp"
-
-#include "client_book.hpp"
-#include "task_intake.hpp"
-#include "task_runner.hpp"
 
 namespace topogeo::ga_worker {
 
@@ -65,7 +64,7 @@ class GaWorkerService {
   void on_map(const msg::LocalMap& message);
   void on_map_copy(const msg::MapCopy& message);
   void on_task(const msg::MatchTask& message, const messaging::SampleInfo& info);
-  void on_outcome(const TaskRunner::Outcome& outcome);
+  void on_outcome(const search_pool::TaskRunner::Outcome& outcome);
   void on_event(const messaging::Event& event);
 
   /// Why a task is not for this worker; nothing when it is.
@@ -75,13 +74,13 @@ class GaWorkerService {
   /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
   /// time.
   void look_for_maps();
-  void request(const TaskIntake::Request& request);
+  void request(const search_pool::TaskIntake::Request& request);
   void refuse(const Asked& asked, msg::MatchStatus status, const std::string& why);
   void answer(msg::MatchResult result, const service::ParticipantId& participant);
   /// False: the client does not take it now.
   bool send(msg::MatchResult& result);
   void send_unsent();
-  void forget(const std::vector<ClientBook::Entry>& gone);
+  void forget(const std::vector<search_pool::ClientRegistry::Entry>& gone);
   void publish_status();
   void measure_load(Clock::time_point time);
 
@@ -93,8 +92,8 @@ class GaWorkerService {
   messaging::Reader<msg::LocalMap> maps_;
   messaging::Reader<msg::MapCopy> copies_;
   messaging::Reader<msg::MatchTask> tasks_;
-  ClientBook clients_;
-  TaskIntake intake_;
+  search_pool::ClientRegistry clients_;
+  search_pool::TaskIntake intake_;
   std::optional<std::uint64_t> look_timer_;
   std::map<std::uint64_t, Asked> asked_;  // by ticket
   std::list<Unsent> unsent_;              // to clients who do not take them yet
@@ -108,7 +107,7 @@ class GaWorkerService {
   Clock::time_point last_status_ = start_;
   std::chrono::nanoseconds busy_at_last_status_{0};
   std::deque<std::pair<Clock::time_point, std::uint64_t>> done_history_;
-  std::optional<TaskRunner> runner_;  // last: its threads end first
+  std::optional<search_pool::TaskRunner> runner_;  // last: its threads end first
 };
 
 }  // namespace topogeo::ga_worker

@@ -1,16 +1,16 @@
 // Works on the match tasks of any robot: genetic search for the relative pose of two local maps.
 #include <CLI/CLI.hpp>
 
+#include "topogeo/search_pool/worker_name.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
 #include "ga_worker_service.hpp"
-#include "worker_name.hpp"
 
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
   ga_worker::WorkerOptions options;
-  options.name = ga_worker::default_name();
+  options.name = search_pool::default_name();
   service::ServiceOptions defaults;
   defaults.partition = messaging::kAnyPartition;
   return service::run_service(
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
             ->capture_default_str();
         app.add_option("--name", options.name,
                        "for people; others may have the same, up to 24 bytes")
-            ->check(ga_worker::check_name)
+            ->check(search_pool::check_name)
             ->capture_default_str();
         app.add_option("--memory-mb", options.memory_mb,
                        "for local maps and what is made of them, 4 MB for each slot at least")
@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
             ->capture_default_str();
       },
       [&](const service::Setup& setup) {
-        options.worker_id = ga_worker::make_worker_id(options.name);
+        options.worker_id = search_pool::make_worker_id(options.name);
         service::Setup of_worker = setup;
         of_worker.instance = options.worker_id;
         service::Service service(of_worker, true);

@@ -9,14 +9,14 @@ namespace topogeo::localizer {
 void LocalizerService::carry_out_commands() {
   commands_.carry_out(
       [this](const service::LocalizationCommand& command) {
-        CommandDesk::Answer answer = carry_out(command);
+        CommandChannel::Answer answer = carry_out(command);
         send_pose();
         return answer;
       },
       last_stop_.stamp_ns);
 }
 
-CommandDesk::Answer LocalizerService::carry_out(const service::LocalizationCommand& command) {
+CommandChannel::Answer LocalizerService::carry_out(const service::LocalizationCommand& command) {
   const bool maps = localizer_.map_localizer() == nullptr;
   switch (command.kind) {
     case msg::kCommandSetPose:
@@ -34,7 +34,7 @@ CommandDesk::Answer LocalizerService::carry_out(const service::LocalizationComma
   return {false, "unknown command"};
 }
 
-CommandDesk::Answer LocalizerService::stop_mapping() {
+CommandChannel::Answer LocalizerService::stop_mapping() {
   if (!localizer_.mapping()) return {false, "it localizes in a finished map already"};
   if (finished_) return {false, "the log has ended"};
   if (stops_in_map() == 0) return {false, "there is no map yet"};
@@ -46,7 +46,7 @@ CommandDesk::Answer LocalizerService::stop_mapping() {
   return {true, "the map of " + std::to_string(stops_in_map()) + " stops stays as it is"};
 }
 
-CommandDesk::Answer LocalizerService::resume_mapping() {
+CommandChannel::Answer LocalizerService::resume_mapping() {
   if (localizer_.mapping()) return {false, "it makes a map already"};
   if (localizer_.session() == nullptr) {
     return {false, "the map was given with --map to stay as it is; start with --continue"};
@@ -61,7 +61,7 @@ CommandDesk::Answer LocalizerService::resume_mapping() {
 }
 
 // The pose is that of now; the localizer wants that of the last stop.
-CommandDesk::Answer LocalizerService::set_pose(const service::LocalizationCommand& command) {
+CommandChannel::Answer LocalizerService::set_pose(const service::LocalizationCommand& command) {
   geometry::Pose2 T_map_stop = command.T_map_robot;
   if (last_map_) {
     const geometry::Pose2 T_stop_robot =

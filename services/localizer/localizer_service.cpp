@@ -341,12 +341,12 @@ void LocalizerService::count() {
 
 void LocalizerService::count_pool() {
   messaging::StatusPublisher& status = service_.status();
-  const BoardCounts& counts = pool_.counts();
-  const RegistryCounts& refused = pool_.registry_counts();
+  const search_pool::BoardCounts& counts = pool_.counts();
+  const search_pool::RegistryCounts& refused = pool_.registry_counts();
   const auto set = [&status](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };
-  const auto set_ms = [&status](const std::string& name, BoardTime time) {
+  const auto set_ms = [&status](const std::string& name, search_pool::BoardTime time) {
     status.set_counter(name, std::chrono::duration<double, std::milli>(time).count());
   };
   set("workers", pool_.workers());

@@ -22,7 +22,7 @@
 #include "topogeo/service/service.hpp"
 
 #include "active_slam.hpp"
-#include "command_desk.hpp"
+#include "command_channel.hpp"
 #include "remote_pool.hpp"
 #include "trajectory_updates.hpp"
 
@@ -55,10 +55,10 @@ class LocalizerService {
   void work();
   void wait_for_workers();
   void carry_out_commands();
-  CommandDesk::Answer carry_out(const service::LocalizationCommand& command);
-  CommandDesk::Answer set_pose(const service::LocalizationCommand& command);
-  CommandDesk::Answer stop_mapping();
-  CommandDesk::Answer resume_mapping();
+  CommandChannel::Answer carry_out(const service::LocalizationCommand& command);
+  CommandChannel::Answer set_pose(const service::LocalizationCommand& command);
+  CommandChannel::Answer stop_mapping();
+  CommandChannel::Answer resume_mapping();
   void step(const MapPointer& map);
   void finish();
   void publish(bool whole);
@@ -70,7 +70,7 @@ class LocalizerService {
   LocalizerOptions options_;
   RemotePool pool_;
   ActiveSlam localizer_;
-  CommandDesk commands_;
+  CommandChannel commands_;
   messaging::Reader<msg::LocalMap> maps_in_;
   messaging::Reader<msg::Odometry> odometry_;
   messaging::Reader<msg::TrackedPose> tracked_poses_;

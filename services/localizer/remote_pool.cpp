@@ -13,6 +13,13 @@ namespace topogeo::localizer {
 
 using localization::MatchResult;
 using localization::MatchTask;
+using search_pool::BoardTime;
+using search_pool::PoolLog;
+using search_pool::Reception;
+using search_pool::Recovery;
+using search_pool::Refusal;
+using search_pool::TaskBoard;
+using search_pool::WorkerRegistry;
 
 namespace {
 
@@ -30,7 +37,7 @@ BoardTime now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-PoolNews::Tell teller(PoolNews::Tell tell) {
+PoolLog::Tell teller(PoolLog::Tell tell) {
   if (tell) return tell;
   return [](const std::string& line) { spdlog::info("{}", line); };
 }
@@ -45,7 +52,7 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
       matcher_fingerprint_(localization::matcher_fingerprint()),
       board_(options_.board),
       registry_({options_.version, matcher_fingerprint_, options_.config_fingerprint}),
-      news_(teller(options_.tell)),
+      log_(teller(options_.tell)),
       statuses_(participant),
       results_(participant, {{}, options_.client_id}),
       tasks_out_(participant),
@@ -57,7 +64,9 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
         on_status(status, info);
       },
       [this](const messaging::SampleInfo& info) {
-        if (const auto worker_id = registry_.gone(info.instance, info.writer)) drop(*worker_id);
+        if (const auto worker_id =
+                registry_.gone(info.instance.bytes, service::participant_of(info.writer)))
+          drop(*worker_id);
       });
   loop_.add<msg::MatchResult>(
       results_, [this](const msg::MatchResult& message, const messaging::SampleInfo& info) {
@@ -92,7 +101,7 @@ void RemotePool::work() {
   while (!board_.done()) {
     send_waiting();
     if (const std::optional<std::size_t> here = board_.next_local(now())) {
-      news_.searching_here(board_.workers(), now());
+      log_.searching_here(board_.workers(), now());
       board_.solved(*here, solve(board_.task(*here)), now());
       tell_recoveries();
       run_loop(std::chrono::nanoseconds::zero(), {});
@@ -138,7 +147,7 @@ void RemotePool::go_on() {
 }
 
 void RemotePool::tell_recoveries() {
-  for (const Recovery& recovery : board_.take_recoveries()) news_.recovered(recovery);
+  for (const Recovery& recovery : board_.take_recoveries()) log_.recovered(recovery);
 }
 
 // --- tasks out
@@ -281,7 +290,7 @@ void RemotePool::on_answer(const std::string& worker_id, const msg::MatchResult&
   }
   switch (board_.answer(worker_id, std::move(result), now())) {
     case Reception::kFirst:
-      news_.answered();
+      log_.answered();
       break;
     case Reception::kDifferent:
       settle(*task);
@@ -304,13 +313,13 @@ void RemotePool::on_wrong(const std::string& worker_id, std::uint64_t task_id,
 void RemotePool::on_status(const msg::WorkerStatus& status, const messaging::SampleInfo& info) {
   const std::string robot_id = status.robot_id().to_string();
   if (!robot_id.empty() && robot_id != options_.robot_id) return;
-  WorkerReport report;
+  search_pool::WorkerReport report;
   report.worker_id = status.worker_id().to_string();
   report.host = status.host().to_string();
   report.build = {status.version().to_string(), status.matcher_fingerprint(),
                   status.config_fingerprint()};
   const service::ParticipantId from = service::participant_of(info.writer);
-  const WorkerRegistry::Verdict verdict = registry_.hear(report, from, info.instance);
+  const WorkerRegistry::Verdict verdict = registry_.hear(report, from, info.instance.bytes);
   if (verdict.fault) on_fault_(verdict.fault->reason, verdict.fault->detail);
   if (!verdict.usable) return;
   board_.worker_up(report.worker_id, status.draining() ? 0 : status.slots(), now());
@@ -325,7 +334,7 @@ void RemotePool::drop(const std::string& worker_id) {
 
 void RemotePool::on_tick() {
   for (const std::string& worker_id : registry_.tick(kSilentTicks)) drop(worker_id);
-  news_.workers(board_.usable_workers(), now());
+  log_.workers(board_.usable_workers(), now());
   maps_.tick();
 }
 

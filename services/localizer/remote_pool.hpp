@@ -21,12 +21,12 @@
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/msg/match.h"
 #include "topogeo/msg/status.h"
+#include "topogeo/search_pool/pool_log.hpp"
+#include "topogeo/search_pool/task_board.hpp"
+#include "topogeo/search_pool/worker_registry.hpp"
 #include "topogeo/service/participant_id.hpp"
 
 #include "map_sender.hpp"
-#include "pool_news.hpp"
-#include "task_board.hpp"
-#include "worker_registry.hpp"
 #include "worker_writer.hpp"
 
 namespace topogeo::localizer {
@@ -42,13 +42,13 @@ struct RemotePoolOptions {
   std::string client_id;                 ///< 1 to 64 bytes without quotes, unique on the domain
   std::string version;                   ///< workers of another one are not used
   std::uint64_t config_fingerprint = 0;  ///< workers that were given another one are not used
-  BoardOptions board;
+  search_pool::BoardConfig board;
   /// Compute again what every answer says of its poses. Off only to measure what it costs.
   bool verify = true;
   /// Asked after every wait: true when the program is to end. Empty: never.
   std::function<bool()> stopping;
   /// Gets lines for the user; empty: they are logged.
-  PoolNews::Tell tell;
+  search_pool::PoolLog::Tell tell;
 };
 
 /// Everything happens in the thread that calls it. match() runs the event loop while it waits, so
@@ -73,8 +73,10 @@ class RemotePool : public localization::MatchPool {
   std::size_t wait_for_workers(std::size_t count, std::chrono::nanoseconds patience);
 
   [[nodiscard]] std::size_t workers() const { return board_.workers(); }
-  [[nodiscard]] const BoardCounts& counts() const { return board_.counts(); }
-  [[nodiscard]] const RegistryCounts& registry_counts() const { return registry_.counts(); }
+  [[nodiscard]] const search_pool::BoardCounts& counts() const { return board_.counts(); }
+  [[nodiscard]] const search_pool::RegistryCounts& registry_counts() const {
+    return registry_.counts();
+  }
   /// Local maps sent to workers that asked for them.
   [[nodiscard]] std::uint64_t maps_sent() const { return maps_.sent(); }
 
@@ -93,10 +95,11 @@ class RemotePool : public localization::MatchPool {
   /// Gives workers what they have room for, then ends the wait if it has come true.
   void go_on();
   void send_waiting();
-  bool send(const TaskBoard::Assignment& assignment);
+  bool send(const search_pool::TaskBoard::Assignment& assignment);
   /// Solves an answered task here and blames the workers whose answers are others.
   void settle(const localization::MatchTask& task);
-  void blame(const localization::MatchTask& task, const TaskBoard::Difference& difference,
+  void blame(const localization::MatchTask& task,
+             const search_pool::TaskBoard::Difference& difference,
              const localization::MatchResult& truth);
   /// What is wrong with an answer; empty: nothing.
   std::string complaint(const localization::MatchTask& task,
@@ -112,9 +115,9 @@ class RemotePool : public localization::MatchPool {
   RemotePoolOptions options_;
   FaultHandler on_fault_;
   const std::uint64_t matcher_fingerprint_;
-  TaskBoard board_;
-  WorkerRegistry registry_;
-  PoolNews news_;
+  search_pool::TaskBoard board_;
+  search_pool::WorkerRegistry registry_;
+  search_pool::PoolLog log_;
   messaging::Reader<msg::WorkerStatus> statuses_;
   messaging::Reader<msg::MatchResult> results_;
   WorkerWriter<msg::MatchTask> tasks_out_;

@@ -26,6 +26,7 @@
 #include "topogeo/msg/match.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/search_pool/task_board.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/support/version.hpp"
@@ -33,7 +34,6 @@
 
 #include "program.hpp"
 #include "remote_pool.hpp"
-#include "task_board.hpp"
 
 namespace topogeo::test {
 
@@ -264,7 +264,7 @@ class PoolTest : public ::testing::Test {
   messaging::Participant participant_{options_in(partition_)};
   messaging::Writer<msg::LocalMap> map_writer_{participant_};
   messaging::EventLoop loop_;
-  localizer::BoardOptions board_options_ = patient();
+  search_pool::BoardConfig board_options_ = patient();
   std::vector<std::string> faults_;
   std::vector<std::string> details_;
   std::vector<std::string> lines_;
@@ -274,8 +274,8 @@ class PoolTest : public ::testing::Test {
 
  private:
   /// Nothing is taken from a slow worker on a busy machine, unless a test wants it.
-  static localizer::BoardOptions patient() {
-    localizer::BoardOptions options;
+  static search_pool::BoardConfig patient() {
+    search_pool::BoardConfig options;
     options.straggler_floor = kPatience;
     return options;
   }

@@ -25,11 +25,11 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/version.hpp"
 
-#include "worker_fixture.hpp"
+#include "search_pool/worker_fixture.hpp"
 
 namespace topogeo::test {
 
-using ga_worker::MapPointer;
+using search_pool::MapPointer;
 
 class WorkerClient {
  public:

@@ -14,9 +14,9 @@
 namespace topogeo::test {
 namespace {
 
-using ga_worker::room;
-using ga_worker::task;
 using localization::MatchTask;
+using search_pool::room;
+using search_pool::task;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -41,7 +41,7 @@ class WorkerTest : public ::testing::Test {
     ASSERT_LE(message.status(), msg::kMatchNothingInCommon) << message.message().to_string();
     const localization::MatchResult expected = matcher.solve(task);
     EXPECT_EQ(expected.status, localization::MatchStatus::kSolved);
-    EXPECT_TRUE(ga_worker::same(service::from_msg(message), expected));
+    EXPECT_TRUE(search_pool::same(service::from_msg(message), expected));
   }
   msg::MatchResult refusal(WorkerClient& client, const std::string& worker, std::uint64_t id) {
     client.send(worker, task(*zero_, *one_, id));

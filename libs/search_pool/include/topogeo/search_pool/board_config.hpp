@@ -1,0 +1,33 @@
+// How a TaskBoard deals with its workers.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace topogeo::search_pool {
+
+/// Since any start of one steady clock.
+using BoardTime = std::chrono::nanoseconds;
+
+struct BoardConfig {
+  /// Tasks given to a worker for each of its slots, at most: one to work on, the rest so that it
+  /// does not stand still while an answer travels. Few, so that one client does not fill the queue
+  /// of a worker that others use, too.
+  std::uint32_t tasks_per_slot = 2;
+  /// Tasks given to one worker at most; the task history of a worker on the wire holds 128.
+  std::uint32_t tasks_per_worker = 100;
+  /// A task without an answer for so long is also given to another worker ...
+  BoardTime straggler_floor = std::chrono::milliseconds(250);
+  /// ... or for so many times the median time of recent answers, if that is longer.
+  double straggler_factor = 20.0;
+  /// How long a worker that did not hold a map, or could not be sent to, gets nothing.
+  BoardTime rest = std::chrono::seconds(5);
+  /// A worker that lost a task gets new ones after so long.
+  BoardTime forget_after = std::chrono::seconds(30);
+  /// So many first answers of every worker are compared with the answer of this process,
+  std::uint32_t probation = 3;
+  /// and one in so many of the later ones, chosen by the task's id; 0: none.
+  std::uint32_t audit_every = 64;
+};
+
+}  // namespace topogeo::search_pool

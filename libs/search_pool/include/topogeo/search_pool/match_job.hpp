@@ -1,0 +1,30 @@
+// A match task on its way through a worker.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::search_pool {
+
+using MapPointer = std::shared_ptr<const topomap::LocalMap>;
+
+struct MatchJob {
+  std::uint64_t ticket = 0;   ///< chosen by the caller, comes back with the outcome
+  std::string client_id;      ///< whose task it is
+  std::string robot_id;       ///< whose maps are meant
+  std::int64_t stamp_ns = 0;  ///< of the task's message
+  localization::MatchTask task;
+};
+
+/// A job with the maps that it names.
+struct ReadyJob {
+  MatchJob job;
+  MapPointer reference;
+  MapPointer query;
+};
+
+}  // namespace topogeo::search_pool

@@ -1,0 +1,75 @@
+// The match tasks of one batch, and which of them wait, are out or are answered.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/search_pool/recovery.hpp"
+
+namespace topogeo::search_pool {
+
+/// A task and what became of it so far.
+struct BoardTask {
+  localization::MatchTask task;
+  bool here_only = false;  ///< only this process is to work on it
+  bool proven = false;     ///< the answer is this process's own
+  std::uint32_t sends = 0;
+  BoardTime last_sent{0};
+  std::set<std::string> workers;                    ///< that have it now
+  std::set<std::string> tried;                      ///< that had it and were not lost
+  std::set<std::string> given;                      ///< that ever had it
+  std::optional<localization::MatchResult> result;  ///< none while it is open
+  std::string answered_by;                          ///< empty: this process
+  std::vector<std::pair<std::string, localization::MatchResult>> others;  ///< different answers
+};
+
+class TaskBatch {
+ public:
+  /// Throws std::logic_error when a task id comes twice; then the batch is empty.
+  void begin(std::span<const localization::MatchTask> tasks);
+  void clear();
+
+  [[nodiscard]] std::size_t size() const { return tasks_.size(); }
+  /// Tasks without answer.
+  [[nodiscard]] std::size_t open() const { return open_; }
+  /// Throws std::out_of_range.
+  [[nodiscard]] const BoardTask& at(std::size_t index) const { return tasks_.at(index); }
+  [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t task_id) const;
+
+  /// The only way to change a task: the lists below follow it.
+  template <class Change>
+  void change(std::size_t index, const Change& change) {
+    take_off_lists(index);
+    change(tasks_[index]);
+    put_on_list(index);
+  }
+
+  // Each open task is on one of these lists.
+  /// With nobody, any worker will do.
+  [[nodiscard]] const std::set<std::size_t>& fresh() const { return fresh_; }
+  /// With nobody, not any worker will do.
+  [[nodiscard]] const std::set<std::size_t>& again() const { return again_; }
+  /// With a worker, by the time when it was sent last.
+  [[nodiscard]] const std::set<std::pair<BoardTime, std::size_t>>& out() const { return out_; }
+
+ private:
+  void take_off_lists(std::size_t index);
+  void put_on_list(std::size_t index);
+
+  std::vector<BoardTask> tasks_;
+  std::map<std::uint64_t, std::size_t> index_;  // task id -> index in tasks_
+  std::set<std::size_t> fresh_;
+  std::set<std::size_t> again_;
+  std::set<std::pair<BoardTime, std::size_t>> out_;
+  std::size_t open_ = 0;
+};
+
+}  // namespace topogeo::search_pool

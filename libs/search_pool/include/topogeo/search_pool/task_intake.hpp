@@ -1,0 +1,90 @@
+// Brings match tasks and the local maps that they name together, and asks for maps that do not
+// come.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "topogeo/search_pool/map_cache.hpp"
+#include "topogeo/search_pool/match_job.hpp"
+
+namespace topogeo::search_pool {
+
+struct IntakeOptions {
+  std::size_t map_bytes = std::size_t{32} << 20U;  ///< that all maps together may take
+  /// Maps travel on another topic than the tasks that name them, so one that lacks may be on its
+  /// way.
+  std::chrono::nanoseconds first_request = std::chrono::milliseconds(20);
+  std::chrono::nanoseconds request_period = std::chrono::milliseconds(500);
+  std::chrono::nanoseconds patience = std::chrono::seconds(2);  ///< with a map that lacks
+};
+
+/// Has no clock: the caller says what time it is. Not safe for several threads.
+class TaskIntake {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// A map that a client is to send.
+  struct Request {
+    std::string client_id;
+    std::string robot_id;
+    std::int64_t stamp_ns = 0;  ///< of a task that names it
+    std::uint32_t map_id = 0;
+    std::uint64_t content_hash = 0;
+  };
+  struct GivenUp {
+    MatchJob job;
+    std::string why;  ///< for people, names the map
+  };
+  struct Due {
+    std::vector<Request> requests;
+    std::vector<GivenUp> given_up;
+  };
+
+  explicit TaskIntake(const IntakeOptions& options = {})
+      : options_(options), maps_(options.map_bytes) {}
+
+  /// The job with its maps, or nothing: then it waits for them.
+  std::optional<ReadyJob> add(MatchJob job, Time now);
+  /// Keeps the map and returns the jobs that have waited for it alone, oldest first.
+  std::vector<ReadyJob> add_map(MapPointer map);
+  /// True when a job waits for a map of this content.
+  [[nodiscard]] bool lacks(std::uint64_t content_hash) const;
+  /// What is to be done at `now`: each map that lacks is asked for once per period and client.
+  Due look(Time now);
+  /// When look() has something to do next; nothing while no job waits.
+  [[nodiscard]] std::optional<Time> next_look() const;
+  /// Takes out the waiting jobs of a client that is gone and returns their tickets.
+  std::vector<std::uint64_t> remove(const std::string& client_id);
+
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+  [[nodiscard]] const MapCache& maps() const { return maps_; }
+
+ private:
+  /// A job holds the maps that are there already, so that none of them can be dropped again before
+  /// the other one comes.
+  struct Waiting {
+    ReadyJob job;
+    Time until;
+  };
+  using Lack = std::pair<std::string, std::uint64_t>;  // client and content
+
+  template <class Action>  // (Lack, map id)
+  static void for_each_lack(const ReadyJob& job, Action action);
+  /// Forgets the requests for maps that nobody waits for any more.
+  void forget_requests();
+
+  IntakeOptions options_;
+  MapCache maps_;
+  std::list<Waiting> waiting_;      // oldest first
+  std::map<Lack, Time> requested_;  // when to ask (again)
+};
+
+}  // namespace topogeo::search_pool

@@ -1,0 +1,71 @@
+// Works on match tasks in several threads: the slots of a worker.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/search_pool/fair_queue.hpp"
+#include "topogeo/search_pool/match_job.hpp"
+#include "topogeo/search_pool/slot_matchers.hpp"
+
+namespace topogeo::search_pool {
+
+/// Safe to call from any thread. Clients are served in turn; slots share a queue and nothing else.
+class TaskRunner {
+ public:
+  struct Outcome {
+    std::uint64_t ticket = 0;
+    bool failed = false;
+    std::string message;               ///< why it failed
+    localization::MatchResult result;  ///< if it did not
+  };
+  /// Called in the thread of the slot; must not throw.
+  using OutcomeHandler = std::function<void(Outcome outcome)>;
+
+  /// Starts `slots` (>= 1) threads. Each keeps about `bytes_per_slot` of what it made of local
+  /// maps.
+  TaskRunner(std::size_t slots, std::size_t bytes_per_slot, OutcomeHandler on_outcome);
+  TaskRunner(const TaskRunner&) = delete;
+  TaskRunner& operator=(const TaskRunner&) = delete;
+  /// Ends the jobs that run and drops those that wait.
+  ~TaskRunner();
+
+  void add(ReadyJob job);
+  /// Takes out the jobs of a client that no slot has begun and returns their tickets.
+  std::vector<std::uint64_t> remove(const std::string& client_id);
+
+  /// Jobs without outcome.
+  [[nodiscard]] std::size_t in_hand() const;
+  /// Sum of the time that slots have spent on jobs, those that run now included.
+  [[nodiscard]] std::chrono::nanoseconds busy_time() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void work(std::size_t slot);
+  /// Waits for a job; nothing when it is time to stop.
+  std::optional<ReadyJob> next_job(std::size_t slot);
+  static Outcome solve(SlotMatchers& matchers, const ReadyJob& job);
+
+  std::size_t bytes_per_slot_;
+  OutcomeHandler on_outcome_;
+  mutable std::mutex mutex_;  // guards all below but the threads
+  std::condition_variable changed_;
+  FairQueue<ReadyJob> queue_;
+  std::size_t in_hand_ = 0;
+  std::chrono::nanoseconds busy_{0};
+  std::vector<std::optional<Clock::time_point>> started_;  // by slot, of the job that runs
+  bool stopping_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace topogeo::search_pool

@@ -1,0 +1,74 @@
+#include "topogeo/search_pool/slot_matchers.hpp"
+
+#include <algorithm>
+
+#include "topogeo/search_pool/map_cache.hpp"
+
+namespace topogeo::search_pool {
+
+namespace {
+
+/// Grids on the reference maps that a matcher used last: four of them on maps of 20 m by 20 m.
+constexpr std::size_t kGrid_bytes = std::size_t{3} << 20U;
+/// View of the laser by direction, for each map.
+constexpr std::size_t kProfile_bytes = 6000;
+/// A point as a surface point with its normal and as a coarse point, over the point itself.
+constexpr std::size_t kBytesPerPoint = 40;
+
+std::size_t feature_bytes(const topomap::LocalMap& map) {
+  return kProfile_bytes + bytes_of(map) + map.points.size() * kBytesPerPoint;
+}
+
+}  // namespace
+
+localization::MatchResult SlotMatchers::solve(const ReadyJob& job) {
+  Kept& kept = of(job.job.client_id);
+  const localization::MatchTask& task = job.job.task;
+  if (!kept.matcher.has_map(task.reference_map_id, task.reference_hash)) {
+    teach(kept, job.reference);
+  }
+  if (!kept.matcher.has_map(task.query_map_id, task.query_hash)) {
+    teach(kept, job.query);
+  }
+  localization::MatchResult result = kept.matcher.solve(task);
+  make_room();
+  return result;
+}
+
+std::size_t SlotMatchers::maps() const {
+  std::size_t maps = 0;
+  for (const Kept& kept : kept_) maps += kept.maps;
+  return maps;
+}
+
+std::size_t SlotMatchers::bytes() const {
+  std::size_t bytes = 0;
+  for (const Kept& kept : kept_) bytes += kept.bytes;
+  return bytes;
+}
+
+SlotMatchers::Kept& SlotMatchers::of(const std::string& client_id) {
+  const auto found = std::find_if(kept_.begin(), kept_.end(),
+                                  [&](const Kept& kept) { return kept.client_id == client_id; });
+  if (found == kept_.end()) {
+    kept_.push_front({client_id, {}, 0, kGrid_bytes});
+  } else {
+    kept_.splice(kept_.begin(), kept_, found);
+  }
+  return kept_.front();
+}
+
+void SlotMatchers::teach(Kept& kept, const MapPointer& map) {
+  kept.matcher.add_map(*map);
+  ++kept.maps;
+  kept.bytes += feature_bytes(*map);
+}
+
+// A matcher cannot forget single maps. One that has grown too large goes whole: what it still needs
+// is made again from the maps, in less time than one search takes for each.
+void SlotMatchers::make_room() {
+  while (bytes() > capacity_bytes_ && kept_.size() > 1) kept_.pop_back();
+  if (bytes() > std::max(capacity_bytes_, 2 * kGrid_bytes)) kept_.clear();
+}
+
+}  // namespace topogeo::search_pool

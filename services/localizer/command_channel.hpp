@@ -1,0 +1,47 @@
+// Commands to the localizer: taken when they come, carried out between two steps, because a step
+// waits for its matches while messages arrive.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/service/service.hpp"
+
+namespace topogeo::localizer {
+
+class CommandChannel {
+ public:
+  struct Answer {
+    bool accepted = false;
+    std::string message;  ///< why not, or what will be done
+  };
+  using Handler = std::function<Answer(const service::LocalizationCommand& command)>;
+
+  /// `on_arrival` is called for every command that can be carried out; carry_out() then is to be
+  /// called soon. Throws like Reader and Writer.
+  CommandChannel(service::Service& service, std::function<void()> on_arrival);
+
+  /// Gives the commands that have come to the handler, in order, and sends its answers.
+  /// `stamp_ns` is that of the last stop.
+  void carry_out(const Handler& handler, std::int64_t stamp_ns);
+
+ private:
+  void on_command(const msg::LocalizationCommand& message);
+  void reply(std::uint64_t request_id, const std::string& client_id, const Answer& answer,
+             std::int64_t stamp_ns);
+
+  service::Service& service_;
+  std::function<void()> on_arrival_;
+  messaging::Reader<msg::LocalizationCommand> commands_;
+  messaging::Writer<msg::LocalizationReply> replies_;
+  std::deque<service::LocalizationCommand> waiting_;
+  std::uint64_t sequence_ = 0;
+};
+
+}  // namespace topogeo::localizer

@@ -1,0 +1,135 @@
+// Tasks that wait for local maps.
+#include "topogeo/search_pool/task_intake.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "worker_fixture.hpp"
+
+namespace topogeo::search_pool {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class TaskIntakeTest : public ::testing::Test {
+ protected:
+  static TaskIntake::Time at(int ms) { return TaskIntake::Time{} + milliseconds(ms); }
+
+  MapPointer zero_ = room(0, 0.0);
+  MapPointer one_ = room(1, 0.2);
+  MapPointer two_ = room(2, 0.4);
+  TaskIntake intake_;
+};
+
+TEST_F(TaskIntakeTest, AJobWhoseMapsAreThereIsReadyAtOnce) {
+  intake_.add_map(zero_);
+  intake_.add_map(one_);
+  const auto ready = intake_.add(job(zero_, one_, 5), at(0));
+  ASSERT_TRUE(ready);
+  EXPECT_EQ(ready->job.ticket, 5U);
+  EXPECT_EQ(ready->reference, zero_);
+  EXPECT_EQ(ready->query, one_);
+  EXPECT_FALSE(intake_.next_look());
+}
+
+TEST_F(TaskIntakeTest, AJobWaitsForItsMapsAndOthersPassIt) {
+  intake_.add_map(zero_);
+  intake_.add_map(one_);
+  EXPECT_FALSE(intake_.add(job(zero_, two_, 1), at(0)));
+  EXPECT_FALSE(intake_.add(job(two_, one_, 2), at(0)));
+  EXPECT_TRUE(intake_.add(job(zero_, one_, 3), at(0)));
+  EXPECT_EQ(intake_.waiting(), 2U);
+  const auto ready = intake_.add_map(two_);
+  ASSERT_THAT(ready, SizeIs(2));
+  EXPECT_EQ(ready[0].job.ticket, 1U);
+  EXPECT_EQ(ready[0].query, two_);
+  EXPECT_EQ(ready[1].reference, two_);
+  EXPECT_EQ(intake_.waiting(), 0U);
+  EXPECT_FALSE(intake_.next_look());
+}
+
+TEST_F(TaskIntakeTest, AMapOfOtherContentIsNotTheOneThatIsMeant) {
+  intake_.add_map(zero_);
+  intake_.add_map(room(1, 0.3));
+  EXPECT_FALSE(intake_.add(job(zero_, one_, 1), at(0)));
+  EXPECT_TRUE(intake_.lacks(topomap::content_hash(*one_)));
+  EXPECT_FALSE(intake_.lacks(topomap::content_hash(*zero_)));
+  EXPECT_THAT(intake_.add_map(room(1, 0.1)), IsEmpty());
+  EXPECT_THAT(intake_.add_map(one_), SizeIs(1));
+  EXPECT_FALSE(intake_.lacks(topomap::content_hash(*one_)));
+}
+
+TEST_F(TaskIntakeTest, AMapThatMayBeOnItsWayIsAskedForAfterAShortWaitAndAgain) {
+  intake_.add_map(zero_);
+  intake_.add(job(zero_, one_, 1), at(0));
+  intake_.add(job(one_, zero_, 2), at(5));
+  EXPECT_EQ(intake_.next_look(), at(20));
+  EXPECT_THAT(intake_.look(at(19)).requests, IsEmpty());
+  const TaskIntake::Due due = intake_.look(at(20));
+  ASSERT_THAT(due.requests, SizeIs(1)) << "one for both";
+  EXPECT_EQ(due.requests[0].client_id, "client");
+  EXPECT_EQ(due.requests[0].robot_id, "robot");
+  EXPECT_EQ(due.requests[0].map_id, 1U);
+  EXPECT_EQ(due.requests[0].content_hash, topomap::content_hash(*one_));
+  EXPECT_EQ(intake_.next_look(), at(520));
+  EXPECT_THAT(intake_.look(at(519)).requests, IsEmpty());
+  EXPECT_THAT(intake_.look(at(520)).requests, SizeIs(1));
+}
+
+TEST_F(TaskIntakeTest, EachClientIsAskedForWhatItsOwnTaskNames) {
+  intake_.add(job(zero_, one_, 1, "a"), at(0));
+  intake_.add(job(zero_, one_, 2, "b"), at(100));
+  EXPECT_THAT(intake_.look(at(50)).requests, SizeIs(2)) << "two maps of a";
+  EXPECT_THAT(intake_.look(at(150)).requests, SizeIs(2)) << "two maps of b";
+  EXPECT_THAT(intake_.add_map(zero_), IsEmpty());
+  EXPECT_THAT(intake_.look(at(1000)).requests, SizeIs(2)) << "one of each";
+  EXPECT_THAT(intake_.add_map(one_), SizeIs(2));
+}
+
+TEST_F(TaskIntakeTest, GivesUpWhatDoesNotComeAndNamesIt) {
+  intake_.add_map(zero_);
+  intake_.add(job(zero_, one_, 1), at(0));
+  intake_.add(job(zero_, two_, 2), at(700));
+  EXPECT_THAT(intake_.look(at(1999)).given_up, IsEmpty());
+  const TaskIntake::Due due = intake_.look(at(2000));
+  ASSERT_THAT(due.given_up, SizeIs(1));
+  EXPECT_EQ(due.given_up[0].job.ticket, 1U);
+  EXPECT_THAT(due.given_up[0].why, HasSubstr("local map 1 ("));
+  EXPECT_EQ(intake_.waiting(), 1U);
+  EXPECT_FALSE(intake_.lacks(topomap::content_hash(*one_)));
+  EXPECT_THAT(intake_.look(at(2700)).given_up, SizeIs(1));
+  EXPECT_FALSE(intake_.next_look());
+  // A task that comes later starts over.
+  intake_.add(job(zero_, one_, 3), at(3000));
+  EXPECT_EQ(intake_.next_look(), at(3020));
+}
+
+TEST_F(TaskIntakeTest, AJobKeepsTheMapThatCameFirstEvenWithoutMemory) {
+  IntakeOptions options;
+  options.map_bytes = 1;
+  TaskIntake intake(options);
+  intake.add(job(zero_, one_, 1), at(0));
+  EXPECT_THAT(intake.add_map(zero_), IsEmpty());
+  EXPECT_THAT(intake.add_map(two_), IsEmpty());
+  EXPECT_EQ(intake.maps().size(), 1U);
+  EXPECT_THAT(intake.add_map(one_), SizeIs(1));
+  // What was dropped is asked for again.
+  EXPECT_FALSE(intake.add(job(zero_, one_, 2), at(10)));
+  EXPECT_THAT(intake.look(at(30)).requests, SizeIs(1));
+}
+
+TEST_F(TaskIntakeTest, ForgetsAClientThatIsGone) {
+  intake_.add(job(zero_, one_, 1, "goes"), at(0));
+  intake_.add(job(zero_, one_, 2, "stays"), at(0));
+  EXPECT_THAT(intake_.remove("goes"), ::testing::ElementsAre(1));
+  EXPECT_EQ(intake_.waiting(), 1U);
+  const TaskIntake::Due due = intake_.look(at(100));
+  ASSERT_THAT(due.requests, SizeIs(2));
+  EXPECT_EQ(due.requests[0].client_id, "stays");
+}
+
+}  // namespace
+}  // namespace topogeo::search_pool
