@@ -5,7 +5,9 @@ find_package(fastrtps REQUIRED)
 find_program(FASTDDSGEN fastddsgen REQUIRED)
 
 # topogeo_add_idl(NAME idl FILES a.idl ...): library topogeo_<name>, alias topogeo::<name>, headers
-# topogeo/msg/<file>.h.
+# topogeo/msg/<file>.h, all of them in topogeo/msg/types.h, the type supports of Fast DDS in
+# topogeo/msg/type_supports.h, the bounds of sequences and enumerations in topogeo/msg/bounds.h. Files come
+# after those that they include.
 #
 # One call for all files, because the generator also writes the outputs of every included file and
 # takes most of its time to start. It writes into a staging folder and only what changed is copied,
@@ -33,19 +35,30 @@ function(topogeo_add_idl)
       list(APPEND outputs ${generated}/${name}.h ${generated}/${name}.cxx)
     endforeach()
   endforeach()
+  set(types "")
+  set(type_supports "")
+  foreach(file IN LISTS ARG_FILES)
+    cmake_path(GET file STEM stem)
+    string(APPEND types "#include \"topogeo/msg/${stem}.h\"\n")
+    string(APPEND type_supports "#include \"topogeo/msg/${stem}PubSubTypes.h\"\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${generated}/types.h CONTENT "#pragma once\n\n${types}")
+  file(CONFIGURE OUTPUT ${generated}/type_supports.h CONTENT "#pragma once\n\n${type_supports}")
   set(sources ${outputs})
   list(FILTER sources INCLUDE REGEX "\\.cxx$")
 
   add_custom_command(
-    OUTPUT ${outputs}
+    OUTPUT ${outputs} ${generated}/bounds.h
     COMMAND ${FASTDDSGEN} -replace -cs -d ${staging} ${ARG_FILES} > ${staging}/log.txt
             || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
     COMMAND sed -i -E -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
     COMMAND sed -i -E
             -e "s/^( +)p_type->serializeKey\\(ser\\)$<SEMICOLON>/\\1memset(m_keyBuffer, 0, p_type->getKeyMaxCdrSerializedSize())$<SEMICOLON>\\n&/"
             ${staged_keys}
-    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${generated}
-    DEPENDS ${ARG_FILES}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${staging}/bounds.h "-DFILES=${ARG_FILES}"
+            -P ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake
+    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${staging}/bounds.h ${generated}
+    DEPENDS ${ARG_FILES} ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
     COMMENT "Generating message types from IDL"
     VERBATIM)

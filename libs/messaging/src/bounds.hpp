@@ -1,56 +1,47 @@
-// Checks that the generated code leaves out: schema version and bounds of sequences.
+// Checks that the generated code leaves out: schema version, bounds of sequences, values of
+// enumerations. Which fields have them comes from the IDL (cmake/IdlBounds.cmake).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 
-#include "topogeo/msg/hybrid_map.h"
-#include "topogeo/msg/local_map.h"
-#include "topogeo/msg/map_update.h"
-#include "topogeo/msg/match.h"
-#include "topogeo/msg/motion.h"
-#include "topogeo/msg/planning.h"
-#include "topogeo/msg/sensor.h"
-#include "topogeo/msg/simulation.h"
-#include "topogeo/msg/status.h"
-#include "topogeo/msg/stream.h"
-#include "topogeo/msg/trajectory.h"
+#include "topogeo/msg/bounds.h"
 
 namespace topogeo::messaging {
 
 using Defect = std::optional<std::string>;
 
+/// Keeps the first defect that the visit of a message finds.
+class BoundsCheck {
+ public:
+  void schema(std::uint32_t version);
+  void size(const char* field, std::size_t size, std::size_t bound);
+  /// An enumeration, which a peer may have filled with any number.
+  void value(const char* field, std::uint32_t value, std::uint32_t last);
+  /// The checks of `body` are about members of `field`.
+  template <class Body>
+  void inside(const char* field, const Body& body) {
+    const std::size_t outside = path_.size();
+    path_.append(field).append(".");
+    body();
+    path_.resize(outside);
+  }
+
+  [[nodiscard]] const Defect& defect() const { return defect_; }
+
+ private:
+  std::string path_;  // of the struct whose fields are checked, for example "nodes."
+  Defect defect_;
+};
+
 /// Why a message must not travel; empty when it may.
-Defect find_defect(const msg::Scan& message);
-Defect find_defect(const msg::Odometry& message);
-Defect find_defect(const msg::Sonar& message);
-Defect find_defect(const msg::BaseStatus& message);
-Defect find_defect(const msg::LaserStatus& message);
-Defect find_defect(const msg::StreamEnd& message);
-Defect find_defect(const msg::LocalMap& message);
-Defect find_defect(const msg::TrackedPose& message);
-Defect find_defect(const msg::MatchTask& message);
-Defect find_defect(const msg::MatchResult& message);
-Defect find_defect(const msg::MapRequest& message);
-Defect find_defect(const msg::MapCopy& message);
-Defect find_defect(const msg::WorkerStatus& message);
-Defect find_defect(const msg::ServiceStatus& message);
-Defect find_defect(const msg::LivePose& message);
-Defect find_defect(const msg::TrajectorySegment& message);
-Defect find_defect(const msg::LoopClosures& message);
-Defect find_defect(const msg::LoopDecisions& message);
-Defect find_defect(const msg::LocalizationCommand& message);
-Defect find_defect(const msg::LocalizationReply& message);
-Defect find_defect(const msg::MapElement& message);
-Defect find_defect(const msg::Goal& message);
-Defect find_defect(const msg::Route& message);
-Defect find_defect(const msg::Blockages& message);
-Defect find_defect(const msg::NavigatorStatus& message);
-Defect find_defect(const msg::GridTile& message);
-Defect find_defect(const msg::HybridMap& message);
-Defect find_defect(const msg::MotionCommand& message);
-Defect find_defect(const msg::BaseCommand& message);
-Defect find_defect(const msg::GroundTruth& message);
-Defect find_defect(const msg::SimulatorCommand& message);
+template <class Message>
+Defect find_defect(const Message& message) {
+  BoundsCheck check;
+  msg::visit_bounds(message, check);
+  return check.defect();
+}
 
 }  // namespace topogeo::messaging

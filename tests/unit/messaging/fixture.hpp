@@ -15,17 +15,7 @@
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/hybrid_map.h"
-#include "topogeo/msg/local_map.h"
-#include "topogeo/msg/map_update.h"
-#include "topogeo/msg/match.h"
-#include "topogeo/msg/motion.h"
-#include "topogeo/msg/planning.h"
-#include "topogeo/msg/sensor.h"
-#include "topogeo/msg/simulation.h"
-#include "topogeo/msg/status.h"
-#include "topogeo/msg/stream.h"
-#include "topogeo/msg/trajectory.h"
+#include "topogeo/msg/types.h"
 
 namespace topogeo::messaging {
 

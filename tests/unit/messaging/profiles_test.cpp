@@ -9,13 +9,21 @@
 namespace topogeo::messaging {
 namespace {
 
+TEST(Topics, HaveNamesOfTheirOwnThatCarryTheSchemaVersion) {
+  const std::string prefix = "topogeo/v" + std::to_string(msg::kSchemaVersion) + "/";
+  std::set<std::string_view> names;
+  for (const TopicInfo* topic : all_topics()) {
+    EXPECT_TRUE(names.insert(topic->name).second) << topic->name;
+    EXPECT_TRUE(topic->name.starts_with(prefix)) << topic->name;
+  }
+  EXPECT_FALSE(names.empty());
+}
+
 TEST(Profiles, WriterAndReaderOfEveryTopicMatch) {
   const std::string partition = random_partition();
   const Participant sender(options_in(partition));
   const Participant receiver(options_in(partition));
-  std::set<std::string_view> names;
   for (const TopicInfo* topic : all_topics()) {
-    EXPECT_TRUE(names.insert(topic->name).second) << topic->name;
     for (const std::string_view role : {topic->role, topic->replay_role}) {
       if (role.empty()) continue;
       const detail::WriterCore writer(sender, *topic, std::string(role));
@@ -24,7 +32,6 @@ TEST(Profiles, WriterAndReaderOfEveryTopicMatch) {
       EXPECT_TRUE(reader.wait_for_matched(1, kPatience)) << topic->name << " " << role;
     }
   }
-  EXPECT_EQ(names.size(), 31U);
 }
 
 TEST(Profiles, BuiltInTextIsTheFileOfDeploy) {
