@@ -13,7 +13,7 @@ namespace topogeo::pipeline {
 using IndexPair = std::pair<std::size_t, std::size_t>;
 
 /// The pairs of TrajectoryError::loop of a path, at most 2000: exactly those that the evaluation
-/// tool of this field's logs (a Python program) looks at, so that the figures can be compared.
+/// tool of this field's logs (a Python program) takes, so that the figures can be compared.
 std::vector<IndexPair> loop_pairs(std::span<const geometry::Pose2> path);
 
 /// Puts them into the order that `random.Random(0).shuffle` of Python gives a list.

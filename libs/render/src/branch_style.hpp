@@ -1,4 +1,4 @@
-// How branches and nodes of a local map look in every panel.
+// Colours and strokes of the branches and nodes of a local map in every panel.
 #pragma once
 
 #include <cairo.h>

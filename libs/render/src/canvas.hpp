@@ -1,5 +1,4 @@
-// Colours, strokes, text and node markers: what all pictures and their legends draw in the same
-// way.
+// Colours, strokes, text and node markers that all pictures and their legends share.
 #pragma once
 
 #include <string>
@@ -27,7 +26,7 @@ inline constexpr Colour kOdometry{0.95, 0.60, 0.05};
 inline constexpr Colour kLoopClosure{0.55, 0.20, 0.65};
 inline constexpr Colour kDoor{0.00, 0.60, 0.40};
 inline constexpr Colour kWhite{1.0, 1.0, 1.0};
-// Of one scan; branches and nodes of the diagram as in the source's figures.
+// Of one scan; branches and nodes of the diagram as in the figures of the Thesis, chapter 4.
 inline constexpr Colour kDiagramBranch{0.00, 0.58, 0.15};
 inline constexpr Colour kDiagramNode{0.10, 0.15, 0.90};
 inline constexpr Colour kFreeSpace{0.93, 0.95, 0.98};
@@ -43,7 +42,7 @@ inline Colour paled(const Colour& c, double strength) {
   return {mixed(c.red), mixed(c.green), mixed(c.blue)};
 }
 
-/// White paper, round strokes, text that looks the same on every machine.
+/// White paper, round strokes, the same text rendering on every machine.
 void start_page(cairo_t* cr);
 
 /// A quarter of a pixel: finer steps cannot be seen but make the numbers in an SVG longer.

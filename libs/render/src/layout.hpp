@@ -1,4 +1,4 @@
-// What goes where in the picture: rotation, extent, scale.
+// Rotation, extent and scale of the picture of a map.
 #pragma once
 
 #include <cstdint>

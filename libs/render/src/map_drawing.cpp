@@ -65,8 +65,8 @@ void draw_branches(cairo_t* cr, const topomap::GlobalMap& map, bool virtual_ones
   set_dashes(cr, false);
 }
 
-// One line for all closures between the same two stretches of the way: a corridor driven twice has
-// hundreds, and drawn all they would hide the map.
+// One line for all closures between the same two stretches of the path: a corridor driven twice has
+// hundreds, which would hide the map.
 void draw_loop_closures(cairo_t* cr, const MapPicture& picture, const Layout& layout) {
   constexpr std::uint32_t kStretch_stops = 8;
   std::set<std::pair<std::uint32_t, std::uint32_t>> drawn;

@@ -13,7 +13,7 @@ namespace topogeo::results {
 
 namespace {
 
-/// The stops whose place is known.
+/// The stops that have a pose.
 struct LocatedStops {
   std::vector<topomap::LocalMap> maps;
   std::vector<topomap::StopPose> stops;

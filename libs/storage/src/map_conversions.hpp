@@ -1,7 +1,7 @@
 // Between the project's types and the Protobuf messages of proto/map.proto.
 //
 // Reading checks everything that the types promise, so that a damaged blob cannot become an index
-// out of range later on: each from_proto throws std::runtime_error that says what is wrong.
+// out of range later on: each from_proto throws std::runtime_error naming the field and the cause.
 #pragma once
 
 #include <string>

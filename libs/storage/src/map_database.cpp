@@ -69,7 +69,7 @@ void check_file_start(const std::filesystem::path& path) {
   constexpr std::uintmax_t kSmallestFile = 512;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size == 0) return;  // what cannot be opened is told when it is opened
+  if (error || size == 0) return;  // opening the file reports the error
   std::string start(kStart.size(), '\0');
   std::ifstream(path, std::ios::binary)
       .read(start.data(), static_cast<std::streamsize>(start.size()));

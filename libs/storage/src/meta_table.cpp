@@ -33,7 +33,7 @@ std::uint64_t read_meta_number(SqliteConnection& connection, const std::string& 
     std::size_t used = 0;
     const std::uint64_t value = std::stoull(text, &used);
     if (used == text.size()) return value;
-  } catch (const std::logic_error&) {  // told below
+  } catch (const std::logic_error&) {  // reported below
   }
   throw std::runtime_error(
       fmt::format("{}: damaged ({} is '{}', expected a number)", connection.name(), key, text));

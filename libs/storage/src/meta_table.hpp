@@ -1,4 +1,4 @@
-// What a map database says of itself: a table of keys and values.
+// The table of keys and values that describes a map database.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace topogeo::storage {
 
 bool has_table(SqliteConnection& connection, const std::string& name);
 
-/// In place of what stood there.
+/// Replaces the value of the key.
 void write_meta(SqliteConnection& connection, const std::string& key, const std::string& value);
 
 /// Throws std::runtime_error naming file and key when there is none.

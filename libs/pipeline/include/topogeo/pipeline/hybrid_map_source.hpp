@@ -1,5 +1,5 @@
-// The hybrid map (spec B1) of what is stored of a floor: a drawing, what the robot has mapped, or
-// both.
+// Makes the hybrid map of a floor from a drawing, from what the robot has mapped, or from both
+// (MACONDO, III.2; docs/algorithms.md, "Hybrid map and planner").
 //
 // The grid is the drawn one, the one that scans saw, or the two as planning::grid_of_both lays them
 // together. Zones are the drawn ones; without any they lie between the passages of the map that the
@@ -19,7 +19,7 @@
 
 namespace topogeo::pipeline {
 
-/// What a hybrid map is made of; it is looked at during the call only. What is missing is empty.
+/// What a hybrid map is made of, read during the call only. What is missing is empty.
 struct HybridMapParts {
   std::span<const topomap::LocalMap> local_maps;
   std::span<const topomap::StopPose> stops;
@@ -51,8 +51,8 @@ storage::MapDrawing read_zones_and_places(const std::filesystem::path& file);
 /// and zones of the same names; others come behind those there.
 void lay_over(storage::MapDrawing& drawing, storage::MapDrawing added);
 
-/// What is known of a floor from one file: a world, a grid (both as read_drawing, with no robot) or
-/// a map file. Throws std::runtime_error naming file, line or field.
+/// The floor of one file: a world, a grid (both as read_drawing, with no robot) or a map file.
+/// Throws std::runtime_error naming file, line or field.
 storage::MapDocument read_floor(const std::filesystem::path& file,
                                 const std::optional<std::filesystem::path>& zones,
                                 double resolution_m);

@@ -1,5 +1,6 @@
 // From scans to local maps: chooses the stops, follows the robot between them and makes the local
-// map of each stop (spec A1, A2; design, poses between stops).
+// map of each stop (docs/algorithms.md, "Local Voronoi diagram", "Local topo-geometric map" and
+// "Scan tracking").
 #pragma once
 
 #include <cstdint>

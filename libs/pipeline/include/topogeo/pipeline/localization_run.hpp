@@ -19,7 +19,7 @@ namespace topogeo::pipeline {
 /// "x,y,degrees" in the map frame. Throws std::invalid_argument naming what is wrong.
 geometry::Pose2 parse_pose(const std::string& text);
 
-/// How well a pose that somebody gives is known: 0.3 m and 10 degrees.
+/// Uncertainty of a pose that a user gives: 0.3 m and 10 degrees.
 Eigen::Matrix3d given_pose_covariance();
 
 /// The local maps and poses of a map file. Throws std::runtime_error naming the file when it cannot
@@ -36,7 +36,7 @@ std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::file
                                                                  const Config& config,
                                                                  const std::string& robot_id);
 
-/// What became of a stored map and of the stops of a drive that continues it: "stored_stops",
+/// Counts of the stops of a stored map and of a drive that continues it: "stored_stops",
 /// "added_stops" and "unmapped_stops", as they stand in reports.
 storage::ReasonCounts continuation_counts(const localization::MappingSession& session);
 

@@ -1,4 +1,4 @@
-// The whole way from scans to a map in one process: what the services do together, without DDS.
+// From scans to a map in one process: what the services do together, without DDS.
 #pragma once
 
 #include <cstdint>

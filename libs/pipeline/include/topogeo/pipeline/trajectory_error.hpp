@@ -1,5 +1,5 @@
-// How far a trajectory is from a reference, by the measures that this field publishes: poses paired
-// by time, then what is left over after the best rigid alignment, and what relative poses err by.
+// The error of a trajectory against a reference, by the measures that this field publishes: poses
+// paired by time, their distance after the best rigid alignment, and the error of relative poses.
 #pragma once
 
 #include <cstddef>
@@ -22,13 +22,13 @@ struct RelativeError {
 struct TrajectoryError {
   std::size_t pairs = 0;     ///< poses compared
   double matched = 0.0;      ///< share of the reference that has a partner, (0, 1]
-  double path_m = 0.0;       ///< way between the poses compared, by the reference
+  double path_m = 0.0;       ///< path length between the poses compared, by the reference
   double rms_m = 0.0;        ///< root of the mean squared distance after alignment
   double largest_m = 0.0;    ///< largest such distance
   double heading_rad = 0.0;  ///< mean absolute difference of headings after alignment
   RelativeError local;       ///< from each pose to the next
   /// Between poses that the reference puts within 1.5 m of each other although more than 20 m of
-  /// its way lie between them, at most 2000 pairs of them: small in a map that closes its loops.
+  /// its path lie between them, at most 2000 pairs of them: small in a map that closes its loops.
   /// Nothing if there are none.
   std::optional<RelativeError> loop;
   double end_m = 0.0;  ///< distance of the last poses when the first ones coincide

@@ -1,5 +1,5 @@
 // A picture of one scan: polar plot, generator groups, local Voronoi diagram, local topo-geometric
-// map and the clearance along its branches (the panels of figures 4.8, 4.10, 5.2 and 5.5).
+// map and the clearance along its branches (the panels of Thesis, figs. 4.8, 4.10, 5.2 and 5.5).
 //
 // Plans are in the robot frame with x (forward) up and y (left) to the left, at equal scale.
 #pragma once

@@ -1,5 +1,5 @@
-// How a map came about, as pictures: the counterparts of the source's figures 8.4-8.10 and
-// 8.13-8.22, for whichever algorithm the configuration names.
+// Pictures of the stages of a map: the counterparts of Thesis, figs. 8.4-8.10 and 8.13-8.22
+// (docs/algorithms.md), for the algorithm that the configuration names.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Everything that is known of one robot's map: what map.pb and the map database hold.
+// The whole map of one robot, as map.pb and the map database hold it.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Relations: relative poses of the robot that somebody has checked by hand, as text, the measure of
-// Burgard, Kuemmerle et al., "A comparison of SLAM algorithms based on a graph of relations".
+// Relations: hand-checked relative poses of the robot, as text; the measure of Burgard, Stachniss
+// et al., "A comparison of SLAM algorithms based on a graph of relations" (docs/file_formats.md).
 #pragma once
 
 #include <cstdint>

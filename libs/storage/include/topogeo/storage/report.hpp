@@ -1,4 +1,4 @@
-// The report of a run, report.json: what was done with what, how much and how long.
+// The report of a run, report.json: input, settings, counts and times.
 #pragma once
 
 #include <cstdint>
