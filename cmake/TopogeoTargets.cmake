@@ -89,7 +89,7 @@ function(topogeo_add_test)
   topogeo_compile_options(${ARG_NAME})
   # GCC warns of these by an analysis that is wrong with less optimisation.
   target_compile_options(${ARG_NAME} PRIVATE ${TOPOGEO_TEST_OPTIMIZATION}
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-maybe-uninitialized;-Wno-mismatched-new-delete>)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-maybe-uninitialized;-Wno-mismatched-new-delete;-Wno-stringop-overflow>)
   topogeo_build_fast(${ARG_NAME} topogeo_precompiled_tests)
   if(ARG_PROCESSES)
     gtest_discover_tests(${ARG_NAME} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
