@@ -1,5 +1,5 @@
 // The backward correction of a loop of 60 poses with 40 candidates of the last one, as long as the
-// source's experiment 2.
+// Thesis's experiment 2.
 #include <cstdint>
 
 #include <benchmark/benchmark.h>

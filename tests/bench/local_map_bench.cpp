@@ -1,5 +1,5 @@
 // Diagram and local map of one scan: 361 beams over 180 degrees, 5 cm cells, in a floor of rooms
-// along a corridor seen from a junction. The source took 400-900 ms for the 4 m case on a 400 MHz
+// along a corridor seen from a junction. The Thesis took 400-900 ms for the 4 m case on a 400 MHz
 // PC.
 #include <string>
 

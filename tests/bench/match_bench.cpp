@@ -1,5 +1,5 @@
 // One match of two local maps seen 0.5 m apart on the simulated floor, refinement included: what a
-// task of the search pool costs. The source took 10-30 s for 100 x 50 on a 400 MHz PC.
+// task of the search pool costs. The Thesis took 10-30 s for 100 x 50 on a 400 MHz PC.
 #include <benchmark/benchmark.h>
 
 #include "topogeo/localization/matching/matcher.hpp"

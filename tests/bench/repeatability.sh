@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Prints how much of a local map is found again half a metre farther on: for each input with the
 # default configuration, then for all inputs together with one setting of it changed at a time (and
-# with all of them as in the source). These are the tables of RESULTS.md that the defaults are chosen by.
+# with all of them as in the Thesis). These are the tables of RESULTS.md that the defaults are chosen by.
 #   tests/bench/repeatability.sh [DATA_FOLDER]
 # Inputs are the simulated floor (tests/data/floor.world.yaml) and each X.clf.gz with its X.ref.tum in
 # DATA_FOLDER, default ../shared/data beside the project. REPEATABILITY names the program; default
@@ -30,8 +30,8 @@ while IFS='|' read -r name settings; do
   printf 'local_map:\n  %s\n' "${settings:-$name}" | sed 's/; /\n  /g' > "$config"
   "$tool" --total "$name" --config "$config" "${inputs[@]}"
 done <<'SETTINGS'
-rules of the source, 10 m|on_wall_m: 0; site_spacing_m: 0; alternate_behind_only: false; alternate_large_only: false; join_again: false; join_hidden_zones: true; window_of_groups: true; largest_hidden_share: 1; remove_off_main_graph: true; min_main_graph_m: 0
-rules of the source, 4 m|on_wall_m: 0; site_spacing_m: 0; alternate_behind_only: false; alternate_large_only: false; join_again: false; join_hidden_zones: true; window_of_groups: true; largest_hidden_share: 1; remove_off_main_graph: true; min_main_graph_m: 0; range_limit_m: 4
+rules of the Thesis, 10 m|on_wall_m: 0; site_spacing_m: 0; alternate_behind_only: false; alternate_large_only: false; join_again: false; join_hidden_zones: true; window_of_groups: true; largest_hidden_share: 1; remove_off_main_graph: true; min_main_graph_m: 0
+rules of the Thesis, 4 m|on_wall_m: 0; site_spacing_m: 0; alternate_behind_only: false; alternate_large_only: false; join_again: false; join_hidden_zones: true; window_of_groups: true; largest_hidden_share: 1; remove_off_main_graph: true; min_main_graph_m: 0; range_limit_m: 4
 split_discontinuities: false
 discontinuity_m: 0.3
 discontinuity_m: 1.0

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The accuracy table of the source's algorithm alone (localizer.mode: thesis), for comparison with
+# The accuracy table of the Thesis's algorithm alone (localizer.mode: thesis), for comparison with
 # that of the default.
 #   tests/bench/thesis.sh EVALUATION_TOOL [DATA_FOLDER]
 # As accuracy.sh, which does the work.

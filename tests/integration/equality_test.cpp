@@ -112,7 +112,7 @@ TEST_F(EqualityTest, SecondRunReplacesTheResultsOfTheFirst) {
   }
 }
 
-// The source's own algorithm instead of the pose graph.
+// The Thesis's own algorithm instead of the pose graph.
 TEST_F(EqualityTest, ModeThesis) {
   std::ofstream(scratch_ / "thesis.yaml") << "localizer:\n  mode: thesis\n";
   configuration_ = {"--config", scratch_ / "thesis.yaml"};

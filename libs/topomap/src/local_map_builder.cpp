@@ -108,7 +108,7 @@ void LocalMapBuilder::Work::take_points(const LocalVoronoiDiagram& diagram,
 
 /// 5.5: walks outward from the real node, or from the point nearest to the robot, and ends a loose
 /// end before the first step longer than the threshold. Successive points are compared, not each
-/// with the start (spec A2, errata).
+/// with the start (docs/algorithms.md, "Local topo-geometric map", errata).
 void LocalMapBuilder::Work::cut_far_points(const DiagramBranch& branch) {
   const bool loose_a = branch.node_a == DiagramBranch::kLoose;
   const bool loose_b = branch.node_b == DiagramBranch::kLoose;

@@ -1,4 +1,4 @@
-// Doors, narrowings and hall-corridor passages along one branch (spec A2, thesis 5.2.2.1).
+// Doors, narrowings and hall-corridor passages along one branch (Thesis, 5.2.2.1).
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Equivalent nodes of all views, merged (thesis 7.3.2.1).
+// Equivalent nodes of all views, merged (Thesis, 7.3.2.1).
 #pragma once
 
 #include <cstdint>

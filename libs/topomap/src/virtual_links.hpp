@@ -1,5 +1,5 @@
 // Joins the parts of the global map that the robot drove between without a branch to show for it
-// (spec A1.6, thesis fig. 8.23): a laser that was covered, a hall wider than the laser's range.
+// (Thesis, fig. 8.23): a laser that was covered, a hall wider than the laser's range.
 //
 // A stop touches the map at the place where the branch that it saw nearest to itself became part of
 // the map; a stop whose branches all came to nothing touches it nowhere. The stops are gone through

@@ -1,4 +1,4 @@
-// Virtual groups for a scan of fewer than two groups (thesis 4.2.1, fig. 4.7).
+// Virtual groups for a scan of fewer than two groups (Thesis, 4.2.1, fig. 4.7).
 #pragma once
 
 #include <span>

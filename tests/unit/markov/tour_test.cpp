@@ -1,5 +1,5 @@
 // Whole tours with a base that slips: with Markov localization at the corners the robot ends within
-// a cell of where it should, without it it does not. The source reached that in 90 % of its runs.
+// a cell of where it should, without it it does not. MACONDO reached that in 90 % of its runs.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -145,7 +145,7 @@ TEST(Transition, ObstaclesTakeNothingAndGiveNothing) {
   EXPECT_NEAR(sum, .7929 + 2 * .0625 + 2 * .0078, 1e-15);
 }
 
-/// The rule of the source, cell by cell: nothing from a cell with zero, else every value of the
+/// The rule of MACONDO, cell by cell: nothing from a cell with zero, else every value of the
 /// matrix times the probability is added where it belongs.
 std::vector<double> cell_by_cell(const BeliefGrid& grid, const std::vector<Tap>& taps,
                                  const ObstacleCells& map) {

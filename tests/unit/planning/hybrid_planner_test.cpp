@@ -287,7 +287,7 @@ TEST(HybridPlanner, IsAtMostFivePercentLongerThanTheShortestWay) {
   }
 }
 
-// The source's planner alone, through the middles of the borders.
+// MACONDO's planner alone, through the middles of the borders.
 TEST(HybridPlanner, IsNearlyAsGoodWithoutPlanningAgain) {
   HybridPlannerConfig config;
   config.piece_m = 0.0;

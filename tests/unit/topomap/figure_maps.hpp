@@ -16,7 +16,7 @@
 
 namespace topogeo::figure_scenes {
 
-/// The source's search for states with thresholds for its figures, and its range limit.
+/// The Thesis's search for states with thresholds for its figures, and its range limit.
 topomap::LocalMapConfig source_map_config();
 
 struct MapSeen : NamedNodes {         // names like "real A|B|C"

@@ -31,7 +31,7 @@ LocalMap map_of(const scan::Scan& scan, const Pose2& T_robot_laser = {},
   return map;
 }
 
-/// Everything counts as confirmed, as in the source.
+/// Everything counts as confirmed, as in the Thesis.
 LocalMapConfig all_confirmed() {
   LocalMapConfig config;
   config.largest_hidden_share = 1.0;

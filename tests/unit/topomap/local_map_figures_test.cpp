@@ -1,4 +1,4 @@
-// The figures of the source's chapter 5 that explain a rule, each with and without that rule.
+// The figures of the Thesis's chapter 5 that explain a rule, each with and without that rule.
 //
 // The scenes are in tests/data/figures; walls are named by letters, see figure_scenes.hpp.
 // Positions are worked out by hand from whole walls, in the robot frame (x forward, y left,

@@ -102,7 +102,7 @@ TEST(LocalMapStates, AHallIsNoneUntilTheRiseToItWasSeen) {
   // Behind the mouth the clearance is 1.3 m at x = 3.84.
   EXPECT_EQ(states_of(into_a_hall(1.0, 4.0), config).size(), 1U);
   EXPECT_TRUE(states_of(into_a_hall(1.0, 3.6), config).empty());
-  config.largest_hidden_share = 1.0;  // everything counts as seen, as in the source
+  config.largest_hidden_share = 1.0;  // everything counts as seen, as in the Thesis
   EXPECT_EQ(states_of(into_a_hall(1.0, 3.6), config).size(), 1U);
 }
 

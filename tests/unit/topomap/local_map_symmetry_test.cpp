@@ -1,5 +1,5 @@
 // Turning the laser on the robot, or mirroring scene and laser, turns and mirrors diagram and local
-// map: all scenes of the source's figures, a field of view of 180 and of 360 degrees, with and
+// map: all scenes of the Thesis's figures, a field of view of 180 and of 360 degrees, with and
 // without the rule of hidden zones.
 #include <algorithm>
 #include <cmath>

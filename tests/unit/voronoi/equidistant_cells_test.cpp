@@ -1,4 +1,4 @@
-// The source's own rule as brute force, against which the cracks are held: every cell whose
+// The Thesis's own rule as brute force, against which the cracks are held: every cell whose
 // distances to its nearest groups differ by less than 2 E_max (4.18-4.22) belongs to the diagram,
 // cells with the same base groups to one branch or node (4.23, 4.24).
 //
@@ -35,7 +35,7 @@ struct Cell {
   std::uint16_t nearest = NearestSiteGrid::kNone;
 };
 
-/// The cells of a diagram by the source's rule.
+/// The cells of a diagram by the Thesis's rule.
 class EquidistantCells {
  public:
   explicit EquidistantCells(const LocalVoronoi& voronoi, std::size_t groups)

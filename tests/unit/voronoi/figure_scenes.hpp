@@ -1,4 +1,4 @@
-// The scenes of the source's figures (tests/data/figures) and what a diagram of them says in words.
+// The scenes of the Thesis's figures (tests/data/figures) and what a diagram of them says in words.
 //
 // Walls have the letters A, B, C ... in the order of the scene file, columns a, b, c ... A group is
 // named by the letters of the surfaces that its points lie on ("BC"), a node and a branch by the
@@ -35,7 +35,7 @@ const std::vector<std::string>& scene_numbers();
 /// The scene as a mirror along the x axis shows it.
 Scene mirrored(const Scene& scene);
 
-/// The laser of the source: 361 beams over 180 degrees.
+/// The laser of the Thesis: 361 beams over 180 degrees.
 inline simulation::BeamPattern half_turn() {
   return {};
 }
@@ -46,7 +46,7 @@ simulation::BeamPattern full_turn();
 scan::Scan scan_of(const world::World& world, const geometry::Pose2& T_world_laser,
                    const simulation::BeamPattern& beams = half_turn());
 
-/// The rules of the source with its range limit and its cells. The source prints no thresholds:
+/// The rules of the Thesis with its range limit and its cells. The Thesis prints no thresholds:
 /// 0.3 m splits the objects of its figures, and 0.55 m is just over the width of its robot.
 voronoi::VoronoiConfig source_config();
 /// The same without the rules after the split at discontinuities (steps 2 to 5).

@@ -1,4 +1,4 @@
-// The figures of the source's chapter 4 that explain a rule, each with and without that rule.
+// The figures of the Thesis's chapter 4 that explain a rule, each with and without that rule.
 //
 // The scenes are in tests/data/figures; walls are named by letters, see figure_scenes.hpp.
 // Positions are worked out by hand from whole walls, in the laser frame (x forward, y left,
@@ -242,7 +242,7 @@ double distance_to_set(const LocalVoronoiDiagram& diagram, std::uint16_t group,
 }
 
 // Three groups, one node equally far from all, three branches each equally far from two (4.23,
-// 4.24). The source's objects 1, 2, 3 are A, B, C; its branches 1, 2, 3 are A|C, A|B, B|C.
+// 4.24). The Thesis's objects 1, 2, 3 are A, B, C; its branches 1, 2, 3 are A|C, A|B, B|C.
 TEST(FiguresOfChapter4, Figure20NodeAndBranchesAreEquallyFarFromTheirBaseGroups) {
   const Scene scene = load_scene("4_20");
   const Seen seen = see(scene, source_config());

@@ -18,7 +18,7 @@ namespace {
 using geometry::Pose2;
 using test::covariance_of;
 
-// --- the oracle: every combination of candidate and stored solutions, as the source words it
+// --- the oracle: every combination of candidate and stored solutions, as the Thesis words it
 
 struct OracleWay {
   double fitness = -1.0;
@@ -252,7 +252,7 @@ TEST(BackwardCorrection, SaysWhyItFailed) {
   EXPECT_STREQ(to_string(BackwardOutcome::kDeadEnd), "dead end");
 }
 
-// --- a loop of 60 poses, 90 m round, as in the source's experiment 2
+// --- a loop of 60 poses, 90 m round, as in the Thesis's experiment 2
 
 double largest_error_m(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth) {
   double largest_m = 0.0;

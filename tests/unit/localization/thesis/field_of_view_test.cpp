@@ -143,7 +143,7 @@ TEST(OverlapSet, GrowsWithTheUncertainty) {
   EXPECT_THROW(overlap_set(view, earlier, places), std::invalid_argument);
 }
 
-// The source's own: MS_44 = {42, 43}; at 45 the robot turns round and sees 33 to 42 and 44.
+// The Thesis's own: MS_44 = {42, 43}; at 45 the robot turns round and sees 33 to 42 and 44.
 TEST(NewlySeen, AreTheMapsOutsideOfTheLastSetAndTheLastMap) {
   const std::vector<std::uint32_t> before{42, 43};
   const std::vector<std::uint32_t> turned{33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 44};

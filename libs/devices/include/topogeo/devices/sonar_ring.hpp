@@ -14,7 +14,7 @@ struct SonarMount {
   double half_cone_rad = 15.0 * std::numbers::pi / 180.0;  ///< half of the opening angle, > 0
 };
 
-/// MACONDO's six: two to the front, two to the left, two to the right. The source says only which
+/// MACONDO's six: two to the front, two to the left, two to the right. MACONDO says only which
 /// way they look; the mounting is that of a round body of 26 cm, the pairs 20 cm apart.
 std::vector<SonarMount> macondo_sonars();
 

@@ -2,8 +2,8 @@
 //
 // A pose named T_a_b takes coordinates of frame b into frame a: p_a = T_a_b * p_b, and
 // T_a_c = T_a_b * T_b_c. x forward, y left, theta counter-clockwise; metres and radians.
-// These are the proper compositions that the source's equations 7.6-7.9 and 7.22-7.24 stand for
-// (spec A6, errata: local to global is R(theta), global to local R(-theta)).
+// These are the proper compositions for Thesis, eq. 7.6-7.9 and 7.22-7.24: local to global is
+// R(theta), global to local R(-theta) (docs/algorithms.md, "Forward correction", errata).
 #pragma once
 
 #include <Eigen/Core>

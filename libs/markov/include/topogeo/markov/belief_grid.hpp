@@ -1,5 +1,5 @@
 // The state of Markov localization: probabilities of a square window of cells around the cell where
-// the robot is expected, in two buffers (spec B3).
+// the robot is expected, in two buffers (MACONDO, III.1).
 //
 // The axes of the window are those of the map. The window follows the expected position in whole
 // cells; a cell at offset (dx, dy) stands for the robot being that many cells from where it is

@@ -1,5 +1,5 @@
-// Markov localization on a known grid (spec B3): where the robot is, of the cells around where its
-// route says that it should be.
+// Markov localization on a known grid: the cell that the robot is in, of those around the position
+// that its route expects (MACONDO, III.1; docs/algorithms.md, "Markov localization").
 //
 // The caller reports each executed motion primitive with move(), and with perceive() what the
 // sensors read whenever the expected position is a node of the graph or the end of the route. The

@@ -1,5 +1,5 @@
 // The obstacles of a known environment as cells, packed one bit a cell so that a row of the window
-// is tested with a few word operations (spec B3).
+// is tested with a few word operations (MACONDO, III.1).
 #pragma once
 
 #include <array>

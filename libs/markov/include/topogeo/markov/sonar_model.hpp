@@ -1,5 +1,5 @@
 // The perceptual model: what the sensors would measure at every place of the window, and how well
-// that fits what they do measure (spec B3).
+// that fits what they do measure (MACONDO, III.1).
 //
 // A virtual reading counts the cells from the sensor to the nearest obstacle: the distance from
 // where the sensor is to the near side of the first obstacle cell on a ray; the shortest of several

@@ -1,11 +1,12 @@
-// The movement model: what each motion primitive does to the probabilities (spec B3, figs. 4-7).
+// The movement model: what each motion primitive does to the probabilities (MACONDO, III.1,
+// figs. 4-7).
 //
 // A transition matrix says how likely the robot is to end so many cells off the place where the
-// primitive should have brought it. It is held as the source prints it, with the motion from left
+// primitive should have brought it. It is held as MACONDO prints it, with the motion from left
 // to right: rows across the motion, the upper row to the left of the robot; columns along it. Its
 // middle is the expected place, so the window moves with the robot and the matrix only spreads.
 //
-// The source prints a matrix for an advance of one cell, none for the turns, and not how a longer
+// MACONDO prints a matrix for an advance of one cell, none for the turns, and not how a longer
 // primitive spreads more. Here a matrix stands for a step of known length; a primitive of several
 // steps applies it as often, and the rest of a step in proportion (see part_of).
 #pragma once

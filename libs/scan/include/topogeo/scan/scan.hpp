@@ -11,7 +11,7 @@ namespace topogeo::scan {
 struct Scan {
   std::uint64_t sequence = 0;  ///< counts the usable scans of one source from 0, without gaps
   std::int64_t stamp_ns =
-      0;  ///< time of measurement, since the epoch of the source; strictly increasing
+      0;  ///< time of measurement, since the epoch of the device or log; strictly increasing
   double angle_min_rad = 0.0;    ///< angle of the first beam in the laser frame (x forward, y left)
   double angle_step_rad = 0.0;   ///< from one beam to the next, counter-clockwise, > 0
   std::vector<float> ranges_m;   ///< one per beam; kNoReturn where the beam met nothing

@@ -11,7 +11,7 @@
 namespace topogeo::simulation {
 
 /// A corridor round a block of rooms, 84 to 96 m about, driven once round and on over the first
-/// quarter: the source's experiment 2.
+/// quarter: the Thesis's experiment 2.
 world::World cyclic_floor(std::uint64_t seed);
 
 /// A corridor of 30 to 42 m with rooms on both sides, driven to its end and back: experiment 1.

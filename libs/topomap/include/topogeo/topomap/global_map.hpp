@@ -1,4 +1,4 @@
-// The global topo-geometric map: all local maps fused in the map frame (spec A8, thesis 7.3.2).
+// The global topo-geometric map: all local maps fused in the map frame (Thesis, 7.3.2).
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,12 @@
-// Fuses local maps into the global topo-geometric map (spec A8, thesis 7.3.2).
+// Fuses local maps into the global topo-geometric map (Thesis, 7.3.2; docs/algorithms.md,
+// "Global map").
 //
-// The source joins branches pair by pair (7.27), which after dozens of overlapping views leaves a
+// The Thesis joins branches pair by pair (7.27), which after dozens of overlapping views leaves a
 // bundle of almost parallel lines. Here each view votes instead, in a sparse grid over the map
 // frame: for the places that its branches pass, and against the branches of earlier views that lie
 // well inside its field of view and that it did not see. The map is the ridge of the votes, so a
 // branch is the mean of all views that saw it, a door seen open later adds its branch (fig. 8.9),
-// and a false branch is outvoted (fig. 8.8). Nodes are fused as the source does: equivalent ones
+// and a false branch is outvoted (fig. 8.8). Nodes are fused as the Thesis does: equivalent ones
 // merge to the mean of position (7.25) and clearance (7.26), near-by ones collapse (fig. 8.10).
 // The trade-off: branches closer together than about twice `vote_radius_m` become one.
 //

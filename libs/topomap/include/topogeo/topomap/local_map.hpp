@@ -1,4 +1,4 @@
-// The local topo-geometric map made at one stop of the robot (spec A2, thesis 5.2.3).
+// The local topo-geometric map made at one stop of the robot (Thesis, 5.2.3).
 //
 // Coordinates are in the robot frame at the stop (x forward, y left), metres. Everything is kept:
 // elements off the main graph serve matching, the main graph serves navigation (`in_main_graph`).

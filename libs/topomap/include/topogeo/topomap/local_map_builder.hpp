@@ -1,10 +1,11 @@
-// From the local Voronoi diagram to the local topo-geometric map (spec A2, thesis 5.2).
+// From the local Voronoi diagram to the local topo-geometric map (Thesis, 5.2;
+// docs/algorithms.md, "Local topo-geometric map").
 //
 // Branches follow the cracks of the diagram, so a branch and its two nodes share its base groups by
 // construction and 5.2.1 needs no search. Far points are cut (5.5), states are added where the
 // clearance along a branch says so (5.1-5.4), and the main graph is marked.
 //
-// Two things are kept that the source would throw away or take for certain. What is off the main
+// Two things are kept that the Thesis would throw away or take for certain. What is off the main
 // graph is marked instead of removed, because matching on everything is more repeatable than on the
 // main graph (`remove_off_main_graph` removes it). And nodes and branches whose clearance circle
 // reaches into what the scan did not see are told from the others: such a node is fictitious, such

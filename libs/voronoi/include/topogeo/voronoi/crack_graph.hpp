@@ -1,5 +1,6 @@
-// From the nearest sites of the cells to ordered branches and nodes (spec A1.5 and its pitfalls,
-// thesis 4.19-4.25). local_voronoi.hpp says how they differ from the source's cells.
+// From the nearest sites of the cells to ordered branches and nodes (Thesis, 4.2.2.3,
+// eq. 4.19-4.25; docs/algorithms.md, "Local Voronoi diagram"). local_voronoi.hpp compares them with
+// the cells there.
 //
 // Cracks are the cell borders between different groups; they are followed from corner to corner of
 // the grid. A corner where three groups meet is a node. Where only two groups meet crosswise (a b /

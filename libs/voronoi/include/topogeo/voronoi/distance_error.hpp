@@ -1,5 +1,5 @@
-// The error of taking a cell's centre for every point of the cell (spec A1.4, thesis 4.17, 4.18 and
-// table 4.1).
+// The error of taking a cell's centre for every point of the cell (Thesis, 4.2.2.2, eq. 4.17 and
+// 4.18, table 4.1).
 #pragma once
 
 #include <cmath>

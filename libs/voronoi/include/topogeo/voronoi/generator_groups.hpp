@@ -1,6 +1,6 @@
-// Generator groups: the scan points that belong to one object (spec A1.2, thesis 4.2.1).
+// Generator groups: the scan points that belong to one object (Thesis, 4.2.1).
 //
-// The five steps of the source in its order, each a function of its own. Points stay in beam order
+// The five steps of the Thesis in its order, each a function of its own. Points stay in beam order
 // and a group is a run of successive points, so every step works on the borders between runs.
 // Joining 4.8 and 4.9 does not depend on the side that one starts from: contiguous groups are
 // joined until nothing changes, alternate groups nearest pair first, so that the mirror image of a

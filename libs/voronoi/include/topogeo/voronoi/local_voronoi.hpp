@@ -1,10 +1,11 @@
-// The local Voronoi diagram of one laser scan (spec A1, thesis chapter 4), in the laser frame.
+// The local Voronoi diagram of one laser scan, in the laser frame (Thesis, chapter 4;
+// docs/algorithms.md, "Local Voronoi diagram").
 //
 // Every reading of a group is a site, and so are points between readings of one wall that are far
 // apart. A branch is the crack between visible neighbour cells whose nearest sites belong to
 // different groups; a node is a corner of cells where three groups meet. That gives ordered curves
-// one cell wide, where the source's rule (every cell whose two smallest group distances differ by
-// less than 2 E_max) gives bands, and whole wedges behind a gap between two groups: there the
+// one cell wide, where the rule of the Thesis (every cell whose two smallest group distances differ
+// by less than 2 E_max) gives bands, and whole wedges behind a gap between two groups: there the
 // distances to both groups grow almost alike, so the rule holds over an area. The crack through a
 // wedge is the line where they are equal. Every point is moved from the cell border to the place
 // between the two cell centres where both distances are equal, so positions are far better than a

@@ -1,5 +1,5 @@
-// The nearest site of every visible cell of a grid around the laser (spec A1.3, A1.4, thesis
-// 4.14-4.16).
+// The nearest site of every visible cell of a grid around the laser (Thesis, 4.2.2.1 and
+// 4.2.2.2, eq. 4.14-4.16; docs/algorithms.md, "Local Voronoi diagram").
 //
 // One exact Euclidean distance transform over the sites of all groups at once: along a row of cells
 // the squared distance to site i is f_i - 2 u u_i + u^2, so the nearest sites are the lower convex
