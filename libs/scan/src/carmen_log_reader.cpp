@@ -114,7 +114,7 @@ bool CarmenLogReader::Impl::same_geometry(const Scan& scan) const {
          std::fabs(scan.angle_step_rad - geometry->angle_step_rad) <= kTolerance_rad;
 }
 
-// The next laser line that can be read by itself; its time is not looked at.
+// The next laser line that can be read by itself; its time is not checked.
 std::optional<Candidate> CarmenLogReader::Impl::next_readable() {
   GzLines::Line line;
   while (lines.next(line)) {
@@ -150,7 +150,7 @@ std::optional<Candidate> CarmenLogReader::Impl::next_readable() {
                std::to_string(candidate.scan.ranges_m.size()));
       continue;
     }
-    // The angles of a log are rounded; one exact geometry spares everybody a comparison.
+    // The angles of a log are rounded; one exact geometry spares comparisons.
     candidate.scan.angle_min_rad = geometry->angle_min_rad;
     candidate.scan.angle_step_rad = geometry->angle_step_rad;
     return candidate;

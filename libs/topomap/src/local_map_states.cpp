@@ -136,10 +136,10 @@ double BranchStateFinder::level_of(std::span<const BranchPoint> points, const Fl
 }
 
 /// Mouth of a corridor: where the clearance starts to rise from its level. Beyond the corners of a
-/// mouth the squared clearance grows with the square of the way from it, as much where both walls
-/// end there and half as much where one does. So the root of its growth is a line over the way:
-/// fitted by least squares up to a rise of `rise_m` and followed back to zero. The last point on
-/// the level, up to 0.3 m beyond the mouth, where there are too few points for a line.
+/// mouth the squared clearance grows with the square of the distance from it, as much where both
+/// walls end there and half as much where one does. So the root of its growth is a line over the
+/// distance: fitted by least squares up to a rise of `rise_m` and followed back to zero. The last
+/// point on the level, up to 0.3 m beyond the mouth, where there are too few points for a line.
 BranchState BranchStateFinder::mouth_of(std::span<const BranchPoint> points, const Floor& floor,
                                         std::ptrdiff_t step, double rise_m) {
   const double level_m = level_of(points, floor);

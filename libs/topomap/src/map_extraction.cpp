@@ -42,7 +42,7 @@ class Extraction {
     std::vector<RidgePoint> points;
   };
 
-  [[nodiscard]] bool believed(const FusedNode& n) const {
+  [[nodiscard]] bool accepted(const FusedNode& n) const {
     return n.observations >= config_.min_observations &&
            n.weight_for >= config_.keep_share * (n.weight_for + n.weight_against);
   }
@@ -106,7 +106,7 @@ class Extraction {
     std::vector<std::uint32_t> order;
     for (std::uint32_t id = 0; id < fusion_.nodes().size(); ++id) {
       const FusedNode& n = fusion_.nodes()[id];
-      if (n.kind != NodeKind::kReal && !taken_.contains(id) && believed(n)) order.push_back(id);
+      if (n.kind != NodeKind::kReal && !taken_.contains(id) && accepted(n)) order.push_back(id);
     }
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return fusion_.nodes()[a].observations > fusion_.nodes()[b].observations;

@@ -30,7 +30,7 @@ void drop_edges(RidgeGraph& graph, const std::vector<char>& drop) {
 }
 
 // Mean share over the worst stretch of ten points (a metre at the usual cell side): a detour round
-// someone who stood in the way is outvoted even where its ends run along a good branch.
+// a person who stood there is outvoted even where its ends run along a good branch.
 double worst_share(const RidgeGraph& graph, const RidgeEdge& edge) {
   constexpr std::size_t kStretch = 10;
   std::vector<double> shares;

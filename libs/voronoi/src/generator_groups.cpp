@@ -112,7 +112,7 @@ class Surfaces {
     if (at_the_end && !beams_.closed()) return std::nullopt;
     return (beam + count + static_cast<std::uint32_t>(step)) % count;
   }
-  /// True if reading `c` goes on the line from reading `a` to `b`. Two readings say where a line
+  /// True if reading `c` goes on the line from reading `a` to `b`. Two readings show where a line
   /// goes for not much longer than they are apart; along a wall the distances grow less than that.
   [[nodiscard]] bool on_line(std::optional<std::uint32_t> a, std::uint32_t b,
                              std::uint32_t c) const {

@@ -60,7 +60,8 @@ void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
     if (!out.groups.groups.empty()) {
       out.groups.groups = {{0, static_cast<std::uint32_t>(out.groups.points.size())}};
     }
-    // For navigation, a beam that met nothing is free: otherwise a robot in the open has no way on.
+    // For navigation, a beam that met nothing is free: otherwise a robot in the open could not go
+    // on.
     std::replace(free_range_m_.begin(), free_range_m_.end(), 0.0, config_.range_limit_m);
     add_virtual_groups(beams_, free_range_m_, config_, out.groups);
     trace(out);
@@ -70,7 +71,7 @@ void LocalVoronoi::compute(const scan::Scan& scan, LocalVoronoiDiagram& out) {
 }
 
 /// Where the line of a virtual group meets a wall the branch between them runs into the corner. The
-/// line stands for nothing, so what is narrower than the robot there is no way. A branch that is
+/// line stands for nothing, so what is narrower than the robot there is no path. A branch that is
 /// narrow all along stays: the robot is in it.
 void LocalVoronoi::drop_tight_ends(LocalVoronoiDiagram& diagram) const {
   const double least_m = 0.5 * config_.contiguous_m;
@@ -97,7 +98,7 @@ void LocalVoronoi::trace(LocalVoronoiDiagram& diagram) {
   cracks_.trace(grid_, sites_, config_, diagram);
 }
 
-/// As close as the configuration says, or as the number of sites that the grid can tell apart
+/// As close as the configuration asks, or as the number of sites that the grid can separate
 /// allows.
 void LocalVoronoi::place_sites(const GeneratorGroups& groups) {
   double spacing_m = config_.site_spacing_m;

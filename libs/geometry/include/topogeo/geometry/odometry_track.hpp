@@ -37,7 +37,7 @@ class OdometryTrack {
     Pose2 T_odom_robot;
     bool extrapolated = false;
   };
-  /// Between two samples: x and y on the straight line, the heading on the shorter way. After the
+  /// Between two samples: x and y on the straight line, the heading by the shorter turn. After the
   /// last one: on the arc of its speeds. Nothing before the first sample or too long after the
   /// last.
   [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;

@@ -46,7 +46,7 @@ struct MovementReport {
 struct PerceptionReport {
   bool possible = false;    ///< as above
   PerceptualMatch match{};  ///< what the readings were worth
-  double weight = 0.0;      ///< of the perceptual model in the sum; 0: the readings say nothing
+  double weight = 0.0;      ///< of the perceptual model in the sum; 0: no reading counts
   std::string reason{};     ///< one line: why nothing is possible, or why the weight is 0
 };
 
@@ -63,7 +63,7 @@ struct Estimate {
 struct WayBack {
   /// To be executed in this order; empty if the robot is there already.
   std::vector<Move> moves;
-  /// The straight way meets an obstacle cell or leaves the map: plan a route instead.
+  /// The straight line meets an obstacle cell or leaves the map: plan a route instead.
   bool blocked = false;
 };
 
@@ -74,8 +74,9 @@ class MarkovLocalizer {
 
   /// Starts at the base station: one for its cell, then one perceptual update and weighting.
   /// `ranges_m` has one reading per sensor, metres, scan::Scan::kNoReturn for none. Not possible if
-  /// the cell of the base station is an obstacle or outside the map; then nothing is believed.
-  /// Throws std::invalid_argument for a pose that is not finite or beyond 1e6 m, or bad readings.
+  /// the cell of the base station is an obstacle or outside the map; then every probability is
+  /// zero. Throws std::invalid_argument for a pose that is not finite or beyond 1e6 m, or bad
+  /// readings.
   PerceptionReport initialize(const geometry::Pose2& T_map_base_station,
                               std::span<const float> ranges_m);
 
@@ -86,7 +87,7 @@ class MarkovLocalizer {
   MovementReport move(const Move& move);
 
   /// The perceptual update, weighted with the state of the movement model by the reliability of
-  /// the readings. Where nothing was possible any more, readings that say something make the whole
+  /// the readings. Where nothing was possible any more, readings that count make the whole
   /// window possible again. Throws std::invalid_argument for bad readings, std::runtime_error
   /// before initialize().
   PerceptionReport perceive(std::span<const float> ranges_m);

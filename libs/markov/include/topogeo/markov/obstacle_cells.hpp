@@ -19,7 +19,7 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// Cells of somebody else's grid.
+/// Cells of a grid that the caller owns.
 struct CellsView {
   int width = 0;
   int height = 0;
@@ -59,9 +59,9 @@ class ObstacleCells {
   [[nodiscard]] Eigen::Vector2d place_in_cell(const Eigen::Vector2d& point_m) const;
   [[nodiscard]] Eigen::Vector2d centre_m(Cell cell) const;
 
-  /// Bit i says whether cell (x + i, y) is an obstacle; 0 outside the map.
+  /// Bit i: whether cell (x + i, y) is an obstacle; 0 outside the map.
   [[nodiscard]] std::uint64_t occupied_bits(int x, int y) const;
-  /// Bit i says whether cell (x + i, y) is within the map.
+  /// Bit i: whether cell (x + i, y) is within the map.
   [[nodiscard]] std::uint64_t inside_bits(int x, int y) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace topogeo::markov {
 
-/// It looks along x of its own frame and measures the nearest obstacle within its cone.
+/// It points along x of its own frame and measures the nearest obstacle within its cone.
 struct RangeSensor {
   geometry::Pose2 T_robot_sensor{};
   double half_cone_rad = 0.0;  ///< half of the opening angle; 0: a single ray, as a laser beam

@@ -32,13 +32,14 @@ void validate(std::span<const RangeSensor> sensors);
 /// Reliability of a reading by the distance that is expected, metres (infinity: nothing in range).
 double reliability_of(const SonarModelConfig& config, double expected_m);
 
-/// What the readings say about the window.
+/// The evidence of the readings about the window.
 struct PerceptualMatch {
   int compared = 0;          ///< readings that there were
   double reliability = 0.0;  ///< mean over all sensors; a sensor without a reading has 0
   /// Smallest mean absolute difference of any free cell, metres; infinity if nothing was compared.
   double best_difference_m = 0.0;
-  /// True if the probabilities say anything: a reading was compared and some free cell is possible.
+  /// True if the probabilities carry evidence: a reading was compared and some free cell is
+  /// possible.
   bool informative = false;
 };
 
@@ -61,7 +62,7 @@ class SonarModel {
 
   /// Compares the readings (one per sensor, metres, scan::Scan::kNoReturn for none) with the
   /// virtual ones and writes the probability of every cell of the window, which sum to one; all
-  /// zero if they say nothing. Reliability goes by the middle of the window. Throws
+  /// zero without evidence. Reliability goes by the middle of the window. Throws
   /// std::invalid_argument naming the sensor: another number of readings, one that is negative or
   /// not finite.
   PerceptualMatch compare(std::span<const float> ranges_m, std::span<double> probabilities);
@@ -92,7 +93,7 @@ class SonarModel {
   int words_a_row_ = 0;
   std::vector<std::uint64_t> surroundings_;
   std::vector<Crossing> crossings_;
-  std::vector<RowBits> open_;        ///< cells whose ray is still on its way
+  std::vector<RowBits> open_;        ///< cells whose ray has met nothing yet
   std::vector<double> virtual_m_;    ///< sensor after sensor, row after row
   std::vector<double> differences_;  ///< of each cell, over the compared readings
 };

@@ -1,8 +1,8 @@
 // The movement model: what each motion primitive does to the probabilities (MACONDO, III.1,
 // figs. 4-7).
 //
-// A transition matrix says how likely the robot is to end so many cells off the place where the
-// primitive should have brought it. It is held as MACONDO prints it, with the motion from left
+// A transition matrix holds the probability that the robot ends so many cells off the place where
+// the primitive should have brought it. It is held as MACONDO prints it, with the motion from left
 // to right: rows across the motion, the upper row to the left of the robot; columns along it. Its
 // middle is the expected place, so the window moves with the robot and the matrix only spreads.
 //

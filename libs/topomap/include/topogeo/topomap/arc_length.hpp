@@ -1,4 +1,4 @@
-// Way along a branch.
+// Length along a branch.
 #pragma once
 
 #include <cstddef>

@@ -11,8 +11,8 @@
 // The trade-off: branches closer together than about twice `vote_radius_m` become one.
 //
 // Where the robot drove from one part of the map to another and saw nothing that joins them (local
-// maps that do not overlap, fig. 8.23), a virtual branch along the way that it drove does. It
-// serves navigation; matching never looks at the global map.
+// maps that do not overlap, fig. 8.23), a virtual branch along the path that it drove does. It
+// serves navigation; matching never uses the global map.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ class GlobalMapBuilder {
   /// snapshot as long as they stay at their place. Fictitious nodes are free branch ends. Virtual
   /// branches are the links of virtual_links.hpp, virtual nodes the places where one meets the
   /// middle of a branch. A map is taken to follow the one integrated before it, with its track as
-  /// the way between, when its id is the next.
+  /// the path between, when its id is the next.
   [[nodiscard]] GlobalMap snapshot(std::uint64_t version) const;
 
  private:

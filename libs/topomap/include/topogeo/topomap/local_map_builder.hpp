@@ -3,14 +3,14 @@
 //
 // Branches follow the cracks of the diagram, so a branch and its two nodes share its base groups by
 // construction and 5.2.1 needs no search. Far points are cut (5.5), states are added where the
-// clearance along a branch says so (5.1-5.4), and the main graph is marked.
+// clearance along a branch shows them (5.1-5.4), and the main graph is marked.
 //
 // Two things are kept that the Thesis would throw away or take for certain. What is off the main
 // graph is marked instead of removed, because matching on everything is more repeatable than on the
 // main graph (`remove_off_main_graph` removes it). And nodes and branches whose clearance circle
 // reaches into what the scan did not see are told from the others: such a node is fictitious, such
-// a stretch of a branch not confirmed. They are ways to go on, but no landmarks; both tables are in
-// tests/bench/RESULTS.md.
+// a stretch of a branch not confirmed. They serve navigation, but are no landmarks; both tables are
+// in tests/bench/RESULTS.md.
 #pragma once
 
 #include <memory>

@@ -11,7 +11,7 @@
 
 namespace topogeo::topomap {
 
-/// On the straight way from the pose before to the one after, by the share of the time. Nothing
+/// On the straight line from the pose before to the one after, by the share of the time. Nothing
 /// before the first pose, after the last and between two that are more than `longest_gap_ns` apart.
 /// `poses` are in the order of time.
 std::optional<geometry::Pose2> pose_at(

@@ -21,7 +21,7 @@ struct StopPose {
       Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the map frame, m and rad
   /// While the robot drives: the id that its local mapper gave the local map. Not stored.
   std::uint32_t source_id = 0;
-  bool located = true;  ///< false: nobody knew where the robot was, the pose means nothing
+  bool located = true;  ///< false: the robot was not located, the pose means nothing
 };
 
 /// Source of a stop that was in the map before this drive.
@@ -32,7 +32,7 @@ struct Trajectory {
   std::vector<StopPose> stops;  ///< index = local map id
 };
 
-/// A closed loop: two stops far apart on the way whose maps were matched.
+/// A closed loop: two stops far apart on the path whose maps were matched.
 struct LoopClosure {
   std::uint32_t earlier_id = 0;  ///< local map ids
   std::uint32_t later_id = 0;

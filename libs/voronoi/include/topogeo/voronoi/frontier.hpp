@@ -1,10 +1,10 @@
 // The frontier of one scan: the border between what it proves to be free and what it did not see.
 //
-// A place is as far from the objects as the scan says only if the whole circle of that clearance
+// A place is as far from the objects as the scan shows only if the whole circle of that clearance
 // was seen; where the frontier crosses the circle, an object that the robot does not see yet can
 // lie nearer. Behind a corner the diagram runs between the corner and whatever shows beyond it, and
-// changes with each step of the robot; the depth to which the circle is hidden tells such places
-// from those that stay. tests/bench/RESULTS.md has the figures.
+// changes with each step of the robot; the depth to which the circle is hidden separates such
+// places from those that stay. tests/bench/RESULTS.md has the figures.
 #pragma once
 
 #include <span>

@@ -71,7 +71,7 @@ void join_contiguous_groups(const VoronoiConfig& config, GeneratorGroups& groups
 void join_alternate_groups(const VoronoiConfig& config, GeneratorGroups& groups);
 /// Step 4 (4.10).
 void drop_small_groups(const VoronoiConfig& config, GeneratorGroups& groups);
-/// Step 5 (4.11, 4.12). A wall along the way ends at a corner, and what follows is farther away:
+/// Step 5 (4.11, 4.12). A wall along the path ends at a corner, and what follows is farther away:
 /// the range jumps outward where successive beams turn towards the line of motion, inward where
 /// they turn away from it. That is 4.11 for the first quadrant (ahead on the right), 4.12 for the
 /// second (ahead on the left), and for a wider field of view their mirror images behind the robot.

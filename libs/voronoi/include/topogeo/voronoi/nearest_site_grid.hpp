@@ -30,7 +30,7 @@ class NearestSiteGrid {
  public:
   static constexpr std::uint16_t kNone = 0xffff;
 
-  /// Makes the table that says which beam crosses which cell. Costs some milliseconds; call it when
+  /// Makes the table of the beam that crosses each cell. Costs some milliseconds; call it when
   /// the scan geometry or the configuration changes.
   void set_geometry(const BeamDirections& beams, const VoronoiConfig& config);
 
