@@ -4,6 +4,7 @@
 # Warnings of our own code; errors when TOPOGEO_WERROR is on.
 # -ffp-contract=off: results must not depend on whether a compiler fuses multiply and add.
 function(topogeo_compile_options target)
+  set_property(GLOBAL APPEND PROPERTY TOPOGEO_TARGETS ${target})
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off)
   if(TOPOGEO_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
