@@ -124,7 +124,7 @@ YamlNode YamlNode::at(const std::string& key) const {
 }
 
 YamlNode YamlNode::required(const std::string& key) const {
-  const YamlNode value = at(key);
+  YamlNode value = at(key);
   if (!value.exists()) value.fail("a value", "nothing: key '" + key + "' is missing");
   return value;
 }

@@ -10,7 +10,7 @@ using geometry::Pose2;
 
 namespace {
 
-bool same_solution(const MatchSolution& a, const MatchSolution& b) {
+bool identical_solutions(const MatchSolution& a, const MatchSolution& b) {
   return identical(a.T_reference_query, b.T_reference_query) && identical(a.fitness, b.fitness);
 }
 
@@ -27,7 +27,7 @@ bool identical(const Pose2& a, const Pose2& b) {
 bool identical(const MatchResult& a, const MatchResult& b) {
   return a.task_id == b.task_id && a.status == b.status && a.evaluations == b.evaluations &&
          std::equal(a.solutions.begin(), a.solutions.end(), b.solutions.begin(), b.solutions.end(),
-                    same_solution) &&
+                    identical_solutions) &&
          identical(a.T_reference_query, b.T_reference_query) &&
          std::equal(a.covariance.data(), a.covariance.data() + a.covariance.size(),
                     b.covariance.data(), [](double x, double y) { return identical(x, y); }) &&
@@ -35,8 +35,8 @@ bool identical(const MatchResult& a, const MatchResult& b) {
          identical(a.violations, b.violations) && identical(a.residual_rms_m, b.residual_rms_m) &&
          identical(a.scan_fitness, b.scan_fitness) &&
          identical(a.topological_fitness, b.topological_fitness) &&
-         identical(a.fitness, b.fitness) && same_solution(a.second, b.second) && a.seed == b.seed &&
-         a.verdict == b.verdict && a.reason == b.reason;
+         identical(a.fitness, b.fitness) && identical_solutions(a.second, b.second) &&
+         a.seed == b.seed && a.verdict == b.verdict && a.reason == b.reason;
 }
 
 }  // namespace topogeo::localization
