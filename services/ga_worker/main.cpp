@@ -1,6 +1,5 @@
 // Works on the match tasks of any robot: genetic search for the relative pose of two local maps.
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/search_pool/worker_name.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -17,13 +16,13 @@ int main(int argc, char** argv) {
       argc, argv, "ga_worker",
       "Works on the match tasks of any robot and run on the domain. One partition restricts it to "
       "the runs of that, a configuration file to clients of the same configuration.",
-      [&](CLI::App& app) {
+      [&](command_line::Command& app) {
         constexpr std::uint32_t kMostSlots = 256;
         constexpr std::uint32_t kLeastMemory_mb = 8;
         constexpr std::uint32_t kMostMemory_mb = 65536;
         app.add_option("--slots", options.slots,
                        "tasks that it works on at the same time, one for each CPU that it may use")
-            ->check(CLI::Range(std::uint32_t{1}, kMostSlots))
+            ->check(command_line::range(std::uint32_t{1}, kMostSlots))
             ->capture_default_str();
         app.add_option("--name", options.name,
                        "for people; others may have the same, up to 24 bytes")
@@ -31,7 +30,7 @@ int main(int argc, char** argv) {
             ->capture_default_str();
         app.add_option("--memory-mb", options.memory_mb,
                        "for local maps and what is made of them, 4 MB for each slot at least")
-            ->check(CLI::Range(kLeastMemory_mb, kMostMemory_mb))
+            ->check(command_line::range(kLeastMemory_mb, kMostMemory_mb))
             ->capture_default_str();
       },
       [&](const service::Setup& setup) {

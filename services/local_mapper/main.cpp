@@ -1,6 +1,6 @@
 // Makes a local topo-geometric map at each stop of the robot.
-#include <CLI/CLI.hpp>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   bool replay = false;
   return service::run_service(
       argc, argv, "local_mapper", "Makes local topo-geometric maps of laser scans.",
-      [&](CLI::App& app) {
+      [&](command_line::Command& app) {
         app.add_flag("--replay", replay, "the scans come from a log: slow it down, lose none");
       },
       [&](const service::Setup& setup) {

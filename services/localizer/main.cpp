@@ -2,8 +2,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -16,15 +15,15 @@ int main(int argc, char** argv) {
   std::string initial_pose;
   return service::run_service(
       argc, argv, "localizer", "Corrects the trajectory by matching local maps.",
-      [&](CLI::App& app) {
+      [&](command_line::Command& app) {
         app.add_option("--wait-workers", options.wait_workers,
                        "search workers to wait for before the first step")
             ->capture_default_str();
         constexpr double kLongestWait_s = 3600.0;
         app.add_option("--wait-seconds", options.wait_s, "how long to wait for them at most")
-            ->check(CLI::Range(0.0, kLongestWait_s))
+            ->check(command_line::range(0.0, kLongestWait_s))
             ->capture_default_str();
-        CLI::Option* map =
+        command_line::Option* map =
             app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
                 ->type_name("FILE");
         map->excludes(

@@ -3,6 +3,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -22,7 +23,7 @@ geometry::Pose2 pose_of(const DrawingOptions& options) {
 
 }  // namespace
 
-void add_drawing_options(CLI::App& app, DrawingOptions& options) {
+void add_drawing_options(command_line::Command& app, DrawingOptions& options) {
   app.add_option("--drawing", options.drawing,
                  "drawn floor: a world (.world.yaml) or a grid (.yaml with its .pgm)")
       ->type_name("FILE");

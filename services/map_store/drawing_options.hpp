@@ -5,8 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <CLI/App.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/storage/map_drawing.hpp"
 
 namespace topogeo::map_store {
@@ -19,7 +18,7 @@ struct DrawingOptions {
 };
 
 /// Adds --drawing, --zones, --drawing-pose and --places; `options` must outlive the app.
-void add_drawing_options(CLI::App& app, DrawingOptions& options);
+void add_drawing_options(command_line::Command& app, DrawingOptions& options);
 
 /// The drawing in the map frame; empty when none of them is there. Throws service::UsageError for
 /// flags that do not go together and a pose that is none, service::BadInputError naming the file

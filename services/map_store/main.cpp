@@ -4,8 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service.hpp"
@@ -50,7 +49,7 @@ struct Options {
   [[nodiscard]] bool serves() const { return map || (drawing.drawing && store.directory.empty()); }
 };
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(command_line::Command& app, Options& options) {
   map_store::MapStoreOptions& store = options.store;
   app.add_option("--out", store.directory,
                  "directory of the results, made if missing; needed unless a map is only shown");
@@ -115,7 +114,7 @@ int main(int argc, char** argv) {
   Options options;
   return service::run_service(
       argc, argv, "map_store", "Stores local maps and trajectory and makes the global map.",
-      [&](CLI::App& app) { add_options(app, options); },
+      [&](command_line::Command& app) { add_options(app, options); },
       [&](const service::Setup& setup) {
         options.serves() ? serve(setup, options) : keep(setup, options);
       });

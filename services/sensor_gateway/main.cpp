@@ -4,8 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/replay_rate.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -46,29 +45,24 @@ sensor_gateway::DeviceConfig load_devices(const Options& options) {
   }
 }
 
-void add_options_to(CLI::App& app, Options& options) {
-  CLI::Option_group* source = app.add_option_group("source", "where scans and odometry come from");
-  CLI::Option* log =
+void add_options_to(command_line::Command& app, Options& options) {
+  command_line::Command* source =
+      app.add_option_group("source", "where scans and odometry come from");
+  command_line::Option* log =
       source->add_option("--log", options.replay.log, "log in CARMEN's format, plain or gzip");
-  CLI::Option* devices =
+  command_line::Option* devices =
       source->add_option("--devices", options.devices,
                          "ports and kinds of the devices (YAML), see `topogeo config --devices`");
   source->require_option(1);
-  app.add_option_function<std::string>(
+  app.add_option_function(
          "--rate",
-         [&](const std::string& text) {
-           try {
-             options.replay.rate = service::parse_rate(text);
-           } catch (const std::invalid_argument& error) {
-             throw CLI::ValidationError("--rate", error.what());
-           }
-         },
+         [&](const std::string& text) { options.replay.rate = service::parse_rate(text); },
          "of a log: realtime, lossless (as fast as the readers take it) or a factor of real time")
       ->needs(log)
       ->default_str("lossless");
   app.add_option("--readers", options.replay.readers,
                  "readers of scans to wait for; 0: do not wait")
-      ->check(CLI::Range(0, 100))
+      ->check(command_line::range(0, 100))
       ->default_str("1 for a log, 0 for devices");
   app.add_flag("--exit-at-end", options.replay.exit_at_end, "end when the log has ended")
       ->needs(log);
@@ -101,7 +95,7 @@ int main(int argc, char** argv) {
   return service::run_service(
       argc, argv, "sensor_gateway",
       "Gives the scans and odometry of a robot's devices, or those of a log, and drives its base.",
-      [&](CLI::App& app) { add_options_to(app, options); },
+      [&](command_line::Command& app) { add_options_to(app, options); },
       [&](const service::Setup& setup) {
         if (options.devices.empty()) {
           replay(setup, options.replay);

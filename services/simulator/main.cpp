@@ -1,9 +1,9 @@
 // A simulated robot: a laser and a base on pseudo-terminals with a world behind them.
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <sys/resource.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/random_floors.hpp"
@@ -31,7 +31,7 @@ struct Arguments {
   simulator::SimulatorOptions options;
 };
 
-void add_options(CLI::App& app, Arguments& arguments) {
+void add_options(command_line::Command& app, Arguments& arguments) {
   simulation::RobotOptions& robot = arguments.options.devices.robot;
   app.add_option("--world", arguments.world, "world file")->required()->type_name("FILE");
   app.add_option("--laser-port", arguments.options.devices.laser_port,
@@ -41,24 +41,24 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "link to make to the base's port")
       ->required();
   app.add_option("--base-baud", arguments.options.devices.base_baud, "rate of the base's line")
-      ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
+      ->check(command_line::one_of({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
   app.add_option("--seed", robot.seed, "of noise, drift, slip, doors and people")
       ->capture_default_str();
   app.add_option("--odometry", arguments.odometry,
                  "how the wheels err: mild, b21 (as one in a recorded log) or none")
-      ->check(CLI::IsMember({"mild", "b21", "none"}))
+      ->check(command_line::one_of({"mild", "b21", "none"}))
       ->capture_default_str();
   app.add_option("--slip", robot.slip.per_m, "slippery places in a metre")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(command_line::range(0.0, 10.0))
       ->capture_default_str();
   app.add_option("--people", robot.wanderers, "who walk about, besides those of the world file")
-      ->check(CLI::Range(0, 1000))
+      ->check(command_line::range(0, 1000))
       ->capture_default_str();
   app.add_option("--time-factor", arguments.options.time_factor,
                  "world time over real time; lines and devices are faster with it, so other than 1 "
                  "is for programs whose clocks are, too")
-      ->check(CLI::Range(0.01, 100.0))
+      ->check(command_line::range(0.01, 100.0))
       ->capture_default_str();
 }
 
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   return service::run_service(
       argc, argv, "simulator", "Emulates a laser and a base on serial ports, with a world behind.",
-      [&](CLI::App& app) { add_options(app, arguments); },
+      [&](command_line::Command& app) { add_options(app, arguments); },
       [&](const service::Setup& setup) {
         simulation::RobotOptions& robot = arguments.options.devices.robot;
         robot.T_robot_laser = setup.config.config.local_mapper.T_robot_laser;

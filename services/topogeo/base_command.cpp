@@ -9,8 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
@@ -126,20 +125,22 @@ int send_base_command(BaseRequest request) {
   return service::kOk;
 }
 
-void add_base_options(CLI::App& app, BaseRequest& request) {
+void add_base_options(command_line::Command& app, BaseRequest& request) {
   app.add_option("--robot,--robot-id", request.robot_id, "whose base")->capture_default_str();
   add_domain_options(app, request.view);
   constexpr double kLongestWait_s = 3600.0;
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the base")
-      ->check(CLI::Range(0.1, kLongestWait_s))
+      ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();
 }
 
-void add_limits(CLI::App& group, const std::shared_ptr<BaseRequest>& request, int& exit_code) {
-  CLI::App* limits = group.add_subcommand("limits", "Set its largest speeds and accelerations");
+void add_limits(command_line::Command& group, const std::shared_ptr<BaseRequest>& request,
+                int& exit_code) {
+  command_line::Command* limits =
+      group.add_subcommand("limits", "Set its largest speeds and accelerations");
   auto values = std::make_shared<std::array<double, 4>>();
   constexpr double kMost = 100.0;
-  const CLI::Validator range = CLI::Range(1e-3, kMost);
+  const command_line::Check range = command_line::range(1e-3, kMost);
   limits->add_option("linear", (*values)[0], "m/s")->required()->check(range);
   limits->add_option("angular", (*values)[1], "rad/s")->required()->check(range);
   limits->add_option("linear-acceleration", (*values)[2], "m/s^2")->required()->check(range);
@@ -158,21 +159,22 @@ void add_limits(CLI::App& group, const std::shared_ptr<BaseRequest>& request, in
 
 }  // namespace
 
-void add_base_command(CLI::App& app, int& exit_code) {
-  CLI::App* group =
+void add_base_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* group =
       app.add_subcommand("base", "Show the base of a robot, halt it, let it go again");
   group->require_subcommand(1);
   auto request = std::make_shared<BaseRequest>();
-  CLI::App* status = group->add_subcommand("status", "What state it is in");
+  command_line::Command* status = group->add_subcommand("status", "What state it is in");
   add_base_options(*status, *request);
   status->callback([request, &exit_code] { exit_code = show(*request); });
-  CLI::App* halt = group->add_subcommand("halt", "Stop it; it refuses to move until reset");
+  command_line::Command* halt =
+      group->add_subcommand("halt", "Stop it; it refuses to move until reset");
   add_base_options(*halt, *request);
   halt->callback([request, &exit_code] {
     request->command.kind(msg::kBaseHalt);
     exit_code = send_base_command(*request);
   });
-  CLI::App* reset =
+  command_line::Command* reset =
       group->add_subcommand("reset", "It may move again, after a halt or an emergency stop");
   add_base_options(*reset, *request);
   reset->callback([request, &exit_code] {

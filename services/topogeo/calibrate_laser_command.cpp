@@ -11,9 +11,9 @@
 #include <string>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/calibration/laser_calibration.hpp"
 #include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
@@ -155,9 +155,9 @@ int calibrate_laser_log(const CalibrateLaserOptions& options) {
 
 }  // namespace
 
-void add_calibrate_laser_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("calibrate-laser",
-                                         "Estimate from a log where the laser sits on its robot");
+void add_calibrate_laser_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
+      "calibrate-laser", "Estimate from a log where the laser sits on its robot");
   auto options = std::make_shared<CalibrateLaserOptions>();
   command->add_option("LOG", options->log, "CARMEN log, plain or gzip")
       ->required()

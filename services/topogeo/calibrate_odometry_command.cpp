@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/calibration/odometry_calibration.hpp"
 #include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
@@ -116,7 +116,7 @@ std::string digits(double value) {
 }
 
 std::string value_text(const localization::Estimate& estimate) {
-  return (estimate.at_most ? "<" : "") + digits(estimate.value);
+  return fmt::format("{}{:.3g}", estimate.at_most ? "<" : "", estimate.value);
 }
 
 void print_table(std::ostream& out, const Inputs& inputs, const OdometryCalibration& found) {
@@ -211,8 +211,8 @@ int calibrate_log(const CalibrateOptions& options) {
 
 }  // namespace
 
-void add_calibrate_odometry_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
+void add_calibrate_odometry_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
       "calibrate-odometry", "Estimate from a log how wrong the odometry of its robot is");
   auto options = std::make_shared<CalibrateOptions>();
   command->add_option("LOG", options->log, "CARMEN log, plain or gzip")

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/scan/carmen_log_check.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -124,8 +124,9 @@ int check_log(const LogRequest& request) {
 
 }  // namespace
 
-void add_check_log_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check-log", "Look for what is wrong with a log");
+void add_check_log_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
+      app.add_subcommand("check-log", "Look for what is wrong with a log");
   auto request = std::make_shared<LogRequest>();
   constexpr double kMost = 1e6;
   command->add_option("log", request->log, "CARMEN log, plain or gzip")->required();
@@ -133,27 +134,27 @@ void add_check_log_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--gap", request->options.longest_gap_s,
                    "seconds between two scans that are too long")
-      ->check(CLI::Range(1e-3, kMost))
+      ->check(command_line::range(1e-3, kMost))
       ->default_str("five times the median, at least 2");
   command
       ->add_option("--speed", request->options.largest_mps,
                    "faster odometry is a jump, metres a second")
-      ->check(CLI::Range(1e-3, kMost))
+      ->check(command_line::range(1e-3, kMost))
       ->capture_default_str();
   command
       ->add_option("--turn", request->options.largest_radps,
                    "the same for rotation, radians a second")
-      ->check(CLI::Range(1e-3, kMost))
+      ->check(command_line::range(1e-3, kMost))
       ->capture_default_str();
   command
       ->add_option("--stuck", request->options.stuck_scans,
                    "so many identical scans in a row are a fault")
-      ->check(CLI::Range(2U, 1'000'000U))
+      ->check(command_line::range(2U, 1'000'000U))
       ->capture_default_str();
   command
       ->add_option("--findings", request->options.findings,
                    "how many of each kind to show; all are counted")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}))
+      ->check(command_line::range(std::size_t{1}, std::size_t{1'000'000}))
       ->capture_default_str();
   command->footer("Exit codes: 0 no fault, 1 faults found, 2 not a log that can be read.");
   command->callback([request, &exit_code] { exit_code = check_log(*request); });

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -154,8 +154,8 @@ int compare_files(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
+void add_compare_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
       app.add_subcommand("compare", "Tell how far a trajectory is from a reference trajectory");
   auto options = std::make_shared<CompareOptions>();
   command->add_option("ESTIMATE", options->estimate, "trajectory (TUM: t x y z qx qy qz qw)")
@@ -171,7 +171,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--max-dt", options->max_apart_s,
                    "largest time between two poses that are compared")
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(command_line::range(0.0, 3600.0))
       ->type_name("SECONDS")
       ->capture_default_str();
   command

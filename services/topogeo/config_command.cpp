@@ -5,8 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -38,8 +37,8 @@ void print_config(const std::optional<std::filesystem::path>& file, bool devices
 
 }  // namespace
 
-void add_config_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
+void add_config_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
       app.add_subcommand("config", "Print the configuration with every key documented (YAML)");
   auto file = std::make_shared<std::optional<std::filesystem::path>>();
   command->add_option("--config", *file, "take the values of this file instead of the defaults")

@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_writer.hpp"
@@ -129,8 +128,8 @@ int show_devices(DemoOptions options) {
 
 }  // namespace
 
-void add_demo_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
+void add_demo_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
       "demo", "Map a synthetic floor and compare the result with the known truth");
   auto options = std::make_shared<DemoOptions>();
   // Faster than a B21 likes to go, so that nobody has to wait for long.
@@ -143,8 +142,8 @@ void add_demo_command(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   add_common_options(*command, options->run.job);
   add_run_options(*command, options->run);
-  CLI::Option* sim = command->add_flag("--sim", options->with_devices,
-                                       "drive through it with emulated devices on serial ports");
+  command_line::Option* sim = command->add_flag(
+      "--sim", options->with_devices, "drive through it with emulated devices on serial ports");
   add_simulation_options(*command, options->simulation, sim);
   add_goal_run_options(*command, options->goal, options->unknown_start, nullptr);
   command->get_option("--goto")->excludes(sim);

@@ -3,8 +3,7 @@
 #include <chrono>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 
 namespace topogeo::cli {
@@ -17,9 +16,9 @@ constexpr std::chrono::milliseconds kAgain{1000};
 
 }  // namespace
 
-void add_domain_options(CLI::App& app, DomainView& view) {
+void add_domain_options(command_line::Command& app, DomainView& view) {
   app.add_option("--domain", view.domain, "DDS domain")
-      ->check(CLI::Range(0U, 232U))
+      ->check(command_line::range(0U, 232U))
       ->capture_default_str();
   app.add_option("--partition", view.partition, "only what lives in this partition; *: all")
       ->capture_default_str();
@@ -27,7 +26,7 @@ void add_domain_options(CLI::App& app, DomainView& view) {
       ->type_name("FILE");
 }
 
-void add_view_options(CLI::App& app, DomainView& view) {
+void add_view_options(command_line::Command& app, DomainView& view) {
   add_domain_options(app, view);
   app.add_flag("--watch", view.watch, "again every second until Ctrl-C");
 }

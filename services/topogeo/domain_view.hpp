@@ -6,8 +6,7 @@
 #include <functional>
 #include <string>
 
-#include <CLI/App.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 
@@ -21,10 +20,10 @@ struct DomainView {
 };
 
 /// Adds --domain, --partition and --profiles; `view` must outlive the app.
-void add_domain_options(CLI::App& app, DomainView& view);
+void add_domain_options(command_line::Command& app, DomainView& view);
 
 /// The same and --watch.
-void add_view_options(CLI::App& app, DomainView& view);
+void add_view_options(command_line::Command& app, DomainView& view);
 
 /// Joins the domain under a name that DDS tools show. Throws like messaging::Participant.
 messaging::Participant join(const DomainView& view, const std::string& name);

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/render/contact_sheet.hpp"
 #include "topogeo/render/scan_picture.hpp"
@@ -174,8 +174,8 @@ int draw(const DvlOptions& options) {
 
 }  // namespace
 
-void add_dvl_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
+void add_dvl_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
       "dvl", "Picture of the local Voronoi diagram and map of one scan, or of many (--all)");
   auto options = std::make_shared<DvlOptions>();
   command->add_option("--log", options->log, "CARMEN log, plain or gzip")
@@ -184,25 +184,25 @@ void add_dvl_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "picture to write: .png or .svg")
       ->required()
       ->type_name("FILE");
-  CLI::Option* scan =
+  command_line::Option* scan =
       command->add_option("--scan", options->scan, "the usable scan of that number, from 0")
           ->type_name("K");
-  CLI::Option* all =
+  command_line::Option* all =
       command->add_flag("--all", options->all, "a contact sheet of scans through the whole log")
           ->excludes(scan);
-  CLI::Option* count =
+  command_line::Option* count =
       command->add_option("--count", options->count, "evenly spread scans of --all")
           ->needs(all)
-          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{render::kMostThumbnails}))
+          ->check(command_line::range(std::uint64_t{1}, std::uint64_t{render::kMostThumbnails}))
           ->type_name("N")
           ->capture_default_str();
   command->add_option("--every", options->every, "instead of --count: every N-th scan")
       ->needs(all)
       ->excludes(count)
-      ->check(CLI::PositiveNumber)
+      ->check(command_line::positive_number())
       ->type_name("N");
   command->add_option("--width", options->width_px, "of the picture, pixels")
-      ->check(CLI::Range(400U, 16384U))
+      ->check(command_line::range(400U, 16384U))
       ->type_name("PX")
       ->capture_default_str();
   command->add_option("--config", options->config, "configuration (YAML); see `topogeo config`")

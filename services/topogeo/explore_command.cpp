@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -50,8 +49,8 @@ int explore(const ExploreOptions& options) {
 
 }  // namespace
 
-void add_explore_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
+void add_explore_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
       "explore", "Send a mapping robot everywhere that it can get to and has not seen");
   auto options = std::make_shared<ExploreOptions>();
   command->add_option("--picture", options->picture, "write map and way as .png or .svg at the end")

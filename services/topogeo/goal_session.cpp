@@ -6,9 +6,9 @@
 #include <utility>
 #include <variant>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -36,9 +36,9 @@ void check_picture(const std::optional<std::filesystem::path>& picture) {
   }
 }
 
-void add_goal_options(CLI::App& app, GoalOptions& options) {
+void add_goal_options(command_line::Command& app, GoalOptions& options) {
   app.add_option("--heading", options.heading_deg, "where the robot shall look in the end")
-      ->check(CLI::Range(-360.0, 360.0))
+      ->check(command_line::range(-360.0, 360.0))
       ->type_name("DEG");
   app.add_flag("--look-around", options.look_around,
                "without a pose it may turn and move a little to find out where it is");
@@ -47,7 +47,7 @@ void add_goal_options(CLI::App& app, GoalOptions& options) {
   constexpr double kLongest_s = 86400.0;
   app.add_option("--patience", options.patience_s,
                  "give the goal up when the robot has not driven for so many seconds")
-      ->check(CLI::Range(1.0, kLongest_s))
+      ->check(command_line::range(1.0, kLongest_s))
       ->capture_default_str();
 }
 

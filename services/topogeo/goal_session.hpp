@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <CLI/App.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/render/picture_format.hpp"
 
 #include "goal_client.hpp"
@@ -24,7 +23,7 @@ struct GoalOptions {
 };
 
 /// Adds --heading, --look-around, --picture and --patience.
-void add_goal_options(CLI::App& app, GoalOptions& options);
+void add_goal_options(command_line::Command& app, GoalOptions& options);
 
 /// Throws service::UsageError for a picture of a format that is not known.
 void check_picture(const std::optional<std::filesystem::path>& picture);

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/cpu_time.hpp"
@@ -92,18 +92,21 @@ int go_there(const GotoOptions& options) {
 
 }  // namespace
 
-void add_goto_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("goto", "Send a robot to a place and watch it get there");
+void add_goto_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
+      app.add_subcommand("goto", "Send a robot to a place and watch it get there");
   auto options = std::make_shared<GotoOptions>();
-  CLI::Option* target =
+  command_line::Option* target =
       command->add_option("target", options->goal.target, "where to: a point, a node or a place")
           ->type_name("PLACE|X,Y|#NODE");
   add_goal_options(*command, options->goal);
   command->add_flag("--no-wait", options->no_wait, "do not wait until it is there");
-  CLI::Option* cancel =
+  command_line::Option* cancel =
       command->add_flag("--cancel", options->cancel, "stop and forget the goal that it has");
-  CLI::Option* pause = command->add_flag("--pause", options->pause, "stop and keep the goal");
-  CLI::Option* resume = command->add_flag("--resume", options->resume, "drive on after a pause");
+  command_line::Option* pause =
+      command->add_flag("--pause", options->pause, "stop and keep the goal");
+  command_line::Option* resume =
+      command->add_flag("--resume", options->resume, "drive on after a pause");
   cancel->excludes(pause)->excludes(resume)->excludes(target);
   pause->excludes(resume)->excludes(target);
   resume->excludes(target);

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -67,7 +67,7 @@ void print_error(std::ostream& out, const char* name, const pipeline::Trajectory
 
 }  // namespace
 
-void add_common_options(CLI::App& app, JobOptions& options) {
+void add_common_options(command_line::Command& app, JobOptions& options) {
   app.add_option("--config", options.config, "configuration (YAML); see `topogeo config`")
       ->type_name("FILE");
   app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
@@ -78,7 +78,7 @@ void add_common_options(CLI::App& app, JobOptions& options) {
       ->capture_default_str();
 }
 
-void add_log_options(CLI::App& app, JobOptions& options) {
+void add_log_options(command_line::Command& app, JobOptions& options) {
   app.add_option("--log", options.log, "CARMEN log, plain or gzip")->required()->type_name("FILE");
   app.add_option("--out", options.out, "directory for the results; made if it does not exist")
       ->required()
@@ -89,15 +89,15 @@ void add_log_options(CLI::App& app, JobOptions& options) {
       ->type_name("FILE");
 }
 
-void add_map_options(CLI::App& app, JobOptions& options, StoredMapUse use) {
-  CLI::Option* map = nullptr;
+void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use) {
+  command_line::Option* map = nullptr;
   if (use != StoredMapUse::kContinue) {
     map = app.add_option("--map", options.map, "map.pb to localize in, which stays as it is")
               ->type_name("FILE");
   }
   if (use == StoredMapUse::kLocalize) map->required();
   if (use != StoredMapUse::kLocalize) {
-    CLI::Option* continued =
+    command_line::Option* continued =
         app.add_option("--continue", options.continued,
                        "map.pb to extend: the robot finds its place in it, then maps on; the file "
                        "stays as it is, the whole map is in --out")

@@ -8,8 +8,7 @@
 #include <optional>
 #include <string>
 
-#include <CLI/App.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
@@ -30,9 +29,9 @@ struct JobOptions {
 };
 
 /// Adds --config and --robot, which every mapping command has.
-void add_common_options(CLI::App& app, JobOptions& options);
+void add_common_options(command_line::Command& app, JobOptions& options);
 /// Adds --log, --out and --reference as well.
-void add_log_options(CLI::App& app, JobOptions& options);
+void add_log_options(command_line::Command& app, JobOptions& options);
 
 /// Which options on stored maps a command has.
 enum class StoredMapUse : std::uint8_t {
@@ -42,7 +41,7 @@ enum class StoredMapUse : std::uint8_t {
 };
 
 /// Adds them and --initial-pose.
-void add_map_options(CLI::App& app, JobOptions& options, StoredMapUse use);
+void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use);
 
 /// What mapping needs besides scans.
 struct Inputs {

@@ -7,8 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
@@ -69,23 +68,24 @@ int send_localizer_command(const LocalizerRequest& request, service::Localizatio
   return reply->accepted() ? service::kOk : service::kFailure;
 }
 
-void add_request_options(CLI::App& app, LocalizerRequest& request) {
+void add_request_options(command_line::Command& app, LocalizerRequest& request) {
   app.add_option("--robot,--robot-id", request.robot_id, "whose localizer")->capture_default_str();
   add_domain_options(app, request.view);
   constexpr double kLongestWait_s = 3600.0;
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the answer")
-      ->check(CLI::Range(0.1, kLongestWait_s))
+      ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();
 }
 
 }  // namespace
 
-void add_localizer_command(CLI::App& app, int& exit_code) {
-  CLI::App* group = app.add_subcommand("localizer", "Tell a running localizer what to do");
+void add_localizer_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* group =
+      app.add_subcommand("localizer", "Tell a running localizer what to do");
   group->require_subcommand(1);
   auto request = std::make_shared<LocalizerRequest>();
 
-  CLI::App* set_pose = group->add_subcommand("set-pose", "The robot is there");
+  command_line::Command* set_pose = group->add_subcommand("set-pose", "The robot is there");
   set_pose->add_option("pose", request->pose, "x,y,degrees in the map")->required();
   add_request_options(*set_pose, *request);
   set_pose->callback([request, &exit_code] {
@@ -100,7 +100,8 @@ void add_localizer_command(CLI::App& app, int& exit_code) {
     exit_code = send_localizer_command(*request, command);
   });
 
-  CLI::App* search = group->add_subcommand("search", "Forget the pose, search the whole map");
+  command_line::Command* search =
+      group->add_subcommand("search", "Forget the pose, search the whole map");
   add_request_options(*search, *request);
   search->callback([request, &exit_code] {
     service::LocalizationCommand command;
@@ -108,10 +109,11 @@ void add_localizer_command(CLI::App& app, int& exit_code) {
     exit_code = send_localizer_command(*request, command);
   });
 
-  CLI::App* mode = group->add_subcommand("mode", "Map, or localize in the map as it is");
+  command_line::Command* mode =
+      group->add_subcommand("mode", "Map, or localize in the map as it is");
   mode->add_option("mode", request->mode, "mapping or localization")
       ->required()
-      ->check(CLI::IsMember({"mapping", "localization"}));
+      ->check(command_line::one_of({"mapping", "localization"}));
   add_request_options(*mode, *request);
   mode->callback([request, &exit_code] {
     service::LocalizationCommand command;

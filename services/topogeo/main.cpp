@@ -3,8 +3,7 @@
 #include <iostream>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/logging.hpp"
 #include "topogeo/support/version.hpp"
@@ -16,7 +15,8 @@ namespace {
 int run(int argc, const char* const* argv) {
   using namespace topogeo;
   int exit_code = service::kOk;
-  CLI::App app("Maps indoor places from laser scans and plans ways through them.", "topogeo");
+  command_line::Command app("Maps indoor places from laser scans and plans ways through them.",
+                            "topogeo");
   app.set_version_flag("--version", "topogeo " + std::string(support::kVersion));
   app.require_subcommand(1);
   app.footer(
@@ -43,13 +43,7 @@ int run(int argc, const char* const* argv) {
   cli::add_calibrate_laser_command(app, exit_code);
   cli::add_calibrate_odometry_command(app, exit_code);
   cli::add_compare_command(app, exit_code);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {  // --help, --version
-    return app.exit(success);
-  } catch (const CLI::ParseError& error) {
-    throw service::UsageError(std::string(error.what()) + " (see --help)");
-  }
+  if (const auto exit_now = app.parse(argc, argv)) return *exit_now;
   return exit_code;
 }
 

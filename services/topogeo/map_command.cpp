@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/results/outputs.hpp"
@@ -177,8 +177,9 @@ int map_log(const JobOptions& options, bool stages) {
 
 }  // namespace
 
-void add_map_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("map", "Map a log in one process, without DDS");
+void add_map_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
+      app.add_subcommand("map", "Map a log in one process, without DDS");
   auto options = std::make_shared<JobOptions>();
   add_log_options(*command, *options);
   add_map_options(*command, *options, StoredMapUse::kContinue);
@@ -187,12 +188,12 @@ void add_map_command(CLI::App& app, int& exit_code) {
       ->add_flag("--stages", *stages,
                  "also draw the map by odometry alone, after forward correction, with its "
                  "cycles closed and at the end: stage_*.png")
-      ->excludes("--continue");
+      ->excludes(command->get_option("--continue"));
   command->callback([options, stages, &exit_code] { exit_code = map_log(*options, *stages); });
 }
 
-void add_localize_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
+void add_localize_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
       app.add_subcommand("localize", "Find and follow the robot of a log in a stored map");
   auto options = std::make_shared<JobOptions>();
   add_log_options(*command, *options);

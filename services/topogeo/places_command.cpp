@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/pipeline/config.hpp"
@@ -181,8 +181,8 @@ int places(const PlacesOptions& options) {
 
 }  // namespace
 
-void add_places_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
+void add_places_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
       app.add_subcommand("places", "List places and zones of a file or of the live map");
   auto options = std::make_shared<PlacesOptions>();
   command
@@ -205,7 +205,7 @@ void add_places_command(CLI::App& app, int& exit_code) {
   add_domain_options(*command, options->view);
   constexpr double kLongestWait_s = 3600.0;
   command->add_option("--wait-seconds", options->wait_s, "how long to wait for the live map")
-      ->check(CLI::Range(0.1, kLongestWait_s))
+      ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = places(*options); });
 }

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -90,8 +90,9 @@ int plan_route(const PlanOptions& options) {
 
 }  // namespace
 
-void add_plan_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("plan", "Shortest route between two points of a map");
+void add_plan_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
+      app.add_subcommand("plan", "Shortest route between two points of a map");
   auto options = std::make_shared<PlanOptions>();
   command->add_option("map", options->map, "map file (map.pb)")->required()->type_name("MAP");
   command->add_option("--from", options->from, "start, metres in the map frame")

@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
@@ -124,8 +123,8 @@ class Recorder {
 
 }  // namespace
 
-void add_record_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
+void add_record_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
       app.add_subcommand("record", "Write the scans that a sensor gateway gives as a log");
   auto request = std::make_shared<RecordRequest>();
   request->view.partition = messaging::kDefaultPartition;

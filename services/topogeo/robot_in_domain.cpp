@@ -2,8 +2,7 @@
 
 #include <stdexcept>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 
 #include "commands.hpp"
@@ -11,12 +10,12 @@
 
 namespace topogeo::cli {
 
-void add_robot_options(CLI::App& app, RobotInDomain& robot) {
+void add_robot_options(command_line::Command& app, RobotInDomain& robot) {
   app.add_option("--robot,--robot-id", robot.robot_id, "which robot")->capture_default_str();
   add_domain_options(app, robot.view);
   constexpr double kLongestWait_s = 3600.0;
   app.add_option("--wait-seconds", robot.wait_s, "how long to wait for planner and navigator")
-      ->check(CLI::Range(0.1, kLongestWait_s))
+      ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();
 }
 

@@ -4,8 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include <CLI/App.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
@@ -21,7 +20,7 @@ struct RobotInDomain {
 };
 
 /// Adds --robot, --wait-seconds and what add_domain_options does; `robot` must outlive the app.
-void add_robot_options(CLI::App& app, RobotInDomain& robot);
+void add_robot_options(command_line::Command& app, RobotInDomain& robot);
 
 inline constexpr std::chrono::milliseconds kRobotTick{50};
 

@@ -4,8 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/results/outputs.hpp"
@@ -120,17 +119,17 @@ void print_pool(std::ostream& out, const ServiceTable& services) {
   }
 }
 
-void add_run_options(CLI::App& app, RunOptions& options) {
+void add_run_options(command_line::Command& app, RunOptions& options) {
   app.add_option("--workers", options.workers,
                  "search workers to start; 0: the localizer searches itself")
-      ->check(CLI::Range(0U, 256U))
+      ->check(command_line::range(0U, 256U))
       ->capture_default_str();
   app.add_option("--wait-workers", options.wait_workers,
                  "search workers to wait for (5 s) before the first step, those on other machines "
                  "included (default: as many as --workers)")
-      ->check(CLI::Range(0U, 1024U));
+      ->check(command_line::range(0U, 1024U));
   app.add_option("--domain", options.domain, "DDS domain")
-      ->check(CLI::Range(0U, 232U))
+      ->check(command_line::range(0U, 232U))
       ->capture_default_str();
   app.add_option("--rate", options.rate,
                  "lossless (as fast as it goes), realtime or a factor of real time")
@@ -169,26 +168,26 @@ int run_log(const RunOptions& options) {
   return service::kOk;
 }
 
-void add_run_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
+void add_run_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
       "run", "Map a log, or with real or simulated devices, all services as processes on DDS");
   auto options = std::make_shared<RunOptions>();
   add_log_options(*command, options->job);
   add_map_options(*command, options->job, StoredMapUse::kEither);
   add_run_options(*command, *options);
-  CLI::Option* log = command->get_option("--log")->required(false);
-  CLI::Option* devices =
+  command_line::Option* log = command->get_option("--log")->required(false);
+  command_line::Option* devices =
       command->add_option("--devices", options->devices, "use the devices of this file (YAML)")
           ->type_name("FILE")
           ->excludes(log);
   auto simulation = std::make_shared<SimulationOptions>();
-  CLI::Option* sim =
+  command_line::Option* sim =
       command->add_option("--sim", simulation->world, "drive the tour of this world file (YAML)")
           ->type_name("WORLD")
           ->excludes(log)
           ->excludes(devices);
   add_simulation_options(*command, *simulation, sim);
-  CLI::Option* explore =
+  command_line::Option* explore =
       command
           ->add_flag(
               "--explore", options->explore,

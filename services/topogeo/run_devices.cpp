@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/storage/tum.hpp"
@@ -112,18 +112,19 @@ void prepare_simulation(RunOptions& options) {
   write_devices(options);
 }
 
-void add_simulation_options(CLI::App& app, SimulationOptions& options, CLI::Option* simulation) {
-  const std::vector<CLI::Option*> added = {
+void add_simulation_options(command_line::Command& app, SimulationOptions& options,
+                            command_line::Option* simulation) {
+  const std::vector<command_line::Option*> added = {
       app.add_option("--seed", options.seed, "of a simulation: of noise, drift, doors and people"),
       app.add_option("--baud", options.laser_baud, "of a simulation: of the laser's line")
-          ->check(CLI::IsMember({9600, 19200, 38400, 500000})),
+          ->check(command_line::one_of({9600, 19200, 38400, 500000})),
       app.add_option("--odometry", options.odometry, "of a simulation: how the wheels err")
-          ->check(CLI::IsMember({"mild", "b21", "none"})),
+          ->check(command_line::one_of({"mild", "b21", "none"})),
       app.add_option("--speed", options.speed_m_per_s, "of a simulation: of the drive, m/s")
-          ->check(CLI::Range(0.05, 2.0)),
+          ->check(command_line::range(0.05, 2.0)),
       app.add_option("--people", options.people, "of a simulation: who walk about")
-          ->check(CLI::Range(0, 100))};
-  for (CLI::Option* option : added) option->needs(simulation)->capture_default_str();
+          ->check(command_line::range(0, 100))};
+  for (command_line::Option* option : added) option->needs(simulation)->capture_default_str();
 }
 
 int run_devices(RunOptions options) {

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
@@ -88,9 +88,9 @@ int run_goto(RunOptions options) {
   return service::kOk;
 }
 
-void add_goal_run_options(CLI::App& app, GoalOptions& options, bool& unknown_start,
-                          CLI::Option* needed) {
-  CLI::Option* target =
+void add_goal_run_options(command_line::Command& app, GoalOptions& options, bool& unknown_start,
+                          command_line::Option* needed) {
+  command_line::Option* target =
       app.add_option("--goto", options.target, "send the simulated robot there, in the map given")
           ->type_name("PLACE|X,Y|#NODE");
   if (needed != nullptr) target->needs(needed);

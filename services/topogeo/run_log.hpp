@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <CLI/App.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/storage/report.hpp"
 #include "topogeo/support/config_schema.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -44,13 +43,14 @@ storage::Report make_report(const RunOptions& options, const support::EffectiveC
 void print_pool(std::ostream& out, const ServiceTable& services);
 
 /// Adds --seed, --baud, --odometry, --speed and --people, which need the option `simulation`.
-void add_simulation_options(CLI::App& app, SimulationOptions& options, CLI::Option* simulation);
+void add_simulation_options(command_line::Command& app, SimulationOptions& options,
+                            command_line::Option* simulation);
 
 /// Adds --goto, which needs the option `needed` unless that is null, and what belongs to it.
-void add_goal_run_options(CLI::App& app, GoalOptions& options, bool& unknown_start,
-                          CLI::Option* needed);
+void add_goal_run_options(command_line::Command& app, GoalOptions& options, bool& unknown_start,
+                          command_line::Option* needed);
 
 /// Adds --workers, --domain, --rate and --profiles.
-void add_run_options(CLI::App& app, RunOptions& options);
+void add_run_options(command_line::Command& app, RunOptions& options);
 
 }  // namespace topogeo::cli

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
@@ -132,8 +132,8 @@ int simulate_route(const SimulateRouteOptions& options) {
 
 }  // namespace
 
-void add_simulate_route_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
+void add_simulate_route_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
       "simulate-route", "Show a route on a map, world or grid as steps and as a picture");
   auto options = std::make_shared<SimulateRouteOptions>();
   command
@@ -148,7 +148,7 @@ void add_simulate_route_command(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("X,Y|#NODE|PLACE");
   command->add_option("--heading", options->heading_deg, "where the robot looks at the start")
-      ->check(CLI::Range(-360.0, 360.0))
+      ->check(command_line::range(-360.0, 360.0))
       ->type_name("DEG");
   command
       ->add_option("--block", options->blocks,

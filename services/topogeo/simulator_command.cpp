@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/simulation.h"
@@ -22,7 +21,7 @@
 namespace topogeo::cli {
 namespace {
 
-const std::vector<std::pair<std::string, msg::SimulatedFault>> kFaults = {
+const std::vector<std::pair<std::string, std::uint32_t>> kFaults = {
     {"bad-crc", msg::kSimulatedBadCrc},
     {"truncated", msg::kSimulatedTruncated},
     {"silence", msg::kSimulatedSilence},
@@ -38,7 +37,7 @@ const std::vector<std::pair<std::string, msg::SimulatedFault>> kFaults = {
 struct SimulatorRequest {
   DomainView view;
   std::string robot_id = "robot";
-  msg::SimulatedFault fault = msg::kSimulatedSilence;
+  std::uint32_t fault = msg::kSimulatedSilence;  ///< msg::SimulatedFault
   bool base = false;
   double duration_s = 1.0;
   double linear_mps = 0.3;
@@ -55,7 +54,7 @@ int send_simulator_command(const SimulatorRequest& request) {
   msg::SimulatorCommand command;
   messaging::set_header(command, request.robot_id, 0, 0);
   messaging::set_text(command.client_id(), support::process_name(), "client_id");
-  command.fault(request.fault);
+  command.fault(static_cast<msg::SimulatedFault>(request.fault));
   command.device(request.base ? msg::kSimulatedBase : msg::kSimulatedLaser);
   command.duration_s(request.duration_s);
   command.linear_mps(request.linear_mps);
@@ -66,23 +65,23 @@ int send_simulator_command(const SimulatorRequest& request) {
   return service::kOk;
 }
 
-void add_simulator_options(CLI::App& app, SimulatorRequest& request) {
+void add_simulator_options(command_line::Command& app, SimulatorRequest& request) {
   app.add_option("fault", request.fault,
                  "bad-crc, truncated, silence, garbage, unplug or restart (off and on again) of "
                  "the laser or, with --base, of the base; stuck-scan or contaminated of the laser; "
                  "echo, joystick or emergency-stop of the base")
       ->required()
       ->type_name("FAULT")
-      ->transform(CLI::CheckedTransformer(kFaults).description(""));
+      ->named_values(kFaults);
   app.add_flag("--base", request.base, "the base has it");
   app.add_option("--seconds", request.duration_s, "how long, in the simulated world")
-      ->check(CLI::Range(0.01, 3600.0))
+      ->check(command_line::range(0.01, 3600.0))
       ->capture_default_str();
   app.add_option("--linear", request.linear_mps, "m/s by joystick")
-      ->check(CLI::Range(-3.0, 3.0))
+      ->check(command_line::range(-3.0, 3.0))
       ->capture_default_str();
   app.add_option("--angular", request.angular_radps, "rad/s by joystick")
-      ->check(CLI::Range(-3.0, 3.0))
+      ->check(command_line::range(-3.0, 3.0))
       ->capture_default_str();
   app.add_option("--robot,--robot-id", request.robot_id, "whose")->capture_default_str();
   add_domain_options(app, request.view);
@@ -90,8 +89,8 @@ void add_simulator_options(CLI::App& app, SimulatorRequest& request) {
 
 }  // namespace
 
-void add_simulator_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
+void add_simulator_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
       app.add_subcommand("simulator", "Make something go wrong in a running simulator");
   auto request = std::make_shared<SimulatorRequest>();
   add_simulator_options(*command, *request);

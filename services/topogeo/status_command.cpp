@@ -2,8 +2,7 @@
 #include <iostream>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -39,8 +38,9 @@ int show_status(const DomainView& view) {
 
 }  // namespace
 
-void add_status_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("status", "Print one line for each live service");
+void add_status_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
+      app.add_subcommand("status", "Print one line for each live service");
   auto view = std::make_shared<DomainView>();
   add_view_options(*command, *view);
   command->callback([view, &exit_code] { exit_code = show_status(*view); });

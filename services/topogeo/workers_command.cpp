@@ -2,9 +2,9 @@
 #include <iostream>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
@@ -54,8 +54,8 @@ int show_workers(const WorkersOptions& options) {
 
 }  // namespace
 
-void add_workers_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
+void add_workers_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
       app.add_subcommand("workers", "List the search workers on the network and their load");
   auto options = std::make_shared<WorkersOptions>();
   add_view_options(*command, options->view);

@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 #include "arrival_picture.hpp"
@@ -43,21 +43,21 @@ struct Arguments {
   double slip_per_m = 0.2;
 };
 
-void declare(CLI::App& app, Arguments& arguments) {
+void declare(command_line::Command& app, Arguments& arguments) {
   app.add_option("--runs", arguments.runs, "drives, dealt out to the floors by turns")
       ->capture_default_str();
   app.add_option("--first-run", arguments.first_run, "number and seed of the first one")
       ->capture_default_str();
   app.add_option("--wheels", arguments.wheels, "how they err, see simulator --odometry")
-      ->check(CLI::IsMember({"mild", "b21"}))
+      ->check(command_line::one_of({"mild", "b21"}))
       ->capture_default_str();
   app.add_option("--slip", arguments.slip_per_m, "slippery places in a metre")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(command_line::range(0.0, 10.0))
       ->capture_default_str();
   app.add_flag("--unknown-start", arguments.unknown_start,
                "nobody tells where the robot is: it searches, and may look around");
   app.add_option("--jobs", arguments.jobs, "drives at a time; changes no result")
-      ->check(CLI::Range(1, 64))
+      ->check(command_line::range(1, 64))
       ->capture_default_str();
   app.add_option("--floor", arguments.floor, "this floor only");
   app.add_option("--run", arguments.run, "this drive only");
@@ -157,10 +157,10 @@ std::vector<bench::ArrivalRow> drive_all(const std::vector<Job>& jobs, const Flo
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Does a robot get where it is sent?");
+  command_line::Command app("Does a robot get where it is sent?");
   Arguments arguments;
   declare(app, arguments);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     bench::ArrivalConfig config;
     config.wheels = arguments.wheels == "b21" ? bench::Wheels::kB21 : bench::Wheels::kMild;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/support/atomic_file.hpp"
 
@@ -105,22 +105,22 @@ int run_all(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace topogeo::bench;  // NOLINT(google-build-using-namespace)
-  CLI::App app{"Explores simulated floors from unknown starts"};
+  command_line::Command app{"Explores simulated floors from unknown starts"};
   Options options;
   app.add_option("--floor", options.floor, "one of them alone")
-      ->check(CLI::IsMember({"office", "warehouse", "two loops"}));
+      ->check(command_line::one_of({"office", "warehouse", "two loops"}));
   app.add_option("--seed", options.first_seed, "of the first start")->capture_default_str();
   app.add_option("--starts", options.starts, "on each floor")->capture_default_str();
   app.add_option("--jobs", options.jobs, "runs at the same time")
-      ->check(CLI::Range(1, 64))
+      ->check(command_line::range(1, 64))
       ->capture_default_str();
   app.add_option("--wheels", options.wheels, "how odometry errs")
-      ->check(CLI::IsMember({"mild", "b21"}))
+      ->check(command_line::one_of({"mild", "b21"}))
       ->capture_default_str();
   app.add_option("--pictures", options.pictures, "directory for a picture of each run")
-      ->check(CLI::ExistingDirectory);
+      ->check(command_line::existing_directory());
   app.add_flag("--verbose", options.verbose, "print each target");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     return run_all(options);
   } catch (const std::exception& error) {

@@ -17,9 +17,9 @@
 #include <numbers>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Cholesky>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/localization/tracking/map_localizer.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
@@ -333,7 +333,7 @@ void print(const std::vector<Outcome>& outcomes, const Calibration& calibration)
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Robots that are carried away in a finished map");
+  command_line::Command app("Robots that are carried away in a finished map");
   std::uint64_t runs = 100;
   std::uint64_t first_seed = 1;
   bool fitting = false;
@@ -342,7 +342,7 @@ int main(int argc, char** argv) {
   app.add_option("--first-seed", first_seed)->capture_default_str();
   app.add_flag("--fit", fitting, "print the logistic functions that these runs give");
   app.add_flag("--verbose", verbose, "one line for each run");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     std::vector<Outcome> outcomes;
     Calibration calibration;

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <sys/resource.h>
 
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
@@ -134,16 +134,18 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"what a step costs along a long synthetic log; cost.csv and cost.png in a folder"};
+  command_line::Command app{
+      "what a step costs along a long synthetic log; cost.csv and cost.png in a folder"};
   Options options;
   app.add_option("--out", options.out, "folder for the results")->required();
   app.add_option("--way", options.way_m, "metres to drive")
       ->capture_default_str()
-      ->check(CLI::Range(50.0, 20'000.0));
+      ->check(command_line::range(50.0, 20'000.0));
   app.add_option("--seed", options.seed, "of the floor, the drive and the noise")
       ->capture_default_str();
-  app.add_option("--config", options.config_file, "configuration file")->check(CLI::ExistingFile);
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--config", options.config_file, "configuration file")
+      ->check(command_line::existing_file());
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     run(options);
   } catch (const std::exception& error) {

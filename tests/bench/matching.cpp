@@ -15,8 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 
 #include "matching_accuracy.hpp"
@@ -85,18 +84,19 @@ void print_tables(const Options& options, std::vector<bench::MatchingRun>& runs)
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"how right matches of two local maps are"};
+  command_line::Command app{"how right matches of two local maps are"};
   Options options;
   app.add_option("--world", options.worlds, "world file to simulate a log in");
   app.add_option("--log", options.logs, "CARMEN log");
   app.add_option("--reference", options.references, "reference trajectory of each log, TUM");
-  app.add_option("--config", options.config_file, "configuration file")->check(CLI::ExistingFile);
+  app.add_option("--config", options.config_file, "configuration file")
+      ->check(command_line::existing_file());
   app.add_option("--samples", options.samples_file,
                  "write every match of the third table, with its evidence, to this CSV file");
   app.add_flag("--quick", options.quick, "a small sample of the pairs");
   app.add_flag("--accuracy,!--no-accuracy", options.accuracy, "print the first two tables");
   app.add_flag("--look-alikes,!--no-look-alikes", options.look_alikes, "print the third table");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   if (options.logs.size() != options.references.size()) {
     std::fprintf(stderr, "topogeo_matching: every --log needs a --reference\n");
     return 2;

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/simulation/noisier_odometry.hpp"
 
@@ -15,7 +14,7 @@
 
 int main(int argc, char** argv) {
   using namespace topogeo;
-  CLI::App app{"a CARMEN log with the errors of its odometry multiplied"};
+  command_line::Command app{"a CARMEN log with the errors of its odometry multiplied"};
   std::string log;
   std::string reference;
   std::string out;
@@ -27,7 +26,7 @@ int main(int argc, char** argv) {
   app.add_option("--range-max", options.range_max_m, "readings from here on are no returns, metres")
       ->capture_default_str();
   app.add_option("--out", out, "log to write; gzip if it ends in .gz")->required();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     const bench::Recording recording = bench::recorded(log, reference, options);
     std::vector<geometry::Pose2> odometry;

@@ -15,8 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/tracking/global_localization.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
@@ -159,14 +158,14 @@ void evaluate(const std::string& file, std::size_t count, const pipeline::Config
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("How often a scan is found again in a finished map");
+  command_line::Command app("How often a scan is found again in a finished map");
   std::vector<std::string> logs;
   std::size_t count = 400;
   std::string csv_file;
   app.add_option("logs", logs, "CARMEN logs")->required();
   app.add_option("--scans", count, "asked of each map at most")->capture_default_str();
   app.add_option("--csv", csv_file, "one line for each question");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     const pipeline::LoadedConfig config = pipeline::load_config({});
     std::FILE* csv = csv_file.empty() ? nullptr : std::fopen(csv_file.c_str(), "w");

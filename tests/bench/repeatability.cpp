@@ -19,8 +19,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/topomap/local_map_builder.hpp"
@@ -262,7 +261,7 @@ void print(const std::string& name, const Counts& counts) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"how much of a local map is found again half a metre farther on"};
+  command_line::Command app{"how much of a local map is found again half a metre farther on"};
   std::vector<std::string> worlds;
   std::vector<std::string> logs;
   std::vector<std::string> references;
@@ -273,13 +272,14 @@ int main(int argc, char** argv) {
   app.add_option("--world", worlds, "world file to simulate a log in");
   app.add_option("--log", logs, "CARMEN log");
   app.add_option("--reference", references, "reference trajectory of each log, TUM");
-  app.add_option("--config", config_file, "configuration file")->check(CLI::ExistingFile);
+  app.add_option("--config", config_file, "configuration file")
+      ->check(command_line::existing_file());
   app.add_option("--total", total, "one row of this name for all together");
   app.add_option("--apart", apart_m, "metres between two scans")
       ->capture_default_str()
-      ->check(CLI::Range(0.05, 5.0));
+      ->check(command_line::range(0.05, 5.0));
   app.add_flag("--header", header, "print the head of the table first");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   if (logs.size() != references.size()) {
     std::fprintf(stderr, "topogeo_repeatability: every --log needs a --reference\n");
     return 2;

@@ -8,8 +8,7 @@
 #include <numbers>
 #include <thread>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/support/atomic_file.hpp"
 
 #include "synthetic_run.hpp"
@@ -157,25 +156,27 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"how far maps of synthetic floors are from the truth; each run on standard error"};
+  command_line::Command app{
+      "how far maps of synthetic floors are from the truth; each run on standard error"};
   Options options;
   std::vector<std::string> names;
   for (const auto& floor : bench::synthetic_floors()) names.push_back(floor.name);
   app.add_option("--worlds", options.worlds, "floors by name, separated by commas; default all")
       ->delimiter(',')
-      ->check(CLI::IsMember(names));
+      ->check(command_line::one_of(names));
   app.add_option("--seeds", options.seeds, "runs of each floor")
       ->capture_default_str()
-      ->check(CLI::Range(1, 10'000));
+      ->check(command_line::range(1, 10'000));
   app.add_option("--first-seed", options.first_seed, "seed of the first run")
       ->capture_default_str();
   app.add_option("--jobs", options.jobs, "runs at a time")
       ->capture_default_str()
-      ->check(CLI::Range(1, 2));
-  app.add_option("--config", options.config_file, "configuration file")->check(CLI::ExistingFile);
+      ->check(command_line::range(1, 2));
+  app.add_option("--config", options.config_file, "configuration file")
+      ->check(command_line::existing_file());
   app.add_option("--save", options.save, "write each log with its true poses into this folder");
   app.add_flag("--markdown", options.markdown, "print a table for RESULTS.md");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     run(options);
   } catch (const std::exception& error) {

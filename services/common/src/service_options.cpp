@@ -3,8 +3,7 @@
 #include <exception>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/support/logging.hpp"
 #include "topogeo/support/version.hpp"
 
@@ -25,9 +24,9 @@ pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
 
 }  // namespace
 
-void add_service_options(CLI::App& app, ServiceOptions& options) {
+void add_service_options(command_line::Command& app, ServiceOptions& options) {
   app.add_option("--domain", options.domain, "DDS domain")
-      ->check(CLI::Range(std::uint32_t{0}, kLargestDomain))
+      ->check(command_line::range(std::uint32_t{0}, kLargestDomain))
       ->capture_default_str();
   app.add_option("--partition", options.partition,
                  "only services of one partition meet, * meets all")
@@ -40,7 +39,7 @@ void add_service_options(CLI::App& app, ServiceOptions& options) {
   app.add_option("--config", options.config, "configuration file (YAML)");
   app.add_option("--profiles", options.profiles_file, "file of QoS profiles, instead of built in");
   app.add_option("--log-level", options.log_level, "how much to tell on stderr")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->check(command_line::one_of({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
 }
 
@@ -54,23 +53,18 @@ messaging::Participant make_participant(const ServiceOptions& options, const std
 }
 
 int run_service(int argc, const char* const* argv, const std::string& name,
-                const std::string& description, const std::function<void(CLI::App&)>& add_options,
+                const std::string& description,
+                const std::function<void(command_line::Command&)>& add_options,
                 const std::function<void(const Setup&)>& body, const ServiceOptions& defaults) {
   try {
     Setup setup;
     setup.name = name;
     setup.options = defaults;
-    CLI::App app(description, name);
+    command_line::Command app(description, name);
     app.set_version_flag("--version", name + " " + std::string(support::kVersion));
     add_service_options(app, setup.options);
     if (add_options) add_options(app);
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::Success& success) {  // --help, --version
-      return app.exit(success);
-    } catch (const CLI::ParseError& error) {
-      throw UsageError(std::string(error.what()) + " (see --help)");
-    }
+    if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
     support::set_up_logging(name, setup.options.log_level);
     setup.config = load(setup.options.config);
     body(setup);

@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/App.hpp>
-
+#include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/pipeline/config.hpp"
 
@@ -24,9 +23,7 @@ enum ExitCode : int {
 };
 
 /// Ends the program with kUsage.
-class UsageError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using UsageError = command_line::UsageError;
 
 /// Ends the program with kBadInput.
 class BadInputError : public std::runtime_error {
@@ -44,7 +41,7 @@ struct ServiceOptions {
 };
 
 /// Adds the flags of `options` to `app`; `options` must outlive it.
-void add_service_options(CLI::App& app, ServiceOptions& options);
+void add_service_options(command_line::Command& app, ServiceOptions& options);
 
 /// Joins the domain under the name "<robot>/<service>". Throws like messaging::Participant.
 messaging::Participant make_participant(const ServiceOptions& options, const std::string& service);
@@ -61,7 +58,8 @@ struct Setup {
 /// flags), sets up logging, loads the configuration and calls `body`, which returns when the
 /// service is to end. What it throws becomes one line on stderr and an exit code.
 int run_service(int argc, const char* const* argv, const std::string& name,
-                const std::string& description, const std::function<void(CLI::App&)>& add_options,
+                const std::string& description,
+                const std::function<void(command_line::Command&)>& add_options,
                 const std::function<void(const Setup&)>& body, const ServiceOptions& defaults = {});
 
 }  // namespace topogeo::service

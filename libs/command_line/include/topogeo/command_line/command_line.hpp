@@ -1,0 +1,149 @@
+// Command lines of programs: options, flags, subcommands, their checks and help. CLI11 does the
+// work; it is compiled in this library alone, since each file that includes it takes seconds.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
+
+namespace topogeo::command_line {
+
+/// The command line is wrong; what() names the option, the value and what is expected.
+class UsageError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+template <class T, class... Types>
+concept OneOf = (std::same_as<T, Types> || ...);
+
+template <class T>
+concept SingleValue =
+    OneOf<T, std::string, std::filesystem::path, int, std::uint32_t, std::uint64_t, double>;
+
+/// What an option can be stored in. An optional stays empty without the option, a vector takes all
+/// that follow it.
+template <class T>
+concept OptionValue = SingleValue<T> ||
+    OneOf<T, std::vector<std::string>, std::vector<std::filesystem::path>> ||
+    (SingleValue<typename T::value_type>&& OneOf<T, std::optional<typename T::value_type>>);
+
+/// A condition on the values of an option.
+class Check {
+ public:
+  explicit Check(const CLI::Validator& validator);
+
+ private:
+  friend class Option;
+  std::shared_ptr<const CLI::Validator> validator_;
+};
+
+/// A number from `smallest` to `largest`, both allowed.
+Check range(int smallest, int largest);
+Check range(std::uint32_t smallest, std::uint32_t largest);
+Check range(std::uint64_t smallest, std::uint64_t largest);
+Check range(double smallest, double largest);
+Check positive_number();
+Check one_of(const std::vector<std::string>& values);
+Check one_of(std::initializer_list<int> values);
+Check existing_file();
+Check existing_directory();
+
+/// An option, a positional argument or a flag of a Command. Each function returns the option
+/// itself.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  Option* required(bool value = true);
+  Option* check(const Check& check);
+  /// `test` returns what is wrong with a value, an empty text for a good one.
+  Option* check(const std::function<std::string(const std::string&)>& test);
+  /// The value is one of the numbers, given by name. Help does not list them.
+  Option* named_values(const std::vector<std::pair<std::string, std::uint32_t>>& values);
+  Option* needs(const Option* other);
+  Option* excludes(const Option* other);
+  /// How help names the value: FILE, X,Y.
+  Option* type_name(const std::string& name);
+  /// Help shows the value that the variable has now as the default.
+  Option* capture_default_str();
+  Option* default_str(const std::string& text);
+  /// One value contains several, with this between them.
+  Option* delimiter(char separator);
+  /// Of an option stored in a vector: whether it takes all values up to the next option, or one
+  /// each time that it is given.
+  Option* allow_extra_args(bool value);
+
+  /// How many values were given.
+  [[nodiscard]] std::size_t count() const;
+
+ private:
+  friend class Command;
+  CLI::Option* option_;
+};
+
+/// The command line of a program, one of its subcommands or a group of options. Variables that
+/// options are stored in must outlive it.
+class Command {
+ public:
+  explicit Command(const std::string& description, const std::string& name = "");
+  ~Command();
+  Command(const Command&) = delete;
+  Command& operator=(const Command&) = delete;
+
+  /// `names` are "--name", "-n,--name", or "name" for an argument in that position.
+  template <OptionValue T>
+  Option* add_option(const std::string& names, T& value, const std::string& description = "");
+  /// Calls `take` with the value; what it throws as std::invalid_argument is wrong with the value.
+  Option* add_option_function(const std::string& names,
+                              std::function<void(const std::string&)> take,
+                              const std::string& description = "");
+  /// `names` may end in ",!--no-name", which sets it to false.
+  Option* add_flag(const std::string& names, bool& value, const std::string& description = "");
+  /// Throws std::invalid_argument when the command has no such option.
+  [[nodiscard]] Option* get_option(const std::string& name) const;
+
+  Command* add_subcommand(const std::string& name, const std::string& description);
+  /// Options that help shows together; require_option counts them.
+  Command* add_option_group(const std::string& name, const std::string& description);
+  void require_subcommand(int count);
+  void require_option(int count);
+  /// Called when the command line was parsed and had this command in it.
+  void callback(std::function<void()> call);
+  /// What help prints below the options.
+  void footer(const std::string& text);
+  void set_version_flag(const std::string& names, const std::string& version);
+
+  /// Fills the variables and calls what was given to callback(). Returns the exit code when the
+  /// program has nothing left to do, since help or the version was printed. Throws UsageError.
+  [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
+  /// The same for programs that have no exit codes of their own: prints what is wrong to stderr and
+  /// returns 2.
+  [[nodiscard]] std::optional<int> parse_or_report(int argc, const char* const* argv);
+
+ private:
+  explicit Command(CLI::App& app);
+  Option* keep(CLI::Option* option);
+  Command* keep(CLI::App* app);
+  [[nodiscard]] Option* find(const CLI::Option* option) const;
+
+  std::unique_ptr<CLI::App> program_;  // of the whole program only
+  CLI::App* app_;
+  std::vector<std::unique_ptr<Option>> options_;
+  std::vector<std::unique_ptr<Command>> parts_;  // subcommands and groups
+};
+
+}  // namespace topogeo::command_line

@@ -1,0 +1,264 @@
+#include "topogeo/command_line/command_line.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace topogeo::command_line {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::optional<int> parse(Command& command, std::vector<const char*> words) {
+  words.insert(words.begin(), "program");
+  return command.parse(static_cast<int>(words.size()), words.data());
+}
+
+/// What is wrong with a command line; empty when nothing is.
+std::string complaint(Command& command, const std::vector<const char*>& words) {
+  try {
+    EXPECT_FALSE(parse(command, words));
+    return {};
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+}
+
+TEST(CommandLine, StoresEachTypeOfValue) {
+  Command command("a test");
+  std::string text;
+  std::filesystem::path path;
+  int number = 0;
+  std::uint32_t small = 0;
+  std::uint64_t large = 0;
+  double real = 0.0;
+  bool flag = false;
+  command.add_option("text", text);
+  command.add_option("--path", path);
+  command.add_option("-n,--number", number);
+  command.add_option("--small", small);
+  command.add_option("--large", large);
+  command.add_option("--real", real);
+  command.add_flag("--flag", flag);
+
+  EXPECT_FALSE(parse(command, {"a text", "--path", "a/file", "-n", "-3", "--small", "4",
+                               "--large=18446744073709551615", "--real", "0.25", "--flag"}));
+
+  EXPECT_EQ(text, "a text");
+  EXPECT_EQ(path, "a/file");
+  EXPECT_EQ(number, -3);
+  EXPECT_EQ(small, 4U);
+  EXPECT_EQ(large, 18446744073709551615ULL);
+  EXPECT_EQ(real, 0.25);
+  EXPECT_TRUE(flag);
+}
+
+TEST(CommandLine, LeavesWhatIsNotGivenAsItIs) {
+  Command command("a test");
+  int number = 7;
+  std::optional<double> given;
+  std::optional<std::string> missing;
+  command.add_option("--number", number);
+  const Option* given_option = command.add_option("--given", given);
+  const Option* missing_option = command.add_option("--missing", missing);
+
+  EXPECT_FALSE(parse(command, {"--given", "1.5"}));
+
+  EXPECT_EQ(number, 7);
+  EXPECT_EQ(given, 1.5);
+  EXPECT_EQ(missing, std::nullopt);
+  EXPECT_EQ(given_option->count(), 1U);
+  EXPECT_EQ(missing_option->count(), 0U);
+}
+
+TEST(CommandLine, CollectsListsFromWordsAndSeparators) {
+  Command command("a test");
+  std::vector<std::string> words;
+  std::vector<std::string> parts;
+  std::vector<std::string> single;
+  std::string last;
+  command.add_option("--words", words);
+  command.add_option("--parts", parts)->delimiter(',');
+  command.add_option("--single", single)->allow_extra_args(false);
+  command.add_option("last", last);
+
+  EXPECT_FALSE(parse(
+      command, {"--words", "a", "b", "--parts", "c,d", "--single", "e", "--single", "f", "last"}));
+
+  EXPECT_THAT(words, ElementsAre("a", "b"));
+  EXPECT_THAT(parts, ElementsAre("c", "d"));
+  EXPECT_THAT(single, ElementsAre("e", "f"));
+  EXPECT_EQ(last, "last");
+}
+
+TEST(CommandLine, FlagsCanBeTurnedOff) {
+  Command command("a test");
+  bool tables = true;
+  command.add_flag("--tables,!--no-tables", tables);
+  EXPECT_FALSE(parse(command, {"--no-tables"}));
+  EXPECT_FALSE(tables);
+}
+
+TEST(CommandLine, NamesWhatIsWrongWithAValue) {
+  Command command("a test");
+  std::uint32_t workers = 2;
+  std::uint64_t scan = 0;
+  double speed_mps = 1.0;
+  std::string wheels = "mild";
+  int baud = 9600;
+  int count = 1;
+  std::string name;
+  command.add_option("--workers", workers)->check(range(0U, 256U));
+  command.add_option("--scan", scan)->check(range(std::uint64_t{1}, std::uint64_t{5}));
+  command.add_option("--speed", speed_mps)->check(range(0.5, 2.0));
+  command.add_option("--wheels", wheels)->check(one_of({"mild", "b21"}));
+  command.add_option("--baud", baud)->check(one_of({9600, 19200}));
+  command.add_option("--count", count)->check(positive_number());
+  command.add_option("--name", name)->check([](const std::string& text) {
+    return text.size() > 3 ? "expected 3 bytes at most" : std::string();
+  });
+
+  EXPECT_EQ(complaint(command, {"--workers", "256", "--scan", "5", "--speed", "2", "--wheels",
+                                "b21", "--baud", "19200", "--count", "1", "--name", "abc"}),
+            "");
+  EXPECT_EQ(complaint(command, {"--workers", "257"}),
+            "--workers: Value 257 not in range 0 to 256 (see --help)");
+  EXPECT_EQ(complaint(command, {"--scan", "0"}),
+            "--scan: Value 0 not in range 1 to 5 (see --help)");
+  EXPECT_EQ(complaint(command, {"--speed", "fast"}),
+            "--speed: Value fast not in range 0.500000 to 2.000000 (see --help)");
+  EXPECT_EQ(complaint(command, {"--wheels", "square"}),
+            "--wheels: square not in {mild,b21} (see --help)");
+  EXPECT_EQ(complaint(command, {"--baud", "5"}), "--baud: 5 not in {9600,19200} (see --help)");
+  EXPECT_THAT(complaint(command, {"--count", "0"}), HasSubstr("--count: "));
+  EXPECT_EQ(complaint(command, {"--name", "long"}),
+            "--name: expected 3 bytes at most (see --help)");
+}
+
+TEST(CommandLine, ChecksThatFilesAndDirectoriesExist) {
+  Command command("a test");
+  std::string file;
+  std::string directory;
+  command.add_option("--file", file)->check(existing_file());
+  command.add_option("--directory", directory)->check(existing_directory());
+  EXPECT_THAT(complaint(command, {"--file", "/no/such/file"}), HasSubstr("/no/such/file"));
+  EXPECT_THAT(complaint(command, {"--directory", "/no/such"}), HasSubstr("/no/such"));
+  EXPECT_EQ(complaint(command, {"--file", "/proc/self/status", "--directory", "/"}), "");
+}
+
+TEST(CommandLine, TranslatesNamesIntoNumbers) {
+  Command command("a test");
+  std::uint32_t fault = 0;
+  command.add_option("fault", fault)->required()->named_values({{"echo", 8}, {"silence", 2}});
+  EXPECT_FALSE(parse(command, {"echo"}));
+  EXPECT_EQ(fault, 8U);
+  EXPECT_THAT(complaint(command, {"jump"}), HasSubstr("jump"));
+}
+
+TEST(CommandLine, KeepsOptionsTogetherAndApart) {
+  Command command("a test");
+  std::string log;
+  std::string devices;
+  bool quick = false;
+  command.add_option("--log", log);
+  command.add_option("--devices", devices)->excludes(command.get_option("--log"));
+  command.add_flag("--quick", quick)->needs(command.get_option("--log"));
+  EXPECT_EQ(complaint(command, {"--log", "a", "--quick"}), "");
+  EXPECT_THAT(complaint(command, {"--log", "a", "--devices", "b"}), HasSubstr("excludes"));
+  EXPECT_EQ(complaint(command, {"--quick"}), "--quick requires --log (see --help)");
+}
+
+TEST(CommandLine, GroupsCountTheirOptions) {
+  Command command("a test");
+  std::string log;
+  std::string devices;
+  Command* source = command.add_option_group("source", "where scans come from");
+  Option* log_option = source->add_option("--log", log);
+  source->add_option("--devices", devices);
+  source->require_option(1);
+  EXPECT_EQ(complaint(command, {"--log", "a"}), "");
+  EXPECT_EQ(complaint(command, {}),
+            "Exactly 1 option from [--log,--devices] is required (see --help)");
+  EXPECT_EQ(command.get_option("--log"), log_option);
+}
+
+TEST(CommandLine, RefusesWhatIsMissingOrUnknown) {
+  Command command("a test");
+  std::string out;
+  command.add_option("--out", out)->required();
+  EXPECT_EQ(complaint(command, {}), "--out is required (see --help)");
+  EXPECT_EQ(complaint(command, {"--out", "a", "--other"}),
+            "The following argument was not expected: --other (see --help)");
+  EXPECT_THROW(static_cast<void>(command.get_option("--other")), std::invalid_argument);
+  command.get_option("--out")->required(false);
+  EXPECT_EQ(complaint(command, {}), "");
+}
+
+TEST(CommandLine, ReportsWhatAFunctionDoesNotTake) {
+  Command command("a test");
+  std::string taken;
+  command.add_option_function("--rate", [&](const std::string& text) {
+    if (text == "fast") throw std::invalid_argument("rate 'fast': expected a number");
+    taken = text;
+  });
+  EXPECT_EQ(complaint(command, {"--rate", "fast"}),
+            "--rate: rate 'fast': expected a number (see --help)");
+  EXPECT_EQ(complaint(command, {"--rate", "2"}), "");
+  EXPECT_EQ(taken, "2");
+}
+
+TEST(CommandLine, CallsTheSubcommandThatIsGiven) {
+  Command command("a test", "program");
+  std::string called;
+  int value = 0;
+  for (const char* name : {"map", "plan"}) {
+    Command* subcommand = command.add_subcommand(name, "a subcommand");
+    subcommand->add_option("--value", value);
+    subcommand->callback([&called, name] { called = name; });
+  }
+  command.require_subcommand(1);
+  EXPECT_FALSE(parse(command, {"plan", "--value", "3"}));
+  EXPECT_EQ(called, "plan");
+  EXPECT_EQ(value, 3);
+  EXPECT_EQ(complaint(command, {}), "A subcommand is required (see --help)");
+}
+
+TEST(CommandLine, CallbacksMayThrow) {
+  Command command("a test");
+  command.callback([] { throw std::domain_error("failed"); });
+  EXPECT_THROW(parse(command, {}), std::domain_error);
+}
+
+TEST(CommandLine, PrintsHelpAndVersion) {
+  Command command("What it does.", "program");
+  std::uint32_t workers = 2;
+  std::string file;
+  command.add_option("--workers", workers, "how many")->check(range(0U, 9U))->capture_default_str();
+  command.add_option("--file", file, "the log")->type_name("FILE")->default_str("the last one");
+  command.footer("More below.");
+  command.set_version_flag("--version", "program 1.2");
+
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(parse(command, {"--help"}), 0);
+  const std::string help = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(help, HasSubstr("What it does.\nUsage: program [OPTIONS]"));
+  EXPECT_THAT(help, HasSubstr("--workers UINT:UINT in [0 - 9]=2"));
+  EXPECT_THAT(help, HasSubstr("--file FILE=the last one"));
+  EXPECT_THAT(help, HasSubstr("More below."));
+
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(parse(command, {"--version"}), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "program 1.2\n");
+}
+
+TEST(CommandLine, ReportsWrongUsageForProgramsWithoutExitCodes) {
+  Command command("a test");
+  const std::vector<const char*> words = {"program", "--other"};
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(command.parse_or_report(static_cast<int>(words.size()), words.data()), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "The following argument was not expected: --other (see --help)\n");
+}
+
+}  // namespace
+}  // namespace topogeo::command_line
