@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "random_values.hpp"
+#include "services/common/random_values.hpp"
 
 namespace topogeo::map_store {
 namespace {

@@ -1,4 +1,4 @@
-#include "stall_watch.hpp"
+#include "topogeo/stall_watch.hpp"
 
 #include <gtest/gtest.h>
 

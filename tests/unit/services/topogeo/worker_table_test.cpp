@@ -1,5 +1,5 @@
 // What `topogeo workers` shows of the statuses that come in.
-#include "worker_table.hpp"
+#include "topogeo/worker_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The devices on their ports, on a clock of the test's own.
-#include "simulated_devices.hpp"
+#include "simulator/simulated_devices.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -8,8 +8,8 @@
 
 #include <gmock/gmock.h>
 
-#include "fault_desk.hpp"
-#include "host_port.hpp"
+#include "simulator/fault_desk.hpp"
+#include "services/simulator/host_port.hpp"
 
 namespace topogeo::simulator {
 namespace {

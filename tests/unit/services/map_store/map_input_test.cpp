@@ -5,7 +5,7 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 
-#include "random_values.hpp"
+#include "services/common/random_values.hpp"
 
 namespace topogeo::map_store {
 namespace {

@@ -11,7 +11,7 @@
 #include "topogeo/service/decision_assembly.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
 
-#include "random_values.hpp"
+#include "services/common/random_values.hpp"
 
 namespace topogeo::service {
 namespace {

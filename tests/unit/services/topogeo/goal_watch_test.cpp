@@ -1,4 +1,4 @@
-#include "goal_watch.hpp"
+#include "topogeo/goal_watch.hpp"
 
 #include <algorithm>
 #include <sstream>
@@ -7,7 +7,7 @@
 
 #include "topogeo/messaging/message.hpp"
 
-#include "goal_progress.hpp"
+#include "topogeo/goal_progress.hpp"
 
 namespace topogeo::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include "topogeo/service/map_mirror.hpp"
 
 #include "map_store/element_updates.hpp"
-#include "random_values.hpp"
+#include "services/common/random_values.hpp"
 
 namespace topogeo {
 namespace {

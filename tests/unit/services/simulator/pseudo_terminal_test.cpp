@@ -1,4 +1,4 @@
-#include "pseudo_terminal.hpp"
+#include "simulator/pseudo_terminal.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host_port.hpp"
+#include "services/simulator/host_port.hpp"
 
 namespace topogeo::simulator {
 namespace {

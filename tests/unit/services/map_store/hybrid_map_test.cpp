@@ -11,7 +11,7 @@
 #include "topogeo/service/hybrid_map_messages.hpp"
 #include "topogeo/service/hybrid_map_mirror.hpp"
 
-#include "floors.hpp"
+#include "planning/floors.hpp"
 #include "map_store/hybrid_updates.hpp"
 
 namespace topogeo {
