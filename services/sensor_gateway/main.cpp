@@ -94,7 +94,8 @@ int main(int argc, char** argv) {
   Options options;
   return service::run_service(
       argc, argv, "sensor_gateway",
-      "Gives the scans and odometry of a robot's devices, or those of a log, and drives its base.",
+      "Publishes the scans and odometry of a robot's devices, or those of a log, and drives its "
+      "base.",
       [&](command_line::Command& app) { add_options_to(app, options); },
       [&](const service::Setup& setup) {
         if (options.devices.empty()) {

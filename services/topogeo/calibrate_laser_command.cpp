@@ -40,7 +40,7 @@ struct CalibrateLaserOptions {
 };
 
 /// A laser that is not where it is taken to be moves otherwise than odometry says: these variances,
-/// as of a decimetre for each radian of turn and each metre of way, let matches be found all the
+/// as of a decimetre for each radian of turn and each metre of path, let matches be found all the
 /// same.
 constexpr double kTurnShiftVariance = 0.02;  // m2/rad
 constexpr double kSidewaysVariance = 0.01;   // m2/m
@@ -84,7 +84,7 @@ Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Confi
 }
 
 /// Scans are matched again with the mounting found, until that changes no more: with a wrong
-/// mounting the best matches, those of long ways and large turns, are not found.
+/// mounting the best matches, those of long paths and large turns, are not found.
 Found calibrate_laser(const CalibrateLaserOptions& options, const pipeline::Config& config) {
   constexpr int kMostRounds = 6;
   constexpr double kSmallShift_m = 0.003;
@@ -139,7 +139,7 @@ int calibrate_laser_log(const CalibrateLaserOptions& options) {
   print_part("x", laser.x_m, 1.0, "m forward", laser.with_turn, kTurn);
   print_part("y", laser.y_m, 1.0, "m to the left", laser.with_turn, kTurn);
   print_part("yaw", laser.yaw_rad, kMountingDegrees, "degrees counter-clockwise", laser.with_way,
-             "0.2 m of way");
+             "0.2 m of path");
   const std::string block = laser_yaml(laser);
   std::cout << '\n' << block;
   if (options.out) {
@@ -171,7 +171,7 @@ void add_calibrate_laser_command(command_line::Command& app, int& exit_code) {
                    "configuration to write with the values found; with --config all of its values")
       ->type_name("FILE");
   command->footer(
-      "Turns show x and y, straight ways show yaw: drive some minutes with both, turning to both\n"
+      "Turns show x and y, straight paths show yaw: drive some minutes with both, turning to both\n"
       "sides, through rooms. A part that the log does not show is left as it is configured. The\n"
       "search finds mountings within about 0.3 m and 15 degrees of the configured one.\n"
       "Poses are then those of the point that odometry speaks of, no longer of the laser.\n"

@@ -136,8 +136,8 @@ void print_table(std::ostream& out, const Inputs& inputs, const OdometryCalibrat
       continue;
     }
     row(parameter.key, now, "-", now, now, "-", estimate.stretches, parameter.unit);
-    out << fmt::format("  kept: only {} stretches have {}, {} are needed to say something of it\n",
-                       estimate.stretches, parameter.per_turn ? "0.2 rad of turn" : "0.2 m of way",
+    out << fmt::format("  kept: only {} stretches have {}, {} are needed to estimate it\n",
+                       estimate.stretches, parameter.per_turn ? "0.2 rad of turn" : "0.2 m of path",
                        localization::kFewestStretches);
   }
 }
@@ -164,13 +164,13 @@ void print_systematic(std::ostream& out, const localization::SystematicErrors& e
                        factor * e.spread, unit);
   };
   out << "systematic errors, counted as noise in `value`, taken out in `corrected`\n"
-         "(+: the odometry says too much, or turns to the left on its own):\n";
-  line("way", errors.way, 100.0, "% of the way");
-  line("heading", errors.heading_rad_per_m, kDegrees, "degrees per m of way");
+         "(+: the odometry reads too much, or drifts to the left):\n";
+  line("distance", errors.way, 100.0, "% of the distance");
+  line("heading", errors.heading_rad_per_m, kDegrees, "degrees per m");
   line("turn", errors.turn, 100.0, "% of the turn");
   line("ahead", errors.ahead_m, 1.0, "m from laser.x_m to where the laser is");
   line("left", errors.left_m, 1.0, "m from laser.y_m to where the laser is");
-  line("yaw", errors.yaw_rad, kDegrees, "degrees from laser.yaw_rad to where it looks");
+  line("yaw", errors.yaw_rad, kDegrees, "degrees from laser.yaw_rad to where it points");
 }
 
 std::string yaml_block(const localization::OdometryNoise& noise) {

@@ -113,7 +113,8 @@ std::string describe_drive(const localization::LocalMaps& maps) {
       turn_rad += std::fabs(step.theta_rad);
     }
   }
-  return fmt::format("{} stops, {:.1f} m of way, {:.1f} rad of turn", maps.size(), way_m, turn_rad);
+  return fmt::format("{} stops, {:.1f} m of path, {:.1f} rad of turn", maps.size(), way_m,
+                     turn_rad);
 }
 
 std::string describe_matches(const pipeline::Config& config,

@@ -54,7 +54,7 @@ struct MatchedLog {
 /// much again and says nothing of single steps.
 MatchedLog match_log(const pipeline::Config& config, OpenLog& log);
 
-/// "52 stops, 41.3 m of way, 30.2 rad of turn".
+/// "52 stops, 41.3 m of path, 30.2 rad of turn".
 std::string describe_drive(const localization::LocalMaps& maps);
 /// "312 matches of stops up to 6 m apart; left out: 3 that ..."
 std::string describe_matches(const pipeline::Config& config,

@@ -45,7 +45,7 @@ void print_faults(const std::string& path, const scan::LogCheck& check) {
   if (check.scans > 0) {
     std::cout << fmt::format(
         "{} beams from {:.2f} deg by {:.3f} deg; {:.1f} s, {:.2f} scans a second, longest pause "
-        "{:.2f} s; {:.1f} m of way\n",
+        "{:.2f} s; {:.1f} m of path\n",
         check.beams, degrees(check.angle_min_rad), degrees(check.angle_step_rad), duration_s(check),
         rate_hz(check), check.longest_period_s, check.way_m);
   }

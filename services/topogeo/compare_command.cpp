@@ -156,7 +156,7 @@ int compare_files(const CompareOptions& options) {
 
 void add_compare_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
-      app.add_subcommand("compare", "Tell how far a trajectory is from a reference trajectory");
+      app.add_subcommand("compare", "Compare a trajectory with a reference trajectory");
   auto options = std::make_shared<CompareOptions>();
   command->add_option("ESTIMATE", options->estimate, "trajectory (TUM: t x y z qx qy qz qw)")
       ->required()
@@ -177,7 +177,7 @@ void add_compare_command(command_line::Command& app, int& exit_code) {
   command
       ->add_option(
           "--config", options->config,
-          "configuration (YAML): the reference is of the laser, which it says where it sits")
+          "configuration (YAML) with the place of the laser: the reference is of the laser")
       ->type_name("FILE");
   command->add_flag("--json", options->json, "print JSON, unrounded");
   command->footer(
@@ -186,11 +186,11 @@ void add_compare_command(command_line::Command& app, int& exit_code) {
       "that odometry speaks of; many references are of the laser: where laser.x_m, y_m or yaw_rad\n"
       "are configured, name that configuration with --config to compare the poses of the laser.\n"
       "What is printed (metres, degrees):\n"
-      "  matched    share of the reference poses that the estimate has, and the way between them\n"
+      "  matched    share of the reference poses that the estimate has, and the path between them\n"
       "  ate        root mean square distance after the best rigid alignment\n"
       "  local      mean error from each pose to the next\n"
       "  loop       mean error between poses that are within 1.5 m of each other in the reference\n"
-      "             although more than 20 m of way lie between: small in a map that closes\n"
+      "             although more than 20 m of path lie between: small in a map that closes\n"
       "  end        distance of the last poses when the first ones coincide\n"
       "  relations  mean and standard deviation of the errors of the relations that the estimate\n"
       "             has poses for (within 1 ms): all, and far: over 30 s apart\n"

@@ -129,8 +129,8 @@ int show_devices(DemoOptions options) {
 }  // namespace
 
 void add_demo_command(command_line::Command& app, int& exit_code) {
-  command_line::Command* command = app.add_subcommand(
-      "demo", "Map a synthetic floor and compare the result with the known truth");
+  command_line::Command* command =
+      app.add_subcommand("demo", "Map a synthetic floor and compare the result with the truth");
   auto options = std::make_shared<DemoOptions>();
   // Faster than a B21 likes to go, so that nobody has to wait for long.
   options->simulation.speed_m_per_s = 1.5;

@@ -53,7 +53,7 @@ void add_explore_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
       "explore", "Send a mapping robot everywhere that it can get to and has not seen");
   auto options = std::make_shared<ExploreOptions>();
-  command->add_option("--picture", options->picture, "write map and way as .png or .svg at the end")
+  command->add_option("--picture", options->picture, "draw map and path as .png or .svg at the end")
       ->type_name("FILE");
   add_robot_options(*command, options->robot);
   command->footer(

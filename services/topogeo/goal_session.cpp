@@ -37,12 +37,12 @@ void check_picture(const std::optional<std::filesystem::path>& picture) {
 }
 
 void add_goal_options(command_line::Command& app, GoalOptions& options) {
-  app.add_option("--heading", options.heading_deg, "where the robot shall look in the end")
+  app.add_option("--heading", options.heading_deg, "heading of the robot at the goal")
       ->check(command_line::range(-360.0, 360.0))
       ->type_name("DEG");
   app.add_flag("--look-around", options.look_around,
-               "without a pose it may turn and move a little to find out where it is");
-  app.add_option("--picture", options.picture, "write the way on the map as .png or .svg")
+               "without a pose it may turn and move a little to find one");
+  app.add_option("--picture", options.picture, "draw the route on the map as .png or .svg")
       ->type_name("FILE");
   constexpr double kLongest_s = 86400.0;
   app.add_option("--patience", options.patience_s,
@@ -82,7 +82,7 @@ void GoalSession::send() {
 void GoalSession::tick() {
   if (client_.route() && !told_way_) {
     told_way_ = true;
-    progress_.say(fmt::format("the way to {} is {:.1f} m long, through {} zones and {} borders",
+    progress_.say(fmt::format("the route to {} is {:.1f} m long, through {} zones and {} borders",
                               options_.target, client_.route()->length_m(),
                               client_.route()->zones().size(), client_.route()->node_ids().size()));
   }
@@ -99,7 +99,7 @@ void GoalSession::draw_way() {
   support::write_file_atomically(*options_.picture,
                                  render::route_picture(*map, route_to_draw(*client_.route()), title,
                                                        render::picture_format(*options_.picture)));
-  progress_.say("the way is drawn in " + options_.picture->string());
+  progress_.say("the route is drawn in " + options_.picture->string());
 }
 
 }  // namespace topogeo::cli

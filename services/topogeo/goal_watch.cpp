@@ -17,7 +17,7 @@ bool final_refusal(msg::RouteStatus status) {
 
 std::string text_of(const msg::NavigatorStatus& status) {
   const std::string message = status.message().to_string();
-  return message.empty() ? "the navigator does not say why" : message;
+  return message.empty() ? "the navigator gave no reason" : message;
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ void GoalWatch::add(const msg::NavigatorStatus& status, double now_s) {
 }
 
 std::optional<GoalEnd> GoalWatch::look(double now_s) const {
-  if (replaced_) return GoalEnd{false, "another goal took its place, or somebody cancelled it"};
+  if (replaced_) return GoalEnd{false, "another goal replaced it, or another program cancelled it"};
   if (status_) {
     if (std::optional<GoalEnd> end = judge(*status_)) return end;
   }

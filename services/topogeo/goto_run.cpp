@@ -101,7 +101,7 @@ void GotoRun::tick() {
 void GotoRun::check_deaths() {
   while (const std::optional<ServiceGroup::Death> death = services_.next_death()) {
     if (death->is_worker) {
-      session_.progress().say("topogeo: " + death->what + "; going on without it");
+      session_.progress().say("topogeo: " + death->what + "; the run continues without it");
     } else {
       fail(death->what);
       loop_.stop();

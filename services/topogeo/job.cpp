@@ -157,7 +157,7 @@ void tell_skipped(const scan::CarmenLogStatistics& statistics) {
 
 void print_summary(std::ostream& out, const storage::Report& report,
                    const std::filesystem::path& directory) {
-  out << fmt::format("{}: {} scans, {} stops, {:.1f} m of way, {} loop closures\n",
+  out << fmt::format("{}: {} scans, {} stops, {:.1f} m of path, {} loop closures\n",
                      std::filesystem::path(report.log).filename().string(), report.scans,
                      report.stops, report.distance_m, report.loop_closures.size())
       << fmt::format("map: {} nodes, {} branches; {} of {} matches accepted\n", report.nodes,

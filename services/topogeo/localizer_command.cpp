@@ -80,8 +80,7 @@ void add_request_options(command_line::Command& app, LocalizerRequest& request) 
 }  // namespace
 
 void add_localizer_command(command_line::Command& app, int& exit_code) {
-  command_line::Command* group =
-      app.add_subcommand("localizer", "Tell a running localizer what to do");
+  command_line::Command* group = app.add_subcommand("localizer", "Command a running localizer");
   group->require_subcommand(1);
   auto request = std::make_shared<LocalizerRequest>();
 

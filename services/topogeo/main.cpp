@@ -15,13 +15,13 @@ namespace {
 int run(int argc, const char* const* argv) {
   using namespace topogeo;
   int exit_code = service::kOk;
-  command_line::Command app("Maps indoor places from laser scans and plans ways through them.",
+  command_line::Command app("Maps indoor places from laser scans and plans routes through them.",
                             "topogeo");
   app.set_version_flag("--version", "topogeo " + std::string(support::kVersion));
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 wrong flag or configuration, 3 unusable input,\n"
-      "130 stopped by Ctrl-C. `topogeo COMMAND --help` tells more.");
+      "130 stopped by Ctrl-C. `topogeo COMMAND --help` lists all options.");
   cli::add_run_command(app, exit_code);
   cli::add_map_command(app, exit_code);
   cli::add_localize_command(app, exit_code);

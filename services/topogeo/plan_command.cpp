@@ -46,9 +46,9 @@ storage::MapDocument read_map(const std::filesystem::path& path) {
 }
 
 void print_text(const planning::Route& route) {
-  std::cout << fmt::format(
-      "length {:.2f} m, smallest clearance {:.2f} m, {} nodes, {} way points\n", route.length_m,
-      route.min_clearance_m, route.node_ids.size(), route.points.size());
+  std::cout << fmt::format("length {:.2f} m, smallest clearance {:.2f} m, {} nodes, {} waypoints\n",
+                           route.length_m, route.min_clearance_m, route.node_ids.size(),
+                           route.points.size());
   for (const planning::WayPoint& point : route.points) {
     std::cout << fmt::format("{:9.3f} {:9.3f}  clearance {:.2f}\n", point.position_m.x(),
                              point.position_m.y(), point.clearance_m);

@@ -37,7 +37,7 @@ void print_pose_errors(const std::vector<StampedPose>& believed,
   }
   if (true_poses.empty()) return;
   std::cout << fmt::format(
-      "its pose on the way was off by {:.3f} m rms, {:.3f} m at most ({} poses)\n",
+      "its pose while driving was off by {:.3f} m rms, {:.3f} m at most ({} poses)\n",
       std::sqrt(sum_m2 / static_cast<double>(true_poses.size())), largest_m, true_poses.size());
 }
 
@@ -54,11 +54,11 @@ void print_arrival(const RunOptions& options, const GotoResult& result) {
     constexpr double kDegrees = 180.0 / std::numbers::pi;
     const double off_rad =
         geometry::wrap_angle(truth.theta_rad - *options.goal->heading_deg / kDegrees);
-    text += fmt::format(" and looks {:.1f} degrees off", std::fabs(off_rad) * kDegrees);
+    text += fmt::format(" and points {:.1f} degrees off", std::fabs(off_rad) * kDegrees);
   }
   if (status.pose_known()) {
     const Eigen::Vector2d believed_m(status.T_map_robot().x_m(), status.T_map_robot().y_m());
-    text += fmt::format(", {:.3f} m by what it believes", (believed_m - *result.goal_m).norm());
+    text += fmt::format(", {:.3f} m by its own pose", (believed_m - *result.goal_m).norm());
   }
   std::cout << text << '\n';
   print_pose_errors(result.believed, result.truth);
@@ -84,7 +84,7 @@ int run_goto(RunOptions options) {
   }
   if (!result.arrived) throw std::runtime_error(result.failure);
   print_arrival(options, result);
-  std::cout << "the way: " << options.goal->picture->string() << '\n';
+  std::cout << "the route: " << options.goal->picture->string() << '\n';
   return service::kOk;
 }
 
@@ -96,7 +96,7 @@ void add_goal_run_options(command_line::Command& app, GoalOptions& options, bool
   if (needed != nullptr) target->needs(needed);
   add_goal_options(app, options);
   app.add_flag("--unknown-start", unknown_start,
-               "the robot is not told where it starts: it has to find its place in the map");
+               "the robot gets no initial pose: it has to find its place in the map");
   for (const char* name :
        {"--heading", "--look-around", "--picture", "--patience", "--unknown-start"}) {
     app.get_option(name)->needs(target);

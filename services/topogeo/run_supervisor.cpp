@@ -154,7 +154,7 @@ void RunSupervisor::check_deaths() {
       fail(death->what);
       return;
     }
-    say(death->what + "; going on without it");
+    say(death->what + "; the run continues without it");
   }
   for (const msg::ServiceStatus* service : result_.services.rows()) {
     if (service->state() != msg::kServiceFailed) continue;
@@ -236,7 +236,7 @@ void RunSupervisor::wait_for_last_words() {
   result_.finished = false;
   fail(finished() ? fmt::format("{} of {} loop decisions came from the localizer",
                                 result_.loop_decisions.size(), expected())
-                  : "the localizer has not said what it has done: there is a map, but no report");
+                  : "the localizer published no result: there is a map, but no report");
 }
 
 }  // namespace topogeo::cli

@@ -90,7 +90,7 @@ std::string describe_states(const ServiceTable& table) {
       states += ": " + message;
     }
   }
-  return states.empty() ? "no service has said anything" : states;
+  return states.empty() ? "no service has published its status" : states;
 }
 
 std::string status_line(const msg::ServiceStatus& status) {

@@ -1,5 +1,6 @@
 // topogeo simulate-route: plans on a map, a drawn floor or a grid, and shows the route as steps and
-// as a picture before anything moves (spec B2).
+// as a picture before anything moves (MACONDO, III.3.1; docs/algorithms.md, "Hybrid map and
+// planner").
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -147,7 +148,7 @@ void add_simulate_route_command(command_line::Command& app, int& exit_code) {
   command->add_option("--to", options->to, "goal: a point, a node or the name of a place")
       ->required()
       ->type_name("X,Y|#NODE|PLACE");
-  command->add_option("--heading", options->heading_deg, "where the robot looks at the start")
+  command->add_option("--heading", options->heading_deg, "heading of the robot at the start")
       ->check(command_line::range(-360.0, 360.0))
       ->type_name("DEG");
   command

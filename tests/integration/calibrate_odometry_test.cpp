@@ -50,7 +50,7 @@ std::map<std::string, Row> rows(const std::string& out) {
   return found;
 }
 
-/// "  way  +2.01 +- 0.1 ...": the first number of the line that starts with this word.
+/// "  distance  +2.01 +- 0.1 ...": the first number of the line that starts with this word.
 double systematic(const std::string& out, const std::string& name) {
   std::istringstream lines(out);
   for (std::string line; std::getline(lines, line);) {
@@ -92,7 +92,7 @@ class CalibrateOdometryTest : public testing::Test {
     EXPECT_LT(table.at("translation_m2_per_rad").corrected, 3e-4);
     EXPECT_GT(table.at("translation_m2_per_m").value,
               table.at("translation_m2_per_m").corrected);  // 2 % too long counts as noise
-    EXPECT_NEAR(systematic(out_, "way"), 100.0 * drift.range_scale_error, 0.5);
+    EXPECT_NEAR(systematic(out_, "distance"), 100.0 * drift.range_scale_error, 0.5);
     EXPECT_NEAR(systematic(out_, "heading"),
                 drift.heading_drift_rad_per_m * 180.0 / std::numbers::pi, 0.1);
     EXPECT_NEAR(systematic(out_, "turn"), 0.0, 1.0);

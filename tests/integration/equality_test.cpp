@@ -79,7 +79,7 @@ TEST_F(EqualityTest, WorkerKilledHalfWay) {
   ::kill(workers[0], SIGKILL);
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.err(), HasSubstr("was killed by signal 9"));
-  EXPECT_THAT(run.err(), HasSubstr("going on without it"));
+  EXPECT_THAT(run.err(), HasSubstr("the run continues without it"));
   expect_same_bytes("run");
 }
 

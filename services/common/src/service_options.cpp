@@ -38,7 +38,8 @@ void add_service_options(command_line::Command& app, ServiceOptions& options) {
       ->capture_default_str();
   app.add_option("--config", options.config, "configuration file (YAML)");
   app.add_option("--profiles", options.profiles_file, "file of QoS profiles, instead of built in");
-  app.add_option("--log-level", options.log_level, "how much to tell on stderr")
+  app.add_option("--log-level", options.log_level,
+                 "least severe messages that are logged to stderr")
       ->check(command_line::one_of({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
 }
