@@ -30,7 +30,7 @@ struct DemoOptions {
   bool unknown_start = false;
   std::optional<std::filesystem::path> world;
   bool with_devices = false;
-  SimulationOptions simulation{};
+  SimulatorOptions simulation{};
 };
 
 world::World read_world(const std::optional<std::filesystem::path>& file) {

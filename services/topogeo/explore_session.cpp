@@ -28,7 +28,7 @@ ExploreSession::ExploreSession(const messaging::Participant& participant,
                                messaging::EventLoop& loop, const std::string& robot_id)
     : robot_id_(robot_id),
       client_(participant, loop, robot_id),
-      progress_(std::cerr, support::stderr_is_terminal(), terminal_columns()),
+      progress_(std::cerr, support::stderr_is_terminal(), supervision::terminal_columns()),
       elements_(participant),
       segments_(participant),
       poses_(participant) {
@@ -93,7 +93,7 @@ void ExploreSession::take_map() {
 navigation::NavigatorStatus ExploreSession::navigator() const {
   navigation::NavigatorStatus status;
   if (client_.status() && client_.taken()) {
-    status = service::from_msg(*client_.status());
+    status = *client_.status();
     status.goal_id = goal_id_;
   }
   const bool tracked = pose_ && pose_->state() == msg::kStateTracking;
@@ -122,7 +122,7 @@ void ExploreSession::tick() {
     order.target = goal->T_map_goal.position_m();
     order.heading_rad = goal->T_map_goal.theta_rad;
     client_.send(order);
-    progress_.say(fmt::format("{:.1f} m driven: {}", driven_m_, tour_.message()));
+    progress_.print(fmt::format("{:.1f} m driven: {}", driven_m_, tour_.message()));
   }
   if (client_.status()) progress_.show(*client_.status(), support::monotonic_s());
 }

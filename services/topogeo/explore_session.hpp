@@ -20,9 +20,9 @@
 #include "topogeo/navigation/exploration_tour.hpp"
 #include "topogeo/service/map_mirror.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
+#include "topogeo/supervision/goal_progress.hpp"
 
 #include "goal_client.hpp"
-#include "goal_progress.hpp"
 
 namespace topogeo::cli {
 
@@ -58,7 +58,7 @@ class ExploreSession {
 
   std::string robot_id_;
   GoalClient client_;
-  GoalProgress progress_;
+  supervision::GoalProgress progress_;
   navigation::ExplorationTour tour_;
   service::MapMirror graph_mirror_;
   service::TrajectoryAssembly trajectory_;

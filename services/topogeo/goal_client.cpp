@@ -5,17 +5,33 @@
 #include <stdexcept>
 #include <utility>
 
+#include <spdlog/fmt/fmt.h>
+
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/host.hpp"
 
 namespace topogeo::cli {
 namespace {
 
-/// Nobody else's, and never 0.
+/// That no other client has, and never 0.
 std::uint64_t new_goal_id() {
   std::random_device random;
   return (static_cast<std::uint64_t>(random()) << 16U) + (random() & 0xFFFFU) + 1;
+}
+
+supervision::RouteAnswer to_answer(const msg::Route& route) {
+  supervision::RouteAnswer answer;
+  answer.goal_id = route.goal_id();
+  answer.refused = route.status() != msg::kRouteFound && route.status() != msg::kRouteNoMap &&
+                   route.status() != msg::kRouteNoPose;
+  answer.reason = route.message().to_string();
+  if (route.has_nearest_reachable()) {
+    answer.reason += fmt::format("; ({:.2f}, {:.2f}) is the nearest place that can be reached",
+                                 route.nearest_reachable().x_m(), route.nearest_reachable().y_m());
+  }
+  return answer;
 }
 
 }  // namespace
@@ -54,15 +70,23 @@ void GoalClient::listen() {
       [this](const SampleInfo& info) { services_.remove(info); });
   loop_.add<msg::NavigatorStatus>(statuses_,
                                   [this](const msg::NavigatorStatus& status, const SampleInfo&) {
-                                    if (!is_own(status)) return;
-                                    status_ = status;
-                                    if (watch_) watch_->add(status, support::monotonic_s());
+                                    if (is_own(status)) take_status(status);
                                   });
   loop_.add<msg::Route>(routes_, [this](const msg::Route& route, const SampleInfo&) {
     if (!is_own(route) || goal_id_ == 0 || route.goal_id() != goal_id_) return;
-    if (watch_) watch_->add(route);
+    if (watch_) watch_->add(to_answer(route));
     if (!route_ && route.status() == msg::kRouteFound && !route.points().empty()) route_ = route;
   });
+}
+
+// A status that breaks the wire contract is passed over: the next one comes soon.
+void GoalClient::take_status(const msg::NavigatorStatus& status) {
+  try {
+    status_ = service::from_msg(status);
+  } catch (const std::invalid_argument&) {
+    return;
+  }
+  if (watch_) watch_->add(*status_, support::monotonic_s());
 }
 
 std::string GoalClient::missing() const {
@@ -101,13 +125,14 @@ bool GoalClient::delivered(double patience_s) {
       std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * patience_s)));
 }
 
-std::optional<GoalEnd> GoalClient::end() const {
-  return watch_ ? watch_->look(support::monotonic_s()) : std::nullopt;
+std::optional<supervision::GoalEnd> GoalClient::end() const {
+  return watch_ ? watch_->check(support::monotonic_s()) : std::nullopt;
 }
 
 bool GoalClient::stands() const {
-  return !status_ || (status_->linear_mps() == 0.0 && status_->angular_radps() == 0.0 &&
-                      status_->state() != msg::kNavigatorDriving);
+  return !status_ ||
+         (status_->command.linear_m_per_s == 0.0 && status_->command.angular_rad_per_s == 0.0 &&
+          status_->state != navigation::NavigatorState::kDriving);
 }
 
 std::shared_ptr<const planning::HybridMap> GoalClient::map() {

@@ -1,4 +1,4 @@
-// Gives a goal to a robot's planner and navigator and follows what becomes of it.
+// Gives a goal to a robot's planner and navigator and follows whether it is reached.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 #include "topogeo/msg/status.h"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/live_hybrid_map.hpp"
+#include "topogeo/supervision/goal_watch.hpp"
 
-#include "goal_watch.hpp"
 #include "service_table.hpp"
 
 namespace topogeo::cli {
@@ -32,18 +32,18 @@ class GoalClient {
   [[nodiscard]] std::string missing() const;
 
   /// Sends a goal with a number of its own, or an order about the goal that the robot has.
-  /// `patience_s`: see GoalWatch. Throws std::runtime_error when it cannot be sent and
+  /// `patience_s`: see supervision::GoalWatch. Throws std::runtime_error when it cannot be sent and
   /// std::invalid_argument for one that does not fit into a message.
   void send(service::Goal goal, double patience_s = 60.0);
-  /// Tells the robot to stop and forget the goal sent; nothing when none was.
+  /// Orders the robot to stop and forget the goal sent; nothing when none was.
   void cancel();
   /// Whether the readers have what was sent, within `patience_s`.
   bool delivered(double patience_s);
 
   /// Of the goal sent: nothing as long as it may still be reached.
-  [[nodiscard]] std::optional<GoalEnd> end() const;
+  [[nodiscard]] std::optional<supervision::GoalEnd> end() const;
   /// The newest.
-  [[nodiscard]] const std::optional<msg::NavigatorStatus>& status() const { return status_; }
+  [[nodiscard]] const std::optional<navigation::NavigatorStatus>& status() const { return status_; }
   /// The first that was found for the goal sent.
   [[nodiscard]] const std::optional<msg::Route>& route() const { return route_; }
   /// The newest whole map; null before.
@@ -51,10 +51,11 @@ class GoalClient {
   /// Whether the robot does not drive and is not commanded to move; true before the first status.
   [[nodiscard]] bool stands() const;
   /// Whether the newest status is of the goal sent.
-  [[nodiscard]] bool taken() const { return status_ && status_->goal_id() == goal_id_; }
+  [[nodiscard]] bool taken() const { return status_ && status_->goal_id == goal_id_; }
 
  private:
   void listen();
+  void take_status(const msg::NavigatorStatus& status);
   [[nodiscard]] bool is_own(const auto& message) const {
     return message.robot_id() == robot_id_.c_str();
   }
@@ -63,8 +64,8 @@ class GoalClient {
   std::string client_id_;
   std::uint64_t goal_id_ = 0;  // 0: none sent
   std::uint64_t sent_ = 0;
-  std::optional<GoalWatch> watch_;
-  std::optional<msg::NavigatorStatus> status_;
+  std::optional<supervision::GoalWatch> watch_;
+  std::optional<navigation::NavigatorStatus> status_;
   std::optional<msg::Route> route_;
   ServiceTable services_;
 
@@ -76,7 +77,8 @@ class GoalClient {
   service::LiveHybridMap live_map_;
 };
 
-/// What draws the way: where it goes and where it begins and ends. Its cells are not in a message.
+/// What a picture shows of a route: where it goes and where it begins and ends. Its cells are not
+/// in a message.
 planning::HybridRoute route_to_draw(const msg::Route& route);
 
 }  // namespace topogeo::cli

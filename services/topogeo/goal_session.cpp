@@ -71,7 +71,7 @@ GoalSession::GoalSession(const messaging::Participant& participant, messaging::E
     : options_(std::move(options)),
       goal_(to_goal(options_)),
       client_(participant, loop, robot_id),
-      progress_(std::cerr, support::stderr_is_terminal(), terminal_columns()) {
+      progress_(std::cerr, support::stderr_is_terminal(), supervision::terminal_columns()) {
   check_picture(options_.picture);
 }
 
@@ -82,9 +82,10 @@ void GoalSession::send() {
 void GoalSession::tick() {
   if (client_.route() && !told_way_) {
     told_way_ = true;
-    progress_.say(fmt::format("the route to {} is {:.1f} m long, through {} zones and {} borders",
-                              options_.target, client_.route()->length_m(),
-                              client_.route()->zones().size(), client_.route()->node_ids().size()));
+    progress_.print(fmt::format("the route to {} is {:.1f} m long, through {} zones and {} borders",
+                                options_.target, client_.route()->length_m(),
+                                client_.route()->zones().size(),
+                                client_.route()->node_ids().size()));
   }
   if (client_.route() && options_.picture && !drawn_) draw_way();
   if (client_.taken()) progress_.show(*client_.status(), support::monotonic_s());
@@ -99,7 +100,7 @@ void GoalSession::draw_way() {
   support::write_file_atomically(*options_.picture,
                                  render::route_picture(*map, route_to_draw(*client_.route()), title,
                                                        render::picture_format(*options_.picture)));
-  progress_.say("the route is drawn in " + options_.picture->string());
+  progress_.print("the route is drawn in " + options_.picture->string());
 }
 
 }  // namespace topogeo::cli

@@ -8,9 +8,9 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/render/picture_format.hpp"
+#include "topogeo/supervision/goal_progress.hpp"
 
 #include "goal_client.hpp"
-#include "goal_progress.hpp"
 
 namespace topogeo::cli {
 
@@ -19,7 +19,7 @@ struct GoalOptions {
   std::optional<double> heading_deg;             ///< map frame
   bool look_around = false;                      ///< see msg::Goal
   std::optional<std::filesystem::path> picture;  ///< of the way
-  double patience_s = 60.0;                      ///< see GoalWatch
+  double patience_s = 60.0;                      ///< see supervision::GoalWatch
 };
 
 /// Adds --heading, --look-around, --picture and --patience.
@@ -38,14 +38,14 @@ class GoalSession {
               const std::string& robot_id, GoalOptions options);
 
   [[nodiscard]] GoalClient& client() { return client_; }
-  [[nodiscard]] GoalProgress& progress() { return progress_; }
+  [[nodiscard]] supervision::GoalProgress& progress() { return progress_; }
 
   void send();
   /// Shows what is new and draws the way when it is known. Call it some ten times a second.
   /// Throws std::runtime_error when the picture cannot be written.
   void tick();
   /// Of the goal; nothing while it may still be reached.
-  [[nodiscard]] std::optional<GoalEnd> end() const { return client_.end(); }
+  [[nodiscard]] std::optional<supervision::GoalEnd> end() const { return client_.end(); }
 
  private:
   void draw_way();
@@ -53,7 +53,7 @@ class GoalSession {
   GoalOptions options_;
   service::Goal goal_;
   GoalClient client_;
-  GoalProgress progress_;
+  supervision::GoalProgress progress_;
   bool told_way_ = false;
   bool drawn_ = false;
 };

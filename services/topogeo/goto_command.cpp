@@ -48,12 +48,12 @@ int send_order(const GotoOptions& options) {
   if (!client.delivered(options.robot.wait_s))
     throw std::runtime_error("the order could not be sent");
   const bool done = wait_for(loop, options.robot.wait_s, [&] {
-    const bool paused = client.status()->reason() == msg::kHaltPaused;
-    if (options.pause) return paused || client.status()->goal_id() == 0;
+    const bool paused = client.status()->reason == navigation::HaltReason::kPaused;
+    if (options.pause) return paused || client.status()->goal_id == 0;
     if (options.resume) return !paused;
-    return client.status()->state() != msg::kNavigatorDriving;
+    return client.status()->state != navigation::NavigatorState::kDriving;
   });
-  std::cout << progress_line(*client.status()) << '\n';
+  std::cout << supervision::progress_line(*client.status()) << '\n';
   if (done) return service::kOk;
   throw std::runtime_error(fmt::format("robot '{}' did not do it within {:.0f} s",
                                        options.robot.robot_id, options.robot.wait_s));
@@ -84,9 +84,9 @@ int go_there(const GotoOptions& options) {
     std::cerr << "topogeo: stopped, the goal is cancelled\n";
     return interrupted();
   }
-  const GoalEnd end = *session.end();
+  const supervision::GoalEnd end = *session.end();
   if (end.arrived) return service::kOk;
-  call_off(loop, session.client());  // it must not set out when nobody expects it any more
+  call_off(loop, session.client());  // it must not set out when no one expects it any more
   throw std::runtime_error(end.reason);
 }
 

@@ -1,89 +1,68 @@
 #include "goto_run.hpp"
 
-#include <chrono>
-#include <iostream>
-
 #include <spdlog/fmt/fmt.h>
 
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
-#include "run_supervisor.hpp"
-
 namespace topogeo::cli {
 namespace {
 
-constexpr std::chrono::milliseconds kGotoTick{50};
 constexpr double kStart_s = 120.0;  // for the services to start and the robot to find its place
 constexpr double kCallOff_s = 5.0;  // for the robot to stop
 
 }  // namespace
 
-GotoRun::GotoRun(const RunOptions& options) : GotoRun(options, own_partition()) {}
-
-GotoRun::GotoRun(const RunOptions& options, const std::string& partition)
+GotoRun::GotoRun(const RunOptions& options)
     : options_(options),
       since_s_(support::monotonic_s()),
-      participant_(join(options, partition)),
-      truths_(participant_),
-      poses_(participant_),
-      session_(participant_, loop_, options.job.robot_id, *options.goal),
-      signals_([this](int number) { on_signal(number); }),
-      services_(options, partition) {
-  loop_.add<msg::GroundTruth>(truths_,
-                              [this](const msg::GroundTruth& truth, const messaging::SampleInfo&) {
-                                if (truth.robot_id() == options_.job.robot_id.c_str()) {
-                                  on_truth(truth);
-                                }
-                              });
-  loop_.add<msg::LivePose>(poses_, [this](const msg::LivePose& pose, const messaging::SampleInfo&) {
-    if (pose.robot_id() == options_.job.robot_id.c_str()) on_pose(pose);
-  });
-  loop_.add_timer(kGotoTick, [this] { tick(); });
-}
-
-// A second signal stops everything.
-void GotoRun::on_signal(int number) {
-  if (signal_.exchange(number) == 0) {
-    loop_.post([this] { call_off(); });
-  } else {
-    loop_.stop();
-  }
+      run_(options),
+      truth_(run_.participant(), run_.loop(), options.job.robot_id),
+      poses_(run_.participant()),
+      session_(run_.participant(), run_.loop(), options.job.robot_id, *options.goal) {
+  run_.loop().add<msg::LivePose>(poses_,
+                                 [this](const msg::LivePose& pose, const messaging::SampleInfo&) {
+                                   if (pose.robot_id() == options_.job.robot_id.c_str())
+                                     on_pose(pose);
+                                 });
+  ServiceRun::Hooks hooks;
+  hooks.on_tick = [this] { tick(); };
+  hooks.on_first_signal = [this] { call_off(); };
+  hooks.log = [this](const std::string& line) { session_.progress().print("topogeo: " + line); };
+  run_.start(options_, std::move(hooks));
 }
 
 GotoResult GotoRun::run() {
-  loop_.run();
+  run_.run();
   session_.progress().finish();
-  result_.signal_number = result_.arrived ? 0 : signal_.load();
+  result_.failure = run_.failure();
+  result_.signal_number = result_.arrived ? 0 : run_.signal_number();
   result_.status = session_.client().status();
   if (const auto& route = session_.client().route()) {
     result_.goal_m = Eigen::Vector2d(route->points().back().x_m(), route->points().back().y_m());
   }
-  stop(services_, loop_, true,
-       [](const std::string& text) { std::cerr << "topogeo: " << text << '\n'; });
-  services_.wait();
+  if (!truth_.poses().empty()) {
+    const geometry::Pose2 T_world_map = truth_.poses().front().pose;
+    result_.truth = truth_.poses();
+    for (topomap::StampedPose& pose : result_.truth) {
+      pose.pose = geometry::between(T_world_map, pose.pose);
+    }
+    result_.collisions = truth_.last().collisions();
+    result_.run_into = truth_.last().run_into();
+  }
+  static_cast<void>(run_.stop(true));
   return std::move(result_);
-}
-
-void GotoRun::on_truth(const msg::GroundTruth& truth) {
-  const geometry::Pose2 T_world_robot = service::from_msg(truth.T_world_robot());
-  if (!T_world_map_) T_world_map_ = T_world_robot;
-  result_.truth.push_back(
-      {result_.truth.size(), truth.stamp_ns(), geometry::between(*T_world_map_, T_world_robot)});
-  result_.collisions = truth.collisions();
-  result_.run_into = truth.run_into();
 }
 
 void GotoRun::on_pose(const msg::LivePose& pose) {
   pose_ = pose;
   if (pose.state() != msg::kStateTracking) return;
-  result_.believed.push_back(
+  result_.estimated.push_back(
       {pose.sequence_number(), pose.stamp_ns(), service::from_msg(pose.T_map_robot())});
 }
 
 void GotoRun::tick() {
-  check_deaths();
   switch (phase_) {
     case Phase::kWaiting:
       wait_for_start();
@@ -92,20 +71,10 @@ void GotoRun::tick() {
       drive();
       break;
     case Phase::kCallingOff:
-      if (session_.client().stands() || support::monotonic_s() - since_s_ > kCallOff_s)
-        loop_.stop();
+      if (session_.client().stands() || support::monotonic_s() - since_s_ > kCallOff_s) {
+        run_.loop().stop();
+      }
       break;
-  }
-}
-
-void GotoRun::check_deaths() {
-  while (const std::optional<ServiceGroup::Death> death = services_.next_death()) {
-    if (death->is_worker) {
-      session_.progress().say("topogeo: " + death->what + "; the run continues without it");
-    } else {
-      fail(death->what);
-      loop_.stop();
-    }
   }
 }
 
@@ -113,7 +82,7 @@ std::string GotoRun::waits_for() {
   const std::string missing = session_.client().missing();
   if (!missing.empty()) return "the services";
   if (!session_.client().map()) return "the map";
-  if (!T_world_map_) return "the simulated robot";
+  if (truth_.poses().empty()) return "the simulated robot";
   if (!pose_) return "the first pose";
   if (options_.goal->look_around || pose_->state() == msg::kStateTracking) return {};
   return fmt::format(
@@ -129,24 +98,23 @@ void GotoRun::wait_for_start() {
     session_.send();
     return;
   }
-  if (what != told_) session_.progress().say("waiting for " + what);
-  told_ = what;
+  if (what != reported_) session_.progress().print("waiting for " + what);
+  reported_ = what;
   if (support::monotonic_s() - since_s_ < kStart_s) return;
-  fail(fmt::format("{:.0f} s have passed, and it still waits for {}", kStart_s, what));
-  loop_.stop();
+  run_.fail(fmt::format("{:.0f} s have passed, and it still waits for {}", kStart_s, what));
 }
 
 void GotoRun::drive() {
   session_.tick();
-  const std::optional<GoalEnd> end = session_.end();
+  const std::optional<supervision::GoalEnd> end = session_.end();
   if (!end) return;
   result_.drive_s = support::monotonic_s() - since_s_;
   result_.arrived = end->arrived;
   if (end->arrived) {
-    loop_.stop();
+    run_.loop().stop();
     return;
   }
-  fail(end->reason);
+  run_.note_failure(end->reason);
   call_off();
 }
 
@@ -155,10 +123,6 @@ void GotoRun::call_off() {
   phase_ = Phase::kCallingOff;
   since_s_ = support::monotonic_s();
   session_.client().cancel();
-}
-
-void GotoRun::fail(const std::string& why) {
-  if (result_.failure.empty()) result_.failure = why;
 }
 
 }  // namespace topogeo::cli

@@ -180,7 +180,7 @@ void add_run_command(command_line::Command& app, int& exit_code) {
       command->add_option("--devices", options->devices, "use the devices of this file (YAML)")
           ->type_name("FILE")
           ->excludes(log);
-  auto simulation = std::make_shared<SimulationOptions>();
+  auto simulation = std::make_shared<SimulatorOptions>();
   command_line::Option* sim =
       command->add_option("--sim", simulation->world, "drive the tour of this world file (YAML)")
           ->type_name("WORLD")

@@ -28,7 +28,7 @@ using topomap::StampedPose;
 
 /// The devices of a simulation, as a file for the gateway.
 void write_devices(const RunOptions& options) {
-  const SimulationOptions& simulation = *options.simulation;
+  const SimulatorOptions& simulation = *options.simulation;
   sensor_gateway::DeviceFile file;
   const support::ConfigSchema schema = describe(file);  // with the defaults as they are
   file.laser.port = simulated_port(options, "laser").string();
@@ -48,7 +48,7 @@ void write_devices(const RunOptions& options) {
 }
 
 /// Finds out before anything starts whether the world can be driven through.
-void check_world(const SimulationOptions& simulation) {
+void check_world(const SimulatorOptions& simulation) {
   const world::World world = [&] {
     try {
       return world::load_world(simulation.world);
@@ -112,7 +112,7 @@ void prepare_simulation(RunOptions& options) {
   write_devices(options);
 }
 
-void add_simulation_options(command_line::Command& app, SimulationOptions& options,
+void add_simulation_options(command_line::Command& app, SimulatorOptions& options,
                             command_line::Option* simulation) {
   const std::vector<command_line::Option*> added = {
       app.add_option("--seed", options.seed, "of a simulation: of noise, drift, doors and people"),

@@ -22,16 +22,16 @@ namespace {
 
 using topomap::StampedPose;
 
-/// How far what the robot believed on its way was from the truth.
-void print_pose_errors(const std::vector<StampedPose>& believed,
+/// How far the estimated poses were from the truth.
+void print_pose_errors(const std::vector<StampedPose>& estimated,
                        const std::vector<StampedPose>& truth) {
-  const std::vector<StampedPose> true_poses = truth_at(believed, truth);
+  const std::vector<StampedPose> true_poses = truth_at(estimated, truth);
   double sum_m2 = 0.0;
   double largest_m = 0.0;
   std::size_t i = 0;
   for (const StampedPose& pose : true_poses) {
-    while (believed[i].stamp_ns < pose.stamp_ns) ++i;
-    const double error_m = (believed[i].pose.position_m() - pose.pose.position_m()).norm();
+    while (estimated[i].stamp_ns < pose.stamp_ns) ++i;
+    const double error_m = (estimated[i].pose.position_m() - pose.pose.position_m()).norm();
     sum_m2 += error_m * error_m;
     largest_m = std::max(largest_m, error_m);
   }
@@ -44,8 +44,8 @@ void print_pose_errors(const std::vector<StampedPose>& believed,
 void print_arrival(const RunOptions& options, const GotoResult& result) {
   const auto& status = *result.status;
   std::cout << fmt::format("arrived at {} after {:.1f} m and {:.0f} s; {} collisions, {} detours\n",
-                           options.goal->target, status.driven_m(), result.drive_s,
-                           result.collisions, status.detours());
+                           options.goal->target, status.driven_m, result.drive_s, result.collisions,
+                           status.detours);
   if (!result.goal_m || result.truth.empty()) return;
   const geometry::Pose2& truth = result.truth.back().pose;
   std::string text = fmt::format("it stands {:.3f} m from the goal by the truth",
@@ -56,12 +56,12 @@ void print_arrival(const RunOptions& options, const GotoResult& result) {
         geometry::wrap_angle(truth.theta_rad - *options.goal->heading_deg / kDegrees);
     text += fmt::format(" and points {:.1f} degrees off", std::fabs(off_rad) * kDegrees);
   }
-  if (status.pose_known()) {
-    const Eigen::Vector2d believed_m(status.T_map_robot().x_m(), status.T_map_robot().y_m());
-    text += fmt::format(", {:.3f} m by its own pose", (believed_m - *result.goal_m).norm());
+  if (status.T_map_robot) {
+    text += fmt::format(", {:.3f} m by its own pose",
+                        (status.T_map_robot->position_m() - *result.goal_m).norm());
   }
   std::cout << text << '\n';
-  print_pose_errors(result.believed, result.truth);
+  print_pose_errors(result.estimated, result.truth);
 }
 
 }  // namespace
@@ -73,10 +73,10 @@ int run_goto(RunOptions options) {
   if (!options.goal->picture) options.goal->picture = options.job.out / "route.png";
   prepare_simulation(options);
   const GotoResult result = GotoRun(options).run();
-  if (!result.believed.empty()) {
-    storage::write_trajectory_tum(options.job.out / "trajectory.tum", result.believed);
+  if (!result.estimated.empty()) {
+    storage::write_trajectory_tum(options.job.out / "trajectory.tum", result.estimated);
     storage::write_trajectory_tum(options.job.out / "truth.tum",
-                                  truth_at(result.believed, result.truth));
+                                  truth_at(result.estimated, result.truth));
   }
   if (result.signal_number != 0) {
     std::cerr << "topogeo: stopped\n";

@@ -10,8 +10,8 @@
 #include "topogeo/support/config_schema.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
+#include "run_services.hpp"
 #include "run_supervisor.hpp"
-#include "service_group.hpp"
 
 namespace topogeo::cli {
 
@@ -43,7 +43,7 @@ storage::Report make_report(const RunOptions& options, const support::EffectiveC
 void print_pool(std::ostream& out, const ServiceTable& services);
 
 /// Adds --seed, --baud, --odometry, --speed and --people, which need the option `simulation`.
-void add_simulation_options(command_line::Command& app, SimulationOptions& options,
+void add_simulation_options(command_line::Command& app, SimulatorOptions& options,
                             command_line::Option* simulation);
 
 /// Adds --goto, which needs the option `needed` unless that is null, and what belongs to it.

@@ -1,28 +1,24 @@
 // One run of all services on a log: starts them, watches them to the end of the log, stops them.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "topogeo/localization/mapping/loop_decision.hpp"
-#include "topogeo/messaging/event_loop.hpp"
-#include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
-#include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/decision_assembly.hpp"
+#include "topogeo/supervision/stall_watch.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
 #include "explore_session.hpp"
-#include "service_group.hpp"
+#include "service_run.hpp"
 #include "service_table.hpp"
-#include "stall_watch.hpp"
 #include "tour_driver.hpp"
 
 namespace topogeo::cli {
@@ -32,7 +28,7 @@ struct RunResult {
   int signal_number = 0;                  ///< that has stopped the run, else 0
   std::string failure;                    ///< why it did not finish, when no signal did that
   std::vector<support::StageTime> times;  ///< of each service
-  ServiceTable services;                  ///< what they said last
+  ServiceTable services;                  ///< their last statuses
   std::vector<localization::LoopDecision> loop_decisions;  ///< all, when finished
   // Of a simulation:
   std::vector<topomap::StampedPose> truth;  ///< where the robot really was
@@ -42,7 +38,7 @@ struct RunResult {
 class RunSupervisor {
  public:
   /// Starts the services, in a partition of their own. `laser_lines` is how many scans there are to
-  /// come, at most. Throws like messaging::Participant and ServiceGroup.
+  /// come, at most. Throws like ServiceRun.
   /// For a simulation: its world has a tour. A run on devices ends with the tour, or with the first
   /// signal; the map of what was seen by then is finished.
   RunSupervisor(const RunOptions& options, std::uint64_t laser_lines);
@@ -51,47 +47,33 @@ class RunSupervisor {
   RunResult run();
 
  private:
-  RunSupervisor(const RunOptions& options, std::uint64_t laser_lines, const std::string& partition);
   void tick();
   void watch_tour();
   void watch_exploration();
   void end_stream();
-  void on_signal(int number);
-  void check_deaths();
+  void check_states();
   void check_stall();
   void show_progress();
   void finish_bar();
-  void say(const std::string& text);
-  void fail(const std::string& why);
-  void wait_for_last_words();
+  void print(const std::string& text);
+  void wait_for_last_messages();
 
   RunOptions options_;
   std::uint64_t laser_lines_;
   double start_s_;
   RunResult result_;
-  bool ended_ = false;  // finished, failed or stopped by a signal
   bool bar_done_ = false;
   support::ProgressBar bar_;
-  StallWatch stall_;
+  supervision::StallWatch stall_;
   service::DecisionAssembly decisions_;
 
-  messaging::Participant participant_;
+  ServiceRun run_;
   messaging::Reader<msg::ServiceStatus> status_reader_;
   messaging::Reader<msg::StreamEnd> end_reader_;
   messaging::Reader<msg::LoopDecisions> decision_reader_;
-  messaging::EventLoop loop_;
   std::optional<TourDriver> tour_;  // while exploring it stands still and keeps the truth
   std::optional<ExploreSession> exploration_;
   bool stream_ended_ = false;  // the gateway was asked to end
-  std::atomic<int> signal_ = 0;
-  messaging::SignalStop signals_;
-  ServiceGroup services_;  // after the readers: they must not miss what the services say
 };
-
-/// Joins the domain of a run as the one that watches it.
-messaging::Participant join(const RunOptions& options, const std::string& partition);
-
-/// A partition that no other run has.
-std::string own_partition();
 
 }  // namespace topogeo::cli

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kCommandPeriod_s = 0.05;
 constexpr double kValid_s = 0.5;
-/// From a command until the base has obeyed it, about: the way to the gateway, the line, and the
-/// time to reach the speed. The commands are for where the robot will be by then.
+/// From a command until the base has obeyed it, about: the network, the line, and the time to reach
+/// the speed. The commands are for where the robot will be by then.
 constexpr double kDelay_s = 0.2;
 
 geometry::Pose2 ahead_of(const msg::GroundTruth& truth) {
@@ -35,22 +35,16 @@ TourDriver::TourDriver(const messaging::Participant& participant, messaging::Eve
       tour_m_(follower_.rest_m()),
       limit_s_(10.0 + 20.0 * tour_m_ / options.speed_m_per_s),
       commands_(participant),
-      truths_(participant) {
+      truth_(participant, loop, robot_id_,
+             [this](const msg::GroundTruth& truth, double step_s) { on_truth(truth, step_s); }) {
   loop.add(commands_);
-  loop.add<msg::GroundTruth>(truths_,
-                             [this](const msg::GroundTruth& truth, const messaging::SampleInfo&) {
-                               if (truth.robot_id() == robot_id_.c_str()) on_truth(truth);
-                             });
 }
 
 double TourDriver::share() const {
   return tour_m_ > 0.0 ? std::clamp(1.0 - follower_.rest_m() / tour_m_, 0.0, 1.0) : 1.0;
 }
 
-void TourDriver::on_truth(const msg::GroundTruth& truth) {
-  truth_.push_back({truth_.size(), truth.stamp_ns(), service::from_msg(truth.T_world_robot())});
-  const double step_s = truth_.size() > 1 ? truth.time_s() - last_.time_s() : 0.0;
-  last_ = truth;
+void TourDriver::on_truth(const msg::GroundTruth& truth, double step_s) {
   if (!started_ || arrived_) return;
   driven_s_ += step_s;
   if (at_end_) {
@@ -72,7 +66,7 @@ void TourDriver::on_truth(const msg::GroundTruth& truth) {
 
 void TourDriver::command(const simulation::Velocity& velocity) {
   msg::MotionCommand command;
-  messaging::set_header(command, robot_id_, last_.stamp_ns(), commands_sent_);
+  messaging::set_header(command, robot_id_, truth_.last().stamp_ns(), commands_sent_);
   command.linear_mps(velocity.linear_m_per_s);
   command.angular_radps(velocity.angular_rad_per_s);
   command.valid_for_s(kValid_s);

@@ -1,6 +1,6 @@
 // Drives a simulated robot along the tour of its world by motion commands, which go through gateway
-// and base like everybody's; knows from the simulator where the robot really is. Stands in for what
-// would navigate.
+// and base like those of a navigator, for which it stands in; the simulator reports where the robot
+// really is.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,11 @@
 
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
-#include "topogeo/msg/simulation.h"
 #include "topogeo/simulation/tour_follower.hpp"
-#include "topogeo/topomap/trajectory.hpp"
+
+#include "ground_truth_log.hpp"
 
 namespace topogeo::cli {
 
@@ -34,13 +33,11 @@ class TourDriver {
   /// Twenty times what the tour takes at full speed has passed: it will not arrive any more.
   [[nodiscard]] bool overdue() const { return driven_s_ > limit_s_; }
 
-  /// Where the robot really was, fifty times a second.
-  [[nodiscard]] const std::vector<topomap::StampedPose>& truth() const { return truth_; }
-  /// What the simulator said last.
-  [[nodiscard]] const msg::GroundTruth& last() const { return last_; }
+  /// Where the robot really was.
+  [[nodiscard]] const GroundTruthLog& truth() const { return truth_; }
 
  private:
-  void on_truth(const msg::GroundTruth& truth);
+  void on_truth(const msg::GroundTruth& truth, double step_s);
   void command(const simulation::Velocity& velocity);
 
   std::string robot_id_;
@@ -48,9 +45,6 @@ class TourDriver {
   double tour_m_;
   double limit_s_;
   messaging::Writer<msg::MotionCommand> commands_;
-  messaging::Reader<msg::GroundTruth> truths_;
-  std::vector<topomap::StampedPose> truth_;
-  msg::GroundTruth last_;
   bool started_ = false;
   bool arrived_ = false;
   bool at_end_ = false;
@@ -58,6 +52,7 @@ class TourDriver {
   double driven_s_ = 0.0;
   double standing_s_ = 0.0;  // at the end
   std::uint64_t commands_sent_ = 0;
+  GroundTruthLog truth_;
 };
 
 }  // namespace topogeo::cli

@@ -88,11 +88,11 @@ void PoolClient::publish(const Maps& maps) {
 }
 
 Workers::~Workers() {
-  for (cli::ChildProcess& child : children_) child.send_signal(SIGTERM);
+  for (supervision::ChildProcess& child : children_) child.send_signal(SIGTERM);
   constexpr std::chrono::seconds kToLeave{5};
   constexpr std::chrono::milliseconds kLook{5};
   const Clock::time_point end = Clock::now() + kToLeave;
-  for (cli::ChildProcess& child : children_) {
+  for (supervision::ChildProcess& child : children_) {
     while (!child.poll() && Clock::now() < end) std::this_thread::sleep_for(kLook);
   }
 }

@@ -15,8 +15,8 @@
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
+#include "topogeo/supervision/child_process.hpp"
 
-#include "child_process.hpp"
 #include "localization/simulated_maps.hpp"
 #include "remote_pool.hpp"
 
@@ -92,7 +92,7 @@ class Workers {
   void start_stubs(const PoolClient& client, std::size_t count);
 
  private:
-  std::vector<cli::ChildProcess> children_;
+  std::vector<supervision::ChildProcess> children_;
 };
 
 }  // namespace topogeo::bench

@@ -1,4 +1,4 @@
-// One service as a child process that does not outlive this program.
+// A program as a child process that does not outlive this program.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 #include <sys/types.h>
 
-namespace topogeo::cli {
+namespace topogeo::supervision {
 
 /// How a child ended and what it used.
 struct ChildExit {
@@ -46,7 +46,7 @@ class ChildProcess {
   /// Waits for its end.
   void wait();
 
-  /// The last line that it printed, cut to a length for messages; empty if none.
+  /// The last line of its output, cut to a length for messages; empty if none.
   [[nodiscard]] std::string last_line() const;
 
  private:
@@ -59,4 +59,4 @@ class ChildProcess {
   std::optional<ChildExit> exit_;
 };
 
-}  // namespace topogeo::cli
+}  // namespace topogeo::supervision

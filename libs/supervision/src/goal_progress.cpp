@@ -1,4 +1,4 @@
-#include "goal_progress.hpp"
+#include "topogeo/supervision/goal_progress.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +9,15 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "topogeo/navigation/navigator_inputs.hpp"
-
-namespace topogeo::cli {
+namespace topogeo::supervision {
 namespace {
 
-constexpr std::size_t kCells = 24;
-constexpr double kRedraw_s = 0.1;
-constexpr double kPlainPeriod_s = 10.0;
-std::string_view word(msg::NavigatorState state) {
-  return navigation::describe(static_cast<navigation::NavigatorState>(state));
-}
+using navigation::NavigatorState;
+using navigation::NavigatorStatus;
+
+constexpr std::size_t kCells = 24;       // of the bar: leaves room for the numbers in 80 columns
+constexpr double kRedraw_s = 0.1;        // faster changes cannot be read
+constexpr double kPlainPeriod_s = 10.0;  // keeps the file of a long drive short
 
 std::string bar(double share) {
   const auto filled =
@@ -27,28 +25,28 @@ std::string bar(double share) {
   return std::string(filled, '#') + std::string(kCells - filled, '.');
 }
 
-bool same(const msg::NavigatorStatus& a, const msg::NavigatorStatus& b) {
-  return a.state() == b.state() && a.reason() == b.reason();
+bool same(const NavigatorStatus& a, const NavigatorStatus& b) {
+  return a.state == b.state && a.reason == b.reason;
 }
 
 }  // namespace
 
-std::string progress_line(const msg::NavigatorStatus& status) {
-  const double way_m = status.driven_m() + status.rest_m();
-  if (status.state() == msg::kNavigatorArrived) {
-    return fmt::format("arrived after {:.1f} m", status.driven_m());
+std::string progress_line(const NavigatorStatus& status) {
+  const double whole_m = status.driven_m + status.rest_m;
+  if (status.state == NavigatorState::kArrived) {
+    return fmt::format("arrived after {:.1f} m", status.driven_m);
   }
-  if (status.state() != msg::kNavigatorDriving) {
-    std::string text(word(status.state()));
-    if (status.message().size() > 0) text += ": " + status.message().to_string();
+  if (status.state != NavigatorState::kDriving) {
+    std::string text(navigation::describe(status.state));
+    if (!status.message.empty()) text += ": " + status.message;
     return text;
   }
-  const double share = way_m > 0.0 ? std::clamp(status.driven_m() / way_m, 0.0, 1.0) : 0.0;
+  const double share = whole_m > 0.0 ? std::clamp(status.driven_m / whole_m, 0.0, 1.0) : 0.0;
   return fmt::format("driving [{}] {:3.0f} %, {:.1f} m to go, about {:.0f} s", bar(share),
-                     std::floor(100.0 * share), status.rest_m(), std::ceil(status.rest_s()));
+                     std::floor(100.0 * share), status.rest_m, std::ceil(status.rest_s));
 }
 
-void GoalProgress::show(const msg::NavigatorStatus& status, double now_s) {
+void GoalProgress::show(const NavigatorStatus& status, double now_s) {
   const bool changed = !last_ || !same(status, *last_);
   last_ = status;
   const std::string text = progress_line(status);
@@ -58,8 +56,8 @@ void GoalProgress::show(const msg::NavigatorStatus& status, double now_s) {
     out_ << text << std::endl;
     return;
   }
-  if (changed && status.state() != msg::kNavigatorDriving) {
-    say(text);
+  if (changed && status.state != NavigatorState::kDriving) {
+    print(text);
     return;
   }
   if (!changed && now_s < due_s_) return;
@@ -67,7 +65,7 @@ void GoalProgress::show(const msg::NavigatorStatus& status, double now_s) {
   draw(text);
 }
 
-void GoalProgress::say(const std::string& text) {
+void GoalProgress::print(const std::string& text) {
   if (is_terminal_ && drawn_ > 0) {
     out_ << '\r' << std::string(drawn_, ' ') << '\r';
     drawn_ = 0;
@@ -95,4 +93,4 @@ std::size_t terminal_columns() {
   return size.ws_col;
 }
 
-}  // namespace topogeo::cli
+}  // namespace topogeo::supervision

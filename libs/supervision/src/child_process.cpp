@@ -1,4 +1,4 @@
-#include "child_process.hpp"
+#include "topogeo/supervision/child_process.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -18,11 +18,11 @@
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/file_descriptor.hpp"
 
-namespace topogeo::cli {
+namespace topogeo::supervision {
 namespace {
 
-constexpr int kCannotExec = 127;  // as shells say it
-constexpr std::size_t kLongestLine = 400;
+constexpr int kCannotExec = 127;           // the exit code that shells use for it
+constexpr std::size_t kLongestLine = 400;  // bytes; fits into a line of a log
 
 std::runtime_error system_error(const std::string& what) {
   return std::runtime_error(what + ": " + std::strerror(errno));
@@ -140,4 +140,4 @@ std::string ChildProcess::last_line() const {
   return last.substr(0, std::min(last.size(), kLongestLine));
 }
 
-}  // namespace topogeo::cli
+}  // namespace topogeo::supervision

@@ -1,4 +1,4 @@
-// How far a robot is on its way, in one line.
+// How far a robot is from its goal, in one line.
 //
 // On a terminal the line is redrawn in place and what stops the robot stays above it; elsewhere (a
 // file, a pipe) there is a line for each change and one every ten seconds.
@@ -9,12 +9,12 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/msg/planning.h"
+#include "topogeo/navigation/navigator_inputs.hpp"
 
-namespace topogeo::cli {
+namespace topogeo::supervision {
 
-/// "driving [####....]  50 %, 3.0 m of 6.0 m, 5 s left", or what it waits for.
-std::string progress_line(const msg::NavigatorStatus& status);
+/// "driving [####....]  50 %, 3.0 m to go, about 5 s", or what the robot waits for.
+std::string progress_line(const navigation::NavigatorStatus& status);
 
 class GoalProgress {
  public:
@@ -23,9 +23,9 @@ class GoalProgress {
       : out_(out), is_terminal_(is_terminal), columns_(columns) {}
 
   /// The caller passes the time, in seconds from any start.
-  void show(const msg::NavigatorStatus& status, double now_s);
+  void show(const navigation::NavigatorStatus& status, double now_s);
   /// A line of its own.
-  void say(const std::string& text);
+  void print(const std::string& text);
   /// Ends the line that is redrawn, if one is.
   void finish();
 
@@ -35,12 +35,12 @@ class GoalProgress {
   std::ostream& out_;
   bool is_terminal_;
   std::size_t columns_;
-  std::optional<msg::NavigatorStatus> last_;
+  std::optional<navigation::NavigatorStatus> last_;
   double due_s_ = 0.0;
   std::size_t drawn_ = 0;
 };
 
-/// Columns of the terminal at standard error; 80 when it does not say.
+/// Columns of the terminal at standard error; 80 when they are not known.
 std::size_t terminal_columns();
 
-}  // namespace topogeo::cli
+}  // namespace topogeo::supervision

@@ -1,0 +1,50 @@
+// Whether a goal was reached, or when there is no more hope of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "topogeo/navigation/navigator_inputs.hpp"
+
+namespace topogeo::supervision {
+
+struct GoalEnd {
+  bool arrived = false;
+  std::string reason;  ///< why not; empty when arrived
+};
+
+/// A planner's answer to a goal.
+struct RouteAnswer {
+  std::uint64_t goal_id = 0;
+  bool refused = false;  ///< there is no route, and another pose or map does not change that
+  std::string reason;    ///< why there is no route, for people; may be empty
+};
+
+/// The caller passes the time, in seconds from any start.
+class GoalWatch {
+ public:
+  /// Given up when the robot has not driven for `patience_s`; a pause does not count.
+  GoalWatch(std::uint64_t goal_id, double patience_s, double now_s)
+      : goal_id_(goal_id), patience_s_(patience_s), alive_s_(now_s), driven_s_(now_s) {}
+
+  /// An answer to another goal does not matter.
+  void add(const RouteAnswer& answer);
+  void add(const navigation::NavigatorStatus& status, double now_s);
+  /// Nothing as long as it may still arrive.
+  [[nodiscard]] std::optional<GoalEnd> check(double now_s) const;
+
+ private:
+  [[nodiscard]] std::optional<GoalEnd> judge(const navigation::NavigatorStatus& status) const;
+
+  std::uint64_t goal_id_;
+  double patience_s_;
+  double alive_s_;   // the last status of the navigator
+  double driven_s_;  // the robot drove, or was paused
+  bool taken_ = false;
+  bool replaced_ = false;
+  RouteAnswer answer_;
+  std::optional<navigation::NavigatorStatus> status_;
+};
+
+}  // namespace topogeo::supervision

@@ -1,0 +1,74 @@
+// Programs that run together as child processes: started, watched and stopped as one.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/supervision/child_process.hpp"
+#include "topogeo/support/cpu_time.hpp"
+
+namespace topogeo::supervision {
+
+/// What the end of a process means for the others.
+enum class Importance : std::uint8_t {
+  kNeeded,      ///< they cannot go on without it
+  kMayFinish,   ///< the same, but with exit code 0 it has done its work
+  kExpendable,  ///< they go on without it
+};
+
+/// A process that ended although its work was not done.
+struct UnexpectedEnd {
+  std::string
+      description;     ///< "localizer was killed by signal 9 (Killed); last line of its log: ..."
+  bool fatal = false;  ///< the others cannot go on without it
+};
+
+class ProcessGroup {
+ public:
+  /// Programs are taken from the folder `programs`; the output of each process goes to
+  /// `logs`/<name>.log. Makes the folder `logs`; throws std::filesystem::filesystem_error when that
+  /// is not possible.
+  ProcessGroup(std::filesystem::path programs, std::filesystem::path logs);
+
+  /// Starts a program under a name of its own. Throws like ChildProcess.
+  void start(const std::string& name, const std::string& program,
+             const std::vector<std::string>& arguments,
+             Importance importance = Importance::kNeeded);
+
+  /// One that has ended since the last call; an end that was in order is passed over.
+  std::optional<UnexpectedEnd> next_unexpected_end();
+
+  /// Asks the process of that name to finish (SIGTERM), which is in order from then on.
+  void finish(const std::string& name);
+
+  /// Passes so much time, in which the caller's other work goes on.
+  using Pause = std::function<void(std::chrono::milliseconds duration)>;
+  /// Asks all processes to end, `first` alone before the others (empty: all at once), and kills
+  /// those that still run after `patience_s`. Returns the names of those.
+  std::vector<std::string> stop(double patience_s, const Pause& pause,
+                                const std::string& first = {});
+
+  /// Waits until all have ended. Wall and CPU time of each, in the order of their start.
+  std::vector<support::StageTime> wait();
+
+ private:
+  struct Member {
+    ChildProcess process;
+    Importance importance = Importance::kNeeded;
+    bool reported = false;  // its end
+  };
+
+  void send_signal(int signal_number, const std::string& name);
+  [[nodiscard]] bool runs(const std::string& name);
+
+  std::filesystem::path programs_;
+  std::filesystem::path logs_;
+  std::vector<Member> members_;
+};
+
+}  // namespace topogeo::supervision

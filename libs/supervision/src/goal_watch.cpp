@@ -1,0 +1,60 @@
+#include "topogeo/supervision/goal_watch.hpp"
+
+namespace topogeo::supervision {
+namespace {
+
+using navigation::HaltReason;
+using navigation::NavigatorState;
+using navigation::NavigatorStatus;
+
+/// A navigator publishes its status five times a second, so that fifty are missing by then.
+constexpr double kSilent_s = 10.0;
+
+std::string text_of(const NavigatorStatus& status) {
+  return status.message.empty() ? "the navigator gave no reason" : status.message;
+}
+
+}  // namespace
+
+void GoalWatch::add(const RouteAnswer& answer) {
+  if (answer.goal_id == goal_id_) answer_ = answer;
+}
+
+void GoalWatch::add(const NavigatorStatus& status, double now_s) {
+  alive_s_ = now_s;
+  if (status.goal_id != goal_id_) {
+    replaced_ = taken_;
+    return;
+  }
+  taken_ = true;
+  replaced_ = false;
+  if (status.state == NavigatorState::kDriving || status.reason == HaltReason::kPaused) {
+    driven_s_ = now_s;
+  }
+  status_ = status;
+}
+
+std::optional<GoalEnd> GoalWatch::check(double now_s) const {
+  if (replaced_) return GoalEnd{false, "another goal replaced it, or another program cancelled it"};
+  if (status_) {
+    if (std::optional<GoalEnd> end = judge(*status_)) return end;
+  }
+  if (now_s - alive_s_ > kSilent_s) return GoalEnd{false, "the navigator is gone"};
+  if (now_s - driven_s_ <= patience_s_) return std::nullopt;
+  if (!taken_) return GoalEnd{false, "the navigator does not take the goal"};
+  return GoalEnd{false, text_of(*status_)};
+}
+
+std::optional<GoalEnd> GoalWatch::judge(const NavigatorStatus& status) const {
+  if (status.state == NavigatorState::kArrived) return GoalEnd{true, ""};
+  if (status.state == NavigatorState::kIdle) return GoalEnd{false, "the goal was cancelled"};
+  if (status.state != NavigatorState::kStopped) return std::nullopt;
+  if (status.reason == HaltReason::kCancelled) return GoalEnd{false, "the goal was cancelled"};
+  if (status.reason == HaltReason::kNoRoute && answer_.refused) {
+    return GoalEnd{false,
+                   "no route: " + (answer_.reason.empty() ? text_of(status) : answer_.reason)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace topogeo::supervision

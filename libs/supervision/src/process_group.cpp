@@ -1,0 +1,90 @@
+#include "topogeo/supervision/process_group.hpp"
+
+#include <csignal>
+#include <utility>
+
+namespace topogeo::supervision {
+
+namespace {
+
+/// Between two checks of what still runs: short against the time that a service takes to end.
+constexpr std::chrono::milliseconds kCheckPeriod{20};
+
+}  // namespace
+
+ProcessGroup::ProcessGroup(std::filesystem::path programs, std::filesystem::path logs)
+    : programs_(std::move(programs)), logs_(std::move(logs)) {
+  std::filesystem::create_directories(logs_);
+}
+
+void ProcessGroup::start(const std::string& name, const std::string& program,
+                         const std::vector<std::string>& arguments, Importance importance) {
+  members_.push_back(
+      {ChildProcess(name, programs_ / program, arguments, logs_ / (name + ".log")), importance});
+}
+
+std::optional<UnexpectedEnd> ProcessGroup::next_unexpected_end() {
+  for (Member& member : members_) {
+    if (member.reported) continue;
+    const std::optional<ChildExit>& exit = member.process.poll();
+    if (!exit) continue;
+    member.reported = true;
+    if (member.importance == Importance::kMayFinish && exit->clean()) continue;
+    const std::string last = member.process.last_line();
+    return UnexpectedEnd{
+        member.process.name() + " " + describe(*exit) +
+            (last.empty() ? ", its log is empty" : "; last line of its log: " + last),
+        member.importance != Importance::kExpendable};
+  }
+  return std::nullopt;
+}
+
+void ProcessGroup::finish(const std::string& name) {
+  for (Member& member : members_) {
+    if (member.process.name() == name) member.importance = Importance::kMayFinish;
+  }
+  send_signal(SIGTERM, name);
+}
+
+void ProcessGroup::send_signal(int signal_number, const std::string& name) {
+  for (Member& member : members_) {
+    if (name.empty() || member.process.name() == name) member.process.send_signal(signal_number);
+  }
+}
+
+bool ProcessGroup::runs(const std::string& name) {
+  for (Member& member : members_) {
+    if ((name.empty() || member.process.name() == name) && !member.process.poll()) return true;
+  }
+  return false;
+}
+
+std::vector<std::string> ProcessGroup::stop(double patience_s, const Pause& pause,
+                                            const std::string& first) {
+  const double end_s = support::monotonic_s() + patience_s;
+  const auto end = [&](const std::string& name) {
+    send_signal(SIGTERM, name);
+    while (runs(name) && support::monotonic_s() < end_s) pause(kCheckPeriod);
+  };
+  if (!first.empty()) end(first);
+  end({});
+  std::vector<std::string> killed;
+  for (Member& member : members_) {
+    if (!member.process.poll()) killed.push_back(member.process.name());
+  }
+  send_signal(SIGKILL, {});
+  return killed;
+}
+
+std::vector<support::StageTime> ProcessGroup::wait() {
+  std::vector<support::StageTime> times;
+  for (Member& member : members_) {
+    member.process.wait();
+    if (const auto& exit = member.process.poll()) {
+      times.push_back({member.process.name(), exit->wall_s, exit->cpu_s});
+    }
+  }
+  return times;
+}
+
+}  // namespace topogeo::supervision

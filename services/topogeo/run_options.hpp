@@ -1,0 +1,38 @@
+// What a run of all services is made of.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "goal_session.hpp"
+#include "job.hpp"
+
+namespace topogeo::cli {
+
+/// A world with a robot in place of real devices.
+struct SimulatorOptions {
+  std::filesystem::path world;  ///< file
+  std::uint64_t seed = 1;
+  std::uint32_t laser_baud = 500'000;
+  std::string odometry = "mild";  ///< see `simulator --help`
+  double speed_m_per_s = 0.9;
+  std::uint32_t people = 0;
+};
+
+struct RunOptions {
+  JobOptions job;
+  std::filesystem::path devices;               ///< file of the devices to use; empty: a log
+  std::filesystem::path record;                ///< log to write of what is mapped; empty: none
+  std::optional<SimulatorOptions> simulation;  ///< what is behind the ports of `devices`
+  std::uint32_t workers = 2;
+  std::optional<std::uint32_t> wait_workers;  ///< before the first step; none: `workers`
+  std::uint32_t domain = 0;
+  std::string rate = "lossless";
+  std::filesystem::path profiles_file;  ///< empty: built in
+  bool explore = false;                 ///< the robot drives where it has not been, to the end
+  std::optional<GoalOptions> goal;      ///< to drive to in job.map; none: a drive that maps
+};
+
+}  // namespace topogeo::cli

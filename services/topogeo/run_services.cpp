@@ -1,0 +1,141 @@
+#include "run_services.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace topogeo::cli {
+namespace {
+
+using supervision::Importance;
+using supervision::ProcessGroup;
+using Arguments = std::vector<std::string>;
+
+constexpr std::string_view kWorker = "ga_worker";
+
+/// Flags that all services have.
+Arguments common_arguments(const RunOptions& options, const std::string& partition) {
+  Arguments arguments = {"--domain",    std::to_string(options.domain),
+                         "--partition", partition,
+                         "--robot-id",  options.job.robot_id};
+  if (options.job.config)
+    arguments.insert(arguments.end(), {"--config", options.job.config->string()});
+  if (!options.profiles_file.empty()) {
+    arguments.insert(arguments.end(), {"--profiles", options.profiles_file.string()});
+  }
+  return arguments;
+}
+
+Arguments operator+(Arguments arguments, const Arguments& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+/// What a map store keeps, or the map that it shows as it is.
+Arguments store_arguments(const RunOptions& options) {
+  if (options.goal && options.job.map) return {"--map", options.job.map->string()};
+  Arguments arguments = {"--out", options.job.out.string(), "--title", source_name(options)};
+  if (options.job.continued) {
+    arguments.insert(arguments.end(), {"--continue", options.job.continued->string()});
+  }
+  return arguments;
+}
+
+/// What makes a localizer follow the robot in a stored map, or extend it.
+Arguments map_arguments(const RunOptions& options) {
+  Arguments arguments;
+  if (options.job.continued) arguments = {"--continue", options.job.continued->string()};
+  if (options.job.map) {
+    arguments = {"--map", options.job.map->string(), "--csv",
+                 (options.job.out / "localization.csv").string()};
+  }
+  if (options.job.initial_pose) {
+    arguments.push_back("--initial-pose=" + *options.job.initial_pose);
+  }
+  return arguments;
+}
+
+/// The devices or the log, and a simulator where there are no real devices.
+void start_source(ProcessGroup& processes, const RunOptions& options, const Arguments& common) {
+  if (const auto& simulation = options.simulation) {
+    processes.start(
+        "simulator", "simulator",
+        common + Arguments{"--world", simulation->world.string(), "--seed",
+                           std::to_string(simulation->seed), "--odometry", simulation->odometry,
+                           "--people", std::to_string(simulation->people), "--laser-port",
+                           simulated_port(options, "laser").string(), "--base-port",
+                           simulated_port(options, "base").string(), "--base-baud",
+                           std::to_string(kSimulatedBaseBaud)});
+  }
+  const Arguments source =
+      options.devices.empty() ? Arguments{"--log", options.job.log.string(), "--rate", options.rate}
+                              : Arguments{"--devices", options.devices.string()};
+  // All of them have the first scan.
+  const std::string readers = options.record.empty() ? "1" : "2";
+  processes.start(kScanSource, "sensor_gateway", common + source + Arguments{"--readers", readers});
+}
+
+void start_recorder(ProcessGroup& processes, const RunOptions& options,
+                    const std::string& partition) {
+  Arguments arguments = {"record",
+                         "--out",
+                         options.record.string(),
+                         "--domain",
+                         std::to_string(options.domain),
+                         "--partition",
+                         partition,
+                         "--robot-id",
+                         options.job.robot_id};
+  if (!options.profiles_file.empty()) {
+    arguments.insert(arguments.end(), {"--profiles", options.profiles_file.string()});
+  }
+  processes.start("record", "topogeo", arguments, Importance::kMayFinish);
+}
+
+}  // namespace
+
+std::string source_name(const RunOptions& options) {
+  if (options.simulation) return options.simulation->world.filename().string();
+  return (options.devices.empty() ? options.job.log : options.devices).filename().string();
+}
+
+std::filesystem::path simulated_port(const RunOptions& options, const std::string& device) {
+  return std::filesystem::absolute(options.job.out / (device + ".port"));
+}
+
+void start_services(ProcessGroup& processes, const RunOptions& options,
+                    const std::string& partition) {
+  const Arguments common = common_arguments(options, partition);
+  const auto start = [&processes](const std::string& service, const Arguments& arguments) {
+    processes.start(service, service, arguments);
+  };
+  start("map_store", common + store_arguments(options));
+  start("planner", common);
+  if (options.goal || options.explore) start("navigator", common);
+  const std::uint32_t wait_workers = options.wait_workers.value_or(options.workers);
+  start("localizer", common + Arguments{"--wait-workers", std::to_string(wait_workers)} +
+                         map_arguments(options));
+  start("local_mapper", options.devices.empty() ? common + Arguments{"--replay"} : common);
+  for (std::uint32_t i = 1; i <= options.workers; ++i) {
+    const std::string name = std::string(kWorker) + "_" + std::to_string(i);
+    processes.start(name, std::string(kWorker), common + Arguments{"--name", name, "--slots", "1"},
+                    Importance::kExpendable);
+  }
+  if (!options.record.empty()) start_recorder(processes, options, partition);
+  start_source(processes, options, common);
+}
+
+std::vector<support::StageTime> by_stage(std::vector<support::StageTime> times) {
+  constexpr std::array<std::string_view, 8> kOrder = {"simulator", "sensor_gateway", "local_mapper",
+                                                      "localizer", kWorker,          "map_store",
+                                                      "planner",   "navigator"};
+  const auto place = [&](const support::StageTime& time) {
+    return std::find_if(kOrder.begin(), kOrder.end(),
+                        [&](std::string_view name) { return time.stage.starts_with(name); });
+  };
+  std::stable_sort(times.begin(), times.end(),
+                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  return times;
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,36 @@
+// Which services a run has, and the flags that each gets.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "topogeo/supervision/process_group.hpp"
+
+#include "run_options.hpp"
+
+namespace topogeo::cli {
+
+/// File name of the log, the devices or the simulated world.
+std::string source_name(const RunOptions& options);
+
+// What the base of a simulation is capable of.
+inline constexpr std::uint32_t kSimulatedBaseBaud = 38'400;
+inline constexpr double kSimulatedTurn_rad_s = 2.0;
+inline constexpr double kSimulatedAcceleration = 1.5;  // m/s^2
+/// Where the simulator of a run puts the port of "laser" or "base".
+std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
+
+/// The one that scans come from: to be asked to end before all others.
+inline constexpr const char* kScanSource = "sensor_gateway";
+
+/// Starts all services in the given partition, the source of the scans last. Throws
+/// std::runtime_error when one cannot be started.
+void start_services(supervision::ProcessGroup& processes, const RunOptions& options,
+                    const std::string& partition);
+
+/// In the order in which the services work on a scan.
+std::vector<support::StageTime> by_stage(std::vector<support::StageTime> times);
+
+}  // namespace topogeo::cli

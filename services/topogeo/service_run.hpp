@@ -1,0 +1,75 @@
+// All services of one run as child processes in a partition of their own, and the event loop of the
+// command that watches them.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/signal_stop.hpp"
+#include "topogeo/supervision/process_group.hpp"
+
+#include "run_services.hpp"
+
+namespace topogeo::cli {
+
+class ServiceRun {
+ public:
+  /// All are called in the loop.
+  struct Hooks {
+    std::function<void()> on_tick;                     ///< twenty times a second
+    std::function<void()> on_first_signal;             ///< empty: it ends the run like the second
+    std::function<void(const std::string& line)> log;  ///< for the user
+  };
+
+  /// Joins the domain; no service is started yet. Throws like messaging::Participant and
+  /// supervision::ProcessGroup.
+  explicit ServiceRun(const RunOptions& options);
+
+  [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
+  [[nodiscard]] messaging::EventLoop& loop() { return loop_; }
+
+  /// Starts the services. Call it when all readers are there, or they miss what the services
+  /// publish first. Throws like start_services and messaging::SignalStop.
+  void start(const RunOptions& options, Hooks hooks);
+
+  /// Runs the loop until it is stopped: by the caller, by fail(), by a service that ended although
+  /// it is needed, or by a signal. No hook is called afterwards.
+  void run();
+
+  /// Asks the source of the scans to end, so that the others finish their work.
+  void end_stream() { processes_.finish(kScanSource); }
+
+  /// The run cannot succeed any more, and ends. The first reason stays.
+  void fail(const std::string& why);
+  /// The same, but the run goes on for now.
+  void note_failure(const std::string& why);
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+  /// Number of the last signal that came, 0 if none has.
+  [[nodiscard]] int signal_number() const { return signal_.load(); }
+
+  /// Stops all services while the loop goes on: they publish their final counters. Returns their
+  /// times. `source_first`: while scans may be on their way.
+  std::vector<support::StageTime> stop(bool source_first);
+
+ private:
+  void on_signal(int number);
+  void tick();
+
+  const std::string partition_;
+  bool ended_ = false;
+  std::string failure_;
+  Hooks hooks_;
+  std::atomic<int> signal_ = 0;
+
+  messaging::Participant participant_;
+  messaging::EventLoop loop_;
+  supervision::ProcessGroup processes_;
+  std::optional<messaging::SignalStop> signals_;  // last: its thread uses the others
+};
+
+}  // namespace topogeo::cli

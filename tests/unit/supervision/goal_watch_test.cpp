@@ -1,0 +1,114 @@
+#include "topogeo/supervision/goal_watch.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "topogeo/supervision/goal_progress.hpp"
+
+namespace topogeo::supervision {
+namespace {
+
+using navigation::HaltReason;
+using navigation::NavigatorState;
+using navigation::NavigatorStatus;
+using testing::HasSubstr;
+
+NavigatorStatus status(NavigatorState state, HaltReason reason = HaltReason::kNone,
+                       const std::string& message = {}, std::uint64_t goal_id = 7) {
+  NavigatorStatus out;
+  out.state = state;
+  out.reason = reason;
+  out.goal_id = goal_id;
+  out.message = message;
+  return out;
+}
+
+TEST(GoalWatch, IsDoneWhenTheRobotIsThere) {
+  GoalWatch watch(7, 60.0, 0.0);
+  watch.add(status(NavigatorState::kArrived, HaltReason::kNone, "", 6), 0.1);  // the goal before
+  EXPECT_FALSE(watch.check(0.1));
+  watch.add(status(NavigatorState::kDriving), 1.0);
+  EXPECT_FALSE(watch.check(1.0));
+  watch.add(status(NavigatorState::kArrived), 9.0);
+  ASSERT_TRUE(watch.check(9.0));
+  EXPECT_TRUE(watch.check(9.0)->arrived);
+}
+
+TEST(GoalWatch, ARefusalThatNothingChangesEndsIt) {
+  GoalWatch watch(7, 60.0, 0.0);
+  watch.add(RouteAnswer{7, true, "no place 'attic'"});
+  watch.add(status(NavigatorState::kStopped, HaltReason::kNoRoute), 1.0);
+  ASSERT_TRUE(watch.check(1.0));
+  EXPECT_FALSE(watch.check(1.0)->arrived);
+  EXPECT_THAT(watch.check(1.0)->reason, HasSubstr("no place 'attic'"));
+}
+
+TEST(GoalWatch, WithoutAPoseThereIsHopeUntilPatienceEnds) {
+  GoalWatch watch(7, 60.0, 0.0);
+  watch.add(RouteAnswer{7, false, "no pose"});
+  for (double now_s = 1.0; now_s < 60.0; now_s += 1.0) {
+    watch.add(status(NavigatorState::kStopped, HaltReason::kNoRoute, "no pose"), now_s);
+    ASSERT_FALSE(watch.check(now_s)) << now_s;
+  }
+  watch.add(status(NavigatorState::kStopped, HaltReason::kPoseLost, "the pose is lost"), 61.0);
+  ASSERT_TRUE(watch.check(61.0));
+  EXPECT_EQ(watch.check(61.0)->reason, "the pose is lost");
+}
+
+TEST(GoalWatch, APauseMayLast) {
+  GoalWatch watch(7, 60.0, 0.0);
+  for (double now_s = 1.0; now_s < 300.0; now_s += 1.0) {
+    watch.add(status(NavigatorState::kStopped, HaltReason::kPaused), now_s);
+    ASSERT_FALSE(watch.check(now_s)) << now_s;
+  }
+}
+
+TEST(GoalWatch, SeesThatAnotherGoalCameOrTheNavigatorWent) {
+  GoalWatch watch(7, 60.0, 0.0);
+  watch.add(status(NavigatorState::kDriving), 1.0);
+  EXPECT_FALSE(watch.check(10.0));
+  EXPECT_THAT(watch.check(12.0)->reason, HasSubstr("gone"));
+  watch.add(status(NavigatorState::kDriving, HaltReason::kNone, "", 8), 2.0);
+  EXPECT_THAT(watch.check(2.0)->reason, HasSubstr("another goal"));
+}
+
+TEST(GoalProgress, ShowsHowFarItIs) {
+  NavigatorStatus now = status(NavigatorState::kDriving);
+  now.driven_m = 3.0;
+  now.rest_m = 9.0;
+  now.rest_s = 15.2;
+  EXPECT_EQ(progress_line(now),
+            "driving [######..................]  25 %, 9.0 m to go, about 16 s");
+  EXPECT_EQ(progress_line(status(NavigatorState::kBlocked, HaltReason::kObstacle, "a box")),
+            "blocked: a box");
+}
+
+TEST(GoalProgress, ATerminalHasOneLineThatIsRedrawnAndKeepsWhatStopsTheRobot) {
+  std::ostringstream out;
+  GoalProgress progress(out, true, 30);
+  progress.show(status(NavigatorState::kDriving), 0.0);
+  progress.show(status(NavigatorState::kBlocked, HaltReason::kObstacle, "a box"), 1.0);
+  progress.show(status(NavigatorState::kDriving), 2.0);
+  progress.finish();
+  const std::string text = out.str();
+  EXPECT_THAT(text, HasSubstr("blocked: a box\n"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_THAT(text, HasSubstr("\rdriving [...................."));  // cut to the terminal
+}
+
+TEST(GoalProgress, APipeHasALineForEachChangeAndOneEveryTenSeconds) {
+  std::ostringstream out;
+  GoalProgress progress(out, false);
+  for (double now_s = 0.0; now_s < 25.0; now_s += 0.2) {
+    progress.show(status(NavigatorState::kDriving), now_s);
+  }
+  progress.show(status(NavigatorState::kArrived), 25.0);
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
+  EXPECT_EQ(text.find('\r'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace topogeo::supervision

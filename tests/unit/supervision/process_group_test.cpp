@@ -1,0 +1,107 @@
+#include "topogeo/supervision/process_group.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace topogeo::supervision {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class ProcessGroupTest : public testing::Test {
+ protected:
+  ~ProcessGroupTest() override { std::filesystem::remove_all(logs_); }
+
+  void start(const std::string& name, const std::string& script,
+             Importance importance = Importance::kNeeded) {
+    group_.start(name, "sh", {"-c", script}, importance);
+  }
+  /// Runs until it is killed; does `on_term` when it is asked to end.
+  void start_endless(const std::string& name, const std::string& on_term) {
+    start(name, "trap '" + on_term + "' TERM; echo ready; while :; do sleep 0.01; done");
+    while (log_of(name).find("ready") == std::string::npos) std::this_thread::yield();
+  }
+  [[nodiscard]] std::string log_of(const std::string& name) const {
+    std::ifstream file(logs_ / (name + ".log"));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  std::filesystem::path logs_ =
+      std::filesystem::temp_directory_path() / ("process_group_test_" + std::to_string(::getpid()));
+  ProcessGroup group_{"/bin", logs_};
+};
+
+TEST_F(ProcessGroupTest, ReportsOnceHowANeededProcessEnded) {
+  start("store", "echo disk full; exit 3");
+  group_.wait();
+  const std::optional<UnexpectedEnd> end = group_.next_unexpected_end();
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->description, "store ended with exit code 3; last line of its log: disk full");
+  EXPECT_TRUE(end->fatal);
+  EXPECT_FALSE(group_.next_unexpected_end());
+}
+
+TEST_F(ProcessGroupTest, TheEndOfAnExpendableProcessIsNotFatal) {
+  start("worker", "kill -9 $$", Importance::kExpendable);
+  group_.wait();
+  const std::optional<UnexpectedEnd> end = group_.next_unexpected_end();
+  ASSERT_TRUE(end);
+  EXPECT_THAT(end->description, HasSubstr("worker was killed by signal 9"));
+  EXPECT_THAT(end->description, HasSubstr("its log is empty"));
+  EXPECT_FALSE(end->fatal);
+}
+
+TEST_F(ProcessGroupTest, OneThatMayFinishIsReportedOnlyWhenItFails) {
+  start("recorder", "exit 0", Importance::kMayFinish);
+  group_.wait();
+  EXPECT_FALSE(group_.next_unexpected_end());
+  start("recorder_2", "exit 1", Importance::kMayFinish);
+  group_.wait();
+  ASSERT_TRUE(group_.next_unexpected_end());
+}
+
+TEST_F(ProcessGroupTest, OneThatIsAskedToFinishMayDoSo) {
+  start_endless("gateway", "exit 0");
+  group_.finish("gateway");
+  group_.wait();
+  EXPECT_FALSE(group_.next_unexpected_end());
+}
+
+TEST_F(ProcessGroupTest, StopAsksOneFirstAndKillsThoseThatDoNotEnd) {
+  start_endless("stubborn", "");
+  start_endless("gateway", "exit 0");
+  constexpr double kNoPatience_s = 0.0;
+  EXPECT_THAT(group_.stop(
+                  kNoPatience_s, [](auto) {}, "gateway"),
+              testing::Contains("stubborn"));
+  EXPECT_EQ(group_.wait().size(), 2U);
+}
+
+TEST_F(ProcessGroupTest, StopWaitsForThoseThatEnd) {
+  start_endless("first", "exit 0");
+  start_endless("second", "exit 0");
+  constexpr double kPatience_s = 60.0;
+  int pauses = 0;
+  const auto pause = [&pauses](std::chrono::milliseconds duration) {
+    ++pauses;
+    std::this_thread::sleep_for(duration);
+  };
+  EXPECT_THAT(group_.stop(kPatience_s, pause, "second"), IsEmpty());
+  EXPECT_GT(pauses, 0);
+  std::vector<std::string> names;
+  for (const support::StageTime& time : group_.wait()) names.push_back(time.stage);
+  EXPECT_THAT(names, ElementsAre("first", "second")) << "in the order of their start";
+}
+
+TEST_F(ProcessGroupTest, AProgramThatIsNotThereIsAnError) {
+  EXPECT_THROW(group_.start("none", "no_such_program", {}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace topogeo::supervision
