@@ -49,7 +49,7 @@ void print_text(const planning::Route& route) {
   std::cout << fmt::format("length {:.2f} m, smallest clearance {:.2f} m, {} nodes, {} waypoints\n",
                            route.length_m, route.min_clearance_m, route.node_ids.size(),
                            route.points.size());
-  for (const planning::WayPoint& point : route.points) {
+  for (const planning::RoutePoint& point : route.points) {
     std::cout << fmt::format("{:9.3f} {:9.3f}  clearance {:.2f}\n", point.position_m.x(),
                              point.position_m.y(), point.clearance_m);
   }
@@ -61,7 +61,7 @@ void print_json(const planning::Route& route) {
                                  {"nodes", route.node_ids},
                                  {"branches", route.branch_ids},
                                  {"points", nlohmann::ordered_json::array()}};
-  for (const planning::WayPoint& point : route.points) {
+  for (const planning::RoutePoint& point : route.points) {
     json["points"].push_back({{"x_m", point.position_m.x()},
                               {"y_m", point.position_m.y()},
                               {"clearance_m", point.clearance_m}});

@@ -8,28 +8,23 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/support/check_range.hpp"
 
 namespace topogeo::markov {
 namespace {
 
-void check_state(const std::string& field, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw std::invalid_argument(field + " is " + std::to_string(value) + ", must be in [" +
-                              std::to_string(low) + ", " + std::to_string(high) + "]");
-}
-
 void check_pose(const std::string& name, const geometry::Pose2& pose) {
-  check_state(name + ".x_m", pose.x_m, -1e6, 1e6);
-  check_state(name + ".y_m", pose.y_m, -1e6, 1e6);
-  check_state(name + ".theta_rad", pose.theta_rad, -1e5, 1e5);
+  support::check_range(name + ".x_m", pose.x_m, -1e6, 1e6);
+  support::check_range(name + ".y_m", pose.y_m, -1e6, 1e6);
+  support::check_range(name + ".theta_rad", pose.theta_rad, -1e5, 1e5);
 }
 
 void check_move(const Move& move) {
   constexpr double kMost = 1000.0;
   if (move.kind == MoveKind::kAdvance) {
-    check_state("advance, metres,", move.amount, -kMost, kMost);
+    support::check_range("advance", move.amount, -kMost, kMost, "m");
   } else {
-    check_state("turn, radians,", move.amount, 0.0, kMost);
+    support::check_range("turn", move.amount, 0.0, kMost, "rad");
   }
 }
 
@@ -57,15 +52,15 @@ bool meets_obstacle(const ObstacleCells& map, const Eigen::Vector2d& from_m,
 }  // namespace
 
 void validate(const MarkovConfig& config) {
-  check_state("MarkovConfig.window_cells", config.window_cells, BeliefGrid::kSmallest,
-              BeliefGrid::kLargest);
+  support::check_range("MarkovConfig.window_cells", config.window_cells, BeliefGrid::kSmallest,
+                       BeliefGrid::kLargest);
   if (config.window_cells % 2 == 0) {
     throw std::invalid_argument("MarkovConfig.window_cells is " +
                                 std::to_string(config.window_cells) + ", must be odd");
   }
   validate(config.transition);
   validate(config.sonar);
-  check_state("MarkovConfig.perceptual_weight", config.perceptual_weight, 0.0, 1.0);
+  support::check_range("MarkovConfig.perceptual_weight", config.perceptual_weight, 0.0, 1.0);
 }
 
 MarkovLocalizer::MarkovLocalizer(const MarkovConfig& config, ObstacleCells map,
@@ -222,26 +217,26 @@ std::optional<Estimate> MarkovLocalizer::estimate() const {
                   .spread_m = cell_m * std::sqrt(std::max(0.0, mean_square - mean.squaredNorm()))};
 }
 
-std::optional<WayBack> MarkovLocalizer::relocalization_moves() const {
+std::optional<ReturnMoves> MarkovLocalizer::relocalization_moves() const {
   return relocalization_moves(T_map_expected_);
 }
 
-std::optional<WayBack> MarkovLocalizer::relocalization_moves(
+std::optional<ReturnMoves> MarkovLocalizer::relocalization_moves(
     const geometry::Pose2& T_map_route) const {
   constexpr double kThere_m = 1e-6;
   check_pose("pose of the route", T_map_route);
   const std::optional<Estimate> from = estimate();
   if (!from) return std::nullopt;
-  const Eigen::Vector2d way_m = T_map_route.position_m() - from->T_map_robot.position_m();
+  const Eigen::Vector2d vector_m = T_map_route.position_m() - from->T_map_robot.position_m();
   const double heading_rad = from->T_map_robot.theta_rad;
-  WayBack back;
-  if (way_m.norm() < kThere_m) {
+  ReturnMoves back;
+  if (vector_m.norm() < kThere_m) {
     add_turn(geometry::wrap_angle(T_map_route.theta_rad - heading_rad), back.moves);
     return back;
   }
-  const double bearing_rad = geometry::atan2(way_m.y(), way_m.x());
+  const double bearing_rad = geometry::atan2(vector_m.y(), vector_m.x());
   add_turn(geometry::wrap_angle(bearing_rad - heading_rad), back.moves);
-  back.moves.push_back({MoveKind::kAdvance, way_m.norm()});
+  back.moves.push_back({MoveKind::kAdvance, vector_m.norm()});
   add_turn(geometry::wrap_angle(T_map_route.theta_rad - bearing_rad), back.moves);
   back.blocked = meets_obstacle(map_, from->T_map_robot.position_m(), T_map_route.position_m());
   return back;

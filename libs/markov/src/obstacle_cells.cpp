@@ -5,24 +5,20 @@
 #include <stdexcept>
 #include <string>
 
+#include "topogeo/support/check_range.hpp"
+
 namespace topogeo::markov {
 namespace {
 
-void check_view(const char* field, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw std::invalid_argument(std::string("CellsView.") + field + " is " + std::to_string(value) +
-                              ", must be in [" + std::to_string(low) + ", " + std::to_string(high) +
-                              "]");
-}
-
 void validate(const CellsView& view, int cells_a_side) {
-  check_view("width", view.width, 1, 100000);
-  check_view("height", view.height, 1, 100000);
-  check_view("resolution_m", view.resolution_m, 0.01, 1.0);
-  check_view("origin_m.x", view.origin_m.x(), -1e6, 1e6);
-  check_view("origin_m.y", view.origin_m.y(), -1e6, 1e6);
-  check_view("cells_a_side", cells_a_side, 1, 100);
-  check_view("cells_a_side * resolution_m", cells_a_side * view.resolution_m, 0.01, 1.0);
+  support::check_range("CellsView.width", view.width, 1, 100000);
+  support::check_range("CellsView.height", view.height, 1, 100000);
+  support::check_range("CellsView.resolution_m", view.resolution_m, 0.01, 1.0);
+  support::check_range("CellsView.origin_m.x", view.origin_m.x(), -1e6, 1e6);
+  support::check_range("CellsView.origin_m.y", view.origin_m.y(), -1e6, 1e6);
+  support::check_range("CellsView.cells_a_side", cells_a_side, 1, 100);
+  support::check_range("CellsView.cells_a_side * resolution_m", cells_a_side * view.resolution_m,
+                       0.01, 1.0);
   const auto cells = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   if (view.occupied.size() != cells) {
     throw std::invalid_argument("CellsView.occupied has " + std::to_string(view.occupied.size()) +

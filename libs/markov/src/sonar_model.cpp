@@ -10,17 +10,12 @@
 #include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/support/check_range.hpp"
 
 namespace topogeo::markov {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-void check_sonar(const std::string& field, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw std::invalid_argument(field + " is " + std::to_string(value) + ", must be in [" +
-                              std::to_string(low) + ", " + std::to_string(high) + "]");
-}
 
 /// Distances along a ray to the next border between columns (or rows), in cells.
 struct BorderWalk {
@@ -38,8 +33,8 @@ struct BorderWalk {
 }  // namespace
 
 void validate(const SonarModelConfig& config) {
-  check_sonar("SonarModelConfig.max_range_m", config.max_range_m, 0.5, 20.0);
-  check_sonar("SonarModelConfig.rays_per_cone", config.rays_per_cone, 1, 31);
+  support::check_range("SonarModelConfig.max_range_m", config.max_range_m, 0.5, 20.0);
+  support::check_range("SonarModelConfig.rays_per_cone", config.rays_per_cone, 1, 31);
   if (config.rays_per_cone % 2 == 0) {
     throw std::invalid_argument("SonarModelConfig.rays_per_cone is " +
                                 std::to_string(config.rays_per_cone) + ", must be odd");
@@ -47,12 +42,13 @@ void validate(const SonarModelConfig& config) {
   if (config.bands.empty()) throw std::invalid_argument("SonarModelConfig.bands is empty");
   double from_m = 0.0;
   for (const ReliabilityBand& band : config.bands) {
-    check_sonar("SonarModelConfig.bands.up_to_m", band.up_to_m, from_m, config.max_range_m);
-    check_sonar("SonarModelConfig.bands.reliability", band.reliability, 0.0, 1.0);
+    support::check_range("SonarModelConfig.bands.up_to_m", band.up_to_m, from_m,
+                         config.max_range_m);
+    support::check_range("SonarModelConfig.bands.reliability", band.reliability, 0.0, 1.0);
     from_m = band.up_to_m;
   }
-  check_sonar("SonarModelConfig.scale_m", config.scale_m, 0.001, 10.0);
-  check_sonar("SonarModelConfig.difference_cap_m", config.difference_cap_m, 0.01, 20.0);
+  support::check_range("SonarModelConfig.scale_m", config.scale_m, 0.001, 10.0);
+  support::check_range("SonarModelConfig.difference_cap_m", config.difference_cap_m, 0.01, 20.0);
 }
 
 void validate(std::span<const RangeSensor> sensors) {
@@ -64,10 +60,11 @@ void validate(std::span<const RangeSensor> sensors) {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const std::string name = "range sensor " + std::to_string(i);
     const geometry::Pose2& mount = sensors[i].T_robot_sensor;
-    check_sonar(name + ": x_m", mount.x_m, -5.0, 5.0);
-    check_sonar(name + ": y_m", mount.y_m, -5.0, 5.0);
-    check_sonar(name + ": theta_rad", mount.theta_rad, -100.0, 100.0);
-    check_sonar(name + ": half_cone_rad", sensors[i].half_cone_rad, 0.0, 0.5 * std::numbers::pi);
+    support::check_range(name + ": x_m", mount.x_m, -5.0, 5.0);
+    support::check_range(name + ": y_m", mount.y_m, -5.0, 5.0);
+    support::check_range(name + ": theta_rad", mount.theta_rad, -100.0, 100.0);
+    support::check_range(name + ": half_cone_rad", sensors[i].half_cone_rad, 0.0,
+                         0.5 * std::numbers::pi);
   }
 }
 
@@ -240,7 +237,8 @@ PerceptualMatch SonarModel::compare(std::span<const float> ranges_m,
                                 std::to_string(sensors_.size()) + " range sensors");
   }
   for (std::size_t i = 0; i < ranges_m.size(); ++i) {
-    check_sonar("reading " + std::to_string(i) + ", metres,", ranges_m[i], 0.0, 1e6);
+    support::check_range("reading " + std::to_string(i), static_cast<double>(ranges_m[i]), 0.0, 1e6,
+                         "m");
   }
   PerceptualMatch match{.best_difference_m = kInfinity};
   std::fill(probabilities.begin(), probabilities.end(), 0.0);

@@ -7,19 +7,13 @@
 #include <string>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/support/check_range.hpp"
 
 namespace topogeo::markov {
 namespace {
 
-void check_transition(const std::string& field, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw std::invalid_argument("TransitionModel." + field + " is " + std::to_string(value) +
-                              ", must be in [" + std::to_string(low) + ", " + std::to_string(high) +
-                              "]");
-}
-
 void check_side(const std::string& field, int side) {
-  check_transition(field, side, 1, 21);
+  support::check_range("TransitionModel." + field, side, 1, 21);
   if (side % 2 == 0) {
     throw std::invalid_argument("TransitionModel." + field + " is " + std::to_string(side) +
                                 ", must be odd");
@@ -38,10 +32,11 @@ void check_matrix(const std::string& name, const TransitionMatrix& matrix) {
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < cells; ++i) {
-    check_transition(name + ".values[" + std::to_string(i) + "]", matrix.values[i], 0.0, 1.01);
+    support::check_range("TransitionModel." + name + ".values[" + std::to_string(i) + "]",
+                         matrix.values[i], 0.0, 1.01);
     sum += matrix.values[i];
   }
-  check_transition(name + ": sum of values", sum, 0.1, 1.01);
+  support::check_range("TransitionModel." + name + ": sum of values", sum, 0.1, 1.01);
 }
 
 /// Values on a square of cells around the expected place, from which the taps are read off.
@@ -105,8 +100,9 @@ void validate(const TransitionModel& model) {
   check_matrix("left", model.left);
   check_matrix("right", model.right);
   if (model.advance_step_m != 0.0)
-    check_transition("advance_step_m", model.advance_step_m, 0.01, 100.0);
-  if (model.turn_step_rad != 0.0) check_transition("turn_step_rad", model.turn_step_rad, 0.01, 6.3);
+    support::check_range("TransitionModel.advance_step_m", model.advance_step_m, 0.01, 100.0);
+  if (model.turn_step_rad != 0.0)
+    support::check_range("TransitionModel.turn_step_rad", model.turn_step_rad, 0.01, 6.3);
 }
 
 std::vector<Tap> turned(const TransitionMatrix& matrix, ArrowSense sense, double heading_rad) {

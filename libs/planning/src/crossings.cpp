@@ -8,7 +8,7 @@
 namespace topogeo::planning {
 namespace {
 
-// A border that a way crosses.
+// A border that a path crosses.
 struct Crossing {
   std::uint32_t node = 0;
   ZoneId into = kNoZone;

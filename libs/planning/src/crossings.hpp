@@ -1,4 +1,4 @@
-// Which border nodes and edges of the hybrid map a way over cells uses.
+// Which border nodes and edges of the hybrid map a path over cells uses.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct NodesAndEdges {
   std::vector<std::uint32_t> edges;
 };
 
-/// The borders that a way crosses, wherever on their length, and the edges between them. `cells`
+/// The borders that a path crosses, wherever on their length, and the edges between them. `cells`
 /// are neighbours each; those in no zone are skipped.
 NodesAndEdges nodes_and_edges(const HybridMap& map, std::span<const Cell> cells);
 

@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Ends a search of Boost.Graph, which knows no other way.
+// Ends a search: Boost.Graph has no other means.
 struct AllReached {};
 
-// The estimate of A*: never more than the way is.
+// The estimate of A*: never more than the path costs.
 class OctileDistance {
  public:
   OctileDistance(const SearchWindow& window, const Cell& to) : window_(&window), to_(to) {}

@@ -154,7 +154,7 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
       return route;
     }
     route = no_route(RouteStatus::kUnreachable,
-                     "no way leads from " + shown(from_m) + " to " + shown(goal.point_m));
+                     "no path leads from " + shown(from_m) + " to " + shown(goal.point_m));
     if (!closed.nodes.empty() || !closed.edges.empty() || !cells.empty()) {
       route.reason += " with what is closed now";
     }
@@ -181,7 +181,7 @@ HybridRoute plan_on_grid(const FreeSpace& space, const Eigen::Vector2d& from_m,
   auto path = shortest_path(window, *start, *goal);
   if (!path) {
     return no_route(RouteStatus::kUnreachable,
-                    "no way leads from " + shown(from_m) + " to " + shown(to_m));
+                    "no path leads from " + shown(from_m) + " to " + shown(to_m));
   }
   route.status = RouteStatus::kFound;
   route.cells = std::move(path->cells);

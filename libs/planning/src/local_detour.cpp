@@ -74,11 +74,11 @@ bool shut_in(const SearchWindow& window, const Cell& from, double resolution_m) 
   return found.size() <= most;
 }
 
-// Instead of a start from which no way leads: the open cell nearest to the robot, in its sight,
-// that a way leads to from `to`. Only for a robot whose cell is not open, or that is shut in.
-std::optional<Cell> start_with_way(const FreeSpace& space, const SearchWindow& window,
-                                   const std::vector<Cell>& obstacles,
-                                   const Eigen::Vector2d& robot_m, double snap_m, const Cell& to) {
+// Instead of a start from which no path leads: the open cell nearest to the robot, in its sight,
+// that a path leads to from `to`. Only for a robot whose cell is not open, or that is shut in.
+std::optional<Cell> start_with_path(const FreeSpace& space, const SearchWindow& window,
+                                    const std::vector<Cell>& obstacles,
+                                    const Eigen::Vector2d& robot_m, double snap_m, const Cell& to) {
   const GridFrame& frame = space.frame();
   const Cell robot = frame.cell_of(robot_m).value();
   if (window.open(robot) && !shut_in(window, robot, frame.resolution_m)) return std::nullopt;
@@ -110,7 +110,7 @@ Detour failure(DetourStatus status, const char* reason) {
   return detour;
 }
 
-// The candidate by which the way to the end of the route is shortest; they are its last cells.
+// The candidate by which the path to the end of the route is shortest; they are its last cells.
 std::optional<std::size_t> cheapest(const std::vector<std::optional<CellPath>>& paths,
                                     std::span<const Cell> candidates) {
   std::optional<std::size_t> best;
@@ -181,13 +181,13 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
   std::optional<std::size_t> best = cheapest(paths, candidates);
   if (!best) {
     const auto other =
-        start_with_way(space, window, obstacles, robot_m, config.start_snap_m, candidates.front());
+        start_with_path(space, window, obstacles, robot_m, config.start_snap_m, candidates.front());
     if (other) {
       paths = shortest_paths(window, *other, candidates);
       best = cheapest(paths, candidates);
     }
   }
-  if (!best) return failure(DetourStatus::kBlocked, "no way leads round within the window");
+  if (!best) return failure(DetourStatus::kBlocked, "no path leads round within the window");
   Detour detour;
   detour.status = behind == from ? DetourStatus::kClear : DetourStatus::kFound;
   detour.rejoins = behind + *best;

@@ -1,23 +1,15 @@
 #include "topogeo/planning/motion_primitives.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/support/check_range.hpp"
 
 #include "straighten.hpp"
 
 namespace topogeo::planning {
 namespace {
-
-void check_primitive_range(const char* field, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  std::ostringstream text;
-  text << "motion primitives: " << field << " is " << value << ", allowed are " << low << " to "
-       << high;
-  throw std::invalid_argument(text.str());
-}
 
 double angle_of(const Eigen::Vector2d& direction) {
   return geometry::atan2(direction.y(), direction.x());
@@ -68,12 +60,13 @@ std::vector<MotionPrimitive> motion_primitives(std::span<const Eigen::Vector2d> 
                                                double heading_rad,
                                                std::optional<double> final_heading_rad,
                                                const PrimitiveConfig& config) {
-  check_primitive_range("min_turn_rad", config.min_turn_rad, 0.0, 1.0);
-  check_primitive_range("min_advance_m", config.min_advance_m, 0.0, 1.0);
-  constexpr double kMost_rad = 1e5;
-  check_primitive_range("heading_rad", heading_rad, -kMost_rad, kMost_rad);
-  check_primitive_range("final_heading_rad", final_heading_rad.value_or(0.0), -kMost_rad,
-                        kMost_rad);
+  constexpr double kMost_rad = 1e5;  // beyond, an angle is no more exact
+  using support::check_range;
+  check_range("motion primitives: min_turn_rad", config.min_turn_rad, 0.0, 1.0);
+  check_range("motion primitives: min_advance_m", config.min_advance_m, 0.0, 1.0);
+  check_range("motion primitives: heading_rad", heading_rad, -kMost_rad, kMost_rad);
+  check_range("motion primitives: final_heading_rad", final_heading_rad.value_or(0.0), -kMost_rad,
+              kMost_rad);
   std::vector<MotionPrimitive> primitives;
   double heading = heading_rad;
   for (std::size_t i = 0, at = 0; i < points_m.size(); ++i) {

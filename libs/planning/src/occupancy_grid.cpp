@@ -1,27 +1,19 @@
 #include "topogeo/planning/occupancy_grid.hpp"
 
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/support/check_range.hpp"
 
 namespace topogeo::planning {
 namespace {
 
-constexpr std::int32_t kMostCellsAlong = 20000;
-constexpr std::size_t kMostCells = 100'000'000;
-constexpr double kMinResolution_m = 0.01;
-constexpr double kMaxResolution_m = 1.0;
-constexpr double kMaxCoordinate_m = 1e6;
-
-template <typename Number>
-void check_range(const char* field, Number value, Number low, Number high, const char* unit) {
-  if (value >= low && value <= high) return;
-  std::ostringstream text;
-  text << "grid: " << field << " is " << value << ", allowed are " << low << " to " << high << unit;
-  throw std::invalid_argument(text.str());
-}
+constexpr double kMostCellsAlong = 20'000;  // 1 km of cells of 5 cm
+constexpr double kMostCells = 100'000'000;  // a search keeps about ten bytes for each
+constexpr double kMinResolution_m = 0.01;   // finer than any laser measures
+constexpr double kMaxResolution_m = 1.0;    // coarser cells hide every door
+constexpr double kMaxCoordinate_m = 1e6;    // a cell is still exact to a thousandth
+constexpr double kMaxYaw_rad = 7.0;         // one turn either way, and what rounding adds
 
 }  // namespace
 
@@ -46,13 +38,15 @@ Eigen::Vector2d GridFrame::center_m(const Cell& cell) const {
 }
 
 void check(const GridFrame& frame) {
-  check_range("columns", frame.columns, 1, kMostCellsAlong, "");
-  check_range("rows", frame.rows, 1, kMostCellsAlong, "");
-  check_range("columns x rows", frame.size(), std::size_t{1}, kMostCells, "");
-  check_range("resolution_m", frame.resolution_m, kMinResolution_m, kMaxResolution_m, " m");
-  check_range("origin x", frame.T_map_grid.x_m, -kMaxCoordinate_m, kMaxCoordinate_m, " m");
-  check_range("origin y", frame.T_map_grid.y_m, -kMaxCoordinate_m, kMaxCoordinate_m, " m");
-  check_range("origin yaw", frame.T_map_grid.theta_rad, -7.0, 7.0, " rad");
+  using support::check_range;
+  const geometry::Pose2& origin = frame.T_map_grid;
+  check_range("grid: columns", frame.columns, 1, kMostCellsAlong);
+  check_range("grid: rows", frame.rows, 1, kMostCellsAlong);
+  check_range("grid: columns x rows", static_cast<double>(frame.size()), 1, kMostCells);
+  check_range("grid: resolution_m", frame.resolution_m, kMinResolution_m, kMaxResolution_m, "m");
+  check_range("grid: origin x", origin.x_m, -kMaxCoordinate_m, kMaxCoordinate_m, "m");
+  check_range("grid: origin y", origin.y_m, -kMaxCoordinate_m, kMaxCoordinate_m, "m");
+  check_range("grid: origin yaw", origin.theta_rad, -kMaxYaw_rad, kMaxYaw_rad, "rad");
 }
 
 OccupancyGrid::OccupancyGrid(const GridFrame& frame, CellState fill) : frame_(frame) {

@@ -35,7 +35,7 @@ std::array<Cell, 4> neighbours_of(const Cell& cell) {
 
 }  // namespace
 
-OpenNetwork::Way OpenNetwork::way_of(const HybridEdge& edge) {
+OpenNetwork::Link OpenNetwork::link_of(const HybridEdge& edge) {
   return {edge.node_a, edge.node_b, edge.id, &edge.route, edge.cost_m};
 }
 
@@ -44,7 +44,7 @@ OpenNetwork::OpenNetwork(const HybridMap& map, const ClosedParts& closed, const 
   if (cells.empty()) return;
   find_parts();
   find_nodes();
-  find_ways();
+  find_links();
 }
 
 const std::vector<std::uint32_t>& OpenNetwork::nodes_of(ZoneId zone) const {
@@ -70,9 +70,9 @@ std::uint32_t OpenNetwork::border_node(std::uint32_t node) const {
   return graph_ ? nodes_[node].border_node : node;
 }
 
-OpenNetwork::Way OpenNetwork::way(std::uint32_t edge) const {
-  if (graph_) return ways_[edge];
-  return way_of(map_.edges()[edge]);
+OpenNetwork::Link OpenNetwork::link(std::uint32_t edge) const {
+  if (graph_) return links_[edge];
+  return link_of(map_.edges()[edge]);
 }
 
 std::vector<bool> OpenNetwork::within_reach(const Cell& from) const {
@@ -192,7 +192,7 @@ bool OpenNetwork::blocks(const std::vector<Cell>& route) const {
   return false;
 }
 
-void OpenNetwork::find_ways() {
+void OpenNetwork::find_links() {
   std::vector<bool> anew(map_.zones().zones.size(), false);
   for (const auto& [zone, parts] : parts_) anew[zone] = true;
   for (const Node& node : nodes_) {
@@ -204,14 +204,14 @@ void OpenNetwork::find_ways() {
         contains(closed_.nodes, edge.node_a) || contains(closed_.nodes, edge.node_b)) {
       continue;
     }
-    ways_.push_back(way_of(edge));
+    links_.push_back(link_of(edge));
   }
   for (const Zone& zone : map_.zones().zones) {
     if (anew[zone.id]) search_zone(zone.id);
   }
   std::vector<GraphEdge> edges;
-  edges.reserve(ways_.size());
-  for (const Way& way : ways_) edges.push_back({way.node_a, way.node_b, way.cost_m});
+  edges.reserve(links_.size());
+  for (const Link& link : links_) edges.push_back({link.node_a, link.node_b, link.cost_m});
   graph_.emplace(nodes_.size(), edges);
 }
 
@@ -221,17 +221,17 @@ void OpenNetwork::search_zone(ZoneId zone) {
   const std::vector<std::uint32_t>& nodes = nodes_of_[zone];
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Node& from = nodes_[nodes[i]];
-    std::vector<Way> wanted;
+    std::vector<Link> wanted;
     std::vector<Cell> ends;
     for (std::size_t k = i + 1; k < nodes.size(); ++k) {
       const Node& to = nodes_[nodes[k]];
       const auto known = edge_between(map_, zone, from.border_node, to.border_node);
       if (known) {
         if (contains(closed_.edges, *known)) continue;
-        // Closed cells make no way shorter: what is not touched is still the best one.
+        // Closed cells make no path shorter: what is not touched is still the best one.
         const HybridEdge& edge = map_.edges()[*known];
         if (!from.moved && !to.moved && !blocks(edge.route)) {
-          ways_.push_back(way_of(edge));
+          links_.push_back(link_of(edge));
           continue;
         }
       }
@@ -244,7 +244,7 @@ void OpenNetwork::search_zone(ZoneId zone) {
       if (!paths[k]) continue;
       wanted[k].cost_m = (paths[k]->cost_cells + 1.0) * map_.frame().resolution_m;
       wanted[k].route = &routes_.emplace_back(std::move(paths[k]->cells));
-      ways_.push_back(wanted[k]);
+      links_.push_back(wanted[k]);
     }
   }
 }

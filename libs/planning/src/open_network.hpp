@@ -2,7 +2,7 @@
 //
 // As long as no cell is closed it is the graph of the map. Closed cells can cut a zone into parts
 // and shut a border in places: then a node stands for the open places of a border between the same
-// two parts, at the one nearest to its middle, and the ways that they touch are searched anew.
+// two parts, at the one nearest to its middle, and the paths that they touch are searched anew.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ class OpenNetwork {
   /// The cell of a node of the network in a zone that it borders on.
   [[nodiscard]] const Cell& cell_in(std::uint32_t node, ZoneId zone) const;
 
-  /// The cheapest way between nodes of the network, as RouteGraph::cheapest.
+  /// The cheapest path between nodes of the network, as RouteGraph::cheapest.
   [[nodiscard]] std::optional<GraphPath> cheapest(std::span<const GraphAccess> entries,
                                                   std::span<const GraphAccess> exits) const;
 
@@ -39,14 +39,14 @@ class OpenNetwork {
   [[nodiscard]] std::uint32_t border_node(std::uint32_t node) const;
 
   /// An edge of the network.
-  struct Way {
+  struct Link {
     std::uint32_t node_a = 0;
     std::uint32_t node_b = 0;
     std::optional<std::uint32_t> edge;  ///< HybridEdge::id; none between places of one border
     const std::vector<Cell>* route = nullptr;  ///< from node_a's cell to node_b's
     double cost_m = 0.0;
   };
-  [[nodiscard]] Way way(std::uint32_t edge) const;
+  [[nodiscard]] Link link(std::uint32_t edge) const;
 
   /// For each cell of the grid, by index, whether a robot gets there from an open cell.
   [[nodiscard]] std::vector<bool> within_reach(const Cell& from) const;
@@ -64,12 +64,12 @@ class OpenNetwork {
     bool moved = false;           // they are not those of the border node
   };
 
-  [[nodiscard]] static Way way_of(const HybridEdge& edge);
+  [[nodiscard]] static Link link_of(const HybridEdge& edge);
   [[nodiscard]] const Cell& place_in(const Node& node, ZoneId zone) const;
   void find_parts();
   void find_nodes();
   void place_node(const BorderNode& border);
-  void find_ways();
+  void find_links();
   void search_zone(ZoneId zone);
   [[nodiscard]] bool blocks(const std::vector<Cell>& route) const;
   [[nodiscard]] std::uint32_t part_of(ZoneId zone, const Cell& cell) const;
@@ -81,8 +81,8 @@ class OpenNetwork {
   std::map<ZoneId, Parts> parts_;  // of the zones with closed cells
   std::vector<Node> nodes_;        // the first ones have the numbers of their border nodes
   std::vector<std::vector<std::uint32_t>> nodes_of_;
-  std::vector<Way> ways_;
-  std::deque<std::vector<Cell>> routes_;  // of the ways that were searched anew
+  std::vector<Link> links_;
+  std::deque<std::vector<Cell>> routes_;  // of the links that were searched anew
   std::optional<RouteGraph> graph_;
 };
 

@@ -1,21 +1,20 @@
 #include "route_ends.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/planning/motion_primitives.hpp"
 
 #include "nearest_in_sight.hpp"
 
 namespace topogeo::planning {
+
 std::string shown(const Eigen::Vector2d& point_m) {
-  std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "(%.2f, %.2f)", point_m.x(), point_m.y());
-  return text.data();
+  return fmt::format("({:.2f}, {:.2f})", point_m.x(), point_m.y());
 }
 
 HybridRoute no_route(RouteStatus status, std::string reason) {
@@ -48,11 +47,10 @@ std::optional<Cell> EndFinder::find(const std::string& what, const Eigen::Vector
     failure = no_route(occupied, what + " is in an obstacle that is not on the map");
   } else {
     const bool on_map = !space_.passable(*cell);
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), " is %.2f m from an obstacle%s: too near",
-                  on_map ? space_.clearance_m(*cell) : cells_.clearance_m(*cell),
-                  on_map ? "" : " that is not on the map");
-    failure = no_route(occupied, what + text.data());
+    failure = no_route(occupied,
+                       fmt::format("{} is {:.2f} m from an obstacle{}: too near", what,
+                                   on_map ? space_.clearance_m(*cell) : cells_.clearance_m(*cell),
+                                   on_map ? "" : " that is not on the map"));
   }
   return std::nullopt;
 }

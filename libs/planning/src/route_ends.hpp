@@ -1,4 +1,4 @@
-// Finding the cells that a route begins and ends at, and saying why there is none.
+// Finding the cells that a route begins and ends at, and the reason when there is none.
 #pragma once
 
 #include <optional>

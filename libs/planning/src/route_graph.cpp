@@ -39,7 +39,7 @@ void check_cost(const char* what, double cost) {
                               std::to_string(cost) + ", allowed are finite values from 0");
 }
 
-// Ends the search, which Boost.Graph knows no other way for.
+// Ends the search: Boost.Graph has no other means.
 struct BestKnown {};
 
 // Keeps the edges of the tree and the best exit; no node examined later can lead to a better one

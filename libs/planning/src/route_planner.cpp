@@ -1,10 +1,7 @@
 #include "topogeo/planning/route_planner.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -12,6 +9,7 @@
 
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <spdlog/fmt/fmt.h>
 
 #include "snapping.hpp"
 
@@ -24,7 +22,7 @@ using topomap::MapBranch;
 // A branch, or the part of one between its ends and the places where it is split.
 struct Piece {
   std::size_t branch = 0;  // index in GlobalMap::branches
-  std::vector<WayPoint> points;
+  std::vector<RoutePoint> points;
   double length_m = 0.0;
 };
 
@@ -37,22 +35,13 @@ using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS
                                     boost::no_property, RouteEdge>;
 using Vertex = boost::graph_traits<Graph>::vertex_descriptor;
 
-__attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
-  std::array<char, 256> buffer{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer.data(), buffer.size(), format, arguments);
-  va_end(arguments);
-  return buffer.data();
-}
-
-double narrowest_m(const std::vector<WayPoint>& points) {
+double narrowest_m(const std::vector<RoutePoint>& points) {
   double narrowest = std::numeric_limits<double>::infinity();
-  for (const WayPoint& p : points) narrowest = std::min(narrowest, p.clearance_m);
+  for (const RoutePoint& p : points) narrowest = std::min(narrowest, p.clearance_m);
   return narrowest;
 }
 
-double length_of(const std::vector<WayPoint>& points) {
+double length_of(const std::vector<RoutePoint>& points) {
   double length = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) {
     length += (points[i].position_m - points[i - 1].position_m).norm();
@@ -102,10 +91,10 @@ class RoadNetwork {
                                        .distance_map(boost::make_iterator_property_map(
                                            distance_m.begin(), get(boost::vertex_index, graph_))));
     if (from != to && before[to] == to) return std::nullopt;
-    std::vector<Vertex> way{to};
-    while (way.back() != from) way.push_back(before[way.back()]);
-    std::reverse(way.begin(), way.end());
-    return route_along(way);
+    std::vector<Vertex> path{to};
+    while (path.back() != from) path.push_back(before[path.back()]);
+    std::reverse(path.begin(), path.end());
+    return route_along(path);
   }
 
  private:
@@ -141,15 +130,15 @@ class RoadNetwork {
     add_edge(from, to, RouteEdge{pieces_.back().length_m, pieces_.size() - 1}, graph_);
   }
 
-  [[nodiscard]] Route route_along(const std::vector<Vertex>& way) const {
+  [[nodiscard]] Route route_along(const std::vector<Vertex>& path) const {
     Route route;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-      if (way[i] < map_.nodes.size()) {
-        const topomap::MapNode& node = map_.nodes[way[i]];
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      if (path[i] < map_.nodes.size()) {
+        const topomap::MapNode& node = map_.nodes[path[i]];
         route.node_ids.push_back(node.id);
         if (route.points.empty()) route.points.push_back({node.position_m, node.clearance_m});
       }
-      if (i + 1 < way.size()) follow(shortest_edge(way[i], way[i + 1]), way[i], route);
+      if (i + 1 < path.size()) follow(shortest_edge(path[i], path[i + 1]), path[i], route);
     }
     route.min_clearance_m = narrowest_m(route.points);
     return route;
@@ -168,7 +157,7 @@ class RoadNetwork {
 
   void follow(std::size_t piece_index, Vertex from, Route& route) const {
     const Piece& piece = pieces_[piece_index];
-    std::vector<WayPoint> points = piece.points;
+    std::vector<RoutePoint> points = piece.points;
     if (piece_starts_[piece_index] != from) std::reverse(points.begin(), points.end());
     // The first point is where the last piece ended.
     const auto skip = static_cast<std::ptrdiff_t>(route.points.empty() ? 0 : 1);
@@ -212,20 +201,19 @@ PlanResult no_route(PlanStatus status, std::string reason) {
 void set_too_far(PlanResult& result, PlanStatus status, const char* what, const Snap& snap,
                  const PlanningConfig& config) {
   result.status = status;
-  result.reason = text(
-      "%s is %.2f m from the nearest passable branch at (%.2f, %.2f), allowed are "
-      "%.2f m",
+  result.reason = fmt::format(
+      "{} is {:.2f} m from the nearest passable branch at ({:.2f}, {:.2f}), allowed are {:.2f} m",
       what, snap.distance_m, snap.nearest.position_m.x(), snap.nearest.position_m.y(),
       config.max_snap_m);
 }
 
-// Says whether it is the width or the map that keeps the two apart.
+// Whether it is the width or the map that keeps the two apart.
 void set_unreachable(PlanResult& result, bool reachable_when_narrow, const PlanningConfig& config) {
   if (reachable_when_narrow) {
     result.status = PlanStatus::kTooNarrow;
-    result.reason =
-        text("every way from start to goal is narrower than the clearance of %.2f m that is needed",
-             config.min_clearance_m);
+    result.reason = fmt::format(
+        "every path from start to goal is narrower than the clearance of {:.2f} m that is needed",
+        config.min_clearance_m);
   } else {
     result.status = PlanStatus::kNotConnected;
     result.reason = "start and goal lie on parts of the map that are not connected";
@@ -235,7 +223,7 @@ void set_unreachable(PlanResult& result, bool reachable_when_narrow, const Plann
 void check_field(const char* field, double value) {
   if (std::isfinite(value) && value >= 0.0) return;
   throw std::invalid_argument(
-      text("planning: %s is %g, allowed is a finite value of at least 0", field, value));
+      fmt::format("planning: {} is {:g}, allowed is a finite value of at least 0", field, value));
 }
 
 }  // namespace
@@ -279,9 +267,9 @@ PlanResult plan(const GlobalMap& map, const Eigen::Vector2d& from_m, const Eigen
   const auto start = nearest_place(map, from_m, config.min_clearance_m);
   const auto goal = nearest_place(map, to_m, config.min_clearance_m);
   if (!start || !goal) {
-    return no_route(
-        PlanStatus::kTooNarrow,
-        text("no branch has the clearance of %.2f m that is needed", config.min_clearance_m));
+    return no_route(PlanStatus::kTooNarrow,
+                    fmt::format("no branch has the clearance of {:.2f} m that is needed",
+                                config.min_clearance_m));
   }
   PlanResult result;
   result.start = to_snap(map, *start);
@@ -309,7 +297,8 @@ PlanResult plan_between_nodes(const GlobalMap& map, std::uint32_t from_node, std
         std::any_of(map.branches.begin(), map.branches.end(),
                     [id](const MapBranch& b) { return b.node_a == id || b.node_b == id; });
     if (!network.vertex(id) || !has_branch) {
-      return no_route(PlanStatus::kUnknownNode, text("the map has no branch at a node %u", id));
+      return no_route(PlanStatus::kUnknownNode,
+                      fmt::format("the map has no branch at a node {}", id));
     }
   }
   network.connect({});

@@ -83,12 +83,12 @@ RouteQuery::Reach RouteQuery::reach(const Cell& cell, ZoneId zone) const {
 
 HybridRoute RouteQuery::within(const Cell& from, const Cell& to, ZoneId zone) const {
   HybridRoute route;
-  route.cells = way_within(from, to, zone);
+  route.cells = cells_within(from, to, zone);
   if (!route.cells.empty()) {
-    constexpr double kLongWay = 1.05;
+    constexpr double kLong = 1.05;
     const bool exact = improve_whole(route.cells);
     name_nodes_and_edges(route);
-    if (exact || cost_cells(route.cells) <= kLongWay * least_cost_cells(from, to)) return route;
+    if (exact || cost_cells(route.cells) <= kLong * least_cost_cells(from, to)) return route;
   }
   HybridRoute outside = across(from, to, zone, zone);
   if (outside.cells.empty()) return route;
@@ -98,7 +98,7 @@ HybridRoute RouteQuery::within(const Cell& from, const Cell& to, ZoneId zone) co
 }
 
 // Empty when what is closed cuts the zone in two.
-std::vector<Cell> RouteQuery::way_within(const Cell& from, const Cell& to, ZoneId zone) const {
+std::vector<Cell> RouteQuery::cells_within(const Cell& from, const Cell& to, ZoneId zone) const {
   const CellBox& box = map_.zones().zones[zone].box;
   SearchWindow window(map_.space(), box);
   close_parts(window, zone);
@@ -134,10 +134,10 @@ void RouteQuery::follow(const GraphPath& path, const Reach& start, const Reach& 
   route.cells = start.cells_to(path.nodes.front());
   route.nodes.push_back(network_.border_node(path.nodes.front()));
   for (std::size_t i = 0; i < path.edges.size(); ++i) {
-    const OpenNetwork::Way way = network_.way(path.edges[i]);
-    append(route.cells, *way.route, way.node_a != path.nodes[i]);
-    if (!way.edge) continue;
-    route.edges.push_back(*way.edge);
+    const OpenNetwork::Link link = network_.link(path.edges[i]);
+    append(route.cells, *link.route, link.node_a != path.nodes[i]);
+    if (!link.edge) continue;
+    route.edges.push_back(*link.edge);
     route.nodes.push_back(network_.border_node(path.nodes[i + 1]));
   }
   append(route.cells, goal.cells_to(path.nodes.back()), true);
@@ -156,7 +156,7 @@ void RouteQuery::name_nodes_and_edges(HybridRoute& route) const {
   route.edges = std::move(used.edges);
 }
 
-// Returns whether it is the shortest way now.
+// Returns whether it is the shortest path now.
 bool RouteQuery::improve_whole(std::vector<Cell>& cells) const {
   const std::int32_t margin = margin_of(cells);
   if (margin == 0) return true;

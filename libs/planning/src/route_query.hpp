@@ -18,7 +18,7 @@ class RouteQuery {
              const ClosedCells& cells)
       : map_(map), config_(config), closed_(closed), cells_(cells), network_(map, closed, cells) {}
 
-  /// With kind, cells, nodes and edges; without cells when no way leads from one open cell to the
+  /// With kind, cells, nodes and edges; without cells when no path leads from one open cell to the
   /// other.
   [[nodiscard]] HybridRoute run(const Cell& from, const Cell& to) const;
 
@@ -37,7 +37,7 @@ class RouteQuery {
 
   [[nodiscard]] Reach reach(const Cell& cell, ZoneId zone) const;
   [[nodiscard]] HybridRoute within(const Cell& from, const Cell& to, ZoneId zone) const;
-  [[nodiscard]] std::vector<Cell> way_within(const Cell& from, const Cell& to, ZoneId zone) const;
+  [[nodiscard]] std::vector<Cell> cells_within(const Cell& from, const Cell& to, ZoneId zone) const;
   [[nodiscard]] HybridRoute across(const Cell& from, const Cell& to, ZoneId zone_from,
                                    ZoneId zone_to) const;
   void follow(const GraphPath& path, const Reach& start, const Reach& goal,

@@ -10,12 +10,12 @@
 
 namespace topogeo::planning {
 
-/// A place on a branch: `along` of the way from its point `segment` to the next one.
+/// A place on a branch: `along` of the distance from its point `segment` to the next one.
 struct BranchPlace {
   std::size_t branch = 0;  ///< index in GlobalMap::branches
   std::size_t segment = 0;
   double along = 0.0;  ///< [0, 1]
-  WayPoint at;
+  RoutePoint at;
   double distance_m = 0.0;  ///< from the point that was looked up
 };
 

@@ -1,4 +1,4 @@
-// Pulls a way over cells straight, as far as sight allows.
+// Pulls a path over cells straight, as far as sight allows.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace topogeo::planning {
 /// The first cell, those where the direction changes, and the last.
 std::vector<Cell> corners_of(std::span<const Cell> cells);
 
-/// As `straighten` of motion_primitives.hpp, for a predicate that says which cells are passable.
+/// As `straighten` of motion_primitives.hpp, for a predicate of the passable cells.
 template <typename Passable>
 std::vector<Eigen::Vector2d> straighten_where(const GridFrame& frame, const Passable& passable,
                                               std::span<const Cell> cells,
@@ -25,15 +25,15 @@ std::vector<Eigen::Vector2d> straighten_where(const GridFrame& frame, const Pass
   const auto sees = [&](const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m) {
     return visit_line(frame.in_cells(a_m), frame.in_cells(b_m), passable);
   };
-  std::vector<Eigen::Vector2d> way_m{from_m};
+  std::vector<Eigen::Vector2d> path_m{from_m};
   std::size_t at = 0;
   while (at + 1 < points_m.size()) {
     std::size_t next = at + 1;
     while (next + 1 < points_m.size() && sees(points_m[at], points_m[next + 1])) ++next;
-    if (points_m[next] != way_m.back()) way_m.push_back(points_m[next]);
+    if (points_m[next] != path_m.back()) path_m.push_back(points_m[next]);
     at = next;
   }
-  return way_m;
+  return path_m;
 }
 
 }  // namespace topogeo::planning

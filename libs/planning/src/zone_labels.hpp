@@ -1,4 +1,4 @@
-// Labels of cells on their way to becoming zones.
+// Labels of cells that become zones.
 #pragma once
 
 #include <cstdint>

@@ -72,7 +72,7 @@ bool inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& 
   return odd;
 }
 
-// Gives the passable cells in a polygon that nobody owns yet to `index`.
+// Gives the passable cells in a polygon that belong to no zone yet to `index`.
 void fill_polygon(const FreeSpace& space, const std::vector<Eigen::Vector2d>& polygon_m,
                   std::uint32_t index, std::vector<std::uint32_t>& owner) {
   const GridFrame& frame = space.frame();

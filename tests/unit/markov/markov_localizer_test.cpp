@@ -36,7 +36,7 @@ TEST(MarkovLocalizer, BeginsAtTheBaseStationWithOnePerceptualUpdate) {
   EXPECT_EQ(report.match.reliability, 1.0);  // everything within 2.5 m
   EXPECT_DOUBLE_EQ(report.weight, 0.6);
   expect_probabilities(localizer.belief());
-  // 1 - 0.6 from the base station itself, the rest as the sensors say.
+  // 1 - 0.6 from the base station itself, the rest by the sensors.
   EXPECT_GT(localizer.belief().at({0, 0}), 0.4);
   EXPECT_GT(localizer.belief().at({1, 0}), 0.0);
   EXPECT_GT(localizer.belief().at({0, 0}), localizer.belief().at({1, 0}) + 0.4);
@@ -139,7 +139,7 @@ TEST(MarkovLocalizer, AnAdvanceInPiecesIsTheSameAdvance) {
   for (std::size_t i = 0; i < whole.size(); ++i) ASSERT_NEAR(whole[i], pieces[i], 1e-12);
 }
 
-TEST(MarkovLocalizer, UncertaintyGrowsWithTheWay) {
+TEST(MarkovLocalizer, UncertaintyGrowsWithTheDistance) {
   MarkovLocalizer localizer{{}, test::open_space(200, 200), test::macondo_ring()};
   localizer.initialize({5.05, 5.05, 0.3}, kNothing);
   double entropy = 0.0;

@@ -86,7 +86,7 @@ TEST(Relocalization, TheMovesBringTheRobotBackToTheRoute) {
     geometry::Pose2 truth = run.off_route(offset);
     const geometry::Pose2 route = run.localizer.expected();
     run.localizer.perceive(run.room.measured(truth, run.ring));
-    const std::optional<WayBack> back = run.localizer.relocalization_moves();
+    const std::optional<ReturnMoves> back = run.localizer.relocalization_moves();
     ASSERT_TRUE(back);
     EXPECT_FALSE(back->blocked);
     EXPECT_EQ(back->moves.empty(), offset == Cell{});
@@ -109,7 +109,7 @@ TEST(Relocalization, TurnAdvanceTurn) {
   Drive run;
   // Two cells to the left of the route: turn right, advance, turn left.
   run.localizer.perceive(run.room.measured(run.off_route({0, 2}), run.ring));
-  const std::optional<WayBack> back = run.localizer.relocalization_moves();
+  const std::optional<ReturnMoves> back = run.localizer.relocalization_moves();
   ASSERT_TRUE(back);
   ASSERT_EQ(back->moves.size(), 3U);
   EXPECT_EQ(back->moves[0].kind, MoveKind::kTurnRight);
@@ -120,7 +120,7 @@ TEST(Relocalization, TurnAdvanceTurn) {
   EXPECT_NEAR(back->moves[2].amount, test::kQuarter_rad, 1e-9);
 }
 
-TEST(Relocalization, AnObstacleOnTheWayBackIsTold) {
+TEST(Relocalization, AnObstacleOnTheReturnPathIsReported) {
   const ObstacleCells map = test::drawn({"#########",  //
                                          "#.......#",  //
                                          "#.......#",  //

@@ -55,7 +55,7 @@ class Tour {
 
   void correct() {
     localizer_.perceive(measure());
-    const std::optional<WayBack> back = localizer_.relocalization_moves();
+    const std::optional<ReturnMoves> back = localizer_.relocalization_moves();
     ASSERT_TRUE(back);
     localizer_.accept_estimate();
     for (const Move& move : back->moves) execute(move);

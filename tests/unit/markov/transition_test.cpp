@@ -90,7 +90,7 @@ TEST(Transition, QuartersTurnTheMatrixExactly) {
   EXPECT_EQ(around.size(), 9U);
 }
 
-TEST(Transition, TheArrowMayPointTheOtherWay) {
+TEST(Transition, TheArrowMayPointBack) {
   const std::vector<Tap> taps = turned(macondo_advance(), ArrowSense::kLeft, 0.0);
   EXPECT_EQ(value_at(taps, {-1, 0}), .0625);
   EXPECT_EQ(value_at(taps, {1, 0}), 0.0);

@@ -121,7 +121,7 @@ TEST(Closures, AllDoorsShutLeaveTheRobotInItsRoom) {
   EXPECT_TRUE(planner.plan(kRoom0_m, *none.nearest_reachable_m, shut).found());
 }
 
-// The whole way planned again on the grid is shorter through the closed edge.
+// The whole route planned again on the grid is shorter through the closed edge.
 TEST(Closures, PlanningAgainDoesNotLeadBackThroughAClosedEdge) {
   const Ring floor = ring_with_door();
   const HybridPlanner planner(floor.map);
@@ -215,7 +215,7 @@ TEST(Closures, ARobotBeforeAnObstacleStartsOnItsSideOfIt) {
   const FreeSpace space(grid_of_text(std::vector<std::string>(30, std::string(60, '.')), 0.1));
   const HybridMap map(space, zones_by_width(space));
   const HybridPlanner planner(map);
-  Closures closed;  // a wall with a way round at its upper end
+  Closures closed;  // a wall with a passage at its upper end
   for (std::int32_t row = 0; row < 20; ++row) closed.cells.push_back({30, row});
   const Eigen::Vector2d goal_m(5.05, 1.05);
   const HybridRoute left = planner.plan({2.85, 1.05}, goal_m, closed);

@@ -48,7 +48,7 @@ TEST(GridSearch, GoesDiagonallyWhereThereIsRoom) {
   EXPECT_DOUBLE_EQ(cost_cells(path->cells), path->cost_cells);
 }
 
-TEST(GridSearch, HasNoWayIntoObstaclesOrThroughAClosedDiagonal) {
+TEST(GridSearch, HasNoPathIntoObstaclesOrThroughAClosedDiagonal) {
   const FreeSpace space = without_inflation({
       "#.",  //
       ".#",  //
@@ -109,7 +109,7 @@ std::vector<double> costs_by_relaxation(const FreeSpace& space, const Cell& from
   return cost;
 }
 
-TEST(GridSearch, FindsTheCheapestWaysOfRandomGrids) {
+TEST(GridSearch, FindsTheCheapestPathsOfRandomGrids) {
   support::Random random(11);
   for (int round = 0; round < 40; ++round) {
     std::vector<std::string> lines(12, std::string(15, '.'));

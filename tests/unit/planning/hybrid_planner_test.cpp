@@ -84,7 +84,7 @@ TEST(HybridPlanner, FromADoorThatTheMapShowsTooNarrowItLeavesToEitherSide) {
       EXPECT_TRUE(route.found()) << from_m << " to " << to_m << ": " << route.reason;
     }
   }
-  // From a room there is no way into the other one.
+  // From a room there is no path into the other one.
   const HybridRoute route = planner.plan({2.5 * 0.25, y_m}, Eigen::Vector2d(14.5 * 0.25, y_m));
   EXPECT_EQ(route.status, RouteStatus::kUnreachable);
 }
@@ -202,7 +202,7 @@ TEST(HybridPlanner, GetsARobotOutOfAForbiddenCell) {
             RouteStatus::kGoalOccupied);
 }
 
-// A ring of four rooms: when one door shuts, the way goes round the other side.
+// A ring of four rooms: when one door shuts, the route goes round the other side.
 TEST(HybridPlanner, AvoidsWhatIsClosedNow) {
   BlockPlan plan;
   plan.columns = 2;
@@ -239,7 +239,7 @@ TEST(HybridPlanner, AvoidsWhatIsClosedNow) {
   EXPECT_THROW((void)planner.plan(from_m, to_m, {{}, {99}}), std::invalid_argument);
 }
 
-// The shares by which routes are longer than the shortest ways, over floors and pairs of points.
+// The shares by which routes are longer than the shortest paths, over floors and pairs of points.
 std::vector<double> detours(bool drawn, const HybridPlannerConfig& config) {
   BlockPlan plan;
   plan.columns = 6;
@@ -279,7 +279,7 @@ void record(const std::vector<double>& longer) {
   testing::Test::RecordProperty("most_percent", percent(1.0));
 }
 
-TEST(HybridPlanner, IsAtMostFivePercentLongerThanTheShortestWay) {
+TEST(HybridPlanner, IsAtMostFivePercentLongerThanTheShortestPath) {
   for (const bool drawn : {true, false}) {
     const std::vector<double> longer = detours(drawn, {});
     record(longer);
@@ -298,8 +298,8 @@ TEST(HybridPlanner, IsNearlyAsGoodWithoutPlanningAgain) {
   EXPECT_GT(longer.back(), 0.05) << "planning again would be needless";
 }
 
-// Doors shut at random: a route never crosses one, and says unreachable exactly when the shut
-// doors, as walls, leave no way.
+// Doors shut at random: a route never crosses one, and is unreachable exactly when the shut
+// doors, as walls, leave no path.
 TEST(HybridPlanner, IsRightAboutDoorsThatShutAtRandom) {
   int unreachable = 0;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {

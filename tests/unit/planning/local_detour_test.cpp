@@ -53,7 +53,7 @@ TEST(LocalDetour, GoesRoundAnObstacleAndBackToTheRoute) {
       ASSERT_GT((space.frame().center_m(cell) - point_m).norm(), 0.25);
     }
   }
-  // The straightened way keeps away as well.
+  // The straightened path keeps away as well.
   for (std::size_t i = 1; i < detour.points_m.size(); ++i) {
     const Eigen::Vector2d step_m = detour.points_m[i] - detour.points_m[i - 1];
     for (int k = 0; k <= 200; ++k) {

@@ -144,8 +144,8 @@ TEST(Straighten, DoesNotCutThroughWhatIsForbidden) {
                         }),
                         inflation);
   const std::vector<Cell> cells{{0, 0}, {0, 1}, {0, 2}, {1, 2}, {2, 2}, {3, 2}};
-  const auto way_m = straighten(space, cells, {0.5, 0.5}, {3.5, 2.5});
-  EXPECT_EQ(way_m, (std::vector<Eigen::Vector2d>{{0.5, 0.5}, {0.5, 2.5}, {3.5, 2.5}}));
+  const auto path_m = straighten(space, cells, {0.5, 0.5}, {3.5, 2.5});
+  EXPECT_EQ(path_m, (std::vector<Eigen::Vector2d>{{0.5, 0.5}, {0.5, 2.5}, {3.5, 2.5}}));
   EXPECT_FALSE(in_sight(space, {0.5, 0.5}, {3.5, 2.5}));
   EXPECT_FALSE(in_sight(space, {0.5, 0.5}, {9.5, 0.5}));
 }

@@ -72,7 +72,7 @@ void expect_consistent(const Route& route) {
   EXPECT_EQ(route.min_clearance_m, narrowest);
 }
 
-TEST(Plan, TakesTheShorterWayRound) {
+TEST(Plan, TakesTheShorterRoute) {
   const PlanResult result = plan(ring(), {4, 1}, {3, 9});
   ASSERT_TRUE(result.found()) << result.reason;
   expect_consistent(result.route);
@@ -97,7 +97,7 @@ TEST(Plan, GoesRoundWhereTheRobotDoesNotFit) {
 }
 
 TEST(Plan, GoesAlongAVirtualBranchWhateverItsClearance) {
-  // The robot drove from 2 to 7 and saw nothing on the way.
+  // The robot drove from 2 to 7 and saw nothing meanwhile.
   GlobalMap map = ring();
   ASSERT_EQ(plan(map, {19, 0}, {35, 0}).status, PlanStatus::kNotConnected);
   add_branch(map, 15, 2, 7, {{25, 0}}, 0.0);
@@ -132,10 +132,10 @@ TEST(Plan, OfStartOnTheGoalIsOnePlaceOfNoLength) {
   ASSERT_TRUE(result.found());
   expect_consistent(result.route);
   EXPECT_EQ(result.route.length_m, 0.0);
-  for (const WayPoint& p : result.route.points) EXPECT_EQ(p.position_m, Eigen::Vector2d(5, 0));
+  for (const RoutePoint& p : result.route.points) EXPECT_EQ(p.position_m, Eigen::Vector2d(5, 0));
 }
 
-TEST(Plan, OutAndBackIsTheSameWay) {
+TEST(Plan, OutAndBackIsTheSameRoute) {
   const GlobalMap map = ring();
   const PlanResult out = plan(map, {4, 1}, {3, 9});
   const PlanResult back = plan(map, {3, 9}, {4, 1});
@@ -146,7 +146,7 @@ TEST(Plan, OutAndBackIsTheSameWay) {
   }
 }
 
-TEST(Plan, FollowsALoopBranchTheShorterWay) {
+TEST(Plan, FollowsALoopBranchOnItsShorterSide) {
   GlobalMap map;
   add_node(map, 1, 0, 0);
   add_branch(map, 5, 1, 1, {{4, 0}, {4, 4}, {0, 4}});
@@ -193,7 +193,7 @@ TEST(Plan, SaysWhyThereIsNoRoute) {
   EXPECT_EQ(result.status, PlanStatus::kInvalidPoint);
 }
 
-TEST(Plan, TellsANarrowWayFromNoWay) {
+TEST(Plan, DistinguishesANarrowRouteFromNone) {
   GlobalMap map;
   for (std::uint32_t i = 0; i < 4; ++i) add_node(map, i, 10.0 * i, 0);
   add_branch(map, 1, 0, 1);
@@ -204,7 +204,7 @@ TEST(Plan, TellsANarrowWayFromNoWay) {
   EXPECT_TRUE(plan(map, {1, 0}, {29, 0}, {3.0, 0.2}).found());
 }
 
-TEST(PlanBetweenNodes, NamesTheNodesOnTheWay) {
+TEST(PlanBetweenNodes, NamesTheNodesOfTheRoute) {
   const PlanResult result = plan_between_nodes(ring(), 1, 4);
   ASSERT_TRUE(result.found());
   expect_consistent(result.route);
@@ -234,7 +234,7 @@ TEST(PlanningConfig, NamesTheFieldOutOfRange) {
   EXPECT_THROW(check(PlanningConfig{1.0, std::nan("")}), std::invalid_argument);
 }
 
-// All shortest lengths by Floyd and Warshall's algorithm; infinite where there is no way.
+// All shortest lengths by Floyd and Warshall's algorithm; infinite where there is no path.
 std::vector<std::vector<double>> all_lengths(const GlobalMap& map, double min_clearance_m) {
   const std::size_t n = map.nodes.size();
   std::vector d(n, std::vector<double>(n, std::numeric_limits<double>::infinity()));

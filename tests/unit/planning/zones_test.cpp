@@ -34,7 +34,7 @@ ZoneId zone_at(const FreeSpace& space, const ZoneMap& map, Cell cell) {
   return map.zone_of_cell[space.frame().index(cell)];
 }
 
-// What every way to make zones promises.
+// What all zones have in common, however they are made.
 void expect_sound(const FreeSpace& space, const ZoneMap& map) {
   const GridFrame& frame = space.frame();
   std::vector<std::size_t> cells(map.zones.size(), 0);
@@ -103,7 +103,7 @@ TEST(Zones, ThatAreDrawnKeepTheirNamesAndSizes) {
   ASSERT_EQ(map.zones.size(), 2U);
   EXPECT_EQ(map.zones[zone_at(space, map, {5, 2})].name, "west");
   EXPECT_EQ(map.zones[zone_at(space, map, {12, 2})].name, "both");
-  // What nobody drew is too small to be a zone of its own.
+  // What was not drawn is too small to be a zone of its own.
   EXPECT_EQ(map.zones[zone_at(space, map, {12, 8})].name, "both");
   expect_sound(space, map);
 }

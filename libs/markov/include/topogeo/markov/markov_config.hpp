@@ -12,15 +12,15 @@ struct TransitionMatrix {
   std::vector<double> values;  ///< rows x columns, the upper row first
 };
 
-/// Fig. 6, an advance. It sums to 0.9961: the source rounds. Nothing here makes it sum to one; the
-/// localizer normalizes the state after each update.
+/// MACONDO, III.1, fig. 6, an advance. It sums to 0.9961: its figures are rounded.
+/// Nothing here makes it sum to one; the localizer normalizes the state after each update.
 TransitionMatrix macondo_advance();
 
 /// Of a quarter turn on the spot: 0.9 to stay, 0.02 for each neighbour, 0.005 for each diagonal
-/// one. The source has no figures for its turns.
+/// one. MACONDO has no figures for its turns.
 TransitionMatrix quarter_turn();
 
-/// Which way the arrow of fig. 6 points, which cannot be read in the source.
+/// The sense of the arrow of MACONDO, III.1, fig. 6, which the print does not show.
 enum class ArrowSense {
   kRight,  ///< the right column is ahead of the robot: it rather goes too far
   kLeft,   ///< the right column is behind it: it rather slips
@@ -38,7 +38,7 @@ struct TransitionModel {
 };
 
 /// Probability from the mean absolute difference d of the compared readings, scale s (not
-/// normalized). The source only says that it falls when the difference grows.
+/// normalized). MACONDO only states that it falls when the difference grows.
 enum class PerceptualFormula {
   kExponential,  ///< exp(-d / s)
   kInverse,      ///< 1 / (1 + d / s)
@@ -63,7 +63,7 @@ struct SonarModelConfig {
   /// A larger difference counts as this much, so that one sensor that meets a person or no echo
   /// does not outvote the others.
   double difference_cap_m = 0.5;
-  /// Weighs each difference by the reliability of its reading. The source does not: there
+  /// Weighs each difference by the reliability of its reading. MACONDO does not: there
   /// reliability decides only how much the whole vector counts.
   bool weigh_by_reliability = false;
 };

@@ -60,7 +60,8 @@ struct Estimate {
   double spread_m = 0.0;  ///< root mean square distance from the mean place
 };
 
-struct WayBack {
+/// The moves from where the robot is to where its route has it.
+struct ReturnMoves {
   /// To be executed in this order; empty if the robot is there already.
   std::vector<Move> moves;
   /// The straight line meets an obstacle cell or leaves the map: plan a route instead.
@@ -99,8 +100,8 @@ class MarkovLocalizer {
   /// The moves from the estimated position to a pose of the route: turn, advance, turn. Without an
   /// argument to the expected pose. Empty if there is no estimate. Tell accept_estimate() before
   /// the first of them, move() after each.
-  [[nodiscard]] std::optional<WayBack> relocalization_moves() const;
-  [[nodiscard]] std::optional<WayBack> relocalization_moves(
+  [[nodiscard]] std::optional<ReturnMoves> relocalization_moves() const;
+  [[nodiscard]] std::optional<ReturnMoves> relocalization_moves(
       const geometry::Pose2& T_map_route) const;
 
   /// From now on the robot is expected where it is estimated. Probabilities stay at their cells of

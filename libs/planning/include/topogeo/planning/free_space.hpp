@@ -1,5 +1,6 @@
 // Where the robot's middle may be: the grid with everything forbidden that is too near to an
-// obstacle (the forbidden cells of spec B1), and the clearance of every cell.
+// obstacle (the forbidden cells of MACONDO, III.2; docs/algorithms.md, "Hybrid map and planner"),
+// and the clearance of every cell.
 //
 // Distances are exact Euclidean ones between the middles of cells, by the separable transform of
 // Felzenszwalb and Huttenlocher (2012) on squared integers, so they are the same everywhere.

@@ -1,7 +1,7 @@
-// Cheapest ways over the cells of a window of the grid: A* to one cell, or one search to many.
+// Cheapest paths over the cells of a window of the grid: A* to one cell, or one search to many.
 //
 // Eight neighbours; a step costs its length in cells, 1 or the root of 2. A diagonal step needs
-// both cells beside it open, so no way cuts a corner. The searches are those of Boost.Graph on a
+// both cells beside it open, so no path cuts a corner. The searches are those of Boost.Graph on a
 // graph that is never stored: the neighbours follow from the mask of open cells.
 #pragma once
 
@@ -80,17 +80,17 @@ struct CellPath {
   double cost_cells = 0.0;  ///< length between the middles of the cells, in cells
 };
 
-/// Length of a way over neighbouring cells, in cells.
+/// Length of a path over neighbouring cells, in cells.
 double cost_cells(std::span<const Cell> cells);
 
-/// Length of the shortest way between two cells if nothing is between (octile distance), in cells.
+/// Length of the shortest path between two cells if nothing is between (octile distance), in cells.
 double least_cost_cells(const Cell& a, const Cell& b);
 
-/// The cheapest way by A* with the octile distance as its estimate; empty when there is none or
+/// The cheapest path by A* with the octile distance as its estimate; empty when there is none or
 /// one of the two cells is not open.
 std::optional<CellPath> shortest_path(const SearchWindow& window, const Cell& from, const Cell& to);
 
-/// The cheapest ways to each of several cells, by one search that ends when all are reached: the
+/// The cheapest paths to each of several cells, by one search that ends when all are reached: the
 /// costs are those of an A* to each, in the time of one.
 std::vector<std::optional<CellPath>> shortest_paths(const SearchWindow& window, const Cell& from,
                                                     std::span<const Cell> to);

@@ -1,4 +1,5 @@
-// Occupancy grids from drawings and from the scans of a mapped floor (spec B1).
+// Occupancy grids from drawings and from the scans of a mapped floor (MACONDO, III.2;
+// docs/algorithms.md, "Hybrid map and planner").
 #pragma once
 
 #include <cstdint>
@@ -47,8 +48,8 @@ OccupancyGrid grid_from_scans(std::span<const topomap::LocalMap> maps,
 
 /// A drawing and what scans saw of it, on the grid of the drawing, which grows by multiples of
 /// snap_cells where scans reach further; resolution and margin are those of the drawing. A cell is
-/// occupied when either says so, otherwise free when either says so. With no scan point at all it
-/// is the drawing. Throws std::invalid_argument as grid_from_scans.
+/// occupied where either has it so, otherwise free where either has it so. With no scan point at
+/// all it is the drawing. Throws std::invalid_argument as grid_from_scans.
 OccupancyGrid grid_of_both(const OccupancyGrid& drawn, std::span<const topomap::LocalMap> maps,
                            std::span<const topomap::StopPose> stops,
                            const ScanGridConfig& config = {});

@@ -1,6 +1,6 @@
-// The hybrid representation of MACONDO (spec B1): grid, zones, and a graph whose nodes are the
-// middles of the borders between zones and whose edges join the nodes of a zone, with cost and
-// route from the grid.
+// The hybrid representation of MACONDO, III.2 (docs/algorithms.md, "Hybrid map and planner"): grid,
+// zones, and a graph whose nodes are the middles of the borders between zones and whose edges join
+// the nodes of a zone, with cost and route from the grid.
 //
 // Building costs one search through each of its two zones for every node: with z zones of c cells
 // and k nodes each, z k searches of c cells. `plan/build_2000` measures it. What it takes to build
@@ -29,7 +29,7 @@ struct BorderNode {
   std::array<Cell, 2> cells{};                           ///< cells[i] is in zones[i]
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< between the two, map frame
   double clearance_m = 0.0;                              ///< the less of the two
-  /// The cells of the border on either side, row by row: what to close when nobody gets through.
+  /// The cells of the border on either side, row by row: what to close when it cannot be passed.
   std::array<std::vector<Cell>, 2> border;
 
   /// Its cell in a zone that it borders on.
@@ -38,7 +38,7 @@ struct BorderNode {
   }
 };
 
-/// The way between two nodes of a zone.
+/// The path between two nodes of a zone.
 struct HybridEdge {
   std::uint32_t id = 0;  ///< index in HybridMap::edges
   std::uint32_t node_a = 0;

@@ -1,12 +1,12 @@
-// Routes on the hybrid map (spec B2).
+// Routes on the hybrid map (MACONDO, III.3; docs/algorithms.md, "Hybrid map and planner").
 //
 // Start and goal in one zone: A* on the grid, the graph is ignored. In two zones, adjacent or not:
-// ways on the grid from the start to every node of its zone and from every node of the goal's zone
+// paths on the grid from the start to every node of its zone and from every node of the goal's zone
 // to the goal, Dijkstra on the graph between every pair of them; the cheapest sum wins.
 //
-// Beyond the source, because the middle of a border can lie off the shortest way: short routes, and
-// pieces of the others, are planned again on the grid; and a long way round within a zone is
-// compared with the ways that leave it and come back.
+// Beyond MACONDO, because the middle of a border can lie off the shortest path: short routes, and
+// pieces of the others, are planned again on the grid; and a long path within a zone is compared
+// with those that leave it and come back.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ using Target = std::variant<Eigen::Vector2d, NodeNumber, std::string>;
 
 /// What must not be used now.
 struct Closures {
-  std::vector<std::uint32_t> nodes{};  ///< borders that nobody gets through (a door found shut)
-  std::vector<std::uint32_t> edges{};  ///< ways through a zone that are blocked
+  std::vector<std::uint32_t> nodes{};  ///< borders that cannot be passed (a door found shut)
+  std::vector<std::uint32_t> edges{};  ///< paths through a zone that are blocked
   /// Cells that something fills which is not on the map; the robot's middle keeps as far from them
   /// as from the obstacles on the map. In any order; those outside of the grid count, too.
   std::vector<Cell> cells{};
@@ -45,11 +45,11 @@ enum class RouteStatus : std::uint8_t {
   kInvalidPoint = 1,   ///< a coordinate is not finite
   kUnknownPlace = 2,   ///< no place of that name
   kUnknownNode = 3,    ///< no node of that number
-  kStartOutside = 4,   ///< outside of the grid, or where nothing is known
+  kStartOutside = 4,   ///< outside of the grid, or in unknown cells
   kStartOccupied = 5,  ///< in an obstacle or a forbidden cell
   kGoalOutside = 6,
   kGoalOccupied = 7,
-  kUnreachable = 8,  ///< no way, or none that is open now
+  kUnreachable = 8,  ///< no path, or none that is open now
 };
 
 /// A word for logs and messages: "found", "unknown place", ...
@@ -67,11 +67,11 @@ struct HybridRoute {
   RouteKind kind = RouteKind::kSameZone;
   std::vector<Cell> cells;                ///< from the start's to the goal's, neighbours each
   double cost_m = 0.0;                    ///< length over the middles of the cells
-  std::vector<Eigen::Vector2d> points_m;  ///< the same way straightened, from start to goal
+  std::vector<Eigen::Vector2d> points_m;  ///< the same path straightened, from start to goal
   std::vector<double> clearances_m;  ///< of the cells of `points_m`, infinite without obstacles
   double length_m = 0.0;             ///< of `points_m`
   double min_clearance_m = 0.0;      ///< least of the cells
-  std::vector<ZoneId> zones;         ///< in the order of the way
+  std::vector<ZoneId> zones;         ///< in the order of the path
   std::vector<std::uint32_t> nodes;  ///< in order; empty when it stays in one zone
   std::vector<std::uint32_t> edges;  ///< between them
 
@@ -94,7 +94,7 @@ class HybridPlanner {
   HybridPlannerConfig config_;
 };
 
-/// The same by A* over the whole grid: the shortest way over cells that there is, in much more
+/// The same by A* over the whole grid: the shortest path over cells that there is, in much more
 /// time. Without zones, nodes and edges.
 HybridRoute plan_on_grid(const FreeSpace& space, const Eigen::Vector2d& from_m,
                          const Eigen::Vector2d& to_m, const HybridPlannerConfig& config = {});

@@ -8,11 +8,11 @@ struct HybridPlannerConfig {
   /// obstacle is between, [0, 5].
   double start_snap_m = 0.5;
   double goal_snap_m = 0.0;  ///< the same for goals, [0, 5]; 0: they must be passable
-  /// A route that is longer than the straight way is planned again whole when all ways shorter than
-  /// it lie in a window of at most so many cells, [0, 1e8]; 0: never, as the source.
+  /// A route that is longer than the straight line is planned again whole when all shorter paths
+  /// lie in a window of at most so many cells, [0, 1e8]; 0: never, as in MACONDO.
   double exact_window_cells = 40000.0;
   /// Other routes are planned again in pieces of this length that overlap by half, [0, 50]; 0:
-  /// never, as the source.
+  /// never, as in MACONDO.
   double piece_m = 10.0;
 };
 

@@ -1,5 +1,8 @@
-// A way round what blocks the route and is not on the map: planned on a window of the grid around
-// the robot, with the obstacles that its sensors see now, back to the route behind them (spec B4).
+// A detour round what blocks the route and is not on the map: planned on a window of the grid
+// around the robot, with the obstacles that its sensors see now, back to the route behind them.
+//
+// Own; MACONDO, III names such routines and does not describe them (docs/algorithms.md, "Driving
+// and collision guard").
 #pragma once
 
 #include <cstddef>
@@ -19,7 +22,7 @@ namespace topogeo::planning {
 enum class DetourStatus : std::uint8_t {
   kClear = 0,    ///< nothing blocks the route within the window
   kFound = 1,    ///< the cells go round
-  kBlocked = 2,  ///< no way round within the window
+  kBlocked = 2,  ///< no detour within the window
   kLost = 3,     ///< the robot is outside of the grid or has no passable cell near it
 };
 

@@ -1,5 +1,7 @@
-// From routes to motion: straight ways, the primitives of spec B2 (advance, turn left, turn right),
-// and smooth paths for bases that take velocities.
+// From routes to motion: straight paths, motion primitives (advance, turn left, turn right), and
+// smooth paths for bases that take velocities.
+//
+// Primitives: MACONDO, III and III.1 (docs/algorithms.md, "Motion primitives").
 #pragma once
 
 #include <cstdint>
@@ -18,9 +20,9 @@ namespace topogeo::planning {
 /// Whether the straight line between two points of the map frame stays in passable cells.
 bool in_sight(const FreeSpace& space, const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m);
 
-/// The way over the middles of neighbouring cells with as few corners as sight allows: points in a
+/// The path over the middles of neighbouring cells with as few corners as sight allows: points in a
 /// line are left out, then every point is that the next but one can be reached without. `from_m`
-/// and `to_m` are the exact ends, in or beside the first and last cell. The way stays in passable
+/// and `to_m` are the exact ends, in or beside the first and last cell. The path stays in passable
 /// cells, except from `from_m` to the first and from the last cell to `to_m` where these are not.
 std::vector<Eigen::Vector2d> straighten(const FreeSpace& space, std::span<const Cell> cells,
                                         const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
@@ -35,8 +37,8 @@ struct MotionPrimitive {
   double amount = 0.0;  ///< metres of an advance, radians of a turn; > 0
 };
 
-/// Primitives that take a robot along a polyline: `heading_rad` is where it looks at the start,
-/// `final_heading_rad` where it shall look in the end. Throws std::invalid_argument for points or
+/// Primitives that take a robot along a polyline: `heading_rad` is its heading at the start,
+/// `final_heading_rad` the one wanted at the end. Throws std::invalid_argument for points or
 /// angles that are not finite and a configuration out of range.
 std::vector<MotionPrimitive> motion_primitives(std::span<const Eigen::Vector2d> points_m,
                                                double heading_rad,

@@ -1,4 +1,5 @@
-// A uniform grid over the map frame that says where space is free, occupied or unknown (spec B1).
+// A uniform grid over the map frame of free, occupied and unknown cells (MACONDO, III.2;
+// docs/algorithms.md, "Hybrid map and planner").
 //
 // Column and row count along x and y of the grid frame, whose origin is the lower left corner of
 // cell (0, 0). The grid frame can be turned in the map frame, as the files of map_server allow.

@@ -1,4 +1,4 @@
-// The cheapest way through a graph between any of several entries and any of several exits, by one
+// The cheapest path through a graph between any of several entries and any of several exits, by one
 // run of Dijkstra's algorithm (Boost.Graph).
 #pragma once
 
@@ -17,7 +17,7 @@ struct GraphEdge {
   double cost = 0.0;  ///< finite, >= 0
 };
 
-/// A node where a way can begin or end, and what it costs to get there or on from there.
+/// A node where a path can begin or end, and what it costs to get there or on from there.
 struct GraphAccess {
   std::uint32_t node = 0;
   double cost = 0.0;  ///< finite, >= 0
@@ -44,7 +44,7 @@ class RouteGraph {
   RouteGraph& operator=(RouteGraph&&) noexcept;
   ~RouteGraph();
 
-  /// The cheapest of all ways from an entry to an exit: the minimum over all pairs of them, as one
+  /// The cheapest of all paths from an entry to an exit: the minimum over all pairs of them, as one
   /// search from all entries at once finds it. Empty when none connects. Throws
   /// std::invalid_argument for nodes and edges that do not exist.
   [[nodiscard]] std::optional<GraphPath> cheapest(std::span<const GraphAccess> entries,

@@ -1,9 +1,11 @@
-// Shortest route on the global topo-geometric map (spec A9).
+// Shortest route on the global topo-geometric map.
 //
+// Thesis, chapter 1 and 9.2 (docs/algorithms.md, "Use of the map"): aim and future work there; the
+// method is own.
 // The graph's edges are the branches, as long as their curves; start and goal split the branch that
 // they snap to. A robot moves along branches only, so a route keeps the largest possible distance
-// to the walls and is a little longer than the shortest free path. Virtual branches are ways that
-// the robot has driven without seeing much: they are open whatever their clearance says.
+// to the walls and is a little longer than the shortest free path. Virtual branches are paths that
+// the robot has driven without seeing much: they are open whatever their clearance.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +21,13 @@
 
 namespace topogeo::planning {
 
-struct WayPoint {
+struct RoutePoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame
   double clearance_m = 0.0;
 };
 
 struct Route {
-  std::vector<WayPoint> points;           ///< from the start's to the goal's place on the map, >= 1
+  std::vector<RoutePoint> points;         ///< from the start's to the goal's place on the map, >= 1
   std::vector<std::uint32_t> node_ids;    ///< MapNode::id of the nodes passed, in order
   std::vector<std::uint32_t> branch_ids;  ///< MapBranch::id of the branches followed, in order
   double length_m = 0.0;
@@ -35,7 +37,7 @@ struct Route {
 enum class PlanStatus : std::uint8_t {
   kFound = 0,
   kEmptyMap = 1,     ///< no branches
-  kTooNarrow = 2,    ///< the map has ways, but none wide enough for the robot
+  kTooNarrow = 2,    ///< the map has paths, but none wide enough for the robot
   kStartTooFar = 3,  ///< from every branch that is wide enough
   kGoalTooFar = 4,
   kNotConnected = 5,  ///< start and goal lie on separate parts of the map
@@ -48,7 +50,7 @@ std::string_view describe(PlanStatus status);
 
 /// Where a start or goal came to lie on the map.
 struct Snap {
-  WayPoint nearest;
+  RoutePoint nearest;
   double distance_m = 0.0;
   std::uint32_t branch_id = 0;
 };

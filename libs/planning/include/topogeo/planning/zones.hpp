@@ -1,5 +1,6 @@
-// Zones: parts of the free space that meet at borders (spec B1). They are drawn, found from the
-// narrow passages of the topo-geometric map, or found from the width of the free space alone.
+// Zones: parts of the free space that meet at borders (MACONDO, III.2; docs/algorithms.md, "Hybrid
+// map and planner"). They are drawn, found from the narrow passages of the topo-geometric map, or
+// found from the width of the free space alone.
 //
 // However they come about, every passable cell is in exactly one zone, and a zone hangs together:
 // a robot gets from each of its cells to each other without leaving it.
@@ -36,7 +37,7 @@ struct ZoneMap {
   std::vector<Zone> zones;
 };
 
-/// A place of least clearance, with the direction of the way through it.
+/// A place of least clearance, with the direction of the path through it.
 struct Passage {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame
   Eigen::Vector2d along = Eigen::Vector2d::UnitX();      ///< unit vector
