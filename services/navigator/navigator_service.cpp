@@ -18,13 +18,13 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr milliseconds kPeriod{50};
-constexpr milliseconds kMapPeriod{100};
-constexpr milliseconds kLastWord{200};  // for the gateway to have the last command
-constexpr double kValid_s = 0.3;
-constexpr std::int64_t kStopTail_ns = 1'000'000'000;
-constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
-constexpr std::int64_t kBlockagesPeriod_ns = 200'000'000;
+constexpr milliseconds kPeriod{50};        // a scan takes 40 to 100 ms: faster finds nothing new
+constexpr milliseconds kMapPeriod{100};    // tiles of an update come one by one
+constexpr milliseconds kLastCommand{200};  // for the gateway to have the last command
+constexpr double kValid_s = 0.3;           // a base runs on that long when this service dies
+constexpr std::int64_t kStopTail_ns = 1'000'000'000;       // zeros go on that long: one may be lost
+constexpr std::int64_t kStatusPeriod_ns = 200'000'000;     // as often as a person reads it
+constexpr std::int64_t kBlockagesPeriod_ns = 200'000'000;  // a plan takes some milliseconds
 
 std::int64_t nanoseconds(std::chrono::nanoseconds duration) {
   return duration.count();
@@ -34,7 +34,7 @@ std::int64_t steady_now_ns() {
   return nanoseconds(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-/// Until the sensors say their time.
+/// Until a stamp of the sensors has come.
 std::int64_t host_offset_ns() {
   return nanoseconds(std::chrono::system_clock::now().time_since_epoch()) - steady_now_ns();
 }
@@ -87,7 +87,7 @@ NavigatorService::~NavigatorService() {
   if (!moving_ && steady_now_ns() > command_until_ns_) return;
   try {
     send_command({}, clock_.now_ns(steady_now_ns()));
-    static_cast<void>(commands_.wait_for_acknowledgments(kLastWord));
+    static_cast<void>(commands_.wait_for_acknowledgments(kLastCommand));
   } catch (const std::exception& error) {
     spdlog::error("the last command was not sent: {}", error.what());
   }
@@ -108,7 +108,7 @@ void NavigatorService::listen_to_sensors() {
   loop.add<msg::LivePose>(poses_,
                           [this](const msg::LivePose& message, const messaging::SampleInfo&) {
                             service_.take(message, "pose", [this](const msg::LivePose& pose) {
-                              if (!is_news(Source::kPose, pose.stamp_ns())) return;
+                              if (!is_newer(Source::kPose, pose.stamp_ns())) return;
                               navigator_.add(service::to_pose_fix(service::from_msg(pose)));
                             });
                           });
@@ -116,8 +116,8 @@ void NavigatorService::listen_to_sensors() {
       odometry_, [this](const msg::Odometry& message, const messaging::SampleInfo&) {
         service_.take(message, "odometry", [this](const msg::Odometry& odometry) {
           const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
-          heard(sample.stamp_ns);
-          if (is_news(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
+          note_stamp(sample.stamp_ns);
+          if (is_newer(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
         });
       });
   loop.add<msg::Scan>(scans_, [this](const msg::Scan& message, const messaging::SampleInfo&) {
@@ -126,19 +126,19 @@ void NavigatorService::listen_to_sensors() {
   loop.add<msg::Sonar>(sonars_, [this](const msg::Sonar& message, const messaging::SampleInfo&) {
     service_.take(message, "sonar", [this](const msg::Sonar& sonar) {
       const navigation::SonarRound round = service::sonar_from_msg(sonar);
-      if (is_news(Source::kSonar, round.stamp_ns)) navigator_.add(round);
+      if (is_newer(Source::kSonar, round.stamp_ns)) navigator_.add(round);
     });
   });
   loop.add<msg::BaseStatus>(
       bases_, [this](const msg::BaseStatus& message, const messaging::SampleInfo&) {
         service_.take(message, "base status", [this](const msg::BaseStatus& base) {
-          if (!is_news(Source::kBase, base.stamp_ns())) return;
+          if (!is_newer(Source::kBase, base.stamp_ns())) return;
           navigator_.add(service::base_from_msg(base));
         });
       });
 }
 
-bool NavigatorService::is_news(Source source, std::int64_t stamp_ns) {
+bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
   std::optional<std::int64_t>& last_ns = last_ns_.at(static_cast<std::size_t>(source));
   if (last_ns && stamp_ns <= *last_ns) {
     // Odometry that came with a scan may be newer than what comes by itself.
@@ -149,16 +149,16 @@ bool NavigatorService::is_news(Source source, std::int64_t stamp_ns) {
   return true;
 }
 
-void NavigatorService::heard(std::int64_t stamp_ns) {
-  clock_.heard(stamp_ns, steady_now_ns());
+void NavigatorService::note_stamp(std::int64_t stamp_ns) {
+  clock_.observe(stamp_ns, steady_now_ns());
 }
 
 void NavigatorService::on_scan(const msg::Scan& message) {
   const navigation::ScanPoints points = service::to_scan_points(
       service::from_msg(message), service_.setup().config.config.local_mapper.T_robot_laser);
-  heard(points.stamp_ns);
-  if (!is_news(Source::kScan, points.stamp_ns)) return;
-  if (is_news(Source::kOdometry, points.stamp_ns)) {
+  note_stamp(points.stamp_ns);
+  if (!is_newer(Source::kScan, points.stamp_ns)) return;
+  if (is_newer(Source::kOdometry, points.stamp_ns)) {
     navigator_.add(navigation::OdometrySample{points.stamp_ns, points.T_odom_robot});
   }
   navigator_.add(points);
@@ -217,7 +217,7 @@ void NavigatorService::take_map() {
     service_.status().fault("invalid hybrid map", error.what());
     return;
   }
-  if (!map || map == map_) return;  // the rest of the update is on its way
+  if (!map || map == map_) return;  // the rest of the update is to come
   map_ = std::move(map);
   navigator_.set_map(map_, live_map_.version());
   service_.status().set_counter("map_version", static_cast<double>(live_map_.version()));
@@ -228,8 +228,8 @@ void NavigatorService::tick() {
   if (clock_.take_set_back()) begin_again();
   const geometry::Velocity velocity = navigator_.step(now_ns);
   command(velocity, now_ns);
-  tell(now_ns);
-  tell_blockages(now_ns);
+  publish_status(now_ns);
+  publish_blockages(now_ns);
 }
 
 void NavigatorService::begin_again() {
@@ -269,10 +269,10 @@ void NavigatorService::send_command(const geometry::Velocity& velocity, std::int
   ++commands_sent_;
 }
 
-void NavigatorService::tell(std::int64_t now_ns) {
+void NavigatorService::publish_status(std::int64_t now_ns) {
   const navigation::NavigatorStatus& status = navigator_.status();
   const std::int64_t steady_ns = steady_now_ns();
-  const bool changed = !told_ || differs(status, *told_);
+  const bool changed = !published_ || differs(status, *published_);
   if (!changed && steady_ns < status_due_ns_) return;
   status_due_ns_ = steady_ns + kStatusPeriod_ns;
   if (changed) {
@@ -285,7 +285,7 @@ void NavigatorService::tell(std::int64_t now_ns) {
                                 std::string(navigation::describe(status.state)) +
                                     (status.message.empty() ? "" : ": " + status.message));
   }
-  told_ = status;
+  published_ = status;
   service_.status().set_counter("commands", static_cast<double>(commands_sent_));
   if (statuses_.write(service::to_msg(status, service_.robot_id(), now_ns, statuses_sent_))) {
     ++statuses_sent_;
@@ -294,12 +294,12 @@ void NavigatorService::tell(std::int64_t now_ns) {
   }
 }
 
-void NavigatorService::tell_blockages(std::int64_t now_ns) {
+void NavigatorService::publish_blockages(std::int64_t now_ns) {
   const navigation::BlockageReport& report = navigator_.blockages();
   const std::int64_t steady_ns = steady_now_ns();
-  if (told_blockages_ == report.version || steady_ns < blockages_due_ns_) return;
+  if (published_blockages_ == report.version || steady_ns < blockages_due_ns_) return;
   blockages_due_ns_ = steady_ns + kBlockagesPeriod_ns;
-  told_blockages_ = report.version;
+  published_blockages_ = report.version;
   try {
     if (service_.send(blockages_,
                       service::to_msg(report, service_.robot_id(), now_ns, blockages_sent_),

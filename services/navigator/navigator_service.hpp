@@ -1,5 +1,5 @@
-// Takes goals, routes, pose and sensors; gives motion commands, what it does and what is in its
-// way.
+// Takes goals, routes, pose and sensors; gives motion commands, its status and the blockages on its
+// path.
 //
 // Time is that of the sensors' stamps, see StampClock. Commands go out twenty times a second while
 // a goal is driven to, and zeros for a second after that; then nothing, so that others may drive. A
@@ -47,16 +47,17 @@ class NavigatorService {
   void on_scan(const msg::Scan& message);
   void take_map();
   /// False, and counted, for a message that is not newer than the one before.
-  bool is_news(Source source, std::int64_t stamp_ns);
-  void heard(std::int64_t stamp_ns);
+  bool is_newer(Source source, std::int64_t stamp_ns);
+  /// Sets the clock by a message that has just come.
+  void note_stamp(std::int64_t stamp_ns);
 
   void tick();
   /// The time of the sensors has gone back: begins again with the goal at hand.
   void begin_again();
   void command(const geometry::Velocity& velocity, std::int64_t now_ns);
   void send_command(const geometry::Velocity& velocity, std::int64_t now_ns);
-  void tell(std::int64_t now_ns);
-  void tell_blockages(std::int64_t now_ns);
+  void publish_status(std::int64_t now_ns);
+  void publish_blockages(std::int64_t now_ns);
 
   service::Service& service_;
   StampClock clock_;
@@ -75,8 +76,8 @@ class NavigatorService {
   std::uint64_t blockages_sent_ = 0;
   std::int64_t status_due_ns_ = 0;     // by the steady clock
   std::int64_t blockages_due_ns_ = 0;  // the same
-  std::optional<navigation::NavigatorStatus> told_;
-  std::optional<std::uint64_t> told_blockages_;
+  std::optional<navigation::NavigatorStatus> published_;
+  std::optional<std::uint64_t> published_blockages_;
 
   messaging::Reader<msg::Goal> goals_;
   messaging::Reader<msg::Route> routes_;

@@ -9,18 +9,18 @@ namespace topogeo::navigator {
 
 /// The stamps of gateway and localizer are of the gateway's clock, which is that of its host at the
 /// time when it was started. This one follows them: the message that came fastest of the last ten
-/// seconds says how the two clocks differ, so that one that waited on the way looks as old as it
-/// is. Neither host's clock matters, nor whether it was set in the meantime.
+/// seconds shows how the two clocks differ, so that one that was delayed is as old as it was made.
+/// Neither host's clock matters, nor whether it was set in the meantime.
 class StampClock {
  public:
   static constexpr std::int64_t kHalfWindow_ns = 5'000'000'000;
   static constexpr std::int64_t kSetBack_ns = 1'000'000'000;
 
-  /// `offset_ns`: from the steady clock to the stamps, before any message says it.
+  /// `offset_ns`: from the steady clock to the stamps, before any message has come.
   explicit StampClock(std::int64_t offset_ns) : offset_ns_(offset_ns) {}
 
   /// A message of the gateway came at a time of the steady clock.
-  void heard(std::int64_t stamp_ns, std::int64_t steady_ns) {
+  void observe(std::int64_t stamp_ns, std::int64_t steady_ns) {
     turn_over(steady_ns);
     const std::int64_t offset_ns = stamp_ns - steady_ns;
     newest_ns_ = std::max(newest_ns_, offset_ns);

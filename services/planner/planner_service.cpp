@@ -15,7 +15,7 @@ namespace topogeo::planner {
 
 namespace {
 
-/// Tiles of an update come one by one, in an order of their own: look at the map when they have
+/// Tiles of an update come one by one, in an order of their own: the map is taken when they have
 /// settled.
 constexpr std::chrono::milliseconds kMapPeriod{100};
 
@@ -60,7 +60,8 @@ void PlannerService::on_pose(const msg::LivePose& message) {
   pose_ = service::from_msg(message);
   if (!localization::located(pose_->belief.state)) return;
   const bool moved =
-      no_way_at_ && (no_way_at_->position_m() - pose_->T_map_robot.position_m()).norm() >= kMoved_m;
+      refused_at_ &&
+      (refused_at_->position_m() - pose_->T_map_robot.position_m()).norm() >= kMoved_m;
   if (!was_known || moved) plan();
 }
 
@@ -90,7 +91,7 @@ void PlannerService::take_map() {
     service_.status().fault("invalid hybrid map", error.what());
     return;
   }
-  if (map == map_) return;  // the rest of the update is on its way
+  if (map == map_) return;  // the rest of the update is to come
   map_ = std::move(map);
   map_version_ = live_map_.version();
   messaging::StatusPublisher& status = service_.status();
@@ -111,8 +112,8 @@ void PlannerService::plan() {
     return;
   }
   const bool found = route.status() == msg::kRouteFound;
-  no_way_at_.reset();
-  if (!found && pose_) no_way_at_ = pose_->T_map_robot;
+  refused_at_.reset();
+  if (!found && pose_) refused_at_ = pose_->T_map_robot;
   messaging::set_header(route, service_.robot_id(), pose_ ? pose_->stamp_ns : goal_->stamp_ns(),
                         sent_++);
   route.goal_id(goal_->goal_id());

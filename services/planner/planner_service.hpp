@@ -1,4 +1,4 @@
-// Answers goals with routes on the live hybrid map, and again when the map, what blocks the way, or
+// Answers goals with routes on the live hybrid map, and again when the map, the blockages, or
 // whether the pose is known has changed.
 #pragma once
 
@@ -37,8 +37,8 @@ class PlannerService {
   std::uint64_t map_version_ = 0;
   std::optional<service::LivePose> pose_;
   navigation::BlockageReport blockages_;
-  std::optional<msg::Goal> goal_;             // active
-  std::optional<geometry::Pose2> no_way_at_;  // where the last answer was a refusal
+  std::optional<msg::Goal> goal_;              // active
+  std::optional<geometry::Pose2> refused_at_;  // where the last answer was a refusal
   std::uint64_t sent_ = 0;
 
   service::LiveHybridMap live_map_;

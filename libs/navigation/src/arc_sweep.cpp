@@ -9,22 +9,23 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStill_m_s = 1e-6;
-constexpr double kStraightCurvature = 1e-4;
+constexpr double kStill_m_s = 1e-6;  // slower is no motion ahead or back
+constexpr double kStraightCurvature =
+    1e-4;  // a circle of 10 km: its equations lose their digits beyond
 
 double arc_cosine(double cosine) {
   return geometry::atan2(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), cosine);
 }
 
-// Ahead along x; the point is mirrored for ways back.
-double straight_way(const Eigen::Vector2d& point_m, double radius_m) {
+// Ahead along x; the point is mirrored for motions back.
+double straight_length_m(const Eigen::Vector2d& point_m, double radius_m) {
   if (std::fabs(point_m.y()) >= radius_m || point_m.x() <= 0.0) return HUGE_VAL;
   const double half_chord_m = std::sqrt(radius_m * radius_m - point_m.y() * point_m.y());
   return std::max(0.0, point_m.x() - half_chord_m);
 }
 
 // Ahead on a circle to the left of this radius.
-double arc_way(const Eigen::Vector2d& point_m, double radius_m, double turning_m) {
+double arc_length_m(const Eigen::Vector2d& point_m, double radius_m, double turning_m) {
   const Eigen::Vector2d seen_m(point_m.x(), point_m.y() - turning_m);
   const double off_m = seen_m.norm();
   if (std::fabs(off_m - turning_m) >= radius_m || off_m < 1e-9) return HUGE_VAL;
@@ -40,10 +41,10 @@ double arc_way(const Eigen::Vector2d& point_m, double radius_m, double turning_m
 
 }  // namespace
 
-SweptWay sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d> points_m,
+SweptArc sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d> points_m,
                double radius_m, double limit_m) {
-  SweptWay way{limit_m, std::nullopt};
-  if (std::fabs(motion.linear_m_per_s) < kStill_m_s) return way;
+  SweptArc arc{limit_m, std::nullopt};
+  if (std::fabs(motion.linear_m_per_s) < kStill_m_s) return arc;
   const double ahead = motion.linear_m_per_s > 0.0 ? 1.0 : -1.0;
   // Turning about the path: positive to the left of the direction of travel.
   const double curvature = ahead * motion.angular_rad_per_s / std::fabs(motion.linear_m_per_s);
@@ -51,25 +52,25 @@ SweptWay sweep(const geometry::Velocity& motion, std::span<const Eigen::Vector2d
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const Eigen::Vector2d point_m(ahead * points_m[i].x(), left * points_m[i].y());
     const double to_m = std::fabs(curvature) < kStraightCurvature
-                            ? straight_way(point_m, radius_m)
-                            : arc_way(point_m, radius_m, 1.0 / std::fabs(curvature));
-    if (to_m < way.way_m) way = {to_m, i};
+                            ? straight_length_m(point_m, radius_m)
+                            : arc_length_m(point_m, radius_m, 1.0 / std::fabs(curvature));
+    if (to_m < arc.length_m) arc = {to_m, i};
   }
-  return way;
+  return arc;
 }
 
-double stopping_speed(double way_m, double delay_s, double brake_m_per_s2) {
-  if (way_m <= 0.0) return 0.0;
+double stopping_speed(double distance_m, double delay_s, double brake_m_per_s2) {
+  if (distance_m <= 0.0) return 0.0;
   const double delayed = brake_m_per_s2 * delay_s;
-  return std::sqrt(delayed * delayed + 2.0 * brake_m_per_s2 * way_m) - delayed;
+  return std::sqrt(delayed * delayed + 2.0 * brake_m_per_s2 * distance_m) - delayed;
 }
 
 geometry::Pose2 moved(const geometry::Velocity& velocity, double time_s) {
   const double turn_rad = velocity.angular_rad_per_s * time_s;
-  const double way_m = velocity.linear_m_per_s * time_s;
+  const double arc_m = velocity.linear_m_per_s * time_s;
   const auto half = geometry::sincos(0.5 * turn_rad);
   // The chord of the arc.
-  const double chord_m = std::fabs(turn_rad) < 1e-9 ? way_m : way_m * half.sin / (0.5 * turn_rad);
+  const double chord_m = std::fabs(turn_rad) < 1e-9 ? arc_m : arc_m * half.sin / (0.5 * turn_rad);
   return {chord_m * half.cos, chord_m * half.sin, geometry::wrap_angle(turn_rad)};
 }
 

@@ -14,9 +14,9 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr int kCorrections = 5;  // an error that stays after these is one of the pose
-constexpr int kLooks = 3;        // a third of a circle each
-constexpr double kLookTurn_rad = 2.1;
+constexpr int kCorrections = 5;        // an error that stays after these is one of the pose
+constexpr int kLooks = 3;              // a third of a circle each
+constexpr double kLookTurn_rad = 2.1;  // three of them are a whole turn
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Notices a base that is told to move and does not.
+// Notices a base that is ordered to move and does not.
 #pragma once
 
 #include <cmath>
@@ -14,16 +14,16 @@ class BaseWatch {
  public:
   explicit BaseWatch(double stuck_s) : stuck_ns_(static_cast<std::int64_t>(stuck_s * 1e9)) {}
 
-  /// What the base was told, and where odometry says that it is. True: it has not moved for
-  /// `stuck_s` though told so all the time.
-  bool stuck(const geometry::Velocity& told, const geometry::Pose2& T_odom_robot,
+  /// What the base was ordered, and where it is by odometry. True: it has not moved for `stuck_s`
+  /// though ordered to all the time.
+  bool stuck(const geometry::Velocity& ordered, const geometry::Pose2& T_odom_robot,
              std::int64_t now_ns) {
-    constexpr double kLeast_m_per_s = 0.02;
-    constexpr double kLeast_rad_per_s = 0.05;
-    constexpr double kMoved_m = 0.01;
-    constexpr double kMoved_rad = 0.02;
-    const bool moves = std::fabs(told.linear_m_per_s) >= kLeast_m_per_s ||
-                       std::fabs(told.angular_rad_per_s) >= kLeast_rad_per_s;
+    constexpr double kLeast_m_per_s = 0.02;    // friction may stop a base that is to go slower
+    constexpr double kLeast_rad_per_s = 0.05;  // the same
+    constexpr double kMoved_m = 0.01;          // less may be play of the wheels
+    constexpr double kMoved_rad = 0.02;        // the same
+    const bool moves = std::fabs(ordered.linear_m_per_s) >= kLeast_m_per_s ||
+                       std::fabs(ordered.angular_rad_per_s) >= kLeast_rad_per_s;
     if (!moves) {
       reset();
       return false;

@@ -7,7 +7,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr int kSeenFree = 5;
+constexpr int kSeenFree = 5;        // scans in a row: one can see past an edge
 constexpr std::size_t kMost = 500;  // cells in a message
 
 }  // namespace
@@ -35,8 +35,8 @@ bool Blockade::add(std::span<const Eigen::Vector2d> points_m, const planning::Gr
 
 void Blockade::see(const ScanPoints& scan, const geometry::Pose2& T_map_robot) {
   if (cells_.empty()) return;
-  constexpr double kHalf_m = 0.05;
-  constexpr double kFarthest_m = 5.0;
+  constexpr double kHalf_m = 0.05;     // of a cell
+  constexpr double kFarthest_m = 5.0;  // beams lie further apart than a cell is wide beyond
   const ScanOccupancy occupancy(scan);
   const geometry::Pose2 T_robot_map = inverse(T_map_robot);
   for (Filled& filled : cells_) {
@@ -58,7 +58,7 @@ void Blockade::see(const ScanPoints& scan, const geometry::Pose2& T_map_robot) {
 
 void Blockade::expire(std::int64_t now_ns) {
   const auto over = [&](const Filled& filled) {
-    return filled.free >= kSeenFree || now_ns - filled.last_ns > believed_ns_;
+    return filled.free >= kSeenFree || now_ns - filled.last_ns > kept_ns_;
   };
   if (std::erase_if(cells_, over) > 0) publish();
 }

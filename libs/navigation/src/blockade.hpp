@@ -14,13 +14,12 @@ namespace topogeo::navigation {
 
 class Blockade {
  public:
-  explicit Blockade(double believed_s)
-      : believed_ns_(static_cast<std::int64_t>(believed_s * 1e9)) {}
+  explicit Blockade(double kept_s) : kept_ns_(static_cast<std::int64_t>(kept_s * 1e9)) {}
 
   /// Adds the cells of these points; true when one of them is new.
   bool add(std::span<const Eigen::Vector2d> points_m, const planning::GridFrame& frame,
            std::int64_t now_ns);
-  /// What a scan says of them; `T_map_robot` at its time.
+  /// What a scan shows of them; `T_map_robot` at its time.
   void see(const ScanPoints& scan, const geometry::Pose2& T_map_robot);
   /// Takes away what is seen to be free, and what is too old.
   void expire(std::int64_t now_ns);
@@ -39,7 +38,7 @@ class Blockade {
   };
   void publish();
 
-  std::int64_t believed_ns_;
+  std::int64_t kept_ns_;
   std::vector<Filled> cells_;
   BlockageReport report_;
 };

@@ -16,7 +16,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStanding_m_s = 1e-6;
+constexpr double kStanding_m_s = 1e-6;  // slower is no motion ahead or back
 constexpr double kNsToSeconds = 1e-9;
 
 bool heard(const SonarReading& reading) {
@@ -83,8 +83,8 @@ void CollisionGuard::listen(const SonarRound& sonar) {
 
 // What the sonars hear, and whether the laser sees it, too, and better.
 void CollisionGuard::compare_echoes() {
-  constexpr double kSame_m = 0.2;
-  constexpr double kAhead = 0.5;  // within 60 degrees of ahead or back
+  constexpr double kSame_m = 0.2;  // laser and sonar see one thing: the error of both
+  constexpr double kAhead = 0.5;   // within 60 degrees of ahead or back
   echoes_.clear();
   if (!sonar_) return;
   for (const SonarReading& reading : sonar_->readings) {
@@ -168,7 +168,7 @@ std::vector<Eigen::Vector2d> CollisionGuard::obstacles_m(std::int64_t now_ns) co
 
 geometry::Velocity CollisionGuard::driven() const {
   if (!last_) return {};
-  constexpr std::int64_t kOver_ns = 150'000'000;
+  constexpr std::int64_t kOver_ns = 150'000'000;  // shorter times make noise of odometry a speed
   for (std::int64_t back_ns = kOver_ns; back_ns >= 10'000'000; back_ns /= 2) {
     const auto before = odometry_.at(last_->stamp_ns - back_ns);
     if (!before) continue;
@@ -179,9 +179,9 @@ geometry::Velocity CollisionGuard::driven() const {
   return {};
 }
 
-double CollisionGuard::speed_for(double free_way_m) const {
+double CollisionGuard::speed_for(double free_m) const {
   const double kept_m = std::max(0.0, config_.margin_m - config_.side_margin_m);
-  return stopping_speed(free_way_m - kept_m, config_.delay_s, config_.deceleration_m_per_s2);
+  return stopping_speed(free_m - kept_m, config_.delay_s, config_.deceleration_m_per_s2);
 }
 
 GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_t now_ns) const {
@@ -194,10 +194,10 @@ GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_
   const std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
   const double body_m = config_.radius_m + std::min(config_.margin_m, config_.side_margin_m);
   const bool still = std::fabs(wanted.linear_m_per_s) < kStanding_m_s;
-  const SweptWay way =
+  const SweptArc arc =
       sweep(still ? geometry::Velocity{1.0, 0.0} : wanted, points_m, body_m, kFarthest_m);
-  verdict.free_way_m = way.way_m;
-  if (way.contact) verdict.contact_m = points_m[*way.contact];
+  verdict.free_m = arc.length_m;
+  if (arc.contact) verdict.contact_m = points_m[*arc.contact];
   verdict.allowed = wanted;
   if (still) return verdict;
   if (wanted.linear_m_per_s < 0.0 && (!sonar_ || !fresh(sonar_->stamp_ns, now_ns))) {
@@ -207,24 +207,24 @@ GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_
     verdict.message = "no sonar looks backwards";
     return verdict;
   }
-  double speed = speed_for(way.way_m);
+  double speed = speed_for(arc.length_m);
   const geometry::Velocity now = driven();
-  constexpr double kRolls_m_per_s = 0.05;
+  constexpr double kRolls_m_per_s = 0.05;  // slower it stops at once
   if (std::fabs(now.linear_m_per_s) > kRolls_m_per_s &&
       (now.linear_m_per_s > 0.0) == (wanted.linear_m_per_s > 0.0)) {
-    speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).way_m));
+    speed = std::min(speed, speed_for(sweep(now, points_m, body_m, kFarthest_m).length_m));
   }
   const double asked = std::fabs(wanted.linear_m_per_s);
   if (speed >= asked) return verdict;
   verdict.limited = true;
   verdict.allowed.linear_m_per_s *= speed / asked;
   verdict.allowed.angular_rad_per_s *= speed / asked;
-  constexpr double kCreep_m_per_s = 0.01;
+  constexpr double kCreep_m_per_s = 0.01;  // bases do not go slower
   if (speed < kCreep_m_per_s) {
     verdict.allowed = {};
     verdict.reason = HaltReason::kObstacle;
   }
-  verdict.message = fmt::format("something is {:.2f} m ahead of the body", way.way_m);
+  verdict.message = fmt::format("something is {:.2f} m ahead of the body", arc.length_m);
   return verdict;
 }
 

@@ -1,5 +1,5 @@
 // Where the collision guard has stopped the robot. What only sonars hear is in no other memory, and
-// a way round it has to avoid it.
+// a detour has to avoid it.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace topogeo::navigation {
 
 class ContactMemory {
  public:
-  static constexpr std::size_t kMost = 20;  ///< the oldest gives way to a new one
+  static constexpr std::size_t kMost = 20;  ///< a new one replaces the oldest
 
-  /// A contact, map frame; one that is known already counts as seen again.
+  /// A contact, map frame; one that is there already counts as met again.
   void add(const Eigen::Vector2d& contact_m, std::int64_t now_ns) {
-    constexpr double kSame_m = 0.05;
+    constexpr double kSame_m = 0.05;  // half a cell
     std::erase_if(contacts_, [&](const Contact& known) {
       return (known.point_m - contact_m).norm() < kSame_m;
     });
@@ -28,7 +28,7 @@ class ContactMemory {
 
   /// Those of the last seconds, in the order in which they were met last.
   [[nodiscard]] std::vector<Eigen::Vector2d> points_m(std::int64_t now_ns) const {
-    constexpr std::int64_t kKept_ns = 12'000'000'000;
+    constexpr std::int64_t kKept_ns = 12'000'000'000;  // long enough to go round it
     std::vector<Eigen::Vector2d> points_m;
     for (const Contact& contact : contacts_) {
       if (now_ns - contact.met_ns < kKept_ns) points_m.push_back(contact.point_m);

@@ -142,8 +142,8 @@ void Explorer::add_rooms(const planning::HybridMap& map, const Rooms& rooms,
   }
 }
 
-// The zones that cannot be got to though free cells lead there from one that can, a short way but
-// too narrow for the robot; each at its cell that is nearest along these.
+// The zones that cannot be got to though free cells lead there from one that can, a short distance
+// but too narrow for the robot; each at its cell that is nearest along these.
 std::vector<Explorer::Candidate> Explorer::blocked_zones(const planning::HybridMap& map,
                                                          const std::vector<bool>& reachable) const {
   std::vector<std::optional<Cell>> entrances(reachable.size());
@@ -159,7 +159,7 @@ std::vector<Explorer::Candidate> Explorer::blocked_zones(const planning::HybridM
     if (zone != planning::kNoZone && reachable[zone]) visit(map.frame().cell_at(i));
   }
   const double resolution_m = map.frame().resolution_m;
-  for (double way_m = 0.0; way_m < kEntrance_m; way_m += resolution_m) {
+  for (double distance_m = 0.0; distance_m < kEntrance_m; distance_m += resolution_m) {
     for (const Cell& cell : std::exchange(front, {})) {
       for (const Cell& step : kAround) {
         const Cell other{cell.column + step.column, cell.row + step.row};

@@ -54,7 +54,7 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
     target_.reset();
     return;
   }
-  if (navigator.goal_id != goal_->goal_id) return;  // it has not heard of it yet
+  if (navigator.goal_id != goal_->goal_id) return;  // it has not received it yet
   switch (navigator.state) {
     case NavigatorState::kArrived:
       // Its last scan may not be in the map yet.
@@ -76,9 +76,9 @@ void ExplorationTour::judge(const NavigatorStatus& navigator, std::int64_t now_n
   }
   const Eigen::Vector2d rest_m =
       goal_->T_map_goal.position_m() - navigator.T_map_robot->position_m();
-  const double way_m = navigator.rest_m > 0.0 ? navigator.rest_m : rest_m.norm();
-  if (way_m < nearest_m_ - kNearer_m || navigator.state == NavigatorState::kRelocalizing) {
-    nearest_m_ = way_m;
+  const double distance_m = navigator.rest_m > 0.0 ? navigator.rest_m : rest_m.norm();
+  if (distance_m < nearest_m_ - kNearer_m || navigator.state == NavigatorState::kRelocalizing) {
+    nearest_m_ = distance_m;
     nearest_ns_ = now_ns;
   } else if (static_cast<double>(now_ns - nearest_ns_) >
              kNanosecondsPerSecond * config_.patience_s) {
@@ -118,7 +118,7 @@ std::optional<TourGoal> ExplorationTour::choose(const geometry::Pose2& T_map_rob
   idle_ns_.reset();
   ++targets_;
   looks_ = 0;
-  nearest_m_ = target_->way_m;
+  nearest_m_ = target_->distance_m;
   nearest_ns_ = now_ns;
   judged_version_ = map_.version;
   return give(target_->T_map_view);
@@ -134,7 +134,8 @@ std::string ExplorationTour::message() const {
   if (!planner_) return "waits for a map";
   if (!target_) return "looks for a target";
   return "to a " + std::string(describe(target_->kind)) + ", " +
-         std::to_string(static_cast<long>(std::lround(target_->way_m))) + " m away when chosen";
+         std::to_string(static_cast<long>(std::lround(target_->distance_m))) +
+         " m away when chosen";
 }
 
 }  // namespace topogeo::navigation

@@ -15,9 +15,9 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kWide = 0.8;  // of the clearance in the widest place of a room
-constexpr double kWideEnough_m = 0.8;
-constexpr double kSamePlace_m = 0.5;  // a target that was given up comes back within this
+constexpr double kWide = 0.8;          // of the clearance in the widest place of a room
+constexpr double kWideEnough_m = 0.8;  // more room than that makes no better view
+constexpr double kSamePlace_m = 0.5;   // a target that was given up comes back within this
 
 bool is_look(TargetKind kind) {
   return kind != TargetKind::kRoom && kind != TargetKind::kBlocked;
@@ -88,7 +88,8 @@ struct Explorer::Scene {
   Eigen::Vector2d robot_m;
 };
 
-// Those that can be reached and are worth their way, the nearest first, as many as the tour takes.
+// Those that can be reached and are worth their distance, the nearest first, as many as the tour
+// takes.
 std::vector<Explorer::Option> Explorer::options(const std::vector<Candidate>& candidates,
                                                 const Scene& scene) const {
   std::vector<Option> seen;
@@ -100,13 +101,14 @@ std::vector<Explorer::Option> Explorer::options(const std::vector<Candidate>& ca
         {{candidate.kind, candidate.position_m, *T_map_view, straight_m}, candidate.worth_m});
   }
   const auto nearer = [](const Option& a, const Option& b) {
-    return a.target.way_m < b.target.way_m;
+    return a.target.distance_m < b.target.distance_m;
   };
   std::stable_sort(seen.begin(), seen.end(), nearer);
   std::vector<Option> found;
   for (Option& option : seen) {
-    // No way is shorter than straight.
-    if (found.size() >= config_.tour && option.target.way_m >= found.back().target.way_m) break;
+    // No path is shorter than the straight line.
+    if (found.size() >= config_.tour && option.target.distance_m >= found.back().target.distance_m)
+      break;
     const bool together = std::any_of(found.begin(), found.end(), [&](const Option& other) {
       return geometry::between(other.target.T_map_view, option.target.T_map_view)
                  .position_m()
@@ -116,7 +118,7 @@ std::vector<Explorer::Option> Explorer::options(const std::vector<Candidate>& ca
     const planning::HybridRoute route =
         scene.planner.plan(scene.robot_m, option.target.T_map_view.position_m());
     if (!route.found() || route.length_m > option.worth_m) continue;
-    option.target.way_m = route.length_m;
+    option.target.distance_m = route.length_m;
     found.insert(std::upper_bound(found.begin(), found.end(), option, nearer), option);
     if (found.size() > config_.tour) found.pop_back();
   }
@@ -134,18 +136,18 @@ std::optional<ExplorationTarget> Explorer::next(const topomap::GlobalMap& graph,
   if (found.empty()) found = options(blocked_zones(map, scene.reachable), scene);
   if (found.empty()) return std::nullopt;
   if (found.size() == 1) return found.front().target;
-  WayTable ways_m(found.size());
+  DistanceTable distances_m(found.size());
   for (std::size_t a = 0; a < found.size(); ++a) {
     const ExplorationTarget& from = found[a].target;
-    ways_m.from_start(a) = from.way_m;
+    distances_m.from_start(a) = from.distance_m;
     for (std::size_t b = a + 1; b < found.size(); ++b) {
       const ExplorationTarget& to = found[b].target;
       const planning::HybridRoute route =
           planner.plan(from.T_map_view.position_m(), to.T_map_view.position_m());
-      ways_m.between(a, b) = route.found() ? route.length_m : from.way_m + to.way_m;
+      distances_m.between(a, b) = route.found() ? route.length_m : from.distance_m + to.distance_m;
     }
   }
-  return found[short_tour(ways_m).front()].target;
+  return found[short_tour(distances_m).front()].target;
 }
 
 void Explorer::give_up(const ExplorationTarget& target) {

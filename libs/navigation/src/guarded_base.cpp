@@ -16,7 +16,7 @@ HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const 
   }
   if (stuck_) {
     message = fmt::format(
-        "told to move for {:.1f} s, the base did not; drives on when told to resume", stuck_s_);
+        "ordered to move for {:.1f} s, the base did not; drives on after a resume", stuck_s_);
     return HaltReason::kBaseStuck;
   }
   return guard_.health(now_ns, &message);
@@ -40,7 +40,7 @@ GuardedBase::Command GuardedBase::command(const geometry::Velocity& wanted,
 }
 
 bool GuardedBase::held(std::int64_t now_ns) const {
-  constexpr double kPatience_s = 0.7;
+  constexpr double kPatience_s = 0.7;  // less than any obstacle_wait_s that makes sense
   return stopped_ns_ && elapsed_s(*stopped_ns_, now_ns) > kPatience_s;
 }
 

@@ -74,7 +74,7 @@ std::optional<PathBlock> LocalPlanner::blocked(std::span<const planning::PathSam
                                                double reach_m) const {
   constexpr double kBeside_m = 0.04;  // it passes obstacles at this distance
   constexpr double kNearer_m = 0.03;  // more is nearer than it is now
-  constexpr double kStep_m = 0.05;
+  constexpr double kStep_m = 0.05;    // as fine as a cell
   const double body_m = config_.guard.radius_m + kBeside_m;
   const auto touched = [&](const Eigen::Vector2d& at_m) {
     return std::find_if(obstacles_m.begin(), obstacles_m.end(), [&](const auto& obstacle_m) {
@@ -102,7 +102,7 @@ std::optional<PathBlock> LocalPlanner::blocked(std::span<const planning::PathSam
 
 bool passable(const planning::FreeSpace& space, std::span<const planning::PathSample> path,
               double from_m) {
-  constexpr double kHere_m = 0.5;
+  constexpr double kHere_m = 0.5;  // more than a body that stands in forbidden cells reaches
   return std::all_of(path.begin(), path.end(), [&](const planning::PathSample& sample) {
     if (sample.distance_m < from_m + kHere_m) return true;
     const auto cell = space.frame().cell_of(sample.T_map_robot.position_m());

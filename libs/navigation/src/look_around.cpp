@@ -6,18 +6,18 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kTurn_rad_s = 0.5;
-constexpr double kSpeed_m_s = 0.2;
-constexpr double kLeg_m = 1.0;
+constexpr double kTurn_rad_s = 0.5;  // slow enough for scans to be matched while it turns
+constexpr double kSpeed_m_s = 0.2;   // without a pose it creeps
+constexpr double kLeg_m = 1.0;       // a stop is made about as often
 constexpr double kRoomLeft_m = 0.3;  // stays free ahead of the body
-constexpr double kFacing_rad = 0.1;
-constexpr double kStops_m = 0.1;  // the way on after it was told to stop
+constexpr double kFacing_rad = 0.1;  // what it turns on after the command to stop
+constexpr double kStops_m = 0.1;     // the distance on after the command to stop
 
 }  // namespace
 
 geometry::Velocity LookAround::step(const geometry::Pose2& T_odom_robot,
                                     const CollisionGuard& guard, std::int64_t now_ns) {
-  const double free_m = guard.judge({kSpeed_m_s, 0.0}, now_ns).free_way_m;
+  const double free_m = guard.judge({kSpeed_m_s, 0.0}, now_ns).free_m;
   if (T_odom_last_) {
     const geometry::Pose2 moved = between(*T_odom_last_, T_odom_robot);
     turned_rad_ += std::fabs(moved.theta_rad);

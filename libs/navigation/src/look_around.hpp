@@ -1,4 +1,4 @@
-// Moves that let a localizer find an unknown pose: once round on the spot, then a little way to
+// Moves that let a localizer find an unknown pose: once round on the spot, then a short distance to
 // where most room is, and again.
 #pragma once
 

@@ -57,7 +57,7 @@ void MarkovMode::primitive_done() {
 
 void MarkovMode::set_path(std::span<const planning::PathSample> path,
                           std::span<const Eigen::Vector2d> nodes_m) {
-  constexpr double kOnPath_m = 0.5;
+  constexpr double kOnPath_m = 0.5;  // a path keeps off walls and passes a node beside its middle
   constexpr double kJustBegun_m = 0.3;  // it has looked there
   nodes_at_m_.clear();
   next_node_ = 0;
@@ -83,7 +83,7 @@ bool MarkovMode::comes_to_node(double progress_m) {
 }
 
 std::optional<double> MarkovMode::look(std::int64_t now_ns) {
-  constexpr std::int64_t kRollsOut_ns = 800'000'000;
+  constexpr std::int64_t kRollsOut_ns = 800'000'000;  // until the base stands
   if (!look_ns_ || !tracker_ || !tracker_->started() || !round_) return std::nullopt;
   if (round_->stamp_ns < *look_ns_ + kRollsOut_ns || now_ns < round_->stamp_ns) return std::nullopt;
   tracker_->perceive(*round_);

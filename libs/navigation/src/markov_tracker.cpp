@@ -50,7 +50,7 @@ void check(const MarkovTrackerConfig& config) {
 
 SonarRound laser_round(const ScanPoints& scan, double step_rad) {
   if (!(step_rad > 0.0)) throw std::invalid_argument("laser round: step_rad is not above 0");
-  constexpr double kOnBeam_rad = 0.01;
+  constexpr double kOnBeam_rad = 0.01;  // just over the step of a PLS
   const geometry::Pose2 T_laser_robot = inverse(scan.T_robot_laser);
   const auto beams = static_cast<std::size_t>(std::numbers::pi / step_rad + 1e-9) + 1;
   std::vector<double> off_rad(beams, kOnBeam_rad);
@@ -91,18 +91,18 @@ bool MarkovTracker::start(const geometry::Pose2& T_map_base_station, const Sonar
       localizer_->initialize(inverse(T_map_grid_) * T_map_base_station, ranges_of(readings));
   reason_ = report.possible ? "" : report.reason;
   corrected_m_ = 0.0;
-  if (last_) T_odom_told_ = last_->T_odom_robot;
+  if (last_) T_odom_followed_ = last_->T_odom_robot;
   if (!report.possible) localizer_.reset();
   return report.possible;
 }
 
 void MarkovTracker::add(const OdometrySample& sample) {
   if (last_ && sample.stamp_ns <= last_->stamp_ns) return;
-  if (!last_) T_odom_told_ = sample.T_odom_robot;
+  if (!last_) T_odom_followed_ = sample.T_odom_robot;
   last_ = sample;
 }
 
-void MarkovTracker::tell(const markov::Move& move) {
+void MarkovTracker::follow(const markov::Move& move) {
   const auto report = localizer_->move(move);
   reason_ = report.possible ? "" : report.reason;
 }
@@ -110,18 +110,18 @@ void MarkovTracker::tell(const markov::Move& move) {
 void MarkovTracker::primitive_done() {
   if (!localizer_ || !last_) return;
   constexpr double kLeast_m = 1e-6;
-  const geometry::Pose2 step = between(T_odom_told_, last_->T_odom_robot);
-  T_odom_told_ = last_->T_odom_robot;
+  const geometry::Pose2 step = between(T_odom_followed_, last_->T_odom_robot);
+  T_odom_followed_ = last_->T_odom_robot;
   const auto turn = [&](double angle_rad) {
     if (angle_rad == 0.0) return;
-    tell({angle_rad > 0.0 ? markov::MoveKind::kTurnLeft : markov::MoveKind::kTurnRight,
-          std::fabs(angle_rad)});
+    follow({angle_rad > 0.0 ? markov::MoveKind::kTurnLeft : markov::MoveKind::kTurnRight,
+            std::fabs(angle_rad)});
   };
   double heading_rad = 0.0;
   if (step.position_m().norm() > kLeast_m) {
     heading_rad = geometry::atan2(step.y_m, step.x_m);
     turn(heading_rad);
-    tell({markov::MoveKind::kAdvance, step.position_m().norm()});
+    follow({markov::MoveKind::kAdvance, step.position_m().norm()});
   }
   turn(geometry::wrap_angle(step.theta_rad - heading_rad));
 }
@@ -144,10 +144,10 @@ std::optional<PoseFix> MarkovTracker::fix() const {
   const auto estimate = localizer_->estimate();
   fix.tracking = estimate.has_value();
   fix.state_text = reason_;
-  // Until readings say otherwise it is where it is expected: the printed movement model alone lets
+  // Until readings show otherwise it is where it is expected: the printed movement model alone lets
   // the most probable cell run ahead.
   fix.T_map_robot =
-      T_map_grid_ * localizer_->expected() * between(T_odom_told_, last_->T_odom_robot);
+      T_map_grid_ * localizer_->expected() * between(T_odom_followed_, last_->T_odom_robot);
   const double within_m = cells_.cell_m() / std::sqrt(12.0);
   const double spread_m = estimate ? estimate->spread_m : 0.0;
   const double variance_m2 = within_m * within_m + 0.5 * spread_m * spread_m;
@@ -157,7 +157,8 @@ std::optional<PoseFix> MarkovTracker::fix() const {
   return fix;
 }
 
-std::optional<markov::WayBack> MarkovTracker::way_back(const geometry::Pose2& T_map_route) const {
+std::optional<markov::ReturnMoves> MarkovTracker::return_moves(
+    const geometry::Pose2& T_map_route) const {
   if (!localizer_) return std::nullopt;
   return localizer_->relocalization_moves(inverse(T_map_grid_) * T_map_route);
 }

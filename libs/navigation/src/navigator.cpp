@@ -144,7 +144,7 @@ void Navigator::State::locate() {
 /// Why it must not move at all; kNone when it may.
 HaltReason Navigator::State::halted(std::string& message) const {
   if (goal.paused()) {
-    message = "paused; drives on when told to resume";
+    message = "paused; drives on after a resume";
     return HaltReason::kPaused;
   }
   if (!poses.keeper().has_odometry(now_ns)) {
@@ -347,7 +347,7 @@ geometry::Velocity Navigator::State::command(const geometry::Velocity& wanted) {
   const GuardedBase::Command command =
       base.command(wanted, poses.keeper().T_odom_robot(now_ns), now_ns);
   const GuardVerdict& verdict = command.verdict;
-  status.free_ahead_m = verdict.free_way_m;
+  status.free_ahead_m = verdict.free_m;
   if (command.newly_stopped) ++status.guard_stops;
   if (command.stopped) {
     if (verdict.contact_m && status.T_map_robot) {

@@ -10,7 +10,7 @@ void ObstacleMemory::add(const ScanPoints& scan, const geometry::Pose2& T_map_ro
   const ScanOccupancy occupancy(scan);
   const geometry::Pose2 T_robot_map = inverse(T_map_robot);
   const auto forgotten_ns = static_cast<std::int64_t>(config_.forgotten_s * 1e9);
-  constexpr int kMisses = 3;
+  constexpr int kMisses = 3;  // a beam may pass beside a thin leg
   for (auto entry = cells_.begin(); entry != cells_.end();) {
     Obstacle& obstacle = entry->second;
     if (occupancy.at(T_robot_map * obstacle.point_m, 0.5 * frame.resolution_m) ==

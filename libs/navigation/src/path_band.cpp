@@ -8,15 +8,15 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kStep_m = 0.08;
+constexpr double kStep_m = 0.08;  // between the points of a band: half of what a robot swings out
 
 std::vector<Eigen::Vector2d> dense(std::span<const Eigen::Vector2d> points_m) {
   std::vector<Eigen::Vector2d> result;
   for (std::size_t i = 0; i + 1 < points_m.size(); ++i) {
-    const Eigen::Vector2d way_m = points_m[i + 1] - points_m[i];
-    const int steps = std::max(1, static_cast<int>(std::ceil(way_m.norm() / kStep_m)));
+    const Eigen::Vector2d vector_m = points_m[i + 1] - points_m[i];
+    const int steps = std::max(1, static_cast<int>(std::ceil(vector_m.norm() / kStep_m)));
     for (int k = 0; k < steps; ++k) {
-      result.emplace_back(points_m[i] + static_cast<double>(k) / steps * way_m);
+      result.emplace_back(points_m[i] + static_cast<double>(k) / steps * vector_m);
     }
   }
   if (!points_m.empty()) result.push_back(points_m.back());
@@ -91,7 +91,7 @@ class Field {
  private:
   [[nodiscard]] double of(const planning::Cell& cell, std::int32_t x, std::int32_t y) const {
     const planning::Cell there{cell.column + x, cell.row + y};
-    constexpr double kMost_m = 2.0;
+    constexpr double kMost_m = 2.0;  // more room makes no better path
     if (!space_.frame().contains(there)) return 0.0;
     if (space_.grid().at(there) != planning::CellState::kFree) return 0.0;
     return std::min(kMost_m, space_.clearance_m(there));
@@ -101,18 +101,18 @@ class Field {
   std::span<const Eigen::Vector2d> obstacles_m_;
 };
 
-// Bends that are too tight give way, as far as there is room.
-void relax(std::vector<Eigen::Vector2d>& way_m, const Field& field, double least_m) {
+// Bends that are too tight are widened, as far as there is room.
+void relax(std::vector<Eigen::Vector2d>& path_m, const Field& field, double least_m) {
   constexpr int kRounds = 40;
   constexpr double kTightest_rad = 3.0 * kStep_m;  // on a circle of a third of a metre
   for (int round = 0; round < kRounds; ++round) {
     bool any = false;
-    for (std::size_t i = 1; i + 1 < way_m.size(); ++i) {
-      if (std::fabs(turn_at(way_m, i)) < kTightest_rad) continue;
-      const Eigen::Vector2d moved_m = 0.5 * way_m[i] + 0.25 * (way_m[i - 1] + way_m[i + 1]);
+    for (std::size_t i = 1; i + 1 < path_m.size(); ++i) {
+      if (std::fabs(turn_at(path_m, i)) < kTightest_rad) continue;
+      const Eigen::Vector2d moved_m = 0.5 * path_m[i] + 0.25 * (path_m[i - 1] + path_m[i + 1]);
       const double room_m = field.clearance_m(moved_m);
-      if (room_m < least_m && room_m < field.clearance_m(way_m[i])) continue;
-      way_m[i] = moved_m;
+      if (room_m < least_m && room_m < field.clearance_m(path_m[i])) continue;
+      path_m[i] = moved_m;
       any = true;
     }
     if (!any) return;
@@ -126,39 +126,40 @@ std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> obstacles_m,
                                   const BandConfig& config) {
   constexpr int kRounds = 60;
-  constexpr int kSmoothingOnly = 6;
-  constexpr int kEvenlyEvery = 10;
+  constexpr int kSmoothingOnly = 6;  // last rounds: they take the kinks off that pushes left
+  constexpr int kEvenlyEvery = 10;   // pushed points drift apart
   constexpr double kPull = 0.3;
   constexpr double kPush = 0.15;
   constexpr double kLargestPush_m = 0.02;
-  std::vector<Eigen::Vector2d> way_m = dense(points_m);
+  std::vector<Eigen::Vector2d> path_m = dense(points_m);
   const Field field(space, obstacles_m);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Eigen::Vector2d> next_m = way_m;
-    for (std::size_t i = 1; i + 1 < way_m.size(); ++i) {
-      next_m[i] += kPull * (0.5 * (way_m[i - 1] + way_m[i + 1]) - way_m[i]);
+    std::vector<Eigen::Vector2d> next_m = path_m;
+    for (std::size_t i = 1; i + 1 < path_m.size(); ++i) {
+      next_m[i] += kPull * (0.5 * (path_m[i - 1] + path_m[i + 1]) - path_m[i]);
       if (round + kSmoothingOnly >= kRounds) continue;
-      const double missing_m = config.wished_m - field.clearance_m(way_m[i]);
+      const double missing_m = config.wished_m - field.clearance_m(path_m[i]);
       if (missing_m <= 0.0) continue;
-      next_m[i] += std::min(kPush * missing_m, kLargestPush_m) * field.uphill(way_m[i]);
+      next_m[i] += std::min(kPush * missing_m, kLargestPush_m) * field.uphill(path_m[i]);
     }
-    // Where the way leads through an obstacle, the band is torn.
+    // Where the path leads through an obstacle, the band is torn.
     constexpr double kTorn = 2.5;
     for (std::size_t i = 1; i < next_m.size(); ++i) {
       if ((next_m[i] - next_m[i - 1]).norm() > kTorn * kStep_m) return {};
     }
-    way_m = (round + 1) % kEvenlyEvery == 0 ? evenly(next_m) : std::move(next_m);
+    path_m = (round + 1) % kEvenlyEvery == 0 ? evenly(next_m) : std::move(next_m);
   }
-  relax(way_m, field, config.least_m);
-  way_m = evenly(way_m);
-  constexpr double kEnds_m = 0.4;  // robot and goal may be in forbidden cells, and so the way there
-  for (const Eigen::Vector2d& point_m : way_m) {
+  relax(path_m, field, config.least_m);
+  path_m = evenly(path_m);
+  constexpr double kEnds_m =
+      0.4;  // robot and goal may be in forbidden cells, and so the path there
+  for (const Eigen::Vector2d& point_m : path_m) {
     const auto cell = space.frame().cell_of(point_m);
     const bool at_end =
-        (point_m - way_m.front()).norm() < kEnds_m || (point_m - way_m.back()).norm() < kEnds_m;
+        (point_m - path_m.front()).norm() < kEnds_m || (point_m - path_m.back()).norm() < kEnds_m;
     if (!cell || (!at_end && !space.passable(*cell))) return {};
   }
-  return way_m;
+  return path_m;
 }
 
 std::vector<planning::PathSample> samples_of(std::span<const Eigen::Vector2d> points_m,
@@ -174,19 +175,19 @@ std::vector<planning::PathSample> samples_of(std::span<const Eigen::Vector2d> po
   double distance_m = 0.0;
   double before_rad = 0.0;
   for (std::size_t i = 0; i + 1 < kept_m.size(); ++i) {
-    const Eigen::Vector2d way_m = kept_m[i + 1] - kept_m[i];
-    const double heading_rad = geometry::atan2(way_m.y(), way_m.x());
+    const Eigen::Vector2d vector_m = kept_m[i + 1] - kept_m[i];
+    const double heading_rad = geometry::atan2(vector_m.y(), vector_m.x());
     const double turn_rad = i == 0 ? 0.0 : geometry::wrap_angle(heading_rad - before_rad);
     const bool corner = std::fabs(turn_rad) > corner_rad;
     samples.push_back(
         {{kept_m[i].x(), kept_m[i].y(), heading_rad}, distance_m, 0.0, corner ? turn_rad : 0.0});
     if (!corner && i > 0) {
-      const double around_m = 0.5 * (way_m.norm() + (kept_m[i] - kept_m[i - 1]).norm());
+      const double around_m = 0.5 * (vector_m.norm() + (kept_m[i] - kept_m[i - 1]).norm());
       samples.back().curvature_per_m = turn_rad / around_m;
       // Half of the turn lies before the corner of the polyline.
       samples.back().T_map_robot.theta_rad = geometry::wrap_angle(heading_rad - 0.5 * turn_rad);
     }
-    distance_m += way_m.norm();
+    distance_m += vector_m.norm();
     before_rad = heading_rad;
   }
   samples.push_back({{kept_m.back().x(), kept_m.back().y(), before_rad}, distance_m, 0.0, 0.0});

@@ -1,4 +1,4 @@
-// Turns a straightened way into one that a robot likes to drive: rounded, and as far from what it
+// Turns a straightened path into one that a robot likes to drive: rounded, and as far from what it
 // could touch as is useful.
 #pragma once
 
@@ -13,13 +13,13 @@
 namespace topogeo::navigation {
 
 struct BandConfig {
-  double wished_m = 0.57;  ///< between the way and whatever could be touched, where there is room
+  double wished_m = 0.57;  ///< between the path and whatever could be touched, where there is room
   double least_m = 0.33;   ///< tight bends are made wider until it is only this
 };
 
 /// An elastic band (Quinlan and Khatib 1993) from the first to the last point: pulled straight, and
 /// pushed off everything that is nearer than wished. Empty when a part of it would leave the
-/// passable cells or the way leads through an obstacle; then the way as it is must do.
+/// passable cells or the path leads through an obstacle; then the path as it is must do.
 std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> points_m,
                                   std::span<const Eigen::Vector2d> obstacles_m,

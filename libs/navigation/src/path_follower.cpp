@@ -13,14 +13,14 @@ namespace topogeo::navigation {
 namespace {
 
 constexpr double kSecondsPerNanosecond = 1e-9;
-constexpr double kBrake = 0.7;      // of the acceleration: stops are planned with a reserve
-constexpr double kTurnBrake = 0.6;  // the same of turns
-constexpr double kSlowest_m_s = 0.03;
-constexpr double kSlowest_rad_s = 0.06;
-constexpr double kLost_rad = 0.9;     // so far off the heading it turns on the spot again
-constexpr double kCorner_rad = 0.02;  // less is no turn on the spot
-constexpr double kStands_m_s = 1e-3;
-constexpr double kStands_rad_s = 5e-3;
+constexpr double kBrake = 0.7;           // of the acceleration: stops are planned with a reserve
+constexpr double kTurnBrake = 0.6;       // the same of turns
+constexpr double kSlowest_m_s = 0.03;    // bases do not move when they are to go slower
+constexpr double kSlowest_rad_s = 0.06;  // the same
+constexpr double kLost_rad = 0.9;        // so far off the heading it turns on the spot again
+constexpr double kCorner_rad = 0.02;     // less is no turn on the spot
+constexpr double kStands_m_s = 1e-3;     // what counts as standing
+constexpr double kStands_rad_s = 5e-3;   // the same
 
 }  // namespace
 
@@ -46,15 +46,15 @@ std::vector<planning::PathSample> straight_path(std::span<const Eigen::Vector2d>
   double distance_m = 0.0;
   double heading_rad = 0.0;
   for (std::size_t i = 0, at = 0; i < points_m.size(); ++i) {
-    const Eigen::Vector2d way_m = points_m[i] - points_m[at];
-    const double length_m = way_m.norm();
+    const Eigen::Vector2d vector_m = points_m[i] - points_m[at];
+    const double length_m = vector_m.norm();
     if (length_m < kSame_m) continue;
     const double before_rad = heading_rad;
-    heading_rad = geometry::atan2(way_m.y(), way_m.x());
+    heading_rad = geometry::atan2(vector_m.y(), vector_m.x());
     const int steps = std::max(1, static_cast<int>(std::ceil(length_m / step_m)));
     for (int k = 0; k < steps; ++k) {
       const double share = static_cast<double>(k) / steps;
-      const Eigen::Vector2d point_m = points_m[at] + share * way_m;
+      const Eigen::Vector2d point_m = points_m[at] + share * vector_m;
       const bool corner = k == 0 && !samples.empty();
       samples.push_back({{point_m.x(), point_m.y(), heading_rad},
                          distance_m + share * length_m,
@@ -91,7 +91,7 @@ void PathFollower::follow(std::vector<planning::PathSample> path,
   segment_ = 0;
   turn_from_rad_.reset();
   leg_from_m_.reset();
-  finished_.clear();  // nobody need ask for them
+  finished_.clear();  // they may never have been taken
   if (path_.size() < 2) {
     path_.clear();
     phase_ = Phase::kFinalTurn;
@@ -165,10 +165,10 @@ PathFollower::Place PathFollower::locate(const geometry::Pose2& T_map_robot) {
   for (std::size_t i = segment_; i < leg_end_; ++i) {
     if (path_[i].distance_m > progress_m_ + kAhead_m) break;
     const Eigen::Vector2d from_m = path_[i].T_map_robot.position_m();
-    const Eigen::Vector2d way_m = path_[i + 1].T_map_robot.position_m() - from_m;
-    const double length_m = std::max(way_m.norm(), 1e-9);
-    const double along_m = std::clamp((robot_m - from_m).dot(way_m) / length_m, 0.0, length_m);
-    const double off_m = (robot_m - from_m - along_m / length_m * way_m).norm();
+    const Eigen::Vector2d vector_m = path_[i + 1].T_map_robot.position_m() - from_m;
+    const double length_m = std::max(vector_m.norm(), 1e-9);
+    const double along_m = std::clamp((robot_m - from_m).dot(vector_m) / length_m, 0.0, length_m);
+    const double off_m = (robot_m - from_m - along_m / length_m * vector_m).norm();
     if (off_m >= best_m - 1e-9) continue;
     best_m = off_m;
     best = i;
@@ -199,8 +199,8 @@ PathFollower::Place PathFollower::locate(const geometry::Pose2& T_map_robot) {
 // What the curves within the next metre allow.
 double PathFollower::curve_speed(double to_go_m) const {
   constexpr double kAhead_m = 1.0;
-  constexpr double kSideways_m_per_s2 = 0.6;
-  constexpr double kTurnShare = 0.8;  // the rest is for corrections
+  constexpr double kSideways_m_per_s2 = 0.6;  // what a light load bears
+  constexpr double kTurnShare = 0.8;          // the rest is for corrections
   const double brake = kBrake * config_.acceleration_m_per_s2;
   double speed = std::min(config_.speed_m_per_s, stopping_speed(to_go_m, 0.0, brake));
   for (std::size_t i = segment_; i < leg_end_; ++i) {
@@ -252,8 +252,8 @@ void PathFollower::finish_turn(double heading_rad) {
 
 void PathFollower::finish_leg(const Eigen::Vector2d& at_m) {
   if (leg_from_m_) {
-    const double way_m = (at_m - *leg_from_m_).norm();
-    if (way_m > 1e-3) finished_.push_back({planning::MotionKind::kAdvance, way_m});
+    const double advance_m = (at_m - *leg_from_m_).norm();
+    if (advance_m > 1e-3) finished_.push_back({planning::MotionKind::kAdvance, advance_m});
   }
   leg_from_m_.reset();
   if (leg_end_ + 1 < path_.size()) {

@@ -47,7 +47,7 @@ class PoseKeeper {
   [[nodiscard]] double sigma_m() const;
   /// How far the fixes since the last call have moved the robot, metres.
   double take_jump_m();
-  /// Way by odometry since the last call, metres.
+  /// Distance by odometry since the last call, metres.
   double take_driven_m();
 
  private:

@@ -18,7 +18,7 @@ planning::ZoneId Rooms::at(const Cell& cell) const {
 
 // Passable cells of another room are near.
 bool Rooms::on_threshold(const Cell& cell, planning::ZoneId room) const {
-  constexpr double kThreshold_m = 0.5;
+  constexpr double kThreshold_m = 0.5;  // from there a laser sees little of a room
   const auto reach =
       static_cast<std::int32_t>(std::lround(kThreshold_m / map_.frame().resolution_m));
   for (std::int32_t y = -reach; y <= reach; ++y) {

@@ -1,4 +1,4 @@
-// The rooms of a map: its wide parts, whatever the graph says. While a floor is being mapped doors
+// The rooms of a map: its wide parts, whatever the graph shows. While a floor is being mapped doors
 // come and go in the graph, and two rooms are one zone until theirs has been found.
 #pragma once
 

@@ -13,10 +13,10 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kSees_m = 2.5;       // what is further along the path does not matter yet
-constexpr double kKeepsOff_m = 0.15;  // stops so far before the place where it would touch
-constexpr double kWaiting_m_s = 0.05;
-constexpr double kWaiting_rad_s = 0.1;
+constexpr double kSees_m = 2.5;         // what is further along the path does not matter yet
+constexpr double kKeepsOff_m = 0.15;    // stops so far before the place where it would touch
+constexpr double kWaiting_m_s = 0.05;   // slower counts as standing before an obstacle
+constexpr double kWaiting_rad_s = 0.1;  // so does a slower turn
 constexpr double kObstacleBrake = 0.6;  // of the acceleration, when something is in the way
 constexpr double kSeeing_s = 0.15;      // from a measurement until a command follows, about
 
@@ -109,7 +109,7 @@ RouteDriver::Step RouteDriver::follow(const Scene& scene, bool held) {
 
 std::string RouteDriver::describe_block() const {
   if (block_) return fmt::format("something is in the way {:.1f} m ahead", block_->ahead_m);
-  return cut_off_ ? "no way leads from here to the route" : "the way is blocked";
+  return cut_off_ ? "no path leads from here to the route" : "the path is blocked";
 }
 
 }  // namespace topogeo::navigation

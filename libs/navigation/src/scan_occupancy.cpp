@@ -18,7 +18,7 @@ ScanOccupancy::ScanOccupancy(const ScanPoints& scan) : T_laser_robot_(inverse(sc
 }
 
 Occupancy ScanOccupancy::at(const Eigen::Vector2d& place_m, double radius_m) const {
-  constexpr double kNoise_m = 0.08;
+  constexpr double kNoise_m = 0.08;     // of a PLS and of the pose
   constexpr double kLeast_rad = 0.006;  // as wide as the gap between two beams
   const Eigen::Vector2d seen_m = T_laser_robot_ * place_m;
   const double range_m = seen_m.norm();

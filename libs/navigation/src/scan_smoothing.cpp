@@ -7,9 +7,9 @@
 namespace topogeo::navigation {
 
 ScanPoints smoothed(const ScanPoints& scan, double most_m) {
-  constexpr std::size_t kBeside = 3;
-  constexpr double kSameSurface_m = 0.1;
-  constexpr double kNeighbours = 0.05;  // chord between two beams, of the range
+  constexpr std::size_t kBeside = 3;      // beams either way: a door post has more
+  constexpr double kSameSurface_m = 0.1;  // noise of a PLS is less, a post stands out by more
+  constexpr double kNeighbours = 0.05;    // chord between two beams, of the range
   ScanPoints result = scan;
   const std::size_t count = scan.points_m.size();
   const Eigen::Vector2d laser_m = scan.T_robot_laser.position_m();

@@ -6,10 +6,11 @@
 
 namespace topogeo::navigation {
 
-/// Ways from a start to each of some places and between them, as long in both directions, metres.
-class WayTable {
+/// Distances from a start to each of some places and between them, the same in both directions,
+/// metres.
+class DistanceTable {
  public:
-  explicit WayTable(std::size_t places)
+  explicit DistanceTable(std::size_t places)
       : places_(places), start_(places), between_(places * places) {}
 
   [[nodiscard]] std::size_t places() const { return places_; }
@@ -28,10 +29,10 @@ class WayTable {
 };
 
 /// Length of a tour from the start past the places in this order, which ends at the last.
-double length_m(const WayTable& ways_m, const std::vector<std::size_t>& order);
+double length_m(const DistanceTable& distances_m, const std::vector<std::size_t>& order);
 
 /// A short tour past all places, by going on to the nearest and then turning pieces of it round and
 /// moving places within it as long as that makes it shorter. Not always the shortest.
-std::vector<std::size_t> short_tour(const WayTable& ways_m);
+std::vector<std::size_t> short_tour(const DistanceTable& distances_m);
 
 }  // namespace topogeo::navigation

@@ -9,7 +9,7 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr double kMostForbiddenCells = 100.0;
+constexpr double kMostForbiddenCells = 100.0;  // 5 m of cells of 5 cm: more than any robot
 
 // The lower envelope of parabolas over one line of the grid. All in integers: the distance to go
 // by is value[i] + (x - i)^2, and two parabolas p < q meet where q begins to be the lower one.

@@ -20,6 +20,7 @@
 namespace topogeo::planning {
 namespace {
 
+// What map_saver of ROS writes; map_server reads any.
 constexpr double kOccupiedThreshold = 0.65;
 constexpr double kFreeThreshold = 0.196;
 constexpr int kFreePixel = 254;

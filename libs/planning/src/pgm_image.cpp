@@ -6,9 +6,9 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr int kMostAlong = 20000;
-constexpr std::size_t kMostPixels = 100'000'000;
-constexpr int kMostDepth = 255;
+constexpr int kMostAlong = 20000;                 // as a grid, see occupancy_grid.cpp
+constexpr std::size_t kMostPixels = 100'000'000;  // the same
+constexpr int kMostDepth = 255;                   // of one byte a pixel, as all map files have
 
 class PgmParser {
  public:

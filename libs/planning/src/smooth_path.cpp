@@ -9,7 +9,7 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr double kStraight_rad = 1e-6;
+constexpr double kStraight_rad = 1e-6;  // less is rounding
 
 void check_path_range(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;
@@ -78,7 +78,7 @@ class Smoother {
     const double room_m =
         std::min((points_m[i] - at_m).norm(), i + 2 < points_m.size() ? 0.5 * out_m : out_m);
     double radius_m = std::min(room_m / tangent_of_half, config_.max_radius_m);
-    constexpr double kNarrower = 0.8;
+    constexpr double kNarrower = 0.8;  // of the radius at each try
     for (; radius_m >= config_.min_radius_m; radius_m *= kNarrower) {
       Arc arc{points_m[i] - radius_m * tangent_of_half * in, heading(in), turn_rad, radius_m};
       if (fits(arc)) return arc;

@@ -11,7 +11,8 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 1U << 30U;
+constexpr std::uintmax_t kMostBytes =
+    1U << 30U;  // a larger file is no drawing, and would fill the memory
 
 std::string shown(const YAML::Node& node) {
   constexpr std::size_t kMostShown = 40;

@@ -13,7 +13,7 @@
 namespace topogeo::planning {
 namespace {
 
-constexpr double kMaxDrawn_m = 1e6;
+constexpr double kMaxDrawn_m = 1e6;  // as a grid, see occupancy_grid.cpp
 
 class DrawingReader {
  public:

@@ -18,7 +18,7 @@ using topomap::MapBranch;
 using topomap::NodeKind;
 
 // Directions are taken over this distance from a node: the first points of a branch jitter.
-constexpr double kTangentReach_m = 0.4;
+constexpr double kTangentReach_m = 0.4;  // a branch bends by less than its noise on a shorter piece
 
 void check_zone_range(const char* field, double value, double low, double high, const char* unit) {
   if (value >= low && value <= high) return;

@@ -29,23 +29,23 @@ SonarRound round_at(std::int64_t stamp_ns, const geometry::Pose2& T_robot_sonar,
   return {stamp_ns, {{T_robot_sonar, 0.2, range_m}}};
 }
 
-TEST(CollisionGuard, NothingInTheWayChangesNothing) {
+TEST(CollisionGuard, NothingNearChangesNothing) {
   const auto verdict = guard_seeing({{0.0, 2.0}}).judge({0.5, 0.1}, kNow_ns);
   EXPECT_EQ(verdict.allowed, (geometry::Velocity{0.5, 0.1}));
   EXPECT_FALSE(verdict.limited);
   EXPECT_EQ(verdict.reason, HaltReason::kNone);
-  EXPECT_DOUBLE_EQ(verdict.free_way_m, CollisionGuard::kFarthest_m);
+  EXPECT_DOUBLE_EQ(verdict.free_m, CollisionGuard::kFarthest_m);
 }
 
 TEST(CollisionGuard, StraightAheadItStopsAtTheMargin) {
   // 1 m to the middle: 0.733 m to the body, less the side margin that the body is grown by.
   const GuardConfig config;
   const auto verdict = guard_seeing({{1.0, 0.0}}).judge({2.0, 0.0}, kNow_ns);
-  EXPECT_NEAR(verdict.free_way_m, 1.0 - config.radius_m - config.side_margin_m, 1e-9);
-  const double way_m = 1.0 - config.radius_m - config.margin_m;
+  EXPECT_NEAR(verdict.free_m, 1.0 - config.radius_m - config.side_margin_m, 1e-9);
+  const double distance_m = 1.0 - config.radius_m - config.margin_m;
   const double speed = verdict.allowed.linear_m_per_s;
-  EXPECT_NEAR(speed * config.delay_s + speed * speed / (2.0 * config.deceleration_m_per_s2), way_m,
-              1e-9);
+  EXPECT_NEAR(speed * config.delay_s + speed * speed / (2.0 * config.deceleration_m_per_s2),
+              distance_m, 1e-9);
   EXPECT_TRUE(verdict.limited);
   ASSERT_TRUE(verdict.contact_m);
   EXPECT_NEAR(verdict.contact_m->x(), 1.0, 1e-9);
@@ -67,9 +67,9 @@ TEST(CollisionGuard, WhatIsBesideDoesNotStopIt) {
 
 TEST(CollisionGuard, OdometryCarriesTheScanOn) {
   CollisionGuard guard = guard_seeing({{1.0, 0.0}});
-  const double before_m = guard.judge({0.1, 0.0}, kNow_ns).free_way_m;
+  const double before_m = guard.judge({0.1, 0.0}, kNow_ns).free_m;
   guard.add(OdometrySample{kNow_ns + 100'000'000, {0.3, 0.0, 0.0}});
-  EXPECT_NEAR(guard.judge({0.1, 0.0}, kNow_ns + 100'000'000).free_way_m, before_m - 0.3, 1e-9);
+  EXPECT_NEAR(guard.judge({0.1, 0.0}, kNow_ns + 100'000'000).free_m, before_m - 0.3, 1e-9);
 }
 
 TEST(CollisionGuard, WithoutAFreshScanNothingIsAllowed) {
@@ -85,14 +85,14 @@ TEST(CollisionGuard, ASonarSeesWhatTheLaserDoesNot) {
   CollisionGuard guard = guard_seeing({{4.0, 0.0}});
   guard.add(round_at(kNow_ns, {0.267, 0.0, 0.0}, 0.5F));
   const GuardConfig config;
-  EXPECT_NEAR(guard.judge({0.1, 0.0}, kNow_ns).free_way_m, 0.5 - config.side_margin_m, 1e-6);
+  EXPECT_NEAR(guard.judge({0.1, 0.0}, kNow_ns).free_m, 0.5 - config.side_margin_m, 1e-6);
 }
 
 TEST(CollisionGuard, TheLaserKnowsBetterWhereAnEchoComesFrom) {
   // The echo of a door post, which the sonar puts onto its axis.
   CollisionGuard guard = guard_seeing({{0.75, 0.08}});
   guard.add(round_at(kNow_ns, {0.267, 0.0, 0.0}, 0.49F));
-  const double free_m = guard.judge({0.1, 0.0}, kNow_ns).free_way_m;
+  const double free_m = guard.judge({0.1, 0.0}, kNow_ns).free_m;
   EXPECT_NEAR(free_m, 0.75 - std::sqrt(0.287 * 0.287 - 0.08 * 0.08), 1e-9);
 }
 
@@ -104,7 +104,7 @@ TEST(CollisionGuard, AnEchoCountsWhereTheScanThatSawItsSourceIsTooOld) {
   guard.add(round_at(kNow_ns + kSecond_ns, mount, 0.49F));
   const GuardVerdict verdict = guard.judge({0.1, 0.0}, kNow_ns + kSecond_ns);
   EXPECT_EQ(verdict.reason, HaltReason::kNone);
-  EXPECT_NEAR(verdict.free_way_m, 0.49 - config.side_margin_m, 1e-6);
+  EXPECT_NEAR(verdict.free_m, 0.49 - config.side_margin_m, 1e-6);
 }
 
 TEST(CollisionGuard, WhatAnOldScanSawNeedNotBeHeard) {
@@ -170,11 +170,11 @@ double nearest_m(const std::vector<Eigen::Vector2d>& points_m, const geometry::V
   double x_m = 0.0;
   double y_m = 0.0;
   constexpr double kPiece_m = 0.001;
-  for (double way_m = 0.0; way_m <= stop_m; way_m += kPiece_m) {
+  for (double distance_m = 0.0; distance_m <= stop_m; distance_m += kPiece_m) {
     for (const auto& point_m : points_m) {
       least_m = std::min(least_m, (point_m - Eigen::Vector2d(x_m, y_m)).norm());
     }
-    const double heading_rad = curvature * (way_m + 0.5 * kPiece_m);
+    const double heading_rad = curvature * (distance_m + 0.5 * kPiece_m);
     x_m += kPiece_m * std::cos(heading_rad);
     y_m += kPiece_m * std::sin(heading_rad);
   }

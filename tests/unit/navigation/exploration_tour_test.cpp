@@ -54,7 +54,7 @@ class TextRobot {
     look();
   }
 
-  /// Drives on toward the goal by a step of the planned way; tells what a navigator would tell.
+  /// Drives on toward the goal by a step of the planned route; reports what a navigator would.
   NavigatorStatus step(const std::optional<TourGoal>& goal) {
     if (goal) {
       goal_ = goal;
@@ -115,10 +115,10 @@ class TextRobot {
       status_.rest_m = 0.0;
     } else {
       const Eigen::Vector2d ahead_m = route.points_m[1] - route.points_m[0];
-      const double way_m = std::min(0.5, ahead_m.norm());
-      const Eigen::Vector2d to_m = route.points_m[0] + way_m / ahead_m.norm() * ahead_m;
+      const double step_m = std::min(0.5, ahead_m.norm());
+      const Eigen::Vector2d to_m = route.points_m[0] + step_m / ahead_m.norm() * ahead_m;
       T_map_robot_ = {to_m.x(), to_m.y(), std::atan2(ahead_m.y(), ahead_m.x())};
-      status_.rest_m = route.length_m - way_m;
+      status_.rest_m = route.length_m - step_m;
       ++drives;
     }
     look();
@@ -199,7 +199,7 @@ TEST(ExplorationTour, EndsWhenTheNavigatorGetsNowhere) {
   EXPECT_EQ(robot.drives, 0U);
 }
 
-TEST(ExplorationTour, WhereThereWasNoWayAtFirstItGoesLater) {
+TEST(ExplorationTour, WhereThereWasNoPathAtFirstItGoesLater) {
   TextRobot robot;
   robot.refusals = 12;
   ExplorationTour tour(config());

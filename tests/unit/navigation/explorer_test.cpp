@@ -79,7 +79,7 @@ TEST(Explorer, GoesWhereTheKnownEnds) {
   // It is looked at from the known side and toward the unknown.
   EXPECT_LT(target->T_map_view.x_m, target->position_m.x());
   EXPECT_NEAR(target->T_map_view.theta_rad, 0.0, 1.0);
-  EXPECT_GT(target->way_m, 1.0);
+  EXPECT_GT(target->distance_m, 1.0);
 }
 
 TEST(Explorer, TheEndOfABranchIsAFrontierOnlyWhereSomethingIsUnknown) {
@@ -332,7 +332,7 @@ TEST(Explorer, TheFirstOfAShortTourComesNextAndNotTheNearest) {
   const auto nearest = next(greedy, map, pose_at(20, 2));
   ASSERT_TRUE(nearest);
   EXPECT_NEAR(nearest->position_m.x(), explored_at(35, 0).x(), 0.6);
-  EXPECT_LT(nearest->way_m, first->way_m);
+  EXPECT_LT(nearest->distance_m, first->distance_m);
 }
 
 TEST(Explorer, AnEntranceThatNoiseHasNarrowedIsLookedAtLast) {

@@ -34,8 +34,8 @@ class MarkovDrive : public testing::Test {
     return round;
   }
 
-  void drive(double way_m, double turn_rad) {
-    robot->step({way_m, turn_rad}, 1.0);
+  void drive(double distance_m, double turn_rad) {
+    robot->step({distance_m, turn_rad}, 1.0);
     tracker.add(OdometrySample{++stamp_ns, robot->T_odom_robot()});
   }
 
@@ -92,7 +92,7 @@ TEST_F(MarkovDrive, TurnsAndArcsAreToldAsPrimitives) {
   ASSERT_TRUE(fix);
   EXPECT_NEAR(fix->T_map_robot.theta_rad, 0.5 * std::numbers::pi, 0.03);
   EXPECT_LT(off_m(), 0.12);
-  const auto back = tracker.way_back({1.25, 2.0, 0.0});
+  const auto back = tracker.return_moves({1.25, 2.0, 0.0});
   ASSERT_TRUE(back);
   EXPECT_FALSE(back->blocked);
   EXPECT_FALSE(back->moves.empty());
@@ -102,8 +102,8 @@ TEST_F(MarkovDrive, PerceivingBeforeTheStartIsAMistake) {
   EXPECT_THROW(tracker.perceive(sonars()), std::runtime_error);
 }
 
-/// Only the base station is told; then the robot finds its way by itself.
-TEST(NavigatorMarkov, FindsItsWayFromTheBaseStationThroughADoor) {
+/// Only the base station is given; then the robot finds the goal by itself.
+TEST(NavigatorMarkov, DrivesFromTheBaseStationThroughADoor) {
   for (const bool by_laser : {false, true}) {
     DriveSettings settings;
     settings.T_world_start = {1.25, 4.55, 0.0};
@@ -121,7 +121,7 @@ TEST(NavigatorMarkov, FindsItsWayFromTheBaseStationThroughADoor) {
           const bool looking = drive.status().state == NavigatorState::kRelocalizing;
           if (looking && !before) ++looks;
           if (looking) {
-            EXPECT_EQ(drive.told, geometry::Velocity{});
+            EXPECT_EQ(drive.command, geometry::Velocity{});
           }
           before = looking;
           return drive.status().state == NavigatorState::kArrived;

@@ -22,7 +22,7 @@ TEST(NavigatorDrive, ArrivesInAFreeRoom) {
   EXPECT_NEAR(drive.robot.T_world_robot().theta_rad, std::numbers::pi / 2.0, 0.04);
   EXPECT_EQ(drive.robot.collisions(), 0U);
   EXPECT_EQ(drive.status().guard_stops, 0U);
-  EXPECT_EQ(drive.told, geometry::Velocity{});
+  EXPECT_EQ(drive.command, geometry::Velocity{});
   EXPECT_NEAR(drive.status().driven_m, std::hypot(5.5, 3.5), 0.3);
   EXPECT_EQ(drive.status().routes, 1U);
 }

@@ -1,4 +1,4 @@
-// Every reason to stand still: it stops in the same step, says why, and drives on afterwards.
+// Every reason to stand still: it stops in the same step, reports why, and drives on afterwards.
 #include <functional>
 #include <string>
 
@@ -23,7 +23,7 @@ class NavigatorHalt : public testing::Test {
 
   void drive_off() {
     drive.go_to({6.5, 4.5});
-    ASSERT_TRUE(drive.run_until([&] { return drive.told.linear_m_per_s > 0.3; }, 10.0))
+    ASSERT_TRUE(drive.run_until([&] { return drive.command.linear_m_per_s > 0.3; }, 10.0))
         << drive.status().message;
     ASSERT_EQ(drive.status().state, NavigatorState::kDriving);
     ASSERT_EQ(drive.status().reason, HaltReason::kNone);
@@ -33,12 +33,12 @@ class NavigatorHalt : public testing::Test {
   void expect_halt(HaltReason reason, NavigatorState state, double within_s) {
     ASSERT_TRUE(drive.run_until([&] { return drive.halted(reason); }, within_s))
         << drive.status().message;
-    EXPECT_EQ(drive.told, geometry::Velocity{});
+    EXPECT_EQ(drive.command, geometry::Velocity{});
     EXPECT_EQ(drive.status().state, state);
     EXPECT_FALSE(drive.status().message.empty());
     for (int i = 0; i < 20; ++i) {
       drive.step();
-      EXPECT_EQ(drive.told, geometry::Velocity{});
+      EXPECT_EQ(drive.command, geometry::Velocity{});
     }
   }
 
@@ -55,20 +55,20 @@ TEST_F(NavigatorHalt, WithoutGoalItIsIdle) {
   drive.step();
   EXPECT_EQ(drive.status().state, NavigatorState::kIdle);
   EXPECT_EQ(drive.status().reason, HaltReason::kNone);
-  EXPECT_EQ(drive.told, geometry::Velocity{});
+  EXPECT_EQ(drive.command, geometry::Velocity{});
 }
 
 TEST_F(NavigatorHalt, WaitsForTheRoute) {
   drive.planner_answers = false;
   drive.go_to({6.5, 4.5});
   expect_halt(HaltReason::kWaitsForRoute, NavigatorState::kStopped, 0.1);
-  EXPECT_FALSE(drive.run_until([&] { return drive.told != geometry::Velocity{}; }, 10.0));
+  EXPECT_FALSE(drive.run_until([&] { return drive.command != geometry::Velocity{}; }, 10.0));
   EXPECT_THAT(drive.status().message, HasSubstr("not answered"));
   drive.planner_answers = true;
   expect_arrival();
 }
 
-TEST_F(NavigatorHalt, TellsWhyThereIsNoRoute) {
+TEST_F(NavigatorHalt, ReportsWhyThereIsNoRoute) {
   drive.go_to({20.0, 4.5});
   expect_halt(HaltReason::kNoRoute, NavigatorState::kStopped, 0.2);
   EXPECT_THAT(drive.status().message, HasSubstr("outside"));
@@ -119,7 +119,7 @@ TEST_F(NavigatorHalt, TheSameRouteAgainChangesNothing) {
   for (int i = 0; i < 40; ++i) {
     drive.send_route();
     drive.step();
-    EXPECT_GT(drive.told.linear_m_per_s, 0.3);
+    EXPECT_GT(drive.command.linear_m_per_s, 0.3);
   }
   EXPECT_EQ(drive.status().routes, 1U);
   expect_arrival();
@@ -129,7 +129,7 @@ TEST_F(NavigatorHalt, Cancelled) {
   drive_off();
   drive.navigator.cancel();
   drive.step();
-  EXPECT_EQ(drive.told, geometry::Velocity{});
+  EXPECT_EQ(drive.command, geometry::Velocity{});
   expect_halt(HaltReason::kCancelled, NavigatorState::kIdle, 0.1);
   drive.go_to({6.5, 4.5});
   expect_arrival();
@@ -139,7 +139,7 @@ TEST_F(NavigatorHalt, PausedAndResumed) {
   drive_off();
   drive.navigator.pause();
   drive.step();
-  EXPECT_EQ(drive.told, geometry::Velocity{});
+  EXPECT_EQ(drive.command, geometry::Velocity{});
   expect_halt(HaltReason::kPaused, NavigatorState::kStopped, 0.1);
   drive.navigator.resume();
   expect_arrival();
@@ -150,7 +150,7 @@ TEST_F(NavigatorHalt, PoseLostIsZeroInTheSameStep) {
   drive.tracking = false;
   // Poses come every fourth step; the step that hears of it gives exactly zero.
   while (drive.status().reason == HaltReason::kNone) drive.step();
-  EXPECT_EQ(drive.told, geometry::Velocity{});
+  EXPECT_EQ(drive.command, geometry::Velocity{});
   EXPECT_FALSE(drive.status().T_map_robot);
   expect_halt(HaltReason::kPoseLost, NavigatorState::kRelocalizing, 0.1);
   EXPECT_THAT(drive.status().message, HasSubstr("searching"));
@@ -231,7 +231,7 @@ TEST_F(NavigatorHalt, BaseThatDoesNotMoveStaysStoppedUntilResumed) {
   drive.base_obeys = false;
   expect_halt(HaltReason::kBaseStuck, NavigatorState::kStopped, 4.0);
   drive.base_obeys = true;
-  EXPECT_FALSE(drive.run_until([&] { return drive.told != geometry::Velocity{}; }, 5.0));
+  EXPECT_FALSE(drive.run_until([&] { return drive.command != geometry::Velocity{}; }, 5.0));
   drive.navigator.resume();
   expect_arrival();
 }
@@ -261,7 +261,7 @@ TEST_F(NavigatorHalt, AMapWithRoomForTheRouteDoesNotStopIt) {
   drive.planner_answers = false;
   drive.navigator.set_map(drive.map, 2);
   drive.step();
-  EXPECT_GT(drive.told.linear_m_per_s, 0.2);
+  EXPECT_GT(drive.command.linear_m_per_s, 0.2);
   expect_arrival();
 }
 
@@ -300,7 +300,7 @@ TEST_F(NavigatorHalt, LooksAroundWhereItMay) {
   EXPECT_GT(gone_m, 3.0);
   EXPECT_LT(gone_m, 5.2);
   EXPECT_EQ(drive.robot.collisions(), 0U);
-  EXPECT_EQ(drive.told, geometry::Velocity{});
+  EXPECT_EQ(drive.command, geometry::Velocity{});
   drive.tracking = true;
   expect_arrival();
 }

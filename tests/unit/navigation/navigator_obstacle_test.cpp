@@ -58,7 +58,7 @@ TEST(NavigatorObstacle, ADoorThatIsShutForAWhileIsWaitedFor) {
   EXPECT_EQ(drive.navigator.blockages().version, 0U);
 }
 
-TEST(NavigatorObstacle, ADoorThatStaysShutIsReportedAndAnotherWayTaken) {
+TEST(NavigatorObstacle, ADoorThatStaysShutIsReportedAndAnotherRouteTaken) {
   world::World world = two_doors();
   world.changing.push_back(box({4.95, 0.5}, {5.05, 2.5}, 0.0, kEver_s));
   TestDrive drive(world, starting_from(2.0, 1.5, 0.0));
@@ -70,7 +70,7 @@ TEST(NavigatorObstacle, ADoorThatStaysShutIsReportedAndAnotherWayTaken) {
   EXPECT_LE(drive.status().routes, 4U);
 }
 
-TEST(NavigatorObstacle, WithoutAnotherWayItStaysBlockedUntilTheDoorOpens) {
+TEST(NavigatorObstacle, WithoutAnotherRouteItStaysBlockedUntilTheDoorOpens) {
   world::World world = two_doors();
   world.changing.push_back(box({4.95, 0.5}, {5.05, 2.5}, 0.0, 60.0));
   world.changing.push_back(box({4.95, 3.5}, {5.05, 5.5}, 0.0, kEver_s));
@@ -79,13 +79,13 @@ TEST(NavigatorObstacle, WithoutAnotherWayItStaysBlockedUntilTheDoorOpens) {
   ASSERT_TRUE(drive.run_until([&] { return drive.halted(HaltReason::kNoRoute); }, 60.0))
       << drive.status().message;
   EXPECT_EQ(drive.status().state, NavigatorState::kBlocked);
-  EXPECT_EQ(drive.told, geometry::Velocity{});
+  EXPECT_EQ(drive.command, geometry::Velocity{});
   EXPECT_FALSE(drive.navigator.blockages().points_m.empty());
   ASSERT_TRUE(drive.arrives(300.0)) << drive.status().message;
   EXPECT_EQ(drive.robot.collisions(), 0U);
 }
 
-TEST(NavigatorObstacle, SomebodyWhoWalksAcrossIsLetPass) {
+TEST(NavigatorObstacle, APersonWhoWalksAcrossIsLetPass) {
   world::World world = room();
   world::Person person;
   person.path_m = {{4.0, 0.4}, {4.0, 5.6}};
@@ -101,7 +101,7 @@ TEST(NavigatorObstacle, SomebodyWhoWalksAcrossIsLetPass) {
   EXPECT_LT(drive.status().driven_m, 7.5);
 }
 
-TEST(NavigatorObstacle, SomebodyWhoStepsInFrontOfItStopsIt) {
+TEST(NavigatorObstacle, APersonWhoStepsInFrontOfItStopsIt) {
   world::World world = room();
   world::ChangingPart person;
   person.circles = {{{3.6, 2.5}, 0.25}};
@@ -128,7 +128,7 @@ TEST(NavigatorObstacle, WhatOnlySonarsHearStopsItAndIsGoneRound) {
   EXPECT_GE(drive.status().detours, 1U);
 }
 
-/// Where the guard met something says nothing after the pose was wrong, or on another map.
+/// Where the guard met something means nothing after the pose was wrong, or on another map.
 TEST(NavigatorObstacle, WhatTheGuardMetIsForgottenWithThePoseAndTheMap) {
   enum class Change { kMap, kJump, kLost };
   for (const Change change : {Change::kMap, Change::kJump, Change::kLost}) {
@@ -153,7 +153,7 @@ TEST(NavigatorObstacle, WhatTheGuardMetIsForgottenWithThePoseAndTheMap) {
     drive.navigator.resume();
     drive.step();
     drive.tracking = true;
-    ASSERT_TRUE(drive.run_until([&] { return drive.told.linear_m_per_s > 0.1; }, 3.0))
+    ASSERT_TRUE(drive.run_until([&] { return drive.command.linear_m_per_s > 0.1; }, 3.0))
         << drive.status().message;
     EXPECT_EQ(drive.status().detours, 0U) << static_cast<int>(change);
   }

@@ -24,9 +24,9 @@ class Base {
     delayed_.pop_front();
     constexpr double kStep_s = 0.05;
     for (int i = 0; i < 10; ++i) {
-      const double way_m = obeyed.linear_m_per_s * kStep_s / 10.0;
+      const double step_m = obeyed.linear_m_per_s * kStep_s / 10.0;
       T_map_robot =
-          T_map_robot * geometry::Pose2{way_m, 0.0, obeyed.angular_rad_per_s * kStep_s / 10.0};
+          T_map_robot * geometry::Pose2{step_m, 0.0, obeyed.angular_rad_per_s * kStep_s / 10.0};
     }
     largest_acceleration = std::max(
         largest_acceleration, (order.command.linear_m_per_s - last_.linear_m_per_s) / kStep_s);

@@ -144,8 +144,8 @@ void TestDrive::step() {
   const bool new_question = answered_goal_ != goal_id || answered_map_ != map_version ||
                             answered_blockages_ != navigator.blockages().version;
   if (goal_id != 0 && planner_answers && new_question) send_route();
-  told = navigator.step(now_ns);
-  delayed_.push_back(told);
+  command = navigator.step(now_ns);
+  delayed_.push_back(command);
   const geometry::Velocity obeyed = delayed_.front();
   delayed_.erase(delayed_.begin());
   const bool moves = base_obeys && base_ready;

@@ -54,7 +54,7 @@ class TestDrive {
   std::uint64_t map_version = 1;
   Navigator navigator;
   std::int64_t now_ns = 1'000'000'000;
-  geometry::Velocity told;
+  geometry::Velocity command;
 
   // What goes wrong.
   bool odometry_comes = true;

@@ -16,7 +16,7 @@ TEST(StampClock, IsTheHostsUntilASensorSpeaks) {
 
 TEST(StampClock, FollowsTheStampsAndTheSteadyClockBetweenThem) {
   StampClock clock(0);
-  clock.heard(70 * kSecond_ns, 10 * kSecond_ns);
+  clock.observe(70 * kSecond_ns, 10 * kSecond_ns);
   EXPECT_EQ(clock.now_ns(10 * kSecond_ns), 70 * kSecond_ns);
   EXPECT_EQ(clock.now_ns(13 * kSecond_ns), 73 * kSecond_ns);
   EXPECT_FALSE(clock.take_set_back());
@@ -24,9 +24,9 @@ TEST(StampClock, FollowsTheStampsAndTheSteadyClockBetweenThem) {
 
 TEST(StampClock, WhatWaitedOnTheWayLooksAsOldAsItIs) {
   StampClock clock(0);
-  clock.heard(70 * kSecond_ns, 10 * kSecond_ns);
+  clock.observe(70 * kSecond_ns, 10 * kSecond_ns);
   // A stall: two seconds of messages come at once.
-  clock.heard(70 * kSecond_ns + 1, 12 * kSecond_ns);
+  clock.observe(70 * kSecond_ns + 1, 12 * kSecond_ns);
   EXPECT_EQ(clock.now_ns(12 * kSecond_ns), 72 * kSecond_ns);
 }
 
@@ -36,7 +36,7 @@ TEST(StampClock, FollowsAClockThatRunsSlower) {
   for (std::int64_t i = 0; i <= 100; ++i) {  // a millisecond a second
     const std::int64_t steady_ns = i * kSecond_ns;
     const std::int64_t stamp_ns = 50 * kSecond_ns + i * (kSecond_ns - 1'000'000);
-    clock.heard(stamp_ns, steady_ns);
+    clock.observe(stamp_ns, steady_ns);
     largest_age_ns = std::max(largest_age_ns, clock.now_ns(steady_ns) - stamp_ns);
   }
   EXPECT_LE(largest_age_ns, 11'000'000);
@@ -45,11 +45,11 @@ TEST(StampClock, FollowsAClockThatRunsSlower) {
 
 TEST(StampClock, SaysOnceThatTheStampsHaveGoneBack) {
   StampClock clock(0);
-  clock.heard(70 * kSecond_ns, 0);
+  clock.observe(70 * kSecond_ns, 0);
   EXPECT_EQ(clock.now_ns(0), 70 * kSecond_ns);
   // A gateway that was started again with its clock set right: an hour less.
   for (std::int64_t second = 1; second <= 11; ++second) {
-    clock.heard(-3530 * kSecond_ns + second * kSecond_ns, second * kSecond_ns);
+    clock.observe(-3530 * kSecond_ns + second * kSecond_ns, second * kSecond_ns);
     clock.now_ns(second * kSecond_ns);
   }
   EXPECT_TRUE(clock.take_set_back());
@@ -59,10 +59,10 @@ TEST(StampClock, SaysOnceThatTheStampsHaveGoneBack) {
 
 TEST(StampClock, NeverGoesBackALittle) {
   StampClock clock(0);
-  clock.heard(70 * kSecond_ns, 0);
+  clock.observe(70 * kSecond_ns, 0);
   std::int64_t last_ns = clock.now_ns(0);
   for (std::int64_t second = 1; second <= 20; ++second) {  // half a second less from now on
-    clock.heard(70 * kSecond_ns + second * kSecond_ns - kSecond_ns / 2, second * kSecond_ns);
+    clock.observe(70 * kSecond_ns + second * kSecond_ns - kSecond_ns / 2, second * kSecond_ns);
     const std::int64_t now_ns = clock.now_ns(second * kSecond_ns);
     EXPECT_GE(now_ns, last_ns);
     last_ns = now_ns;

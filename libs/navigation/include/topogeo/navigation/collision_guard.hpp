@@ -1,11 +1,12 @@
-// Keeps a robot from driving into what its laser and sonars see, whatever it is told by whoever
-// plans its way (spec B4). It knows no map, no pose and no route.
+// Keeps a robot from driving into what its laser and sonars see, whatever the planner of its path
+// wants. It has no map, no pose and no route (MACONDO, I and III; docs/algorithms.md, "Driving and
+// collision guard").
 //
 // The points of the last scan, carried on by odometry, and the echoes of the sonars where the laser
 // sees nothing in their cone are what the body's disc must not touch on the arc that is wanted, nor
-// on the one that the robot is on. From the free way follows the speed from which it still stops in
-// time. Noise of the laser is smoothed over neighbouring beams by no more than the side margin, so
-// a measured point itself is never touched.
+// on the one that the robot is on. From the free distance follows the speed from which it still
+// stops in time. Noise of the laser is smoothed over neighbouring beams by no more than the side
+// margin, so a measured point itself is never touched.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +29,9 @@ struct GuardVerdict {
   geometry::Velocity allowed;             ///< the wanted motion, slower on the same arc, or none
   HaltReason reason = HaltReason::kNone;  ///< why nothing is allowed at all
   std::string message;                    ///< for people; empty when the motion is allowed
-  double free_way_m = 0.0;  ///< along the wanted motion before the body touches something; <= 5
-  bool limited = false;     ///< slower than wanted
-  /// What ends the free way, robot frame; nothing when nothing does within 5 m.
+  double free_m = 0.0;   ///< along the wanted motion before the body touches something; <= 5
+  bool limited = false;  ///< slower than wanted
+  /// What ends the free distance, robot frame; nothing when nothing does within 5 m.
   std::optional<Eigen::Vector2d> contact_m;
 };
 
@@ -47,7 +48,7 @@ class CollisionGuard {
   void add(const SonarRound& sonar);
 
   /// What of a wanted velocity is safe now. Turning on the spot of a round body always is, as long
-  /// as the sensors work. Backwards goes only what fresh sonars look at.
+  /// as the sensors work. Backwards it goes only where fresh sonars point.
   [[nodiscard]] GuardVerdict judge(const geometry::Velocity& wanted, std::int64_t now_ns) const;
 
   /// Why no motion at all is allowed; kNone when the sensors work. `message` may be null.
@@ -57,7 +58,7 @@ class CollisionGuard {
   [[nodiscard]] bool fresh(std::int64_t stamp_ns, std::int64_t now_ns) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> obstacles_m(std::int64_t now_ns) const;
   [[nodiscard]] geometry::Velocity driven() const;
-  [[nodiscard]] double speed_for(double free_way_m) const;
+  [[nodiscard]] double speed_for(double free_m) const;
   /// Whether the scan has a point in the sonar's cone, at most so far from it.
   [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
   void compare_echoes();

@@ -16,7 +16,7 @@
 
 namespace topogeo::navigation {
 
-/// What is known of the floor now.
+/// The map of the floor so far.
 struct ExploredMap {
   std::uint64_t version = 0;  ///< counts the changes
   std::shared_ptr<const topomap::GlobalMap> graph;
@@ -46,7 +46,7 @@ class ExplorationTour {
   explicit ExplorationTour(const TourConfig& config = {}, std::uint64_t first_goal_id = 1);
   ~ExplorationTour();
 
-  /// To be told whenever it has changed.
+  /// To be called whenever it has changed.
   void set_map(ExploredMap map);
 
   /// To be called several times a second. A goal for the navigator, when there is another one than

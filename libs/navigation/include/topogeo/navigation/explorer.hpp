@@ -1,11 +1,12 @@
-// Where a robot that maps an unknown floor goes next (the first source's future work).
+// Where a robot that maps an unknown floor goes next (own; future work in the Thesis, 9.2;
+// docs/algorithms.md, "Exploration").
 //
 // The frontier are the ends of outer branches (fictitious nodes of the topo-geometric map) and,
 // where the graph has none, stretches of free cells next to unknown ones. Doors and narrowings are
 // gone to until both of their sides were seen, and every zone is entered once. A target is worth
 // what unknown floor the robot could drive into from there: what shows through holes of walls and
 // racks is worth nothing. The nearest targets are ordered by a short open tour, and its first one
-// comes next. Nothing here moves the robot: the owner drives to a target and tells where it has
+// comes next. Nothing here moves the robot: the owner drives to a target and reports where it has
 // been.
 #pragma once
 
@@ -56,7 +57,7 @@ enum class TargetKind : std::uint8_t {
   kPassage = 1,    ///< a door or narrowing of which a side was not seen
   kGap = 2,        ///< free cells next to unknown ones
   kRoom = 3,       ///< a wide part of the floor that was never entered
-  kBlocked = 4,    ///< a zone that was seen, but the map shows no way into it; often it does when
+  kBlocked = 4,    ///< a zone that was seen, but the map shows no path into it; often it does when
                    ///< the entrance is looked at from near, so these come last
 };
 
@@ -67,7 +68,7 @@ struct ExplorationTarget {
   TargetKind kind = TargetKind::kGap;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< what is to be seen, map frame
   geometry::Pose2 T_map_view;  ///< where from: in a passable cell, looking at it
-  double way_m = 0.0;          ///< of the way there
+  double distance_m = 0.0;     ///< of the path there
 };
 
 class Explorer {
@@ -75,10 +76,10 @@ class Explorer {
   /// Throws std::invalid_argument as `check`.
   explicit Explorer(const ExplorerConfig& config = {});
 
-  /// Where the scans were made that the map consists of, in place of what was said before.
+  /// Where the scans were made that the map consists of, in place of those set before.
   void set_visited(std::vector<geometry::Pose2> T_map_stops);
 
-  /// The first target of a short way past those that can be reached; nothing: the floor is
+  /// The first target of a short tour past those that can be reached; nothing: the floor is
   /// explored. `planner` plans on `map`.
   [[nodiscard]] std::optional<ExplorationTarget> next(const topomap::GlobalMap& graph,
                                                       const planning::HybridMap& map,
@@ -92,7 +93,7 @@ class Explorer {
   void give_up(const ExplorationTarget& target);
   [[nodiscard]] std::size_t given_up() const { return given_up_.size(); }
 
-  /// There was no way to it when the robot wanted to go: it does not come again before the others
+  /// There was no path to it when the robot wanted to go: it does not come again before the others
   /// are done, and the second time it is given up.
   void put_off(const ExplorationTarget& target);
   /// Takes the targets that were put off in again; false: there are none.
@@ -102,7 +103,7 @@ class Explorer {
   struct Candidate {
     TargetKind kind;
     Eigen::Vector2d position_m;
-    double worth_m;  // longest way that it is worth
+    double worth_m;  // longest path that it is worth
   };
   struct Option;
   struct Scene;  // what is planned on

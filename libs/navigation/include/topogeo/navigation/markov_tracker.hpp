@@ -1,9 +1,10 @@
-// The pose of a robot on a known map by Markov localization (spec B3): carried on by odometry, put
-// right by what sonars or a laser measure where the robot stops to look.
+// The pose of a robot on a known map by Markov localization (MACONDO, III.1; docs/algorithms.md,
+// "Markov localization"): carried on by odometry, corrected by what sonars or a laser measure where
+// the robot stops to look.
 //
-// Executed motion is told as the primitives that lead from one stop to the next as odometry saw it:
-// turn, advance, turn. The axes of the window are those of the map's grid, which may be turned in
-// the map frame.
+// Executed motion is handed on as the primitives that lead from one stop to the next as odometry
+// saw it: turn, advance, turn. The axes of the window are those of the map's grid, which may be
+// turned in the map frame.
 #pragma once
 
 #include <cstdint>
@@ -39,11 +40,11 @@ class MarkovTracker {
 
   void add(const OdometrySample& sample);
 
-  /// A primitive has been executed, or a part of the way that is long enough to be told: the belief
+  /// A primitive has been executed, or a part of the path that is long enough: the belief
   /// follows the odometry.
   void primitive_done();
-  /// The robot stands at a border node or at the end of its route and measures this. Tells the
-  /// motion since the last primitive first. Throws std::runtime_error before start(),
+  /// The robot stands at a border node or at the end of its route and measures this. Follows
+  /// the motion since the last primitive first. Throws std::runtime_error before start(),
   /// std::invalid_argument for another number of sensors.
   markov::PerceptionReport perceive(const SonarRound& readings);
 
@@ -53,19 +54,20 @@ class MarkovTracker {
   /// How far the last perceive() moved the robot from where it was expected, metres.
   [[nodiscard]] double corrected_m() const { return corrected_m_; }
   /// The moves from where it is to a pose of the route (map frame), straight: turn, advance, turn.
-  [[nodiscard]] std::optional<markov::WayBack> way_back(const geometry::Pose2& T_map_route) const;
+  [[nodiscard]] std::optional<markov::ReturnMoves> return_moves(
+      const geometry::Pose2& T_map_route) const;
   /// Why there is no pose; empty when there is one.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
-  void tell(const markov::Move& move);
+  void follow(const markov::Move& move);
 
   MarkovTrackerConfig config_;
   markov::ObstacleCells cells_;
   geometry::Pose2 T_map_grid_;
   std::optional<markov::MarkovLocalizer> localizer_;
   std::optional<OdometrySample> last_;
-  geometry::Pose2 T_odom_told_;  ///< up to where the belief has followed
+  geometry::Pose2 T_odom_followed_;  ///< up to where the belief has followed
   double corrected_m_ = 0.0;
   std::string reason_ = "not started";
 };

@@ -1,11 +1,11 @@
 // Drives a robot along routes of the hybrid map: a state machine without clock, threads or I/O.
 //
-// Whoever owns it tells it everything that comes (poses, odometry, scans, sonars, base, routes) and
-// calls step() many times a second; it answers with the velocity for the base. It follows the route
-// smoothly, or in the motion primitives of spec B2; it goes round what is not on the map as long as
-// a way round can be seen (local_detour.hpp), waits for what moves, reports what stays in the way
+// Its owner adds everything that comes (poses, odometry, scans, sonars, base, routes) and calls
+// step() many times a second; it answers with the velocity for the base. It follows the route
+// smoothly, or in motion primitives; it goes round what is not on the map as long as
+// a detour can be seen (local_detour.hpp), waits for what moves, reports what stays in the way
 // so that the planner finds another route, and stands still whenever it does not know where it is.
-// The collision guard has the last word.
+// The collision guard has the last word (docs/algorithms.md, "Driving and collision guard").
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class Navigator {
   Navigator& operator=(Navigator&&) noexcept;
 
   /// The map that routes are of; another one while it drives stops it until the planner has
-  /// answered with a route of the new one, unless its way is free there too.
+  /// answered with a route of the new one, unless its path is free there too.
   void set_map(std::shared_ptr<const planning::HybridMap> map, std::uint64_t version);
 
   /// A new goal: the old one is forgotten, the robot stops until a route for it comes.

@@ -18,13 +18,13 @@ struct MarkovTrackerConfig {
 
 enum class MotionStyle : std::uint8_t {
   kSmooth = 0,      ///< arcs round the corners, for bases that take velocities
-  kPrimitives = 1,  ///< advance, turn left, turn right (spec B2), one after the other
+  kPrimitives = 1,  ///< advance, turn left, turn right, one after the other
 };
 
 /// Where the pose comes from.
 enum class PoseSource : std::uint8_t {
   kLocalizer = 0,  ///< pose fixes that are added
-  /// Markov localization (spec B3) on the map's grid: the first pose fix that is added is the base
+  /// Markov localization on the map's grid: the first pose fix that is added is the base
   /// station. The robot stops at every border node and at the end of the route to look where it is.
   kMarkov = 1,
 };

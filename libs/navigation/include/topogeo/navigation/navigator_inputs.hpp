@@ -1,4 +1,4 @@
-// What a navigator is told, and what it tells. All stamps are of one clock, nanoseconds.
+// What a navigator gets, and what it reports. All stamps are of one clock, nanoseconds.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace topogeo::navigation {
 
-/// Where the robot is, as a localizer says it.
+/// Where the robot is, by a localizer.
 struct PoseFix {
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_map_robot;
@@ -41,7 +41,7 @@ struct ScanPoints {
 
 /// One sonar's reading.
 struct SonarReading {
-  geometry::Pose2 T_robot_sonar;  ///< it looks along its x
+  geometry::Pose2 T_robot_sonar;  ///< its axis is x
   double half_cone_rad = 0.0;
   float range_m = 0.0F;  ///< scan::Scan::kNoReturn where nothing came back
 };
@@ -57,7 +57,7 @@ struct BaseCondition {
   std::string reason;  ///< for people, when they are not
 };
 
-/// A way to a goal, as the planner gives it; also again, when something has changed.
+/// A route to a goal by the planner; also again, when something has changed.
 struct RoutePlan {
   std::uint64_t goal_id = 0;
   std::uint64_t map_version = 0;
@@ -65,11 +65,11 @@ struct RoutePlan {
   bool found = false;
   std::string reason;                     ///< one line for people; empty when found
   std::vector<Eigen::Vector2d> points_m;  ///< map frame, straightened, from start to goal
-  std::vector<Eigen::Vector2d> nodes_m;   ///< border nodes on the way, in order, map frame
-  std::optional<double> heading_rad;      ///< where the robot shall look in the end, map frame
+  std::vector<Eigen::Vector2d> nodes_m;   ///< border nodes along it, in order, map frame
+  std::optional<double> heading_rad;      ///< wanted at the goal, map frame
 };
 
-/// A goal in which nothing but the number is the navigator's business: the route follows.
+/// A goal of which the navigator needs only the number: the route follows.
 struct GoalOrder {
   std::uint64_t goal_id = 0;
   bool look_around = false;  ///< without a pose: may turn and move a little where nothing is near
@@ -79,7 +79,7 @@ enum class NavigatorState : std::uint8_t {
   kIdle = 0,  ///< no goal
   kDriving = 1,
   kRelocalizing = 2,  ///< stands, or looks around, to find out where it is
-  kBlocked = 3,       ///< waits for its way to become free, or for another route
+  kBlocked = 3,       ///< waits for its path to become free, or for another route
   kArrived = 4,
   kStopped = 5,  ///< has a goal and does not drive: see the reason
 };
@@ -99,7 +99,7 @@ enum class HaltReason : std::uint8_t {
   kSonarSilent = 10,  ///< the sonars hear nothing, though something is near
   kNoOdometry = 11,
   kBaseNotReady = 12,
-  kBaseStuck = 13,  ///< does not move when told
+  kBaseStuck = 13,  ///< does not move when it is to
 };
 
 /// A word for logs and messages: "driving", ...
@@ -123,7 +123,7 @@ struct NavigatorStatus {
   std::uint32_t guard_stops = 0;  ///< how often the collision guard has stopped it since then
 };
 
-/// What stands in the way and is not on the map; the planner is to find a way that avoids it.
+/// What stands in the way and is not on the map; the planner is to find a route that avoids it.
 struct BlockageReport {
   std::uint64_t version = 0;              ///< counts the changes
   std::vector<Eigen::Vector2d> points_m;  ///< map frame: middles of cells that something fills

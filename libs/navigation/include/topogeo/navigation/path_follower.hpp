@@ -2,10 +2,10 @@
 // needed and ended with a stop.
 //
 // On a leg the curvature of the motion is that of the path, corrected for the distance from it and
-// the heading error so that both die out over `kSettle_m` of way, whatever the speed. All control
-// is on the pose where the base will be when it obeys: the given one carried on by the commands of
-// the last `delay_s`. Paths of smooth_path() have few legs; those of straight_path() one for every
-// advance of spec B2, so that its primitives are executed one after the other.
+// the heading error so that both die out over a distance of `kSettle_m`, whatever the speed. All
+// control is on the pose where the base will be when it obeys: the given one carried on by the
+// commands of the last `delay_s`. Paths of smooth_path() have few legs; those of straight_path()
+// one for every advance primitive, so that they are executed one after the other.
 #pragma once
 
 #include <cstdint>
@@ -66,7 +66,7 @@ class PathFollower {
   FollowerStep step(const geometry::Pose2& T_map_robot, std::int64_t now_ns,
                     double speed_limit_m_per_s);
 
-  /// What the base was really told at that time; once for each step, also while nothing is
+  /// What the base really got at that time; once for each step, also while nothing is
   /// followed.
   void commanded(const geometry::Velocity& command, std::int64_t now_ns);
 

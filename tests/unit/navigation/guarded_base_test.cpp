@@ -1,0 +1,71 @@
+// A base with a laser that looks at a post ahead.
+#include "guarded_base.hpp"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "post_scan.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+class GuardedBaseTest : public testing::Test {
+ protected:
+  void scan_at(double post_m, std::int64_t stamp_ns) {
+    base.add(OdometrySample{stamp_ns, {}});
+    base.add(scan_of_post(post_m, stamp_ns));
+  }
+
+  GuardedBase base{GuardConfig{}, 2.0};
+  std::string message;
+};
+
+TEST_F(GuardedBaseTest, HasAReasonNotToMove) {
+  EXPECT_EQ(base.halted(0, message), HaltReason::kNoScan);
+  scan_at(5.0, 0);
+  EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
+  base.add(BaseCondition{0, false, "emergency stop"});
+  EXPECT_EQ(base.halted(0, message), HaltReason::kBaseNotReady);
+  EXPECT_EQ(message, "the base takes no commands: emergency stop");
+  base.add(BaseCondition{0, true, ""});
+  EXPECT_EQ(base.halted(0, message), HaltReason::kNone);
+}
+
+TEST_F(GuardedBaseTest, IsHeldBeforeAnObstacleUntilItIsReleased) {
+  scan_at(5.0, 0);
+  EXPECT_FALSE(base.command({0.3, 0.0}, geometry::Pose2{}, 0).stopped);
+  scan_at(0.3, kSecond_ns);
+  const auto first = base.command({0.3, 0.0}, geometry::Pose2{}, kSecond_ns);
+  EXPECT_TRUE(first.stopped);
+  EXPECT_TRUE(first.newly_stopped);
+  EXPECT_EQ(first.verdict.allowed, geometry::Velocity{});
+  EXPECT_FALSE(base.held(kSecond_ns));
+  const std::int64_t later_ns = kSecond_ns + kSecond_ns / 2;
+  scan_at(0.3, later_ns);
+  EXPECT_FALSE(base.command({0.3, 0.0}, geometry::Pose2{}, later_ns).newly_stopped);
+  // An order to stand does not end it, one that the guard allows does.
+  base.command({}, geometry::Pose2{}, later_ns);
+  EXPECT_TRUE(base.held(2 * kSecond_ns));
+  base.command({0.0, 0.5}, geometry::Pose2{}, later_ns);
+  EXPECT_FALSE(base.held(2 * kSecond_ns));
+  base.command({0.3, 0.0}, geometry::Pose2{}, later_ns);
+  EXPECT_TRUE(base.held(3 * kSecond_ns));
+  base.release();
+  EXPECT_FALSE(base.held(3 * kSecond_ns));
+}
+
+TEST_F(GuardedBaseTest, ABaseThatDoesNotMoveIsStuckUntilItMayTryAgain) {
+  for (int i = 0; i <= 20; ++i) {
+    const std::int64_t now_ns = i * kSecond_ns / 10;
+    scan_at(5.0, now_ns);
+    base.command({0.3, 0.0}, geometry::Pose2{}, now_ns);
+  }
+  EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kBaseStuck);
+  EXPECT_NE(message.find("2.0 s"), std::string::npos);
+  base.retry();
+  EXPECT_EQ(base.halted(2 * kSecond_ns, message), HaltReason::kNone);
+}
+
+}  // namespace
+}  // namespace topogeo::navigation
