@@ -15,7 +15,7 @@ root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
     if (length(cost) == 0) { print "perception_cost: the benchmarks printed nothing" > "/dev/stderr"; exit 1 }
     source["diagram/4m/2cm"] = "1,373"; source["diagram/4m/10cm"] = "57"
     source["local_map/4m/5cm"] = "400-900"
-    print "| | range limit | cell | ms | source, ms (400 MHz PC) |"
+    print "| | range limit | cell | ms | Thesis, ms (400 MHz PC) |"
     print "|---|---|---|---|---|"
     n = split("diagram local_map", kinds, " ")
     for (k = 1; k <= n; k++)
