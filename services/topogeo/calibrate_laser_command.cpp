@@ -134,7 +134,7 @@ int calibrate_laser_log(const CalibrateLaserOptions& options) {
   std::cout << fmt::format("{}: {}\n", name, describe_drive(found.log.maps))
             << describe_matches(config.config, found.log.matched)
             << fmt::format("; {} outlying\n\n", laser.outlying)
-            << "the laser, seen from the point of the robot that its odometry speaks of:\n";
+            << "the laser, seen from the point of the robot that its odometry refers to:\n";
   constexpr const char* kTurn = "0.2 rad of turn";
   print_part("x", laser.x_m, 1.0, "m forward", laser.with_turn, kTurn);
   print_part("y", laser.y_m, 1.0, "m to the left", laser.with_turn, kTurn);
@@ -174,7 +174,7 @@ void add_calibrate_laser_command(command_line::Command& app, int& exit_code) {
       "Turns show x and y, straight paths show yaw: drive some minutes with both, turning to both\n"
       "sides, through rooms. A part that the log does not show is left as it is configured. The\n"
       "search finds mountings within about 0.3 m and 15 degrees of the configured one.\n"
-      "Poses are then those of the point that odometry speaks of, no longer of the laser.\n"
+      "Poses are then those of the point that odometry refers to, no longer of the laser.\n"
       "Example:\n"
       "  topogeo calibrate-laser drive.clf.gz --out robot.yaml\n"
       "  topogeo map --log drive.clf.gz --config robot.yaml --out map");

@@ -183,7 +183,7 @@ void add_compare_command(command_line::Command& app, int& exit_code) {
   command->footer(
       "Both trajectories must be of the same point of the robot. topogeo writes poses of the "
       "point\n"
-      "that odometry speaks of; many references are of the laser: where laser.x_m, y_m or yaw_rad\n"
+      "that odometry refers to; many references are of the laser: where laser.x_m, y_m or yaw_rad\n"
       "are configured, name that configuration with --config to compare the poses of the laser.\n"
       "What is printed (metres, degrees):\n"
       "  matched    share of the reference poses that the estimate has, and the path between them\n"
