@@ -10,7 +10,7 @@ namespace {
 constexpr double kNoContact_m = std::numeric_limits<double>::infinity();
 constexpr double kTouch_m = 1e-9;    // nearer than this to touching is touching
 constexpr double kOverlap_m = 1e-4;  // less is what touching comes to by rounding
-// A move along a wall is none towards it, whatever rounding says.
+// A move along a wall is none towards it, whatever rounding gives.
 constexpr double kSidelong = 1e-6;
 
 Eigen::Vector2d nearest_m(const world::Segment& segment, const Eigen::Vector2d& point_m) {
@@ -21,7 +21,8 @@ Eigen::Vector2d nearest_m(const world::Segment& segment, const Eigen::Vector2d& 
   return segment.a_m + share * along;
 }
 
-// Way until a point on its way along `direction` is `radius_m` away from `center_m`, from outside.
+// Distance until a point that moves along `direction` is `radius_m` away from `center_m`, from
+// outside.
 double way_to_circle(const Eigen::Vector2d& center_m, double radius_m,
                      const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d to_m = center_m - from_m;

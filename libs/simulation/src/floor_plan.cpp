@@ -110,7 +110,7 @@ void FloorPlan::rooms(const Side& side, double depth_m, support::Random& random)
   const Eigen::Vector2d u = along(side);
   for (const Piece& piece : pieces) {
     furniture(side, piece, depth_m, random);
-    if (!piece.open) continue;  // nobody sees it
+    if (!piece.open) continue;  // it is never seen
     const Eigen::Vector2d a_m = side.from_m + u * piece.from_m + side.out * kWall_m;
     const Eigen::Vector2d b_m = side.from_m + u * piece.to_m + side.out * kWall_m;
     line(a_m, b_m - u * (piece.to_m - piece.door_m + kDoor_m / 2.0));

@@ -15,7 +15,7 @@ Pose2 from(const Eigen::Vector3d& v) {
 }
 
 // How far the robot came from scan to scan; a turn counts a little, so that a turn on the spot is
-// some way, too.
+// some distance, too.
 double effort_m(const Pose2& step) {
   constexpr double kPerRadian_m = 0.01;
   return step.position_m().norm() + kPerRadian_m * std::fabs(step.theta_rad);

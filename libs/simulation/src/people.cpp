@@ -69,7 +69,7 @@ People::People(const world::World& world, std::size_t wanderers, std::uint64_t s
 
 void People::step(Wanderer& wanderer, const world::World& scene, const Eigen::Vector2d& robot_m) {
   constexpr double kFromWalls_m = kWandererRadius_m + 0.1;
-  constexpr double kNewMind = 0.01;  // of somebody who walks on another way all of a sudden
+  constexpr double kNewMind = 0.01;  // of a person who turns to another path all of a sudden
   const Eigen::Vector2d next_m =
       wanderer.position_m + wanderer.direction * (wanderer.speed_m_per_s * kStep_s);
   const double room_m = clearance_m(scene, next_m);

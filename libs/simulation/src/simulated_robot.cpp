@@ -42,8 +42,8 @@ RobotOptions checked(const world::World& world, RobotOptions o) {
   return o;
 }
 
-// The base regulates what its encoders count, so these see what was told, and it is the robot that
-// errs: by the same random numbers, and the other way where it is systematic.
+// The base regulates what its encoders count, so these see the command, and it is the robot that
+// errs: by the same random numbers, with the opposite sign where it is systematic.
 OdometryDrift of_robot(OdometryDrift drift) {
   drift.range_scale_error = 1.0 / (1.0 + drift.range_scale_error) - 1.0;
   drift.turn_scale_error = 1.0 / (1.0 + drift.turn_scale_error) - 1.0;
@@ -59,7 +59,7 @@ double towards(double now, double wanted, double largest_change) {
   return now + std::clamp(wanted - now, -largest_change, largest_change);
 }
 
-// Half the turn, the way, the other half.
+// Half the turn, the distance, the other half.
 geometry::Pose2 arc(double forward_m, double turn_rad) {
   const geometry::SinCos half = geometry::sincos(turn_rad / 2.0);
   return {forward_m * half.cos, forward_m * half.sin, geometry::wrap_angle(turn_rad)};

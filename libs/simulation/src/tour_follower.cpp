@@ -39,7 +39,7 @@ TourFollower::TourFollower(const std::vector<Eigen::Vector2d>& tour_m, const Dri
     if (path_m_.empty() || point_m != path_m_.back()) path_m_.push_back(point_m);
   }
   if (path_m_.size() < 2) {
-    throw std::invalid_argument("tour: expected two different way points or more, got " +
+    throw std::invalid_argument("tour: expected two different waypoints or more, got " +
                                 std::to_string(path_m_.size()));
   }
   for (std::size_t i = 1; i < path_m_.size(); ++i) {

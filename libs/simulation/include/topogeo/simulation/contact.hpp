@@ -11,11 +11,11 @@ namespace topogeo::simulation {
 
 struct FreeWay {
   double way_m = 0.0;  ///< at most the length asked for
-  /// The point of the surface that the disc touches then; nothing when the whole way is free.
+  /// The point of the surface that the disc touches then; nothing when the whole path is free.
   std::optional<Eigen::Vector2d> contact_m{};
 };
 
-/// The way of a disc from `from_m` along `direction` (of unit length), at most `length_m` (>= 0).
+/// The path of a disc from `from_m` along `direction` (of unit length), at most `length_m` (>= 0).
 /// Columns and people are solid. A surface that the disc touches or overlaps already (a door has
 /// shut on it) stops it at once if the move would bring it nearer and lets it go otherwise. What
 /// changes does not count: see scene_at.

@@ -1,4 +1,4 @@
-// A smooth drive along way points that nothing stops.
+// A smooth drive along waypoints that nothing stops.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ struct TimedPose {
   geometry::Pose2 T_world_robot;
 };
 
-/// True poses every 20 ms from the first way point, heading for the second, until the last is
+/// True poses every 20 ms from the first waypoint, heading for the second, until the last is
 /// reached. Throws std::invalid_argument when an option is out of range or there are fewer than two
-/// different way points in succession, std::runtime_error when the end is not reached in twenty
+/// different waypoints in succession, std::runtime_error when the end is not reached in twenty
 /// times the time of the path at full speed.
 std::vector<TimedPose> drive(const std::vector<Eigen::Vector2d>& tour_m,
                              const DriveOptions& options);

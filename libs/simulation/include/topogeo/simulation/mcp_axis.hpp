@@ -1,5 +1,5 @@
 // One motor of an emulated RWI base: runs, halts and goes given distances with the velocity and
-// acceleration that it was told, in the base's own counts.
+// acceleration that was commanded, in the base's own counts.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ class McpAxis {
   void go(double counts);   ///< from where the encoder is
   void halt();
   void limp();
-  /// By hand: follows this speed whatever it was told, which it forgets.
+  /// By hand: follows this speed whatever was commanded, which it forgets.
   void follow(double counts_per_s);
 
-  /// Lets time pass. Without power the wheels are braked, and what was told stays told.
+  /// Lets time pass. Without power the wheels are braked, and the commands stay in force.
   void advance(double dt_s, bool power);
   /// What the encoder saw.
   void moved(double counts, double dt_s);

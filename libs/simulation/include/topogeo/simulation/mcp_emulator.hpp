@@ -34,7 +34,7 @@ struct McpEmulatorSettings {
   devices::McpAsciiForm form{};
   /// Puts a `*` before its answers.
   bool prompt = false;
-  /// Repeats what it hears until HD, or, as nobody knows, for ever.
+  /// Repeats what it hears until HD, or for ever: no publication decides it.
   bool echo_at_start = true;
   bool echo_can_be_switched_off = true;
   /// On expiry of the watchdog the motors go limp; otherwise they halt.
@@ -75,12 +75,12 @@ class McpEmulator final : public SerialDevice {
   void press_emergency_stop() { power_ = false; }
   void release_emergency_stop() { power_ = true; }
   void set_battery(double battery_v, std::int64_t now_ns);
-  /// A servo error: the translation motor goes limp until it is told something new.
+  /// A servo error: the translation motor goes limp until it gets a new command.
   void fail_motor(std::int64_t now_ns);
 
   // Faults.
-  /// Without power it neither hears nor says anything, its wheels stand, and all that it was told
-  /// and has counted is gone.
+  /// Without power it neither hears nor sends anything, its wheels stand, and all that it was
+  /// commanded and has counted is gone.
   void switch_off(std::int64_t now_ns);
   /// Switches on, or off and on again: as on the first day, once the time of the start-up is over.
   void switch_on(std::int64_t now_ns);
@@ -93,7 +93,7 @@ class McpEmulator final : public SerialDevice {
   /// Sends bytes that mean nothing.
   void send_garbage(std::size_t bytes, std::int64_t now_ns);
 
-  // What the tests look at.
+  // What the tests read.
   [[nodiscard]] bool ready() const { return ready_; }
   [[nodiscard]] bool binary() const { return binary_; }
   [[nodiscard]] bool echoes() const { return echo_; }

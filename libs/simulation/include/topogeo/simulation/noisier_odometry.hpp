@@ -14,11 +14,11 @@ namespace topogeo::simulation {
 /// recorded odometry (to rounding), 0 the truth seen from the first recorded pose.
 ///
 /// `T_world_robot` is the true pose of each scan where it is known. Between two known poses the
-/// robot is taken to have moved as its odometry says, and the difference that is left at the second
-/// one to have grown evenly with the way (with the turn where it only turned). Before the first
-/// known pose and after the last nothing is known of the error: these steps stay as they are.
-/// Throws std::invalid_argument when the sizes differ, fewer than two poses are known or the factor
-/// is not in [0, 100].
+/// robot is taken to have moved as its odometry reads, and the difference that is left at the
+/// second one to have grown evenly with the distance (with the turn where it only turned). Before
+/// the first known pose and after the last nothing is known of the error: these steps stay as they
+/// are. Throws std::invalid_argument when the sizes differ, fewer than two poses are known or the
+/// factor is not in [0, 100].
 std::vector<geometry::Pose2> noisier_odometry(
     std::span<const geometry::Pose2> T_odom_robot,
     std::span<const std::optional<geometry::Pose2>> T_world_robot, double factor);

@@ -17,7 +17,7 @@ struct OdometryDrift {
   double heading_sigma_rad_per_sqrt_m = 0.3 * std::numbers::pi / 180.0;  ///< random walk
   double turn_sigma_rad_per_sqrt_rad = 0.5 * std::numbers::pi / 180.0;   ///< per root of turning
   double turn_scale_error = 0.0;                 ///< measured turn = (1 + this) * true turn
-  double lateral_sigma_m_per_sqrt_m = 0.0;       ///< slips sideways on the way
+  double lateral_sigma_m_per_sqrt_m = 0.0;       ///< slips sideways while driving
   double turn_shift_sigma_m_per_sqrt_rad = 0.0;  ///< in x and y: does not turn about its origin
 };
 
@@ -26,11 +26,11 @@ class OdometryModel {
   OdometryModel(const OdometryDrift& drift, support::Random random)
       : drift_(drift), random_(random), slip_random_(random.next_u64()) {}
 
-  /// Takes the robot to its next true pose; returns what its odometry says then. The first call
+  /// Takes the robot to its next true pose; returns its odometry then. The first call
   /// fixes the origin: it returns the identity.
   geometry::Pose2 advance(const geometry::Pose2& T_world_robot);
 
-  /// Somebody carries the robot there: its odometry does not notice. The pose that odometry says
+  /// The robot is carried there: its odometry does not notice. The pose that odometry gives
   /// stays as it is.
   void carry(const geometry::Pose2& T_world_robot) { T_world_last_ = T_world_robot; }
 

@@ -12,7 +12,7 @@
 
 namespace topogeo::simulation {
 
-/// Where a person who follows its path is at a time since the start of the drive, if nobody makes
+/// Where a person who follows its path is at a time since the start of the drive, if nothing makes
 /// it wait.
 Eigen::Vector2d position_m(const world::Person& person, double time_s);
 
@@ -20,7 +20,7 @@ Eigen::Vector2d position_m(const world::Person& person, double time_s);
 class People {
  public:
   /// The world must outlive this. Wanderers start near its tour, at least 3 m from its start if
-  /// there is such a place. The seed decides about their places, speeds and ways.
+  /// there is such a place. The seed decides about their places, speeds and paths.
   People(const world::World& world, std::size_t wanderers, std::uint64_t seed);
 
   /// Lets them walk until `time_s`, which never goes back, in a scene (scene_at) with the robot.
@@ -40,7 +40,7 @@ class People {
 
   const world::World& world_;
   std::vector<Wanderer> wanderers_;
-  // Lets somebody who yields walk from step `steps_` to the next one, or wait.
+  // Lets a person who yields walk from step `steps_` to the next one, or wait.
   void yield(std::size_t person, const Eigen::Vector2d& robot_m);
 
   std::vector<double> waited_s_;  // by the people of the world

@@ -39,7 +39,7 @@ struct PlsEmulatorSettings {
 
 /// Faults that strike the next telegrams.
 enum class PlsFault {
-  kBadCrc,            ///< a bit of the telegram changes on its way
+  kBadCrc,            ///< a bit of the telegram changes on the line
   kTruncated,         ///< the telegram ends early
   kGarbage,           ///< random bytes after the telegram
   kStuckScan,         ///< a scan is sent again instead of a new one
@@ -77,7 +77,7 @@ class PlsEmulator final : public SerialDevice {
   // Faults.
   /// Strikes the next `count` telegrams, scans or changes of the rate that the fault can strike.
   void inject(PlsFault fault, int count);
-  /// Neither sends nor hears anything until told otherwise; what is on its way is cut.
+  /// Neither sends nor hears anything until speak_again(); what is on the line is cut.
   void fall_silent(std::int64_t now_ns);
   void speak_again(std::int64_t now_ns);
   /// How often the fault is still to strike.

@@ -30,15 +30,15 @@ world::World bare_corridor(std::uint64_t seed);
 world::World symmetric_building(std::uint64_t seed);
 
 /// Four by four blocks with streets of corridor round them; the tour goes about `way_m` metres
-/// through them, at each crossing another way than the one it came. `way_m` in [50, 20000]; throws
+/// through them, at each crossing another path than the one it came. `way_m` in [50, 20000]; throws
 /// std::invalid_argument otherwise.
 world::World large_floor(std::uint64_t seed, double way_m);
 
 /// Odometry that errs like that of the B21 of a recorded log, whose steps were compared with those
 /// of its reference trajectory: random 5.7 cm along and 3.7 cm across for the root of each metre,
 /// 2 degrees for the root of each metre, 10 degrees and 3.9 cm for the root of each radian turned.
-/// The seed draws what is systematic: up to 3 % of the way, 0.25 degrees a metre and 3 % of a turn,
-/// to either side.
+/// The seed draws what is systematic: up to 3 % of the distance, 0.25 degrees a metre and 3 % of a
+/// turn, to either side.
 OdometryDrift b21_odometry(std::uint64_t seed);
 
 }  // namespace topogeo::simulation

@@ -25,7 +25,7 @@ namespace topogeo::simulation {
 struct Slip {
   double per_m = 0.0;       ///< how often begins a slippery stretch, on the average; [0, 10]
   double length_m = 0.1;    ///< of such a stretch, as the wheels roll; (0, 10]
-  double lost_share = 0.5;  ///< of the way rolled there; [0, 1]
+  double lost_share = 0.5;  ///< of the distance rolled there; [0, 1]
 };
 
 struct RobotOptions {
@@ -35,8 +35,8 @@ struct RobotOptions {
   double radius_m = devices::kB21Radius_m;  ///< of its round body; (0, 5]
   double acceleration_m_per_s2 = std::numeric_limits<double>::infinity();            ///< > 0
   double angular_acceleration_rad_per_s2 = std::numeric_limits<double>::infinity();  ///< > 0
-  /// How the way that its wheels count differs from the one that it goes. They count what they are
-  /// told to roll; the robot makes the difference.
+  /// How the distance that its wheels count differs from the one that it drives. They count what is
+  /// commanded; the robot makes the difference.
   OdometryDrift odometry{};
   Slip slip{};
   BeamPattern beams{};
@@ -61,9 +61,9 @@ class SimulatedRobot {
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
-  /// Drives for `dt_s` (>= 0, worked off in pieces of at most 20 ms) as told. A contact stops the
-  /// way ahead, not a turn nor the way back. Throws std::invalid_argument for a velocity or time
-  /// that is no finite number.
+  /// Drives for `dt_s` (>= 0, worked off in pieces of at most 20 ms) as commanded. A contact stops
+  /// the motion ahead, not a turn nor the motion back. Throws std::invalid_argument for a velocity
+  /// or time that is no finite number.
   EncoderStep step(const Velocity& command, double dt_s);
 
   /// Somebody lifts it and puts it down there; its wheels do not notice.
@@ -101,7 +101,7 @@ class SimulatedRobot {
 
  private:
   EncoderStep advance(const Velocity& command, double dt_s);
-  /// The share of the way `displacement_m` that is free.
+  /// The share of `displacement_m` that is free.
   double go(const Eigen::Vector2d& displacement_m);
   double lost_share(double rolled_m);
   geometry::Pose2 with_errors(const geometry::Pose2& step);
@@ -134,7 +134,7 @@ class SimulatedRobot {
   double time_s_ = 0.0;
   double way_m_ = 0.0;
   double slippery_m_ = 0.0;     // still to come of a slippery stretch
-  double surely_free_m_ = 0.0;  // any way of this length touches nothing of scene_
+  double surely_free_m_ = 0.0;  // any motion of this length touches nothing of scene_
   std::optional<Eigen::Vector2d> contact_m_;
   std::uint64_t collisions_ = 0;
   std::uint64_t run_into_ = 0;

@@ -15,7 +15,7 @@ namespace topogeo::simulation {
 struct Echo {
   double range_m = std::numeric_limits<double>::infinity();  ///< infinity: none in range
   double incidence_rad =
-      0.0;  ///< between the way of the sound and the surface's normal; 0: an edge
+      0.0;  ///< between the path of the sound and the surface's normal; 0: an edge
 };
 
 /// Exact; `range_max_m`: what is as far or farther is not heard. What changes does not count: see

@@ -15,7 +15,7 @@
 
 namespace topogeo::simulation {
 
-using geometry::Velocity;  ///< how a base is told to move
+using geometry::Velocity;  ///< how a base is commanded
 
 struct DriveOptions {
   double speed_m_per_s = 0.9;                               ///< at most; (0, 10]
@@ -23,18 +23,18 @@ struct DriveOptions {
   double acceleration_m_per_s2 = 0.5;                       ///< (0, 10]
   double lookahead_m = 0.4;  ///< distance of the point ahead; corners are cut by less; [0.05, 5]
   /// Turns by this much of the error of its heading a second; (0, 10]. Less for a base that obeys
-  /// late: over one half of the delay's inverse it swings about its way.
+  /// late: over one half of the delay's inverse it swings about its path.
   double turn_gain_per_s = 3.0;
-  double keep_off_m = 0.1;  ///< of obstacles ahead, where the robot is told of them; [0, 5]
+  double keep_off_m = 0.1;  ///< of obstacles ahead, where the robot gets them; [0, 5]
 };
 
 class TourFollower {
  public:
   /// Throws std::invalid_argument when an option is out of range or there are fewer than two
-  /// different way points in succession.
+  /// different waypoints in succession.
   TourFollower(const std::vector<Eigen::Vector2d>& tour_m, const DriveOptions& options);
 
-  /// At the first way point, heading for the second.
+  /// At the first waypoint, heading for the second.
   [[nodiscard]] geometry::Pose2 start() const;
 
   /// What to do for the next `dt_s` (> 0) at this pose; nothing when the end is reached. The speed
@@ -55,8 +55,8 @@ class TourFollower {
 
   DriveOptions options_;
   std::vector<Eigen::Vector2d> path_m_;
-  std::size_t next_ = 1;  // the point ahead is on the way from path_m_[next_ - 1] to it
-  double along_m_ = 0.0;  // on that way
+  std::size_t next_ = 1;  // the point ahead is on the line from path_m_[next_ - 1] to it
+  double along_m_ = 0.0;  // on that line
   double rest_m_ = 0.0;
   double speed_m_per_s_ = 0.0;
 };

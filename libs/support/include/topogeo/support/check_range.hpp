@@ -1,4 +1,4 @@
-// One way to refuse a value that is out of range. Settings have their ranges where they are
+// Refuses a value that is out of range. Settings have their ranges where they are
 // declared; this is for all other input: poses, readings, grids.
 #pragma once
 

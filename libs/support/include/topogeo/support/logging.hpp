@@ -1,4 +1,4 @@
-// Log set-up of a process: who says it, how much of it, to stderr.
+// Log set-up of a process: its name, the least severe level, stderr.
 #pragma once
 
 #include <string_view>
