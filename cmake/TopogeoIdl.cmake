@@ -69,6 +69,6 @@ function(topogeo_add_idl)
   # SYSTEM: generated headers do not follow our warnings.
   target_include_directories(${target} SYSTEM PUBLIC ${include_dir})
   target_link_libraries(${target} PUBLIC fastcdr fastrtps)
-  target_compile_options(${target} PRIVATE -w)
+  target_compile_options(${target} PRIVATE -w ${TOPOGEO_COLD_OPTIMIZATION})
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${TOPOGEO_UNITY} UNITY_BUILD_BATCH_SIZE 6)
 endfunction()
