@@ -266,11 +266,11 @@ TEST(SonarModel, BadReadingsAreRefused) {
 }
 
 TEST(SonarModel, ConfigurationsOutOfRangeAreRefused) {
-  EXPECT_NO_THROW(validate(SonarModelConfig{}));
+  EXPECT_NO_THROW(check(SonarModelConfig{}));
   const auto refused = [](auto change) {
     SonarModelConfig config;
     change(config);
-    EXPECT_THROW(validate(config), std::invalid_argument);
+    EXPECT_THROW(check(config), std::invalid_argument);
   };
   refused([](SonarModelConfig& c) { c.max_range_m = 4.0; });  // below the last band
   refused([](SonarModelConfig& c) { c.max_range_m = kInfinity; });
