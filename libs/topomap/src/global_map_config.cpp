@@ -31,6 +31,8 @@ void describe_elements(GlobalMapConfig& g, support::ConfigSchema& schema) {
              "difference of clearance up to which they are similar");
   schema.add("global_map.min_observations", &g.min_observations, 1U, 1000U, "",
              "views that must have seen an element");
+  schema.add("global_map.hole_m2", &g.hole_m2, 0.0, 100.0, "m2",
+             "a smaller hole between votes is noise, not an obstacle that the map goes around");
   schema.add("global_map.spur_m", &g.spur_m, 0.0, 10.0, "m",
              "branches with a free end that reach less than this beyond the clearance at their "
              "node are dropped");

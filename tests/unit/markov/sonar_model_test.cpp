@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "drawn_map.hpp"
 
@@ -263,6 +263,14 @@ TEST(SonarModel, BadReadingsAreRefused) {
     ranges_m[3] = bad;
     EXPECT_THROW(sonar.compare(ranges_m, probabilities), std::invalid_argument) << bad;
   }
+}
+
+TEST(SonarModel, AValueOutsideItsRangeIsNamed) {
+  SonarModelConfig config;
+  config.scale_m = 20.0;
+  EXPECT_THAT([&] { check(config); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::StrEq(
+                  "key 'markov.scale_m' = '20': expected number between 0.001 and 10 m")));
 }
 
 TEST(SonarModel, ConfigurationsOutOfRangeAreRefused) {

@@ -1,4 +1,4 @@
-// Log set-up of a process: who says it, how much of it, to stderr.
+// Log set-up of a process: name of the process, level, to stderr.
 #pragma once
 
 #include <string_view>

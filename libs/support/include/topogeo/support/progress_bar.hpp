@@ -1,7 +1,7 @@
-// One line that says how far a long job is, how fast it goes and how long it still takes.
+// One line with the progress, the speed and the time left of a long job.
 //
 // The caller passes the time, so the bar has no clock. On a terminal the line is redrawn in place;
-// elsewhere (a file, a pipe, a CI log) one line is printed about every tenth of the way.
+// elsewhere (a file, a pipe, a CI log) one line is printed about every tenth of the job.
 #pragma once
 
 #include <cstdint>

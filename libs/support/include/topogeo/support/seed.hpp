@@ -1,7 +1,7 @@
 // Seeds of the parts of a run, derived from the run's own seed.
 //
-// A seed says what it is for (robot, maps, pass), so it does not depend on the order in which the
-// parts are worked on or on who does it.
+// A seed is derived from its use (robot, maps, pass), so it does not depend on the order in which
+// the parts are worked on or on who does it.
 #pragma once
 
 #include <cstdint>

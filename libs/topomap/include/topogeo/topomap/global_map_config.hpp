@@ -20,6 +20,7 @@ struct GlobalMapConfig {
   double bridge_share = 0.12;
   double memory_views = 20.0;
   std::uint32_t min_observations = 1;
+  double hole_m2 = 0.3;
   double spur_m = 0.6;
   double min_component_m = 1.0;
   double join_m = 1.0;

@@ -28,6 +28,11 @@ struct OdometryNoise {
   double heading_rad2_per_rad = 0.2;
 };
 
+// Range of each; translation_m2_per_rad may also be 0. Less noise than the smallest is that of no
+// wheel and makes covariances singular.
+inline constexpr double kSmallestOdometryNoise = 1e-6;
+inline constexpr double kLargestOdometryNoise = 1.0;
+
 /// Declares the section `odometry`.
 void describe(OdometryNoise& noise, support::ConfigSchema& schema);
 
