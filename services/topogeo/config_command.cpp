@@ -15,23 +15,32 @@
 namespace topogeo::cli {
 namespace {
 
-void print_config(const support::ConfigSchema& schema,
-                  const std::optional<std::filesystem::path>& file) {
+struct ConfigOptions {
+  std::optional<std::filesystem::path> file;
+  bool devices = false;
+  bool markdown = false;
+};
+
+void print_config(const support::ConfigSchema& schema, const ConfigOptions& options) {
   try {
-    if (file) support::load_yaml_file(*file, schema);
+    if (options.file) support::load_yaml_file(*options.file, schema);
   } catch (const std::exception& error) {
     throw service::UsageError(error.what());
   }
-  support::write_yaml(schema, std::cout);
+  if (options.markdown) {
+    support::write_markdown(schema, std::cout);
+  } else {
+    support::write_yaml(schema, std::cout);
+  }
 }
 
-void print_config(const std::optional<std::filesystem::path>& file, bool devices) {
-  if (devices) {
+void print_config(const ConfigOptions& options) {
+  if (options.devices) {
     sensor_gateway::DeviceFile values;
-    print_config(describe(values), file);
+    print_config(describe(values), options);
   } else {
     pipeline::Config values;
-    print_config(pipeline::describe(values), file);
+    print_config(pipeline::describe(values), options);
   }
 }
 
@@ -40,14 +49,17 @@ void print_config(const std::optional<std::filesystem::path>& file, bool devices
 void add_config_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
       app.add_subcommand("config", "Print the configuration with every key documented (YAML)");
-  auto file = std::make_shared<std::optional<std::filesystem::path>>();
-  command->add_option("--config", *file, "take the values of this file instead of the defaults")
+  auto options = std::make_shared<ConfigOptions>();
+  command
+      ->add_option("--config", options->file,
+                   "take the values of this file instead of the defaults")
       ->type_name("FILE");
-  auto devices = std::make_shared<bool>(false);
-  command->add_flag("--devices", *devices,
+  command->add_flag("--devices", options->devices,
                     "the file of a robot's devices instead, for --devices of other commands");
-  command->callback([file, devices, &exit_code] {
-    print_config(*file, *devices);
+  command->add_flag("--markdown", options->markdown,
+                    "tables of keys, defaults and ranges instead of YAML");
+  command->callback([options, &exit_code] {
+    print_config(*options);
     exit_code = service::kOk;
   });
 }

@@ -8,6 +8,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
+#include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"
 
 #include "commands.hpp"
@@ -21,14 +22,24 @@ namespace {
 struct ExploreOptions {
   RobotInDomain robot;
   std::optional<std::filesystem::path> picture;
+  std::optional<std::filesystem::path> config;
 };
+
+navigation::TourConfig tour_config(const std::optional<std::filesystem::path>& file) {
+  try {
+    return pipeline::load_config(file).config.exploration;
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
 
 int explore(const ExploreOptions& options) {
   check_picture(options.picture);
+  const navigation::TourConfig config = tour_config(options.config);
   messaging::EventLoop loop;
   const messaging::SignalStop signals([&](int) { loop.stop(); });
   const messaging::Participant participant = join(options.robot.view, "topogeo/explore");
-  ExploreSession session(participant, loop, options.robot.robot_id);
+  ExploreSession session(participant, loop, options.robot.robot_id, config);
   wait_for_services(loop, options.robot, session.client());
   if (messaging::SignalStop::received() != 0) return interrupted();
   while (!session.done() && session.trouble().empty()) {
@@ -54,6 +65,8 @@ void add_explore_command(command_line::Command& app, int& exit_code) {
       "explore", "Send a mapping robot everywhere that it can get to and has not seen");
   auto options = std::make_shared<ExploreOptions>();
   command->add_option("--picture", options->picture, "draw map and path as .png or .svg at the end")
+      ->type_name("FILE");
+  command->add_option("--config", options->config, "configuration; its section explorer counts")
       ->type_name("FILE");
   add_robot_options(*command, options->robot);
   command->footer(

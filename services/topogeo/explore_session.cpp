@@ -25,10 +25,12 @@ std::int64_t monotonic_ns() {
 }  // namespace
 
 ExploreSession::ExploreSession(const messaging::Participant& participant,
-                               messaging::EventLoop& loop, const std::string& robot_id)
+                               messaging::EventLoop& loop, const std::string& robot_id,
+                               const navigation::TourConfig& config)
     : robot_id_(robot_id),
       client_(participant, loop, robot_id),
       progress_(std::cerr, support::stderr_is_terminal(), supervision::terminal_columns()),
+      tour_(config),
       elements_(participant),
       segments_(participant),
       poses_(participant) {

@@ -30,7 +30,7 @@ class ExploreSession {
  public:
   /// Lives in the loop. Throws like GoalClient.
   ExploreSession(const messaging::Participant& participant, messaging::EventLoop& loop,
-                 const std::string& robot_id);
+                 const std::string& robot_id, const navigation::TourConfig& config);
 
   [[nodiscard]] GoalClient& client() { return client_; }
 

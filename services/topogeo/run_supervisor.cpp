@@ -6,6 +6,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "topogeo/pipeline/config.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::cli {
@@ -45,7 +46,10 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       decision_reader_, [this](const msg::LoopDecisions& segment, const messaging::SampleInfo&) {
         if (segment.robot_id() == options_.job.robot_id.c_str()) decisions_.add(segment);
       });
-  if (options_.explore) exploration_.emplace(run_.participant(), loop, options_.job.robot_id);
+  if (options_.explore) {
+    exploration_.emplace(run_.participant(), loop, options_.job.robot_id,
+                         pipeline::load_config(options_.job.config).config.exploration);
+  }
   if (options_.simulation) {
     simulation::DriveOptions drive;
     drive.speed_m_per_s = options_.simulation->speed_m_per_s;

@@ -51,21 +51,9 @@ bool meets_obstacle(const ObstacleCells& map, const Eigen::Vector2d& from_m,
 
 }  // namespace
 
-void validate(const MarkovConfig& config) {
-  support::check_range("MarkovConfig.window_cells", config.window_cells, BeliefGrid::kSmallest,
-                       BeliefGrid::kLargest);
-  if (config.window_cells % 2 == 0) {
-    throw std::invalid_argument("MarkovConfig.window_cells is " +
-                                std::to_string(config.window_cells) + ", must be odd");
-  }
-  validate(config.transition);
-  validate(config.sonar);
-  support::check_range("MarkovConfig.perceptual_weight", config.perceptual_weight, 0.0, 1.0);
-}
-
 MarkovLocalizer::MarkovLocalizer(const MarkovConfig& config, ObstacleCells map,
                                  std::vector<RangeSensor> sensors)
-    : config_((validate(config), config)),
+    : config_((check(config), config)),
       map_(std::move(map)),
       sonar_(std::move(sensors), config.sonar),
       belief_(config.window_cells) {}

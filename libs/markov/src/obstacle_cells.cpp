@@ -10,7 +10,7 @@
 namespace topogeo::markov {
 namespace {
 
-void validate(const CellsView& view, int cells_a_side) {
+void check(const CellsView& view, int cells_a_side) {
   support::check_range("CellsView.width", view.width, 1, 100000);
   support::check_range("CellsView.height", view.height, 1, 100000);
   support::check_range("CellsView.resolution_m", view.resolution_m, 0.01, 1.0);
@@ -29,7 +29,7 @@ void validate(const CellsView& view, int cells_a_side) {
 }  // namespace
 
 ObstacleCells::ObstacleCells(const CellsView& view, int cells_a_side) {
-  validate(view, cells_a_side);
+  check(view, cells_a_side);
   width_ = (view.width + cells_a_side - 1) / cells_a_side;
   height_ = (view.height + cells_a_side - 1) / cells_a_side;
   cell_m_ = view.resolution_m * cells_a_side;

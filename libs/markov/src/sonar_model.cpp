@@ -32,26 +32,7 @@ struct BorderWalk {
 
 }  // namespace
 
-void validate(const SonarModelConfig& config) {
-  support::check_range("SonarModelConfig.max_range_m", config.max_range_m, 0.5, 20.0);
-  support::check_range("SonarModelConfig.rays_per_cone", config.rays_per_cone, 1, 31);
-  if (config.rays_per_cone % 2 == 0) {
-    throw std::invalid_argument("SonarModelConfig.rays_per_cone is " +
-                                std::to_string(config.rays_per_cone) + ", must be odd");
-  }
-  if (config.bands.empty()) throw std::invalid_argument("SonarModelConfig.bands is empty");
-  double from_m = 0.0;
-  for (const ReliabilityBand& band : config.bands) {
-    support::check_range("SonarModelConfig.bands.up_to_m", band.up_to_m, from_m,
-                         config.max_range_m);
-    support::check_range("SonarModelConfig.bands.reliability", band.reliability, 0.0, 1.0);
-    from_m = band.up_to_m;
-  }
-  support::check_range("SonarModelConfig.scale_m", config.scale_m, 0.001, 10.0);
-  support::check_range("SonarModelConfig.difference_cap_m", config.difference_cap_m, 0.01, 20.0);
-}
-
-void validate(std::span<const RangeSensor> sensors) {
+void check(std::span<const RangeSensor> sensors) {
   constexpr std::size_t kMost = 1000;
   if (sensors.empty() || sensors.size() > kMost) {
     throw std::invalid_argument(std::to_string(sensors.size()) +
@@ -77,8 +58,8 @@ double reliability_of(const SonarModelConfig& config, double expected_m) {
 
 SonarModel::SonarModel(std::vector<RangeSensor> sensors, const SonarModelConfig& config)
     : config_(config), sensors_(std::move(sensors)) {
-  validate(config_);
-  validate(sensors_);
+  check(config_);
+  check(sensors_);
 }
 
 void SonarModel::look_around(const ObstacleCells& map, const geometry::Pose2& T_map_robot,

@@ -95,7 +95,7 @@ TransitionMatrix quarter_turn() {
   return {3, 3, {0.005, 0.02, 0.005, 0.02, 0.9, 0.02, 0.005, 0.02, 0.005}};
 }
 
-void validate(const TransitionModel& model) {
+void check(const TransitionModel& model) {
   check_matrix("advance", model.advance);
   check_matrix("left", model.left);
   check_matrix("right", model.right);

@@ -50,7 +50,7 @@ ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
       view.heading_rad
           ? std::fabs(geometry::wrap_angle(*view.heading_rad - view.T_map_robot.theta_rad))
           : 0.0;
-  const bool there = off_m <= config_.arrival_m && off_rad <= config_.arrival_rad;
+  const bool there = off_m <= config_.follower.arrival_m && off_rad <= config_.follower.arrival_rad;
   if (!there && corrections_ < kCorrections) return correct(view, off_m);
   std::string message = fmt::format("has arrived, {:.2f} m", off_m);
   if (view.heading_rad) {
@@ -74,7 +74,7 @@ ArrivalStep Arrival::correct(const ArrivalView& view, double off_m) {
   ++corrections_;
   settle_ns_.reset();
   std::vector<planning::PathSample> path;
-  if (off_m > config_.arrival_m) {
+  if (off_m > config_.follower.arrival_m) {
     const std::array<Eigen::Vector2d, 2> line = {view.T_map_robot.position_m(), view.goal_m};
     path = straight_path(line);
   }

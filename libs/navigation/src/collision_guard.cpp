@@ -11,7 +11,6 @@
 
 #include "arc_sweep.hpp"
 #include "scan_smoothing.hpp"
-#include "settings_check.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -24,21 +23,6 @@ bool heard(const SonarReading& reading) {
 }
 
 }  // namespace
-
-void check(const GuardConfig& config) {
-  const auto range = [](const char* field, double value, double low, double high) {
-    check_range("collision guard", field, value, low, high);
-  };
-  range("radius_m", config.radius_m, 0.05, 2.0);
-  range("margin_m", config.margin_m, 0.0, 1.0);
-  range("side_margin_m", config.side_margin_m, 0.0, 1.0);
-  range("deceleration_m_per_s2", config.deceleration_m_per_s2, 0.05, 10.0);
-  range("delay_s", config.delay_s, 0.0, 2.0);
-  range("oldest_scan_s", config.oldest_scan_s, 0.05, 10.0);
-  range("sonar_reach_m", config.sonar_reach_m, 0.2, 5.0);
-  range("sonar_least_m", config.sonar_least_m, 0.0, 1.0);
-  range("silent_s", config.silent_s, 0.1, 60.0);
-}
 
 CollisionGuard::CollisionGuard(const GuardConfig& config) : config_(config) {
   check(config);

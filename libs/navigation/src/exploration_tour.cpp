@@ -5,8 +5,6 @@
 
 #include "topogeo/planning/hybrid_planner.hpp"
 
-#include "settings_check.hpp"
-
 namespace topogeo::navigation {
 namespace {
 
@@ -16,12 +14,6 @@ constexpr double kAside_rad = 0.5;  // enough turn for another stop
 constexpr int kLooksAtTarget = 2;   // at a target that stays open
 
 }  // namespace
-
-void check(const TourConfig& config) {
-  check(config.explorer);
-  check_range("exploration", "patience_s", config.patience_s, 1.0, 3600.0);
-  check_range("exploration", "settle_s", config.settle_s, 0.0, 600.0);
-}
 
 ExplorationTour::ExplorationTour(const TourConfig& config, std::uint64_t first_goal_id)
     : config_(config), explorer_(config.explorer), next_goal_id_(first_goal_id) {

@@ -9,7 +9,6 @@
 
 #include "grid_view.hpp"
 #include "rooms.hpp"
-#include "settings_check.hpp"
 #include "short_tour.hpp"
 
 namespace topogeo::navigation {
@@ -34,22 +33,6 @@ bool same_place(const std::vector<ExplorationTarget>& targets, TargetKind kind,
 }
 
 }  // namespace
-
-void check(const ExplorerConfig& config) {
-  check_range("exploration", "explorer.unknown_near_m", config.unknown_near_m, 0.1, 5.0);
-  check_range("exploration", "explorer.sight_m", config.sight_m, config.unknown_near_m, 20.0);
-  check_range("exploration", "explorer.least_area_m2", config.least_area_m2, 0.0, 100.0);
-  check_range("exploration", "explorer.worth_m_per_m2", config.worth_m_per_m2, 1.0, 10000.0);
-  check_range("exploration", "explorer.passage_side_m", config.passage_side_m, 0.3, 5.0);
-  check_range("exploration", "explorer.gap_side_m", config.gap_side_m, 0.3, 10.0);
-  check_range("exploration", "explorer.least_gap_m", config.least_gap_m, 0.1, 10.0);
-  check_range("exploration", "explorer.approach_m", config.approach_m, 0.1, 10.0);
-  check_range("exploration", "explorer.view_m", config.view_m, config.approach_m, 10.0);
-  check_range("exploration", "explorer.sure_m", config.sure_m, 0.0, 2.0);
-  check_range("exploration", "explorer.together_m", config.together_m, 0.0, 10.0);
-  check_range("exploration", "explorer.tour", static_cast<double>(config.tour), 1.0, 30.0);
-  check_range("exploration", "explorer.least_room_m2", config.least_room_m2, 0.0, 100.0);
-}
 
 std::string_view describe(TargetKind kind) {
   switch (kind) {

@@ -8,8 +8,6 @@
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/scan/scan.hpp"
 
-#include "settings_check.hpp"
-
 namespace topogeo::navigation {
 namespace {
 
@@ -41,12 +39,6 @@ std::vector<float> ranges_of(const SonarRound& round) {
 }
 
 }  // namespace
-
-void check(const MarkovTrackerConfig& config) {
-  check_range("markov tracker", "cell_m", config.cell_m, 0.01, 1.0);
-  check_range("markov tracker", "heading_sigma_rad", config.heading_sigma_rad, 0.001, 1.0);
-  markov::validate(config.markov);
-}
 
 SonarRound laser_round(const ScanPoints& scan, double step_rad) {
   if (!(step_rad > 0.0)) throw std::invalid_argument("laser round: step_rad is not above 0");

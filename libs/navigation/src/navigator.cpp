@@ -15,7 +15,6 @@
 #include "relocalization.hpp"
 #include "route_driver.hpp"
 #include "route_keeper.hpp"
-#include "settings_check.hpp"
 #include "surroundings.hpp"
 
 namespace topogeo::navigation {
@@ -27,26 +26,6 @@ NavigatorConfig checked(const NavigatorConfig& config) {
 }
 
 }  // namespace
-
-void check(const NavigatorConfig& config) {
-  const auto range = [](const char* field, double value, double low, double high) {
-    check_range("navigator", field, value, low, high);
-  };
-  range("settle_s", config.settle_s, 0.0, 10.0);
-  range("oldest_pose_s", config.oldest_pose_s, 0.1, 60.0);
-  range("oldest_odometry_s", config.oldest_odometry_s, 0.1, 10.0);
-  range("largest_sigma_m", config.largest_sigma_m, 0.05, 5.0);
-  range("obstacle_wait_s", config.obstacle_wait_s, 0.0, 600.0);
-  range("blockage_s", config.blockage_s, 1.0, 86400.0);
-  range("route_wait_s", config.route_wait_s, 0.1, 600.0);
-  range("stuck_s", config.stuck_s, 0.2, 60.0);
-  range("look_around_m", config.look_around_m, 0.0, 50.0);
-  check(follower_config(config));
-  check(config.guard);
-  check(config.markov);
-  planning::check(config.detour);
-  planning::check(config.smooth);
-}
 
 // Every reason not to move comes first, then the pose, then the route; every velocity passes the
 // collision guard in command().

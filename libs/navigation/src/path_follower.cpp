@@ -7,7 +7,6 @@
 #include "topogeo/geometry/portable_math.hpp"
 
 #include "arc_sweep.hpp"
-#include "settings_check.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -23,21 +22,6 @@ constexpr double kStands_m_s = 1e-3;     // what counts as standing
 constexpr double kStands_rad_s = 5e-3;   // the same
 
 }  // namespace
-
-void check(const FollowerConfig& config) {
-  constexpr double kLeast = 1e-3;
-  const auto range = [](const char* field, double value, double low, double high) {
-    check_range("path follower", field, value, low, high);
-  };
-  range("speed_m_per_s", config.speed_m_per_s, kLeast, 3.0);
-  range("turn_rad_per_s", config.turn_rad_per_s, kLeast, 6.0);
-  range("acceleration_m_per_s2", config.acceleration_m_per_s2, kLeast, 10.0);
-  range("turn_acceleration_rad_per_s2", config.turn_acceleration_rad_per_s2, kLeast, 20.0);
-  range("delay_s", config.delay_s, 0.0, 1.0);
-  range("arrival_m", config.arrival_m, 0.005, 1.0);
-  range("arrival_rad", config.arrival_rad, 0.002, 1.0);
-  range("begin_turn_rad", config.begin_turn_rad, 0.0, 1.0);
-}
 
 std::vector<planning::PathSample> straight_path(std::span<const Eigen::Vector2d> points_m,
                                                 double step_m) {

@@ -23,14 +23,7 @@ constexpr double kSeeing_s = 0.15;      // from a measurement until a command fo
 }  // namespace
 
 FollowerConfig follower_config(const NavigatorConfig& config) {
-  FollowerConfig follower;
-  follower.speed_m_per_s = config.speed_m_per_s;
-  follower.turn_rad_per_s = config.turn_rad_per_s;
-  follower.acceleration_m_per_s2 = config.acceleration_m_per_s2;
-  follower.turn_acceleration_rad_per_s2 = config.turn_acceleration_rad_per_s2;
-  follower.delay_s = config.delay_s;
-  follower.arrival_m = config.arrival_m;
-  follower.arrival_rad = config.arrival_rad;
+  FollowerConfig follower = config.follower;
   if (config.motion == MotionStyle::kPrimitives) follower.begin_turn_rad = 0.05;
   return follower;
 }
@@ -82,17 +75,17 @@ double RouteDriver::speed_past_obstacles(const Scene& scene, bool& another_path)
                             scene.T_map_robot.position_m(), points_m, kSees_m);
   };
   auto block = first_of(scene.obstacles.points_m);
-  if (!block) return config_.speed_m_per_s;
+  if (!block) return config_.follower.speed_m_per_s;
   if (elapsed_s(planned_ns_, scene.now_ns) > kPlanEvery_s &&
       first_of(scene.obstacles.standing_m())) {
     another_path = go_round(scene);
     block = first_of(scene.obstacles.points_m);
-    if (!block) return config_.speed_m_per_s;
+    if (!block) return config_.follower.speed_m_per_s;
   }
   block_ = block;
-  return std::min(config_.speed_m_per_s,
-                  stopping_speed(block->ahead_m - kKeepsOff_m, config_.delay_s + kSeeing_s,
-                                 kObstacleBrake * config_.acceleration_m_per_s2));
+  return std::min(config_.follower.speed_m_per_s,
+                  stopping_speed(block->ahead_m - kKeepsOff_m, config_.follower.delay_s + kSeeing_s,
+                                 kObstacleBrake * config_.follower.acceleration_m_per_s2));
 }
 
 RouteDriver::Step RouteDriver::follow(const Scene& scene, bool held) {

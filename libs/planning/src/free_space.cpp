@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 
 namespace topogeo::planning {
 namespace {
-
-constexpr double kMostForbiddenCells = 100.0;  // 5 m of cells of 5 cm: more than any robot
 
 // The lower envelope of parabolas over one line of the grid. All in integers: the distance to go
 // by is value[i] + (x - i)^2, and two parabolas p < q meet where q begins to be the lower one.
@@ -92,14 +88,6 @@ std::vector<std::int32_t> squared_distances(const OccupancyGrid& grid, bool unkn
 }
 
 }  // namespace
-
-void check(const InflationConfig& config) {
-  if (config.forbidden_cells >= 0.0 && config.forbidden_cells <= kMostForbiddenCells) return;
-  std::ostringstream text;
-  text << "inflation: forbidden_cells is " << config.forbidden_cells << ", allowed are 0 to "
-       << kMostForbiddenCells;
-  throw std::invalid_argument(text.str());
-}
 
 FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config)
     : grid_(std::move(grid)), config_(config) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -128,14 +127,6 @@ void keep_reached(OccupancyGrid& grid, const std::vector<Eigen::Vector2d>& seeds
   }
 }
 
-void check_grid_range(const char* field, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  std::ostringstream text;
-  text << "grid from scans: " << field << " is " << value << ", allowed are " << low << " to "
-       << high;
-  throw std::invalid_argument(text.str());
-}
-
 // Log-odds of every cell, raised and lowered scan by scan.
 class Evidence {
  public:
@@ -233,15 +224,6 @@ OccupancyGrid grid_of(const Drawing& drawing, double resolution_m, double margin
   for (const Drawing::Disc& disc : drawing.discs) draw_disc(grid, disc);
   if (!drawing.inside_m.empty()) keep_reached(grid, drawing.inside_m);
   return grid;
-}
-
-void check(const ScanGridConfig& config) {
-  check_grid_range("resolution_m", config.resolution_m, 0.01, 1.0);
-  check_grid_range("margin_m", config.margin_m, 0.0, 100.0);
-  check_grid_range("snap_cells", config.snap_cells, 1, 1024);
-  check_grid_range("hit", config.hit, 1, 1000);
-  check_grid_range("miss", config.miss, 1, 1000);
-  check_grid_range("limit", config.limit, 1, 10000);
 }
 
 OccupancyGrid grid_from_scans(std::span<const topomap::LocalMap> maps,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -16,13 +15,6 @@
 
 namespace topogeo::planning {
 namespace {
-
-void check_planner_range(const char* field, double value, double high) {
-  if (value >= 0.0 && value <= high) return;
-  std::ostringstream text;
-  text << "planner: " << field << " is " << value << " m, allowed are 0 to " << high << " m";
-  throw std::invalid_argument(text.str());
-}
 
 void check_closures(const HybridMap& map, const Closures& closed) {
   for (const std::uint32_t node : closed.nodes) {
@@ -95,18 +87,6 @@ Goal resolve(const HybridMap& map, const Target& to) {
 }
 
 }  // namespace
-
-void check(const HybridPlannerConfig& config) {
-  check_planner_range("start_snap_m", config.start_snap_m, 5.0);
-  check_planner_range("goal_snap_m", config.goal_snap_m, 5.0);
-  check_planner_range("piece_m", config.piece_m, 50.0);
-  constexpr double kMostCells = 1e8;
-  if (!(config.exact_window_cells >= 0.0 && config.exact_window_cells <= kMostCells)) {
-    throw std::invalid_argument("planner: exact_window_cells is " +
-                                std::to_string(config.exact_window_cells) +
-                                ", allowed are 0 to 1e8");
-  }
-}
 
 std::string_view describe(RouteStatus status) {
   constexpr std::array<std::string_view, 9> kWords = {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include "topogeo/planning/grid_search.hpp"
@@ -16,14 +15,6 @@
 
 namespace topogeo::planning {
 namespace {
-
-void check_detour_range(const char* field, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  std::ostringstream text;
-  text << "detour: " << field << " is " << value << " m, allowed are " << low << " to " << high
-       << " m";
-  throw std::invalid_argument(text.str());
-}
 
 double distance(const Cell& a, const Cell& b) {
   return std::hypot(a.column - b.column, a.row - b.row);
@@ -134,11 +125,6 @@ std::size_t end_in_window(const SearchWindow& window, std::span<const Cell> rout
 }
 
 }  // namespace
-
-void check(const DetourConfig& config) {
-  check_detour_range("half_side_m", config.half_side_m, 0.5, 20.0);
-  check_detour_range("start_snap_m", config.start_snap_m, 0.0, 5.0);
-}
 
 std::string_view describe(DetourStatus status) {
   constexpr std::array<std::string_view, 4> kWords = {"clear", "found", "blocked", "lost"};

@@ -220,18 +220,7 @@ void set_unreachable(PlanResult& result, bool reachable_when_narrow, const Plann
   }
 }
 
-void check_field(const char* field, double value) {
-  if (std::isfinite(value) && value >= 0.0) return;
-  throw std::invalid_argument(
-      fmt::format("planning: {} is {:g}, allowed is a finite value of at least 0", field, value));
-}
-
 }  // namespace
-
-void check(const PlanningConfig& config) {
-  check_field("max_snap_m", config.max_snap_m);
-  check_field("min_clearance_m", config.min_clearance_m);
-}
 
 std::string_view describe(PlanStatus status) {
   switch (status) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "topogeo/geometry/portable_math.hpp"
@@ -10,14 +9,6 @@ namespace topogeo::planning {
 namespace {
 
 constexpr double kStraight_rad = 1e-6;  // less is rounding
-
-void check_path_range(const char* field, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  std::ostringstream text;
-  text << "smooth path: " << field << " is " << value << " m, allowed are " << low << " to " << high
-       << " m";
-  throw std::invalid_argument(text.str());
-}
 
 struct Arc {
   Eigen::Vector2d begin_m;
@@ -145,12 +136,6 @@ class Smoother {
 };
 
 }  // namespace
-
-void check(const SmoothPathConfig& config) {
-  check_path_range("min_radius_m", config.min_radius_m, 0.01, 10.0);
-  check_path_range("max_radius_m", config.max_radius_m, config.min_radius_m, 100.0);
-  check_path_range("step_m", config.step_m, 0.005, 10.0);
-}
 
 std::vector<PathSample> smooth_path(const FreeSpace& space,
                                     std::span<const Eigen::Vector2d> points_m,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 #include "cell_line.hpp"
@@ -19,14 +18,6 @@ using topomap::NodeKind;
 
 // Directions are taken over this distance from a node: the first points of a branch jitter.
 constexpr double kTangentReach_m = 0.4;  // a branch bends by less than its noise on a shorter piece
-
-void check_zone_range(const char* field, double value, double low, double high, const char* unit) {
-  if (value >= low && value <= high) return;
-  std::ostringstream text;
-  text << "zones: " << field << " is " << value << ", allowed are " << low << " to " << high << ' '
-       << unit;
-  throw std::invalid_argument(text.str());
-}
 
 // The first point at least kTangentReach_m from the first one, or the last point.
 Eigen::Vector2d point_ahead(std::span<const BranchPoint> points, bool from_back) {
@@ -100,12 +91,6 @@ ZoneLabels no_labels(const FreeSpace& space) {
 }
 
 }  // namespace
-
-void check(const ZoneConfig& config) {
-  check_zone_range("min_area_m2", config.min_area_m2, 0.0, 1000.0, "m2");
-  check_zone_range("passage_half_width_m", config.passage_half_width_m, 0.01, 5.0, "m");
-  check_zone_range("cut_reach_m", config.cut_reach_m, 0.0, 5.0, "m");
-}
 
 std::vector<Passage> passages_of(const GlobalMap& map) {
   std::map<std::uint32_t, std::vector<Eigen::Vector2d>> ahead_of_node;

@@ -224,15 +224,7 @@ void CarmenLogReader::Impl::throw_unusable() const {
 
 CarmenLogReader::CarmenLogReader(const std::filesystem::path& path,
                                  const CarmenLogOptions& options) {
-  constexpr double kLongestJump_s = 1e9;
-  if (!(std::isfinite(options.range_max_m) && options.range_max_m > 0.0)) {
-    throw std::invalid_argument("range_max_m: expected a finite number > 0, got " +
-                                std::to_string(options.range_max_m));
-  }
-  if (!(options.jump_s > 0.0 && options.jump_s <= kLongestJump_s)) {
-    throw std::invalid_argument("jump_s: expected a number in (0, 1e9], got " +
-                                std::to_string(options.jump_s));
-  }
+  check(options);
   impl_ = std::make_unique<Impl>(path, options);
   impl_->ready = impl_->take();
   if (!impl_->ready) impl_->throw_unusable();

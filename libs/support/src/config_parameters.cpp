@@ -38,7 +38,34 @@ bool is_well_formed(std::string_view key) {
          key.find("..") == std::string_view::npos && std::ranges::all_of(key, allowed);
 }
 
+[[noreturn]] void refuse_text(std::string_view key, const std::string& value,
+                              const std::string& expected) {
+  throw std::invalid_argument("key '" + std::string(key) + "' = '" + value + "': expected " +
+                              expected);
+}
+
+std::string interval_text(double low, double high, const std::string& unit) {
+  return "between " + number_text(low) + " and " + number_text(high) +
+         (unit.empty() ? "" : " " + unit);
+}
+
 }  // namespace
+
+void refuse_value(std::string_view key, double value, const std::string& expected) {
+  refuse_text(key, number_text(value), expected);
+}
+
+void require_between(std::string_view key, double value, double low, double high,
+                     const std::string& unit) {
+  // Written so that a NaN, which is neither above nor below, is refused.
+  if (value >= low && value <= high) return;
+  refuse_value(key, value, "number " + interval_text(low, high, unit));
+}
+
+void require_at_least(std::string_view key, double value, std::string_view low_key, double low) {
+  if (value >= low) return;
+  refuse_value(key, value, "at least " + std::string(low_key) + " = " + number_text(low));
+}
 
 const ConfigParameter* ConfigSchema::find(std::string_view key) const {
   const auto found =
@@ -65,7 +92,7 @@ void ConfigSchema::insert(ConfigParameter parameter) {
   }
   parameter.default_text = parameter.text();
   if (!parameter.parse(parameter.default_text)) {
-    refuse("default '" + parameter.default_text + "': expected " + parameter.expected);
+    refuse_text(key, parameter.default_text, parameter.expected);
   }
   parameters_.push_back(std::move(parameter));
 }

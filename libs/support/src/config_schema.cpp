@@ -10,13 +10,13 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <yaml-cpp/yaml.h>
-
 #include "topogeo/support/hash.hpp"
+#include "topogeo/support/yaml_reader.hpp"
 
 namespace topogeo::support {
 namespace {
 
+// Thirty times the file with every key and comment: a larger one is another kind of file.
 constexpr std::size_t kMaxFileSize = 1U << 20U;
 
 /// Fit for a one-line message: short, no control characters.
@@ -28,14 +28,13 @@ std::string printable(std::string text) {
   return text;
 }
 
-class YamlReader {
+class SchemaReader {
  public:
-  YamlReader(std::string name, const ConfigSchema& schema)
-      : name_(std::move(name)), schema_(schema) {}
+  explicit SchemaReader(const ConfigSchema& schema) : schema_(schema) {}
 
-  void read(const YAML::Node& root) {
-    if (root.IsNull()) return;  // nothing but comments
-    if (!root.IsMap()) fail(root, "expected sections of 'key: value' lines");
+  void read(const YamlNode& root) {
+    if (root.is_null()) return;  // nothing but comments
+    if (!root.is_map()) root.fail_with("expected sections of 'key: value' lines");
     read_section(root, "");
   }
 
@@ -45,47 +44,40 @@ class YamlReader {
   }
 
  private:
-  [[noreturn]] void fail(const YAML::Node& at, const std::string& what) const {
-    const int line = at.Mark().line;
-    throw std::runtime_error(name_ + ":" + std::to_string(line + 1) + ": " + what);
-  }
-
-  void read_section(const YAML::Node& section, const std::string& path) {
-    for (const auto& entry : section) {
-      const YAML::Node& key_node = entry.first;
-      const YAML::Node& value = entry.second;
-      if (!key_node.IsScalar()) fail(key_node, "expected a plain word as key");
-      const std::string key = path.empty() ? key_node.Scalar() : path + "." + key_node.Scalar();
+  void read_section(const YamlNode& section, const std::string& path) {
+    for (const auto& [key_node, value] : section.entries()) {
+      if (!key_node.is_scalar()) key_node.fail_with("expected a plain word as key");
+      const std::string key = path.empty() ? key_node.text() : path + "." + key_node.text();
       // The schema is finite, so this also ends a YAML alias that contains itself.
       const ConfigParameter* parameter = schema_.find(key);
       const bool is_section = schema_.is_section(key);
       const std::string quoted = "key '" + printable(key) + "'";
-      if (parameter == nullptr && !is_section) fail(key_node, quoted + ": " + known_keys(path));
-      if (!seen_.insert(key).second) fail(key_node, quoted + ": given twice");
+      if (parameter == nullptr && !is_section) {
+        key_node.fail_with(quoted + ": " + known_keys(path));
+      }
+      if (!seen_.insert(key).second) key_node.fail_with(quoted + ": given twice");
       if (parameter != nullptr) {
         read_value(key_node, value, *parameter);
-      } else if (value.IsMap()) {
+      } else if (value.is_map()) {
         read_section(value, key);
-      } else if (!value.IsNull()) {  // a section whose keys are all comments is empty, not wrong
-        fail(key_node, quoted + ": is a section, expected 'key: value' lines below it");
+      } else if (!value.is_null()) {  // a section whose keys are all comments is empty, not wrong
+        key_node.fail_with(quoted + ": is a section, expected 'key: value' lines below it");
       }
     }
   }
 
-  void read_value(const YAML::Node& key_node, const YAML::Node& value,
+  void read_value(const YamlNode& key_node, const YamlNode& value,
                   const ConfigParameter& parameter) {
     const std::string quoted = "key '" + parameter.key + "'";
     const std::string expected = ": expected " + parameter.expected;
     // A missing value has the position of what follows it.
-    if (value.IsNull()) fail(key_node, quoted + " without a value" + expected);
-    if (!value.IsScalar()) fail(value, quoted + " with a list or section" + expected);
-    // yaml-cpp tags quoted scalars "!": "3" in quotes is a text, not a number.
-    const bool is_quoted = value.Tag() == "!";
-    auto assign = is_quoted && !parameter.is_text ? std::nullopt : parameter.parse(value.Scalar());
+    if (value.is_null()) key_node.fail_with(quoted + " without a value" + expected);
+    if (!value.is_scalar()) value.fail_with(quoted + " with a list or section" + expected);
+    const bool is_quoted = value.is_quoted();
+    auto assign = is_quoted && !parameter.is_text ? std::nullopt : parameter.parse(value.text());
     if (!assign) {
-      const std::string shown = printable(value.Scalar());
-      fail(value,
-           quoted + " = " + (is_quoted ? "\"" + shown + "\"" : "'" + shown + "'") + expected);
+      const std::string mark = is_quoted ? "\"" : "'";
+      value.fail_with(quoted + " = " + mark + printable(value.text()) + mark + expected);
     }
     assignments_.push_back(std::move(*assign));
   }
@@ -104,7 +96,6 @@ class YamlReader {
     return text;
   }
 
-  std::string name_;
   const ConfigSchema& schema_;
   std::set<std::string> seen_;
   std::vector<std::function<void()>> assignments_;
@@ -176,18 +167,8 @@ class YamlWriter {
 }  // namespace
 
 void load_yaml_text(std::string_view text, const std::string& name, const ConfigSchema& schema) {
-  YamlReader reader(name, schema);
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(std::string(text));
-    if (documents.size() > 1) {
-      throw std::runtime_error(name + ": holds " + std::to_string(documents.size()) +
-                               " YAML documents, expected one");
-    }
-    if (!documents.empty()) reader.read(documents.front());
-  } catch (const YAML::Exception& error) {
-    throw std::runtime_error(name + ":" + std::to_string(error.mark.line + 1) +
-                             ": not valid YAML: " + error.msg);
-  }
+  SchemaReader reader(schema);
+  reader.read(parse_yaml(std::string(text), name, "configuration"));
   reader.apply();
 }
 

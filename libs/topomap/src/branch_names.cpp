@@ -7,7 +7,7 @@ namespace {
 
 // Where a branch this near to its end already belongs to the junction.
 constexpr double kEnd_m = 0.5;
-constexpr double kShortest_m = 1.2;
+constexpr double kShortest_m = 1.2;  // fixed: a shorter branch is all ends
 
 }  // namespace
 

@@ -16,24 +16,9 @@
 namespace topogeo::topomap {
 namespace {
 
+// Bounds of sane input, far beyond any building and any laser: more is a defect of the sender.
 constexpr double kLargestMap_m = 5000.0;
 constexpr double kLargestView_m = 500.0;
-
-std::string number(double value) {
-  std::string text = std::to_string(value);
-  while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
-    const bool point = text.back() == '.';
-    text.pop_back();
-    if (point) break;
-  }
-  return text;
-}
-
-void check_range(const char* field, double value, double low, double high) {
-  if (value >= low && value <= high) return;
-  throw std::invalid_argument(std::string("global map: ") + field + " is " + number(value) +
-                              ", allowed is " + number(low) + " to " + number(high));
-}
 
 bool within(const Eigen::Vector2d& point_m, double limit_m) {
   // Written so that NaN is outside.
@@ -66,22 +51,6 @@ void check_input(const LocalMap& map, const geometry::Pose2& T_map_robot) {
 }
 
 }  // namespace
-
-void check(const GlobalMapConfig& config) {
-  check_range("cell_m", config.cell_m, 0.02, 0.5);
-  check_range("vote_radius_m", config.vote_radius_m, config.cell_m, 8.0 * config.cell_m);
-  check_range("gap_m", config.gap_m, 0.01, 5.0);
-  check_range("node_merge_m", config.node_merge_m, 0.01, 5.0);
-  check_range("clearance_tolerance_m", config.clearance_tolerance_m, 0.01, 5.0);
-  check_range("uncertain_weight", config.uncertain_weight, 0.0, 1.0);
-  check_range("keep_share", config.keep_share, 0.01, 1.0);
-  check_range("bridge_share", config.bridge_share, 0.01, config.keep_share);
-  check_range("memory_views", config.memory_views, 1.0, 1e6);
-  check_range("min_observations", config.min_observations, 1.0, 1e6);
-  check_range("spur_m", config.spur_m, 0.0, 10.0);
-  check_range("min_component_m", config.min_component_m, 0.0, 1e6);
-  check_range("join_m", config.join_m, 0.0, 5.0);
-}
 
 struct GlobalMapBuilder::State {
   explicit State(const GlobalMapConfig& used) : config(used), grid(used), nodes(used) {}

@@ -300,32 +300,9 @@ void LocalMapBuilder::Work::build(const LocalVoronoiDiagram& diagram, const scan
   scan_points(scan, T_robot_laser, config_.points_range_m, out.points);
 }
 
-void validate(const LocalMapConfig& config) {
-  const auto check = [](const char* field, double value, double high) {
-    if (std::isfinite(value) && value >= 0.0 && value <= high) return;
-    throw std::invalid_argument(std::string("LocalMapConfig.") + field + " is " +
-                                std::to_string(value) + ", must be in [0, " + std::to_string(high) +
-                                "]");
-  };
-  constexpr double kLongest_m = 1000.0;
-  check("points_range_m", config.points_range_m, kLongest_m);
-  check("separated_m", config.separated_m, kLongest_m);
-  check("largest_hidden_share", config.largest_hidden_share, 1.0);
-  check("min_stretch_m", config.min_stretch_m, kLongest_m);
-  check("min_main_graph_m", config.min_main_graph_m, kLongest_m);
-  check("door_half_width_m", config.door_half_width_m, kLongest_m);
-  check("door_min_half_width_m", config.door_min_half_width_m, kLongest_m);
-  check("state_rise_m", config.state_rise_m, kLongest_m);
-  check("state_confirm_m", config.state_confirm_m, kLongest_m);
-  check("state_reach_m", config.state_reach_m, kLongest_m);
-  check("plateau_m", config.plateau_m, kLongest_m);
-  check("corridor_length_m", config.corridor_length_m, kLongest_m);
-  check("hall_rise_m", config.hall_rise_m, kLongest_m);
-}
-
 LocalMapBuilder::LocalMapBuilder(const LocalMapConfig& config)
     : work_(std::make_unique<Work>(config)) {
-  validate(config);
+  check(config);
 }
 LocalMapBuilder::~LocalMapBuilder() = default;
 LocalMapBuilder::LocalMapBuilder(LocalMapBuilder&&) noexcept = default;

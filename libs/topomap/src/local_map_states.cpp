@@ -75,6 +75,7 @@ void BranchStateFinder::find_minima(std::span<const BranchPoint> points, double 
 
 namespace {
 
+// Fixed, both: they follow from the geometry of corners.
 /// Clearances this close are taken as equal, metres.
 constexpr double kLevelM = 0.02;
 /// Behind the corner of one wall the clearance of a corridor 2 m wide is 2 cm above its level after
@@ -146,27 +147,27 @@ BranchState BranchStateFinder::mouth_of(std::span<const BranchPoint> points, con
   std::size_t last = step > 0 ? floor.last : floor.first;
   while (points[last].clearance_m > level_m + kLevelM) last = step > 0 ? last - 1 : last + 1;
 
-  // way = a + b * root, both from the last point on the level outward.
-  double count = 0.0, roots = 0.0, ways = 0.0, roots_sq = 0.0, products = 0.0;
+  // distance = a + b * root, both from the last point on the level outward.
+  double count = 0.0, roots = 0.0, distances = 0.0, roots_sq = 0.0, products = 0.0;
   const auto end = step > 0 ? static_cast<std::ptrdiff_t>(points.size()) : -1;
   for (auto i = static_cast<std::ptrdiff_t>(last) + step; i != end; i += step) {
     const double clearance_m = points[static_cast<std::size_t>(i)].clearance_m;
     if (clearance_m > level_m + rise_m) break;
     if (clearance_m <= level_m) continue;
-    const double way = std::abs(arc_m_[static_cast<std::size_t>(i)] - arc_m_[last]);
+    const double distance = std::abs(arc_m_[static_cast<std::size_t>(i)] - arc_m_[last]);
     const double root = std::sqrt(clearance_m * clearance_m - level_m * level_m);
     count += 1.0;
     roots += root;
-    ways += way;
+    distances += distance;
     roots_sq += root * root;
-    products += root * way;
+    products += root * distance;
   }
   BranchState state{last, NodeKind::kHallCorridor, points[last]};
   const double spread = count * roots_sq - roots * roots;
   if (count < 4.0 || !(spread > 0.0)) return state;
-  const double way_m = (ways * roots_sq - roots * products) / spread;
+  const double distance_m = (distances * roots_sq - roots * products) / spread;
   // Where it would lie beyond the last level point, or far back, walls do not end at a corner.
-  const double back_m = std::clamp(-way_m, 0.0, kLargestDelayM);
+  const double back_m = std::clamp(-distance_m, 0.0, kLargestDelayM);
   const double inner_m = arc_m_[last] - static_cast<double>(step) * back_m;
   return state_at(points, std::clamp(inner_m, arc_m_[floor.first], arc_m_[floor.last]),
                   NodeKind::kHallCorridor);

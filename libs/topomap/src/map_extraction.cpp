@@ -186,7 +186,7 @@ class Extraction {
 
   // Takes the steps of the grid out of the curves; the ends stay at their nodes.
   void smooth_branches() {
-    constexpr int kPasses = 6;
+    constexpr int kPasses = 6;  // fixed: what takes out steps of one cell
     for (MapBranch& branch : map_.branches) {
       std::vector<BranchPoint>& p = branch.points;
       for (int pass = 0; pass < kPasses; ++pass) {

@@ -29,10 +29,9 @@ std::array<bool, 256> removable_patterns() {
   return removable;
 }
 
-// In cells: a hole smaller than this is noise in the votes, not an obstacle to go round.
+// In cells.
 std::size_t largest_hole(const GlobalMapConfig& config) {
-  constexpr double kArea_m2 = 0.3;
-  return static_cast<std::size_t>(std::floor(kArea_m2 / (config.cell_m * config.cell_m)));
+  return static_cast<std::size_t>(std::floor(config.hole_m2 / (config.cell_m * config.cell_m)));
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ void prune_spurs(RidgeGraph& graph, const GlobalMapConfig& config) {
   }
 }
 
-// Moves everything at `gone` to `kept`, half-way between them.
+// Moves everything at `gone` to `kept`, midway between them.
 void unite_nodes(RidgeGraph& graph, std::uint32_t kept, std::uint32_t gone) {
   RidgePoint& to = graph.nodes[kept];
   const RidgePoint& from = graph.nodes[gone];

@@ -20,6 +20,7 @@
 namespace topogeo::topomap {
 namespace {
 
+// Fixed: fine enough to follow a driven curve, and the points of a map stay few.
 constexpr double kStep_m = 0.2;
 // A link is one message on the network, which holds 2,048 points; a step takes two at most.
 constexpr double kMostSteps = 900.0;
@@ -98,7 +99,7 @@ struct Touch {
   Place place;
 };
 
-// A point of the way, between two stops.
+// A point of the driven path, between two stops.
 struct WayPoint {
   Eigen::Vector2d position_m;
   std::size_t stop_a = 0;
@@ -166,8 +167,8 @@ struct Link {
   std::vector<WayPoint> way;  ///< between the two
 };
 
-// Leaves the way that lies between the two parts: from where it is last within reach of the one to
-// where it is first within reach of the other.
+// Leaves the part of the path that lies between the two parts: from where it is last within reach
+// of the one to where it is first within reach of the other.
 void trim(Link& link, Parts& parts, double reach_m) {
   const Place first = link.from;
   const Place last = link.to;

@@ -4,16 +4,16 @@
 // A stop touches the map at the place where the branch that it saw nearest to itself became part of
 // the map; a stop whose branches all came to nothing touches it nowhere. The stops are gone through
 // in time. Where one touches another part of the map than the last that touched any, and nothing
-// has joined the two parts so far, a virtual branch does. It follows the way from the one place
+// has joined the two parts so far, a virtual branch does. It follows the path from the one place
 // straight to its stop, along the tracked scans and stops between, and from the other stop straight
-// to the other place; of that way it is what lies between the two parts. Stops are a way driven
-// only while the ids of their maps follow each other. So local maps that overlap, even through
+// to the other place; of that path it is what lies between the two parts. Stops are a driven
+// path only while the ids of their maps follow each other. So local maps that overlap, even through
 // others, are never joined, and parts that later stops join by what they see lose their link.
 //
 // A link ends at the node near its place, or a new virtual node splits the branch there, and the
-// shorter half of it takes a new id. Its points are at most 0.2 m apart (more on a way of over
+// shorter half of it takes a new id. Its points are at most 0.2 m apart (more on a path of over
 // 180 m, and at most GlobalMapConfig::node_merge_m at its ends); their clearance is the distance to
-// the nearest scan point of the two stops about them, 0 when neither has one. That says how near
+// the nearest scan point of the two stops about them, 0 when neither has one. That is how near
 // anything seen came, not that nothing unseen is nearer: that the robot fits through is known from
 // its having been there. No local map saw a link, so its observations are 0.
 #pragma once

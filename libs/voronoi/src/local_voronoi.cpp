@@ -16,7 +16,7 @@ bool is_echo(float range_m) {
 }  // namespace
 
 LocalVoronoi::LocalVoronoi(const VoronoiConfig& config) : config_(config) {
-  validate(config_);
+  check(config_);
 }
 
 /// Space is free up to the reading or the range limit. A beam without an echo proves nothing,

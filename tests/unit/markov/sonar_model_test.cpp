@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "drawn_map.hpp"
 
@@ -265,12 +265,20 @@ TEST(SonarModel, BadReadingsAreRefused) {
   }
 }
 
+TEST(SonarModel, AValueOutsideItsRangeIsNamed) {
+  SonarModelConfig config;
+  config.scale_m = 20.0;
+  EXPECT_THAT([&] { check(config); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::StrEq(
+                  "key 'markov.scale_m' = '20': expected number between 0.001 and 10 m")));
+}
+
 TEST(SonarModel, ConfigurationsOutOfRangeAreRefused) {
-  EXPECT_NO_THROW(validate(SonarModelConfig{}));
+  EXPECT_NO_THROW(check(SonarModelConfig{}));
   const auto refused = [](auto change) {
     SonarModelConfig config;
     change(config);
-    EXPECT_THROW(validate(config), std::invalid_argument);
+    EXPECT_THROW(check(config), std::invalid_argument);
   };
   refused([](SonarModelConfig& c) { c.max_range_m = 4.0; });  // below the last band
   refused([](SonarModelConfig& c) { c.max_range_m = kInfinity; });

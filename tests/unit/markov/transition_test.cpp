@@ -206,11 +206,11 @@ TEST(Transition, APartOfAStepSpreadsThatPart) {
 }
 
 TEST(Transition, ModelsOutOfRangeAreRefused) {
-  EXPECT_NO_THROW(validate(TransitionModel{}));
+  EXPECT_NO_THROW(check(TransitionModel{}));
   const auto refused = [](const TransitionMatrix& matrix) {
     TransitionModel model;
     model.right = matrix;
-    EXPECT_THROW(validate(model), std::invalid_argument);
+    EXPECT_THROW(check(model), std::invalid_argument);
   };
   refused({2, 3, std::vector<double>(6, 0.1)});
   refused({3, 23, std::vector<double>(69, 0.01)});
@@ -221,11 +221,11 @@ TEST(Transition, ModelsOutOfRangeAreRefused) {
   refused({1, 3, {0.5, 0.5, 0.5}});
   TransitionModel model;
   model.advance_step_m = -0.1;
-  EXPECT_THROW(validate(model), std::invalid_argument);
+  EXPECT_THROW(check(model), std::invalid_argument);
   model.advance_step_m = 0.0;
-  EXPECT_NO_THROW(validate(model));
+  EXPECT_NO_THROW(check(model));
   model.turn_step_rad = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(validate(model), std::invalid_argument);
+  EXPECT_THROW(check(model), std::invalid_argument);
 }
 
 }  // namespace

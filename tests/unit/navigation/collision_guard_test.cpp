@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/support/random.hpp"
@@ -152,7 +152,9 @@ TEST(CollisionGuard, SonarsWithNothingNearMayBeSilent) {
 TEST(CollisionGuard, SettingsOutOfRangeAreRefused) {
   GuardConfig config;
   config.radius_m = 0.0;
-  EXPECT_THROW(CollisionGuard{config}, std::invalid_argument);
+  EXPECT_THAT([&] { CollisionGuard{config}; },
+              testing::ThrowsMessage<std::invalid_argument>(testing::StrEq(
+                  "key 'guard.radius_m' = '0': expected number between 0.05 and 2 m")));
   config = {};
   config.delay_s = NAN;
   EXPECT_THROW(CollisionGuard{config}, std::invalid_argument);

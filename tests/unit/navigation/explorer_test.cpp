@@ -401,7 +401,8 @@ TEST(Explorer, BadSettingsAreNamed) {
     const Explorer explorer(config);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("explorer.view_m"));
+    EXPECT_THAT(error.what(), HasSubstr("key 'explorer.view_m' = '0.2': expected at least "
+                                        "explorer.approach_m = 1"));
   }
 }
 

@@ -2,9 +2,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +26,7 @@ class ConfigTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove(file_); }
 
-  /// What load_config says of a file with this content; empty if it takes it.
+  /// The error of load_config for a file with this content; empty if it accepts it.
   std::string complaint(const std::string& yaml) {
     std::ofstream(file_) << yaml;
     try {
@@ -46,6 +49,92 @@ TEST_F(ConfigTest, EveryKeyIsDocumentedAndItsDefaultIsInRange) {
     EXPECT_FALSE(parameter.expected.empty()) << parameter.key;
     EXPECT_TRUE(parameter.parse(parameter.default_text).has_value()) << parameter.key;
   }
+}
+
+// The part of a page between two lines.
+std::string part_of(const std::filesystem::path& page, const std::string& from,
+                    const std::string& to) {
+  std::ifstream file(page);
+  std::ostringstream text;
+  text << file.rdbuf();
+  const std::string all = text.str();
+  const std::size_t begin = all.find(from + "\n");
+  const std::size_t end = all.find(to + "\n");
+  if (begin == std::string::npos || end == std::string::npos) return "no " + from;
+  const std::size_t first = begin + from.size() + 1;
+  return all.substr(first, end - first);
+}
+
+// The blocks of a page that are indented by four blanks, each without them.
+std::vector<std::string> indented_blocks(const std::filesystem::path& page) {
+  std::ifstream file(page);
+  std::vector<std::string> blocks;
+  bool inside = false;
+  for (std::string line; std::getline(file, line); inside = line.starts_with("    ")) {
+    if (!line.starts_with("    ")) continue;
+    if (!inside) blocks.emplace_back();
+    blocks.back() += line.substr(4) + "\n";
+  }
+  return blocks;
+}
+
+// The libraries that declare each key.
+std::map<std::string, std::set<std::string>> owners_of_keys(Config& c) {
+  std::map<std::string, std::set<std::string>> owners;
+  const auto library = [&](const std::string& name, auto&... configs) {
+    support::ConfigSchema schema;
+    (describe(configs, schema), ...);
+    for (const support::ConfigParameter& p : schema.parameters()) owners[p.key].insert(name);
+  };
+  library("scan", c.log);
+  library("voronoi", c.local_mapper.voronoi);
+  library("topomap", c.local_mapper.local_map, c.global_map);
+  library("localization", c.local_mapper.tracker, c.localizer);
+  library("planning", c.planning, c.hybrid_map.grid, c.hybrid_map.inflation, c.hybrid_map.zones,
+          c.hybrid_planner, c.navigator.smooth, c.navigator.detour);
+  library("markov", c.navigator.markov.markov);
+  library("navigation", c.navigator, c.exploration);
+  library("pipeline", c.local_mapper);
+  return owners;
+}
+
+TEST_F(ConfigTest, EveryKeyIsDeclaredByOneLibrary) {
+  Config config;
+  const auto owners = owners_of_keys(config);
+  const support::ConfigSchema schema = describe(config);
+  for (const support::ConfigParameter& parameter : schema.parameters()) {
+    const auto found = owners.find(parameter.key);
+    ASSERT_NE(found, owners.end()) << parameter.key;
+    EXPECT_EQ(found->second.size(), 1U) << parameter.key;
+  }
+  EXPECT_EQ(owners.size(), schema.parameters().size());
+}
+
+TEST_F(ConfigTest, TheTablesOfTheDocumentationAreThoseOfTheDeclarations) {
+  Config config;
+  std::ostringstream tables;
+  support::write_markdown(describe(config), tables);
+  EXPECT_EQ(part_of(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "docs/configuration.md",
+                    "<!-- begin of `topogeo config --markdown` -->", "<!-- end of it -->"),
+            tables.str())
+      << "write them anew: build/bin/topogeo config --markdown";
+}
+
+TEST_F(ConfigTest, EveryConfigurationOfTheDocumentationIsAccepted) {
+  Config config;
+  const support::ConfigSchema schema = describe(config);
+  std::size_t examples = 0;
+  for (const auto& page :
+       std::filesystem::directory_iterator(std::filesystem::path(TOPOGEO_SOURCE_DIR) / "docs")) {
+    if (page.path().extension() != ".md") continue;
+    for (const std::string& block : indented_blocks(page)) {
+      const std::string first = block.substr(0, block.find(":\n"));
+      if (!schema.is_section(first)) continue;
+      ++examples;
+      EXPECT_EQ(complaint(block), "") << page.path();
+    }
+  }
+  EXPECT_GE(examples, 1U);
 }
 
 TEST_F(ConfigTest, WrittenDefaultsReadBackToTheSameConfiguration) {
@@ -86,8 +175,10 @@ TEST_F(ConfigTest, ValueOutOfRangeIsNamedWithLineAndRange) {
 TEST_F(ConfigTest, ValuesInRangeThatTheNavigatorCannotUseAreNamedWithTheFile) {
   const std::string even = complaint("markov:\n  window_cells: 20\n");
   EXPECT_THAT(even, HasSubstr(file_.string()));
-  EXPECT_THAT(even, HasSubstr("window"));
-  EXPECT_THAT(complaint("navigator:\n  min_radius_m: 3\n  max_radius_m: 2\n"), HasSubstr("radius"));
+  EXPECT_THAT(even, HasSubstr("key 'markov.window_cells' = '20': expected an odd number"));
+  EXPECT_THAT(
+      complaint("navigator:\n  min_radius_m: 3\n  max_radius_m: 2\n"),
+      HasSubstr("'navigator.max_radius_m' = '2': expected at least navigator.min_radius_m = 3"));
 }
 
 TEST_F(ConfigTest, TheHybridPlannerHasASection) {

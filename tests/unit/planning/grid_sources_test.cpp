@@ -228,7 +228,8 @@ TEST(GridFromScans, RefusesBadInput) {
   ScanGridConfig config;
   config.hit = 0;
   EXPECT_THAT([&] { grid_from_scans(maps, {}, config); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("hit is 0, allowed are 1 to 1000")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr(
+                  "key 'hybrid_map.hit' = '0': expected whole number between 1 and 1000")));
 }
 
 }  // namespace

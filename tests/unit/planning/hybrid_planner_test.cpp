@@ -345,7 +345,8 @@ TEST(HybridPlanner, RefusesAConfigurationOutOfRange) {
   HybridPlannerConfig config;
   config.start_snap_m = -0.1;
   EXPECT_THAT([&] { HybridPlanner(map, config); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("start_snap_m is -0.1")));
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("key 'hybrid_planner.start_snap_m' = '-0.1'")));
 }
 
 TEST(RouteStatus, HasAWordForEach) {

@@ -136,8 +136,9 @@ TEST(FreeSpace, KeepsUnknownCellsOutAndTheirNeighboursIfTold) {
 TEST(FreeSpace, RefusesAnInflationOutOfRange) {
   InflationConfig config;
   config.forbidden_cells = -1.0;
-  EXPECT_THAT([&] { check(config); }, ThrowsMessage<std::invalid_argument>(HasSubstr(
-                                          "forbidden_cells is -1, allowed are 0 to 100")));
+  EXPECT_THAT([&] { check(config); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr(
+                  "'hybrid_map.forbidden_cells' = '-1': expected number between 0 and 100")));
 }
 
 }  // namespace

@@ -229,7 +229,7 @@ TEST(PlanningConfig, NamesTheFieldOutOfRange) {
     (void)plan(ring(), {0, 0}, {1, 0}, {-1.0, 0.3});
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("max_snap_m is -1"));
+    EXPECT_THAT(error.what(), HasSubstr("key 'planning.max_snap_m' = '-1'"));
   }
   EXPECT_THROW(check(PlanningConfig{1.0, std::nan("")}), std::invalid_argument);
 }

@@ -131,7 +131,8 @@ TEST(Zones, RefuseAConfigurationOutOfRange) {
   ZoneConfig config;
   config.min_area_m2 = -1.0;
   EXPECT_THAT([&] { check(config); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("min_area_m2 is -1")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr(
+                  "key 'hybrid_map.min_zone_m2' = '-1': expected number between 0 and 1000 m2")));
 }
 
 // A corridor along x through a door at (5, 0), and a branch that ends at a narrowing.

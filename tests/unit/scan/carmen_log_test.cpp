@@ -58,7 +58,9 @@ TEST_F(LogFiles, RangeLimitIsAnOption) {
   CarmenLogReader reader(log, {.range_max_m = 4.0});
   EXPECT_THAT(reader.next()->ranges_m,
               ElementsAre(3.99F, Scan::kNoReturn, Scan::kNoReturn, Scan::kNoReturn));
-  EXPECT_THROW(CarmenLogReader(log, {.range_max_m = 0.0}), std::invalid_argument);
+  EXPECT_THAT([&] { CarmenLogReader(log, {.range_max_m = 0.0}); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::StrEq(
+                  "key 'scan.range_max_m' = '0': expected number between 0.5 and 1000 m")));
   EXPECT_THROW(CarmenLogReader(log, {.range_max_m = std::nan("")}), std::invalid_argument);
   EXPECT_THROW(CarmenLogReader(log, {.jump_s = -1.0}), std::invalid_argument);
 }

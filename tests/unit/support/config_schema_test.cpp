@@ -14,6 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StrEq;
+using ::testing::ThrowsMessage;
 
 enum class Form : std::uint8_t { kSimple, kCombined };
 
@@ -32,7 +33,8 @@ struct Values {
 
 ConfigSchema declare(Values& v) {
   ConfigSchema schema;
-  schema.add("mapping.stop_distance_m", &v.distance_m, 0.1, 5.0, "m", "Way between two stops.");
+  schema.add("mapping.stop_distance_m", &v.distance_m, 0.1, 5.0, "m",
+             "Distance between two stops.");
   schema.add("match.genetic.tiny", &v.tiny, 0.0, 1.0, "", "A number\nexplained on two lines.");
   schema.add("match.genetic.offset", &v.offset, -10, 10, "", "Signed.");
   schema.add("match.genetic.individuals", &v.individuals, 2, 1000, "", "Population.");
@@ -173,6 +175,57 @@ TEST(ConfigSchema, ListsWhatIsInForceAndTellsConfigurationsApart) {
   EXPECT_NE(effective(schema).fingerprint, before.fingerprint);
   v.tiny = 0.1;
   EXPECT_EQ(effective(schema).fingerprint, before.fingerprint);
+}
+
+void describe(Values& values, ConfigSchema& schema) {
+  schema.add("mapping.stop_distance_m", &values.distance_m, 0.1, 5.0, "m", "Between two stops.");
+  schema.add("match.form", &values.form, {{"simple", Form::kSimple}, {"combined", Form::kCombined}},
+             "How to score.");
+}
+
+TEST(ConfigSchema, ChecksValuesInMemoryAgainstTheDeclaredRanges) {
+  Values values;
+  EXPECT_NO_THROW(check_ranges(values));
+  values.distance_m = 7.0;
+  EXPECT_THAT([&] { check_ranges(values); },
+              ThrowsMessage<std::invalid_argument>(StrEq("key 'mapping.stop_distance_m' = '7': "
+                                                         "expected number between 0.1 and 5 m")));
+  values.distance_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(check_ranges(values), std::invalid_argument);
+  values = {};
+  values.form = static_cast<Form>(9);
+  EXPECT_THROW(check_ranges(values), std::invalid_argument);
+}
+
+TEST(ConfigSchema, NamesValuesThatDoNotFitEachOther) {
+  EXPECT_NO_THROW(require_at_least("a.most", 2.0, "a.least", 2.0));
+  EXPECT_THAT([] { require_at_least("a.most", 1.0, "a.least", 2.0); },
+              ThrowsMessage<std::invalid_argument>(
+                  StrEq("key 'a.most' = '1': expected at least a.least = 2")));
+  EXPECT_NO_THROW(require_between("a.b", 1.0, 1.0, 2.0, "m"));
+  EXPECT_THAT([] { require_between("a.b", 2.5, 1.0, 2.0, "m"); },
+              ThrowsMessage<std::invalid_argument>(
+                  StrEq("key 'a.b' = '2.5': expected number between 1 and 2 m")));
+  EXPECT_THROW(require_between("a.b", std::numeric_limits<double>::quiet_NaN(), 1.0, 2.0, ""),
+               std::invalid_argument);
+}
+
+TEST(ConfigSchema, WritesATableForEachSection) {
+  Values values;
+  values.form = Form::kSimple;
+  ConfigSchema schema;
+  schema.add("match.refine", &values.refine, "Whether to | refine.");
+  describe(values, schema);
+  std::ostringstream out;
+  write_markdown(schema, out);
+  EXPECT_EQ(out.str(),
+            "### `match`\n\n"
+            "| key | default | expected | meaning |\n|---|---|---|---|\n"
+            "| `refine` | `true` | true or false | Whether to \\| refine. |\n"
+            "| `form` | `simple` | one of simple, combined | How to score. |\n\n"
+            "### `mapping`\n\n"
+            "| key | default | expected | meaning |\n|---|---|---|---|\n"
+            "| `stop_distance_m` | `1` | number between 0.1 and 5 m | Between two stops. |\n");
 }
 
 TEST(ConfigSchema, RefusesDeclarationsThatContradictEachOther) {

@@ -355,8 +355,23 @@ TEST(GlobalMapConfig, NamesTheFieldOutOfRange) {
     GlobalMapBuilder builder(config);
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("keep_share is 1.5, allowed is 0.01 to 1"));
+    EXPECT_THAT(error.what(), testing::StrEq("key 'global_map.keep_share' = '1.5': expected "
+                                             "number between 0.12 and 0.99"));
   }
+}
+
+TEST(GlobalMapConfig, NamesValuesThatDoNotFitEachOther) {
+  GlobalMapConfig config;
+  config.cell_m = 0.032;
+  config.vote_radius_m = 0.3;  // more than eight cells
+  EXPECT_THAT([&] { check(config); }, testing::ThrowsMessage<std::invalid_argument>(
+                                          testing::HasSubstr("global_map.vote_radius_m")));
+  config = {};
+  config.bridge_share = 0.5;
+  EXPECT_THAT([&] { check(config); },
+              testing::ThrowsMessage<std::invalid_argument>(
+                  testing::AllOf(testing::HasSubstr("'global_map.keep_share' = '0.4'"),
+                                 testing::HasSubstr("at least global_map.bridge_share = 0.5"))));
 }
 
 }  // namespace

@@ -273,7 +273,8 @@ TEST(LocalMapBuilder, AFieldOutsideItsRangeIsNamed) {
     const LocalMapBuilder builder{config};
     ADD_FAILURE() << "no error";
   } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("largest_hidden_share"), std::string::npos);
+    EXPECT_STREQ(error.what(),
+                 "key 'local_map.largest_hidden_share' = '1.5': expected number between 0 and 1");
   }
 }
 

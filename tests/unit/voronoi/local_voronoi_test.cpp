@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "test_world.hpp"
 
@@ -340,20 +340,21 @@ TEST(LocalVoronoi, AScanGivesTheSameBytesWhateverCameBefore) {
   EXPECT_NE(bytes_of(voronoi.compute(third)), bytes);
 }
 
-TEST(VoronoiConfig, AFieldOutsideItsRangeIsNamed) {
+TEST(VoronoiConfig, AValueOutsideItsRangeIsNamed) {
   VoronoiConfig config;
-  EXPECT_NO_THROW(validate(config));
+  EXPECT_NO_THROW(check(config));
   config.resolution_m = 0.0;
-  EXPECT_THROW(
-      {
-        try {
-          LocalVoronoi{config};
-        } catch (const std::invalid_argument& error) {
-          EXPECT_NE(std::string(error.what()).find("resolution_m"), std::string::npos);
-          throw;
-        }
-      },
-      std::invalid_argument);
+  EXPECT_THAT([&] { LocalVoronoi{config}; },
+              testing::ThrowsMessage<std::invalid_argument>(testing::StrEq(
+                  "key 'local_map.resolution_m' = '0': expected number between 0.01 and 1 m")));
+}
+
+TEST(VoronoiConfig, AGridOfTooManyCellsIsRefused) {
+  VoronoiConfig config;
+  config.range_limit_m = 100.0;
+  config.resolution_m = 0.02;
+  EXPECT_THAT([&] { LocalVoronoi{config}; },
+              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("2000 cells")));
 }
 
 }  // namespace

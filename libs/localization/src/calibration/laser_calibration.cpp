@@ -34,7 +34,7 @@ Pose2 found_shift(const OdometryCalibration& found) {
   return {s.ahead_m.value, s.left_m.value, s.yaw_rad.value};
 }
 
-/// A part known to `variance` by the bootstrap and the likelihood, whichever says more.
+/// A part known to `variance` by the bootstrap and the likelihood, whichever is larger.
 MountingEstimate part(double value, double before, double variance, double likelihood_variance,
                       double largest_spread) {
   const double spread = std::sqrt(std::max(variance, likelihood_variance));
@@ -48,6 +48,7 @@ LaserCalibration calibrate_laser(
     std::span<const OdometryStretch> stretches, std::span<const MeasuredMotion> motions,
     const Pose2& T_robot_laser, const OdometryCalibrationConfig& config,
     const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  // Fixed: the linear model converges in a few rounds; then only rounding is left.
   constexpr int kMostRounds = 30;
   constexpr double kSmallStep = 1e-9;  // m and rad
   OdometryCalibrationConfig quick = config;

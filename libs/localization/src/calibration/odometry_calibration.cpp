@@ -23,9 +23,10 @@ const std::array<NoiseParameter, kNoiseParameters> kOdometryParameters{{
 
 namespace {
 
+// Fixed: a stretch with less shows nothing but the noise of the measurement.
 constexpr double kSomeWay_m = 0.2;
 constexpr double kSomeTurn_rad = 0.2;
-constexpr double kLargestNoise = 1.0;  // what the configuration allows
+constexpr double kLargestNoise = kLargestOdometryNoise;
 
 void check_measurements(std::span<const OdometryStretch> stretches,
                         std::span<const MeasuredMotion> motions,
@@ -52,7 +53,7 @@ void check_measurements(std::span<const OdometryStretch> stretches,
   }
 }
 
-/// How many of the stretches that a motion covers have enough way, or turn.
+/// How many of the stretches that a motion covers have enough distance, or turn.
 struct Coverage {
   std::size_t stretches = 0;
   std::size_t with_way = 0;
@@ -133,7 +134,7 @@ class Bootstrap {
       start.noise[p] = std::max(config_.fallback.*kOdometryParameters[p].field, 1e-4);
     }
     Fits fits;
-    constexpr int kLinearizations = 3;
+    constexpr int kLinearizations = 3;  // errors of some percent need no more
     for (int i = 0; i < kLinearizations; ++i) {
       const NoiseFit about = i == 0 ? NoiseFit{} : fits.best;
       fits.terms.clear();
@@ -200,7 +201,7 @@ OdometryCalibration calibrate_odometry(
     throw std::runtime_error(
         "too little motion: of " + std::to_string(covered.stretches) +
         " measured stretches between stops " + std::to_string(covered.with_way) +
-        " have 0.2 m of way and " + std::to_string(covered.with_turn) +
+        " are 0.2 m long and " + std::to_string(covered.with_turn) +
         " have 0.2 rad of turn, expected at least " + std::to_string(kFewestStretches));
   }
 

@@ -18,7 +18,7 @@ namespace {
 using geometry::Pose2;
 
 constexpr double kGauss = std::numeric_limits<double>::infinity();
-constexpr double kStudent = 5.0;  // degrees of freedom of the first fit
+constexpr double kStudent = 5.0;  // degrees of freedom of the first fit: heavy tails, fixed
 
 Eigen::Matrix3d covariance(const MotionTerms& motion, const NoiseFit& fit) {
   Eigen::Matrix3d sum = fit.measurement_factor * motion.measurement;
@@ -65,8 +65,8 @@ class NegativeLogLikelihood : public ceres::FirstOrderFunction {
 
   bool Evaluate(const double* x, double* cost, double* gradient) const override {
     const NoiseFit fit = at(x);
-    // Where all motions are of one length nothing tells the measurements' part from the odometry's:
-    // then what they state counts, give or take a factor e.
+    // Where all motions are of one length nothing separates the measurements' part from the
+    // odometry's: then what they state counts, give or take a factor e.
     *cost = 0.5 * x[0] * x[0] / total_;
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(NumParameters());
     slope[0] = x[0] / total_;
@@ -136,7 +136,7 @@ NoiseFit maximize(const FitModel& model, std::span<const MotionTerms> motions,
 
 // Normal equations of the systematic errors, the noise being known: generalised least squares.
 struct SystematicEquations {
-  // Starts at 1, so that what nothing speaks of stays at 0; with a real error of 1 there is no
+  // Starts at 1, so that what no motion bears on stays at 0; with a real error of 1 there is no
   // odometry.
   Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> information =
       Eigen::Matrix<double, kSystematicErrors, kSystematicErrors>::Identity();
@@ -224,7 +224,7 @@ MotionTerms make_terms(std::span<const OdometryStretch> stretches, const Measure
     for (const Pose2& step : steps.steps) sum = advance(sum, step, one);
     terms.growth[p] = sum.covariance;
   }
-  // A longer way moves the end along; a turn swings what lies beyond it, and the laser too.
+  // A longer path moves the end along; a turn swings what lies beyond it, and the laser too.
   const geometry::SinCos r = geometry::sincos(steps.T_first_last.theta_rad);
   terms.systematic.setZero();
   terms.systematic.col(0) << end.x(), end.y(), 0.0;
@@ -250,7 +250,7 @@ MotionTerms make_terms(std::span<const OdometryStretch> stretches, const Measure
   }
   terms.residual = geometry::difference(steps.T_first_last, motion.T_first_last);
   terms.residual.head<2>() -= shortening;
-  // `steps` has the way, heading and turn of `about` taken out, not the mounting of the laser.
+  // `steps` has the distance, heading and turn of `about` taken out, not the mounting of the laser.
   SystematicVector taken_out = about.systematic;
   taken_out.tail<3>().setZero();
   terms.residual += terms.systematic * taken_out;
@@ -268,7 +268,7 @@ NoiseFit fit_robustly(const FitModel& model, std::span<const MotionTerms> motion
   weights.assign(motions.size(), 1.0);
   NoiseFit fit = fit_both(model, motions, weights, start, kStudent);
   // From the core outwards: every round takes in what the noise found so far explains.
-  constexpr int kMostRounds = 20;
+  constexpr int kMostRounds = 20;  // a bound, should two sets of motions alternate
   for (int round = 0; round < kMostRounds; ++round) {
     bool changed = round == 0;
     for (std::size_t n = 0; n < motions.size(); ++n) {

@@ -11,8 +11,8 @@
 
 namespace topogeo::localization {
 
-/// Smallest value of a parameter: what the configuration allows.
-inline constexpr double kSmallestNoise = 1e-6;
+/// Smallest value of a parameter: the lower end of its range in the configuration.
+inline constexpr double kSmallestNoise = kSmallestOdometryNoise;
 
 inline constexpr int kSystematicErrors = 6;
 using SystematicVector = Eigen::Matrix<double, kSystematicErrors, 1>;
@@ -21,7 +21,8 @@ using SystematicVector = Eigen::Matrix<double, kSystematicErrors, 1>;
 struct MotionTerms {
   Eigen::Vector3d residual;  ///< odometry less measurement
   Eigen::Matrix<double, 3, kSystematicErrors>
-      systematic;  ///< derivative of the residual by way, heading per metre, turn, ahead, left, yaw
+      systematic;  ///< derivative of the residual by distance, heading per metre, turn, ahead,
+                   ///< left, yaw
   std::array<Eigen::Matrix3d, kNoiseParameters> growth;  ///< covariance for each parameter at 1
   Eigen::Matrix3d measurement;                           ///< covariance
 };
@@ -39,7 +40,7 @@ struct NoiseFit {
 };
 
 /// Linear in the parameters about those of `about`: headings that are wrong by some degrees bend
-/// the way, which shortens it on average.
+/// the path, which shortens it on average.
 MotionTerms make_terms(std::span<const OdometryStretch> stretches, const MeasuredMotion& motion,
                        const NoiseFit& about);
 
@@ -53,7 +54,7 @@ NoiseFit fit_robustly(const FitModel& model, std::span<const MotionTerms> motion
                       std::vector<double>& weights);
 
 /// Covariance of the systematic errors of a fit, the noise being known. What the model has not or
-/// nothing speaks of has the variance 1.
+/// no motion bears on has the variance 1.
 Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> systematic_covariance(
     const FitModel& model, std::span<const MotionTerms> motions, std::span<const double> weights,
     const NoiseFit& fit);

@@ -11,6 +11,7 @@ namespace {
 using geometry::Pose2;
 using geometry::SinCos;
 
+// Fixed: fitness depends on them, and tasks do not carry them.
 constexpr double kTopologicalShare = 0.3;
 constexpr double kPriorSoftness = 12.0;  // squared deviations at which the prior is a half
 constexpr float kOtherFace = -0.5F;      // cosine between the normals of the two faces of a wall

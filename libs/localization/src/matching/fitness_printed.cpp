@@ -12,6 +12,8 @@ namespace {
 using geometry::Pose2;
 using geometry::SinCos;
 
+// Chosen where the thesis is silent (fitness_printed.hpp); fixed, as the form is for comparison
+// only.
 constexpr double kEquivalent_m = 0.60;
 constexpr double kPrintedClearance_m = 0.30;
 constexpr double kEquivalentInclination_rad = std::numbers::pi / 6.0;

@@ -6,6 +6,8 @@
 namespace topogeo::localization {
 namespace {
 
+// Fixed: fitness depends on them, and tasks do not carry them. Widths are about twice the
+// resolution of the genetic search, so that it meets every peak.
 constexpr auto kReach = static_cast<float>(kReach_m);
 constexpr float kNodeWeight = 3.0F;  // a node pins both coordinates, a branch sample only one
 constexpr float kClearanceKernel_m = 0.30F;

@@ -13,11 +13,12 @@ namespace {
 using geometry::Pose2;
 using geometry::SinCos;
 
+// Fixed: the search depends on them, and tasks do not carry them.
 constexpr double kEquivalentClearance_m = 0.20;
-constexpr double kCell_m = 0.30;
-constexpr double kCell_rad = 0.12;  // directions of branches are uncertain by about 5 degrees
-constexpr double kNodeVotes = 3.0;  // a node pins both coordinates, a branch sample only one
-constexpr std::size_t kMostPairs = 4096;
+constexpr double kCell_m = 0.30;          // two of the default position resolution
+constexpr double kCell_rad = 0.12;        // directions of branches are uncertain by about 5 degrees
+constexpr double kNodeVotes = 3.0;        // a node pins both coordinates, a branch sample only one
+constexpr std::size_t kMostPairs = 4096;  // bounds the time of a task between rich maps
 constexpr std::size_t kMostCandidates = 4096;
 
 double likeness(double clearance_a_m, double clearance_b_m) {

@@ -16,6 +16,7 @@ namespace {
 
 using geometry::Pose2;
 
+// Bounds on what a task from another machine may ask for, not settings: they protect the worker.
 constexpr std::uint32_t kFewestIndividuals = 4;
 constexpr std::uint32_t kMostIndividuals = 10'000;
 constexpr std::uint64_t kMostEvaluations = 1'000'000;  // a second of one core, 32 MB
@@ -99,6 +100,7 @@ void check(const MatchTask& task) {
 }
 
 bool same_place(const Pose2& a, const Pose2& b) {
+  // Fixed: verdicts depend on them, and tasks do not carry them.
   constexpr double kApart_m = 0.30;
   constexpr double kApart_rad = 0.15;
   return (a.position_m() - b.position_m()).squaredNorm() <= kApart_m * kApart_m &&
@@ -108,37 +110,37 @@ bool same_place(const Pose2& a, const Pose2& b) {
 void add_evidence(const MatchContext& context, MatchResult& result) {
   const auto& [task, reference, query, forms] = context;
   const Fitness& fitness = forms.chosen();
-  MatchResult said;  // starts from nothing, so that no field can be forgotten
-  said.task_id = task.task_id;
-  said.seed = task.seed;
-  said.evaluations = result.evaluations;
-  said.solutions = std::move(result.solutions);
-  for (MatchSolution& solution : said.solutions) {
+  MatchResult stated;  // starts from nothing, so that no field can be forgotten
+  stated.task_id = task.task_id;
+  stated.seed = task.seed;
+  stated.evaluations = result.evaluations;
+  stated.solutions = std::move(result.solutions);
+  for (MatchSolution& solution : stated.solutions) {
     solution.fitness = fitness(solution.T_reference_query);
   }
-  if (!said.solutions.empty() && said.solutions.front().fitness > 0.0) {
+  if (!stated.solutions.empty() && stated.solutions.front().fitness > 0.0) {
     const Pose2& T = result.T_reference_query;
     const PoseEvidence evidence = evidence_at(reference, query, T);
-    said.T_reference_query = T;
-    said.fitness = fitness(T);
+    stated.T_reference_query = T;
+    stated.fitness = fitness(T);
     if (result.second.fitness > 0.0) {
-      said.second = {result.second.T_reference_query, fitness(result.second.T_reference_query)};
+      stated.second = {result.second.T_reference_query, fitness(result.second.T_reference_query)};
     }
-    said.overlap = evidence.overlap;
-    said.inliers = evidence.inliers;
-    said.violations = evidence.violations;
-    said.residual_rms_m = evidence.residual_rms_m;
-    said.scan_fitness = forms.combined().scan()(T);
-    said.topological_fitness = forms.combined().topological()(T);
-    said.status = evidence.overlap > 0.0 ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
+    stated.overlap = evidence.overlap;
+    stated.inliers = evidence.inliers;
+    stated.violations = evidence.violations;
+    stated.residual_rms_m = evidence.residual_rms_m;
+    stated.scan_fitness = forms.combined().scan()(T);
+    stated.topological_fitness = forms.combined().topological()(T);
+    stated.status = evidence.overlap > 0.0 ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
     if (!evidence.information.isZero(0.0)) {
-      said.covariance = match_covariance(evidence.information, doubt(said));
+      stated.covariance = match_covariance(evidence.information, doubt(stated));
     }
   }
-  const Judgement judgement = judge(task, said);
-  said.verdict = judgement.verdict;
-  said.reason = judgement.reason;
-  result = std::move(said);
+  const Judgement judgement = judge(task, stated);
+  stated.verdict = judgement.verdict;
+  stated.reason = judgement.reason;
+  result = std::move(stated);
 }
 
 }  // namespace topogeo::localization

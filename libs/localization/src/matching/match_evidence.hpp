@@ -1,4 +1,4 @@
-// All that a match result says of its poses, computed in one place for solve() and verify().
+// All that a match result states of its poses, computed in one place for solve() and verify().
 #pragma once
 
 #include "topogeo/localization/matching/fitness_forms.hpp"

@@ -16,6 +16,7 @@ namespace {
 using geometry::Pose2;
 using topomap::ScanPoint;
 
+// Fixed: features depend on them, and tasks do not carry them.
 constexpr double kNeighbourhood_m =
     0.30;  // wide enough for a normal in spite of centimetres of range noise
 constexpr int kFewestNeighbours = 4;

@@ -10,7 +10,8 @@
 namespace topogeo::localization {
 namespace {
 
-constexpr double kOutweighed = 0.12;  // violations at which no match is believed, whatever fits
+// Fixed: verdicts depend on it, and tasks do not carry it.
+constexpr double kOutweighed = 0.12;  // violations at which no match is accepted, whatever fits
 
 }  // namespace
 
@@ -88,6 +89,7 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
 }
 
 Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doubt) {
+  // Fixed: correlated beams and thick walls, which the least squares does not model.
   constexpr double kFloor_m = 0.02;
   constexpr double kFloor_rad = 0.0052;
   constexpr double kLeastInformation =

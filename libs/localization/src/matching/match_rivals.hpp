@@ -10,8 +10,8 @@ namespace topogeo::localization {
 
 /// The pose of the search space that fits best of those at least 0.4 m away from `T_found` and of
 /// its heading, on eight rays from it, the first along the direction that the scans fix worst: in a
-/// corridor the next door frames lie there. What odometry says of the poses does not count, because
-/// the search has listened to it already. The fitness is without it, too; 0 if there is no such
+/// corridor the next door frames lie there. The odometry does not count, because the search has
+/// used it already. The fitness is without it, too; 0 if there is no such
 /// pose.
 MatchSolution strongest_rival(const MatchContext& context, const geometry::Pose2& T_found);
 

@@ -18,11 +18,12 @@ namespace {
 
 using geometry::Pose2;
 
+// Fixed: answers do not depend on the first, and tasks do not carry the second.
 constexpr std::size_t kCachedReferences = 16;  // of about 150 kB
 constexpr std::size_t kRefined = 3;  // places that are refined before the winner is chosen
 
 // Refines the `starts` and takes the one with the largest fitness as the result's pose. Its second
-// is the pose elsewhere that the maps allow best, whatever odometry says of it.
+// is the pose elsewhere that the maps allow best, whatever odometry predicts.
 void choose(const MatchContext& context, const std::vector<MatchSolution>& starts,
             MatchResult& result) {
   const PosePrior prior{context.task.T_reference_query, context.task.covariance.inverse()};
@@ -44,7 +45,7 @@ void choose(const MatchContext& context, const std::vector<MatchSolution>& start
     if (fitness > result.second.fitness) result.second = {T, fitness};
   }
   if (result.second.fitness <= 0.0) return;
-  // It is told like every other solution, by the form that was asked for, which may find nothing.
+  // It is rated like every other solution, by the requested form, which may find nothing.
   result.second.fitness = context.forms.chosen()(result.second.T_reference_query);
   if (result.second.fitness <= 0.0) result.second = {};
 }

@@ -11,7 +11,7 @@ namespace {
 using geometry::Pose2;
 
 // The contour of a room with a recess, from the corner in the direction -pi on, as a laser inside
-// sees it. In the frame that `T_robot_room` says.
+// sees it. In the frame that `T_robot_room` gives.
 constexpr double kCorners_m[][2] = {{-2.0, -2.0}, {2.0, -2.0}, {2.0, 0.5},  {3.5, 0.5},
                                     {3.5, 2.5},   {-2.0, 2.5}, {-2.0, -2.0}};
 

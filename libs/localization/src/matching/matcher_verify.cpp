@@ -1,4 +1,4 @@
-// Matcher::verify: is what a result says of its poses true?
+// Matcher::verify: is what a result states of its poses true?
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -16,14 +16,14 @@ namespace {
 using geometry::Pose2;
 
 bool sane(const Pose2& T) {
-  constexpr double kFarthest_m = 2e6;
+  constexpr double kFarthest_m = 2e6;  // twice what a task may ask for
   return std::fabs(T.x_m) <= kFarthest_m && std::fabs(T.y_m) <= kFarthest_m &&
          std::fabs(T.theta_rad) <= std::numbers::pi;
 }
 
-std::string differs(const std::string& name, double said, double right) {
+std::string differs(const std::string& name, double stated, double right) {
   char text[160];
-  std::snprintf(text, sizeof text, " is said to be %.17g and is %.17g", said, right);
+  std::snprintf(text, sizeof text, " is stated as %.17g and is %.17g", stated, right);
   return name + text;
 }
 
@@ -60,46 +60,46 @@ std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
   return {};
 }
 
-// The first difference between what is said and what is right.
-std::string difference(const MatchResult& said, const MatchResult& right) {
+// The first difference between what is stated and what is right.
+std::string difference(const MatchResult& stated, const MatchResult& right) {
   for (std::size_t i = 0; i < right.solutions.size(); ++i) {
-    if (!identical(said.solutions[i].fitness, right.solutions[i].fitness)) {
-      return differs("the fitness of " + nth(i), said.solutions[i].fitness,
+    if (!identical(stated.solutions[i].fitness, right.solutions[i].fitness)) {
+      return differs("the fitness of " + nth(i), stated.solutions[i].fitness,
                      right.solutions[i].fitness);
     }
   }
-  if (!identical(said.T_reference_query, right.T_reference_query)) {
+  if (!identical(stated.T_reference_query, right.T_reference_query)) {
     return "there is a refined pose though no solution fits";
   }
-  if (!identical(said.second.T_reference_query, right.second.T_reference_query)) {
+  if (!identical(stated.second.T_reference_query, right.second.T_reference_query)) {
     return "there is a second pose without a fitness";
   }
   struct Number {
     const char* name;
-    double said;
+    double stated;
     double right;
   };
   for (const Number& number :
-       {Number{"the fitness", said.fitness, right.fitness},
-        Number{"the fitness of the second", said.second.fitness, right.second.fitness},
-        Number{"the overlap", said.overlap, right.overlap},
-        Number{"the share of inliers", said.inliers, right.inliers},
-        Number{"the share of violations", said.violations, right.violations},
-        Number{"the residual", said.residual_rms_m, right.residual_rms_m},
-        Number{"the scan fitness", said.scan_fitness, right.scan_fitness},
-        Number{"the topological fitness", said.topological_fitness, right.topological_fitness}}) {
-    if (!identical(number.said, number.right))
-      return differs(number.name, number.said, number.right);
+       {Number{"the fitness", stated.fitness, right.fitness},
+        Number{"the fitness of the second", stated.second.fitness, right.second.fitness},
+        Number{"the overlap", stated.overlap, right.overlap},
+        Number{"the share of inliers", stated.inliers, right.inliers},
+        Number{"the share of violations", stated.violations, right.violations},
+        Number{"the residual", stated.residual_rms_m, right.residual_rms_m},
+        Number{"the scan fitness", stated.scan_fitness, right.scan_fitness},
+        Number{"the topological fitness", stated.topological_fitness, right.topological_fitness}}) {
+    if (!identical(number.stated, number.right))
+      return differs(number.name, number.stated, number.right);
   }
   for (int i = 0; i < 9; ++i) {
-    if (!identical(said.covariance(i), right.covariance(i))) {
-      return differs("element " + std::to_string(i) + " of the covariance", said.covariance(i),
+    if (!identical(stated.covariance(i), right.covariance(i))) {
+      return differs("element " + std::to_string(i) + " of the covariance", stated.covariance(i),
                      right.covariance(i));
     }
   }
-  if (said.status != right.status) return "the status is wrong";
-  if (said.verdict != right.verdict) return "the verdict is wrong";
-  if (said.reason != right.reason) return "the reason is wrong";
+  if (stated.status != right.status) return "the status is wrong";
+  if (stated.verdict != right.verdict) return "the verdict is wrong";
+  if (stated.reason != right.reason) return "the reason is wrong";
   return {};
 }
 

@@ -9,6 +9,7 @@
 namespace topogeo::localization {
 namespace {
 
+// Limits of the representation.
 constexpr std::size_t kMostPoints = std::numeric_limits<std::uint16_t>::max() - 1U;
 constexpr double kMostCells = 4'194'304.0;  // 200 m x 200 m; single precision counts to 2^24
 

@@ -26,7 +26,7 @@ UncertainPose advance(const UncertainPose& from, const Pose2& T_before_after,
   Eigen::Matrix3d step = Eigen::Matrix3d::Zero();
   step(0, 0) = noise.translation_m2_per_m * way_m + turn_m2;
   step(1, 1) = noise.lateral_m2_per_m * way_m + turn_m2;
-  // The heading wanders on the way, not only at its end: integrated over a straight step.
+  // The heading wanders along the path, not only at its end: integrated over a straight step.
   const double wander_rad2 = noise.heading_rad2_per_m * way_m;
   step(1, 1) += wander_rad2 * way_m * way_m / 3.0;
   step(1, 2) = step(2, 1) = wander_rad2 * way_m / 2.0;

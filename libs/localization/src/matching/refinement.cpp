@@ -12,17 +12,19 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr int kMaxIterations = 15;
-constexpr std::size_t kFewestPoints = 12;
-constexpr double kFirstGate_m = 0.50;  // shrinks to kLastGate_m while iterating
+// Fixed: matches depend on them, tasks do not carry them, and workers must give the answers of the
+// localizer (matcher_fingerprint.hpp). They fit lasers with centimetres of noise.
+constexpr int kMaxIterations = 15;         // bounds the time of a match
+constexpr std::size_t kFewestPoints = 12;  // fewer do not fix three unknowns
+constexpr double kFirstGate_m = 0.50;      // shrinks to kLastGate_m while iterating
 constexpr double kLastGate_m = 0.20;
-constexpr double kCauchy_m = 0.05;
+constexpr double kCauchy_m = 0.05;  // a reading's error: twice as far weighs a fifth
 // Deviation taken for one residual. More than the laser's noise, because the residuals of
 // neighbouring beams are not independent.
 constexpr double kResidualSigma_m = 0.08;
-constexpr double kInlier_m = 0.15;
-constexpr double kViewTolerance_m = 0.30;
-constexpr double kSameFace = 0.70710678;  // cosine between two normals of one surface
+constexpr double kInlier_m = 0.15;         // on a surface, with noise and the thickness of walls
+constexpr double kViewTolerance_m = 0.30;  // half-thickness of what the laser saw
+constexpr double kSameFace = 0.70710678;   // cosine between two normals of one surface
 
 struct NormalEquations {
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
@@ -68,7 +70,7 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
   return equations;
 }
 
-// Adds what the prior says; both its error and the update are (x, y, theta) in the reference frame.
+// Adds the prior; both its error and the update are (x, y, theta) in the reference frame.
 void add_prior(NormalEquations& equations, const Pose2& T, const PosePrior& prior) {
   const Eigen::Vector3d error = geometry::difference(T, prior.T_reference_query);
   for (int i = 0; i < 3; ++i) {
@@ -201,6 +203,7 @@ Alignment align(const Reference& reference, const MatchFeatures& query, const Po
 
 Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                     const PosePrior& prior) {
+  // Fixed: a linear step is right for no more.
   constexpr double kFarthest_m = 0.3;
   constexpr double kFarthest_rad = 0.05;
   const Eigen::Vector3d pull =

@@ -4,6 +4,10 @@
 #include <numbers>
 #include <vector>
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::markov {
 
 struct TransitionMatrix {
@@ -52,16 +56,12 @@ struct ReliabilityBand {
 };
 
 struct SonarModelConfig {
-  /// Virtual and real readings beyond are taken for this. Not below the last band.
-  double max_range_m = 5.0;
-  /// Rays across a cone that is not 0, edges included; odd, so that one is the axis.
-  int rays_per_cone = 5;
+  double max_range_m = 5.0;  ///< not below the last band
+  int rays_per_cone = 5;     ///< of a cone that is not 0, edges included
   /// Ascending; beyond the last the reliability is 0.
   std::vector<ReliabilityBand> bands = {{2.5, 1.0}, {5.0, 0.25}};
   PerceptualFormula formula = PerceptualFormula::kExponential;
   double scale_m = 0.05;
-  /// A larger difference counts as this much, so that one sensor that meets a person or no echo
-  /// does not outvote the others.
   double difference_cap_m = 0.5;
   /// Weighs each difference by the reliability of its reading. MACONDO does not: there
   /// reliability decides only how much the whole vector counts.
@@ -69,11 +69,19 @@ struct SonarModelConfig {
 };
 
 struct MarkovConfig {
-  int window_cells = 21;  ///< of a side; odd, in [5, 101]
+  int window_cells = 21;
   TransitionModel transition{};
   SonarModelConfig sonar{};
-  /// Weight of the perceptual model when the readings are wholly reliable, in [0, 1].
   double perceptual_weight = 0.6;
 };
+
+// They declare the part of the section `markov` that does not depend on the map; that of the whole
+// includes that of its sonar model.
+void describe(SonarModelConfig& config, support::ConfigSchema& schema);
+void describe(MarkovConfig& config, support::ConfigSchema& schema);
+
+// They throw std::invalid_argument naming key or field, value and range.
+void check(const SonarModelConfig& config);
+void check(const MarkovConfig& config);
 
 }  // namespace topogeo::markov

@@ -22,9 +22,6 @@
 
 namespace topogeo::markov {
 
-/// Throws std::invalid_argument naming the field and the allowed range.
-void validate(const MarkovConfig& config);
-
 enum class MoveKind { kAdvance, kTurnLeft, kTurnRight };
 
 /// A motion primitive.

@@ -20,14 +20,9 @@
 
 namespace topogeo::markov {
 
-/// Throws std::invalid_argument naming the field: max_range_m not in [0.5, 20], rays_per_cone not
-/// odd or not in [1, 31], bands empty, not ascending, beyond max_range_m or with a reliability not
-/// in [0, 1], scale_m not in [0.001, 10], difference_cap_m not in [0.01, 20].
-void validate(const SonarModelConfig& config);
-
 /// Throws std::invalid_argument naming the sensor: none or more than 1,000, a mount not finite or
 /// more than 5 m off the robot, half_cone_rad not in [0, pi/2].
-void validate(std::span<const RangeSensor> sensors);
+void check(std::span<const RangeSensor> sensors);
 
 /// Reliability of a reading by the distance that is expected, metres (infinity: nothing in range).
 double reliability_of(const SonarModelConfig& config, double expected_m);
@@ -46,7 +41,7 @@ struct PerceptualMatch {
 /// A work space that is reused.
 class SonarModel {
  public:
-  /// Throws std::invalid_argument as the two validate().
+  /// Throws std::invalid_argument as the two check().
   SonarModel(std::vector<RangeSensor> sensors, const SonarModelConfig& config);
 
   [[nodiscard]] std::size_t sensors() const { return sensors_.size(); }

@@ -22,9 +22,6 @@
 
 namespace topogeo::navigation {
 
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const GuardConfig& config);
-
 struct GuardVerdict {
   geometry::Velocity allowed;             ///< the wanted motion, slower on the same arc, or none
   HaltReason reason = HaltReason::kNone;  ///< why nothing is allowed at all

@@ -24,17 +24,6 @@ struct ExploredMap {
   std::vector<geometry::Pose2> T_map_stops;  ///< where its scans were made
 };
 
-struct TourConfig {
-  ExplorerConfig explorer;
-  double patience_s = 12.0;  ///< a target that the navigator cannot get nearer to for so long is
-                             ///< given up, [1, 3600]
-  double settle_s = 3.0;     ///< without a target, the map is waited for so long before the floor
-                             ///< counts as explored, [0, 600]
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const TourConfig& config);
-
 struct TourGoal {
   std::uint64_t goal_id = 0;
   geometry::Pose2 T_map_goal;

@@ -19,6 +19,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/navigation/explorer_config.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/topomap/global_map.hpp"
@@ -27,30 +28,6 @@ namespace topogeo::navigation {
 
 class Rooms;
 class UnknownFloor;
-
-struct ExplorerConfig {
-  double unknown_near_m = 0.8;   ///< a target is open when unknown floor is this near, [0.1, 5]
-  double sight_m = 4.0;          ///< what lies further behind a target is not counted,
-                                 ///< [unknown_near_m, 20]
-  double least_area_m2 = 0.2;    ///< less unknown floor is not gone to, [0, 100]
-  double worth_m_per_m2 = 40.0;  ///< nor from so many times as far away, m per square metre of it,
-                                 ///< [1, 10000]
-  double passage_side_m =
-      1.0;                  ///< where a side of a passage is looked at, from its middle, [0.3, 5]
-  double gap_side_m = 1.0;  ///< borders of the known are counted in squares of this side, [0.3, 10]
-  double least_gap_m = 0.3;  ///< shorter borders in a square are not gone to, [0.1, 10]
-  double approach_m = 1.0;   ///< a target is looked at from this near, if there is room,
-                             ///< [0.1, 10]
-  double view_m = 3.0;       ///< or else from so far at most, [approach_m, 10]
-  double sure_m = 0.35;      ///< nothing unknown is so near to where the robot is sent, [0, 2]
-  double together_m = 1.5;   ///< targets seen from places nearer than this are one on the tour that
-                             ///< decides on their order, [0, 10]
-  std::size_t tour = 10;     ///< so many of the nearest targets are ordered, [1, 30]
-  double least_room_m2 = 1.0;  ///< smaller rooms need not be entered, [0, 100]
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const ExplorerConfig& config);
 
 enum class TargetKind : std::uint8_t {
   kBranchEnd = 0,  ///< of an outer branch

@@ -20,9 +20,6 @@
 
 namespace topogeo::navigation {
 
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const MarkovTrackerConfig& config);
-
 /// Beams of a scan as range readings, one every `step_rad` (> 0) from -90 to 90 degrees of the
 /// laser; scan::Scan::kNoReturn where no point lies on a beam.
 SonarRound laser_round(const ScanPoints& scan, double step_rad);

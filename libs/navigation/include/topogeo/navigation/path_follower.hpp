@@ -18,23 +18,10 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
+#include "topogeo/navigation/follower_config.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 
 namespace topogeo::navigation {
-
-struct FollowerConfig {
-  double speed_m_per_s = 0.6;                 ///< at most, (0, 3]
-  double turn_rad_per_s = 1.0;                ///< at most, (0, 6]
-  double acceleration_m_per_s2 = 0.5;         ///< (0, 10]
-  double turn_acceleration_rad_per_s2 = 2.0;  ///< (0, 20]
-  double delay_s = 0.15;                      ///< from a command until the base obeys it, [0, 1]
-  double arrival_m = 0.03;                    ///< stops are that exact, [0.005, 1]
-  double arrival_rad = 0.02;                  ///< turns on the spot are, [0.002, 1]
-  double begin_turn_rad = 0.4;  ///< a heading error up to this is corrected on the way, [0, 1]
-};
-
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
-void check(const FollowerConfig& config);
 
 /// The samples of a polyline with a turn on the spot at every corner.
 std::vector<planning::PathSample> straight_path(std::span<const Eigen::Vector2d> points_m,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/navigation/explorer_config.hpp"
 #include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/pipeline/hybrid_map_config.hpp"
 #include "topogeo/pipeline/local_mapper_config.hpp"
@@ -26,9 +27,10 @@ struct Config {
   HybridMapConfig hybrid_map;
   planning::HybridPlannerConfig hybrid_planner;
   navigation::NavigatorConfig navigator;
+  navigation::TourConfig exploration;
 };
 
-/// Declares every key of the file with its variable in `config`, its range, unit and reason.
+/// Every key of the file: what the libraries declare of their settings, one after the other.
 support::ConfigSchema describe(Config& config);
 
 /// The configuration of a file, or the defaults without one. `effective` of it goes into reports.

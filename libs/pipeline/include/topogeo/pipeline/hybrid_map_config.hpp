@@ -16,7 +16,7 @@ struct HybridMapConfig {
   planning::ZoneConfig zones;
 };
 
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+/// Throws std::invalid_argument naming key, value and range; the parts declare the keys.
 void check(const HybridMapConfig& config);
 
 }  // namespace topogeo::pipeline

@@ -8,16 +8,23 @@
 #include "topogeo/topomap/local_map_config.hpp"
 #include "topogeo/voronoi/voronoi_config.hpp"
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::pipeline {
 
 struct LocalMapperConfig {
-  double stop_distance_m = 1.0;       ///< a stop is made this far from the one before
-  double stop_turn_rad = 0.35;        ///< or after this much turn
-  std::uint32_t longest_track = 256;  ///< scans between two stops; also the bound on the wire
+  double stop_distance_m = 1.0;
+  double stop_turn_rad = 0.35;
+  std::uint32_t longest_track = 256;
   voronoi::VoronoiConfig voronoi;
   topomap::LocalMapConfig local_map;
   geometry::Pose2 T_robot_laser;  ///< mounting of the laser
   localization::ScanTrackerConfig tracker;
 };
+
+/// Declares the sections `laser` and `stop`.
+void describe(LocalMapperConfig& config, support::ConfigSchema& schema);
 
 }  // namespace topogeo::pipeline

@@ -1,15 +1,22 @@
 // Settings of detours around obstacles.
 #pragma once
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::planning {
 
 struct DetourConfig {
-  double half_side_m = 3.0;   ///< of the window around the robot, [0.5, 20]
+  double half_side_m = 3.0;
   double start_snap_m = 0.5;  ///< as HybridPlannerConfig::start_snap_m: obstacles seen now can be
-                              ///< nearer than the forbidden cells, [0, 5]
+                              ///< nearer than the forbidden cells
 };
 
-/// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
+/// Declares the detours of the section `navigator`.
+void describe(DetourConfig& config, support::ConfigSchema& schema);
+
+/// Throws std::invalid_argument naming key, value and range.
 void check(const DetourConfig& config);
 
 }  // namespace topogeo::planning

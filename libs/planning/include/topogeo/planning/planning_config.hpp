@@ -1,16 +1,22 @@
 // Settings of route planning on nodes and branches.
 #pragma once
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::planning {
 
 struct PlanningConfig {
-  double max_snap_m = 3.0;       ///< farthest that start and goal may lie from a branch, >= 0
-  double min_clearance_m = 0.3;  ///< the robot's radius with a margin: a branch is closed where its
-                                 ///< clearance is less, unless it is virtual, >= 0. B21:
-                                 ///< 0.2625 m.
+  double max_snap_m = 3.0;
+  double min_clearance_m = 0.3;  ///< a branch is closed where its clearance is less, unless it is
+                                 ///< virtual; the radius of a B21 is 0.2625 m
 };
 
-/// Throws std::invalid_argument naming the field, the value and the allowed range.
+/// Declares the section `planning`.
+void describe(PlanningConfig& config, support::ConfigSchema& schema);
+
+/// Throws std::invalid_argument naming key, value and range.
 void check(const PlanningConfig& config);
 
 }  // namespace topogeo::planning

@@ -1,13 +1,21 @@
 // How a CARMEN log is read.
 #pragma once
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::scan {
 
 struct CarmenLogOptions {
-  double range_max_m = 49.9;  ///< readings at or above it become Scan::kNoReturn; > 0
-  /// A stamp further than this after its predecessor (or the very first one) must be confirmed by
-  /// the next scan; otherwise it, and not the rest of the log, is taken to be wrong. Seconds, > 0.
-  double jump_s = 60.0;
+  double range_max_m = 49.9;
+  double jump_s = 60.0;  ///< longest step of the stamps that needs no confirmation
 };
+
+/// Declares the section `scan`.
+void describe(CarmenLogOptions& options, support::ConfigSchema& schema);
+
+/// Throws std::invalid_argument naming key, value and range.
+void check(const CarmenLogOptions& options);
 
 }  // namespace topogeo::scan

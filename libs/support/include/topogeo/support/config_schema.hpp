@@ -1,8 +1,10 @@
 // Typed configuration: every parameter is declared once, with key, variable, range, unit and
 // reason.
 //
-// The declaration carries the check of a file, the listing of what is in force and the documented
-// example file. The default of a parameter is what its variable holds when it is declared.
+// The declaration carries the check of a file and of a configuration in memory, the listing of what
+// is in force, the documented example file and the table of the documentation. The default of a
+// parameter is what its variable holds when it is declared. Each library declares its own
+// configuration structs in `describe(Config&, ConfigSchema&)` beside them.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +39,7 @@ class ConfigSchema {
  public:
   // Each declares a parameter. `key` is of letters, digits, '_' and '.'; `value` must outlive the
   // schema. They throw std::invalid_argument naming the key when it is malformed, declared twice
-  // or also a section, and when the default is out of range: mistakes in the program.
+  // or also a section, and "key 'KEY' = 'VALUE': expected ..." when the value is out of range.
   void add(std::string key, double* value, double min, double max, std::string unit,
            std::string why);
   void add(std::string key, std::int32_t* value, std::int32_t min, std::int32_t max,
@@ -75,6 +77,29 @@ class ConfigSchema {
 
   std::vector<ConfigParameter> parameters_;
 };
+
+/// Checks every declared value of a configuration against its range, by what the library of that
+/// configuration declares: `void describe(Config&, ConfigSchema&)`. Throws std::invalid_argument
+/// "key 'KEY' = 'VALUE': expected number between a and b UNIT". It takes some microseconds for each
+/// parameter: for constructors, not for what is called with every scan.
+template <typename Config>
+void check_ranges(Config config) {
+  ConfigSchema schema;
+  describe(config, schema);
+}
+
+/// The same exception for values that must fit each other, which no range of one of them states.
+[[noreturn]] void refuse_value(std::string_view key, double value, const std::string& expected);
+
+/// Throws as refuse_value unless low <= value <= high: for a limit that depends on another value.
+void require_between(std::string_view key, double value, double low, double high,
+                     const std::string& unit);
+
+/// Throws as refuse_value unless value >= low, where another key holds `low`.
+void require_at_least(std::string_view key, double value, std::string_view low_key, double low);
+
+/// Markdown tables of all parameters, one for each section: key, default, range with unit, reason.
+void write_markdown(const ConfigSchema& schema, std::ostream& out);
 
 /// Reads a YAML file of nested sections (or dotted keys) into the declared variables; keys that it
 /// does not name keep their value. Throws std::runtime_error "FILE:LINE: key 'x.y' = 'v': expected

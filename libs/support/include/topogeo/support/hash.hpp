@@ -1,5 +1,5 @@
 // 64-bit FNV-1a: the same value on every machine. It finds differences and damage; it is no
-// protection against deliberate collisions.
+// protection against an attacker who wants two things to look the same.
 #pragma once
 
 #include <cstdint>

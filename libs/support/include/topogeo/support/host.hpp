@@ -6,7 +6,7 @@
 
 namespace topogeo::support {
 
-/// 1 to 64 bytes; "unknown" when the system does not name it.
+/// 1 to 64 bytes; "unknown" when the system does not provide it.
 std::string host_name();
 
 /// "<host>-<process id>", 40 bytes at most: who this process is, to people and to other processes.

@@ -1,4 +1,4 @@
-// Log set-up of a process: its name, the least severe level, stderr.
+// Log set-up of a process: name of the process, level, to stderr.
 #pragma once
 
 #include <string_view>

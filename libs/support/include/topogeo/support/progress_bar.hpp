@@ -1,4 +1,4 @@
-// One line with the progress, rate and remaining time of a long job.
+// One line with the progress, the speed and the time left of a long job.
 //
 // The caller passes the time, so the bar has no clock. On a terminal the line is redrawn in place;
 // elsewhere (a file, a pipe, a CI log) one line is printed about every tenth of the job.

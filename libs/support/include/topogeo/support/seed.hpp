@@ -1,6 +1,6 @@
 // Seeds of the parts of a run, derived from the run's own seed.
 //
-// A seed follows from its purpose (robot, maps, pass), so it does not depend on the order in which
+// A seed is derived from its use (robot, maps, pass), so it does not depend on the order in which
 // the parts are worked on or on who does it.
 #pragma once
 

@@ -85,7 +85,7 @@ struct LocalMap {
 };
 
 /// 64-bit FNV-1a hash of everything that a match can depend on (id, points, nodes, branches,
-/// mounting), so that a worker can tell that it holds the map that a task means.
+/// mounting), so that a worker can check that it holds the map that a task means.
 std::uint64_t content_hash(const LocalMap& map);
 
 /// The map as the stop of this number of a map of several drives; `starts_drive`: the first of a

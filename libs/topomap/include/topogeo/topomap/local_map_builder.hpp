@@ -24,10 +24,6 @@
 
 namespace topogeo::topomap {
 
-/// Throws std::invalid_argument that names the first field outside its range: lengths are finite,
-/// at least 0 and at most 1000 m, largest_hidden_share is in [0, 1].
-void validate(const LocalMapConfig& config);
-
 /// Points of the echoes up to `range_limit_m`, in beam order, in the robot frame.
 std::vector<ScanPoint> scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser,
                                    double range_limit_m);
@@ -39,7 +35,7 @@ void scan_points(const scan::Scan& scan, const geometry::Pose2& T_robot_laser, d
 /// same object again costs no allocation.
 class LocalMapBuilder {
  public:
-  /// Throws std::invalid_argument if a field of the configuration is outside its range.
+  /// Throws std::invalid_argument as check(LocalMapConfig).
   explicit LocalMapBuilder(const LocalMapConfig& config);
   ~LocalMapBuilder();
   LocalMapBuilder(LocalMapBuilder&&) noexcept;

@@ -1,10 +1,11 @@
-// Finds the parameters of OdometryNoise of a robot from a log (spec A3): from motions of which both
-// what the odometry said and what really happened are known.
+// Finds the parameters of OdometryNoise of a robot from a log (docs/algorithms.md,
+// "Calibration of odometry and laser"): from motions of which both the odometry and the true motion
+// are known.
 //
 // The residual of a motion is its odometry less its measurement, in the frame of its first pose.
 // Its covariance is linear in the parameters (the sum that `advance` makes of all steps) plus the
 // covariance of the measurement, so the parameters are those of largest likelihood of normally
-// distributed residuals. Motions of different length tell apart what grows with the way or the turn
+// distributed residuals. Motions of different length separate what grows with distance or turn
 // from what every measurement adds: the stated covariances of the measurements are scaled by one
 // factor that is estimated too, as neither matches nor reference trajectories know theirs exactly.
 // The search starts from a fit with Student's t distribution, so that outlying measurements do not
@@ -15,8 +16,8 @@
 // configuration wants. `corrected` is what would be left if the systematic errors, which are
 // estimated as well, were taken out of the odometry.
 //
-// A value that cannot be told from zero is given as its upper end: too little noise makes a
-// localizer search in the wrong place, too much only costs it time.
+// A value that cannot be distinguished from zero is given as its upper end: too little noise makes
+// a localizer search in the wrong place, too much only costs it time.
 //
 // Motions overlap and errors of successive matches are related, so the spread is not that of the
 // likelihood but of refits to random choices of blocks of the log (block bootstrap).
@@ -53,7 +54,7 @@ struct NoiseParameter {
   const char* key;  ///< below "odometry." in the configuration
   const char* unit;
   double OdometryNoise::*field;
-  bool per_turn;  ///< grows with the turn; else with the way
+  bool per_turn;  ///< grows with the turn; else with the distance
 };
 
 inline constexpr std::size_t kNoiseParameters = 5;
@@ -62,7 +63,7 @@ inline constexpr std::size_t kNoiseParameters = 5;
 extern const std::array<NoiseParameter, kNoiseParameters> kOdometryParameters;
 
 struct OdometryCalibrationConfig {
-  OdometryNoise fallback;              ///< for what the log says nothing of
+  OdometryNoise fallback;              ///< for what the log does not show
   double largest_mahalanobis2 = 25.0;  ///< of a residual (3 d.o.f.); as the gate of matches
   std::uint32_t blocks = 20;           ///< of the bootstrap, 4 to 1000
   std::uint32_t resamples = 100;       ///< of the bootstrap, 2 to 100000
@@ -71,24 +72,25 @@ struct OdometryCalibrationConfig {
 
 struct Estimate {
   double value = 0.0;
-  double spread = 0.0;   ///< one standard deviation
-  bool at_most = false;  ///< cannot be told from 0; `value` is then one spread above what was found
+  double spread = 0.0;  ///< one standard deviation
+  bool at_most =
+      false;  ///< not distinguishable from 0; `value` is then one spread above what was found
 };
 
 struct NoiseEstimate {
-  bool known = false;         ///< false: the log says nothing of it, both values are `fallback`
-  std::size_t stretches = 0;  ///< with enough way (0.2 m) or turn (0.2 rad) to say something
+  bool known = false;         ///< false: the log does not show it, both values are `fallback`
+  std::size_t stretches = 0;  ///< with enough distance (0.2 m) or turn (0.2 rad) to count
   Estimate as_is;             ///< with systematic errors taken for noise
   Estimate corrected;         ///< without them
 };
 
-/// Errors of odometry that repeat; positive: the odometry says too much.
+/// Errors of odometry that repeat; positive: the odometry measures too much.
 struct SystematicErrors {
-  Estimate way;                ///< per metre of way: 0.02 where 1 m is measured as 1.02 m
-  Estimate heading_rad_per_m;  ///< counter-clockwise turn measured on a straight way
+  Estimate way;                ///< per metre driven: 0.02 where 1 m is measured as 1.02 m
+  Estimate heading_rad_per_m;  ///< counter-clockwise turn measured on a straight path
   Estimate turn;               ///< per radian of turn, as `way`; 0 +- 0 in a log without turns
   // Where the laser (what is measured) sits, seen from where it should on the robot. The first two
-  // are 0 +- 0 without turns, the last without way.
+  // are 0 +- 0 without turns, the last without driving.
   Estimate ahead_m;
   Estimate left_m;
   Estimate yaw_rad;  ///< counter-clockwise
@@ -99,8 +101,8 @@ struct OdometryCalibration {
   std::array<NoiseEstimate, kNoiseParameters> parameters;
   SystematicErrors systematic;
   /// Covariance of `systematic`'s (ahead, left, yaw), m and rad: by the bootstrap, and by the
-  /// likelihood alone. The second is close to 1 where the log says nothing, which the first cannot
-  /// tell: without anything to go by all resamples agree on 0.
+  /// likelihood alone. The second is close to 1 where the log shows nothing, which the first cannot
+  /// show: without anything to go by all resamples agree on 0.
   Eigen::Matrix3d mounting_covariance = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d mounting_likelihood_covariance = Eigen::Matrix3d::Identity();
   std::size_t motions = 0;         ///< used
@@ -108,12 +110,13 @@ struct OdometryCalibration {
   double measurement_scale = 1.0;  ///< estimated over stated deviations of the measurements
 };
 
-/// Stretches that say something of a parameter, at least, for it to be estimated.
+/// Stretches that bear on a parameter, at least, for it to be estimated. Fixed: with fewer the
+/// bootstrap has no blocks to choose from.
 inline constexpr std::size_t kFewestStretches = 20;
 
-/// `progress`, if any, hears how many of the refits are done. Throws std::invalid_argument when a
-/// motion names no stretch or its pose or covariance is none, std::runtime_error when the motions
-/// cover fewer than `kFewestStretches` stretches or nothing moves.
+/// `progress`, if any, is called with how many of the refits are done. Throws std::invalid_argument
+/// when a motion names no stretch or its pose or covariance is none, std::runtime_error when the
+/// motions cover fewer than `kFewestStretches` stretches or nothing moves.
 OdometryCalibration calibrate_odometry(
     std::span<const OdometryStretch> stretches, std::span<const MeasuredMotion> motions,
     const OdometryCalibrationConfig& config,

@@ -6,11 +6,15 @@
 #include "topogeo/localization/matching/match_config.hpp"
 #include "topogeo/localization/matching/odometry_config.hpp"
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::localization {
 
 enum class LocalizerMode : std::uint8_t {
-  kGraph = 0,   ///< Localizer: a pose graph over all believed matches
-  kThesis = 1,  ///< ThesisLocalizer: the source's forward and backward correction alone
+  kGraph = 0,   ///< Localizer: a pose graph over all accepted matches
+  kThesis = 1,  ///< ThesisLocalizer: the forward and backward correction of the thesis alone
 };
 
 struct LocalizerConfig {
@@ -20,21 +24,22 @@ struct LocalizerConfig {
   GeneticParameters genetic;
   FitnessForm fitness_form = FitnessForm::kCombined;
   std::uint32_t solutions_wanted = 3;
-  double search_probability = 0.95;  ///< of the error ellipse whose rectangle is searched (6.22)
+  double search_probability = 0.95;
   double search_heading_sigmas = 3.0;
-  double largest_half_width_m =
-      3.0;  ///< of a search space; beyond it a match waits for a better prediction
+  double largest_half_width_m = 3.0;
   double largest_half_width_rad = 3.1;
-  double recent_way_m = 6.0;  ///< stops up to this much way ago are recent, older ones revisited
-  std::uint32_t recent_matches = 3;         ///< tasks per step against recent stops
-  std::uint32_t revisit_matches = 3;        ///< tasks per step against older stops
-  double smallest_expected_overlap = 0.35;  ///< of two maps, before a task is spent on them
-  double unaided_correction_m =
-      0.6;  ///< a loop that moves the robot further needs a second one that agrees
+  double recent_way_m = 6.0;
+  std::uint32_t recent_matches = 3;
+  std::uint32_t revisit_matches = 3;
+  double smallest_expected_overlap = 0.35;
+  double unaided_correction_m = 0.6;
   double unaided_correction_rad = 0.1;
-  std::uint32_t optimization_delay = 2;  ///< steps from a closed loop to its effect on old poses
-  std::uint32_t final_passes = 3;        ///< rounds of revisit matching when the log has ended
+  std::uint32_t optimization_delay = 2;
+  std::uint32_t final_passes = 3;
   GateConfig gate;
 };
+
+/// Declares the sections `localizer`, `odometry`, `match` and `gate`.
+void describe(LocalizerConfig& config, support::ConfigSchema& schema);
 
 }  // namespace topogeo::localization

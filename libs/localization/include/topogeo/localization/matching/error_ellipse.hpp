@@ -1,10 +1,11 @@
 // The ellipse in which a position lies with a given probability, and the rectangle around it: the
-// space that a search has to cover (spec A3, thesis 6.2.1.2 and 6.2.1.3).
+// space that a search has to cover (Thesis, 6.2.1.2 and 6.2.1.3; docs/algorithms.md, "Odometry
+// model and search space").
 //
-// The source inverts the covariance and writes the ellipse as A x^2 + 2 B x y + C y^2 = k^2 (6.16,
-// with the 2 that its print lacks). Here the same axes come from the covariance itself, which also
-// works where one variance is zero. Of the two directions that 6.18 allows, this is always that of
-// the major axis: 1/2 atan2(-2B, C - A).
+// The thesis inverts the covariance and writes the ellipse as A x^2 + 2 B x y + C y^2 = k^2 (eq.
+// 6.16, with the 2 that its print lacks). Here the same axes come from the covariance itself, which
+// also works where one variance is zero. Of the two directions that eq. 6.18 allows, this is always
+// that of the major axis: 1/2 atan2(-2B, C - A).
 #pragma once
 
 #include <Eigen/Core>
@@ -18,12 +19,12 @@ struct ErrorEllipse {
   double direction_rad = 0.0;  ///< of the major axis from x, in (-pi/2, pi/2]; 0 for a circle
 };
 
-/// k^2 = -2 ln(1 - P) of 6.22: the squared Mahalanobis radius of the ellipse that holds probability
-/// P. Throws std::invalid_argument unless 0 < probability < 1.
+/// k^2 = -2 ln(1 - P) of eq. 6.22: the squared Mahalanobis radius of the ellipse that holds
+/// probability P. Throws std::invalid_argument unless 0 < probability < 1.
 double ellipse_k2(double probability);
 
-/// The ellipse of squared Mahalanobis radius `k2` of a covariance of (x, y) in m^2 (6.14 to 6.20).
-/// Throws std::invalid_argument when the covariance is not symmetric, finite and positive
+/// The ellipse of squared Mahalanobis radius `k2` of a covariance of (x, y) in m^2 (eq. 6.14
+/// to 6.20). Throws std::invalid_argument when the covariance is not symmetric, finite and positive
 /// semidefinite, or k2 is negative or not finite.
 ErrorEllipse error_ellipse(const Eigen::Matrix2d& covariance_m2, double k2);
 

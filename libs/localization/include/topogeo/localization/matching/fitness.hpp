@@ -1,5 +1,6 @@
-// How well two local maps agree at a relative pose (spec A5, thesis 6.2.5): what the genetic search
-// makes as large as it can. Three forms share this interface; see their headers for what they are.
+// How well two local maps agree at a relative pose (Thesis, 6.2.5; docs/algorithms.md, "Fitness"):
+// what the genetic search makes as large as it can. Three forms share this interface; see their
+// headers for what they are.
 #pragma once
 
 #include "topogeo/geometry/portable_math.hpp"

@@ -1,5 +1,5 @@
 // The fitness that localization uses: the topological form and the agreement of the scan points,
-// times what odometry says of the pose.
+// times the likelihood of the pose by odometry.
 //
 // Nodes and branches say where a place is like another one, scan points how well it lies on it;
 // without the odometry either takes the robot to a look-alike.
@@ -69,7 +69,7 @@ class CombinedFitness : public Fitness {
   [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
                           const geometry::SinCos& heading) const override;
 
-  /// What the maps say of a pose; odometry does not count.
+  /// The fitness of a pose by the maps alone; odometry does not count.
   [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
                                const geometry::SinCos& heading) const;
 

@@ -1,5 +1,5 @@
-// The corrected fitness of the spec (A5): equivalent nodes and branches, clearance, orientation and
-// coverage of the query's map.
+// The corrected fitness (docs/algorithms.md, "Fitness"): equivalent nodes and branches, clearance,
+// orientation and coverage of the query's map.
 //
 // Each node and each sample of a branch of the query map scores a soft kernel of its distance to
 // the nearest equivalent element of the reference map, times kernels of the difference in clearance

@@ -1,7 +1,8 @@
-// Genetic search for the pose with the largest fitness (spec A4, thesis 6.2.2-6.2.4).
+// Genetic search for the pose with the largest fitness (Thesis, 6.2.2-6.2.4; docs/algorithms.md,
+// "Genetic search").
 //
 // Binary chromosomes of three genes (x, y, theta), whose length follows from the size of the search
-// space so that the precision stays what was asked for. Roulette selection, elitism, one-point
+// space so that the precision stays as requested. Roulette selection, elitism, one-point
 // crossover in each gene, bit-flip mutation. Everything random comes from the task's seed.
 #pragma once
 
@@ -15,7 +16,7 @@
 
 namespace topogeo::localization {
 
-/// Whether a pose lies in the space that the task says, but for rounding.
+/// Whether a pose lies in the search space of the task, but for rounding.
 bool in_search_space(const MatchTask& task, const geometry::Pose2& T_reference_query);
 
 /// Two poses are one solution when they are nearer than 1.5 times the resolution in position and
@@ -25,14 +26,14 @@ bool same_solution(const MatchTask& task, const geometry::Pose2& a, const geomet
 class GeneticSearch {
  public:
   /// Searches. The first population is the predicted pose, the task's initial individuals, the
-  /// `hypotheses` and, as far as there is room, poses spread over the space. Ends early when nobody
-  /// of a generation has a fitness above 0. No allocation once there was a search as large. Returns
-  /// how many individuals were scored.
+  /// `hypotheses` and, as far as there is room, poses spread over the space. Ends early when no
+  /// individual of a generation has a fitness above 0. No allocation once there was a search as
+  /// large. Returns how many individuals were scored.
   std::uint32_t run(const MatchTask& task, const Fitness& fitness,
                     std::span<const geometry::Pose2> hypotheses);
 
   /// Of all poses that the last run met: the best one, then the best that is distinct from it, and
-  /// so on, `count` at most. `same(a, b)` says whether two poses are not distinct.
+  /// so on, `count` at most. `same(a, b)` is true for poses that are not distinct.
   template <typename Same>
   void best_distinct(std::size_t count, const Same& same, std::vector<MatchSolution>& out);
 

@@ -99,7 +99,7 @@ class Roulette {
  public:
   void fill(const std::vector<Individual>& population);
 
-  /// Nobody has a fitness above 0.
+  /// No individual has a fitness above 0.
   [[nodiscard]] bool empty() const { return !(cumulative_.back() > 0.0); }
 
   /// Index of an individual; not for an empty one.

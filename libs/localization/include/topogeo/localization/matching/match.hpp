@@ -1,6 +1,7 @@
-// What a search for the relative pose of two local maps needs and gives (design, the search pool).
+// What a search for the relative pose of two local maps needs and gives (docs/algorithms.md,
+// "Search pool").
 //
-// A task says everything that its answer depends on, so the answer is the same wherever it is
+// A task holds everything that its answer depends on, so the answer is the same wherever it is
 // worked on. Poses are T_reference_query: the robot at the query map's stop, in the frame of the
 // reference map's stop.
 #pragma once
@@ -48,14 +49,14 @@ enum class MatchStatus : std::uint8_t {
   kNothingInCommon = 1,  ///< no point of the query map falls into the view of the reference map
 };
 
-/// Whether a match is believed.
+/// Whether a match is accepted.
 enum class Verdict : std::uint8_t {
   kAccepted = 0,
   kAmbiguous = 1,  ///< another place fits nearly as well
   kRejected = 2,
 };
 
-/// Why a match is not believed.
+/// Why a match is not accepted.
 enum class Reason : std::uint8_t {
   kNone = 0,  ///< it is
   kNothingInCommon,
@@ -88,7 +89,7 @@ struct MatchResult {
   double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
   double fitness = 0.0;              ///< of the refined pose, [0, 1]
   MatchSolution second;  ///< the pose elsewhere in the search space that the maps allow best,
-                         ///< whatever odometry says of it; fitness 0: none
+                         ///< whatever odometry predicts; fitness 0: none
   std::uint32_t evaluations = 0;
   std::uint64_t seed = 0;  ///< of the task
   Verdict verdict = Verdict::kRejected;

@@ -47,7 +47,7 @@ class RangeProfile {
     kSurface,  ///< about where the laser saw something
     kHidden,   ///< behind what the laser saw
   };
-  /// What the scan says of a point in the robot frame. `tolerance_m` is the half-thickness of
+  /// How the scan saw a point in the robot frame. `tolerance_m` is the half-thickness of
   /// kSurface.
   [[nodiscard]] View view(const Eigen::Vector2d& point_robot_m, double tolerance_m) const;
 
@@ -80,7 +80,7 @@ struct BranchSample {
   double clearance_m = 0.0;
 };
 
-/// A branch from end to end, as the equations of the source need it.
+/// A branch from end to end, as the equations of the thesis need it.
 struct BranchCurve {
   std::vector<Eigen::Vector2d>
       points_m;              ///< about kCurveSpacing_m apart, both ends included; at least two
@@ -128,7 +128,8 @@ struct Reference {
   std::vector<Branch> branches;
 };
 
-/// Further apart than this, in metres, nothing is looked up in a reference.
+/// Further apart than this, in metres, nothing is looked up in a reference. Fixed: the widest
+/// kernel.
 inline constexpr double kReach_m = 0.60;
 
 /// Throws std::invalid_argument when the points lie too far apart (see NearestPointGrid::build).

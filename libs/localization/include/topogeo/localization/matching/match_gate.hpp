@@ -1,4 +1,4 @@
-// Decides whether the result of a match is believed. Every match passes through here, the ones with
+// Decides whether the result of a match is accepted. Every match passes through here, the ones with
 // the stop just before too: a single poor match in a turn costs more than all the good ones give.
 #pragma once
 
@@ -8,14 +8,14 @@
 
 namespace topogeo::localization {
 
-/// One number for how much speaks against a match: 0 for a perfect one, above 2 hardly any is
+/// One number for the evidence against a match: 0 for a perfect one, above 2 hardly any is
 /// right. Space that one scan saw free and the other occupied weighs most, then points without a
 /// partner, large residuals and a low scan fitness. Each part alone rejects too many good matches
 /// of sparse or cluttered scans.
 double doubt(const MatchResult& result);
 
 /// How well the second pose fits the maps, as a share of how well the result does; 0 without one.
-/// What odometry says of them does not count, because a false prediction speaks for the false pose.
+/// Odometry does not count, because a false prediction speaks for the false pose.
 /// Only the combined form has odometry in it.
 double rivalry(const MatchTask& task, const MatchResult& result);
 

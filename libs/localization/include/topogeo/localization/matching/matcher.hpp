@@ -32,7 +32,7 @@ class Matcher {
   /// definite, the search space empty, the resolution not positive or solutions_wanted not 1 to 40.
   MatchResult solve(const MatchTask& task);
 
-  /// Computes again, from the task's maps and the poses in `result`, all that the result says of
+  /// Computes again, from the task's maps and the poses in `result`, all that the result states of
   /// them: fitness, evidence, covariance, verdict. What is wrong with it, for people; empty when it
   /// is right to the last bit. A result that is right may still be poorer than that of solve():
   /// only a second answer to the task shows that. Throws like solve().

@@ -1,26 +1,39 @@
 // How noisy the odometry of a robot is.
 #pragma once
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::localization {
 
-/// Variances that grow with the way travelled, as in 6.8, so that they do not depend on how the way
-/// is cut into steps. In the frame of the step the source's diag(|dx|, |dy|, |dtheta|) K_error is
-/// translation_m2_per_m = K_error(1,1), heading_rad2_per_rad = K_error(3,3) and zero for the rest,
-/// as its robot never moves sideways. What the source does not have, and why it is here:
-/// - heading_rad2_per_m: wheels slip and differ on a straight way too. Without it every corridor
+/// Variances that grow with the distance travelled, as in the Thesis, 6.2, eq. 6.8
+/// (docs/algorithms.md, "Odometry model and search space"), so that they do not depend on how a
+/// path is cut into steps. In the frame of the step the thesis's diag(|dx|, |dy|, |dtheta|) K_error
+/// is translation_m2_per_m = K_error(1,1), heading_rad2_per_rad = K_error(3,3) and zero for the
+/// rest, as its robot never moves sideways. What the thesis does not have, and why it is here:
+/// - heading_rad2_per_m: wheels slip and differ on a straight path too. Without it every corridor
 ///   makes the covariance optimistic, which was the costliest mistake of all trials.
 /// - lateral_m2_per_m: carpets push the robot sideways, which its wheels do not measure.
 /// - translation_m2_per_rad: a turn moves a robot that does not turn exactly about the point that
-///   its odometry speaks of.
+///   its odometry refers to; also an unknown offset of the laser.
 /// The defaults are several times what poor wheels do at random, because the errors of real ones
-/// are systematic: 3 % of the way, the same in every step, add up as no random error does. `topogeo
-/// calibrate-odometry` finds the values of a robot from a log (odometry_calibration.hpp).
+/// are systematic: 3 % of the distance, the same in every step, add up as no random error does.
+/// `topogeo calibrate-odometry` finds the values of a robot from a log (odometry_calibration.hpp).
 struct OdometryNoise {
-  double translation_m2_per_m = 0.02;     ///< along the motion
-  double translation_m2_per_rad = 0.016;  ///< in x and y, per turn: also an unknown laser offset
-  double lateral_m2_per_m = 0.004;        ///< across the motion
+  double translation_m2_per_m = 0.02;
+  double translation_m2_per_rad = 0.016;
+  double lateral_m2_per_m = 0.004;
   double heading_rad2_per_m = 0.16;
   double heading_rad2_per_rad = 0.2;
 };
+
+// Range of each; translation_m2_per_rad may also be 0. Less noise than the smallest is that of no
+// wheel and makes covariances singular.
+inline constexpr double kSmallestOdometryNoise = 1e-6;
+inline constexpr double kLargestOdometryNoise = 1.0;
+
+/// Declares the section `odometry`.
+void describe(OdometryNoise& noise, support::ConfigSchema& schema);
 
 }  // namespace topogeo::localization

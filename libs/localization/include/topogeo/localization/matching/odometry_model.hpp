@@ -1,4 +1,5 @@
-// Uncertainty of odometry and the search space that follows from it (spec A3, thesis 6.2.1).
+// Uncertainty of odometry and the search space that follows from it (Thesis, 6.2.1;
+// docs/algorithms.md, "Odometry model and search space").
 #pragma once
 
 #include <Eigen/Core>
@@ -15,12 +16,12 @@ struct UncertainPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// T_a_c and its covariance, of two that know nothing of each other's errors.
+/// T_a_c and its covariance, of two whose errors are independent.
 UncertainPose compose(const UncertainPose& T_a_b, const UncertainPose& T_b_c);
 /// T_b_a.
 UncertainPose inverse(const UncertainPose& T_a_b);
 
-/// Adds one step of odometry to a relative pose (6.4, 6.6, 6.7).
+/// Adds one step of odometry to a relative pose (Thesis, eq. 6.4, 6.6, 6.7).
 UncertainPose advance(const UncertainPose& from, const geometry::Pose2& T_before_after,
                       const OdometryNoise& noise);
 
@@ -34,7 +35,7 @@ UncertainPose odometry_between_stops(const geometry::Pose2& T_odom_previous,
 Eigen::Matrix3d invertible(Eigen::Matrix3d covariance);
 
 /// Half-widths (m, m, rad) of the rectangle around the error ellipse of the given probability
-/// (6.22; error_ellipse.hpp) and of `heading_sigmas` standard deviations of heading (6.23).
+/// (eq. 6.22; error_ellipse.hpp) and of `heading_sigmas` standard deviations of heading (eq. 6.23).
 /// 0 < probability < 1.
 Eigen::Vector3d search_half_width(const Eigen::Matrix3d& covariance, double probability,
                                   double heading_sigmas);

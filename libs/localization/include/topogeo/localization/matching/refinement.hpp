@@ -17,7 +17,7 @@ struct PosePrior {
       Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the reference frame; zero: no prior
 };
 
-/// What the scans say of one pose.
+/// The evidence of the scans for one pose.
 struct PoseEvidence {
   Eigen::Matrix3d information =
       Eigen::Matrix3d::Zero();  ///< Hessian of the data term, 1/m^2, 1/m, 1/rad^2; zero with too
@@ -49,10 +49,10 @@ struct Alignment {
 Alignment align(const Reference& reference, const MatchFeatures& query,
                 const geometry::Pose2& T_first_guess, const PosePrior& prior);
 
-/// What the scans alone say: align() ends where scans and prior balance, so whoever uses the prior
-/// as a measurement of its own would count it twice. `covariance` is that of the scans at
+/// The pose by the scans alone: align() ends where scans and prior balance, so whoever uses the
+/// prior as a measurement of its own would count it twice. `covariance` is that of the scans at
 /// T_aligned. One Newton step away from the prior, which is exact as long as the scans' information
-/// stays the same on the way; a step beyond 0.3 m or 0.05 rad is not taken. Along a direction in
+/// stays the same in between; a step beyond 0.3 m or 0.05 rad is not taken. Along a direction in
 /// which the scans leave the position uncertain by more than 0.5 m the pose stays where it is.
 geometry::Pose2 without_prior(const geometry::Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                               const PosePrior& prior);
