@@ -5,11 +5,11 @@
 #include <ostream>
 #include <string_view>
 
-#include <spdlog/fmt/fmt.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {

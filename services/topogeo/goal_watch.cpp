@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {

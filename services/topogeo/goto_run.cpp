@@ -3,11 +3,10 @@
 #include <chrono>
 #include <iostream>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "run_supervisor.hpp"
 

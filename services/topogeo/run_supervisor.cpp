@@ -6,9 +6,9 @@
 #include <iostream>
 #include <random>
 
-#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include "topogeo/support/format.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::cli {
