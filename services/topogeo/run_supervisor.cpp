@@ -4,9 +4,8 @@
 #include <chrono>
 #include <iostream>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::cli {
