@@ -17,14 +17,14 @@ void LocalizerService::carry_out_commands() {
 }
 
 CommandChannel::Answer LocalizerService::carry_out(const service::LocalizationCommand& command) {
-  const bool maps = localizer_.map_localizer() == nullptr;
+  const bool maps = slam_.follower() == nullptr;
   switch (command.kind) {
     case msg::kCommandSetPose:
       if (maps) return {false, "it makes a map, in which its pose is not to be chosen"};
       return set_pose(command);
     case msg::kCommandSearch:
       if (maps) return {false, "it makes a map: there is no finished one to search"};
-      localizer_.map_localizer()->search();
+      slam_.follower()->search();
       return {true, "searches the whole map from the next stop on"};
     case msg::kCommandSwitchToLocalization:
       return stop_mapping();
@@ -35,11 +35,11 @@ CommandChannel::Answer LocalizerService::carry_out(const service::LocalizationCo
 }
 
 CommandChannel::Answer LocalizerService::stop_mapping() {
-  if (!localizer_.mapping()) return {false, "it localizes in a finished map already"};
+  if (!slam_.mapping()) return {false, "it localizes in a finished map already"};
   if (finished_) return {false, "the log has ended"};
   if (stops_in_map() == 0) return {false, "there is no map yet"};
   try {
-    localizer_.session()->stop_mapping();
+    slam_.mapping_session()->stop_mapping();
   } catch (const std::exception& error) {
     return {false, error.what()};
   }
@@ -47,13 +47,13 @@ CommandChannel::Answer LocalizerService::stop_mapping() {
 }
 
 CommandChannel::Answer LocalizerService::resume_mapping() {
-  if (localizer_.mapping()) return {false, "it makes a map already"};
-  if (localizer_.session() == nullptr) {
+  if (slam_.mapping()) return {false, "it makes a map already"};
+  if (slam_.mapping_session() == nullptr) {
     return {false, "the map was given with --map to stay as it is; start with --continue"};
   }
   if (finished_) return {false, "the log has ended"};
   try {
-    localizer_.session()->resume_mapping();
+    slam_.mapping_session()->resume_mapping();
   } catch (const std::exception& error) {
     return {false, error.what()};
   }
@@ -68,7 +68,7 @@ CommandChannel::Answer LocalizerService::set_pose(const service::LocalizationCom
         geometry::between(last_map_->T_odom_robot, newest_.T_odom_robot);
     T_map_stop = command.T_map_robot * geometry::inverse(T_stop_robot);
   }
-  localizer_.map_localizer()->set_pose(T_map_stop, command.covariance);
+  slam_.follower()->set_pose(T_map_stop, command.covariance);
   if (last_map_) {
     last_stop_.T_map_robot = T_map_stop;
     last_stop_.covariance = command.covariance;

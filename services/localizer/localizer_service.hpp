@@ -1,5 +1,5 @@
-// Wires localization::Localizer to topics: local maps in, the corrected trajectory, closed loops,
-// what was decided of each loop and the live pose out, with the matching done by RemotePool.
+// Wires localization::SlamSession to topics: local maps in, the corrected trajectory, closed loops,
+// the decision on each loop and the live pose out, with the matching done by RemotePool.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
@@ -21,7 +21,7 @@
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
 
-#include "active_slam.hpp"
+#include "background_optimizer.hpp"
 #include "command_channel.hpp"
 #include "remote_pool.hpp"
 #include "trajectory_updates.hpp"
@@ -69,7 +69,8 @@ class LocalizerService {
   service::Service& service_;
   LocalizerOptions options_;
   RemotePool pool_;
-  ActiveSlam localizer_;
+  BackgroundOptimizer optimizer_;
+  localization::SlamSession slam_;
   CommandChannel commands_;
   messaging::Reader<msg::LocalMap> maps_in_;
   messaging::Reader<msg::Odometry> odometry_;

@@ -10,8 +10,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/session/make_slam.hpp"
 #include "topogeo/pipeline/world_grid.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"

@@ -38,13 +38,6 @@ geometry::Pose2 parse_pose(const std::string& text) {
   return {values[0], values[1], geometry::wrap_angle(values[2] * std::numbers::pi / 180.0)};
 }
 
-Eigen::Matrix3d given_pose_covariance() {
-  constexpr double kSigma_m = 0.3;
-  constexpr double kSigma_rad = 10.0 * std::numbers::pi / 180.0;
-  return Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
-      .asDiagonal();
-}
-
 namespace {
 
 /// A map file as far as its stops have poses.

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "topogeo/localization/mapping/backward_correction.hpp"
+#include "topogeo/localization/mapping/closing_check.hpp"
 #include "topogeo/localization/mapping/localizer.hpp"
 
 namespace topogeo::localization {

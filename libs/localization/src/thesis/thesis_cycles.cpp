@@ -67,7 +67,7 @@ bool ThesisLocalizer::close_cycle(std::uint32_t stop, const std::vector<Neighbou
   problem.candidates = candidates(matches, first);
   ++counts_.optimizations;
   const BackwardResult found = correct_backward(problem, store_, thesis_.backward);
-  if (found.outcome != BackwardOutcome::kClosed) {
+  if (found.outcome != LoopSearchOutcome::kClosed) {
     ++counts_.failed_optimizations;
     for (const Match& match : matches) {
       store_.put(match.earlier, stop, {});
@@ -75,8 +75,8 @@ bool ThesisLocalizer::close_cycle(std::uint32_t stop, const std::vector<Neighbou
     }
     return false;
   }
-  apply(problem, found.ways.front());
-  const std::uint32_t winner = problem.candidates[found.ways.front().candidate].via;
+  apply(problem, found.paths.front());
+  const std::uint32_t winner = problem.candidates[found.paths.front().candidate].via;
   for (const Match& match : matches) {
     const Pose2 T_map_says = graph_.poses()[match.earlier] * match.T_earlier_new.T_a_b;
     const Eigen::Vector3d off = geometry::difference(T_map_says, graph_.poses()[stop]);
@@ -144,7 +144,7 @@ BackwardProblem ThesisLocalizer::backward_problem(std::uint32_t first, std::uint
 
 // The corrected poses, and the step that each was given as the first of the stored solutions, so
 // that the next walk back starts from what this one found.
-void ThesisLocalizer::apply(const BackwardProblem& problem, const BackwardWay& way) {
+void ThesisLocalizer::apply(const BackwardProblem& problem, const LoopPath& way) {
   const std::uint32_t first = problem.first_id;
   std::vector<Pose2> poses = graph_.poses();
   for (std::uint32_t k = 1; k < way.T_first_pose.size(); ++k) {

@@ -47,7 +47,7 @@ void ThesisLocalizer::append(std::shared_ptr<const LocalMap> map) {
   pool_.add_map(map);
   Stop stop;
   stop.hash = topomap::content_hash(*map);
-  stop.view = field_of_view(*map);
+  stop.view = visible_rectangle(*map);
   MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
   stop.profile = std::move(features.profile);
   stop.outline = outline_of(features.coarse);

@@ -78,7 +78,7 @@ class Localizer : public Slam {
     return decisions_;
   }
   [[nodiscard]] Belief belief() const override { return monitor_.belief(); }
-  [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
+  [[nodiscard]] SlamCounts counts() const override { return counts_; }
 
  private:
   struct Comparison {

@@ -1,5 +1,6 @@
 // What maps and follows a robot from stop to stop, whichever algorithm does it: the pose graph over
-// all believed matches (localizer.hpp) or the source's own (thesis_localizer.hpp).
+// all accepted matches (localizer.hpp), the thesis alone (thesis_localizer.hpp), the localization
+// in a finished map (map_localizer.hpp) or a session of them (slam_session.hpp).
 #pragma once
 
 #include <array>
@@ -16,8 +17,6 @@
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
-
-struct LocalizerConfig;
 
 struct SlamCounts {
   std::uint64_t tasks = 0;
@@ -51,7 +50,7 @@ class Slam {
   [[nodiscard]] virtual const std::vector<LoopDecision>& loop_decisions() const = 0;
   /// How well the pose of the last stop is known.
   [[nodiscard]] virtual Belief belief() const = 0;
-  [[nodiscard]] virtual const SlamCounts& counts() const = 0;
+  [[nodiscard]] virtual SlamCounts counts() const = 0;
 
  protected:
   Slam() = default;
@@ -62,12 +61,5 @@ class Slam {
 /// That `map` is the next one of the robot: throws std::invalid_argument unless its id is `next_id`
 /// and its robot that of `first`, if there is one before it.
 void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap::LocalMap* first);
-
-class GraphOptimizer;
-
-/// The algorithm that `config.mode` names. The pool and the optimizer (see Localizer) must outlive
-/// it.
-std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
-                                GraphOptimizer* optimizer = nullptr);
 
 }  // namespace topogeo::localization

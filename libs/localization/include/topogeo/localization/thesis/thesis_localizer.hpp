@@ -20,14 +20,14 @@
 
 #include <Eigen/Core>
 
-#include "topogeo/localization/mapping/backward_correction.hpp"
 #include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
-#include "topogeo/localization/thesis/field_of_view.hpp"
+#include "topogeo/localization/thesis/backward_correction.hpp"
 #include "topogeo/localization/thesis/solution_store.hpp"
+#include "topogeo/localization/thesis/visible_rectangle.hpp"
 
 namespace topogeo::localization {
 
@@ -63,14 +63,14 @@ class ThesisLocalizer : public Slam {
   /// The confidence is the fitness of the match that placed the stop, halved where the gate
   /// doubted it; the source has no other, and none is calibrated.
   [[nodiscard]] Belief belief() const override { return belief_; }
-  [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
+  [[nodiscard]] SlamCounts counts() const override { return counts_; }
 
  private:
   struct Stop {
     std::shared_ptr<const topomap::LocalMap> map;
     std::uint64_t hash = 0;
     double way_m = 0.0;  // along the odometry from the first stop
-    FieldOfView view;
+    VisibleRectangle view;
     RangeProfile profile;
     std::vector<SurfacePoint> outline;
     UncertainPose T_previous_this;                         // by odometry
@@ -105,7 +105,7 @@ class ThesisLocalizer : public Slam {
   [[nodiscard]] std::vector<BackwardCandidate> candidates(const std::vector<Match>& matches,
                                                           std::uint32_t first) const;
   [[nodiscard]] BackwardProblem backward_problem(std::uint32_t first, std::uint32_t stop) const;
-  void apply(const BackwardProblem& problem, const BackwardWay& way);
+  void apply(const BackwardProblem& problem, const LoopPath& way);
   void move(const std::vector<geometry::Pose2>& T_map_robot);
   void decide(std::uint32_t stop, const Match& match, LoopOutcome outcome,
               const geometry::Pose2& T_map_before);

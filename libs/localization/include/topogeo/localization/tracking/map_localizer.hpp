@@ -87,7 +87,7 @@ class MapLocalizer : public Slam {
     return no_decisions_;
   }
   [[nodiscard]] Belief belief() const override { return belief_; }
-  [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
+  [[nodiscard]] SlamCounts counts() const override { return counts_; }
   /// Of the last stop; nothing when that was searched for.
   [[nodiscard]] const std::optional<TrackedStep>& last_step() const { return last_step_; }
   [[nodiscard]] std::size_t searches() const { return searches_; }

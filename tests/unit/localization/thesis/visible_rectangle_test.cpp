@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/field_of_view.hpp"
+#include "topogeo/localization/thesis/visible_rectangle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ using geometry::Pose2;
 
 constexpr double kPi = std::numbers::pi;
 
-void expect_view(const FieldOfView& view, double low_x, double low_y, double high_x,
+void expect_view(const VisibleRectangle& view, double low_x, double low_y, double high_x,
                  double high_y) {
   EXPECT_NEAR(view.low_m.x(), low_x, 1e-12);
   EXPECT_NEAR(view.low_m.y(), low_y, 1e-12);
@@ -25,13 +25,13 @@ void expect_view(const FieldOfView& view, double low_x, double low_y, double hig
   EXPECT_NEAR(view.high_m.y(), high_y, 1e-12);
 }
 
-bool contains(const FieldOfView& view, const Eigen::Vector2d& point_m) {
+bool contains(const VisibleRectangle& view, const Eigen::Vector2d& point_m) {
   constexpr double kRounding = 1e-9;
   return (point_m.array() >= view.low_m.array() - kRounding).all() &&
          (point_m.array() <= view.high_m.array() + kRounding).all();
 }
 
-TEST(FieldOfView, IsTheRectangleOfRobotNodesBranchesAndScan) {
+TEST(VisibleRectangle, IsTheRectangleOfRobotNodesBranchesAndScan) {
   topomap::LocalMap map;
   topomap::LocalNode node;
   node.position_m = {3.0, 1.0};
@@ -46,45 +46,45 @@ TEST(FieldOfView, IsTheRectangleOfRobotNodesBranchesAndScan) {
   branch.points = {{{0.0, -50.0}, 0.5}, {{0.0, 50.0}, 0.5}};
   map.branches.push_back(branch);
   map.points.push_back({2.0F, 2.5F});
-  expect_view(field_of_view(map), 0.0, -2.0, 4.0, 2.5);  // 0: the robot itself
+  expect_view(visible_rectangle(map), 0.0, -2.0, 4.0, 2.5);  // 0: the robot itself
 }
 
-TEST(FieldOfView, OfAnEmptyMapIsTheRobot) {
-  expect_view(field_of_view({}), 0.0, 0.0, 0.0, 0.0);
+TEST(VisibleRectangle, OfAnEmptyMapIsTheRobot) {
+  expect_view(visible_rectangle({}), 0.0, 0.0, 0.0, 0.0);
 }
 
-TEST(FieldOfView, SeenFromElsewhereIsMovedAndTurned) {
+TEST(VisibleRectangle, SeenFromElsewhereIsMovedAndTurned) {
   // 4 m forward and 1 m to both sides, a robot that looks left at (10, 5).
-  const FieldOfView view{{0.0, -1.0}, {4.0, 1.0}};
+  const VisibleRectangle view{{0.0, -1.0}, {4.0, 1.0}};
   expect_view(seen_from(view, {10.0, 5.0, kPi / 2.0}, {0.0, 0.0, 0.0}), 9.0, 5.0, 11.0, 9.0);
   expect_view(seen_from(view, {10.0, 5.0, kPi / 2.0}, {0.5, 0.25, 0.0}), 8.5, 4.75, 11.5, 9.25);
 }
 
-TEST(FieldOfView, SwingsOutBetweenTheExtremeHeadings) {
+TEST(VisibleRectangle, SwingsOutBetweenTheExtremeHeadings) {
   // The corners of the rectangle at 3, 4 m lie 5 m away; turned by up to half a turn to both sides
   // each of them comes to lie ahead.
-  const FieldOfView view{{0.0, -4.0}, {3.0, 4.0}};
+  const VisibleRectangle view{{0.0, -4.0}, {3.0, 4.0}};
   expect_view(seen_from(view, {}, {0.0, 0.0, kPi}), -5.0, -5.0, 5.0, 5.0);
   expect_view(seen_from(view, {}, {0.0, 0.0, 100.0}), -5.0, -5.0, 5.0, 5.0);
   // By 60 degrees: the front corners, 53 degrees off, pass straight ahead; (0, 4) and (0, -4) turn
   // backward by 4 sin 60.
-  const FieldOfView turned = seen_from(view, {}, {0.0, 0.0, kPi / 3.0});
+  const VisibleRectangle turned = seen_from(view, {}, {0.0, 0.0, kPi / 3.0});
   EXPECT_NEAR(turned.high_m.x(), 5.0, 1e-12);
   EXPECT_NEAR(turned.low_m.x(), -4.0 * std::sqrt(0.75), 1e-12);
 }
 
 // Whatever pose of the search space is the right one, the envelope covers what is seen from there.
-TEST(FieldOfView, EnvelopeContainsEveryPoseOfTheSearchSpace) {
+TEST(VisibleRectangle, EnvelopeContainsEveryPoseOfTheSearchSpace) {
   support::Random random(3);
   for (int round = 0; round < 200; ++round) {
-    FieldOfView view;
+    VisibleRectangle view;
     view.low_m = {random.uniform(-3.0, 1.0), random.uniform(-8.0, 0.0)};
     view.high_m = view.low_m + Eigen::Vector2d(random.uniform(0.0, 8.0), random.uniform(0.0, 9.0));
     const Pose2 T_frame_robot{random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0),
                               random.uniform(-kPi, kPi)};
     const Eigen::Vector3d half(random.uniform(0.0, 3.0), random.uniform(0.0, 3.0),
                                random.uniform(0.0, 3.5));
-    const FieldOfView seen = seen_from(view, T_frame_robot, half);
+    const VisibleRectangle seen = seen_from(view, T_frame_robot, half);
     for (int sample = 0; sample < 200; ++sample) {
       const Pose2 pose{T_frame_robot.x_m + random.uniform(-half.x(), half.x()),
                        T_frame_robot.y_m + random.uniform(-half.y(), half.y()),
@@ -96,13 +96,13 @@ TEST(FieldOfView, EnvelopeContainsEveryPoseOfTheSearchSpace) {
   }
 }
 
-TEST(FieldOfView, EnvelopeIsNoLargerThanItMustBe) {
+TEST(VisibleRectangle, EnvelopeIsNoLargerThanItMustBe) {
   support::Random random(4);
   for (int round = 0; round < 50; ++round) {
-    const FieldOfView view{{random.uniform(-3.0, 0.0), random.uniform(-4.0, 0.0)},
-                           {random.uniform(0.0, 6.0), random.uniform(0.0, 4.0)}};
+    const VisibleRectangle view{{random.uniform(-3.0, 0.0), random.uniform(-4.0, 0.0)},
+                                {random.uniform(0.0, 6.0), random.uniform(0.0, 4.0)}};
     const double turn_rad = random.uniform(0.0, 2.0);
-    const FieldOfView seen = seen_from(view, {}, {0.0, 0.0, turn_rad});
+    const VisibleRectangle seen = seen_from(view, {}, {0.0, 0.0, turn_rad});
     double farthest_x_m = -100.0;
     for (int k = -500; k <= 500; ++k) {
       const Pose2 pose{0.0, 0.0, turn_rad * k / 500.0};
@@ -116,13 +116,13 @@ TEST(FieldOfView, EnvelopeIsNoLargerThanItMustBe) {
   }
 }
 
-TEST(FieldOfView, RefusesAHalfWidthThatIsNone) {
+TEST(VisibleRectangle, RefusesAHalfWidthThatIsNone) {
   EXPECT_THROW(seen_from({}, {}, {-0.1, 0.0, 0.0}), std::invalid_argument);
   EXPECT_THROW(seen_from({}, {}, {0.0, std::nan(""), 0.0}), std::invalid_argument);
 }
 
-TEST(FieldOfView, OverlapHasBorders) {
-  const FieldOfView a{{0.0, 0.0}, {2.0, 2.0}};
+TEST(VisibleRectangle, OverlapHasBorders) {
+  const VisibleRectangle a{{0.0, 0.0}, {2.0, 2.0}};
   EXPECT_TRUE(overlap(a, {{1.0, 1.0}, {3.0, 3.0}}));
   EXPECT_TRUE(overlap(a, {{0.5, 0.5}, {1.0, 1.0}}));
   EXPECT_TRUE(overlap(a, {{2.0, 0.0}, {3.0, 1.0}}));
@@ -132,8 +132,8 @@ TEST(FieldOfView, OverlapHasBorders) {
 
 // Fig. 7.10: two maps 12 m apart, each 5 m deep, overlap only for an uncertain pose.
 TEST(OverlapSet, GrowsWithTheUncertainty) {
-  const FieldOfView view{{0.0, -2.0}, {5.0, 2.0}};
-  const std::vector<FieldOfView> earlier{view, view};
+  const VisibleRectangle view{{0.0, -2.0}, {5.0, 2.0}};
+  const std::vector<VisibleRectangle> earlier{view, view};
   std::vector<PlacedView> places{{{12.0, 0.0, 0.0}, Eigen::Vector3d::Zero()},
                                  {{4.0, 1.0, 0.0}, Eigen::Vector3d::Zero()}};
   EXPECT_EQ(overlap_set(view, earlier, places), std::vector<std::uint32_t>{1});

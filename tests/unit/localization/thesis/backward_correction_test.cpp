@@ -1,4 +1,4 @@
-#include "topogeo/localization/mapping/backward_correction.hpp"
+#include "topogeo/localization/thesis/backward_correction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 using geometry::Pose2;
 using test::covariance_of;
 
-// --- the oracle: every combination of candidate and stored solutions, as the Thesis words it
+// --- the oracle: every combination of candidate and stored solutions, as the thesis words it
 
 struct OracleWay {
   double fitness = -1.0;
@@ -125,18 +125,18 @@ TEST(BackwardCorrection, FindsTheWinnerOfAllCombinations) {
     SCOPED_TRACE(seed);
     if (expected.fitness < 0.0) {
       ++refused;
-      EXPECT_NE(found.outcome, BackwardOutcome::kClosed);
-      EXPECT_TRUE(found.ways.empty());
+      EXPECT_NE(found.outcome, LoopSearchOutcome::kClosed);
+      EXPECT_TRUE(found.paths.empty());
       continue;
     }
     ++closed;
-    ASSERT_EQ(found.outcome, BackwardOutcome::kClosed);
-    EXPECT_NEAR(found.ways.front().summed_fitness, expected.fitness, 1e-9);
+    ASSERT_EQ(found.outcome, LoopSearchOutcome::kClosed);
+    EXPECT_NEAR(found.paths.front().summed_fitness, expected.fitness, 1e-9);
     for (std::size_t k = 1; k < expected.poses.size(); ++k) {
-      EXPECT_LT(geometry::difference(found.ways.front().T_first_pose[k], expected.poses[k]).norm(),
+      EXPECT_LT(geometry::difference(found.paths.front().T_first_pose[k], expected.poses[k]).norm(),
                 1e-9);
     }
-    double greedy = loop.problem.candidates[found.ways.front().candidate].fitness;
+    double greedy = loop.problem.candidates[found.paths.front().candidate].fitness;
     for (std::uint32_t k = 1; k < options.poses; ++k)
       greedy += loop.solutions.find(k - 1, k)[0].fitness;
     not_greedy += expected.fitness < greedy - 0.2 ? 1 : 0;
@@ -190,17 +190,17 @@ TEST(BackwardCorrection, TurnsBackFromADeadEnd) {
   config.draw = false;
   config.beam_width = 1;
   const BackwardResult found = correct_backward(line.problem, line.solutions, config);
-  ASSERT_EQ(found.outcome, BackwardOutcome::kClosed);
+  ASSERT_EQ(found.outcome, LoopSearchOutcome::kClosed);
   EXPECT_EQ(found.backtracks, 1U);
-  EXPECT_NEAR(found.ways.front().summed_fitness, 0.7 + 0.5 + 0.9 + 0.9, 1e-12);
-  EXPECT_NEAR(found.ways.front().T_first_pose[2].x_m, 2.0, 1e-12);
-  EXPECT_NEAR(found.ways.front().T_first_pose[1].x_m, 1.0, 1e-12);
+  EXPECT_NEAR(found.paths.front().summed_fitness, 0.7 + 0.5 + 0.9 + 0.9, 1e-12);
+  EXPECT_NEAR(found.paths.front().T_first_pose[2].x_m, 2.0, 1e-12);
+  EXPECT_NEAR(found.paths.front().T_first_pose[1].x_m, 1.0, 1e-12);
 
   config.waiting = 0;  // nothing to turn back to
   const BackwardResult lost = correct_backward(line.problem, line.solutions, config);
-  EXPECT_EQ(lost.outcome, BackwardOutcome::kDeadEnd);
+  EXPECT_EQ(lost.outcome, LoopSearchOutcome::kDeadEnd);
   EXPECT_EQ(lost.nearest_id, 2U);
-  EXPECT_TRUE(lost.ways.empty());
+  EXPECT_TRUE(lost.paths.empty());
 }
 
 TEST(BackwardCorrection, SpreadsAGapThatNoStoredSolutionCloses) {
@@ -211,13 +211,13 @@ TEST(BackwardCorrection, SpreadsAGapThatNoStoredSolutionCloses) {
   config.resolution_m = 0.01;
   config.draw = false;
   EXPECT_EQ(correct_backward(line.problem, line.solutions, config).outcome,
-            BackwardOutcome::kDeadEnd);
+            LoopSearchOutcome::kDeadEnd);
   config.draw = true;
   const BackwardResult found = correct_backward(line.problem, line.solutions, config);
-  ASSERT_EQ(found.outcome, BackwardOutcome::kClosed);
+  ASSERT_EQ(found.outcome, LoopSearchOutcome::kClosed);
   // Five equal links, the closing among them, share 0.2 m.
   for (std::uint32_t k = 1; k <= 4; ++k) {
-    EXPECT_NEAR(found.ways.front().T_first_pose[k].x_m, 1.04 * k, 0.01) << k;
+    EXPECT_NEAR(found.paths.front().T_first_pose[k].x_m, 1.04 * k, 0.01) << k;
   }
 }
 
@@ -231,28 +231,29 @@ TEST(BackwardCorrection, RefusesPosesFromWhichTheMapsDoNotOverlapAnyMore) {
   BackwardConfig config;
   config.draw = false;
   const BackwardResult found = correct_backward(line.problem, line.solutions, config);
-  ASSERT_EQ(found.outcome, BackwardOutcome::kClosed);
-  EXPECT_NEAR(found.ways.front().T_first_pose[2].x_m, 2.0, 1e-12);
+  ASSERT_EQ(found.outcome, LoopSearchOutcome::kClosed);
+  EXPECT_NEAR(found.paths.front().T_first_pose[2].x_m, 2.0, 1e-12);
 }
 
 TEST(BackwardCorrection, SaysWhyItFailed) {
   Line line({0.05, 0.07, 0.09});
   for (std::uint32_t k = 1; k <= 3; ++k) line.add(k, {{1.0, 0.8}});
-  EXPECT_EQ(correct_backward(line.problem, line.solutions).outcome, BackwardOutcome::kNoCandidates);
+  EXPECT_EQ(correct_backward(line.problem, line.solutions).outcome,
+            LoopSearchOutcome::kNoCandidates);
   line.candidate(9.0, 0.9);
   const BackwardResult outside = correct_backward(line.problem, line.solutions);
-  EXPECT_EQ(outside.outcome, BackwardOutcome::kCandidatesOutside);
+  EXPECT_EQ(outside.outcome, LoopSearchOutcome::kCandidatesOutside);
   EXPECT_EQ(outside.nearest_id, 3U);
   line.candidate(3.0, 0.9);
-  EXPECT_EQ(correct_backward(line.problem, line.solutions).outcome, BackwardOutcome::kClosed);
+  EXPECT_EQ(correct_backward(line.problem, line.solutions).outcome, LoopSearchOutcome::kClosed);
   BackwardConfig config;
   config.largest_work = 0;
   EXPECT_EQ(correct_backward(line.problem, line.solutions, config).outcome,
-            BackwardOutcome::kTooMuchWork);
-  EXPECT_STREQ(to_string(BackwardOutcome::kDeadEnd), "dead end");
+            LoopSearchOutcome::kTooMuchWork);
+  EXPECT_STREQ(to_string(LoopSearchOutcome::kDeadEnd), "dead end");
 }
 
-// --- a loop of 60 poses, 90 m round, as in the Thesis's experiment 2
+// --- a loop of 60 poses, 90 m round, as in experiment 2 of the thesis
 
 double largest_error_m(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth) {
   double largest_m = 0.0;
@@ -272,13 +273,13 @@ TEST(BackwardCorrection, PicksTheRightClosingAmongWrongOnes) {
     const test::Loop loop = test::circle(options, seed);
     const BackwardResult found = correct_backward(loop.problem, loop.solutions);
     SCOPED_TRACE(seed);
-    ASSERT_EQ(found.outcome, BackwardOutcome::kClosed);
-    if (found.ways.front().candidate != 0) continue;
+    ASSERT_EQ(found.outcome, LoopSearchOutcome::kClosed);
+    if (found.paths.front().candidate != 0) continue;
     ++right;
     std::vector<Pose2> forward;
     for (const BackwardPose& pose : loop.problem.poses) forward.push_back(pose.T_first_this.T_a_b);
     forward_m += largest_error_m(forward, loop.T_first_true);
-    backward_m += largest_error_m(found.ways.front().T_first_pose, loop.T_first_true);
+    backward_m += largest_error_m(found.paths.front().T_first_pose, loop.T_first_true);
   }
   EXPECT_GE(right, 18);
   EXPECT_GT(forward_m / right, 1.5);
@@ -289,14 +290,14 @@ TEST(BackwardCorrection, GivesTheSameBitsAgainAndKeepsToItsWork) {
   const test::Loop loop = test::circle({}, 5);
   const BackwardResult a = correct_backward(loop.problem, loop.solutions);
   const BackwardResult b = correct_backward(loop.problem, loop.solutions);
-  ASSERT_FALSE(a.ways.empty());
-  EXPECT_EQ(a.ways.size(), 3U);
-  EXPECT_EQ(a.ways.front().T_first_pose, b.ways.front().T_first_pose);
+  ASSERT_FALSE(a.paths.empty());
+  EXPECT_EQ(a.paths.size(), 3U);
+  EXPECT_EQ(a.paths.front().T_first_pose, b.paths.front().T_first_pose);
   EXPECT_EQ(a.expanded, b.expanded);
   const BackwardConfig config;
   EXPECT_LE(a.expanded, 59U * config.beam_width);
-  for (std::size_t i = 1; i < a.ways.size(); ++i) {
-    EXPECT_LE(a.ways[i].summed_fitness, a.ways[i - 1].summed_fitness);
+  for (std::size_t i = 1; i < a.paths.size(); ++i) {
+    EXPECT_LE(a.paths[i].summed_fitness, a.paths[i - 1].summed_fitness);
   }
 }
 
@@ -319,56 +320,6 @@ TEST(BackwardCorrection, RefusesBadInput) {
   refused([](auto& p, auto&) { p.candidates[0].T_first_last.covariance.setZero(); });
   refused([](auto&, auto& c) { c.beam_width = 0; });
   refused([](auto&, auto& c) { c.resolution_m = 0.0; });
-}
-
-// --- check_closing
-
-std::vector<LoopStep> steps_of(const test::Loop& loop) {
-  std::vector<LoopStep> steps;
-  for (std::uint32_t k = 1; k < loop.problem.poses.size(); ++k) {
-    const auto found = loop.solutions.find(k - 1, k);
-    steps.emplace_back(found.begin(), found.begin() + 1);
-  }
-  return steps;
-}
-
-TEST(CheckClosing, TellsAClosingThatFitsFromOneThatDoesNot) {
-  const test::Loop loop = test::circle({}, 8);
-  const std::vector<LoopStep> steps = steps_of(loop);
-  const Eigen::Matrix3d covariance = covariance_of(0.05, 0.01);
-  const ClosingCheck right = check_closing(steps, {loop.T_first_true.back(), covariance, 0.8});
-  ASSERT_TRUE(right.consistent);
-  EXPECT_NEAR(right.best_fitness, 60 * 0.8, 1e-9);
-  EXPECT_GT(right.summed_fitness, 0.85 * right.best_fitness);
-  EXPECT_LE(right.summed_fitness, right.best_fitness);
-  Pose2 wrong = loop.T_first_true.back();
-  wrong.x_m += 30.0;
-  const ClosingCheck refused = check_closing(steps, {wrong, covariance, 0.8});
-  EXPECT_FALSE(refused.consistent);
-  EXPECT_EQ(refused.outcome, BackwardOutcome::kCandidatesOutside);
-  EXPECT_EQ(refused.summed_fitness, 0.0);
-}
-
-TEST(CheckClosing, ASecondSolutionOnTheWayCanMakeItFit) {
-  const Eigen::Matrix3d covariance = covariance_of(0.02, 0.005);
-  std::vector<LoopStep> steps(4, {{{1.0, 0.0, 0.0}, covariance, 0.8}});
-  const RelativeSolution closing{{4.3, 0.0, 0.0}, covariance, 0.7};
-  EXPECT_FALSE(check_closing(steps, closing).consistent);
-  steps[0].push_back({{1.3, 0.0, 0.0}, covariance, 0.7});
-  const ClosingCheck found = check_closing(steps, closing);
-  ASSERT_TRUE(found.consistent);
-  EXPECT_NEAR(found.T_first_pose[1].x_m, 1.3, 0.05);
-}
-
-TEST(CheckClosing, RefusesBadInput) {
-  const RelativeSolution closing{{1.0, 0.0, 0.0}, covariance_of(0.1, 0.1), 0.5};
-  EXPECT_THROW(check_closing({}, closing), std::invalid_argument);
-  EXPECT_THROW(check_closing(std::vector<LoopStep>(2), closing), std::invalid_argument);
-  const std::vector<LoopStep> steps(2, {closing});
-  EXPECT_THROW(check_closing(steps, closing, std::vector<FieldOfView>(2)), std::invalid_argument);
-  EXPECT_TRUE(check_closing(steps, {{2.0, 0.0, 0.0}, covariance_of(0.1, 0.1), 0.5},
-                            std::vector<FieldOfView>(3, {{0.0, -1.0}, {3.0, 1.0}}))
-                  .consistent);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "topogeo/localization/thesis/field_of_view.hpp"
+#include "topogeo/localization/thesis/visible_rectangle.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,15 +15,15 @@ using geometry::Pose2;
 
 namespace {
 
-void include(FieldOfView& view, const Eigen::Vector2d& point_m) {
+void include(VisibleRectangle& view, const Eigen::Vector2d& point_m) {
   view.low_m = view.low_m.cwiseMin(point_m);
   view.high_m = view.high_m.cwiseMax(point_m);
 }
 
 }  // namespace
 
-FieldOfView field_of_view(const topomap::LocalMap& map) {
-  FieldOfView view;  // the robot stands at the origin
+VisibleRectangle visible_rectangle(const topomap::LocalMap& map) {
+  VisibleRectangle view;  // the robot stands at the origin
   for (const topomap::LocalNode& node : map.nodes) {
     if (node.kind != topomap::NodeKind::kVirtual) include(view, node.position_m);
   }
@@ -37,8 +37,8 @@ FieldOfView field_of_view(const topomap::LocalMap& map) {
   return view;
 }
 
-FieldOfView seen_from(const FieldOfView& view, const Pose2& T_frame_robot,
-                      const Eigen::Vector3d& half_width) {
+VisibleRectangle seen_from(const VisibleRectangle& view, const Pose2& T_frame_robot,
+                           const Eigen::Vector3d& half_width) {
   if (!half_width.allFinite() || half_width.minCoeff() < 0.0) {
     throw std::invalid_argument("seen_from: half-widths must be finite and not negative");
   }
@@ -51,7 +51,7 @@ FieldOfView seen_from(const FieldOfView& view, const Pose2& T_frame_robot,
       Eigen::Vector2d{1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}};
   const Pose2 turned_right{0.0, 0.0, T_frame_robot.theta_rad - turn_rad};
   const Pose2 turned_left{0.0, 0.0, T_frame_robot.theta_rad + turn_rad};
-  FieldOfView seen;
+  VisibleRectangle seen;
   seen.low_m = seen.high_m = turned_right * corners[0];
   for (const Eigen::Vector2d& corner : corners) {
     include(seen, turned_right * corner);
@@ -71,12 +71,12 @@ FieldOfView seen_from(const FieldOfView& view, const Pose2& T_frame_robot,
   return seen;
 }
 
-bool overlap(const FieldOfView& a, const FieldOfView& b) {
+bool overlap(const VisibleRectangle& a, const VisibleRectangle& b) {
   return (a.low_m.array() <= b.high_m.array()).all() && (b.low_m.array() <= a.high_m.array()).all();
 }
 
-std::vector<std::uint32_t> overlap_set(const FieldOfView& view,
-                                       std::span<const FieldOfView> earlier,
+std::vector<std::uint32_t> overlap_set(const VisibleRectangle& view,
+                                       std::span<const VisibleRectangle> earlier,
                                        std::span<const PlacedView> places) {
   if (earlier.size() != places.size()) {
     throw std::invalid_argument("overlap_set: as many places as earlier maps are needed");

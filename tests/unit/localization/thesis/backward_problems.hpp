@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/backward_correction.hpp"
+#include "topogeo/localization/thesis/backward_correction.hpp"
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::localization::test {

@@ -1,9 +1,11 @@
-#include "topogeo/localization/tracking/mapping_session.hpp"
+#include "topogeo/localization/session/mapping_session.hpp"
 
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "topogeo/localization/session/make_slam.hpp"
 
 namespace topogeo::localization {
 
@@ -51,9 +53,7 @@ MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
 bool MappingSession::add(MapPointer map) {
   check_next(*map, next_id_, maps_.empty() ? nullptr : maps_.front().get());
   ++next_id_;
-  const bool moved = follower_ ? follow(map) : map_stop(map);
-  count();
-  return moved;
+  return follower_ ? follow(map) : map_stop(map);
 }
 
 bool MappingSession::map_stop(const MapPointer& map) {
@@ -110,7 +110,6 @@ MappingSession::MapPointer MappingSession::numbered(const MapPointer& map,
 
 void MappingSession::finish() {
   if (!follower_ && maps_.size() > stored_stops_) mapper_->finish();
-  count();
 }
 
 // --- the turns
@@ -139,7 +138,7 @@ void MappingSession::resume_mapping() {
 }
 
 void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
-  const std::uint64_t next_task = localizer_ != nullptr ? localizer_->next_task() : counts_.tasks;
+  const std::uint64_t next_task = localizer_ != nullptr ? localizer_->next_task() : counts().tasks;
   follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_, next_id_);
   follower_->number_tasks_from(next_task);
   searched_ = false;
@@ -171,10 +170,11 @@ std::optional<topomap::StopPose> MappingSession::last_stop() const {
   return stop;
 }
 
-void MappingSession::count() {
-  counts_ = mapper_->counts();
-  add_to(counts_, counts_before_);
-  if (follower_) add_to(counts_, follower_->counts());
+SlamCounts MappingSession::counts() const {
+  SlamCounts counts = mapper_->counts();
+  add_to(counts, counts_before_);
+  if (follower_) add_to(counts, follower_->counts());
+  return counts;
 }
 
 }  // namespace topogeo::localization

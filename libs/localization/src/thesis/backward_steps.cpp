@@ -1,8 +1,8 @@
-// The part of the backward correction that lists the ways from a pose to the one before it.
+// step_options(): the steps that lead from one pose of a loop to the next.
 #include <algorithm>
 #include <cmath>
 
-#include "topogeo/localization/mapping/backward_correction.hpp"
+#include "topogeo/localization/thesis/backward_correction.hpp"
 
 namespace topogeo::localization {
 
@@ -10,8 +10,9 @@ using geometry::Pose2;
 
 namespace {
 
-// 7.23 and 7.24 with X_{i-1} = X_n (+) X_L^(n,i-1): the pose of `this` relative to the previous one
-// through a map n that both were matched with, as far back as need be.
+// Thesis, 7.3.1.2, eqs. 7.23 and 7.24 (docs/algorithms.md, "Backward correction"), with X_{i-1} =
+// X_n (+) X_L^(n,i-1): the pose of `this` relative to the previous one through a map n that both
+// were matched with, as far back as need be.
 std::vector<StepOption> intermediate_options(const SolutionStore& solutions, std::uint32_t id) {
   std::vector<StepOption> options;
   for (const std::uint32_t n : solutions.matched_with(id)) {

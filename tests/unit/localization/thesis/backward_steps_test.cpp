@@ -1,5 +1,5 @@
-// Which way the backward correction takes from a pose to the one before it: 7.22 to 7.24, odometry,
-// the grid.
+// The steps that the backward correction may take from a pose to the one before it: matches (eqs.
+// 7.22 to 7.24 of the thesis), odometry, the grid.
 #include <cmath>
 #include <vector>
 

@@ -77,7 +77,7 @@ class MappingSession : public Slam {
   [[nodiscard]] Belief belief() const override {
     return follower_ ? follower_->belief() : mapper_->belief();
   }
-  [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
+  [[nodiscard]] SlamCounts counts() const override;
 
  private:
   bool map_stop(const MapPointer& map);
@@ -87,7 +87,6 @@ class MappingSession : public Slam {
   void start_following(std::shared_ptr<const StoredMap> map);
   void end_following();
   [[nodiscard]] MapPointer numbered(const MapPointer& map, bool starts_drive) const;
-  void count();
 
   LocalizerConfig config_;
   MatchPool& pool_;
@@ -103,8 +102,7 @@ class MappingSession : public Slam {
   std::uint32_t tracked_stops_ = 0;  // in succession, the last one included
   double tracked_way_m_ = 0.0;       // driven to them
   std::vector<MapPointer> waiting_;  // to join the map, as they came
-  SlamCounts counts_;
-  SlamCounts counts_before_;  // of followers that have gone
+  SlamCounts counts_before_;         // of followers that have gone
 };
 
 }  // namespace topogeo::localization

@@ -1,4 +1,4 @@
-#include "topogeo/localization/tracking/mapping_session.hpp"
+#include "topogeo/localization/session/mapping_session.hpp"
 
 #include <algorithm>
 #include <stdexcept>
