@@ -116,7 +116,7 @@ std::string localization_csv(std::span<const localization::LocalizedStop> stops)
                         storage::stamp_text(s.stamp_ns), s.T_map_robot.x_m, s.T_map_robot.y_m,
                         s.T_map_robot.theta_rad, localization::to_string(s.belief.state),
                         s.belief.confidence, std::sqrt(c(0, 0)), std::sqrt(c(1, 1)),
-                        std::sqrt(c(2, 2)), s.believed_matches);
+                        std::sqrt(c(2, 2)), s.accepted_matches);
   }
   return text;
 }

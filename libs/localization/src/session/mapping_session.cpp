@@ -78,7 +78,7 @@ bool MappingSession::follow(const MapPointer& map) {
 bool MappingSession::confirmed() {
   const std::optional<TrackedStep>& step = follower_->last_step();
   const bool tracked =
-      follower_->belief().state == LocalizationState::kTracking && step && !step->believed.empty();
+      follower_->belief().state == LocalizationState::kTracking && step && !step->accepted.empty();
   if (!step) searched_ = true;
   tracked_stops_ = tracked ? tracked_stops_ + 1 : 0;
   tracked_way_m_ = tracked ? tracked_way_m_ + step->evidence.way_m : 0.0;
@@ -87,7 +87,7 @@ bool MappingSession::confirmed() {
 }
 
 void MappingSession::join() {
-  const std::vector<StoredMatch> matches = follower_->last_step()->believed;
+  const std::vector<StoredMatch> matches = follower_->last_step()->accepted;
   const double confidence = follower_->belief().confidence;
   std::vector<MapPointer> drive;
   for (const MapPointer& map : std::exchange(waiting_, {})) {

@@ -3,7 +3,6 @@
 // in a finished map (map_localizer.hpp) or a session of them (slam_session.hpp).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -12,16 +11,13 @@
 
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/mapping/match_counts.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
 
-struct SlamCounts {
-  std::uint64_t tasks = 0;
-  std::uint64_t evaluations = 0;
-  std::array<std::uint64_t, kReasons> reasons{};  ///< index: Reason; kNone: accepted
+struct SlamCounts : MatchCounts {
   std::uint64_t steps_in_doubt =
       0;  ///< no recent match was accepted; an uncertain one or odometry stood in
   std::uint64_t unconfirmed_loops = 0;  ///< large corrections that nothing else agreed with
