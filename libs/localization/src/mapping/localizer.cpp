@@ -116,7 +116,7 @@ void Localizer::append(MapPointer map) {
 std::vector<StepMatch> Localizer::match_recent() {
   const std::vector<StopMatch> matches = matching_.match_recent(graph_);
   // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
-  // uncertain ones, with their wide covariance, still say more than it does.
+  // uncertain ones, with their wide covariance, still know more than it does.
   const bool any = std::any_of(matches.begin(), matches.end(),
                                [](const StopMatch& match) { return match.accepted(); });
   if (!any) ++steps_in_doubt_;
@@ -169,7 +169,7 @@ void Localizer::judge_state(std::vector<StepMatch> matches) {
   evidence.matches = std::move(matches);
   evidence.points = matching_.map(stop).points.size();
   if (stop > 0) {
-    evidence.way_m = matching_.path_m(stop) - matching_.path_m(stop - 1);
+    evidence.distance_m = matching_.path_m(stop) - matching_.path_m(stop - 1);
     evidence.covariance = best_link_to(graph_, stop);
   }
   monitor_.add(evidence);

@@ -18,7 +18,7 @@ void OdometryMonitor::Ratio::add(double squared, double odometry_variance, doubl
   if (!(odometry_variance > 0.0)) return;  // a standing robot
   const double noise = std::max(0.0, squared - match_variance);
   const double ratio = std::min(noise / odometry_variance, kLargestRatio);
-  // A match that is itself uncertain says little of odometry.
+  // A match that is itself uncertain measures little of odometry.
   const double certainty = odometry_variance / (odometry_variance + match_variance);
   constexpr double kFading = 1.0 - 1.0 / kMemory;
   weighted_ = kFading * weighted_ + certainty * ratio;

@@ -14,7 +14,7 @@ namespace {
 // In succession, after a search, before a drive joins the map. A room that is taken for another one
 // is tracked while the robot turns in it, but not much further (continue_test).
 constexpr std::uint32_t kTrackedStops = 3;
-constexpr double kTrackedWay_m = 2.5;
+constexpr double kTrackedDistance_m = 2.5;
 
 void add_to(SlamCounts& sum, const SlamCounts& more) {
   sum.tasks += more.tasks;
@@ -81,9 +81,9 @@ bool MappingSession::confirmed() {
       follower_->belief().state == LocalizationState::kTracking && step && !step->accepted.empty();
   if (!step) searched_ = true;
   tracked_stops_ = tracked ? tracked_stops_ + 1 : 0;
-  tracked_way_m_ = tracked ? tracked_way_m_ + step->evidence.way_m : 0.0;
-  return tracked &&
-         (!searched_ || (tracked_stops_ >= kTrackedStops && tracked_way_m_ >= kTrackedWay_m));
+  tracked_distance_m_ = tracked ? tracked_distance_m_ + step->evidence.distance_m : 0.0;
+  return tracked && (!searched_ || (tracked_stops_ >= kTrackedStops &&
+                                    tracked_distance_m_ >= kTrackedDistance_m));
 }
 
 void MappingSession::join() {
@@ -143,7 +143,7 @@ void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
   follower_->number_tasks_from(next_task);
   searched_ = false;
   tracked_stops_ = 0;
-  tracked_way_m_ = 0.0;
+  tracked_distance_m_ = 0.0;
 }
 
 void MappingSession::end_following() {

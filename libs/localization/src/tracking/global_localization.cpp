@@ -292,7 +292,7 @@ double GlobalLocalizer::fitness(const MatchFeatures& query, const Pose2& T_map_r
   return mean_kernel(fine_, positions_of(query.coarse), T_map_robot);
 }
 
-// Aligns a place with the stop that sees it best, and says what is seen there.
+// Aligns a place with the stop that sees it best, and measures what is seen there.
 GlobalPose GlobalLocalizer::aligned(const MatchFeatures& query, const Climbed& place) const {
   double share = 0.0;
   const std::size_t stop = best_stop(query, place.T_map_robot, share);

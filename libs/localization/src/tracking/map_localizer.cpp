@@ -66,7 +66,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   TrackedStep& step = last_step_.emplace();
   step.predicted = pose_;
   step.evidence.points = stop.features.coarse.size();
-  step.evidence.way_m = stop.distance_m;
+  step.evidence.distance_m = stop.distance_m;
   bool sure = false;
   std::vector<UncertainPose> accepted{pose_};
   std::vector<UncertainPose> uncertain{pose_};

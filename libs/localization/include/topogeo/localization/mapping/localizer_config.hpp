@@ -9,8 +9,8 @@
 namespace topogeo::localization {
 
 enum class LocalizerMode : std::uint8_t {
-  kGraph = 0,   ///< Localizer: a pose graph over all believed matches
-  kThesis = 1,  ///< ThesisLocalizer: the source's forward and backward correction alone
+  kGraph = 0,   ///< Localizer: a pose graph over all accepted matches
+  kThesis = 1,  ///< ThesisLocalizer: forward and backward correction of the Thesis alone
 };
 
 struct LocalizerConfig {
@@ -20,12 +20,15 @@ struct LocalizerConfig {
   GeneticParameters genetic;
   FitnessForm fitness_form = FitnessForm::kCombined;
   std::uint32_t solutions_wanted = 3;
-  double search_probability = 0.95;  ///< of the error ellipse whose rectangle is searched (6.22)
+  double search_probability = 0.95;  ///< of the error ellipse whose rectangle is searched (Thesis,
+                                     ///< eq. 6.22; docs/algorithms.md, "Odometry model and search
+                                     ///< space")
   double search_heading_sigmas = 3.0;
   double largest_half_width_m =
       3.0;  ///< of a search space; beyond it a match waits for a better prediction
   double largest_half_width_rad = 3.1;
-  double recent_way_m = 6.0;  ///< stops up to this much way ago are recent, older ones revisited
+  double recent_way_m = 6.0;  ///< stops at most this far back along the path are recent, older
+                              ///< ones revisited
   std::uint32_t recent_matches = 3;         ///< tasks per step against recent stops
   std::uint32_t revisit_matches = 3;        ///< tasks per step against older stops
   double smallest_expected_overlap = 0.35;  ///< of two maps, before a task is spent on them

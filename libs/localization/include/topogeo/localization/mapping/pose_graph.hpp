@@ -92,8 +92,8 @@ class PoseGraph {
 
   /// Relative pose of the stops seen from `origin` with its covariance, each along the path on
   /// which the variance grows least. All edges between two stops count together: along a
-  /// bare corridor a match knows only the way across, odometry the way along. Stops that `reach`
-  /// leaves out or that are not connected may have a covariance of kUnreached_m2.
+  /// bare corridor a match knows only the position across, odometry the one along. Stops that
+  /// `reach` leaves out or that are not connected may have a covariance of kUnreached_m2.
   [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin,
                                                        const Reach& reach) const;
   [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const {

@@ -11,7 +11,7 @@ namespace topogeo::localization {
 
 class StopComparisons {
  public:
-  /// Whether a match of two stops can tell anything new: they were not compared before, or without
+  /// Whether a match of two stops can give anything new: they were not compared before, or without
   /// success and an optimisation has moved the prediction since.
   [[nodiscard]] bool worth(std::uint32_t earlier, std::uint32_t later,
                            const geometry::Pose2& T_later_earlier) const;

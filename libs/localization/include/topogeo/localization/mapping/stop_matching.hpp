@@ -1,5 +1,5 @@
-// Matches stops of one map with earlier ones: chooses the pairs, makes the tasks and returns what
-// each says of the relative pose.
+// Matches stops of one map with earlier ones: chooses the pairs, makes the tasks and returns the
+// relative pose that each measured.
 //
 // All answers of one round are awaited before any is used, so the result does not depend on who
 // answered or when.
@@ -24,7 +24,7 @@
 
 namespace topogeo::localization {
 
-/// What a match says of two stops.
+/// The result of a match of two stops.
 struct StopMatch {
   PoseGraphEdge edge;  ///< as measured; as predicted when nothing was in common
   Verdict verdict = Verdict::kRejected;

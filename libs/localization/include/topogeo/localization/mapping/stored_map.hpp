@@ -28,8 +28,8 @@ struct StoredMatch {
 /// Throws std::invalid_argument unless there are as many stops as local maps, at least one.
 void check(const StoredMap& map);
 
-/// The measurements that hold the poses of a stored map together, as far as it says: one between
-/// each stop and the next, as far apart as the poses are, and its loops as they were matched. Their
+/// The measurements that hold the poses of a stored map together: one between each stop and the
+/// next, as far apart as the poses are, and its loops as they were matched. Their
 /// covariances are those of usual matches, so later ones can bend the map as if they had been there
 /// when it was made.
 std::vector<PoseGraphEdge> edges_of(const StoredMap& map);

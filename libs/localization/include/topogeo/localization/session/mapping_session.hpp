@@ -4,9 +4,9 @@
 // Whenever the robot's place in the map is not known for certain, at the start of a stored map and
 // after a time in which stops were not mapped, it is followed or searched for by a MapLocalizer.
 // Its stops are kept meanwhile, and join the map together as soon as the last of them is tracked
-// and matched there, after a search not without a way of some metres; if that never happens the map
+// and matched there, after a search only some metres further; if that never happens the map
 // stays as it was. All of that follows from the stops alone, so one drive gives the same map
-// wherever it is worked out.
+// wherever it is computed.
 #pragma once
 
 #include <cstddef>
@@ -91,7 +91,7 @@ class MappingSession : public Slam {
   LocalizerConfig config_;
   MatchPool& pool_;
   std::unique_ptr<Slam> mapper_;
-  Localizer* localizer_ = nullptr;  // mapper_, unless that is the source's own algorithm
+  Localizer* localizer_ = nullptr;  // mapper_, unless that is the algorithm of the Thesis
   std::unique_ptr<MapLocalizer> follower_;
   bool mapping_ = true;
   std::uint32_t next_id_ = 0;  // of the drive's local maps
@@ -100,7 +100,7 @@ class MappingSession : public Slam {
   std::size_t stored_stops_ = 0;
   bool searched_ = false;            // the place is known by a search
   std::uint32_t tracked_stops_ = 0;  // in succession, the last one included
-  double tracked_way_m_ = 0.0;       // driven to them
+  double tracked_distance_m_ = 0.0;  // driven to them
   std::vector<MapPointer> waiting_;  // to join the map, as they came
   SlamCounts counts_before_;         // of followers that have gone
 };

@@ -1,11 +1,11 @@
 // Closes cycles by the backward correction (Thesis, 7.3.1.2; docs/algorithms.md, "Backward
-// correction"): which maps are seen again, what they say of the last pose, and what that does to
+// correction"): which maps are seen again, which last pose they measure, and what that does to
 // the poses since.
 //
 // What differs from the print, and why:
 // - a recent map that comes back into the overlap set (it flickers at the threshold) closes no
 //   cycle;
-// - the correction ends at the oldest of the maps seen again, as a candidate says nothing of the
+// - the correction ends at the oldest of the maps seen again, as a candidate knows nothing of the
 //   poses before it.
 #pragma once
 

@@ -54,7 +54,7 @@ class ThesisMap {
   /// The next stop, as far as it is known without its pose; place() or place_first() follows.
   void append(std::shared_ptr<const topomap::LocalMap> map);
   void place_first();
-  /// Places the last stop by a step from an earlier one; `match` says whether that is a match.
+  /// Places the last stop by a step from an earlier one; `match`: whether that is a match.
   void place(std::uint32_t from, const UncertainPose& T_from_stop, bool match);
 
   [[nodiscard]] std::size_t size() const { return stops_.size(); }
@@ -85,9 +85,9 @@ class ThesisMap {
   [[nodiscard]] SolutionStore& solutions() { return solutions_; }
   [[nodiscard]] const SolutionStore& solutions() const { return solutions_; }
 
-  /// A match that closed a cycle: from now on it tells how well the two stops know each other.
+  /// A match that closed a cycle: from now on the two stops know each other as well as it does.
   void add_closure(std::uint32_t stop, const ThesisMatch& match);
-  /// All poses anew. The edges between stops say how well neighbours know each other, which does
+  /// All poses anew. The edges between stops hold how well neighbours know each other, which does
   /// not change.
   void move(const std::vector<geometry::Pose2>& T_map_robot);
 

@@ -1,5 +1,6 @@
 // Which maps can have been seen from two places: fields of view, their overlap and the closing of a
-// cycle (spec A6, thesis 7.3.1.1: definitions 7.3.1-7.3.3, propositions 7.3.1 and 7.3.2).
+// cycle (Thesis, 7.3.1.1: definitions 7.3.1-7.3.3, propositions 7.3.1 and 7.3.2;
+// docs/algorithms.md, "Forward correction").
 #pragma once
 
 #include <cstdint>
@@ -20,19 +21,20 @@ struct VisibleRectangle {
 };
 
 /// CV of a map in the frame of its robot: the rectangle around the robot and all that the map has
-/// to be matched by. That is its nodes and branches as in the source, none virtual, and the scan
+/// to be matched by. That is its nodes and branches as in the Thesis, none virtual, and the scan
 /// points, which matching compares as well and which are all there is in a dead end.
 VisibleRectangle visible_rectangle(const topomap::LocalMap& map);
 
-/// The same field of view in another frame (7.19), when its pose lies anywhere in the rectangular
-/// search space of the given half-widths (m, m, rad; none negative) around T_frame_robot: the
-/// envelope over the space (fig. 7.9). The thesis takes the corners of the space only, which misses
-/// how far a corner of the rectangle swings out between the two extreme headings; here the swing
-/// counts. Throws std::invalid_argument for a half-width that is negative or not finite.
+/// The same field of view in another frame (eq. 7.19), when its pose lies anywhere in the
+/// rectangular search space of the given half-widths (m, m, rad; none negative) around
+/// T_frame_robot: the envelope over the space (fig. 7.9). The thesis takes the corners of the space
+/// only, which misses how far a corner of the rectangle swings out between the two extreme
+/// headings; here the swing counts. Throws std::invalid_argument for a half-width that is negative
+/// or not finite.
 VisibleRectangle seen_from(const VisibleRectangle& view, const geometry::Pose2& T_frame_robot,
                            const Eigen::Vector3d& half_width);
 
-/// Whether two fields of view of one frame have a point in common (prop. 7.3.1).
+/// Whether two fields of view of one frame have a point in common (proposition 7.3.1).
 bool overlap(const VisibleRectangle& a, const VisibleRectangle& b);
 
 /// Where the new map may lie, seen from one earlier map.
@@ -41,7 +43,7 @@ struct PlacedView {
   Eigen::Vector3d half_width = Eigen::Vector3d::Zero();  ///< of the search space: m, m, rad
 };
 
-/// MS of a new map (def. 7.3.3): indices, ascending, of the earlier maps whose field of view
+/// MS of a new map (definition 7.3.3): indices, ascending, of the earlier maps whose field of view
 /// overlaps with its. `places[i]` belongs to `earlier[i]`. Throws std::invalid_argument unless both
 /// are equally many.
 std::vector<std::uint32_t> overlap_set(const VisibleRectangle& view,
@@ -49,7 +51,7 @@ std::vector<std::uint32_t> overlap_set(const VisibleRectangle& view,
                                        std::span<const PlacedView> places);
 
 /// The maps of MS_T that are neither in MS_{T-1} nor g_{T-1} itself: a cycle closes when there are
-/// any (prop. 7.3.2). Both sets ascending; so is what is returned.
+/// any (proposition 7.3.2). Both sets ascending; so is what is returned.
 std::vector<std::uint32_t> newly_seen(std::span<const std::uint32_t> overlaps,
                                       std::span<const std::uint32_t> overlaps_before,
                                       std::uint32_t before);
