@@ -58,13 +58,6 @@ localization::SlamSession make_slam(const service::Service& service,
   }
 }
 
-bool same(const std::vector<topomap::LoopClosure>& a, const std::vector<topomap::LoopClosure>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-    return x.earlier_id == y.earlier_id && x.later_id == y.later_id &&
-           x.T_earlier_later == y.T_earlier_later;
-  });
-}
-
 }  // namespace
 
 LocalizerService::LocalizerService(service::Service& service, const LocalizerOptions& options)
@@ -80,9 +73,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
       odometry_(service.participant()),
       tracked_poses_(service.participant()),
       ends_in_(service.participant()),
-      segments_(service.participant()),
-      closures_(service.participant()),
-      decisions_(service.participant()),
+      trajectory_(service),
       poses_(service.participant()),
       ends_out_(service.participant()) {
   messaging::EventLoop& loop = service_.loop();
@@ -101,9 +92,6 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
                            [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
                              on_stream_end(message);
                            });
-  loop.add(segments_);
-  loop.add(closures_);
-  loop.add(decisions_);
   loop.add(poses_);
   loop.add(ends_out_);
   loop.add_timer(kCountPeriod, [this] { count_pool(); });
@@ -261,7 +249,7 @@ void LocalizerService::finish() {
   if (!service_.send(ends_out_, end, "stream end")) return;
   const localization::SlamCounts counts = slam_->counts();
   spdlog::info("{} stops, {} match tasks, {} loop closures", hashes_.size(), counts.tasks,
-               sent_closures_.size());
+               trajectory_.closures());
   std::string message;
   if (slam_.mapping_session() != nullptr) {
     message = pipeline::continuation_message(*slam_.mapping_session());
@@ -270,41 +258,36 @@ void LocalizerService::finish() {
   service_.status().set_state(msg::kServiceFinished, message);
 }
 
-// Sends what has changed, or all of it, so that a reader has it whole in one version.
 void LocalizerService::publish(bool whole) {
   const topomap::Trajectory trajectory = slam_->trajectory();
   version_ = trajectory.version;
   if (const auto last = slam_->last_stop()) last_stop_ = *last;
-  std::vector<std::uint32_t> numbers = updates_.update(trajectory);
-  if (whole) {
-    numbers.resize(service::segment_count(trajectory.stops.size()));
-    for (std::uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
-  }
-  for (const std::uint32_t number : numbers) {
-    const msg::TrajectorySegment segment =
-        service::to_segment(trajectory, number, service_.robot_id(), segments_sent_++);
-    if (!service_.send(segments_, segment, "trajectory")) throw Stopped();
-  }
-  publish_decisions();
-  std::vector<topomap::LoopClosure> closures = slam_->loop_closures();
-  if (!whole && same(closures, sent_closures_)) return;
-  sent_closures_ = std::move(closures);
-  const msg::LoopClosures message = service::to_msg(sent_closures_, version_, service_.robot_id(),
-                                                    last_stop_.stamp_ns, closures_sent_++);
-  if (!service_.send(closures_, message, "loop closures")) throw Stopped();
+  if (!trajectory_.publish(*slam_, trajectory, last_stop_.stamp_ns, whole)) throw Stopped();
 }
 
-// Decisions only come to the end, so the last segment that was sent and what follows are news.
-void LocalizerService::publish_decisions() {
-  const std::vector<localization::LoopDecision>& decisions = slam_->loop_decisions();
-  if (decisions.size() == decisions_published_) return;
-  const auto first = static_cast<std::uint32_t>(decisions_published_ / msg::kSegmentDecisions);
-  for (std::uint32_t i = first; i < service::decision_segment_count(decisions.size()); ++i) {
-    const msg::LoopDecisions segment = service::to_segment(
-        decisions, i, service_.robot_id(), last_stop_.stamp_ns, decision_segments_sent_++);
-    if (!service_.send(decisions_, segment, "loop decisions")) throw Stopped();
+// --- commands
+
+void LocalizerService::carry_out_commands() {
+  commands_.carry_out(
+      [this](const service::LocalizationCommand& command) {
+        CommandAnswer answer = carry_out(command);
+        send_pose();
+        return answer;
+      },
+      last_stop_.stamp_ns);
+}
+
+CommandAnswer LocalizerService::carry_out(const service::LocalizationCommand& command) {
+  CommandMoment now{finished_, stops_in_map(), {}};
+  if (last_map_) {
+    now.T_stop_robot = geometry::between(last_map_->T_odom_robot, newest_.T_odom_robot);
   }
-  decisions_published_ = decisions.size();
+  CommandAnswer answer = localizer::carry_out(command, now, slam_);
+  if (answer.accepted && command.kind == msg::kCommandSetPose && last_map_) {
+    last_stop_.T_map_robot = T_map_stop(command, now);
+    last_stop_.covariance = command.covariance;
+  }
+  return answer;
 }
 
 // --- counters
@@ -324,7 +307,7 @@ void LocalizerService::count() {
     const std::string name = localization::to_string(reason);
     set(reason == localization::Reason::kNone ? name : "rejected: " + name, counts.reasons[i]);
   }
-  set("loop_closures", sent_closures_.size());
+  set("loop_closures", trajectory_.closures());
   set("loop_decisions", slam_->loop_decisions().size());
   set("optimizations", counts.optimizations);
   set("failed_optimizations", counts.failed_optimizations);

@@ -24,7 +24,7 @@
 #include "background_optimizer.hpp"
 #include "command_channel.hpp"
 #include "remote_pool.hpp"
-#include "trajectory_updates.hpp"
+#include "trajectory_publisher.hpp"
 
 namespace topogeo::localizer {
 
@@ -55,14 +55,10 @@ class LocalizerService {
   void work();
   void wait_for_workers();
   void carry_out_commands();
-  CommandChannel::Answer carry_out(const service::LocalizationCommand& command);
-  CommandChannel::Answer set_pose(const service::LocalizationCommand& command);
-  CommandChannel::Answer stop_mapping();
-  CommandChannel::Answer resume_mapping();
+  CommandAnswer carry_out(const service::LocalizationCommand& command);
   void step(const MapPointer& map);
   void finish();
   void publish(bool whole);
-  void publish_decisions();
   void count();
   void count_pool();
 
@@ -76,9 +72,7 @@ class LocalizerService {
   messaging::Reader<msg::Odometry> odometry_;
   messaging::Reader<msg::TrackedPose> tracked_poses_;
   messaging::Reader<msg::StreamEnd> ends_in_;
-  messaging::Writer<msg::TrajectorySegment> segments_;
-  messaging::Writer<msg::LoopClosures> closures_;
-  messaging::Writer<msg::LoopDecisions> decisions_;
+  TrajectoryPublisher trajectory_;
   messaging::Writer<msg::LivePose> poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
@@ -97,13 +91,7 @@ class LocalizerService {
     topomap::TrackedScan scan;
   };
   std::optional<Tracked> tracked_;  // the scan that came last
-  TrajectoryUpdates updates_;
-  std::vector<topomap::LoopClosure> sent_closures_;
   std::uint64_t version_ = 0;
-  std::uint64_t segments_sent_ = 0;
-  std::uint64_t closures_sent_ = 0;
-  std::size_t decisions_published_ = 0;
-  std::uint64_t decision_segments_sent_ = 0;
   std::optional<std::uint64_t> maps_in_stream_;
   bool scheduled_ = false;
   bool waited_ = false;

@@ -11,9 +11,9 @@ using geometry::Pose2;
 
 namespace {
 
-// A smaller correction shows in no map of 5 cm cells; it waits for an optimisation of others.
+// Two cells of a 5 cm grid: a smaller correction needs no optimisation of its own.
 constexpr double kNoticeable_m = 0.1;
-// Stops until a pending loop is dropped: after 12 m the drift since is as large as the correction.
+// Stops until a pending loop is dropped: by then odometry has drifted too far for two to agree.
 constexpr std::uint32_t kLongestWait = 12;
 
 // Whether the steps between the two stops of a loop can be bent to meet it.

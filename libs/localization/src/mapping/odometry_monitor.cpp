@@ -10,6 +10,7 @@ namespace {
 // A step further off than this many times its variance is a blow or a wrong match, not noise: it
 // counts, but cannot widen the next twenty steps on its own.
 constexpr double kLargestRatio = 100.0;
+// Six times the configured deviation: a worse odometry is none to build on.
 constexpr double kLargestFactor = 36.0;
 
 }  // namespace

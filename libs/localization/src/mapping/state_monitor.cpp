@@ -22,16 +22,20 @@ constexpr Logistic kMatchRight{7.1, -2.2, 0.0};     // doubt, rivalry
 constexpr Logistic kOdometryRight{5.7, -8.5, 0.0};  // contradiction, distance in m
 
 constexpr double kForeseen = 0.35;  // overlap from which on a match should show something in common
-constexpr std::size_t kFewPoints = 12;
+constexpr std::size_t kFewPoints = 12;  // of a blinded laser: what it sees refutes nothing
+// What Belief::confidence promises: a pose that is right to 0.3 m and 5 degrees leads through
+// doors.
 constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = 0.087266463;
+// A carried robot is lost within three stops (map_localizer_test), a doubted one seldom
+// (tests/bench/kidnapped.cpp).
 constexpr double kLostBelow = 0.25;
-constexpr double kTrackingFrom = 0.5;
+constexpr double kTrackingFrom = 0.5;   // right more probably than not
 constexpr double kFirmer = 0.05;        // difference of confidence that counts
 constexpr double kDoubtfulShare = 0.3;  // matches that are not accepted err together
 constexpr double kElsewhere = 30.0;     // weight of a place that fits better, for each 1 of fitness
-constexpr double kMostConfident = 0.996;  // matches err together, however many agree
-constexpr std::uint32_t kOftenDoubted = 2;
+constexpr double kMostConfident = 0.996;    // matches err together, however many agree
+constexpr std::uint32_t kOftenDoubted = 2;  // one stop may be doubted for what stands in view
 
 double value(const Logistic& l, double first, double second) {
   return 1.0 / (1.0 + geometry::exp(-(l.constant + l.first * first + l.second * second)));

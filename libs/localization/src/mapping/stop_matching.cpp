@@ -16,8 +16,8 @@ using topomap::LocalMap;
 
 namespace {
 
-// Further apart, two stops see nothing of each other: lasers reach 8 m to 10 m indoors. Checked
-// first, because most stops of a long log are far away.
+// Further apart, two stops hardly see anything in common. Checked first, because most stops of a
+// long log are far away.
 constexpr double kFarthestCompared_m = 20.0;
 constexpr double kWidening =
     3.0;  // of the deviations, when nothing was found where odometry predicts

@@ -15,8 +15,8 @@ using geometry::Pose2;
 
 namespace {
 
-// All chosen with tests/bench/kidnapped.cpp: no wrong place is taken on any of its floors, and the
-// right one within some metres.
+// These depend on each other, so none is a setting; tests/bench/kidnapped.cpp measures what they do
+// together.
 constexpr std::size_t kMostHypotheses = 16;
 constexpr double kProposed_m = 0.25;  // deviation of a proposed place: the cells of the search
 constexpr double kProposed_rad = 0.08;

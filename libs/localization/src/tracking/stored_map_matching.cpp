@@ -9,8 +9,8 @@ using geometry::Pose2;
 
 namespace {
 
-// Stored stops further away are not compared: the pose is known better than while mapping, and a
-// nearer one that sees the same is always there.
+// Stored stops further away are not compared: a robot in a finished map has nearer ones that see
+// the same.
 constexpr double kFarthestStored_m = 12.0;
 
 }  // namespace
