@@ -131,7 +131,7 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
     return match.matched_step ? confidence_[*match.matched_step] : 1.0;
   };
   std::vector<Support> supports;
-  bool accepted = false;
+  bool any_accepted_match = false;
   for (const StepMatch& match : evidence.matches) {
     if (match.matched_step && *match.matched_step >= confidence_.size()) {
       throw std::invalid_argument("state monitor: match with step " +
@@ -139,7 +139,7 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
                                   std::to_string(confidence_.size()));
     }
     if (match.verdict != Verdict::kAccepted && !is_doubtful(match)) continue;
-    accepted |= match.verdict == Verdict::kAccepted;
+    any_accepted_match |= match.verdict == Verdict::kAccepted;
     const bool accepted = match.verdict == Verdict::kAccepted;
     supports.push_back(
         {before_of(match), (accepted ? 1.0 : kDoubtfulShare) * match_confidence(match)});
@@ -172,7 +172,7 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
   belief_.confidence = confidence * covariance_confidence(evidence.covariance);
   if (doubted_ >= kOftenDoubted) {  // one bad scan proves nothing
     belief_.state = LocalizationState::kLost;
-  } else if ((accepted || started) && belief_.confidence >= kTrackingFrom) {
+  } else if ((any_accepted_match || started) && belief_.confidence >= kTrackingFrom) {
     belief_.state = LocalizationState::kTracking;
   } else {
     belief_.state = LocalizationState::kAmbiguous;
