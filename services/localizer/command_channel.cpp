@@ -40,7 +40,7 @@ void CommandChannel::carry_out(const Handler& handler, std::int64_t stamp_ns) {
 }
 
 void CommandChannel::reply(std::uint64_t request_id, const std::string& client_id,
-                           const Answer& answer, std::int64_t stamp_ns) {
+                           const CommandAnswer& answer, std::int64_t stamp_ns) {
   msg::LocalizationReply message;
   messaging::set_header(message, service_.robot_id(), stamp_ns, sequence_++);
   message.request_id(request_id);

@@ -13,15 +13,13 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/service.hpp"
 
+#include "localizer_commands.hpp"
+
 namespace topogeo::localizer {
 
 class CommandChannel {
  public:
-  struct Answer {
-    bool accepted = false;
-    std::string message;  ///< why not, or what will be done
-  };
-  using Handler = std::function<Answer(const service::LocalizationCommand& command)>;
+  using Handler = std::function<CommandAnswer(const service::LocalizationCommand& command)>;
 
   /// `on_arrival` is called for every command that can be carried out; carry_out() then is to be
   /// called soon. Throws like Reader and Writer.
@@ -33,7 +31,7 @@ class CommandChannel {
 
  private:
   void on_command(const msg::LocalizationCommand& message);
-  void reply(std::uint64_t request_id, const std::string& client_id, const Answer& answer,
+  void reply(std::uint64_t request_id, const std::string& client_id, const CommandAnswer& answer,
              std::int64_t stamp_ns);
 
   service::Service& service_;

@@ -1,79 +1,63 @@
-// The part of LocalizerService that carries out commands.
-#include <exception>
-#include <string>
+#include "localizer_commands.hpp"
 
-#include "localizer_service.hpp"
+#include <exception>
+
+#include "topogeo/msg/trajectory.h"
 
 namespace topogeo::localizer {
 
-void LocalizerService::carry_out_commands() {
-  commands_.carry_out(
-      [this](const service::LocalizationCommand& command) {
-        CommandChannel::Answer answer = carry_out(command);
-        send_pose();
-        return answer;
-      },
-      last_stop_.stamp_ns);
+namespace {
+
+CommandAnswer stop_mapping(const CommandMoment& now, localization::SlamSession& slam) {
+  if (!slam.mapping()) return {false, "it localizes in a finished map already"};
+  if (now.finished) return {false, "the log has ended"};
+  if (now.stops_in_map == 0) return {false, "there is no map yet"};
+  try {
+    slam.mapping_session()->stop_mapping();
+  } catch (const std::exception& error) {
+    return {false, error.what()};
+  }
+  return {true, "the map of " + std::to_string(now.stops_in_map) + " stops stays as it is"};
 }
 
-CommandChannel::Answer LocalizerService::carry_out(const service::LocalizationCommand& command) {
-  const bool maps = localizer_.map_localizer() == nullptr;
+CommandAnswer resume_mapping(const CommandMoment& now, localization::SlamSession& slam) {
+  if (slam.mapping()) return {false, "it makes a map already"};
+  if (slam.mapping_session() == nullptr) {
+    return {false, "the map was given with --map to stay as it is; start with --continue"};
+  }
+  if (now.finished) return {false, "the log has ended"};
+  try {
+    slam.mapping_session()->resume_mapping();
+  } catch (const std::exception& error) {
+    return {false, error.what()};
+  }
+  return {true, "new stops extend the map of " + std::to_string(now.stops_in_map) + " stops"};
+}
+
+}  // namespace
+
+CommandAnswer carry_out(const service::LocalizationCommand& command, const CommandMoment& now,
+                        localization::SlamSession& slam) {
+  const bool maps = slam.follower() == nullptr;
   switch (command.kind) {
     case msg::kCommandSetPose:
       if (maps) return {false, "it makes a map, in which its pose is not to be chosen"};
-      return set_pose(command);
+      slam.follower()->set_pose(T_map_stop(command, now), command.covariance);
+      return {true, "goes on from there"};
     case msg::kCommandSearch:
       if (maps) return {false, "it makes a map: there is no finished one to search"};
-      localizer_.map_localizer()->search();
+      slam.follower()->search();
       return {true, "searches the whole map from the next stop on"};
     case msg::kCommandSwitchToLocalization:
-      return stop_mapping();
+      return stop_mapping(now, slam);
     case msg::kCommandSwitchToMapping:
-      return resume_mapping();
+      return resume_mapping(now, slam);
   }
   return {false, "unknown command"};
 }
 
-CommandChannel::Answer LocalizerService::stop_mapping() {
-  if (!localizer_.mapping()) return {false, "it localizes in a finished map already"};
-  if (finished_) return {false, "the log has ended"};
-  if (stops_in_map() == 0) return {false, "there is no map yet"};
-  try {
-    localizer_.session()->stop_mapping();
-  } catch (const std::exception& error) {
-    return {false, error.what()};
-  }
-  return {true, "the map of " + std::to_string(stops_in_map()) + " stops stays as it is"};
-}
-
-CommandChannel::Answer LocalizerService::resume_mapping() {
-  if (localizer_.mapping()) return {false, "it makes a map already"};
-  if (localizer_.session() == nullptr) {
-    return {false, "the map was given with --map to stay as it is; start with --continue"};
-  }
-  if (finished_) return {false, "the log has ended"};
-  try {
-    localizer_.session()->resume_mapping();
-  } catch (const std::exception& error) {
-    return {false, error.what()};
-  }
-  return {true, "new stops extend the map of " + std::to_string(stops_in_map()) + " stops"};
-}
-
-// The pose is that of now; the localizer wants that of the last stop.
-CommandChannel::Answer LocalizerService::set_pose(const service::LocalizationCommand& command) {
-  geometry::Pose2 T_map_stop = command.T_map_robot;
-  if (last_map_) {
-    const geometry::Pose2 T_stop_robot =
-        geometry::between(last_map_->T_odom_robot, newest_.T_odom_robot);
-    T_map_stop = command.T_map_robot * geometry::inverse(T_stop_robot);
-  }
-  localizer_.map_localizer()->set_pose(T_map_stop, command.covariance);
-  if (last_map_) {
-    last_stop_.T_map_robot = T_map_stop;
-    last_stop_.covariance = command.covariance;
-  }
-  return {true, "goes on from there"};
+geometry::Pose2 T_map_stop(const service::LocalizationCommand& command, const CommandMoment& now) {
+  return command.T_map_robot * geometry::inverse(now.T_stop_robot);
 }
 
 }  // namespace topogeo::localizer

@@ -36,29 +36,25 @@ RemotePoolOptions pool_options(const service::Service& service) {
   return options;
 }
 
-ActiveSlam make_slam(const service::Service& service, const LocalizerOptions& options,
-                     localization::MatchPool& pool) {
+localization::SlamSession make_slam(const service::Service& service,
+                                    const LocalizerOptions& options, localization::MatchPool& pool,
+                                    localization::GraphOptimizer& optimizer) {
+  using localization::MapToUse;
   const pipeline::Config& config = service.setup().config.config;
-  if (!options.map && !options.continued) return {config.localizer, pool};
+  if (!options.map && !options.continued) return {config.localizer, pool, &optimizer};
   try {
+    MapToUse stored{nullptr, MapToUse::Use::kLocalize, options.initial_pose};
     if (options.map) {
-      return {config.localizer, pool, pipeline::load_stored_map(*options.map),
-              ActiveSlam::Use::kLocalize, options.initial_pose};
+      stored.map = pipeline::load_stored_map(*options.map);
+    } else {
+      stored.map = pipeline::stored_map(
+          *pipeline::load_map_to_continue(*options.continued, config, service.robot_id()));
+      stored.use = MapToUse::Use::kContinue;
     }
-    const auto document =
-        pipeline::load_map_to_continue(*options.continued, config, service.robot_id());
-    return {config.localizer, pool, pipeline::stored_map(*document), ActiveSlam::Use::kContinue,
-            options.initial_pose};
+    return {config.localizer, pool, &optimizer, stored};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
-}
-
-bool same(const std::vector<topomap::LoopClosure>& a, const std::vector<topomap::LoopClosure>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-    return x.earlier_id == y.earlier_id && x.later_id == y.later_id &&
-           x.T_earlier_later == y.T_earlier_later;
-  });
 }
 
 }  // namespace
@@ -70,15 +66,13 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
             [&service](std::string_view reason, std::string_view detail) {
               service.status().fault(reason, detail);
             }),
-      localizer_(make_slam(service, options, pool_)),
+      slam_(make_slam(service, options, pool_, optimizer_)),
       commands_(service, [this] { schedule(); }),
       maps_in_(service.participant()),
       odometry_(service.participant()),
       tracked_poses_(service.participant()),
       ends_in_(service.participant()),
-      segments_(service.participant()),
-      closures_(service.participant()),
-      decisions_(service.participant()),
+      trajectory_(service),
       poses_(service.participant()),
       ends_out_(service.participant()) {
   messaging::EventLoop& loop = service_.loop();
@@ -97,9 +91,6 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
                            [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
                              on_stream_end(message);
                            });
-  loop.add(segments_);
-  loop.add(closures_);
-  loop.add(decisions_);
   loop.add(poses_);
   loop.add(ends_out_);
   loop.add_timer(kCountPeriod, [this] { count_pool(); });
@@ -160,8 +151,8 @@ void LocalizerService::send_pose() {
   service::LivePose live;
   live.stamp_ns = newest_.stamp_ns;
   live.sequence = newest_.sequence;
-  live.belief = localizer_->belief();
-  live.mode = localizer_.mapping() ? msg::kModeMapping : msg::kModeLocalization;
+  live.belief = slam_->belief();
+  live.mode = slam_.mapping() ? msg::kModeMapping : msg::kModeLocalization;
   live.T_map_robot = pose.T_a_b;
   live.covariance = pose.covariance;
   live.local_map_id = last_stop_.source_id;
@@ -219,7 +210,7 @@ void LocalizerService::step(const MapPointer& map) {
     service_.status().set_state(msg::kServiceRunning);
   }
   hashes_.push_back(topomap::content_hash(*map));
-  localizer_->add(map);
+  slam_->add(map);
   last_map_ = map;
   if (map->stamp_ns >= newest_.stamp_ns) {
     newest_ = {map->stamp_ns, map->sequence, map->T_odom_robot};
@@ -230,17 +221,18 @@ void LocalizerService::step(const MapPointer& map) {
 }
 
 std::size_t LocalizerService::stops_in_map() const {
-  return localizer_.session() != nullptr ? localizer_.session()->maps().size() : hashes_.size();
+  return slam_.mapping_session() != nullptr ? slam_.mapping_session()->maps().size()
+                                            : hashes_.size();
 }
 
 void LocalizerService::finish() {
-  service_.status().set_state(msg::kServiceRunning, localizer_.map_localizer() == nullptr
+  service_.status().set_state(msg::kServiceRunning, slam_.follower() == nullptr
                                                         ? "matching revisited places"
                                                         : "localizing");
-  localizer_->finish();
-  if (options_.csv && localizer_.session() == nullptr) {
+  slam_->finish();
+  if (options_.csv && slam_.mapping_session() == nullptr) {
     support::write_file_atomically(*options_.csv,
-                                   pipeline::localization_csv(localizer_.map_localizer()->stops()));
+                                   pipeline::localization_csv(slam_.follower()->stops()));
   }
   finished_ = true;
   publish(true);
@@ -254,59 +246,54 @@ void LocalizerService::finish() {
   end.last_id(stops == 0 ? 0 : stops - 1);
   end.version(version_);
   if (!service_.send(ends_out_, end, "stream end")) return;
-  const localization::SlamCounts& counts = localizer_->counts();
+  const localization::SlamCounts counts = slam_->counts();
   spdlog::info("{} stops, {} match tasks, {} loop closures", hashes_.size(), counts.tasks,
-               sent_closures_.size());
+               trajectory_.closures());
   std::string message;
-  if (localizer_.session() != nullptr) {
-    message = pipeline::continuation_message(*localizer_.session());
+  if (slam_.mapping_session() != nullptr) {
+    message = pipeline::continuation_message(*slam_.mapping_session());
     if (!message.empty()) spdlog::warn("{}", message);
   }
   service_.status().set_state(msg::kServiceFinished, message);
 }
 
-// Sends what has changed, or all of it, so that a reader has it whole in one version.
 void LocalizerService::publish(bool whole) {
-  const topomap::Trajectory trajectory = localizer_->trajectory();
+  const topomap::Trajectory trajectory = slam_->trajectory();
   version_ = trajectory.version;
-  if (const auto last = localizer_->last_stop()) last_stop_ = *last;
-  std::vector<std::uint32_t> numbers = updates_.update(trajectory);
-  if (whole) {
-    numbers.resize(service::segment_count(trajectory.stops.size()));
-    for (std::uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
-  }
-  for (const std::uint32_t number : numbers) {
-    const msg::TrajectorySegment segment =
-        service::to_segment(trajectory, number, service_.robot_id(), segments_sent_++);
-    if (!service_.send(segments_, segment, "trajectory")) throw Stopped();
-  }
-  publish_decisions();
-  std::vector<topomap::LoopClosure> closures = localizer_->loop_closures();
-  if (!whole && same(closures, sent_closures_)) return;
-  sent_closures_ = std::move(closures);
-  const msg::LoopClosures message = service::to_msg(sent_closures_, version_, service_.robot_id(),
-                                                    last_stop_.stamp_ns, closures_sent_++);
-  if (!service_.send(closures_, message, "loop closures")) throw Stopped();
+  if (const auto last = slam_->last_stop()) last_stop_ = *last;
+  if (!trajectory_.publish(*slam_, trajectory, last_stop_.stamp_ns, whole)) throw Stopped();
 }
 
-// Decisions only come to the end, so the last segment that was sent and what follows are news.
-void LocalizerService::publish_decisions() {
-  const std::vector<localization::LoopDecision>& decisions = localizer_->loop_decisions();
-  if (decisions.size() == decisions_published_) return;
-  const auto first = static_cast<std::uint32_t>(decisions_published_ / msg::kSegmentDecisions);
-  for (std::uint32_t i = first; i < service::decision_segment_count(decisions.size()); ++i) {
-    const msg::LoopDecisions segment = service::to_segment(
-        decisions, i, service_.robot_id(), last_stop_.stamp_ns, decision_segments_sent_++);
-    if (!service_.send(decisions_, segment, "loop decisions")) throw Stopped();
+// --- commands
+
+void LocalizerService::carry_out_commands() {
+  commands_.carry_out(
+      [this](const service::LocalizationCommand& command) {
+        CommandAnswer answer = carry_out(command);
+        send_pose();
+        return answer;
+      },
+      last_stop_.stamp_ns);
+}
+
+CommandAnswer LocalizerService::carry_out(const service::LocalizationCommand& command) {
+  CommandMoment now{finished_, stops_in_map(), {}};
+  if (last_map_) {
+    now.T_stop_robot = geometry::between(last_map_->T_odom_robot, newest_.T_odom_robot);
   }
-  decisions_published_ = decisions.size();
+  CommandAnswer answer = localizer::carry_out(command, now, slam_);
+  if (answer.accepted && command.kind == msg::kCommandSetPose && last_map_) {
+    last_stop_.T_map_robot = T_map_stop(command, now);
+    last_stop_.covariance = command.covariance;
+  }
+  return answer;
 }
 
 // --- counters
 
 void LocalizerService::count() {
   messaging::StatusPublisher& status = service_.status();
-  const localization::SlamCounts& counts = localizer_->counts();
+  const localization::SlamCounts counts = slam_->counts();
   const auto set = [&status](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };
@@ -319,20 +306,20 @@ void LocalizerService::count() {
     const std::string name = localization::to_string(reason);
     set(reason == localization::Reason::kNone ? name : "rejected: " + name, counts.reasons[i]);
   }
-  set("loop_closures", sent_closures_.size());
-  set("loop_decisions", localizer_->loop_decisions().size());
+  set("loop_closures", trajectory_.closures());
+  set("loop_decisions", slam_->loop_decisions().size());
   set("optimizations", counts.optimizations);
   set("failed_optimizations", counts.failed_optimizations);
   set("unconfirmed_loops", counts.unconfirmed_loops);
   set("removed_loops", counts.removed_loops);
   set("steps_in_doubt", counts.steps_in_doubt);
-  if (const localization::MappingSession* session = localizer_.session()) {
+  if (const localization::MappingSession* session = slam_.mapping_session()) {
     if (options_.continued) {
       for (const auto& [name, value] : pipeline::continuation_counts(*session)) set(name, value);
     }
     set("stops_in_map", stops_in_map());
   }
-  if (const auto* in_map = localizer_.map_localizer()) {
+  if (const auto* in_map = slam_.follower()) {
     for (const auto& [name, value] : pipeline::localization_counts(*in_map)) set(name, value);
   }
   count_pool();

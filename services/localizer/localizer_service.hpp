@@ -1,5 +1,5 @@
-// Wires localization::Localizer to topics: local maps in, the corrected trajectory, closed loops,
-// what was decided of each loop and the live pose out, with the matching done by RemotePool.
+// Wires localization::SlamSession to topics: local maps in, the corrected trajectory, closed loops,
+// the decision on each loop and the live pose out, with the matching done by RemotePool.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
@@ -21,10 +21,10 @@
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
 
-#include "active_slam.hpp"
+#include "background_optimizer.hpp"
 #include "command_channel.hpp"
 #include "remote_pool.hpp"
-#include "trajectory_updates.hpp"
+#include "trajectory_publisher.hpp"
 
 namespace topogeo::localizer {
 
@@ -55,29 +55,24 @@ class LocalizerService {
   void work();
   void wait_for_workers();
   void carry_out_commands();
-  CommandChannel::Answer carry_out(const service::LocalizationCommand& command);
-  CommandChannel::Answer set_pose(const service::LocalizationCommand& command);
-  CommandChannel::Answer stop_mapping();
-  CommandChannel::Answer resume_mapping();
+  CommandAnswer carry_out(const service::LocalizationCommand& command);
   void step(const MapPointer& map);
   void finish();
   void publish(bool whole);
-  void publish_decisions();
   void count();
   void count_pool();
 
   service::Service& service_;
   LocalizerOptions options_;
   RemotePool pool_;
-  ActiveSlam localizer_;
+  BackgroundOptimizer optimizer_;
+  localization::SlamSession slam_;
   CommandChannel commands_;
   messaging::Reader<msg::LocalMap> maps_in_;
   messaging::Reader<msg::Odometry> odometry_;
   messaging::Reader<msg::TrackedPose> tracked_poses_;
   messaging::Reader<msg::StreamEnd> ends_in_;
-  messaging::Writer<msg::TrajectorySegment> segments_;
-  messaging::Writer<msg::LoopClosures> closures_;
-  messaging::Writer<msg::LoopDecisions> decisions_;
+  TrajectoryPublisher trajectory_;
   messaging::Writer<msg::LivePose> poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
@@ -96,13 +91,7 @@ class LocalizerService {
     topomap::TrackedScan scan;
   };
   std::optional<Tracked> tracked_;  // the scan that came last
-  TrajectoryUpdates updates_;
-  std::vector<topomap::LoopClosure> sent_closures_;
   std::uint64_t version_ = 0;
-  std::uint64_t segments_sent_ = 0;
-  std::uint64_t closures_sent_ = 0;
-  std::size_t decisions_published_ = 0;
-  std::uint64_t decision_segments_sent_ = 0;
   std::optional<std::uint64_t> maps_in_stream_;
   bool scheduled_ = false;
   bool waited_ = false;

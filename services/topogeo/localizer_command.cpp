@@ -8,6 +8,7 @@
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
@@ -95,7 +96,7 @@ void add_localizer_command(command_line::Command& app, int& exit_code) {
     } catch (const std::invalid_argument& error) {
       throw service::UsageError(error.what());
     }
-    command.covariance = pipeline::given_pose_covariance();
+    command.covariance = localization::given_pose_covariance();
     exit_code = send_localizer_command(*request, command);
   });
 

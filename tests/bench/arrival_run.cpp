@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/localization/tracking/map_localizer.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/support/random.hpp"
@@ -84,7 +85,7 @@ ArrivalResult run_arrival(const MappedFloor& floor, const ArrivalConfig& config,
   localization::InProcessPool pool;
   localization::MapLocalizer localizer(config.system.localizer, floor.stored, pool);
   if (config.pose_given) {
-    localizer.set_pose(told(task.T_map_start, task.seed), pipeline::given_pose_covariance());
+    localizer.set_pose(told(task.T_map_start, task.seed), localization::given_pose_covariance());
   }
   ClosedLoop loop(task.world, loop_config(config, task), localizer);
   loop.set_map(floor.map, 1);

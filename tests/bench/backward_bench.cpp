@@ -1,12 +1,12 @@
-// The backward correction of a loop of 60 poses with 40 candidates of the last one, as long as the
-// Thesis's experiment 2.
+// The backward correction of a loop of 60 poses with 40 candidates of the last one, as long as that
+// of experiment 2 of the thesis.
 #include <cstdint>
 
 #include <benchmark/benchmark.h>
 
-#include "topogeo/localization/mapping/backward_correction.hpp"
+#include "topogeo/localization/thesis/backward_correction.hpp"
 
-#include "localization/mapping/backward_problems.hpp"
+#include "localization/thesis/backward_problems.hpp"
 
 namespace {
 
@@ -21,7 +21,7 @@ void backward(benchmark::State& state) {
     result = correct_backward(loop.problem, loop.solutions);
     benchmark::DoNotOptimize(result);
   }
-  if (result.outcome != BackwardOutcome::kClosed) state.SkipWithError("the loop stayed open");
+  if (result.outcome != LoopSearchOutcome::kClosed) state.SkipWithError("the loop stayed open");
   state.counters["expanded"] = static_cast<double>(result.expanded);
 }
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/session/make_slam.hpp"
 #include "topogeo/pipeline/world_grid.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"

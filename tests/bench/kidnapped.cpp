@@ -139,7 +139,7 @@ void collect(const localization::TrackedStep& step, const Pose2& truth, Samples&
   // What odometry hands on, as far as its own covariance does not say it: is the robot where the
   // prediction has it, give or take a metre?
   samples.predictions.push_back(
-      {{1.0, localization::contradiction(step.evidence), step.evidence.way_m},
+      {{1.0, localization::contradiction(step.evidence), step.evidence.distance_m},
        (step.predicted.T_a_b.position_m() - truth.position_m()).norm() < 1.0});
 }
 

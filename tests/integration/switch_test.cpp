@@ -1,7 +1,7 @@
 // A running localizer that is told to leave its map as it is, and to go on with it.
 #include <csignal>
 
-#include "topogeo/localization/tracking/mapping_session.hpp"
+#include "topogeo/localization/session/mapping_session.hpp"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/trajectory_assembly.hpp"

@@ -37,13 +37,6 @@ geometry::Pose2 parse_pose(const std::string& text) {
   return {values[0], values[1], geometry::wrap_angle(values[2] * std::numbers::pi / 180.0)};
 }
 
-Eigen::Matrix3d given_pose_covariance() {
-  constexpr double kSigma_m = 0.3;
-  constexpr double kSigma_rad = 10.0 * std::numbers::pi / 180.0;
-  return Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
-      .asDiagonal();
-}
-
 namespace {
 
 /// A map file as far as its stops have poses.
@@ -122,7 +115,7 @@ std::string localization_csv(std::span<const localization::LocalizedStop> stops)
                         storage::stamp_text(s.stamp_ns), s.T_map_robot.x_m, s.T_map_robot.y_m,
                         s.T_map_robot.theta_rad, localization::to_string(s.belief.state),
                         s.belief.confidence, std::sqrt(c(0, 0)), std::sqrt(c(1, 1)),
-                        std::sqrt(c(2, 2)), s.believed_matches);
+                        std::sqrt(c(2, 2)), s.accepted_matches);
   }
   return text;
 }

@@ -9,14 +9,13 @@
 
 namespace topogeo::pipeline {
 
+using localization::MapToUse;
+
 MappingRun::MappingRun(const Config& config, std::string robot_id)
     : config_(config),
       robot_id_(std::move(robot_id)),
-      local_mapper_(config.local_mapper, robot_id_) {
-  auto session = std::make_unique<localization::MappingSession>(config.localizer, pool_);
-  session_ = session.get();
-  localizer_ = std::move(session);
-}
+      local_mapper_(config.local_mapper, robot_id_),
+      slam_(config.localizer, pool_) {}
 
 MappingRun::MappingRun(const Config& config, std::string robot_id,
                        std::shared_ptr<const storage::MapDocument> map,
@@ -24,27 +23,18 @@ MappingRun::MappingRun(const Config& config, std::string robot_id,
     : config_(config),
       robot_id_(std::move(robot_id)),
       local_mapper_(config.local_mapper, robot_id_),
-      continued_(std::move(map)) {
-  std::optional<localization::UncertainPose> initial;
-  if (initial_pose) initial = {*initial_pose, given_pose_covariance()};
-  auto session = std::make_unique<localization::MappingSession>(config.localizer, pool_, nullptr,
-                                                                stored_map(*continued_), initial);
-  session_ = session.get();
-  localizer_ = std::move(session);
-}
+      continued_(std::move(map)),
+      slam_(config.localizer, pool_, nullptr,
+            {stored_map(*continued_), MapToUse::Use::kContinue, initial_pose}) {}
 
 MappingRun::MappingRun(const Config& config, std::string robot_id,
                        std::shared_ptr<const localization::StoredMap> map,
                        const std::optional<geometry::Pose2>& initial_pose)
     : config_(config),
       robot_id_(std::move(robot_id)),
-      local_mapper_(config.local_mapper, robot_id_) {
-  auto localizer =
-      std::make_unique<localization::MapLocalizer>(config.localizer, std::move(map), pool_);
-  if (initial_pose) localizer->set_pose(*initial_pose, given_pose_covariance());
-  map_localizer_ = localizer.get();
-  localizer_ = std::move(localizer);
-}
+      local_mapper_(config.local_mapper, robot_id_),
+      slam_(config.localizer, pool_, nullptr,
+            {std::move(map), MapToUse::Use::kLocalize, initial_pose}) {}
 
 void MappingRun::add(const scan::Scan& scan) {
   std::optional<topomap::LocalMap> map;
@@ -57,26 +47,26 @@ void MappingRun::add(const scan::Scan& scan) {
 
 void MappingRun::localize(topomap::LocalMap map) {
   const auto scope = times_.measure("localizer");
-  if (session_ == nullptr) local_maps_.push_back(map);
-  localizer_->add(std::make_shared<const topomap::LocalMap>(std::move(map)));
+  if (session() == nullptr) local_maps_.push_back(map);
+  slam_->add(std::make_shared<const topomap::LocalMap>(std::move(map)));
 }
 
 storage::MapDocument MappingRun::finish() {
   if (std::optional<topomap::LocalMap> map = local_mapper_.finish()) localize(std::move(*map));
   {
     const auto scope = times_.measure("localizer");
-    localizer_->finish();
+    slam_->finish();
   }
-  if (continued_ && session_->maps().size() == session_->stored_stops()) return *continued_;
+  if (continued_ && session()->maps().size() == session()->stored_stops()) return *continued_;
   storage::MapDocument document;
   document.robot_id = robot_id_;
   document.seed = config_.localizer.seed;
   document.local_maps = std::move(local_maps_);
-  if (session_ != nullptr) {
-    for (const auto& map : session_->maps()) document.local_maps.push_back(*map);
+  if (session() != nullptr) {
+    for (const auto& map : session()->maps()) document.local_maps.push_back(*map);
   }
-  document.trajectory = localizer_->trajectory();
-  document.loop_closures = localizer_->loop_closures();
+  document.trajectory = slam_->trajectory();
+  document.loop_closures = slam_->loop_closures();
   if (continued_) document.drawing = continued_->drawing;
   const auto scope = times_.measure("map_store");
   document.global_map = fuse(config_.global_map, document.local_maps, document.trajectory);

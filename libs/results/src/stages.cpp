@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/session/make_slam.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/render/map_picture.hpp"
 

@@ -30,7 +30,7 @@ TEST(LocalizationCsv, HasALineForEachStop) {
   stop.T_map_robot = {1.0, -2.0, 0.5};
   stop.covariance = Eigen::Vector3d(0.01, 0.04, 0.0001).asDiagonal();
   stop.belief = {localization::LocalizationState::kAmbiguous, 0.25};
-  stop.believed_matches = 2;
+  stop.accepted_matches = 2;
   EXPECT_EQ(localization_csv(std::vector{stop}),
             "stop,stamp_s,x_m,y_m,theta_rad,state,confidence,sigma_x_m,sigma_y_m,sigma_theta_rad,"
             "believed_matches\n"

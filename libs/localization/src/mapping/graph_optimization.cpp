@@ -6,7 +6,9 @@
 namespace topogeo::localization {
 namespace {
 
-constexpr double kOutvoted = 30.0;  // squared Mahalanobis distance of a loop after optimisation
+// Squared Mahalanobis distance of a loop after optimisation: a right loop comes this far once in a
+// million (chi-square, three degrees of freedom).
+constexpr double kOutvoted = 30.0;
 
 }  // namespace
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
-#include "topogeo/localization/matching/expected_overlap.hpp"
+#include "topogeo/localization/mapping/drive_join.hpp"
 
 namespace topogeo::localization {
 
@@ -15,181 +15,291 @@ using topomap::LocalMap;
 
 namespace {
 
-constexpr double kWidening = 3.0;  // of the deviations, when nothing was found where odometry says
+// By an optimisation after the end of a log: a stop that moved less sees the same places.
+constexpr double kMovedAtEnd_m = 0.1;
+constexpr double kMovedAtEnd_rad = 0.02;
 
-}  // namespace
-
-Localizer::Localizer(LocalizerConfig config, MatchPool& pool, GraphOptimizer* optimizer)
-    : config_(config), pool_(pool), optimizer_(optimizer) {}
-
-bool Localizer::add(std::shared_ptr<const LocalMap> map) {
-  append(std::move(map));
-  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
-  ++version_;
-  if (stop == 0) {
-    believe(stop, {});
-    return false;
-  }
-  const bool moved = finish_optimization(stop);
-  std::vector<StepMatch> evidence;
-  match_recent(stop, evidence);
-  graph_.place_last_pose();
-  stops_[stop].covariance = covariance_in_map(stop);
-  match_revisited(stop, evidence);
-  believe(stop, std::move(evidence));
-  start_optimization(stop);
-  return finish_optimization(stop) || moved;
-}
-
-Localizer::Stop Localizer::described(std::shared_ptr<const LocalMap> map) {
-  Stop stop;
-  stop.hash = topomap::content_hash(*map);
-  MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
-  stop.profile = std::move(features.profile);
-  stop.outline = outline_of(features.coarse);
-  stop.map = std::move(map);
-  return stop;
-}
-
-void Localizer::append(std::shared_ptr<const LocalMap> map) {
-  check_next(*map, stops_.size(), stops_.empty() ? nullptr : stops_.front().map.get());
-  pool_.add_map(map);
-  Stop stop = described(std::move(map));
-  if (stops_.empty()) {
-    graph_.add_pose(Pose2{});
-  } else {
-    const Stop& previous = stops_.back();
-    const bool gap = gap_.has_value();
-    const UncertainPose step =
-        gap ? *std::exchange(gap_, std::nullopt)
-            : odometry_between_stops(previous.map->T_odom_robot, *stop.map, config_.odometry);
-    const auto id = static_cast<std::uint32_t>(stops_.size());
-    // No stop from before a gap is a recent one.
-    stop.way_m = previous.way_m + (gap ? 2.0 * config_.recent_way_m
-                                       : std::sqrt(step.T_a_b.position_m().squaredNorm()));
-    graph_.add_pose(graph_.poses().back() * step.T_a_b);
-    // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
-    graph_.add_edge({id - 1, id, EdgeKind::kOdometry, step.T_a_b,
-                     invertible(gap ? step.covariance : odometry_.widened(step.covariance))});
-  }
-  stops_.push_back(std::move(stop));
-}
-
-void Localizer::match_recent(std::uint32_t stop, std::vector<StepMatch>& evidence) {
-  const std::uint32_t first = first_recent(stop);
-  const std::vector<UncertainPose> relative =
-      graph_.relative_to(stop, {first, PoseGraph::kUnlimited});
-  std::vector<Answer> answers =
-      run(recent_tasks(stop, relative, 1.0), EdgeKind::kSequential, &evidence);
-  const auto any_accepted = [](const std::vector<Answer>& given) {
-    return std::any_of(given.begin(), given.end(), [](const Answer& a) { return a.accepted; });
-  };
-  if (!any_accepted(answers)) {
-    // Odometry may be worse than it ever was: once more, in a wider space.
-    std::vector<StepMatch> wider_evidence;
-    std::vector<Answer> wider =
-        run(recent_tasks(stop, relative, kWidening), EdgeKind::kSequential, &wider_evidence);
-    if (any_accepted(wider)) {
-      answers = std::move(wider);
-      evidence = std::move(wider_evidence);
-    }
-  }
-  last_solutions_ = std::exchange(new_solutions_, {});
-  // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
-  // uncertain ones, with their wide covariance, still say more than it does.
-  const bool any = any_accepted(answers);
-  if (!any) ++counts_.steps_in_doubt;
-  for (const Answer& answer : answers) {
-    if (answer.accepted || !any) graph_.add_edge(answer.edge);
-    if (answer.accepted && answer.edge.from + 1 == stop) watch_odometry(answer.edge);
-  }
-}
-
-std::vector<MatchTask> Localizer::recent_tasks(std::uint32_t stop,
-                                               const std::vector<UncertainPose>& relative,
-                                               double widening) {
-  std::vector<MatchTask> tasks;
-  const Pose2 T_previous_robot = stops_[stop].map->T_previous_robot;
-  for (const Candidate& candidate : candidates(stop, relative, true, config_.recent_matches)) {
-    UncertainPose prior = relative[candidate.id];
-    prior.covariance *= widening * widening;
-    MatchTask task = make_task(stop, candidate.id, prior);
-    const Pose2 T_candidate_previous =
-        geometry::between(graph_.poses()[candidate.id], graph_.poses()[stop - 1]);
-    task.initial_individuals.push_back(geometry::inverse(T_candidate_previous * T_previous_robot));
-    for (const MatchSolution& solution : last_solutions_[candidate.id]) {
-      task.initial_individuals.push_back(geometry::inverse(T_previous_robot) *
-                                         solution.T_reference_query);
-    }
-    tasks.push_back(std::move(task));
-  }
-  return tasks;
-}
-
-void Localizer::watch_odometry(const PoseGraphEdge& match) {
-  const LocalMap& map = *stops_[match.to].map;
-  const UncertainPose odometry =
-      odometry_between_stops(stops_[match.from].map->T_odom_robot, map, config_.odometry);
-  odometry_.add(odometry, {match.T_from_to, match.covariance});
-}
-
-void Localizer::match_revisited(std::uint32_t stop, std::vector<StepMatch>& evidence) {
-  const std::vector<UncertainPose> relative = graph_.relative_to(stop, searchable_reach());
-  std::vector<MatchTask> tasks;
-  for (const Candidate& candidate : candidates(stop, relative, false, config_.revisit_matches)) {
-    tasks.push_back(make_task(stop, candidate.id, relative[candidate.id]));
-  }
-  for (const Answer& answer : run(tasks, EdgeKind::kRevisit, &evidence)) {
-    if (answer.accepted) add_loop(answer);
-  }
-}
-
-void Localizer::believe(std::uint32_t stop, std::vector<StepMatch> matches) {
-  StepEvidence evidence;
-  evidence.matches = std::move(matches);
-  evidence.points = stops_[stop].map->points.size();
-  if (stop > 0) {
-    evidence.way_m = stops_[stop].way_m - stops_[stop - 1].way_m;
-    // By the stop that this one is known best from.
-    std::optional<Eigen::Matrix3d> best;
-    for (const auto& [from, covariance] : graph_.links_to(stop)) {
-      if (!best || PoseGraph::path_cost(covariance) < PoseGraph::path_cost(*best)) {
-        best = covariance;
-      }
-    }
-    evidence.covariance = best.value();  // odometry always leads here
-  }
-  monitor_.add(evidence);
-}
-
-// Along the best of the ways by which the matches and odometry of this step lead here.
-Eigen::Matrix3d Localizer::covariance_in_map(std::uint32_t stop) const {
+// Of all links between a stop and earlier ones, the covariance by which it is known best: relative
+// to the earlier stop.
+Eigen::Matrix3d best_link_to(const PoseGraph& graph, std::uint32_t stop) {
   std::optional<Eigen::Matrix3d> best;
-  for (const auto& [from, link] : graph_.links_to(stop)) {
-    const Eigen::Matrix3d covariance = geometry::compose_covariance(
-        graph_.poses()[from], stops_[from].covariance,
-        geometry::between(graph_.poses()[from], graph_.poses()[stop]), link);
+  for (const auto& [from, covariance] : graph.links_to(stop)) {
     if (!best || PoseGraph::path_cost(covariance) < PoseGraph::path_cost(*best)) best = covariance;
   }
   return best.value();  // odometry always leads here
 }
 
+// The same in the map frame, through the covariances of the earlier stops.
+Eigen::Matrix3d covariance_in_map(const PoseGraph& graph,
+                                  std::span<const Eigen::Matrix3d> covariances,
+                                  std::uint32_t stop) {
+  std::optional<Eigen::Matrix3d> best;
+  for (const auto& [from, link] : graph.links_to(stop)) {
+    const Eigen::Matrix3d covariance = geometry::compose_covariance(
+        graph.poses()[from], covariances[from],
+        geometry::between(graph.poses()[from], graph.poses()[stop]), link);
+    if (!best || PoseGraph::path_cost(covariance) < PoseGraph::path_cost(*best)) best = covariance;
+  }
+  return best.value();
+}
+
+// Only these can have come near to others.
+std::vector<std::uint32_t> moved_stops(std::span<const Pose2> before,
+                                       std::span<const Pose2> after) {
+  std::vector<std::uint32_t> moved;
+  for (std::uint32_t stop = 1; stop < before.size(); ++stop) {
+    const Pose2& a = before[stop];
+    const Pose2& b = after[stop];
+    const double distance_m = std::sqrt((a.position_m() - b.position_m()).squaredNorm());
+    const double turn_rad = std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad));
+    if (distance_m > kMovedAtEnd_m || turn_rad > kMovedAtEnd_rad) moved.push_back(stop);
+  }
+  return moved;
+}
+
+}  // namespace
+
+Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer)
+    : config_(config),
+      matching_(config, pool),
+      loops_(config),
+      schedule_(optimizer, config.optimization_delay) {}
+
+bool Localizer::add(MapPointer map) {
+  append(std::move(map));
+  ++version_;
+  const std::uint32_t stop = last();
+  if (stop == 0) {
+    judge_state({});
+    return false;
+  }
+  const bool moved = apply(schedule_.fetch(stop));
+  std::vector<StepMatch> evidence = match_recent();
+  graph_.place_last_pose();
+  covariances_[stop] = covariance_in_map(graph_, covariances_, stop);
+  const std::vector<StepMatch> of_loops = match_revisited({&stop, 1});
+  evidence.insert(evidence.end(), of_loops.begin(), of_loops.end());
+  judge_state(std::move(evidence));
+  schedule_.start(stop, graph_, loops_.waiting());
+  return apply(schedule_.fetch(stop)) || moved;
+}
+
+// --- stops
+
+std::uint32_t Localizer::last() const {
+  return static_cast<std::uint32_t>(matching_.size() - 1);
+}
+
+void Localizer::append(MapPointer map) {
+  const bool first = matching_.size() == 0;
+  check_next(*map, matching_.size(), first ? nullptr : &matching_.map(0));
+  if (first) {
+    graph_.add_pose(Pose2{});
+    matching_.add(std::move(map), 0.0);
+  } else {
+    const std::optional<UncertainPose> gap = std::exchange(gap_, std::nullopt);
+    const UncertainPose step =
+        gap ? *gap
+            : odometry_between_stops(matching_.map(last()).T_odom_robot, *map, config_.odometry);
+    const std::uint32_t stop = graph_.add_pose(graph_.poses().back() * step.T_a_b);
+    // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
+    graph_.add_edge({stop - 1, stop, EdgeKind::kOdometry, step.T_a_b,
+                     invertible(gap ? step.covariance : odometry_.widened(step.covariance))});
+    // No stop from before a gap is a recent one.
+    matching_.add(std::move(map), gap ? 2.0 * config_.recent_way_m
+                                      : std::sqrt(step.T_a_b.position_m().squaredNorm()));
+  }
+  covariances_.emplace_back(Eigen::Matrix3d::Zero());
+}
+
+// Places the last stop relative to recent ones.
+std::vector<StepMatch> Localizer::match_recent() {
+  const std::vector<StopMatch> matches = matching_.match_recent(graph_);
+  // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
+  // uncertain ones, with their wide covariance, still know more than it does.
+  const bool any = std::any_of(matches.begin(), matches.end(),
+                               [](const StopMatch& match) { return match.accepted(); });
+  if (!any) ++steps_in_doubt_;
+  std::vector<StepMatch> evidence;
+  for (const StopMatch& match : matches) {
+    evidence.push_back(match.evidence);
+    if (match.accepted() || (!any && match.uncertain())) graph_.add_edge(match.edge);
+    if (match.accepted() && match.edge.from + 1 == last()) watch_odometry(match.edge);
+  }
+  return evidence;
+}
+
+void Localizer::watch_odometry(const PoseGraphEdge& match) {
+  const UncertainPose odometry = odometry_between_stops(matching_.map(match.from).T_odom_robot,
+                                                        matching_.map(match.to), config_.odometry);
+  odometry_.add(odometry, {match.T_from_to, match.covariance});
+}
+
+// Closes the loops of stops with earlier places.
+std::vector<StepMatch> Localizer::match_revisited(std::span<const std::uint32_t> stops) {
+  const std::vector<StopMatch> matches = matching_.match_revisited(graph_, stops);
+  std::vector<StepMatch> evidence;
+  for (const StopMatch& match : matches) {
+    evidence.push_back(match.evidence);
+    if (!match.accepted()) loops_.refuse(graph_, match.edge, match.reason, match.fitness);
+  }
+  for (const StopMatch& match : matches) {
+    if (!match.accepted()) continue;
+    switch (loops_.consider(graph_, match.edge, match.fitness)) {
+      case LoopClosing::Verdict::kRefused:
+        break;
+      case LoopClosing::Verdict::kPending:
+        matching_.reopen(match.edge);
+        break;
+      case LoopClosing::Verdict::kMoves:
+        schedule_.want();
+        break;
+      case LoopClosing::Verdict::kAgrees:
+        graph_.add_edge(match.edge);
+        schedule_.count_loop();
+        break;
+    }
+  }
+  return evidence;
+}
+
+void Localizer::judge_state(std::vector<StepMatch> matches) {
+  const std::uint32_t stop = last();
+  StepEvidence evidence;
+  evidence.matches = std::move(matches);
+  evidence.points = matching_.map(stop).points.size();
+  if (stop > 0) {
+    evidence.distance_m = matching_.path_m(stop) - matching_.path_m(stop - 1);
+    evidence.covariance = best_link_to(graph_, stop);
+  }
+  monitor_.add(evidence);
+}
+
+// --- optimisation
+
+// True when there is a result, which may have moved earlier poses.
+bool Localizer::apply(const std::optional<OptimizationSchedule::Finished>& finished) {
+  if (!finished) return false;
+  for (const PoseGraphEdge& loop : loops_.release(finished->loops)) graph_.add_edge(loop);
+  const GraphSolution& solution = finished->solution;
+  if (!solution.summary.usable) return true;
+  graph_.move(solution.T_map_robot);
+  graph_.remove_edges(solution.outvoted);
+  loops_.outvote(graph_, solution.outvoted);
+  const std::size_t solved = solution.covariance.size();
+  std::copy(solution.covariance.begin(), solution.covariance.end(), covariances_.begin());
+  for (std::size_t i = std::max<std::size_t>(1, solved); i < covariances_.size(); ++i) {
+    covariances_[i] = covariance_in_map(graph_, covariances_, static_cast<std::uint32_t>(i));
+  }
+  ++version_;
+  return true;
+}
+
+void Localizer::optimize_now() {
+  apply(schedule_.fetch_now());
+  schedule_.want();
+  schedule_.start(last(), graph_, loops_.waiting());
+  apply(schedule_.fetch_now());
+}
+
+void Localizer::finish() {
+  if (matching_.size() < 2) return;
+  optimize_now();
+  // Stops of a stored map were compared with each other when it was made.
+  const std::size_t first = std::max<std::size_t>(1, stored_stops_);
+  if (first >= matching_.size()) return;
+  std::vector<std::uint32_t> again(matching_.size() - first);
+  std::iota(again.begin(), again.end(), static_cast<std::uint32_t>(first));
+  for (std::uint32_t pass = 0; pass < config_.final_passes; ++pass) {
+    if (close_more_loops(again) == 0) break;
+    const std::vector<Pose2> before = graph_.poses();
+    optimize_now();
+    again = moved_stops(before, graph_.poses());
+  }
+}
+
+// Returns how many loops were closed.
+std::size_t Localizer::close_more_loops(std::span<const std::uint32_t> stops) {
+  const std::size_t before = graph_.edges().size() + loops_.waiting().size();
+  loops_.drop_pending();
+  match_revisited(stops);
+  return graph_.edges().size() + loops_.waiting().size() - before;
+}
+
+// --- stored maps and the drives that join them
+
+Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
+                     const std::shared_ptr<const StoredMap>& stored)
+    : Localizer(config, pool, optimizer) {
+  check(*stored);
+  for (std::size_t i = 0; i < stored->maps.size(); ++i) {
+    restore(MapPointer(stored, &stored->maps[i]), stored->trajectory.stops[i]);
+  }
+  for (const PoseGraphEdge& edge : edges_of(*stored)) {
+    graph_.add_edge(edge);
+    matching_.skip(edge);
+  }
+  version_ = stored->trajectory.version;
+  stored_stops_ = matching_.size();
+}
+
+void Localizer::restore(MapPointer map, const topomap::StopPose& pose) {
+  const bool first = matching_.size() == 0;
+  check_next(*map, matching_.size(), first ? nullptr : &matching_.map(0));
+  StepEvidence known;  // what is in the map is right by definition
+  known.points = map->points.size();
+  double distance_m = 0.0;
+  if (!first) {
+    const Pose2 step = geometry::between(graph_.poses().back(), pose.T_map_robot);
+    distance_m = std::sqrt(step.position_m().squaredNorm());
+  }
+  matching_.add(std::move(map), distance_m);
+  graph_.add_pose(pose.T_map_robot);
+  covariances_.push_back(pose.covariance);
+  monitor_.restart(1.0);
+  monitor_.add(known);
+}
+
+void Localizer::join(std::span<const MapPointer> drive,
+                     std::span<const StoredMatch> matches_of_last, double confidence) {
+  apply(schedule_.fetch_now());
+  gap_ = first_stop_of_drive(graph_, drive, matches_of_last, config_.odometry);
+  matching_.forget_solutions();
+  monitor_.restart(confidence);
+  const auto first = static_cast<std::uint32_t>(matching_.size());
+  for (const MapPointer& map : drive) add(map);
+  // The matches by which the drive was found, as far as it was not matched there again.
+  for (const StoredMatch& match : matches_of_last) {
+    const PoseGraphEdge loop = loop_of(match, last());
+    if (contains_like(graph_.edges(), loop) || contains_like(loops_.waiting(), loop)) continue;
+    loops_.accept(graph_, loop, match.fitness);
+    matching_.skip(loop);
+  }
+  optimize_now();
+  // Now that the drive has its place: what else of the map did it see?
+  std::vector<std::uint32_t> joined(matching_.size() - first);
+  std::iota(joined.begin(), joined.end(), first);
+  if (close_more_loops(joined) > 0) optimize_now();
+}
+
+// --- state
+
 topomap::Trajectory Localizer::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = version_;
-  trajectory.stops.reserve(stops_.size());
-  for (std::size_t i = 0; i < stops_.size(); ++i) trajectory.stops.push_back(pose_of(i));
+  trajectory.stops.reserve(matching_.size());
+  for (std::size_t i = 0; i < matching_.size(); ++i) trajectory.stops.push_back(pose_of(i));
   return trajectory;
 }
 
 std::optional<topomap::StopPose> Localizer::last_stop() const {
-  if (stops_.empty()) return std::nullopt;
-  return pose_of(stops_.size() - 1);
+  if (matching_.size() == 0) return std::nullopt;
+  return pose_of(last());
 }
 
 topomap::StopPose Localizer::pose_of(std::size_t stop) const {
-  const LocalMap& map = *stops_[stop].map;
-  return {map.id, map.stamp_ns, graph_.poses()[stop], stops_[stop].covariance, map.id};
+  const LocalMap& map = matching_.map(stop);
+  return {map.id, map.stamp_ns, graph_.poses()[stop], covariances_[stop], map.id};
 }
 
 std::vector<topomap::LoopClosure> Localizer::loop_closures() const {
@@ -198,6 +308,16 @@ std::vector<topomap::LoopClosure> Localizer::loop_closures() const {
     if (edge.kind == EdgeKind::kRevisit) closures.push_back({edge.from, edge.to, edge.T_from_to});
   }
   return closures;
+}
+
+SlamCounts Localizer::counts() const {
+  SlamCounts counts{matching_.requests().counts()};
+  counts.steps_in_doubt = steps_in_doubt_;
+  counts.unconfirmed_loops = loops_.unconfirmed();
+  counts.optimizations = schedule_.optimizations();
+  counts.failed_optimizations = schedule_.failed();
+  counts.removed_loops = loops_.outvoted();
+  return counts;
 }
 
 }  // namespace topogeo::localization

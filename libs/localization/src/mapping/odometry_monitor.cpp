@@ -10,6 +10,7 @@ namespace {
 // A step further off than this many times its variance is a blow or a wrong match, not noise: it
 // counts, but cannot widen the next twenty steps on its own.
 constexpr double kLargestRatio = 100.0;
+// Six times the configured deviation: a worse odometry is none to build on.
 constexpr double kLargestFactor = 36.0;
 
 }  // namespace
@@ -18,7 +19,7 @@ void OdometryMonitor::Ratio::add(double squared, double odometry_variance, doubl
   if (!(odometry_variance > 0.0)) return;  // a standing robot
   const double noise = std::max(0.0, squared - match_variance);
   const double ratio = std::min(noise / odometry_variance, kLargestRatio);
-  // A match that is itself uncertain says little of odometry.
+  // A match that is itself uncertain measures little of odometry.
   const double certainty = odometry_variance / (odometry_variance + match_variance);
   constexpr double kFading = 1.0 - 1.0 / kMemory;
   weighted_ = kFading * weighted_ + certainty * ratio;

@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Pose2;
 
-// Whitened difference between the relative pose of two stops and what an edge says.
+// Whitened difference between the relative pose of two stops and what an edge measured.
 class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
  public:
   explicit RelativePoseCost(const PoseGraphEdge& edge)

@@ -19,25 +19,29 @@ struct Logistic {
   double second;
 };
 constexpr Logistic kMatchRight{7.1, -2.2, 0.0};     // doubt, rivalry
-constexpr Logistic kOdometryRight{5.7, -8.5, 0.0};  // contradiction, way in m
+constexpr Logistic kOdometryRight{5.7, -8.5, 0.0};  // contradiction, distance in m
 
 constexpr double kForeseen = 0.35;  // overlap from which on a match should show something in common
-constexpr std::size_t kFewPoints = 12;
+constexpr std::size_t kFewPoints = 12;  // of a blinded laser: what it sees refutes nothing
+// What Belief::confidence promises: a pose that is right to 0.3 m and 5 degrees leads through
+// doors.
 constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = 0.087266463;
+// A carried robot is lost within three stops (map_localizer_test), a doubted one seldom
+// (tests/bench/kidnapped.cpp).
 constexpr double kLostBelow = 0.25;
-constexpr double kTrackingFrom = 0.5;
+constexpr double kTrackingFrom = 0.5;   // right more probably than not
 constexpr double kFirmer = 0.05;        // difference of confidence that counts
-constexpr double kDoubtfulShare = 0.3;  // matches that are not believed err together
-constexpr double kElsewhere = 30.0;     // what a place that fits better says, for each 1 of fitness
-constexpr double kMostConfident = 0.996;  // matches err together, however many agree
-constexpr std::uint32_t kOftenDoubted = 2;
+constexpr double kDoubtfulShare = 0.3;  // matches that are not accepted err together
+constexpr double kElsewhere = 30.0;     // weight of a place that fits better, for each 1 of fitness
+constexpr double kMostConfident = 0.996;    // matches err together, however many agree
+constexpr std::uint32_t kOftenDoubted = 2;  // one stop may be doubted for what stands in view
 
 double value(const Logistic& l, double first, double second) {
   return 1.0 / (1.0 + geometry::exp(-(l.constant + l.first * first + l.second * second)));
 }
 
-/// Not believed, but it says something of the pose.
+/// Not accepted, but not refuted either.
 bool is_doubtful(const StepMatch& match) {
   return match.reason == Reason::kDoubtful || match.reason == Reason::kSecondSolution;
 }
@@ -103,7 +107,7 @@ double contradiction(const StepEvidence& evidence) {
 }
 
 double odometry_confidence(const StepEvidence& evidence) {
-  return value(kOdometryRight, contradiction(evidence), evidence.way_m);
+  return value(kOdometryRight, contradiction(evidence), evidence.distance_m);
 }
 
 double covariance_confidence(const Eigen::Matrix3d& covariance) {
@@ -127,7 +131,7 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
     return match.matched_step ? confidence_[*match.matched_step] : 1.0;
   };
   std::vector<Support> supports;
-  bool believed = false;
+  bool any_accepted_match = false;
   for (const StepMatch& match : evidence.matches) {
     if (match.matched_step && *match.matched_step >= confidence_.size()) {
       throw std::invalid_argument("state monitor: match with step " +
@@ -135,7 +139,7 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
                                   std::to_string(confidence_.size()));
     }
     if (match.verdict != Verdict::kAccepted && !is_doubtful(match)) continue;
-    believed |= match.verdict == Verdict::kAccepted;
+    any_accepted_match |= match.verdict == Verdict::kAccepted;
     const bool accepted = match.verdict == Verdict::kAccepted;
     supports.push_back(
         {before_of(match), (accepted ? 1.0 : kDoubtfulShare) * match_confidence(match)});
@@ -168,7 +172,7 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
   belief_.confidence = confidence * covariance_confidence(evidence.covariance);
   if (doubted_ >= kOftenDoubted) {  // one bad scan proves nothing
     belief_.state = LocalizationState::kLost;
-  } else if ((believed || started) && belief_.confidence >= kTrackingFrom) {
+  } else if ((any_accepted_match || started) && belief_.confidence >= kTrackingFrom) {
     belief_.state = LocalizationState::kTracking;
   } else {
     belief_.state = LocalizationState::kAmbiguous;

@@ -17,21 +17,23 @@ using geometry::Pose2;
 
 namespace {
 
-constexpr double kCoarseCell_m = 0.25;
-constexpr double kCoarseWidth_m = 0.60;
-constexpr double kFineCell_m = 0.05;
-constexpr double kFineWidth_m = 0.30;
-constexpr double kThinned_m = 0.05;  // of the map's points
-constexpr double kRobotRadius_m = 0.20;
-constexpr double kSeenFree_m = 8.0;  // how far from a stop a scan may come from
-constexpr int kHeadings = 72;
-constexpr int kHeadingsOfSector = 18;  // the best heading of each sector is kept for each cell
+// These depend on each other and on the time that a search may take (benchmark relocalize/csail), so
+// none is a setting.
+constexpr double kCoarseCell_m = 0.25;   // a scan may be off by half of it and still score
+constexpr double kCoarseWidth_m = 0.60;  // of the kernel: spans the 5 degrees between headings
+constexpr double kFineCell_m = 0.05;     // as the cells of the global map
+constexpr double kFineWidth_m = 0.30;    // of the kernel: spans a coarse cell
+constexpr double kThinned_m = 0.05;      // of the map's points
+constexpr double kRobotRadius_m = 0.20;  // a scan comes from no place nearer to a wall
+constexpr double kSeenFree_m = 8.0;      // how far from a stop a scan may come from
+constexpr int kHeadings = 72;            // 5 degrees apart
+constexpr int kHeadingsOfSector = 18;    // the best heading of each sector is kept for each cell
 constexpr int kSectors = kHeadings / kHeadingsOfSector;
-constexpr std::size_t kCoarsePoints = 64;
-constexpr std::size_t kFinePoints = 120;
-constexpr std::size_t kClimbing = 300;
-constexpr std::size_t kAligned = 8;
-constexpr double kNearStop_m = 6.0;
+constexpr std::size_t kCoarsePoints = 64;  // of the scan, compared with the coarse field
+constexpr std::size_t kFinePoints = 120;   // and with the fine one
+constexpr std::size_t kClimbing = 300;     // best seeds that climb in the fine field
+constexpr std::size_t kAligned = 8;        // best climbed places that are aligned point to line
+constexpr double kNearStop_m = 6.0;        // a stored stop this near sees most of what a scan does
 
 /// At most about `count`, spread over the scan.
 std::vector<SurfacePoint> spread(const std::vector<SurfacePoint>& points, std::size_t count) {
@@ -292,7 +294,7 @@ double GlobalLocalizer::fitness(const MatchFeatures& query, const Pose2& T_map_r
   return mean_kernel(fine_, positions_of(query.coarse), T_map_robot);
 }
 
-// Aligns a place with the stop that sees it best, and says what is seen there.
+// Aligns a place with the stop that sees it best, and measures what is seen there.
 GlobalPose GlobalLocalizer::aligned(const MatchFeatures& query, const Climbed& place) const {
   double share = 0.0;
   const std::size_t stop = best_stop(query, place.T_map_robot, share);

@@ -38,7 +38,7 @@ StepEvidence step(std::vector<StepMatch> matches, double variance_m2 = 0.001) {
   StepEvidence evidence;
   evidence.matches = std::move(matches);
   evidence.points = kPoints;
-  evidence.way_m = 1.0;
+  evidence.distance_m = 1.0;
   evidence.covariance = Eigen::Vector3d(variance_m2, variance_m2, 1e-4).asDiagonal();
   return evidence;
 }

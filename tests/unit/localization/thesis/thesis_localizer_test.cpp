@@ -27,17 +27,16 @@ struct Outcome {
   int corrections = 0;  // steps that moved earlier poses
 };
 
-Outcome localize(const test::Maps& maps, LocalizerConfig config = {}) {
+Outcome localize(const test::Maps& maps, const LocalizerConfig& config = {}) {
   InProcessPool pool;
-  config.mode = LocalizerMode::kThesis;
-  const std::unique_ptr<Slam> slam = make_slam(config, pool);
+  ThesisLocalizer localizer(config, pool);
   Outcome outcome;
-  for (const auto& map : maps) outcome.corrections += slam->add(map) ? 1 : 0;
-  slam->finish();
-  outcome.trajectory = slam->trajectory();
-  outcome.closures = slam->loop_closures();
-  outcome.decisions = slam->loop_decisions();
-  outcome.counts = slam->counts();
+  for (const auto& map : maps) outcome.corrections += localizer.add(map) ? 1 : 0;
+  localizer.finish();
+  outcome.trajectory = localizer.trajectory();
+  outcome.closures = localizer.loop_closures();
+  outcome.decisions = localizer.loop_decisions();
+  outcome.counts = localizer.counts();
   return outcome;
 }
 
@@ -118,14 +117,6 @@ TEST(ThesisLocalizer, RefusesMapsOutOfOrderOrOfAnotherRobot) {
   localizer.add(round_trip().maps[0]);
   second->robot_id = "another";
   EXPECT_THROW(localizer.add(second), std::invalid_argument);
-}
-
-TEST(MakeSlam, MakesWhatTheModeSays) {
-  InProcessPool pool;
-  LocalizerConfig config;
-  EXPECT_NE(dynamic_cast<Localizer*>(make_slam(config, pool).get()), nullptr);
-  config.mode = LocalizerMode::kThesis;
-  EXPECT_NE(dynamic_cast<ThesisLocalizer*>(make_slam(config, pool).get()), nullptr);
 }
 
 }  // namespace

@@ -167,14 +167,5 @@ TEST_F(MapLocalizerTest, AMapOutOfTurnIsAnError) {
   EXPECT_THROW(localizer.add(drive_->maps[1]), std::invalid_argument);
 }
 
-TEST(Fused, IsTheWeightedMean) {
-  UncertainPose a{{0.0, 0.0, 0.1}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal()};
-  UncertainPose b{{0.3, 0.0, 0.4}, Eigen::Vector3d(0.02, 0.01, 0.02).asDiagonal()};
-  const UncertainPose mean = fused({a, b});
-  EXPECT_NEAR(mean.T_a_b.x_m, 0.1, 1e-12);
-  EXPECT_NEAR(mean.T_a_b.theta_rad, 0.2, 1e-12);
-  EXPECT_NEAR(mean.covariance(0, 0), 0.02 / 3.0, 1e-12);
-}
-
 }  // namespace
 }  // namespace topogeo::localization

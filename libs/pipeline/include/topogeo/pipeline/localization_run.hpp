@@ -8,8 +8,8 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/session/mapping_session.hpp"
 #include "topogeo/localization/tracking/map_localizer.hpp"
-#include "topogeo/localization/tracking/mapping_session.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"
@@ -18,9 +18,6 @@ namespace topogeo::pipeline {
 
 /// "x,y,degrees" in the map frame. Throws std::invalid_argument naming what is wrong.
 geometry::Pose2 parse_pose(const std::string& text);
-
-/// Uncertainty of a pose that a user gives: 0.3 m and 10 degrees.
-Eigen::Matrix3d given_pose_covariance();
 
 /// The local maps and poses of a map file. Throws std::runtime_error naming the file when it cannot
 /// be read or has no stop that saw anything.

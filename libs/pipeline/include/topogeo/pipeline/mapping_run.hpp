@@ -7,10 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
-#include "topogeo/localization/tracking/map_localizer.hpp"
-#include "topogeo/localization/tracking/mapping_session.hpp"
+#include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/scan/scan.hpp"
@@ -38,18 +36,20 @@ class MappingRun {
   /// Takes the next scan, in time order.
   void add(const scan::Scan& scan);
 
-  /// Works off the end of the log and gives the map. Call it once, after the last scan.
+  /// Ends the log and returns the map. Call it once, after the last scan.
   storage::MapDocument finish();
 
-  [[nodiscard]] const localization::SlamCounts& match_counts() const {
-    return localizer_->counts();
-  }
+  [[nodiscard]] localization::SlamCounts match_counts() const { return slam_->counts(); }
   /// Null when it localizes in a finished map.
-  [[nodiscard]] const localization::MappingSession* session() const { return session_; }
+  [[nodiscard]] const localization::MappingSession* session() const {
+    return slam_.mapping_session();
+  }
   /// Null unless it localizes in a finished map.
-  [[nodiscard]] const localization::MapLocalizer* map_localizer() const { return map_localizer_; }
+  [[nodiscard]] const localization::MapLocalizer* map_localizer() const {
+    return session() == nullptr ? slam_.follower() : nullptr;
+  }
   [[nodiscard]] const std::vector<localization::LoopDecision>& loop_decisions() const {
-    return localizer_->loop_decisions();
+    return slam_->loop_decisions();
   }
   /// "local_mapper", "localizer" and "map_store", as the services are called that do the same.
   [[nodiscard]] const std::vector<support::StageTime>& stages() const { return times_.stages(); }
@@ -61,10 +61,8 @@ class MappingRun {
   std::string robot_id_;
   localization::InProcessPool pool_;
   LocalMapper local_mapper_;
-  std::unique_ptr<localization::Slam> localizer_;
-  localization::MapLocalizer* map_localizer_ = nullptr;  // localizer_, if it is one
-  localization::MappingSession* session_ = nullptr;      // localizer_, if it is one
   std::shared_ptr<const storage::MapDocument> continued_;
+  localization::SlamSession slam_;
   std::vector<topomap::LocalMap> local_maps_;  // of a drive in a finished map
   support::StageTimes times_;
 };

@@ -7,7 +7,7 @@
 namespace topogeo::localization {
 
 enum class LocalizationState : std::uint8_t {
-  kTracking = 0,   ///< followed from stop to stop by believed matches
+  kTracking = 0,   ///< followed from stop to stop by accepted matches
   kAmbiguous = 1,  ///< odometry or uncertain matches alone, or more than one place fits
   kSearching = 2,  ///< no pose yet, or lost and looking for it; the pose means nothing
   kLost = 3,       ///< what is seen contradicts the pose; the pose means nothing

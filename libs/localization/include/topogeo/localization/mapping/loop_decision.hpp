@@ -12,9 +12,9 @@ namespace topogeo::localization {
 
 enum class LoopOutcome : std::uint8_t {
   kAccepted = 0,
-  kGate = 1,         ///< the match itself is not believed: see LoopDecision::reason
+  kGate = 1,         ///< the gate refused the match: see LoopDecision::reason
   kUnconfirmed = 2,  ///< moves the robot far and nothing agrees with it so far
-  kNoClosing = 3,    ///< no way back along the loop fits what was seen on it
+  kNoClosing = 3,    ///< no poses along the loop fit what was seen on it
   kOutvoted = 4,     ///< was accepted; the rest contradicted it after the optimisation
 };
 

@@ -9,13 +9,13 @@
 
 namespace topogeo::localization {
 
-/// Factors of the configured variances, from the squared differences between odometry and believed
+/// Factors of the configured variances, from the squared differences between odometry and accepted
 /// matches over the last steps. Never below 1: the configuration is a floor, because a covariance
 /// that is too small costs more than one that is too large.
 class OdometryMonitor {
  public:
-  /// What odometry says of a step with its configured covariance, and what a believed match says
-  /// with its own; both of the same two poses, covariances in the frame of the first.
+  /// One step by odometry, with its configured covariance, and by an accepted match, with its own:
+  /// both of the same two poses, covariances in the frame of the first.
   void add(const UncertainPose& odometry, const UncertainPose& match);
 
   /// The covariance as the last steps have it.

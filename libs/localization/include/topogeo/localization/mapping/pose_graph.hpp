@@ -4,13 +4,12 @@
 
 #include <cstdint>
 #include <limits>
-#include <map>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
-#include <boost/graph/adjacency_list.hpp>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
@@ -40,8 +39,18 @@ struct OptimizationSummary {
   int iterations = 0;
 };
 
+class PoseLinks;
+
 class PoseGraph {
  public:
+  PoseGraph();
+  PoseGraph(const PoseGraph& other);
+  /// A graph that was moved from can only be assigned to or destroyed.
+  PoseGraph(PoseGraph&&) noexcept;
+  PoseGraph& operator=(const PoseGraph& other);
+  PoseGraph& operator=(PoseGraph&&) noexcept;
+  ~PoseGraph();
+
   /// Appends a stop; the first one stays where it is for ever.
   std::uint32_t add_pose(const geometry::Pose2& T_map_robot);
   void add_edge(const PoseGraphEdge& edge);
@@ -82,9 +91,9 @@ class PoseGraph {
   };
 
   /// Relative pose of the stops seen from `origin` with its covariance, each along the path on
-  /// which the variance grows least (spec A6). All edges between two stops count together: along a
-  /// bare corridor a match knows only the way across, odometry the way along. Stops that `reach`
-  /// leaves out or that are not connected may have a covariance of kUnreached_m2.
+  /// which the variance grows least. All edges between two stops count together: along a
+  /// bare corridor a match knows only the position across, odometry the one along. Stops that
+  /// `reach` leaves out or that are not connected may have a covariance of kUnreached_m2.
   [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin,
                                                        const Reach& reach) const;
   [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const {
@@ -97,27 +106,9 @@ class PoseGraph {
   static double path_cost(const Eigen::Matrix3d& covariance);
 
  private:
-  /// All edges between one pair of stops taken together.
-  struct Link {
-    std::uint32_t from = 0;
-    std::uint32_t to = 0;
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // of T_from_to, in the frame of `from`
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    double cost = 0.0;
-  };
-  struct LinkIndex {
-    std::uint32_t value = 0;
-  };
-  using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
-                                        boost::no_property, LinkIndex>;
-  void add_to_link(const PoseGraphEdge& edge);
-  void rebuild_links();
-
   std::vector<geometry::Pose2> poses_;
   std::vector<PoseGraphEdge> edges_;
-  std::vector<Link> links_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> link_of_;  // index into links_
-  Network network_;
+  std::unique_ptr<PoseLinks> links_;
 };
 
 }  // namespace topogeo::localization

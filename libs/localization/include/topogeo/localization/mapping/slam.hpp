@@ -1,8 +1,8 @@
 // What maps and follows a robot from stop to stop, whichever algorithm does it: the pose graph over
-// all believed matches (localizer.hpp) or the source's own (thesis_localizer.hpp).
+// all accepted matches (localizer.hpp), the thesis alone (thesis_localizer.hpp), the localization
+// in a finished map (map_localizer.hpp) or a session of them (slam_session.hpp).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,18 +11,13 @@
 
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/mapping/match_counts.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
 
-struct LocalizerConfig;
-
-struct SlamCounts {
-  std::uint64_t tasks = 0;
-  std::uint64_t evaluations = 0;
-  std::array<std::uint64_t, kReasons> reasons{};  ///< index: Reason; kNone: accepted
+struct SlamCounts : MatchCounts {
   std::uint64_t steps_in_doubt =
       0;  ///< no recent match was accepted; an uncertain one or odometry stood in
   std::uint64_t unconfirmed_loops = 0;  ///< large corrections that nothing else agreed with
@@ -51,7 +46,7 @@ class Slam {
   [[nodiscard]] virtual const std::vector<LoopDecision>& loop_decisions() const = 0;
   /// How well the pose of the last stop is known.
   [[nodiscard]] virtual Belief belief() const = 0;
-  [[nodiscard]] virtual const SlamCounts& counts() const = 0;
+  [[nodiscard]] virtual SlamCounts counts() const = 0;
 
  protected:
   Slam() = default;
@@ -62,12 +57,5 @@ class Slam {
 /// That `map` is the next one of the robot: throws std::invalid_argument unless its id is `next_id`
 /// and its robot that of `first`, if there is one before it.
 void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap::LocalMap* first);
-
-class GraphOptimizer;
-
-/// The algorithm that `config.mode` names. The pool and the optimizer (see Localizer) must outlive
-/// it.
-std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
-                                GraphOptimizer* optimizer = nullptr);
 
 }  // namespace topogeo::localization

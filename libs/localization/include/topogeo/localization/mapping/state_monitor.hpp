@@ -1,7 +1,8 @@
-// Whether the robot knows where it is, from what every stop saw (spec A9): a probability that is
-// carried from stop to stop and the state that follows from it.
+// Whether the robot knows where it is, from what every stop saw (docs/algorithms.md, "State of
+// localization (own)"): a probability that is carried from stop to stop and the state that follows
+// from it.
 //
-// A stop inherits the confidence of the stops that it was matched with. A believed match hands on
+// A stop inherits the confidence of the stops that it was matched with. An accepted match hands on
 // nearly all of it, a doubtful one a part; odometry alone hands on the less, the more the scan
 // contradicts what should have been seen. So a robot that was carried away stays lost however well
 // the stops after it fit each other, until a match ties one of them to a stop from before. How much
@@ -21,7 +22,7 @@
 
 namespace topogeo::localization {
 
-/// What one match says of the pose of a stop.
+/// One match as evidence of the pose of a stop.
 struct StepMatch {
   Verdict verdict = Verdict::kRejected;
   Reason reason = Reason::kNothingInCommon;
@@ -42,10 +43,10 @@ StepMatch step_match(const MatchTask& task, const MatchResult& result, double ex
 /// All that is known at one stop.
 struct StepEvidence {
   std::vector<StepMatch> matches;
-  std::size_t points = 0;  ///< of the scan; a laser that sees next to nothing proves nothing
-  double way_m = 0.0;      ///< since the stop before
+  std::size_t points = 0;   ///< of the scan; a laser that sees next to nothing proves nothing
+  double distance_m = 0.0;  ///< driven since the stop before
   /// In a finished map: how much better the scan fits the best place elsewhere than the pose, as a
-  /// difference of GlobalPose::fitness; 0 when it does not, or nobody has looked.
+  /// difference of GlobalPose::fitness; 0 when it does not, or was not compared.
   double better_elsewhere = 0.0;
   /// Of the position (m^2) and heading (rad^2), relative to what the pose is to be right to: the
   /// map in a finished one, the stops that were matched while mapping.
@@ -55,7 +56,7 @@ struct StepEvidence {
 class StateMonitor {
  public:
   /// The belief after one more stop. The first stop after a start or restart() is right by
-  /// definition as far as `confidence` of restart() says (1 at the start). Throws
+  /// definition with the `confidence` of restart() (1 at the start). Throws
   /// std::invalid_argument when a match names a step that has not been.
   Belief add(const StepEvidence& evidence);
 
@@ -73,7 +74,7 @@ class StateMonitor {
   Belief belief_;
 };
 
-/// Probability that a believed or doubtful match is right.
+/// Probability that an accepted or doubtful match is right.
 double match_confidence(const StepMatch& match);
 
 /// How much a scan contradicts its predicted pose, from matches that should have shown something

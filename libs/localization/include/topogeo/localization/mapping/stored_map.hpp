@@ -18,15 +18,18 @@ struct StoredMap {
   std::vector<topomap::LoopClosure> loop_closures;  ///< what continuing needs besides
 };
 
-/// A believed match of a stop of a drive with one of a stored map.
+/// An accepted match of a stop of a drive with one of a stored map.
 struct StoredMatch {
   std::uint32_t stop = 0;      ///< of the map
   UncertainPose T_stop_robot;  ///< of the drive's stop in the frame of that
   double fitness = 0.0;        ///< [0, 1]
 };
 
-/// The measurements that hold the poses of a stored map together, as far as it says: one between
-/// each stop and the next, as far apart as the poses are, and its loops as they were matched. Their
+/// Throws std::invalid_argument unless there are as many stops as local maps, at least one.
+void check(const StoredMap& map);
+
+/// The measurements that hold the poses of a stored map together: one between each stop and the
+/// next, as far apart as the poses are, and its loops as they were matched. Their
 /// covariances are those of usual matches, so later ones can bend the map as if they had been there
 /// when it was made.
 std::vector<PoseGraphEdge> edges_of(const StoredMap& map);

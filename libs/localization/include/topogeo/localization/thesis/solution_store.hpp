@@ -1,5 +1,6 @@
-// The n best relative solutions of each pair of maps (spec A6, thesis def. 7.3.4): what the forward
-// correction leaves behind for the backward correction to choose from.
+// The n best relative solutions of each pair of maps (Thesis, 7.3.1.2, definition 7.3.4;
+// docs/algorithms.md, "Backward correction"): what the forward correction leaves behind for the
+// backward correction to choose from.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
-#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/relative_solution.hpp"
 
 namespace topogeo::localization {
-
-/// One pose of a map relative to an earlier one that a match found.
-struct RelativeSolution {
-  geometry::Pose2 T_earlier_later;
-  Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Identity();  ///< of (x, y, theta) in the frame of the earlier one; m, rad
-  double fitness = 0.0;             ///< [0, 1]
-};
 
 class SolutionStore {
  public:

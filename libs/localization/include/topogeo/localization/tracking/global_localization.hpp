@@ -1,11 +1,12 @@
-// Where in a finished map a scan was taken, without any idea of it before (spec A9).
+// Where in a finished map a scan was taken, without any idea of it before
+// (docs/algorithms.md, "Localization in a finished map (own)").
 //
 // Poses in every place that was seen free, in every heading, are scored against a coarse field of
 // the whole map; the best of them climb in a fine one, the best of those are aligned point to line
-// with the stored stops that look the same way. What is seen there is the evidence, and the best
-// pose elsewhere the rival: in a corridor another place fits as well, and the verdict says so.
-// Seeds on branches and nodes alone, as the source has them, were no better on real logs and miss a
-// robot in the middle of a hall.
+// with the stored stops that look in the same direction. What is seen there is the evidence, and
+// the best pose elsewhere the rival: in a corridor another place fits as well, and the verdict is
+// so. Seeds on branches and nodes alone, as the Thesis has them, were no better on real logs and
+// miss a robot in the middle of a hall.
 #pragma once
 
 #include <cstddef>
@@ -68,7 +69,7 @@ class GlobalLocalizer {
   [[nodiscard]] GlobalAnswer find(std::span<const topomap::ScanPoint> points,
                                   const geometry::Pose2& T_robot_laser) const;
 
-  /// The places that find() would look at more closely: the `count` best distinct ones by the fine
+  /// The places that find() would compare more closely: the `count` best distinct ones by the fine
   /// field alone, not aligned. For those who match them with stored maps themselves.
   [[nodiscard]] std::vector<Climbed> places(const MatchFeatures& query, std::size_t count) const;
 

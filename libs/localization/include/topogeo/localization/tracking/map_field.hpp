@@ -1,5 +1,5 @@
 // How near every place of a finished map is to something that the laser saw, in two grids: a coarse
-// one that finds the few places that a scan may come from, and a fine one that tells them apart.
+// one that finds the few places that a scan may come from, and a fine one that distinguishes them.
 //
 // The kernels are whole numbers up to 255, so that sums of them are the same on every machine and
 // many are added at once.

@@ -1,43 +1,44 @@
-// Follows a robot in a finished map that stays as it is (spec A9): every stop of the drive is
-// matched with the stored stops that should look alike from where odometry has it.
+// Follows a robot in a finished map that stays as it is (docs/algorithms.md, "Localization in a
+// map"): every stop of the drive is matched with the stored stops that should look alike from where
+// odometry has it.
 //
 // What the stops of the drive have in common with each other gives odometry only, so errors do not
-// grow along the way. Where the state monitor says that the robot is lost, and at the start without
-// a pose, every stop is searched for in the whole map; the places that fit are kept, moved along
-// with odometry, and weighed by what the following stops see, until one of them is left. All
-// matching goes through the pool, and the result does not depend on who answered or when.
+// grow along the path. Where the state monitor reports that the robot is lost, and at the start
+// without a pose, every stop is searched for in the whole map (PlaceSearch). All matching goes
+// through the pool, and the result does not depend on who answered or when.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "topogeo/localization/mapping/localization_state.hpp"
-#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/mapping/state_monitor.hpp"
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
-#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/localization/tracking/place_search.hpp"
+#include "topogeo/localization/tracking/stored_map_matching.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
 
-/// What is known at one stop of the drive.
+/// The state at one stop of the drive.
 struct LocalizedStop {
   std::uint32_t id = 0;  ///< of the drive's local map
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_map_robot;                           ///< means nothing when searching or lost
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
   Belief belief;
-  std::uint32_t believed_matches = 0;
+  std::uint32_t accepted_matches = 0;
 };
 
 /// What a tracked stop was judged by.
@@ -45,14 +46,14 @@ struct TrackedStep {
   UncertainPose predicted;  ///< T_map_robot by odometry from the stop before
   StepEvidence evidence;
   std::vector<geometry::Pose2> measured;  ///< T_map_robot by each of the matches
-  std::vector<StoredMatch> believed;      ///< the accepted ones of them
+  std::vector<StoredMatch> accepted;      ///< those of them that are accepted
 };
 
 class MapLocalizer : public Slam {
  public:
   /// Starts without a pose. The pool must outlive the localizer. `first_drive_id` is the id of the
   /// first local map of the drive. Throws like GlobalLocalizer.
-  MapLocalizer(LocalizerConfig config, std::shared_ptr<const StoredMap> map, MatchPool& pool,
+  MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map, MatchPool& pool,
                std::uint32_t first_drive_id = 0);
 
   /// The next stop of the drive; ids count on from the first. Throws std::invalid_argument
@@ -69,9 +70,9 @@ class MapLocalizer : public Slam {
   /// map, when that has just been made. Before the first stop.
   void start_after(const topomap::LocalMap& map, const geometry::Pose2& T_map_robot);
 
-  /// Numbers its tasks on from there; numbers are not to come twice in one pool.
-  void number_tasks_from(std::uint64_t next_task) { next_task_ = next_task; }
-  [[nodiscard]] std::uint64_t next_task() const { return next_task_; }
+  /// Numbers its tasks on from there; no number may occur twice in one pool.
+  void number_tasks_from(std::uint64_t next_task) { matching_.requests().number_from(next_task); }
+  [[nodiscard]] std::uint64_t next_task() const { return matching_.requests().next_task(); }
 
   /// Forgets the pose and searches the whole map from the next stop on.
   void search();
@@ -83,75 +84,43 @@ class MapLocalizer : public Slam {
   [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
   /// None: the map stays as it is.
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override { return {}; }
-  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
-    return no_decisions_;
-  }
+  /// None.
+  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override;
   [[nodiscard]] Belief belief() const override { return belief_; }
-  [[nodiscard]] const SlamCounts& counts() const override { return counts_; }
+  [[nodiscard]] SlamCounts counts() const override;
   /// Of the last stop; nothing when that was searched for.
   [[nodiscard]] const std::optional<TrackedStep>& last_step() const { return last_step_; }
   [[nodiscard]] std::size_t searches() const { return searches_; }
   /// Id of the stop of the finished map that a map of the drive is given after: the number of
   /// stored maps.
   [[nodiscard]] std::uint32_t first_id() const {
-    return static_cast<std::uint32_t>(map_->maps.size());
+    return static_cast<std::uint32_t>(matching_.stored_stops());
   }
 
  private:
-  /// A place where the robot may be.
-  struct Hypothesis {
-    UncertainPose pose;        // T_map_robot
-    double weight = 0.0;       // probability, together with the others and "elsewhere" 1
-    std::uint32_t seen = 0;    // stops that were matched there and believed
-    std::uint32_t wanted = 0;  // as many before it is taken
-    double way_m = 0.0;        // driven since the first of them
-    std::uint32_t missed = 0;  // stops in succession that were not believed there
-  };
-  struct Candidate {
-    std::size_t stop = 0;  // index of the stored stop
-    double overlap = 0.0;
-  };
-  struct Query;
-
-  void track(const Query& query);
-  [[nodiscard]] double better_elsewhere(const Query& query) const;
+  std::uint32_t track(const DriveStop& stop);
+  std::vector<MatchTask> tracking_tasks(const DriveStop& stop,
+                                        std::span<const MatchCandidate> stored,
+                                        const geometry::Pose2& T_map_last);
+  [[nodiscard]] double better_elsewhere(const DriveStop& stop) const;
   void begin_search();
-  void search_step(const Query& query);
-  void propose(const Query& query);
-  void weigh(const Query& query);
-  void decide();
-
-  [[nodiscard]] std::vector<Candidate> candidates(const Query& query,
-                                                  const UncertainPose& T_map_robot,
-                                                  std::size_t count) const;
-  MatchTask make_task(const Query& query, std::size_t stop, const UncertainPose& T_map_robot);
-  [[nodiscard]] UncertainPose measured(std::size_t stop, const MatchResult& result) const;
-  void count(const MatchResult& result);
+  void look_around(const DriveStop& stop);
+  void match_hypotheses(const DriveStop& stop);
+  std::uint32_t decide();
 
   LocalizerConfig config_;
-  std::shared_ptr<const StoredMap> map_;
-  MatchPool& pool_;
-  GlobalLocalizer global_;
-  std::vector<std::uint64_t> hashes_;  // of the stored maps
+  StoredMapMatching matching_;
+  PlaceSearch search_;
   StateMonitor monitor_;
   UncertainPose pose_;  // T_map_robot at the last stop
   bool has_pose_ = false;
-  std::vector<Hypothesis> hypotheses_;
-  std::uint32_t searched_ = 0;                  // stops of the search in hand
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
   std::vector<LocalizedStop> stops_;
   std::optional<TrackedStep> last_step_;
   Belief belief_;
-  std::uint32_t believed_ = 0;  // matches of the step in hand
-  std::uint64_t next_task_ = 0;
   std::size_t searches_ = 0;
   std::uint32_t first_drive_id_ = 0;
-  std::vector<LoopDecision> no_decisions_;
-  SlamCounts counts_;
+  std::uint64_t steps_in_doubt_ = 0;
 };
-
-/// The most likely pose of several measurements of one pose in one frame; at least one. Their
-/// covariances must be positive definite.
-UncertainPose fused(const std::vector<UncertainPose>& measurements);
 
 }  // namespace topogeo::localization

@@ -1,0 +1,119 @@
+// Looks for consistent poses along a loop: from candidates of its last pose back to its first one,
+// which keeps its place. The search of Thesis, 7.3.1.2 (docs/algorithms.md, "Backward correction").
+//
+// Each pose is replaced from the known steps of its successor; the path whose summed fitness is
+// largest wins. The thesis searches depth first, which took hours for 60 poses: a path that drifts
+// is refused only near its end, after every combination of the poses between was tried. Here all
+// paths advance pose by pose together, the best `beam_width` of them (a beam search); the rest
+// waits and is taken up where all others have come to a dead end (backtracking). Paths are ranked
+// by the fitness summed up so far, less what it will cost to meet the first pose: with f the mean
+// fitness of a step and d the Mahalanobis distance from the expected pose, about f d^2 / 2.
+//
+// A few known steps, 15 cm apart, cannot spread a gap of centimetres over a loop. So each step is
+// tried a second time, drawn towards the expected pose as far as its own covariance and that of
+// the pose suggest (one step of a smoother), with fitness f exp(-d^2 / 2) for a draw of d
+// deviations. `draw = false` leaves that out, as in the thesis.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/relative_solution.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+
+namespace topogeo::localization {
+
+struct LoopSearchConfig {
+  std::uint32_t beam_width = 60;  ///< paths that advance together; wider finds better ones, at a
+                                  ///< cost in proportion (benchmark backward/60)
+  std::uint32_t waiting = 120;    ///< paths kept at each pose for backtracking
+  std::uint64_t largest_work = 400'000;  ///< steps tried in all, so that a hopeless loop ends too
+  double probability =
+      0.99;  ///< of the ellipse whose rectangle a pose must lie in: a loop needs
+             ///< all its poses inside, so 95 % of each would refuse many right ones
+  double heading_sigmas = 3.0;
+  double resolution_m = 0.15;           ///< of the genetic search:
+  double resolution_rad = 0.034906585;  ///< the least half-width of an uncertainty
+  bool draw = true;
+  double largest_draw2 = 9.0;      ///< squared deviations: a step is drawn 3 of them at most
+  double same_place_m = 0.03;      ///< of paths nearer to each other than this and this heading
+  double same_place_rad = 0.01;    ///< only the best is kept when there are too many
+  std::uint32_t paths_wanted = 3;  ///< best paths returned
+  friend bool operator==(const LoopSearchConfig&, const LoopSearchConfig&) = default;
+};
+
+/// One pose of the loop as it is known before the search.
+struct LoopPose {
+  UncertainPose T_first_this;  ///< relative to the first pose of the loop; centre and extent of the
+                               ///< uncertainty that the pose must lie in
+  std::vector<RelativeSolution> steps;  ///< from the pose before, best first; at least one
+};
+
+/// A pose that the last stop of the loop may have.
+struct LoopCandidate {
+  UncertainPose T_first_last;
+  double fitness = 0.0;  ///< [0, 1]
+};
+
+/// A pose on a path that is searched, with the path behind it up to the last pose of the loop.
+struct LoopNode {
+  geometry::Pose2 T_first_pose;
+  double fitness = 0.0;            ///< summed so far
+  double rank = 0.0;               ///< what the sum may come to at the first pose
+  const LoopNode* next = nullptr;  ///< of the pose after it; null at the last pose
+  std::uint32_t candidate = 0;     ///< index of the candidate that the path starts from
+};
+
+/// What else a path must meet.
+class LoopConstraint {
+ public:
+  virtual ~LoopConstraint() = default;
+  /// Whether a path may come to this pose; `pose` is its index in the loop.
+  [[nodiscard]] virtual bool allows(std::uint32_t pose, const LoopNode& node) const = 0;
+
+ protected:
+  LoopConstraint() = default;
+  LoopConstraint(const LoopConstraint&) = default;
+  LoopConstraint& operator=(const LoopConstraint&) = default;
+};
+
+enum class LoopSearchOutcome : std::uint8_t {
+  kClosed = 0,
+  kNoCandidates,       ///< of the last pose
+  kCandidatesOutside,  ///< each lies outside of its uncertainty or breaks the constraint
+  kDeadEnd,            ///< no step back was left at some pose
+  kTooMuchWork,        ///< largest_work was reached before a path was found
+};
+
+/// "closed", "no candidates", ...
+const char* to_string(LoopSearchOutcome outcome);
+
+/// Consistent poses round the loop.
+struct LoopPath {
+  std::vector<geometry::Pose2> T_first_pose;  ///< index as in the loop; the first is the identity
+  double summed_fitness = 0.0;                ///< of the candidate and of each step
+  std::uint32_t candidate = 0;                ///< index
+};
+
+struct LoopSearchResult {
+  LoopSearchOutcome outcome = LoopSearchOutcome::kNoCandidates;
+  std::vector<LoopPath> paths;  ///< largest summed fitness first; empty unless closed
+  std::uint32_t nearest = 0;    ///< index of the pose nearest to the first one that was reached
+  std::uint64_t expanded = 0;   ///< paths that were continued by one pose
+  std::uint64_t work = 0;       ///< steps tried
+  std::uint32_t backtracks = 0;
+};
+
+/// Searches poses[1], poses[2], ... from the last one back; poses[0] is the identity and not read.
+/// The same input gives the same bits. Throws std::invalid_argument for fewer than two poses, a
+/// pose without a step, a covariance of a pose or candidate that is not positive definite, a
+/// candidate whose fitness is outside of [0, 1], or a configuration that allows nothing.
+LoopSearchResult search_loop(std::span<const LoopPose> poses,
+                             std::span<const LoopCandidate> candidates,
+                             const LoopSearchConfig& config = {},
+                             const LoopConstraint* constraint = nullptr);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,56 @@
+// Requests for matches: tasks with numbers, hashes and seeds, handed to a MatchPool and counted.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/match_counts.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+class MatchRequests {
+ public:
+  /// The pool must outlive the requests.
+  MatchRequests(const LocalizerConfig& config, MatchPool& pool);
+
+  /// Makes a local map known to the pool, under its id.
+  void add_map(std::shared_ptr<const topomap::LocalMap> map);
+
+  /// The next task: match_task() for two maps that have been added. Its seed follows from the seed
+  /// of the run, the robot of the reference map, both ids and the number of the task. Throws
+  /// std::out_of_range for a map that was not added.
+  MatchTask make(std::uint32_t reference_id, std::uint32_t query_id,
+                 const UncertainPose& T_reference_query);
+
+  /// The results in the order of the tasks; none asks nothing of the pool. Throws like
+  /// MatchPool::match.
+  std::vector<MatchResult> run(std::span<const MatchTask> tasks);
+
+  /// Numbers the tasks on from there. No number may occur twice in one pool.
+  void number_from(std::uint64_t next_task) { next_task_ = next_task; }
+  [[nodiscard]] std::uint64_t next_task() const { return next_task_; }
+
+  [[nodiscard]] const MatchCounts& counts() const { return counts_; }
+
+ private:
+  struct KnownMap {
+    std::uint64_t hash = 0;
+    std::string robot_id;
+  };
+
+  LocalizerConfig config_;
+  MatchPool& pool_;
+  std::map<std::uint32_t, KnownMap> maps_;  // by id
+  std::uint64_t next_task_ = 0;
+  MatchCounts counts_;
+};
+
+}  // namespace topogeo::localization

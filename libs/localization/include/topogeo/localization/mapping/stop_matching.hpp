@@ -1,0 +1,104 @@
+// Matches stops of one map with earlier ones: chooses the pairs, makes the tasks and returns the
+// relative pose that each measured.
+//
+// All answers of one round are awaited before any is used, so the result does not depend on who
+// answered or when.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "topogeo/localization/mapping/candidate_choice.hpp"
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/match_requests.hpp"
+#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/localization/mapping/state_monitor.hpp"
+#include "topogeo/localization/mapping/stop_comparisons.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+/// The result of a match of two stops.
+struct StopMatch {
+  PoseGraphEdge edge;  ///< as measured; as predicted when nothing was in common
+  Verdict verdict = Verdict::kRejected;
+  Reason reason = Reason::kNothingInCommon;
+  double fitness = 0.0;  ///< [0, 1]
+  StepMatch evidence;    ///< of the pose of the later stop
+  std::vector<MatchSolution> solutions;
+
+  [[nodiscard]] bool accepted() const { return verdict == Verdict::kAccepted; }
+  /// Not accepted, but not refuted either.
+  [[nodiscard]] bool uncertain() const {
+    return reason == Reason::kDoubtful || reason == Reason::kSecondSolution;
+  }
+};
+
+class StopMatching {
+ public:
+  /// The pool must outlive this.
+  StopMatching(const LocalizerConfig& config, MatchPool& pool);
+
+  /// Appends a stop, whose id is its index; `distance_m` from the one before, along the odometry.
+  void add(std::shared_ptr<const topomap::LocalMap> map, double distance_m);
+
+  [[nodiscard]] std::size_t size() const { return stops_.size(); }
+  [[nodiscard]] const topomap::LocalMap& map(std::size_t stop) const { return *stops_[stop].map; }
+  /// Along the odometry from the first stop to this one.
+  [[nodiscard]] double path_m(std::size_t stop) const { return stops_[stop].path_m; }
+
+  /// Matches of the last stop with recent ones; once more in a wider space when none is accepted,
+  /// because odometry may be worse than configured. The pose of the last stop in the graph is the
+  /// predicted one.
+  std::vector<StopMatch> match_recent(const PoseGraph& graph);
+  /// Matches of stops with such that are not recent to them. The tasks of all make one round.
+  std::vector<StopMatch> match_revisited(const PoseGraph& graph,
+                                         std::span<const std::uint32_t> stops);
+
+  /// The two stops need no match: how they lie is known.
+  void skip(const PoseGraphEdge& known);
+  /// The two stops may be matched again.
+  void reopen(const PoseGraphEdge& edge) { comparisons_.forget(edge.from, edge.to); }
+  /// The next stop does not follow the last one: its search starts from nothing.
+  void forget_solutions() { last_solutions_.clear(); }
+
+  [[nodiscard]] MatchRequests& requests() { return requests_; }
+  [[nodiscard]] const MatchRequests& requests() const { return requests_; }
+
+ private:
+  struct Stop {
+    std::shared_ptr<const topomap::LocalMap> map;
+    double path_m = 0.0;
+    RangeProfile profile;
+    std::vector<SurfacePoint> outline;  // some of its points, to foresee overlap
+  };
+
+  [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
+  [[nodiscard]] std::vector<MatchCandidate> recent_candidates(
+      const PoseGraph& graph, std::span<const UncertainPose> relative) const;
+  [[nodiscard]] std::vector<MatchCandidate> revisited_candidates(
+      const PoseGraph& graph, std::uint32_t stop, std::span<const UncertainPose> relative) const;
+  void consider(CandidateChoice& choice, const PoseGraph& graph, std::uint32_t earlier,
+                std::uint32_t stop, const UncertainPose& T_stop_earlier) const;
+  std::vector<MatchTask> recent_tasks(const PoseGraph& graph,
+                                      std::span<const UncertainPose> relative, double widening);
+  std::vector<StopMatch> run(std::span<const MatchTask> tasks, EdgeKind kind);
+  [[nodiscard]] StopMatch judged(const MatchTask& task, const MatchResult& result,
+                                 EdgeKind kind) const;
+
+  LocalizerConfig config_;
+  MatchRequests requests_;
+  std::vector<Stop> stops_;
+  StopComparisons comparisons_;
+  /// Of the last stop's matches with recent ones, by the id of the older map: where the search for
+  /// the next stop against the same map starts.
+  std::map<std::uint32_t, std::vector<MatchSolution>> last_solutions_;
+};
+
+}  // namespace topogeo::localization

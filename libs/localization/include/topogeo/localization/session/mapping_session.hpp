@@ -1,0 +1,108 @@
+// Mapping and localizing in turn: a map that is new or stored, extended by what the robot sees or
+// left as it is while the robot is followed in it.
+//
+// Whenever the robot's place in the map is not known for certain, at the start of a stored map and
+// after a time in which stops were not mapped, it is followed or searched for by a MapLocalizer.
+// Its stops are kept meanwhile, and join the map together as soon as the last of them is tracked
+// and matched there, after a search only some metres further; if that never happens the map
+// stays as it was. All of that follows from the stops alone, so one drive gives the same map
+// wherever it is computed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/localization/mapping/stored_map.hpp"
+#include "topogeo/localization/tracking/map_localizer.hpp"
+
+namespace topogeo::localization {
+
+class MappingSession : public Slam {
+ public:
+  using MapPointer = std::shared_ptr<const topomap::LocalMap>;
+
+  /// Begins an empty map. The pool and the optimizer must outlive the session.
+  MappingSession(const LocalizerConfig& config, MatchPool& pool,
+                 GraphOptimizer* optimizer = nullptr);
+  /// Continues a stored map. `initial` is where the robot is at its first stop; without it the
+  /// whole map is searched. Throws std::invalid_argument in LocalizerMode::kThesis, and like
+  /// Localizer and MapLocalizer.
+  MappingSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
+                 std::shared_ptr<const StoredMap> map, const std::optional<UncertainPose>& initial);
+
+  /// The next stop of the drive. Its id counts the stops of the drive from 0, whatever becomes of
+  /// them; throws std::invalid_argument otherwise, or when it is of another robot than the map.
+  bool add(MapPointer map) override;
+  /// Leaves a map alone to which nothing was added.
+  void finish() override;
+
+  /// From the next stop on the map stays as it is. Throws std::logic_error when it does already or
+  /// there is none yet, and like MapLocalizer. Stops that have not joined it by now never will.
+  void stop_mapping();
+  /// From the next stop on the map grows again. Throws std::logic_error when it does already,
+  /// std::invalid_argument in LocalizerMode::kThesis.
+  void resume_mapping();
+  /// What was asked for: stops join the map, now or when their place is known.
+  [[nodiscard]] bool mapping() const { return mapping_; }
+
+  /// What follows the robot in the map; null while its stops become part of it one by one.
+  [[nodiscard]] MapLocalizer* follower() const { return follower_.get(); }
+
+  /// The map: its local maps, numbered on from 0, ...
+  [[nodiscard]] const std::vector<MapPointer>& maps() const { return maps_; }
+  /// ... their poses, each with the id that its local map came with ...
+  [[nodiscard]] topomap::Trajectory trajectory() const override;
+  /// ... and how many of them were there before this drive.
+  [[nodiscard]] std::size_t stored_stops() const { return stored_stops_; }
+
+  /// Stops of the drive that are not in the map: not wanted, or their place was not found.
+  [[nodiscard]] std::size_t unmapped_stops() const {
+    return next_id_ - (maps_.size() - stored_stops_);
+  }
+  /// Of those, the ones that join it if the robot finds its place.
+  [[nodiscard]] std::size_t waiting_stops() const { return waiting_.size(); }
+  [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
+
+  [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override {
+    return mapper_->loop_closures();
+  }
+  [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
+    return mapper_->loop_decisions();
+  }
+  [[nodiscard]] Belief belief() const override {
+    return follower_ ? follower_->belief() : mapper_->belief();
+  }
+  [[nodiscard]] SlamCounts counts() const override;
+
+ private:
+  bool map_stop(const MapPointer& map);
+  bool follow(const MapPointer& map);
+  bool confirmed();
+  void join();
+  void start_following(std::shared_ptr<const StoredMap> map);
+  void end_following();
+  [[nodiscard]] MapPointer numbered(const MapPointer& map, bool starts_drive) const;
+
+  LocalizerConfig config_;
+  MatchPool& pool_;
+  std::unique_ptr<Slam> mapper_;
+  Localizer* localizer_ = nullptr;  // mapper_, unless that is the algorithm of the Thesis
+  std::unique_ptr<MapLocalizer> follower_;
+  bool mapping_ = true;
+  std::uint32_t next_id_ = 0;  // of the drive's local maps
+  std::vector<MapPointer> maps_;
+  std::vector<std::uint32_t> sources_;  // of maps_: ids in the drive
+  std::size_t stored_stops_ = 0;
+  bool searched_ = false;            // the place is known by a search
+  std::uint32_t tracked_stops_ = 0;  // in succession, the last one included
+  double tracked_distance_m_ = 0.0;  // driven to them
+  std::vector<MapPointer> waiting_;  // to join the map, as they came
+  SlamCounts counts_before_;         // of followers that have gone
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,62 @@
+// Closes cycles by the backward correction (Thesis, 7.3.1.2; docs/algorithms.md, "Backward
+// correction"): which maps are seen again, which last pose they measure, and what that does to
+// the poses since.
+//
+// What differs from the print, and why:
+// - a recent map that comes back into the overlap set (it flickers at the threshold) closes no
+//   cycle;
+// - the correction ends at the oldest of the maps seen again, as a candidate knows nothing of the
+//   poses before it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/thesis/backward_correction.hpp"
+#include "topogeo/localization/thesis/thesis_config.hpp"
+#include "topogeo/localization/thesis/thesis_map.hpp"
+#include "topogeo/localization/thesis/thesis_matching.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::localization {
+
+class CycleClosing {
+ public:
+  /// Of `config` it reads revisit_matches (maps seen again that are matched per step; 0: cycles
+  /// stay open) and unaided_correction_*.
+  CycleClosing(const LocalizerConfig& config, const ThesisConfig& thesis)
+      : config_(config), thesis_(thesis) {}
+
+  /// Closes the cycles of the last stop, whose pose by the forward correction is known: forward and
+  /// backward in turn, since other maps may overlap once a cycle has closed. True when poses moved.
+  bool close(ThesisMap& map, ThesisMatching& matching);
+
+  [[nodiscard]] const std::vector<topomap::LoopClosure>& closures() const { return closures_; }
+  [[nodiscard]] const std::vector<LoopDecision>& decisions() const { return decisions_; }
+  /// Backward corrections so far, and those of them that found no consistent poses.
+  [[nodiscard]] std::uint64_t attempts() const { return attempts_; }
+  [[nodiscard]] std::uint64_t failures() const { return failures_; }
+
+ private:
+  [[nodiscard]] std::vector<ThesisNeighbour> seen_again(ThesisMap& map,
+                                                        std::span<const std::uint32_t> tried) const;
+  bool close_with(ThesisMap& map, ThesisMatching& matching,
+                  std::span<const ThesisNeighbour> seen_again);
+  void accept(ThesisMap& map, std::span<const ThesisMatch> matches, std::uint32_t winner,
+              const geometry::Pose2& T_map_before);
+  void decide(const ThesisMap& map, const ThesisMatch& match, LoopOutcome outcome,
+              const geometry::Pose2& T_map_before);
+
+  LocalizerConfig config_;
+  ThesisConfig thesis_;
+  std::vector<topomap::LoopClosure> closures_;
+  std::vector<LoopDecision> decisions_;
+  std::uint64_t attempts_ = 0;
+  std::uint64_t failures_ = 0;
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,106 @@
+// The stops of the thesis's algorithm: their maps, poses, overlaps and the solutions of their
+// matches, from which forward and backward correction work.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/thesis/solution_store.hpp"
+#include "topogeo/localization/thesis/visible_rectangle.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::localization {
+
+struct ThesisStop {
+  std::shared_ptr<const topomap::LocalMap> map;
+  double path_m = 0.0;  ///< along the odometry from the first stop
+  VisibleRectangle view;
+  RangeProfile profile;
+  std::vector<SurfacePoint> outline;
+  UncertainPose T_previous_this;                         ///< by odometry
+  std::vector<std::uint32_t> overlaps;                   ///< MS, ascending
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the pose in the map
+};
+
+/// An earlier map as it is expected to lie.
+struct ThesisNeighbour {
+  std::uint32_t id = 0;
+  UncertainPose T_new_earlier;
+  double overlap = 0.0;  ///< share of the earlier map that the new one should see
+};
+
+/// A match of the newest stop with an earlier one.
+struct ThesisMatch {
+  std::uint32_t earlier = 0;
+  MatchResult result;
+  UncertainPose T_earlier_new;  ///< means nothing when there is nothing in common
+};
+
+class ThesisMap {
+ public:
+  ThesisMap(const LocalizerConfig& config, std::uint32_t solutions_per_pair);
+
+  /// The next stop, as far as it is known without its pose; place() or place_first() follows.
+  void append(std::shared_ptr<const topomap::LocalMap> map);
+  void place_first();
+  /// Places the last stop by a step from an earlier one; `match`: whether that is a match.
+  void place(std::uint32_t from, const UncertainPose& T_from_stop, bool match);
+
+  [[nodiscard]] std::size_t size() const { return stops_.size(); }
+  [[nodiscard]] const ThesisStop& stop(std::size_t id) const { return stops_[id]; }
+  [[nodiscard]] const std::vector<geometry::Pose2>& poses() const { return graph_.poses(); }
+  /// Relative poses; their covariances run along the matches between the stops.
+  [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const {
+    return graph_.relative_to(origin);
+  }
+  void set_overlaps(std::uint32_t stop, std::vector<std::uint32_t> overlaps) {
+    stops_[stop].overlaps = std::move(overlaps);
+  }
+
+  /// Whether the distance driven from an earlier stop is short.
+  [[nodiscard]] bool recent(std::uint32_t earlier, std::uint32_t stop) const;
+  /// Steps 2 to 6 of Thesis, 7.3.1.1.1 (docs/algorithms.md, "Forward correction"): the earlier maps
+  /// whose visible rectangle overlaps with that of a stop at a pose, with enough in common to match
+  /// them. `relative`: every earlier stop seen from that one.
+  [[nodiscard]] std::vector<ThesisNeighbour> neighbours(
+      std::uint32_t stop, const geometry::Pose2& T_map_stop,
+      std::span<const UncertainPose> relative) const;
+  /// Whether the maps of two stops overlap at their present poses.
+  [[nodiscard]] bool overlap_now(std::uint32_t earlier, std::uint32_t later) const;
+
+  /// Keeps the n best solutions of a match (definition 7.3.4): the refined one, then those of the
+  /// search that lie elsewhere.
+  void store(std::uint32_t stop, const ThesisMatch& match);
+  [[nodiscard]] SolutionStore& solutions() { return solutions_; }
+  [[nodiscard]] const SolutionStore& solutions() const { return solutions_; }
+
+  /// A match that closed a cycle: from now on the two stops know each other as well as it does.
+  void add_closure(std::uint32_t stop, const ThesisMatch& match);
+  /// All poses anew. The edges between stops hold how well neighbours know each other, which does
+  /// not change.
+  void move(const std::vector<geometry::Pose2>& T_map_robot);
+
+  [[nodiscard]] topomap::StopPose pose_of(std::size_t stop) const;
+  /// Grows with every change.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+
+ private:
+  LocalizerConfig config_;
+  PoseGraph graph_;  // poses and the matches that placed them, for uncertainties alone
+  std::vector<ThesisStop> stops_;
+  SolutionStore solutions_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace topogeo::localization

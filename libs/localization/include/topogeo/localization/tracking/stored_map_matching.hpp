@@ -1,0 +1,69 @@
+// Matches stops of a drive with the stops of a stored map that stays as it is.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/candidate_choice.hpp"
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/match_requests.hpp"
+#include "topogeo/localization/mapping/stored_map.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/tracking/global_localization.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+/// A stop of a drive as it is compared with those of a stored map.
+struct DriveStop {
+  std::shared_ptr<const topomap::LocalMap> map;  ///< with its id in the pool
+  MatchFeatures features;                        ///< of the scan
+  UncertainPose odometry;                        ///< since the last stop; invertible
+  geometry::Pose2 tracked;                       ///< the same by the scan tracker
+  bool follows = false;                          ///< there was a stop before
+  double distance_m = 0.0;                       ///< to it
+};
+
+class StoredMapMatching {
+ public:
+  /// The pool must outlive this. Throws like GlobalLocalizer.
+  StoredMapMatching(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
+                    MatchPool& pool);
+
+  /// Makes a stop of the drive known to the pool: the `number`th, under the id that follows those
+  /// of the stored maps. `T_odom_last`: the odometry at the stop before, if there is one.
+  DriveStop add(const topomap::LocalMap& map, std::uint32_t number,
+                const std::optional<geometry::Pose2>& T_odom_last);
+
+  /// The stored stops that should look most alike from a pose, no two of them next to each other
+  /// along the drive that mapped them; their ids are indices.
+  [[nodiscard]] std::vector<MatchCandidate> candidates(const DriveStop& stop,
+                                                       const UncertainPose& T_map_robot,
+                                                       std::size_t count) const;
+  /// A task for the stop and a stored one, by index. A search space wider than the configuration
+  /// allows is cut: the whole map is searched otherwise.
+  MatchTask task(const DriveStop& stop, std::size_t stored, const UncertainPose& T_map_robot);
+  std::vector<MatchResult> run(std::span<const MatchTask> tasks) { return requests_.run(tasks); }
+  /// T_map_robot by a match with a stored stop.
+  [[nodiscard]] UncertainPose measured(std::size_t stored, const MatchResult& result) const;
+
+  [[nodiscard]] std::size_t stored_stops() const { return map_->maps.size(); }
+  [[nodiscard]] const GlobalLocalizer& places() const { return places_; }
+  [[nodiscard]] MatchRequests& requests() { return requests_; }
+  [[nodiscard]] const MatchRequests& requests() const { return requests_; }
+
+ private:
+  LocalizerConfig config_;
+  std::shared_ptr<const StoredMap> map_;
+  GlobalLocalizer places_;
+  MatchRequests requests_;
+};
+
+}  // namespace topogeo::localization

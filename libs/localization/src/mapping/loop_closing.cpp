@@ -1,0 +1,143 @@
+#include "topogeo/localization/mapping/loop_closing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "topogeo/localization/mapping/closing_check.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+// Two cells of a 5 cm grid: a smaller correction needs no optimisation of its own.
+constexpr double kNoticeable_m = 0.1;
+// Stops until a pending loop is dropped: by then odometry has drifted too far for two to agree.
+constexpr std::uint32_t kLongestWait = 12;
+
+// Whether the steps between the two stops of a loop can be bent to meet it.
+bool fits_steps(const PoseGraph& graph, const PoseGraphEdge& loop, double fitness) {
+  std::vector<LoopStep> steps;
+  for (std::uint32_t stop = loop.from + 1; stop <= loop.to; ++stop) {
+    for (const auto& [from, covariance] : graph.links_to(stop)) {
+      if (from + 1 != stop) continue;
+      const Pose2 T_before_stop = geometry::between(graph.poses()[from], graph.poses()[stop]);
+      steps.push_back({{T_before_stop, covariance, 1.0}});
+    }
+  }
+  return check_closing(steps, {loop.T_from_to, loop.covariance, fitness}).consistent;
+}
+
+}  // namespace
+
+double LoopClosing::Correction::distance_m() const {
+  return std::sqrt((T_map_now.position_m() - T_map_corrected.position_m()).squaredNorm());
+}
+
+double LoopClosing::Correction::turn_rad() const {
+  return std::fabs(geometry::wrap_angle(T_map_now.theta_rad - T_map_corrected.theta_rad));
+}
+
+Pose2 LoopClosing::Correction::motion() const {
+  return T_map_corrected * geometry::inverse(T_map_now);
+}
+
+LoopClosing::LoopClosing(const LocalizerConfig& config)
+    : unaided_correction_m_(config.unaided_correction_m),
+      unaided_correction_rad_(config.unaided_correction_rad) {}
+
+LoopClosing::Correction LoopClosing::correction_of(const PoseGraph& graph,
+                                                   const PoseGraphEdge& loop) {
+  return {graph.poses()[loop.to], graph.poses()[loop.from] * loop.T_from_to};
+}
+
+bool LoopClosing::far(const Correction& correction) const {
+  return correction.distance_m() > unaided_correction_m_ ||
+         correction.turn_rad() > unaided_correction_rad_;
+}
+
+LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const PoseGraphEdge& loop,
+                                           double fitness) {
+  const Correction correction = correction_of(graph, loop);
+  if (far(correction)) {
+    if (!fits_steps(graph, loop, fitness)) {
+      decide(graph, loop, LoopOutcome::kNoClosing, Reason::kNone, fitness);
+      return Verdict::kRefused;
+    }
+    if (confirm(graph, loop, correction)) {
+      accept(graph, loop, fitness);
+      return Verdict::kMoves;
+    }
+    decide(graph, loop, LoopOutcome::kUnconfirmed, Reason::kNone, fitness);
+    pending_.push_back({loop, correction.motion()});
+    ++unconfirmed_;
+    return Verdict::kPending;
+  }
+  if (correction.distance_m() > kNoticeable_m) {
+    accept(graph, loop, fitness);
+    return Verdict::kMoves;
+  }
+  decide(graph, loop, LoopOutcome::kAccepted, Reason::kNone, fitness);
+  return Verdict::kAgrees;
+}
+
+// True when a loop of another stop moves the robot to the same place; pending ones that do are
+// accepted with it.
+bool LoopClosing::confirm(const PoseGraph& graph, const PoseGraphEdge& loop,
+                          const Correction& correction) {
+  const auto same_place = [&](const Pose2& T_map_corrected) {
+    return !far({T_map_corrected, correction.T_map_corrected});
+  };
+  bool confirmed = std::any_of(waiting_.begin(), waiting_.end(), [&](const PoseGraphEdge& other) {
+    return other.to != loop.to &&
+           same_place(correction_of(graph, other).motion() * correction.T_map_now);
+  });
+  std::erase_if(pending_, [&](const PendingLoop& pending) {
+    return pending.edge.to + kLongestWait < loop.to;
+  });
+  const auto agrees = [&](const PendingLoop& pending) {
+    return pending.edge.to != loop.to && same_place(pending.motion * correction.T_map_now);
+  };
+  for (const PendingLoop& pending : pending_) {
+    if (!agrees(pending)) continue;
+    accept(graph, pending.edge, 0.0);
+    confirmed = true;
+  }
+  std::erase_if(pending_, agrees);
+  return confirmed;
+}
+
+void LoopClosing::refuse(const PoseGraph& graph, const PoseGraphEdge& loop, Reason reason,
+                         double fitness) {
+  decide(graph, loop, LoopOutcome::kGate, reason, fitness);
+}
+
+void LoopClosing::accept(const PoseGraph& graph, const PoseGraphEdge& loop, double fitness) {
+  decide(graph, loop, LoopOutcome::kAccepted, Reason::kNone, fitness);
+  waiting_.push_back(loop);
+}
+
+void LoopClosing::outvote(const PoseGraph& graph, std::span<const PoseGraphEdge> loops) {
+  for (const PoseGraphEdge& loop : loops) {
+    decide(graph, loop, LoopOutcome::kOutvoted, Reason::kNone, 0.0);
+    ++outvoted_;
+  }
+}
+
+std::vector<PoseGraphEdge> LoopClosing::release(std::size_t count) {
+  const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(count, waiting_.size()));
+  std::vector<PoseGraphEdge> released(waiting_.begin(), end);
+  waiting_.erase(waiting_.begin(), end);
+  return released;
+}
+
+void LoopClosing::decide(const PoseGraph& graph, const PoseGraphEdge& loop, LoopOutcome outcome,
+                         Reason reason, double fitness) {
+  const Correction correction = correction_of(graph, loop);
+  decisions_.push_back({static_cast<std::uint32_t>(graph.poses().size() - 1), loop.from, loop.to,
+                        outcome, reason, loop.T_from_to, correction.distance_m(),
+                        correction.turn_rad(), fitness});
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,54 @@
+// The network of stops and the edges between them: all edges of one pair of stops count together,
+// and searches follow the paths on which the variance grows least.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <boost/graph/adjacency_list.hpp>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/pose_graph.hpp"
+
+namespace topogeo::localization {
+
+class PoseLinks {
+ public:
+  void add_stop();
+  void add(const PoseGraphEdge& edge);
+  /// The same number of stops with other edges.
+  void rebuild(std::span<const PoseGraphEdge> edges);
+
+  /// See PoseGraph::links_to.
+  [[nodiscard]] std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> links_to(
+      std::uint32_t stop) const;
+  /// See PoseGraph::relative_to; `poses` are those of all stops.
+  [[nodiscard]] std::vector<UncertainPose> relative_to(std::span<const geometry::Pose2> poses,
+                                                       std::uint32_t origin,
+                                                       const PoseGraph::Reach& reach) const;
+
+ private:
+  /// All edges between one pair of stops taken together.
+  struct Link {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // of T_from_to, in the frame of `from`
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    double cost = 0.0;
+  };
+  struct LinkIndex {
+    std::uint32_t value = 0;
+  };
+  using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
+                                        boost::no_property, LinkIndex>;
+
+  std::vector<Link> links_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> link_of_;  // index into links_
+  Network network_;
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,16 @@
+#include "topogeo/localization/session/make_slam.hpp"
+
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/thesis/thesis_localizer.hpp"
+
+namespace topogeo::localization {
+
+std::unique_ptr<Slam> make_slam(const LocalizerConfig& config, MatchPool& pool,
+                                GraphOptimizer* optimizer) {
+  if (config.mode == LocalizerMode::kThesis) {
+    return std::make_unique<ThesisLocalizer>(config, pool);
+  }
+  return std::make_unique<Localizer>(config, pool, optimizer);
+}
+
+}  // namespace topogeo::localization

@@ -1,0 +1,180 @@
+#include "topogeo/localization/session/mapping_session.hpp"
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "topogeo/localization/session/make_slam.hpp"
+
+namespace topogeo::localization {
+
+namespace {
+
+// In succession, after a search, before a drive joins the map. A room that is taken for another one
+// is tracked while the robot turns in it, but not much further (continue_test).
+constexpr std::uint32_t kTrackedStops = 3;
+constexpr double kTrackedDistance_m = 2.5;
+
+void add_to(SlamCounts& sum, const SlamCounts& more) {
+  sum.tasks += more.tasks;
+  sum.evaluations += more.evaluations;
+  for (std::size_t i = 0; i < kReasons; ++i) sum.reasons[i] += more.reasons[i];
+  sum.steps_in_doubt += more.steps_in_doubt;
+}
+
+}  // namespace
+
+MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
+                               GraphOptimizer* optimizer)
+    : config_(config), pool_(pool), mapper_(make_slam(config, pool, optimizer)) {
+  localizer_ = dynamic_cast<Localizer*>(mapper_.get());
+}
+
+MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
+                               GraphOptimizer* optimizer, std::shared_ptr<const StoredMap> map,
+                               const std::optional<UncertainPose>& initial)
+    : config_(config), pool_(pool) {
+  if (config.mode != LocalizerMode::kGraph) {
+    throw std::invalid_argument("localizer.mode: a stored map is continued in mode graph only");
+  }
+  auto localizer = std::make_unique<Localizer>(config, pool, optimizer, map);
+  localizer_ = localizer.get();
+  mapper_ = std::move(localizer);
+  stored_stops_ = map->maps.size();
+  for (const topomap::LocalMap& stored : map->maps) {
+    maps_.push_back(MapPointer(map, &stored));
+    sources_.push_back(topomap::kStoredSource);
+  }
+  start_following(std::move(map));
+  if (initial) follower_->set_pose(initial->T_a_b, initial->covariance);
+}
+
+bool MappingSession::add(MapPointer map) {
+  check_next(*map, next_id_, maps_.empty() ? nullptr : maps_.front().get());
+  ++next_id_;
+  return follower_ ? follow(map) : map_stop(map);
+}
+
+bool MappingSession::map_stop(const MapPointer& map) {
+  const MapPointer own = numbered(map, false);
+  const bool moved = mapper_->add(own);
+  maps_.push_back(own);
+  sources_.push_back(map->id);
+  return moved;
+}
+
+bool MappingSession::follow(const MapPointer& map) {
+  follower_->add(map);
+  const bool found = confirmed();
+  if (!mapping_) return false;
+  waiting_.push_back(map);
+  if (found) join();
+  return found;
+}
+
+// True when the last stop is tracked and matched, and so were enough stops before it where the
+// place was found by a search: in one look a room of another building can look like one of the map.
+bool MappingSession::confirmed() {
+  const std::optional<TrackedStep>& step = follower_->last_step();
+  const bool tracked =
+      follower_->belief().state == LocalizationState::kTracking && step && !step->accepted.empty();
+  if (!step) searched_ = true;
+  tracked_stops_ = tracked ? tracked_stops_ + 1 : 0;
+  tracked_distance_m_ = tracked ? tracked_distance_m_ + step->evidence.distance_m : 0.0;
+  return tracked && (!searched_ || (tracked_stops_ >= kTrackedStops &&
+                                    tracked_distance_m_ >= kTrackedDistance_m));
+}
+
+void MappingSession::join() {
+  const std::vector<StoredMatch> matches = follower_->last_step()->accepted;
+  const double confidence = follower_->belief().confidence;
+  std::vector<MapPointer> drive;
+  for (const MapPointer& map : std::exchange(waiting_, {})) {
+    drive.push_back(numbered(map, drive.empty()));
+    maps_.push_back(drive.back());
+    sources_.push_back(map->id);
+  }
+  end_following();
+  localizer_->join(drive, matches, confidence);
+}
+
+// As the map numbers it: after its last stop.
+MappingSession::MapPointer MappingSession::numbered(const MapPointer& map,
+                                                    bool starts_drive) const {
+  const auto id = static_cast<std::uint32_t>(maps_.size());
+  starts_drive &= id > 0;
+  if (map->id == id && !starts_drive) return map;
+  return std::make_shared<const topomap::LocalMap>(topomap::numbered(*map, id, starts_drive));
+}
+
+void MappingSession::finish() {
+  if (!follower_ && maps_.size() > stored_stops_) mapper_->finish();
+}
+
+// --- the turns
+
+void MappingSession::stop_mapping() {
+  if (!mapping_) throw std::logic_error("the map stays as it is already");
+  if (maps_.empty()) throw std::logic_error("there is no map yet");
+  if (!follower_) {
+    auto stored = std::make_shared<StoredMap>();
+    stored->trajectory = mapper_->trajectory();
+    for (const MapPointer& map : maps_) stored->maps.push_back(*map);
+    const geometry::Pose2 T_map_last = stored->trajectory.stops.back().T_map_robot;
+    start_following(std::move(stored));
+    follower_->start_after(*maps_.back(), T_map_last);
+  }
+  waiting_.clear();
+  mapping_ = false;
+}
+
+void MappingSession::resume_mapping() {
+  if (mapping_) throw std::logic_error("the map grows already");
+  if (localizer_ == nullptr) {
+    throw std::invalid_argument("localizer.mode: a finished map is continued in mode graph only");
+  }
+  mapping_ = true;
+}
+
+void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
+  const std::uint64_t next_task = localizer_ != nullptr ? localizer_->next_task() : counts().tasks;
+  follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_, next_id_);
+  follower_->number_tasks_from(next_task);
+  searched_ = false;
+  tracked_stops_ = 0;
+  tracked_distance_m_ = 0.0;
+}
+
+void MappingSession::end_following() {
+  localizer_->number_tasks_from(follower_->next_task());
+  add_to(counts_before_, follower_->counts());
+  follower_.reset();
+}
+
+// --- what is known
+
+topomap::Trajectory MappingSession::trajectory() const {
+  topomap::Trajectory trajectory = mapper_->trajectory();
+  for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
+    trajectory.stops[i].source_id = sources_[i];
+  }
+  return trajectory;
+}
+
+std::optional<topomap::StopPose> MappingSession::last_stop() const {
+  if (next_id_ == 0) return std::nullopt;
+  if (follower_ && !follower_->stops().empty()) return follower_->last_stop();
+  std::optional<topomap::StopPose> stop = mapper_->last_stop();
+  stop->source_id = sources_.back();  // mapped, or right after stop_mapping()
+  return stop;
+}
+
+SlamCounts MappingSession::counts() const {
+  SlamCounts counts = mapper_->counts();
+  add_to(counts, counts_before_);
+  if (follower_) add_to(counts, follower_->counts());
+  return counts;
+}
+
+}  // namespace topogeo::localization

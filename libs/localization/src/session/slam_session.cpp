@@ -1,0 +1,38 @@
+#include "topogeo/localization/session/slam_session.hpp"
+
+#include <numbers>
+#include <utility>
+
+namespace topogeo::localization {
+
+Eigen::Matrix3d given_pose_covariance() {
+  constexpr double kSigma_m = 0.3;  // as well as a person points at a place on a plan
+  constexpr double kSigma_rad = 10.0 * std::numbers::pi / 180.0;
+  return Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
+      .asDiagonal();
+}
+
+SlamSession::SlamSession(const LocalizerConfig& config, MatchPool& pool,
+                         GraphOptimizer* optimizer) {
+  auto session = std::make_unique<MappingSession>(config, pool, optimizer);
+  mapping_session_ = session.get();
+  slam_ = std::move(session);
+}
+
+SlamSession::SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
+                         const MapToUse& stored) {
+  std::optional<UncertainPose> start;
+  if (stored.T_map_start) start = {*stored.T_map_start, given_pose_covariance()};
+  if (stored.use == MapToUse::Use::kContinue) {
+    auto session = std::make_unique<MappingSession>(config, pool, optimizer, stored.map, start);
+    mapping_session_ = session.get();
+    slam_ = std::move(session);
+    return;
+  }
+  auto localizer = std::make_unique<MapLocalizer>(config, stored.map, pool);
+  if (start) localizer->set_pose(start->T_a_b, start->covariance);
+  map_localizer_ = localizer.get();
+  slam_ = std::move(localizer);
+}
+
+}  // namespace topogeo::localization

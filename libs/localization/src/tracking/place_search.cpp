@@ -1,0 +1,145 @@
+#include "topogeo/localization/tracking/place_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/tracking/pose_fusion.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+// These depend on each other, so none is a setting; tests/bench/kidnapped.cpp measures what they do
+// together.
+constexpr std::size_t kMostHypotheses = 16;
+constexpr double kProposed_m = 0.25;  // deviation of a proposed place: the cells of the search
+constexpr double kProposed_rad = 0.08;
+constexpr double kSharpness = 25.0;         // of the weights in the fitness: e^2.5 for each 0.1
+constexpr double kElsewhereFitness = 0.60;  // of the best place if the robot is somewhere else
+constexpr double kElsewhereWeight = 0.5;    // weight of that before anything was seen
+constexpr double kNewWeight = 0.05;         // of a place that nothing before spoke for
+constexpr double kForgotten = 1e-4;
+constexpr double kSure = 0.95;
+constexpr std::uint32_t kSeenOften = 2;  // accepted stops before a place is taken
+// More of them for a place that the stops of this search before did not speak for.
+constexpr std::uint32_t kSeenMoreOften = 4;
+constexpr double kLeastDistance_m = 0.3;  // between the first and the last of them
+constexpr std::uint32_t kMissedOften = 3;
+// Nearer to each other, two poses are one hypothesis.
+constexpr double kHypothesesApart_m = 0.6;
+constexpr double kHypothesesApart_rad = 0.3;
+
+bool same_hypothesis(const Pose2& a, const Pose2& b) {
+  return (a.position_m() - b.position_m()).squaredNorm() <
+             kHypothesesApart_m * kHypothesesApart_m &&
+         std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) < kHypothesesApart_rad;
+}
+
+}  // namespace
+
+void PlaceSearch::begin() {
+  hypotheses_.clear();
+  stops_ = 0;
+}
+
+void PlaceSearch::move(const UncertainPose& odometry, double distance_m) {
+  for (PlaceHypothesis& hypothesis : hypotheses_) {
+    hypothesis.pose = {
+        hypothesis.pose.T_a_b * odometry.T_a_b,
+        geometry::compose_covariance(hypothesis.pose.T_a_b, hypothesis.pose.covariance,
+                                     odometry.T_a_b, odometry.covariance)};
+    hypothesis.distance_m += distance_m;
+  }
+}
+
+void PlaceSearch::propose(std::span<const Pose2> T_map_robot) {
+  for (const Pose2& place : T_map_robot) {
+    const bool known =
+        std::any_of(hypotheses_.begin(), hypotheses_.end(),
+                    [&](const PlaceHypothesis& h) { return same_hypothesis(h.pose.T_a_b, place); });
+    if (known) continue;
+    PlaceHypothesis hypothesis;
+    hypothesis.pose = {place, Eigen::Vector3d(kProposed_m * kProposed_m, kProposed_m * kProposed_m,
+                                              kProposed_rad * kProposed_rad)
+                                  .asDiagonal()};
+    hypothesis.weight = kNewWeight;
+    hypothesis.wanted = std::min(kSeenMoreOften, kSeenOften + stops_);
+    hypotheses_.push_back(hypothesis);
+  }
+}
+
+void PlaceSearch::observe(std::size_t index, const std::optional<UncertainPose>& measured) {
+  PlaceHypothesis& hypothesis = hypotheses_.at(index);
+  if (!measured) {
+    ++hypothesis.missed;
+    return;
+  }
+  hypothesis.pose = hypothesis.seen == 0 ? *measured : fused({hypothesis.pose, *measured});
+  if (hypothesis.seen == 0) hypothesis.distance_m = 0.0;
+  ++hypothesis.seen;
+  hypothesis.missed = 0;
+}
+
+void PlaceSearch::weigh(std::span<const double> fitness) {
+  if (fitness.size() != hypotheses_.size()) {
+    throw std::invalid_argument("place search: " + std::to_string(fitness.size()) +
+                                " fitness values for " + std::to_string(hypotheses_.size()) +
+                                " hypotheses");
+  }
+  double elsewhere = kElsewhereWeight;
+  for (const PlaceHypothesis& hypothesis : hypotheses_) elsewhere -= hypothesis.weight;
+  elsewhere = std::max(kNewWeight, elsewhere);
+  double sum = elsewhere;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    hypotheses_[i].weight *= geometry::exp(kSharpness * (fitness[i] - kElsewhereFitness));
+    sum += hypotheses_[i].weight;
+  }
+  for (PlaceHypothesis& hypothesis : hypotheses_) hypothesis.weight /= sum;
+  std::stable_sort(
+      hypotheses_.begin(), hypotheses_.end(),
+      [](const PlaceHypothesis& a, const PlaceHypothesis& b) { return a.weight > b.weight; });
+  merge();
+}
+
+// Two that have come to the same place are one.
+void PlaceSearch::merge() {
+  std::vector<PlaceHypothesis> kept;
+  for (const PlaceHypothesis& hypothesis : hypotheses_) {
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const PlaceHypothesis& other) {
+      return same_hypothesis(other.pose.T_a_b, hypothesis.pose.T_a_b);
+    });
+    if (same != kept.end()) {
+      same->weight += hypothesis.weight;
+      if (hypothesis.seen > same->seen) {
+        same->seen = hypothesis.seen;
+        same->distance_m = hypothesis.distance_m;
+      }
+      same->wanted = std::min(same->wanted, hypothesis.wanted);
+    } else if (hypothesis.weight >= kForgotten && hypothesis.missed < kMissedOften &&
+               kept.size() < kMostHypotheses) {
+      kept.push_back(hypothesis);
+    }
+  }
+  hypotheses_ = std::move(kept);
+}
+
+std::optional<PlaceHypothesis> PlaceSearch::best() const {
+  const auto best = std::max_element(
+      hypotheses_.begin(), hypotheses_.end(),
+      [](const PlaceHypothesis& a, const PlaceHypothesis& b) { return a.weight < b.weight; });
+  if (best == hypotheses_.end()) return std::nullopt;
+  return *best;
+}
+
+bool PlaceSearch::found(const PlaceHypothesis& hypothesis) {
+  return hypothesis.weight >= kSure && hypothesis.seen >= hypothesis.wanted &&
+         hypothesis.missed == 0 && hypothesis.distance_m >= kLeastDistance_m;
+}
+
+}  // namespace topogeo::localization

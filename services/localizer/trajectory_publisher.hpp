@@ -1,0 +1,50 @@
+// Publishes trajectory, closed loops and the decisions on them: after each step what has changed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/service.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+#include "trajectory_updates.hpp"
+
+namespace topogeo::localizer {
+
+class TrajectoryPublisher {
+ public:
+  /// Throws like Writer.
+  explicit TrajectoryPublisher(service::Service& service);
+
+  /// Sends what has changed since the last call, or (`whole`) all of it, so that a reader has it
+  /// whole in one version. `stamp_ns` is that of the last stop. False when the service stops before
+  /// all is sent.
+  [[nodiscard]] bool publish(const localization::Slam& slam, const topomap::Trajectory& trajectory,
+                             std::int64_t stamp_ns, bool whole);
+
+  /// Closed loops that were sent last.
+  [[nodiscard]] std::size_t closures() const { return closures_.size(); }
+
+ private:
+  bool send_segments(const topomap::Trajectory& trajectory, bool whole);
+  bool send_decisions(const std::vector<localization::LoopDecision>& decisions,
+                      std::int64_t stamp_ns);
+
+  service::Service& service_;
+  messaging::Writer<msg::TrajectorySegment> segment_writer_;
+  messaging::Writer<msg::LoopClosures> closure_writer_;
+  messaging::Writer<msg::LoopDecisions> decision_writer_;
+  TrajectoryUpdates updates_;
+  std::vector<topomap::LoopClosure> closures_;
+  std::size_t decisions_ = 0;
+  std::uint64_t segments_sent_ = 0;
+  std::uint64_t closures_sent_ = 0;
+  std::uint64_t decision_segments_sent_ = 0;
+};
+
+}  // namespace topogeo::localizer

@@ -1,0 +1,130 @@
+// A corridor driven along x and back: stops 0 to 5 out, 6 to 11 back over the same places. Odometry
+// drifts sideways, so the stops back lie beside those out.
+#include "topogeo/localization/mapping/loop_closing.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using Verdict = LoopClosing::Verdict;
+
+Eigen::Matrix3d spread(double sigma_m, double sigma_rad) {
+  return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
+}
+
+/// Straight stops 1 m apart, each known from the one before to 0.2 m.
+PoseGraph straight(std::uint32_t stops) {
+  PoseGraph graph;
+  graph.add_pose({});
+  for (std::uint32_t i = 1; i < stops; ++i) {
+    graph.add_pose({1.0 * i, 0.0, 0.0});
+    graph.add_edge({i - 1, i, EdgeKind::kOdometry, {1.0, 0.0, 0.0}, spread(0.2, 0.05)});
+  }
+  return graph;
+}
+
+/// A match that puts stop `to` aside by `off_m` from where it is.
+PoseGraphEdge loop(std::uint32_t from, std::uint32_t to, double off_m) {
+  return {from, to, EdgeKind::kRevisit, {1.0 * (to - from), off_m, 0.0}, spread(0.02, 0.005)};
+}
+
+TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
+  const PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  EXPECT_EQ(loops.consider(graph, loop(0, 11, 0.05), 0.9), Verdict::kAgrees);
+  EXPECT_TRUE(loops.waiting().empty());  // the caller adds it
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, 0.3), 0.8), Verdict::kMoves);
+  ASSERT_EQ(loops.waiting().size(), 1U);
+  EXPECT_EQ(loops.waiting()[0].from, 1U);
+  ASSERT_EQ(loops.decisions().size(), 2U);
+  const LoopDecision& decision = loops.decisions()[1];
+  EXPECT_EQ(decision.step, 11U);
+  EXPECT_EQ(decision.earlier_id, 1U);
+  EXPECT_EQ(decision.later_id, 11U);
+  EXPECT_EQ(decision.outcome, LoopOutcome::kAccepted);
+  EXPECT_NEAR(decision.correction_m, 0.3, 1e-12);
+  EXPECT_NEAR(decision.correction_rad, 0.0, 1e-12);
+  EXPECT_EQ(decision.fitness, 0.8);
+}
+
+TEST(LoopClosing, AFarCorrectionWaitsForAnotherStopThatAgrees) {
+  const PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  EXPECT_EQ(loops.consider(graph, loop(0, 10, 1.0), 0.9), Verdict::kPending);
+  EXPECT_TRUE(loops.waiting().empty());
+  EXPECT_EQ(loops.unconfirmed(), 1U);
+  // The same stop again proves nothing, nor does another one that moves the robot elsewhere.
+  EXPECT_EQ(loops.consider(graph, loop(1, 10, 1.0), 0.9), Verdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, -1.0), 0.9), Verdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(2, 11, 1.1), 0.9), Verdict::kMoves);
+  ASSERT_EQ(loops.waiting().size(), 3U);  // both loops of stop 10 with it
+  EXPECT_EQ(loops.waiting()[0].from, 0U);
+  EXPECT_EQ(loops.waiting()[1].from, 1U);
+  EXPECT_EQ(loops.waiting()[2].from, 2U);
+  EXPECT_EQ(loops.decisions().back().outcome, LoopOutcome::kAccepted);
+  EXPECT_EQ(loops.unconfirmed(), 3U);
+}
+
+TEST(LoopClosing, AWaitingLoopConfirmsAFarOne) {
+  const PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  loops.accept(graph, loop(0, 10, 1.0), 0.7);
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, 1.0), 0.9), Verdict::kMoves);
+}
+
+TEST(LoopClosing, APendingLoopIsDroppedInTheEnd) {
+  const PoseGraph graph = straight(40);
+  LoopClosing loops({});
+  EXPECT_EQ(loops.consider(graph, loop(0, 20, 1.0), 0.9), Verdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(0, 33, 1.0), 0.9), Verdict::kPending);  // 13 stops later
+  EXPECT_EQ(loops.consider(graph, loop(0, 34, 1.0), 0.9), Verdict::kMoves);
+  EXPECT_EQ(loops.waiting().size(), 2U);
+  LoopClosing dropped({});
+  EXPECT_EQ(dropped.consider(graph, loop(0, 20, 1.0), 0.9), Verdict::kPending);
+  dropped.drop_pending();
+  EXPECT_EQ(dropped.consider(graph, loop(0, 21, 1.0), 0.9), Verdict::kPending);
+}
+
+TEST(LoopClosing, StepsThatCannotBeBentRefuseALoop) {
+  const PoseGraph graph = straight(5);  // at stop 4 odometry is known to 0.4 m
+  LoopClosing loops({});
+  EXPECT_EQ(loops.consider(graph, loop(0, 4, 6.0), 0.9), Verdict::kRefused);
+  ASSERT_EQ(loops.decisions().size(), 1U);
+  EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kNoClosing);
+  EXPECT_TRUE(loops.waiting().empty());
+}
+
+TEST(LoopClosing, GivesWaitingLoopsAwayInTheirOrder) {
+  const PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  for (std::uint32_t i = 0; i < 3; ++i) loops.accept(graph, loop(i, 11, 0.2), 0.9);
+  const std::vector<PoseGraphEdge> first = loops.release(2);
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_EQ(first[1].from, 1U);
+  ASSERT_EQ(loops.waiting().size(), 1U);
+  EXPECT_EQ(loops.waiting()[0].from, 2U);
+  EXPECT_EQ(loops.release(9).size(), 1U);
+  EXPECT_TRUE(loops.release(1).empty());
+}
+
+TEST(LoopClosing, RecordsWhatGateAndOptimisationRefuse) {
+  const PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  loops.refuse(graph, loop(0, 11, 2.0), Reason::kFewInliers, 0.4);
+  const std::vector outvoted{loop(1, 10, 0.5), loop(2, 9, 0.5)};
+  loops.outvote(graph, outvoted);
+  ASSERT_EQ(loops.decisions().size(), 3U);
+  EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kGate);
+  EXPECT_EQ(loops.decisions()[0].reason, Reason::kFewInliers);
+  EXPECT_EQ(loops.decisions()[2].outcome, LoopOutcome::kOutvoted);
+  EXPECT_EQ(loops.decisions()[2].later_id, 9U);
+  EXPECT_EQ(loops.decisions()[2].step, 11U);
+  EXPECT_EQ(loops.outvoted(), 2U);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

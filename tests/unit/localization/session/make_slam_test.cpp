@@ -1,0 +1,21 @@
+#include "topogeo/localization/session/make_slam.hpp"
+
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/mapping/localizer.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/thesis/thesis_localizer.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+TEST(MakeSlam, MakesTheAlgorithmThatTheModeNames) {
+  InProcessPool pool;
+  LocalizerConfig config;
+  EXPECT_NE(dynamic_cast<Localizer*>(make_slam(config, pool).get()), nullptr);
+  config.mode = LocalizerMode::kThesis;
+  EXPECT_NE(dynamic_cast<ThesisLocalizer*>(make_slam(config, pool).get()), nullptr);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

@@ -1,0 +1,201 @@
+#include "topogeo/localization/session/mapping_session.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/matching/matcher.hpp"
+
+#include "localization/simulated_maps.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+using test::Maps;
+
+/// Stops [begin, end) of a drive as a drive of their own, whose odometry starts anywhere.
+Maps part(const Maps& maps, std::size_t begin, std::size_t end) {
+  Maps out;
+  for (std::size_t i = begin; i < end; ++i) {
+    topomap::LocalMap map = *maps[i];
+    map.id = static_cast<std::uint32_t>(out.size());
+    map.T_odom_robot = Pose2{100.0, 50.0, 2.0} * map.T_odom_robot;
+    if (out.empty()) {
+      map.track.clear();
+      map.T_previous_robot = {};
+    }
+    for (topomap::TrackedScan& scan : map.track) {
+      scan.T_odom_robot = Pose2{100.0, 50.0, 2.0} * scan.T_odom_robot;
+    }
+    out.push_back(std::make_shared<const topomap::LocalMap>(map));
+  }
+  return out;
+}
+
+/// The floor, mapped as far as the first drive goes; a second one begins where that ended.
+class MappingSessionTest : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kFirst = 60;   // stops of the first drive
+  static constexpr std::size_t kSecond = 40;  // of the second
+
+  static void SetUpTestSuite() {
+    driven_ = new test::DrivenMaps(test::drive(test::world("floor"), {}));
+    InProcessPool pool;
+    MappingSession session({}, pool);
+    for (const auto& map : part(driven_->maps, 0, kFirst)) session.add(map);
+    session.finish();
+    auto stored = std::make_shared<StoredMap>();
+    for (const auto& map : session.maps()) stored->maps.push_back(*map);
+    stored->trajectory = session.trajectory();
+    stored->loop_closures = session.loop_closures();
+    stored_ = stored;
+  }
+  static void TearDownTestSuite() {
+    stored_.reset();
+    delete driven_;
+    driven_ = nullptr;
+  }
+
+  static Maps second() { return part(driven_->maps, kFirst, kFirst + kSecond); }
+
+  /// Largest distance of a stop from its true place, with the first stop at its true one.
+  static double largest_error_m(const topomap::Trajectory& trajectory) {
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
+      const Pose2 truth = geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[i]);
+      const Pose2 error = geometry::between(truth, trajectory.stops[i].T_map_robot);
+      largest_m = std::max(largest_m, error.position_m().norm());
+    }
+    return largest_m;
+  }
+  static bool same_poses(const topomap::Trajectory& a, const topomap::Trajectory& b) {
+    return std::equal(a.stops.begin(), a.stops.end(), b.stops.begin(), b.stops.end(),
+                      [](const auto& x, const auto& y) { return x.T_map_robot == y.T_map_robot; });
+  }
+
+  static std::shared_ptr<const StoredMap> stored_;
+  static test::DrivenMaps* driven_;
+  InProcessPool pool_;
+};
+
+std::shared_ptr<const StoredMap> MappingSessionTest::stored_;
+test::DrivenMaps* MappingSessionTest::driven_ = nullptr;
+
+TEST_F(MappingSessionTest, ADriveOfItsOwnIsMappedAsByTheLocalizer) {
+  Localizer localizer({}, pool_);
+  InProcessPool pool;
+  MappingSession session({}, pool);
+  for (const auto& map : part(driven_->maps, 0, 30)) {
+    EXPECT_EQ(session.add(map), localizer.add(map)) << map->id;
+    EXPECT_EQ(session.last_stop()->T_map_robot, localizer.trajectory().stops.back().T_map_robot);
+  }
+  localizer.finish();
+  session.finish();
+  EXPECT_TRUE(same_poses(session.trajectory(), localizer.trajectory()));
+  EXPECT_EQ(session.counts().tasks, localizer.counts().tasks);
+  EXPECT_EQ(session.unmapped_stops(), 0U);
+}
+
+TEST_F(MappingSessionTest, FindsItselfInAStoredMapAndExtendsItBackToItsFirstStop) {
+  MappingSession session({}, pool_, nullptr, stored_, std::nullopt);
+  EXPECT_EQ(session.maps().size(), kFirst);
+  std::size_t joined_at = 0;
+  for (const auto& map : second()) {
+    session.add(map);
+    if (session.waiting_stops() > 0) {
+      EXPECT_EQ(session.maps().size(), kFirst);
+      EXPECT_TRUE(same_poses(session.trajectory(), stored_->trajectory));
+      joined_at = map->id + 1;
+    }
+  }
+  EXPECT_GT(joined_at, 0U) << "one stop cannot be enough";
+  EXPECT_LT(joined_at, kSecond / 2);
+  session.finish();
+  const topomap::Trajectory trajectory = session.trajectory();
+  ASSERT_EQ(trajectory.stops.size(), kFirst + kSecond);
+  EXPECT_EQ(session.unmapped_stops(), 0U);
+  EXPECT_LT(largest_error_m(trajectory), 0.25);
+  for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
+    EXPECT_EQ(session.maps()[i]->id, i);
+    EXPECT_EQ(trajectory.stops[i].local_map_id, i);
+    EXPECT_EQ(session.maps()[i]->starts_drive, i == kFirst);
+    EXPECT_EQ(trajectory.stops[i].source_id, i < kFirst ? topomap::kStoredSource : i - kFirst);
+  }
+  EXPECT_TRUE(session.maps()[kFirst]->track.empty());
+  const auto loops = session.loop_closures();
+  EXPECT_TRUE(std::any_of(loops.begin(), loops.end(), [](const topomap::LoopClosure& loop) {
+    return loop.earlier_id < kFirst && loop.later_id >= kFirst;
+  }));
+}
+
+TEST_F(MappingSessionTest, AnInitialPoseSparesTheSearch) {
+  const Pose2 T_map_start =
+      geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[kFirst]);
+  const UncertainPose initial{T_map_start, Eigen::Vector3d(0.09, 0.09, 0.03).asDiagonal()};
+  MappingSession session({}, pool_, nullptr, stored_, initial);
+  const Maps drive = second();
+  for (std::size_t i = 0; i < 3; ++i) session.add(drive[i]);
+  EXPECT_EQ(session.maps().size(), kFirst + 3);
+  EXPECT_EQ(session.belief().state, LocalizationState::kTracking);
+}
+
+TEST_F(MappingSessionTest, InAnotherBuildingTheMapStaysAsItWas) {
+  MappingSession session({}, pool_, nullptr, stored_, std::nullopt);
+  const Maps other = test::drive(test::world("room"), {}).maps;
+  for (const auto& map : other) session.add(map);
+  session.finish();
+  EXPECT_EQ(session.maps().size(), kFirst);
+  EXPECT_EQ(session.unmapped_stops(), other.size());
+  EXPECT_EQ(session.waiting_stops(), other.size());
+  EXPECT_TRUE(same_poses(session.trajectory(), stored_->trajectory));
+  EXPECT_EQ(session.trajectory().version, stored_->trajectory.version);
+  EXPECT_NE(session.belief().state, LocalizationState::kTracking);
+}
+
+TEST_F(MappingSessionTest, StopsAndResumesMapping) {
+  MappingSession session({}, pool_);
+  EXPECT_THROW(session.stop_mapping(), std::logic_error);  // nothing to localize in
+  const Maps drive = part(driven_->maps, 0, 60);
+  for (std::size_t i = 0; i < 30; ++i) session.add(drive[i]);
+  EXPECT_THROW(session.resume_mapping(), std::logic_error);
+  session.stop_mapping();
+  EXPECT_THROW(session.stop_mapping(), std::logic_error);
+  const topomap::Trajectory before = session.trajectory();
+  for (std::size_t i = 30; i < 36; ++i) {
+    session.add(drive[i]);
+    EXPECT_EQ(session.trajectory().version, before.version);
+    EXPECT_TRUE(same_poses(session.trajectory(), before));
+  }
+  EXPECT_EQ(session.unmapped_stops(), 6U);
+  session.resume_mapping();
+  EXPECT_TRUE(session.mapping());
+  for (std::size_t i = 36; i < 60; ++i) session.add(drive[i]);
+  session.finish();
+  EXPECT_EQ(session.maps().size(), 54U);
+  EXPECT_EQ(session.unmapped_stops(), 6U);
+  const topomap::Trajectory after = session.trajectory();
+  EXPECT_EQ(after.stops[29].source_id, 29U);
+  EXPECT_EQ(after.stops[30].source_id, 36U);
+  EXPECT_TRUE(session.maps()[30]->starts_drive);
+  const Pose2 truth = geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[59]);
+  EXPECT_LT(geometry::between(truth, after.stops.back().T_map_robot).position_m().norm(), 0.25);
+}
+
+TEST_F(MappingSessionTest, RefusesAnotherRobotAStopOutOfTurnAndTheAlgorithmThatCannot) {
+  MappingSession session({}, pool_, nullptr, stored_, std::nullopt);
+  topomap::LocalMap map = *driven_->maps[0];
+  map.id = 1;
+  EXPECT_THROW(session.add(std::make_shared<const topomap::LocalMap>(map)), std::invalid_argument);
+  map.id = 0;
+  map.robot_id = "another";
+  EXPECT_THROW(session.add(std::make_shared<const topomap::LocalMap>(map)), std::invalid_argument);
+  LocalizerConfig thesis;
+  thesis.mode = LocalizerMode::kThesis;
+  EXPECT_THROW(MappingSession(thesis, pool_, nullptr, stored_, std::nullopt),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace topogeo::localization
