@@ -290,7 +290,8 @@ void LocalizerService::publish(bool whole) {
   if (!service_.send(closures_, message, "loop closures")) throw Stopped();
 }
 
-// Decisions only come to the end, so the last segment that was sent and what follows are news.
+// Decisions only come to the end, so only the last segment that was sent and those behind it have
+// changed.
 void LocalizerService::publish_decisions() {
   const std::vector<localization::LoopDecision>& decisions = localizer_->loop_decisions();
   if (decisions.size() == decisions_published_) return;
