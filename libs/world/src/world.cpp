@@ -10,30 +10,31 @@ namespace topogeo::world {
 
 namespace {
 
-bool is_there(const ChangingPart& part, double way_m, double time_s) {
-  const bool by_way =
-      std::any_of(part.present.begin(), part.present.end(), [way_m](const WayInterval& interval) {
-        return way_m >= interval.from_m && way_m < interval.to_m;
+bool is_there(const ChangingPart& part, double driven_m, double time_s) {
+  const bool by_distance = std::any_of(
+      part.present.begin(), part.present.end(), [driven_m](const DistanceInterval& interval) {
+        return driven_m >= interval.from_m && driven_m < interval.to_m;
       });
   const bool by_time = std::any_of(part.present_s.begin(), part.present_s.end(),
                                    [time_s](const TimeInterval& interval) {
                                      return time_s >= interval.from_s && time_s < interval.to_s;
                                    });
-  return (by_way || by_time) != part.otherwise;
+  return (by_distance || by_time) != part.otherwise;
 }
 
 }  // namespace
 
-std::vector<bool> present_parts(const World& world, double way_m, double time_s) {
+std::vector<bool> present_parts(const World& world, double driven_m, double time_s) {
   std::vector<bool> present;
   present.reserve(world.changing.size());
-  for (const ChangingPart& part : world.changing) present.push_back(is_there(part, way_m, time_s));
+  for (const ChangingPart& part : world.changing)
+    present.push_back(is_there(part, driven_m, time_s));
   return present;
 }
 
-World scene_at(const World& world, double way_m, double time_s) {
+World scene_at(const World& world, double driven_m, double time_s) {
   World scene{world.name, world.segments, world.circles, {}, {}, {}};
-  const std::vector<bool> present = present_parts(world, way_m, time_s);
+  const std::vector<bool> present = present_parts(world, driven_m, time_s);
   for (std::size_t i = 0; i < present.size(); ++i) {
     if (!present[i]) continue;
     const ChangingPart& part = world.changing[i];

@@ -8,22 +8,21 @@
 //   boxes: [{from: [1, 1], to: [2, 1.5]}]        # furniture: two opposite corners
 //   columns: [{center: [4, 4], radius: 0.3}]
 //   segments: [[0, 0, 1, 1]]      # single lines: x1, y1, x2, y2
-//   tour: [[1, 1], [6, 1]]        # way points of the drive
-//   places: [{name: room A, at: [1, 1]}]         # what people call them; each name once
+//   tour: [[1, 1], [6, 1]]        # points of the drive, in order
+//   places: [{name: room A, at: [1, 1]}]         # named places; each name once
 // What changes while the robot drives:
-//   doors: [{at: 2.5, width: 0.9, open: [[0, 12.5], [40, 60]]}]   # closed but for these parts of
-//                                 # the way driven; without `open` it stands open for ever
-//   boxes: [{from: [1, 1], to: [2, 1.5], present: [[0, 30]]}]     # also of columns: there for
-//                                 # these parts of the way driven only
-//   open_s: [[5, 20]], present_s: [[5, 20]]   # the same in seconds since the start; what is open
-//   or
-//                                 # there by the way or by the time is so
-//   random: [20, 10]              # also: on the average so many seconds open (present) and so many
-//                                 # shut (absent), by turns, as a seed draws them (draw_changes)
-//   people: [{path: [[1, 1], [6, 1]], speed: 1.2, radius: 0.2, start: 3, yields: true}]   # walk
-//   the
-//                                 # path to and fro, m/s (0: stand), seconds after the start of the
-//                                 # drive; who yields waits for the robot to leave the way
+//   doors: [{at: 2.5, width: 0.9, open: [[0, 12.5], [40, 60]]}]   # shut except in these intervals
+//                                 # of the driven distance; without `open` it always stands open
+//   boxes: [{from: [1, 1], to: [2, 1.5], present: [[0, 30]]}]     # also of columns: there in these
+//                                 # intervals of the driven distance only
+//   open_s: [[5, 20]], present_s: [[5, 20]]   # the same in seconds since the start; a part is open
+//                                 # or there when its distance or its time is in an interval
+//   random: [20, 10]              # also: mean seconds open (present) and shut (absent) in turn, as
+//                                 # a seed draws them (draw_changes)
+//   people: [{path: [[1, 1], [6, 1]], speed: 1.2, radius: 0.2, start: 3, yields: true}]
+//                                 # walk to and fro along the path, m/s (0: stand), from `start`
+//                                 # seconds after the start of the drive; a person who yields waits
+//                                 # until the robot has passed
 #pragma once
 
 #include <cstdint>
@@ -48,8 +47,8 @@ struct Circle {
   double radius_m;
 };
 
-/// Part of the way that the robot drives, metres from its start: [from, to).
-struct WayInterval {
+/// Driven distance, metres from the start: [from, to).
+struct DistanceInterval {
   double from_m = 0.0;
   double to_m = 0.0;
 };
@@ -66,19 +65,19 @@ struct RandomTurns {
   double outside_s = 0.0;  ///< absent, or shut for a door; > 0
 };
 
-/// Surfaces that are there while the robot is on certain parts of its way or at certain times (a
-/// closed door, furniture that is moved).
+/// Surfaces that are there for certain driven distances or at certain times (a closed door,
+/// furniture that is moved).
 struct ChangingPart {
   std::vector<Segment> segments{};
   std::vector<Circle> circles{};
-  std::vector<WayInterval> present{};
+  std::vector<DistanceInterval> present{};
   bool otherwise = false;  ///< the surfaces are there outside of `present` and `present_s` instead:
                            ///< a door that is open in these intervals
   std::vector<TimeInterval> present_s{};
   std::optional<RandomTurns> random{};  ///< see draw_changes
 };
 
-/// Somebody who walks along a path and back again, regardless of the robot.
+/// A person who walks along a path and back again, regardless of the robot.
 struct Person {
   std::vector<Eigen::Vector2d> path_m{};  ///< one point: stands there
   double speed_m_per_s = 1.2;
@@ -111,12 +110,12 @@ World load_world(const std::filesystem::path& path);
 /// The same from text; `source` stands for the file in messages.
 World parse_world(const std::string& text, const std::string& source);
 
-/// The surfaces that are there when the robot has driven `way_m` and `time_s` have passed: those
+/// The surfaces that are there when the robot has driven `driven_m` and `time_s` have passed: those
 /// that never change and the present ones of those that do, without people.
-World scene_at(const World& world, double way_m, double time_s = 0.0);
+World scene_at(const World& world, double driven_m, double time_s = 0.0);
 
 /// Which of world.changing are there then.
-std::vector<bool> present_parts(const World& world, double way_m, double time_s);
+std::vector<bool> present_parts(const World& world, double driven_m, double time_s);
 
 /// Draws when something that changes by turns is present or open, one time after the other, without
 /// end.
