@@ -36,8 +36,8 @@ std::string join(const std::vector<std::uint32_t>& numbers) {
 
 std::vector<std::uint32_t> parse_bauds(const std::string& text) {
   std::vector<std::uint32_t> bauds;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
+  std::istringstream fields(text);
+  for (std::string word; fields >> word;) {
     std::uint32_t baud = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), baud);
     if (error != std::errc() || end != word.data() + word.size()) {
@@ -68,7 +68,7 @@ void describe_laser_line(ConfigSchema& schema, Laser& laser) {
   schema.add("laser.power_on_baud", &laser.settings.power_on_baud, 9600U, 500'000U, "baud",
              "rate after the laser is switched on, unless its owner made another one permanent");
   schema.add("laser.detection_bauds", &laser.detection_bauds,
-             "rates to look for the laser at, in this order");
+             "rates to search for the laser at, in this order");
 }
 
 void describe_laser_times(ConfigSchema& schema, Laser& laser) {
@@ -82,8 +82,9 @@ void describe_laser_times(ConfigSchema& schema, Laser& laser) {
              "rest after a change of the rate; sources wait 0.25 to 5 s");
   schema.add("laser.byte_gap_s", &laser.byte_gap_s, 0.001, 1.0, "s",
              "silence within a telegram that ends it; more for adapters that deliver in bursts");
-  schema.add("laser.shortest_silence_s", &laser.shortest_silence_s, 0.1, 60.0, "s",
-             "without a scan for so long, and for four scan periods, the laser is looked for anew");
+  schema.add(
+      "laser.shortest_silence_s", &laser.shortest_silence_s, 0.1, 60.0, "s",
+      "without a scan for so long, and for four scan periods, the laser is searched for anew");
   schema.add("laser.scan_period_s", &laser.scan_period_s, 0.005, 1.0, "s",
              "one turn of the mirror; 25 turns a second by one source");
   schema.add("laser.sweep_to_send_s", &laser.sweep_to_send_s, 0.0, 1.0, "s",
@@ -112,8 +113,8 @@ void describe_laser_scans(ConfigSchema& schema, Laser& laser) {
 void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.port", &base.port,
-             "serial port of the base; empty: there is none, and the odometry says that the robot "
-             "stands still");
+             "serial port of the base; empty: there is none, and the robot stands still by "
+             "the odometry");
   schema.add("base.baud", &s.line.baud, 1200U, 500'000U, "baud",
              "rate of the line; 9600 in most sources, 38400 for one B21");
   schema.add("base.parity", &s.line.parity,
@@ -132,7 +133,7 @@ void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
   schema.add("base.report_period_s", &s.report_period_s, 0.0, 2.0, "s",
              "between two reports; 0: as short as the line allows");
   schema.add("base.write_gap_s", &s.write_gap_s, 0.0, 1.0, "s",
-             "between two commands; one source says that the base loses what follows sooner");
+             "between two commands; by one source the base loses what follows sooner");
   schema.add("base.direct_mode_wait_s", &s.direct_mode_wait_s, 0.0, 5.0, "s",
              "from asking for the direct mode to its first packet");
   schema.add("base.silence_s", &s.silence_s, 0.05, 60.0, "s",
@@ -165,7 +166,7 @@ void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   schema.add("base.angular_acceleration_radps2", &s.limits.angular_radps2, 0.01, 20.0, "rad/s^2",
              "the same for rotation");
   schema.add("base.torque", &base.torque, -1, 255, "",
-             "torque limit of the motors; 20 is said to be a good one; -1: left as it is");
+             "torque limit of the motors; 20 is a good one by one source; -1: left as it is");
   schema.add("base.watchdog_s", &s.watchdog_s, 0.1, 255.0, "s",
              "the base stops by itself when it has heard nothing for so long");
   schema.add("base.command_timeout_s", &s.command_timeout_s, 0.05, 0.5, "s",

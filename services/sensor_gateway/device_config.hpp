@@ -59,7 +59,7 @@ struct DeviceConfig {
 /// Throws std::invalid_argument naming the key whose value is wrong.
 DeviceConfig to_config(const DeviceFile& file);
 
-/// The devices of a file, some of them at other ports than it says. Throws std::runtime_error
+/// The devices of a file, some of them at other ports than it names. Throws std::runtime_error
 /// naming file, and line and key where it can.
 DeviceConfig load_devices(const std::filesystem::path& path,
                           const std::optional<std::string>& laser_port = {},

@@ -18,7 +18,7 @@ namespace {
 
 constexpr milliseconds kPoll{20};
 constexpr milliseconds kStatePeriod{250};
-constexpr milliseconds kLastWords{2000};  // for readers to have what was published
+constexpr milliseconds kLastDelivery{2000};  // for readers to have what was published
 
 ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config) {
   ScanGateOptions options;
@@ -41,7 +41,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
   service_.loop().add(stream_end_);
   service_.status().set_counter("scans_sent", 0.0);
   if (config.base_port.empty()) {
-    spdlog::warn("there is no base: the odometry says that the robot stands still");
+    spdlog::warn("there is no base: by the odometry the robot stands still");
   } else {
     base_.emplace(service_, config, time_, [this](const OdometrySample& sample) {
       gate_.add(sample);
@@ -52,8 +52,8 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
     laser_.emplace(service_, config, time_, gate_,
                    [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }
-  timer_ = service_.loop().add_timer(kStatePeriod, [this] { tell_state(); });
-  tell_state();
+  timer_ = service_.loop().add_timer(kStatePeriod, [this] { publish_state(); });
+  publish_state();
   wait_for_readers();
 }
 
@@ -96,7 +96,7 @@ bool DeviceGateway::publish(const scan::Scan& scan) {
   return true;
 }
 
-void DeviceGateway::tell_state() {
+void DeviceGateway::publish_state() {
   std::string text;
   bool running = true;
   if (laser_) {
@@ -114,16 +114,16 @@ void DeviceGateway::tell_state() {
   status.set_counter("scan_latency_largest_ms", static_cast<double>(largest_latency_ns_) * 1e-6);
   status.set_counter("scan_wait_ms", static_cast<double>(wait_ns_) * 1e-6);
   const msg::ServiceState state = running ? msg::kServiceRunning : msg::kServiceWaiting;
-  if (text == told_ && state == status.state()) return;
-  told_ = text;
+  if (text == published_ && state == status.state()) return;
+  published_ = text;
   spdlog::info("{}", text);
   status.set_state(state, text);
 }
 
 void DeviceGateway::finish() {
   if (base_) base_->stop();
-  tell_state();
-  if (!scans_.wait_for_acknowledgments(kLastWords)) {
+  publish_state();
+  if (!scans_.wait_for_acknowledgments(kLastDelivery)) {
     service_.status().fault("readers lack scans", "at the end");
   }
   msg::StreamEnd end;
@@ -131,7 +131,7 @@ void DeviceGateway::finish() {
   messaging::set_text(end.stage(), "gateway", "stage");
   end.count(gate_.scans());
   end.last_id(gate_.scans() == 0 ? 0 : gate_.scans() - 1);
-  if (!stream_end_.write(end) || !stream_end_.wait_for_acknowledgments(kLastWords)) {
+  if (!stream_end_.write(end) || !stream_end_.wait_for_acknowledgments(kLastDelivery)) {
     service_.status().fault("readers lack the stream end", "at the end");
   }
   spdlog::info("{} scans published", sent_);

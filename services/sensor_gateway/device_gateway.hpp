@@ -10,10 +10,10 @@
 #include "topogeo/msg/stream.h"
 #include "topogeo/service/service.hpp"
 
-#include "base_desk.hpp"
+#include "base_channel.hpp"
 #include "device_config.hpp"
 #include "host_time.hpp"
-#include "laser_desk.hpp"
+#include "laser_channel.hpp"
 #include "scan_gate.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -29,8 +29,8 @@ class DeviceGateway {
   DeviceGateway& operator=(DeviceGateway&&) = delete;
   ~DeviceGateway();
 
-  /// After the loop: halts the base, waits until the readers have what was published and says that
-  /// it was all.
+  /// After the loop: halts the base, waits until the readers have what was published and
+  /// announces the end of the stream.
   void finish();
 
  private:
@@ -39,7 +39,7 @@ class DeviceGateway {
   void release(std::int64_t now_ns);
   /// False, and a fault, when it cannot be sent.
   bool publish(const scan::Scan& scan);
-  void tell_state();
+  void publish_state();
 
   service::Service& service_;
   HostTime time_;
@@ -53,11 +53,11 @@ class DeviceGateway {
   std::int64_t latency_ns_ = 0;          // of the last scan
   std::int64_t largest_latency_ns_ = 0;  // of all
   std::int64_t wait_ns_ = 0;             // what of latency_ns_ the scan waited for odometry
-  std::string told_;                     // as the state of the service
-  std::uint64_t timer_ = 0;              // of tell_state
+  std::string published_;                // as the state of the service
+  std::uint64_t timer_ = 0;              // of publish_state
   std::uint64_t release_timer_ = 0;      // while scans wait for odometry
-  std::optional<BaseDesk> base_;
-  std::optional<LaserDesk> laser_;
+  std::optional<BaseChannel> base_;
+  std::optional<LaserChannel> laser_;
 };
 
 }  // namespace topogeo::sensor_gateway

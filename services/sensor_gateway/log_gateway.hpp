@@ -1,4 +1,5 @@
-// Replays a log: scans and odometry as messages, at the wanted pace, and at the end says how many.
+// Replays a log: scans and odometry as messages, at the wanted pace, and at the end reports how
+// many.
 #pragma once
 
 #include <chrono>

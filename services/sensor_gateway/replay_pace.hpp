@@ -10,8 +10,8 @@ namespace topogeo::sensor_gateway {
 
 class ReplayPace {
  public:
-  /// Gaps in the log longer than this are replayed as kShortened_s: nobody wants to wait for a
-  /// lunch break.
+  /// Gaps in the log longer than this are replayed as kShortened_s: they would make people wait for
+  /// a lunch break.
   static constexpr std::int64_t kLongestGap_ns = 60'000'000'000;
   static constexpr double kShortened_s = 1.0;
 

@@ -21,14 +21,14 @@ namespace topogeo::sensor_gateway {
 
 /// Why a scan that the laser gave was not published.
 enum class ScanDrop : std::uint8_t {
-  kNoReader,    ///< nobody listens yet
+  kNoReader,    ///< there is no reader yet
   kNoOdometry,  ///< before the first, or too long after the last
   kTime,        ///< not after the scan before it
   kGeometry,    ///< other beams than the first scan
   kRepeated     ///< the readings of the one before to the last digit, but the robot has moved
 };
 inline constexpr std::size_t kScanDrops = 5;
-/// A few words for people.
+/// For people.
 std::string_view describe(ScanDrop drop);
 
 struct ScanGateOptions {

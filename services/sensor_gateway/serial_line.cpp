@@ -10,7 +10,7 @@ namespace topogeo::sensor_gateway {
 
 namespace {
 
-/// A timer that comes later than this tells that the process did not get to run.
+/// When a timer comes later than this, the process did not get to run.
 constexpr std::int64_t kLate_ns = 50'000'000;
 /// For the port's thread, to read what came meanwhile.
 constexpr std::chrono::milliseconds kReadTime{10};
@@ -24,11 +24,12 @@ SerialLine::SerialLine(messaging::EventLoop& loop, devices::SerialDriver& driver
       after_(std::move(after)),
       self_(std::make_shared<SerialLine*>(this)) {
   // The loop outlives the port and its thread; this line may not outlive what was posted.
-  port_ = std::make_unique<SerialPort>(options, [&event_loop = loop, self = self_](PortNews news) {
-    event_loop.post([self, news = std::move(news)] {
-      if (*self != nullptr) (*self)->on_news(news);
-    });
-  });
+  port_ =
+      std::make_unique<SerialPort>(options, [&event_loop = loop, self = self_](PortEvent event) {
+        event_loop.post([self, event = std::move(event)] {
+          if (*self != nullptr) (*self)->on_event(event);
+        });
+      });
 }
 
 SerialLine::~SerialLine() {
@@ -41,33 +42,33 @@ std::int64_t SerialLine::now_ns() {
   return last_ns_;
 }
 
-void SerialLine::on_news(const PortNews& news) {
-  last_ns_ = std::max(last_ns_, news.stamp_ns);
-  switch (news.kind) {
-    case PortNews::Kind::kOpened:
+void SerialLine::on_event(const PortEvent& event) {
+  last_ns_ = std::max(last_ns_, event.stamp_ns);
+  switch (event.kind) {
+    case PortEvent::Kind::kOpened:
       open_ = true;
       why_closed_.clear();
-      epoch_opened_ = news.epoch;
+      epoch_opened_ = event.epoch;
       ++statistics_.opened;
       driver_.opened(last_ns_);
       break;
-    case PortNews::Kind::kNotOpened:
-      why_closed_ = news.why;
+    case PortEvent::Kind::kNotOpened:
+      why_closed_ = event.why;
       ++statistics_.not_opened;
       break;
-    case PortNews::Kind::kLost:
+    case PortEvent::Kind::kLost:
       open_ = false;
-      why_closed_ = news.why;
+      why_closed_ = event.why;
       ++statistics_.lost;
       driver_.lost(last_ns_);
       break;
-    case PortNews::Kind::kBytes:
-      statistics_.bytes_in += news.bytes.size();
-      if (news.epoch != port_->epoch()) {
-        statistics_.bytes_stale += news.bytes.size();
+    case PortEvent::Kind::kBytes:
+      statistics_.bytes_in += event.bytes.size();
+      if (event.epoch != port_->epoch()) {
+        statistics_.bytes_stale += event.bytes.size();
         return;
       }
-      driver_.receive(news.bytes, last_ns_);
+      driver_.receive(event.bytes, last_ns_);
       break;
   }
   after(last_ns_);
@@ -88,7 +89,7 @@ void SerialLine::tick() {
   timer_armed_ = false;
   const std::int64_t now = now_ns();
   if (now - timer_due_ns_ > kLate_ns && !deferred_) {
-    // The device is not silent because nobody listened.
+    // The device was not silent: this process did not listen.
     deferred_ = true;
     timer_armed_ = true;
     timer_ = loop_.call_after(kReadTime, [this] { tick(); });

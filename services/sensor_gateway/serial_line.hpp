@@ -24,7 +24,7 @@ struct LineStatistics {
 /// Lives in the thread of its loop, and so does the driver.
 class SerialLine {
  public:
-  /// Hears of everything that the driver was told, after that, so that it can fetch what the driver
+  /// Called after everything that was passed to the driver, so that it can fetch what the driver
   /// found; `now_ns` never goes back.
   using AfterHandler = std::function<void(std::int64_t now_ns)>;
 
@@ -55,7 +55,7 @@ class SerialLine {
   [[nodiscard]] std::int64_t now_ns();
 
  private:
-  void on_news(const PortNews& news);
+  void on_event(const PortEvent& event);
   void after(std::int64_t now_ns);
   void tick();
   void arm();

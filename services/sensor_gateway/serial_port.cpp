@@ -76,8 +76,8 @@ std::int64_t steady_now_ns() {
 /// All members but `epoch_` belong to the thread.
 class SerialPort::Impl {
  public:
-  Impl(PortOptions options, std::function<void(PortNews)> tell)
-      : options_(std::move(options)), tell_(std::move(tell)), wait_(options_.first_wait) {
+  Impl(PortOptions options, std::function<void(PortEvent)> notify)
+      : options_(std::move(options)), notify_(std::move(notify)), wait_(options_.first_wait) {
     asio::post(context_, [this] { open(); });
     thread_ = std::thread([this] { context_.run(); });
   }
@@ -120,10 +120,10 @@ class SerialPort::Impl {
   [[nodiscard]] bool drain();
   void lose(const std::string& why);
   void try_later();
-  void tell(PortNews::Kind kind, std::string why = {}, std::vector<std::uint8_t> bytes = {});
+  void notify(PortEvent::Kind kind, std::string why = {}, std::vector<std::uint8_t> bytes = {});
 
   PortOptions options_;
-  std::function<void(PortNews)> tell_;
+  std::function<void(PortEvent)> notify_;
   asio::io_context context_;
   asio::executor_work_guard<asio::io_context::executor_type> work_{context_.get_executor()};
   asio::serial_port port_{context_};
@@ -145,15 +145,15 @@ void SerialPort::Impl::open() {
   if (error) {
     error_code ignored;
     port_.close(ignored);
-    // Asio gives what tcgetattr says of a file that is no terminal.
+    // Asio gives what tcgetattr returns for a file that is no terminal.
     const bool is_other = error == error_code(ENOTTY, boost::system::system_category());
-    tell(PortNews::Kind::kNotOpened,
-         options_.path + ": cannot open: " + (is_other ? "no serial port" : error.message()));
+    notify(PortEvent::Kind::kNotOpened,
+           options_.path + ": cannot open: " + (is_other ? "no serial port" : error.message()));
     try_later();
     return;
   }
   epoch_opened_ = ++epoch_;
-  tell(PortNews::Kind::kOpened);
+  notify(PortEvent::Kind::kOpened);
   read();
 }
 
@@ -187,8 +187,8 @@ void SerialPort::Impl::read() {
       return;
     }
     wait_ = options_.first_wait;
-    tell(PortNews::Kind::kBytes, {},
-         {buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(size)});
+    notify(PortEvent::Kind::kBytes, {},
+           {buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(size)});
     read();
   });
 }
@@ -241,7 +241,7 @@ void SerialPort::Impl::change(const devices::LineSettings& settings) {
 }
 
 /// Waits until everything has left the port; false when that takes too long, which tcdrain alone
-/// would not notice. Only tcdrain knows of the bytes inside the hardware.
+/// would not notice. Only tcdrain waits for the bytes inside the hardware.
 bool SerialPort::Impl::drain() {
   const auto end = std::chrono::steady_clock::now() + kLongestDrain;
   const int fd = port_.native_handle();
@@ -260,7 +260,7 @@ void SerialPort::Impl::lose(const std::string& why) {
   queue_.clear();
   writing_ = false;
   ++epoch_;
-  tell(PortNews::Kind::kLost, options_.path + ": " + why);
+  notify(PortEvent::Kind::kLost, options_.path + ": " + why);
   for (const auto& waiter : std::exchange(waiters_, {})) waiter->set_value();
   try_later();
 }
@@ -273,18 +273,19 @@ void SerialPort::Impl::try_later() {
   });
 }
 
-void SerialPort::Impl::tell(PortNews::Kind kind, std::string why, std::vector<std::uint8_t> bytes) {
-  tell_({kind, steady_now_ns(), epoch_, std::move(why), std::move(bytes)});
+void SerialPort::Impl::notify(PortEvent::Kind kind, std::string why,
+                              std::vector<std::uint8_t> bytes) {
+  notify_({kind, steady_now_ns(), epoch_, std::move(why), std::move(bytes)});
 }
 
-SerialPort::SerialPort(const PortOptions& options, std::function<void(PortNews)> tell) {
+SerialPort::SerialPort(const PortOptions& options, std::function<void(PortEvent)> notify) {
   if (options.path.empty()) throw std::invalid_argument("path: expected a port, got nothing");
   if (options.first_wait.count() <= 0 || options.longest_wait < options.first_wait) {
     throw std::invalid_argument("first_wait, longest_wait: expected 0 < first <= longest, got " +
                                 std::to_string(options.first_wait.count()) + " and " +
                                 std::to_string(options.longest_wait.count()) + " ms");
   }
-  impl_ = std::make_unique<Impl>(options, std::move(tell));
+  impl_ = std::make_unique<Impl>(options, std::move(notify));
 }
 
 SerialPort::~SerialPort() = default;

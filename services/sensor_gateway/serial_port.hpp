@@ -1,10 +1,10 @@
 // A serial port in a thread of its own: opens it again and again until it is there, reads, writes
 // in order, and notices when it goes. Works with pseudo-terminals, too.
 //
-// Boost.Asio does the work: it is there already (the header-only part of Boost), knows 500,000 baud
-// and parity, reads and writes without blocking each other, and reports an unplugged adapter as an
-// error of the pending read. libserialport, the other candidate, asks for modem lines when it opens
-// a port, which a pseudo-terminal does not have.
+// Boost.Asio does the work: it is there already (the header-only part of Boost), supports 500,000
+// baud and parity, reads and writes without blocking each other, and reports an unplugged adapter
+// as an error of the pending read. libserialport, the other candidate, asks for modem lines when it
+// opens a port, which a pseudo-terminal does not have.
 #pragma once
 
 #include <chrono>
@@ -30,7 +30,7 @@ struct PortOptions {
 };
 
 /// What happened to a port.
-struct PortNews {
+struct PortEvent {
   enum class Kind { kOpened, kNotOpened, kLost, kBytes };
   Kind kind{};
   std::int64_t stamp_ns = 0;
@@ -41,10 +41,10 @@ struct PortNews {
 
 class SerialPort {
  public:
-  /// Starts the thread; `tell` is called in it. Throws std::invalid_argument when the path is empty
-  /// or a wait is not positive. Everything else that can be wrong with a port comes as news, as it
-  /// may be right later.
-  SerialPort(const PortOptions& options, std::function<void(PortNews)> tell);
+  /// Starts the thread; `notify` is called in it. Throws std::invalid_argument when the path is
+  /// empty or a wait is not positive. Everything else that can be wrong with a port comes as an
+  /// event, as it may be right later.
+  SerialPort(const PortOptions& options, std::function<void(PortEvent)> notify);
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
   SerialPort(SerialPort&&) = delete;
@@ -53,7 +53,7 @@ class SerialPort {
   ~SerialPort();
 
   /// Carries the orders out one after the other, after those given before. They are for the port
-  /// as it was opened in `epoch_opened` (of the news kOpened): if it was lost since, they are
+  /// as it was opened in `epoch_opened` (of the event kOpened): if it was lost since, they are
   /// dropped.
   void write(std::vector<devices::LineOrder> orders, std::uint64_t epoch_opened);
 

@@ -30,7 +30,7 @@ std::runtime_error failure(const std::filesystem::path& link, const std::string&
   return std::runtime_error(link.string() + ": " + what + ": " + std::strerror(errno));
 }
 
-/// As a serial port is before anybody has set it: bytes as they are, no echo, 9600 baud.
+/// As a serial port is before it was set: bytes as they are, no echo, 9600 baud.
 bool make_raw(int terminal) {
   termios settings{};
   if (::tcgetattr(terminal, &settings) != 0) return false;

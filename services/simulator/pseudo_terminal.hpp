@@ -35,7 +35,7 @@ class PseudoTerminal {
   [[nodiscard]] devices::LineSettings host(devices::Parity parity) const;
   /// What the program has written since; empty when there is nothing.
   [[nodiscard]] std::vector<std::uint8_t> receive() const;
-  /// What does not fit, because nobody reads, is lost as on a line. Returns how much that is.
+  /// What does not fit, because no program reads, is lost as on a line. Returns how much that is.
   std::size_t send(std::span<const std::uint8_t> bytes) const;
 
   [[nodiscard]] const std::filesystem::path& link() const { return link_; }

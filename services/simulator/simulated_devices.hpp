@@ -41,7 +41,7 @@ class SimulatedDevices {
     return device == Device::kLaser ? laser_port_ : base_port_;
   }
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
-  /// Bytes of the devices that nobody has read in time.
+  /// Bytes of the devices that were not read in time.
   [[nodiscard]] std::uint64_t bytes_lost() const { return bytes_lost_; }
 
  private:

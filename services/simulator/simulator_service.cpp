@@ -77,7 +77,7 @@ void SimulatorService::tick() {
   }
   if (now_ns >= state_due_ns_) {
     state_due_ns_ = now_ns + kStatePeriod_ns;
-    tell_state();
+    publish_state();
   }
 }
 
@@ -113,7 +113,7 @@ void SimulatorService::publish_sonar() {
   if (!sonar_.write(round)) service_.status().fault("send blocked", "sonar");
 }
 
-void SimulatorService::tell_state() {
+void SimulatorService::publish_state() {
   messaging::StatusPublisher& status = service_.status();
   simulation::SimulatedRobot& robot = devices_.robot();
   status.set_counter("time_s", robot.time_s());

@@ -1,5 +1,5 @@
-// A simulated robot on DDS and serial ports: paces the world, says where the robot really is and
-// what its sonars hear, and takes faults.
+// A simulated robot on DDS and serial ports: paces the world, publishes where the robot really is
+// and what its sonars hear, and takes faults.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 #include "topogeo/msg/simulation.h"
 #include "topogeo/service/service.hpp"
 
-#include "fault_desk.hpp"
+#include "fault_injector.hpp"
 #include "simulated_devices.hpp"
 
 namespace topogeo::simulator {
@@ -34,7 +34,7 @@ class SimulatorService {
   void tick();
   void publish_truth();
   void publish_sonar();
-  void tell_state();
+  void publish_state();
   void on_command(const msg::SimulatorCommand& command);
   /// The stamp of what happens in the world now.
   [[nodiscard]] std::int64_t stamp_ns() const;
@@ -42,7 +42,7 @@ class SimulatorService {
   service::Service& service_;
   double time_factor_;
   SimulatedDevices devices_;
-  FaultDesk faults_;
+  FaultInjector faults_;
   messaging::Writer<msg::GroundTruth> truth_;
   messaging::Writer<msg::Sonar> sonar_;
   messaging::Reader<msg::SimulatorCommand> commands_;

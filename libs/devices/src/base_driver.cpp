@@ -1,378 +1,355 @@
 #include "topogeo/devices/base_driver.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <string>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
-
-#include "topogeo/devices/line_time.hpp"
-
-#include "base_start.hpp"
 
 namespace topogeo::devices {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-/// What a base takes at most from the end of the start sequence to its first report, beyond two
-/// periods and the report's own time on the line.
-constexpr std::int64_t kFirstReportLag_ns = 100'000'000;
-/// Between two looks for a silent base: a twentieth of how long it has been silent, within these.
-constexpr std::int64_t kShortestProbe_ns = 200'000'000;
-constexpr std::int64_t kLongestProbe_ns = 5'000'000'000;
-constexpr std::int64_t kProbesPerSilence = 20;
-/// A base that has not answered for so long is set up all the same: it may not understand the
-/// question. Not sooner, because that makes the reports of one that has just come back start anew.
-constexpr std::int64_t kBlindStart_ns = 15 * kSecond_ns;
-constexpr double kMostBelievedVolts = 100.0;  // and from 1 V on
-
-std::int64_t nanoseconds(double seconds) {
-  return static_cast<std::int64_t>(seconds * 1e9);
-}
-
-std::vector<std::uint8_t> bytes_of(std::string_view text) {
-  return {text.begin(), text.end()};
-}
-
-std::variant<McpAsciiDecoder, McpBinaryDecoder> decoder_of(const BaseSettings& settings) {
-  if (settings.dialect == BaseDialect::kAscii) return McpAsciiDecoder(settings.report_mask);
-  return McpBinaryDecoder(settings.checksum);
-}
+/// Voltages outside of these are errors of the line, as in BeeSoft, MIRO and CMU's B21 driver.
+constexpr double kLeastVolts = 1.0;
+constexpr double kMostVolts = 100.0;
+/// The MCP reports the voltage in tenths.
+constexpr double kVoltsPerUnit = 0.1;
 
 const BaseSettings& checked_base(const BaseSettings& settings) {
   check(settings);
   return settings;
 }
 
+void finite(const char* name, double value) {
+  if (std::isfinite(value)) return;
+  throw std::invalid_argument("base command: " + std::string(name) + " is not a finite number");
+}
+
+double limited(const char* name, double wanted, double largest) {
+  if (std::isfinite(wanted) && wanted > 0.0) return std::min(wanted, largest);
+  throw std::invalid_argument("base limits: " + std::string(name) + " is " +
+                              std::to_string(wanted) + ", not a positive number");
+}
+
+/// The first bit stands for the mask itself, which only binary reports hold.
+bool same_fields(std::uint32_t mask, std::uint32_t wanted) {
+  return ((mask ^ wanted) & ~mask_bit(McpField::kMask)) == 0;
+}
+
 }  // namespace
 
 BaseDriver::BaseDriver(const BaseSettings& settings)
     : settings_(checked_base(settings)),
-      units_(settings.calibration),
-      period_ns_(ticks_ns(report_period_ticks(settings))),
-      decoder_(decoder_of(settings)),
+      decoder_(settings),
       odometer_(settings),
-      motion_(units_, settings.limits),
-      watch_(units_, settings) {
-  offline_reason_ = "no line to the base";
+      motion_(McpUnits(settings.calibration), settings.limits),
+      monitor_(McpUnits(settings.calibration), settings),
+      term_(settings),
+      interlocks_(settings),
+      writer_(settings),
+      link_(settings, writer_),
+      upkeep_(settings) {
   update_status();
 }
 
 void BaseDriver::opened(std::int64_t now_ns) {
-  offline_reason_.clear();
-  orders_.clear();
-  phase_ = Phase::kClosed;
-  heard_ns_ = now_ns;
-  free_ns_ = now_ns;
-  std::visit([](auto& decoder) { decoder.reset(); }, decoder_);
-  start(now_ns);
+  decoder_.reset();
+  link_.open(now_ns);
+  follow(BaseLink::Change::kSetUp, now_ns);
   tick(now_ns);
 }
 
 void BaseDriver::lost(std::int64_t now_ns) {
-  go_offline("no line to the base", now_ns);
-  phase_ = Phase::kClosed;
-  script_.clear();
-  orders_.clear();
+  link_.close();
+  follow(BaseLink::Change::kOffline, now_ns);
   update_status();
-}
-
-/// Says everything that the base has to know, from the settings of the line on.
-void BaseDriver::start(std::int64_t now_ns) {
-  reconnects_ = phase_ == Phase::kProbing;
-  phase_ = Phase::kStarting;
-  ++status_.starts;
-  started_ns_ = now_ns;
-  answered_ = false;
-  script_.clear();
-  motion_.want_halt();
-  motion_.forget();
-  watch_.restart(now_ns);
-  battery_ns_ = now_ns;
-  const std::int64_t gap_ns = nanoseconds(settings_.write_gap_s);
-  const bool binary = settings_.dialect == BaseDialect::kBinary;
-  // The line may hold the start of a command already.
-  script_.push_back({{settings_.line, bytes_of(binary ? "\rBE FFFF\rDM\r" : "\r")},
-                     binary ? nanoseconds(settings_.direct_mode_wait_s) : gap_ns});
-  if (binary) script_.push_back({{{}, std::vector<std::uint8_t>(kMcpSyncZeros)}, gap_ns});
-  for (const McpOrder& order : set_up_orders(settings_)) {
-    Write write{{}, gap_ns};
-    if (binary) {
-      const McpPacket packet = binary_packet(order);
-      write.order.bytes.assign(packet.begin(), packet.end());
-    } else {
-      append_ascii(order, write.order.bytes);
-    }
-    script_.push_back(std::move(write));
-  }
-}
-
-void BaseDriver::run(std::int64_t now_ns) {
-  phase_ = Phase::kRunning;
-  offline_reason_.clear();
-  refresh_ns_ = now_ns;
-}
-
-void BaseDriver::go_offline(std::string reason, std::int64_t now_ns) {
-  offline_reason_ = std::move(reason);
-  stand(now_ns);
-  watchdog_expired_ = false;
-  bump_latched_ = false;
-  motor_fault_.clear();
-}
-
-void BaseDriver::probe(std::int64_t now_ns) {
-  phase_ = Phase::kProbing;
-  phase_until_ns_ = now_ns + std::clamp((now_ns - heard_ns_) / kProbesPerSilence, kShortestProbe_ns,
-                                        kLongestProbe_ns);
-  probe_answer_.clear();
-  // Any base that has just been switched on speaks ASCII.
-  write(Write{{{}, bytes_of("\rBV\r")}, nanoseconds(settings_.write_gap_s)}, now_ns);
 }
 
 void BaseDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
-  if (phase_ == Phase::kClosed || bytes.empty()) return;
-  std::vector<McpMessage> messages;
-  std::visit([&](auto& decoder) { decoder.decode(bytes, messages); }, decoder_);
-  for (const McpMessage& message : messages) {
+  if (link_.closed() || bytes.empty()) return;
+  for (const McpMessage& message : decoder_.decode(bytes)) {
     std::visit([&](const auto& content) { take(content, now_ns); }, message);
   }
-  if (phase_ == Phase::kProbing && answered(bytes)) start(now_ns);
+  follow(link_.received(bytes, now_ns), now_ns);
   tick(now_ns);
 }
 
-/// A base that echoes, or speaks ASCII though it should not, was switched on anew. Anything else
-/// may begin a report, which would say that nothing has to be done.
-bool BaseDriver::answered(std::span<const std::uint8_t> bytes) {
-  const std::string_view sign = settings_.dialect == BaseDialect::kAscii ? "BV\r" : "BV";
-  probe_answer_.append(bytes.begin(), bytes.end());
-  if (probe_answer_.find(sign) != std::string::npos) return true;
-  probe_answer_.erase(0, probe_answer_.size() - std::min(probe_answer_.size(), sign.size() - 1));
-  return false;
-}
-
-void BaseDriver::take(const McpReport& report, std::int64_t now_ns) {
-  // The first bit says that the mask itself is in the report.
-  if (((report.mask ^ settings_.report_mask) & ~1U) != 0) {
-    ++count_of(implausible_, McpDrop::kImplausible);
-    return;
-  }
-  const BaseOdometer::Result result = odometer_.take(report, now_ns);
-  if (result.verdict == BaseOdometer::Verdict::kImplausible) {
-    ++count_of(implausible_, McpDrop::kImplausible);
-    return;
-  }
-  ++status_.reports;
-  heard_ns_ = now_ns;
-  odometry_.push_back(result.odometry);
-  const bool restarted = result.verdict == BaseOdometer::Verdict::kRestarted;
-  if (restarted) {
-    ++status_.restarts;
-    motion_.forget();
-    watch_.restart(now_ns);
-  }
-  const bool again = phase_ == Phase::kProbing || (phase_ == Phase::kStarting && reconnects_);
-  if (again && !restarted) {
-    // It was silent and goes on as before: no need to set it up again. It may be in the middle of
-    // our question.
-    script_.clear();
-    if (settings_.dialect == BaseDialect::kBinary) {
-      script_.push_back(
-          {{{}, std::vector<std::uint8_t>(kMcpSyncZeros)}, nanoseconds(settings_.write_gap_s)});
-    }
-    motion_.forget();
-    watch_.restart(now_ns);
-    run(now_ns);
-  } else if (phase_ == Phase::kWaiting) {
-    run(now_ns);
-  }
-  watch_.take(report, motion_, now_ns);
-  if (report.has(McpField::kBumpers)) watch_bumpers(report.word(McpField::kBumpers), now_ns);
-  after_report(now_ns);
-}
-
-void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
-  switch (event.kind) {
-    case McpEventKind::kBump:
-      watch_bumpers(static_cast<std::uint16_t>(event.value), now_ns);
-      break;
-    case McpEventKind::kBatteryHigh:
-      break;
-    case McpEventKind::kBatteryLow:
-      status_.battery_low = true;
-      break;
-    case McpEventKind::kTranslateError:
-      motor_fault("translation motor: servo error", now_ns);
-      break;
-    case McpEventKind::kTranslateCurrent:
-      motor_fault("translation motor: current", now_ns);
-      break;
-    case McpEventKind::kRotateError:
-      motor_fault("rotation motor: servo error", now_ns);
-      break;
-    case McpEventKind::kRotateCurrent:
-      motor_fault("rotation motor: current", now_ns);
-      break;
-    case McpEventKind::kTranslateCleared:
-    case McpEventKind::kRotateCleared:
-    case McpEventKind::kErrorCleared:
-      motor_fault_.clear();
-      break;
-    case McpEventKind::kWatchdogExpired:
-      ++status_.watchdog_expirations;
-      watchdog_expired_ = phase_ == Phase::kRunning;
-      stand(now_ns);
-      motion_.forget();
-      refresh_ns_ = now_ns;
-      break;
-    case McpEventKind::kLostSync:
-      // What we said last was not understood, whatever it was.
-      answered_ = true;
-      if (phase_ != Phase::kRunning) break;
-      script_.push_front(
-          {{{}, std::vector<std::uint8_t>(kMcpSyncZeros)}, nanoseconds(settings_.write_gap_s)});
-      motion_.forget();
-      refresh_ns_ = now_ns;
-      break;
-    case McpEventKind::kIndex:
-      break;
-  }
-}
-
-void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
-  // Unless reports follow, too, it is set up when the next question would be due.
-  answered_ = true;
-  if (answer.command != McpCommand::kBatteryVoltage) return;
-  const double battery_v = 0.1 * answer.value;
-  if (battery_v < 1.0 || battery_v > kMostBelievedVolts) return;
-  status_.battery_v = battery_v;
-  status_.battery_low = battery_v < settings_.battery_low_v;
-}
-
 void BaseDriver::tick(std::int64_t now_ns) {
-  check_time_outs(now_ns);
-  pump(now_ns);
+  if (term_.expired(now_ns)) stand(now_ns);
+  interlocks_.tick(now_ns);
+  follow(link_.tick(now_ns), now_ns);
+  idle_ = !link_.closed() && now_ns >= writer_.free_ns() && !write_next(now_ns);
   update_status();
 }
 
-void BaseDriver::check_time_outs(std::int64_t now_ns) {
-  if (command_until_ns_ && now_ns >= *command_until_ns_) stand(now_ns);
-  if (primitive_ && now_ns >= primitive_->until_ns) stand(now_ns);
-  if (bump_latched_ &&
-      now_ns - last_motion_command_ns_ >= nanoseconds(settings_.command_timeout_s)) {
-    bump_latched_ = false;
-  }
-  if (phase_ == Phase::kStarting && script_.empty() && now_ns >= free_ns_) {
-    phase_ = Phase::kWaiting;
-    phase_until_ns_ = now_ns + 2 * period_ns_ + report_line_time_ns(settings_) + kFirstReportLag_ns;
-  }
-  const std::int64_t silence_ns = std::max(nanoseconds(settings_.silence_s), 4 * period_ns_);
-  if (phase_ == Phase::kRunning && now_ns >= heard_ns_ + silence_ns) {
-    script_.clear();
-    go_offline("the base has stopped to report", now_ns);
-    probe(now_ns);
-  }
-  if (phase_ == Phase::kWaiting && now_ns >= phase_until_ns_) {
-    go_offline("the base does not answer", now_ns);
-    probe(now_ns);
-  }
-  if (phase_ == Phase::kProbing && now_ns >= phase_until_ns_) {
-    if (answered_ || now_ns >= started_ns_ + kBlindStart_ns) {
-      start(now_ns);
-    } else {
-      probe(now_ns);
-    }
-  }
-}
-
 std::int64_t BaseDriver::due_ns() const {
-  constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-  if (phase_ == Phase::kClosed) return kNever;
-  std::int64_t due_ns = kNever;
-  if (command_until_ns_) due_ns = std::min(due_ns, *command_until_ns_);
-  if (primitive_) due_ns = std::min(due_ns, primitive_->until_ns);
-  if (bump_latched_) {
-    due_ns = std::min(due_ns, last_motion_command_ns_ + nanoseconds(settings_.command_timeout_s));
-  }
-  if (!script_.empty() || phase_ == Phase::kStarting) due_ns = std::min(due_ns, free_ns_);
-  if (phase_ == Phase::kWaiting || phase_ == Phase::kProbing) {
-    due_ns = std::min(due_ns, phase_until_ns_);
-  }
-  if (phase_ == Phase::kRunning) {
-    // Something to say may come up whenever the line is free again: motion has no time of its own.
-    due_ns = std::min({due_ns, std::max(refresh_ns_, free_ns_), std::max(battery_ns_, free_ns_),
-                       heard_ns_ + std::max(nanoseconds(settings_.silence_s), 4 * period_ns_)});
-    if (more_to_say_) due_ns = std::min(due_ns, free_ns_);
-  }
-  return due_ns;
+  if (link_.closed()) return link_.due_ns();
+  std::int64_t due_ns = std::min({term_.due_ns(), interlocks_.due_ns(), link_.due_ns()});
+  if (!link_.running()) return due_ns;
+  // More may have to be written whenever the line is free again: motion has no time of its own.
+  const std::int64_t next_ns =
+      idle_ ? std::max(upkeep_.due_ns(), writer_.free_ns()) : writer_.free_ns();
+  return std::min(due_ns, next_ns);
 }
 
 std::vector<LineOrder> BaseDriver::take_orders() {
-  return std::exchange(orders_, {});
+  return writer_.take_orders();
 }
 
 std::vector<BaseOdometry> BaseDriver::take_odometry() {
   return std::exchange(odometry_, {});
 }
 
-void BaseDriver::pump(std::int64_t now_ns) {
-  more_to_say_ = false;
-  if (phase_ == Phase::kClosed || now_ns < free_ns_) {
-    more_to_say_ = true;
+void BaseDriver::follow(BaseLink::Change change, std::int64_t now_ns) {
+  switch (change) {
+    case BaseLink::Change::kNone:
+      break;
+    case BaseLink::Change::kSetUp:
+      motion_.want_halt();
+      motion_.forget();
+      monitor_.restart(now_ns);
+      upkeep_.set_up(now_ns);
+      break;
+    case BaseLink::Change::kRunning:
+      upkeep_.refresh(now_ns);
+      break;
+    case BaseLink::Change::kResumed:
+      motion_.forget();
+      monitor_.restart(now_ns);
+      upkeep_.refresh(now_ns);
+      break;
+    case BaseLink::Change::kOffline:
+      stand(now_ns);
+      interlocks_.offline();
+      break;
+  }
+}
+
+void BaseDriver::take(const McpReport& report, std::int64_t now_ns) {
+  if (!same_fields(report.mask, settings_.report_mask)) {
+    ++implausible_;
     return;
   }
-  if (phase_ == Phase::kRunning) {
-    if (const auto halt = script_.empty() ? motion_.next_halt() : std::nullopt) {
-      return write(*halt, now_ns);
-    }
+  const BaseOdometer::Result result = odometer_.take(report, now_ns);
+  if (result.verdict == BaseOdometer::Verdict::kImplausible) {
+    ++implausible_;
+    return;
   }
-  if (!script_.empty()) {
-    Write next = std::move(script_.front());
-    script_.pop_front();
-    return write(std::move(next), now_ns);
+  ++status_.reports;
+  odometry_.push_back(result.odometry);
+  const bool restarted = result.verdict == BaseOdometer::Verdict::kRestarted;
+  if (restarted) {
+    ++status_.restarts;
+    motion_.forget();
+    monitor_.restart(now_ns);
   }
-  if (phase_ != Phase::kRunning) return;
-  if (const auto order = next_order(now_ns)) write(*order, now_ns);
+  follow(link_.reported(restarted, now_ns), now_ns);
+  monitor_.take(report, motion_, now_ns);
+  if (report.has(McpField::kBumpers) &&
+      interlocks_.bumpers(report.word(McpField::kBumpers), now_ns)) {
+    stand_again(now_ns);
+  }
+  if (link_.running()) check_motion(now_ns);
 }
 
-std::optional<McpOrder> BaseDriver::next_order(std::int64_t now_ns) {
-  if (now_ns >= refresh_ns_) {
-    refresh_ns_ = now_ns + nanoseconds(settings_.watchdog_s) / 3;
-    repeat_settings_ = true;
-    return watchdog_order(settings_);
+void BaseDriver::take(const McpEvent& event, std::int64_t now_ns) {
+  if (interlocks_.motor_event(event.kind)) {
+    upkeep_.acknowledge();
+    stand(now_ns);
   }
+  switch (event.kind) {
+    case McpEventKind::kBump:
+      if (interlocks_.bumpers(static_cast<std::uint16_t>(event.value), now_ns)) stand_again(now_ns);
+      break;
+    case McpEventKind::kBatteryLow:
+      status_.battery_low = true;
+      break;
+    case McpEventKind::kWatchdogExpired:
+      ++status_.watchdog_expirations;
+      interlocks_.watchdog_expired(link_.running());
+      stand_again(now_ns);
+      upkeep_.refresh(now_ns);
+      break;
+    case McpEventKind::kLostSync:
+      // What was written last was not understood, whatever it was.
+      link_.answered();
+      if (!link_.running()) break;
+      writer_.queue_sync();
+      motion_.forget();
+      upkeep_.refresh(now_ns);
+      break;
+    default:
+      break;
+  }
+}
+
+void BaseDriver::take(const McpAnswer& answer, std::int64_t /*now_ns*/) {
+  link_.answered();
+  if (answer.command != McpCommand::kBatteryVoltage) return;
+  const double battery_v = kVoltsPerUnit * answer.value;
+  if (battery_v < kLeastVolts || battery_v > kMostVolts) return;
+  status_.battery_v = battery_v;
+  status_.battery_low = battery_v < settings_.battery_low_v;
+}
+
+/// Compares what the base does with what it was sent.
+void BaseDriver::check_motion(std::int64_t now_ns) {
+  if (monitor_.stalled() && interlocks_.emergency_stop()) stand_again(now_ns);
+  if (interlocks_.joystick(monitor_.joystick())) stand_again(now_ns);
+  if (term_.relative_ended(monitor_.reports_standing(), now_ns)) stand(now_ns);
+  const bool runs_on =
+      !motion_.moves() && !monitor_.stands() && !monitor_.slows_down() && !monitor_.joystick();
+  if (runs_on) motion_.forget_run();
+  if (monitor_.disobeys() && !term_.relative_holds()) motion_.forget();
+}
+
+bool BaseDriver::commands_taken() const {
+  return link_.running() && !interlocks_.engaged() && !monitor_.joystick();
+}
+
+bool BaseDriver::accept_motion(std::int64_t now_ns) {
+  interlocks_.motion_commanded(now_ns);
+  if (!commands_taken()) return false;
+  interlocks_.motion_taken();
+  term_.clear();
+  return true;
+}
+
+bool BaseDriver::command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
+                         std::int64_t now_ns) {
+  finite("linear_mps", linear_mps);
+  finite("angular_radps", angular_radps);
+  if (linear_mps != 0.0 || angular_radps != 0.0) {
+    if (!accept_motion(now_ns)) return false;
+    term_.start_velocity(valid_until_ns, now_ns);
+  } else {
+    interlocks_.standing_taken();
+    term_.clear();
+  }
+  motion_.want_velocity({linear_mps, angular_radps});
+  aim_changed(now_ns);
+  return true;
+}
+
+bool BaseDriver::advance(double distance_m, std::int64_t valid_until_ns, std::int64_t now_ns) {
+  finite("distance_m", distance_m);
+  if (!accept_motion(now_ns)) return false;
+  motion_.want_distance(distance_m);
+  start_relative(valid_until_ns, now_ns);
+  return true;
+}
+
+bool BaseDriver::turn(double angle_rad, std::int64_t valid_until_ns, std::int64_t now_ns) {
+  finite("angle_rad", angle_rad);
+  if (!accept_motion(now_ns)) return false;
+  motion_.want_turn(angle_rad);
+  start_relative(valid_until_ns, now_ns);
+  return true;
+}
+
+void BaseDriver::start_relative(std::int64_t valid_until_ns, std::int64_t now_ns) {
+  if (motion_.moves()) term_.start_relative(valid_until_ns);
+  aim_changed(now_ns);
+}
+
+void BaseDriver::aim_changed(std::int64_t now_ns) {
+  monitor_.aim_at(motion_.aim(), motion_.limits(), now_ns);
+  tick(now_ns);
+}
+
+/// Nothing is wanted any more; the halts are written next.
+void BaseDriver::stand(std::int64_t now_ns) {
+  term_.clear();
+  motion_.want_halt();
+  monitor_.aim_at({}, motion_.limits(), now_ns);
+}
+
+/// The same, whatever was sent before.
+void BaseDriver::stand_again(std::int64_t now_ns) {
+  stand(now_ns);
+  motion_.forget();
+}
+
+void BaseDriver::halt(std::int64_t now_ns) {
+  interlocks_.halt();
+  stand_again(now_ns);
+  tick(now_ns);
+}
+
+void BaseDriver::reset_stop(std::int64_t now_ns) {
+  interlocks_.release();
+  stand(now_ns);
+  tick(now_ns);
+}
+
+void BaseDriver::set_limits(const BaseLimits& limits, std::int64_t now_ns) {
+  const BaseLimits& most = settings_.limits;
+  motion_.set_limits({limited("linear_mps", limits.linear_mps, most.linear_mps),
+                      limited("angular_radps", limits.angular_radps, most.angular_radps),
+                      limited("linear_mps2", limits.linear_mps2, most.linear_mps2),
+                      limited("angular_radps2", limits.angular_radps2, most.angular_radps2)});
+  if (term_.velocity_holds()) motion_.want_velocity(motion_.aim());
+  aim_changed(now_ns);
+}
+
+/// Writes the next thing that is due; false if there is none.
+bool BaseDriver::write_next(std::int64_t now_ns) {
+  if (writer_.write_queued(now_ns)) return true;
+  if (!link_.running()) return false;
+  const std::optional<McpOrder> order = next_order(now_ns);
+  if (order) writer_.write(*order, now_ns);
+  return order.has_value();
+}
+
+/// Halts first, then the watchdog, which is what halts the base when this program does not.
+std::optional<McpOrder> BaseDriver::next_order(std::int64_t now_ns) {
+  if (const auto halt = motion_.next_halt()) return halt;
+  if (const auto watchdog = upkeep_.next_refresh(now_ns)) return watchdog;
   if (const auto order = motion_.next()) {
-    if (primitive_ && !primitive_->told_ns && motion_.relative_told()) primitive_->told_ns = now_ns;
+    if (motion_.relative_sent()) term_.relative_sent(now_ns);
     return order;
   }
-  if (std::exchange(acknowledge_, false)) return McpOrder{McpCommand::kAcknowledge, 0};
-  if (std::exchange(repeat_settings_, false)) {
-    const std::vector<McpOrder> orders = silent_orders(settings_);
-    const std::size_t index = repeated_++ % (orders.size() + 2);
-    return index < orders.size() ? orders[index] : motion_.repeat_acceleration();
-  }
-  if (now_ns >= battery_ns_) {
-    battery_ns_ = now_ns + nanoseconds(settings_.battery_period_s);
-    return McpOrder{McpCommand::kBatteryVoltage};
-  }
-  return std::nullopt;
+  return upkeep_.next(motion_, now_ns);
 }
 
-void BaseDriver::write(const McpOrder& order, std::int64_t now_ns) {
-  Write write_order{{}, nanoseconds(settings_.write_gap_s)};
-  if (settings_.dialect == BaseDialect::kBinary) {
-    const McpPacket packet = binary_packet(order);
-    write_order.order.bytes.assign(packet.begin(), packet.end());
-  } else {
-    append_ascii(order, write_order.order.bytes);
-  }
-  write(std::move(write_order), now_ns);
+bool BaseDriver::stands() const {
+  return reports_at_halt_ && status_.reports > *reports_at_halt_ && monitor_.stands();
 }
 
-void BaseDriver::write(Write next, std::int64_t now_ns) {
-  const std::int64_t line_ns = line_time_ns(next.order.bytes.size(), settings_.line);
-  free_ns_ = std::max(free_ns_, now_ns) + std::max(line_ns, next.pause_ns);
-  orders_.push_back(std::move(next.order));
-  more_to_say_ = true;
+void BaseDriver::update_status() {
+  if (!motion_.halt_sent()) {
+    reports_at_halt_.reset();
+  } else if (!reports_at_halt_) {
+    reports_at_halt_ = status_.reports;
+  }
+  status_.bumpers = interlocks_.pressed();
+  status_.starts = link_.starts();
+  status_.state = state();
+  status_.reason = reason();
+  status_.commands_taken = commands_taken();
+  status_.echoes = decoder_.echoes();
+  status_.checksum_warnings = decoder_.checksum_warnings();
+  status_.drops = decoder_.drops();
+  count_of(status_.drops, McpDrop::kImplausible) = implausible_;
+}
+
+BaseState BaseDriver::state() const {
+  if (link_.offline()) return BaseState::kOffline;
+  if (!link_.running()) return BaseState::kStarting;
+  if (const auto stopped = interlocks_.state()) return *stopped;
+  if (monitor_.joystick()) return BaseState::kJoystick;
+  if (motion_.moves() || !monitor_.stands()) return BaseState::kMoving;
+  if (monitor_.limp() || !interlocks_.motor_fault().empty()) return BaseState::kMotorsOff;
+  return BaseState::kReady;
+}
+
+std::string BaseDriver::reason() const {
+  const BaseState state = status_.state;
+  if (state == BaseState::kOffline) return link_.reason();
+  if (state == BaseState::kBumped && status_.bumpers != 0) return "a bumper is pressed";
+  if (state == BaseState::kMotorsOff && !interlocks_.motor_fault().empty()) {
+    return std::string(interlocks_.motor_fault());
+  }
+  return std::string(base_state_reason(state));
 }
 
 }  // namespace topogeo::devices

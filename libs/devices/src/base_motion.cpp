@@ -17,6 +17,7 @@ constexpr BaseAxisCommands kRotation{McpCommand::kRotateVelocity, McpCommand::kR
                                      McpCommand::kRotateMinus,    McpCommand::kRotatePositive,
                                      McpCommand::kRotateNegative};
 
+// Arguments of velocities and accelerations have 16 bits, those of relative moves 32.
 constexpr std::int64_t kLargest16 = 0xFFFF;
 constexpr std::int64_t kLargest32 = 0xFFFFFFFF;
 
@@ -34,8 +35,8 @@ void BaseAxis::want_speed(std::int64_t counts_per_s) {
 void BaseAxis::want_distance(std::int64_t counts, std::int64_t counts_per_s) {
   distance_ = std::clamp(counts, -kLargest32, kLargest32);
   speed_ = std::max(1U, magnitude16(counts_per_s));
-  wanted_ = counts == 0 ? Run::kHalt : Run::kFar;
-  if (told_ == Run::kFar) told_ = Run::kUnknown;
+  wanted_ = counts == 0 ? Run::kHalt : Run::kRelative;
+  if (sent_ == Run::kRelative) sent_ = Run::kUnknown;
 }
 
 void BaseAxis::want_acceleration(std::int64_t counts_per_s2) {
@@ -43,14 +44,14 @@ void BaseAxis::want_acceleration(std::int64_t counts_per_s2) {
 }
 
 void BaseAxis::forget() {
-  told_ = Run::kUnknown;
-  told_speed_.reset();
-  told_acceleration_.reset();
+  sent_ = Run::kUnknown;
+  sent_speed_.reset();
+  sent_acceleration_.reset();
 }
 
 std::optional<McpOrder> BaseAxis::next_halt() {
-  if (wanted_ != Run::kHalt || told_ == Run::kHalt) return std::nullopt;
-  told_ = Run::kHalt;
+  if (wanted_ != Run::kHalt || sent_ == Run::kHalt) return std::nullopt;
+  sent_ = Run::kHalt;
   return McpOrder{commands_.halt};
 }
 
@@ -59,20 +60,20 @@ McpOrder BaseAxis::acceleration() const {
 }
 
 std::optional<McpOrder> BaseAxis::next() {
-  if (told_acceleration_ != acceleration_) {
-    told_acceleration_ = acceleration_;
+  if (sent_acceleration_ != acceleration_) {
+    sent_acceleration_ = acceleration_;
     return acceleration();
   }
   if (wanted_ == Run::kHalt) return next_halt();
-  if (told_speed_ != speed_) {
-    told_speed_ = speed_;
+  if (sent_speed_ != speed_) {
+    sent_speed_ = speed_;
     return McpOrder{commands_.velocity, speed_};
   }
-  if (told_ == wanted_) return std::nullopt;
-  told_ = wanted_;
+  if (sent_ == wanted_) return std::nullopt;
+  sent_ = wanted_;
   if (wanted_ == Run::kPlus) return McpOrder{commands_.plus};
   if (wanted_ == Run::kMinus) return McpOrder{commands_.minus};
-  return McpOrder{distance_ > 0 ? commands_.far_plus : commands_.far_minus,
+  return McpOrder{distance_ > 0 ? commands_.relative_plus : commands_.relative_minus,
                   static_cast<std::uint32_t>(std::abs(distance_))};
 }
 
@@ -134,9 +135,9 @@ McpOrder BaseMotion::repeat_acceleration() {
   return (repeat_rotation_ ? rotation_ : translation_).acceleration();
 }
 
-bool BaseMotion::relative_told() const {
-  return (!translation_.moves() || translation_.distance_told()) &&
-         (!rotation_.moves() || rotation_.distance_told()) && moves();
+bool BaseMotion::relative_sent() const {
+  return (!translation_.moves() || translation_.distance_sent()) &&
+         (!rotation_.moves() || rotation_.distance_sent()) && moves();
 }
 
 }  // namespace topogeo::devices

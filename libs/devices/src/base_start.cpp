@@ -1,4 +1,4 @@
-#include "base_start.hpp"
+#include "topogeo/devices/base_start.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,13 +3,15 @@
 #include <array>
 #include <bit>
 #include <charconv>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
+
+#include <spdlog/fmt/fmt.h>
 
 namespace topogeo::devices {
 namespace {
 
+// A line of a report: the three letters of its field, a blank, the value.
 constexpr std::size_t kNameLength = 3;
 constexpr std::size_t kValueStart = 4;
 /// Longer than any line of the protocol, with room for a prompt.
@@ -92,9 +94,7 @@ void append_ascii(const McpOrder& order, std::vector<std::uint8_t>& bytes) {
       throw std::invalid_argument("mcp: argument " + std::to_string(order.argument) + " of " +
                                   std::string(name) + " is not in 0.." + std::to_string(*largest));
     }
-    std::array<char, 16> text{};
-    const int length = std::snprintf(text.data(), text.size(), " %x", order.argument);
-    append({text.data(), static_cast<std::size_t>(length)}, bytes);
+    append(fmt::format(" {:x}", order.argument), bytes);
   }
   bytes.push_back('\r');
 }
@@ -105,11 +105,10 @@ void append_ascii(const McpReport& report, const McpAsciiForm& form,
   append(form.line_end, bytes);
   for (std::size_t field = field_from(report.mask, 0); field < kMcpFields;
        field = field_from(report.mask, field + 1)) {
-    std::array<char, 16> text{};
-    const int length = std::snprintf(text.data(), text.size(), form.upper_case ? " %0*X" : " %0*x",
-                                     static_cast<int>(digits_of(field)), report.fields[field]);
     append(field_name(field), bytes);
-    append({text.data(), static_cast<std::size_t>(length)}, bytes);
+    append(form.upper_case ? fmt::format(" {:0{}X}", report.fields[field], digits_of(field))
+                           : fmt::format(" {:0{}x}", report.fields[field], digits_of(field)),
+           bytes);
     append(form.line_end, bytes);
   }
 }

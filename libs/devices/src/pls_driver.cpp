@@ -2,110 +2,96 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
-#include "topogeo/devices/line_time.hpp"
+#include "topogeo/devices/pls_messages.hpp"
 
 namespace topogeo::devices {
 namespace {
 
-/// The longest telegram, a whole scan of 361 beams.
-constexpr std::size_t kScan_bytes = 732;
+constexpr std::int64_t kNsPerMs = 1'000'000;
 
-const PlsSettings& checked_laser(const PlsSettings& settings) {
+PlsSettings checked_laser(PlsSettings settings) {
   settings.check();
   return settings;
 }
 
 }  // namespace
 
-const char* to_string(PlsState state) {
-  switch (state) {
-    case PlsState::kOffline:
-      return "offline";
-    case PlsState::kDetecting:
-      return "detecting";
-    case PlsState::kConfiguring:
-      return "configuring";
-    case PlsState::kRunning:
-      return "running";
-    case PlsState::kFailed:
-      return "failed";
-  }
-  return "unknown";
-}
-
 PlsDriver::PlsDriver(PlsSettings settings)
-    : settings_(std::move(settings)),
-      decoder_(SickDecoder::Listener::kHost, checked_laser(settings_).byte_gap_ns),
-      maker_(settings_) {}
+    : settings_(checked_laser(std::move(settings))),
+      line_(settings_),
+      maker_(settings_),
+      search_(settings_, line_),
+      setup_(settings_, line_, exchange_),
+      supervisor_(settings_, line_, exchange_) {}
 
 void PlsDriver::opened(std::int64_t now_ns) {
   ++status_.counters.openings;
-  failed_searches_ = 0;
-  failed_setups_ = 0;
-  // Nobody knows how the port is set, so the first order says it even if nothing seems to change.
-  line_ = known_.value_or(power_on_line());
-  decoder_.clear();
-  orders_.push_back({line_, {}});
-  start_search("the port was opened", configured_, now_ns);
+  search_.reset();
+  setup_.reset();
+  line_.open();
+  search("the port was opened", configured_, now_ns);
 }
 
 void PlsDriver::lost(std::int64_t /*now_ns*/) {
   exchange_.stop();
-  decoder_.clear();
-  orders_.clear();
+  line_.close();
   enter(Phase::kOffline, PlsState::kOffline, "the port is closed");
 }
 
 void PlsDriver::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
   if (phase_ == Phase::kOffline || bytes.empty()) return;
-  last_byte_ns_ = now_ns;
-  decoder_.push(bytes, now_ns);
-  handle_events(now_ns);
-  watch_for_stream(now_ns);
+  line_.receive(bytes, now_ns);
+  take_events(now_ns);
+  follow_garbage(now_ns);
 }
 
 void PlsDriver::tick(std::int64_t now_ns) {
   if (phase_ == Phase::kOffline) return;
-  decoder_.tick(now_ns);
-  handle_events(now_ns);
-  watch_for_stream(now_ns);
+  line_.decoder().tick(now_ns);
+  take_events(now_ns);
+  follow_garbage(now_ns);
   if (exchange_.open()) {
     exchange_.tick(now_ns);
-    flush_exchange();
-    if (!exchange_.open()) go_on(now_ns);
+    line_.write(exchange_);
+    if (!exchange_.open()) exchange_ended(now_ns);
   }
-  if (phase_ == Phase::kSearch) watch_search(now_ns);
-  if (phase_ == Phase::kRun) watch_run(now_ns);
-  if (phase_ == Phase::kPause && now_ns >= wait_until_ns_)
-    start_search(status_.reason, false, now_ns);
-  if (phase_ == Phase::kSettle && now_ns >= wait_until_ns_) start_phase(Phase::kProve, now_ns);
+  if (phase_ == Phase::kSearch && !search_.tick(now_ns)) {
+    ++status_.counters.searches;
+    rest("no answer at any rate, the last was " + line_name(line_.settings()), search_.failures(),
+         now_ns);
+  }
+  if (phase_ == Phase::kRun) supervise(now_ns);
+  if (phase_ == Phase::kRest && now_ns >= search_.rested_ns()) {
+    search(status_.reason, false, now_ns);
+  }
+  if (phase_ == Phase::kSetUp) {
+    setup_.tick(now_ns);
+    enter_setup();
+  }
 }
 
 std::int64_t PlsDriver::due_ns() const {
-  std::int64_t due_ns = std::min(decoder_.due_ns(), exchange_.due_ns());
+  const std::int64_t due_ns = std::min(line_.decoder().due_ns(), exchange_.due_ns());
   switch (phase_) {
     case Phase::kOffline:
-      return std::numeric_limits<std::int64_t>::max();
+      break;
     case Phase::kSearch:
-      return std::min(due_ns, search_due_ns());
-    case Phase::kPause:
-    case Phase::kSettle:
-      return std::min(due_ns, wait_until_ns_);
+      return std::min(due_ns, search_.due_ns());
+    case Phase::kRest:
+      return std::min(due_ns, search_.rested_ns());
+    case Phase::kSetUp:
+      return std::min(due_ns, setup_.due_ns());
     case Phase::kRun:
-      due_ns = std::min(due_ns, silent_at_ns());
-      if (settings_.output == PlsOutput::kOnRequest && !exchange_.open()) {
-        due_ns = std::min(due_ns, wait_until_ns_);
-      }
-      return due_ns;
-    default:
-      return due_ns;
+      return std::min(due_ns, supervisor_.due_ns());
   }
+  return std::numeric_limits<std::int64_t>::max();
 }
 
 std::vector<LineOrder> PlsDriver::take_orders() {
-  return std::exchange(orders_, {});
+  return line_.take_orders();
 }
 
 std::vector<PlsScan> PlsDriver::take_scans() {
@@ -114,13 +100,13 @@ std::vector<PlsScan> PlsDriver::take_scans() {
 
 PlsStatus PlsDriver::status() const {
   PlsStatus status = status_;
-  status.line = line_;
-  status.lms = lms();
+  status.line = line_.settings();
+  status.lms = line_.lms();
   status.stuck = maker_.stuck();
   if (status.state == PlsState::kRunning) {
-    status.reason = status.stuck ? "the same scan comes again and again" : fallback_;
+    status.reason = status.stuck ? "the same scan comes again and again" : setup_.fallback();
   }
-  status.counters.line = decoder_.counters();
+  status.counters.line = line_.decoder().counters();
   status.counters.scan_drops = maker_.drops();
   status.counters.timeouts = exchange_.timeouts();
   status.counters.repeats = exchange_.repeats();
@@ -128,39 +114,39 @@ PlsStatus PlsDriver::status() const {
   return status;
 }
 
-void PlsDriver::handle_events(std::int64_t now_ns) {
-  while (const std::optional<SickEvent> event = decoder_.next()) {
+void PlsDriver::take_events(std::int64_t now_ns) {
+  while (const std::optional<SickEvent> event = line_.decoder().next()) {
     switch (event->kind) {
       case SickEvent::Kind::kAck:
         exchange_.acknowledged(now_ns);
         break;
       case SickEvent::Kind::kNak:
         exchange_.refused(now_ns);
-        if (phase_ != Phase::kSearch && !exchange_.open()) go_on(now_ns);
+        if (!exchange_.open()) exchange_ended(now_ns);
         break;
       case SickEvent::Kind::kTelegram:
-        handle_telegram(event->telegram, now_ns);
+        take(event->telegram, now_ns);
         break;
     }
   }
 }
 
-void PlsDriver::handle_telegram(const SickTelegram& telegram, std::int64_t now_ns) {
+void PlsDriver::take(const SickTelegram& telegram, std::int64_t now_ns) {
   note(telegram);
   if (telegram.code == pls_reply::kPowerOn) {
-    handle_power_on(telegram, now_ns);
-  } else if (phase_ == Phase::kSearch || phase_ == Phase::kPause) {
+    take_power_on(telegram, now_ns);
+  } else if (phase_ == Phase::kSearch || phase_ == Phase::kRest) {
     found(telegram, now_ns);
   } else if (telegram.code == pls_reply::kReset) {
     configured_ = false;
-    start_search("the sensor restarts", false, now_ns);
+    search("the sensor restarts", false, now_ns);
   } else {
-    if (telegram.code == pls_reply::kMeasuredValues) handle_scan(telegram, now_ns);
-    handle_reply(telegram, now_ns);
+    if (telegram.code == pls_reply::kMeasuredValues) take_scan(telegram, now_ns);
+    take_reply(telegram, now_ns);
   }
 }
 
-/// Keeps what the telegram says of the sensor.
+/// Keeps what the telegram reports of the sensor.
 void PlsDriver::note(const SickTelegram& telegram) {
   status_.health = pls_health(telegram.status);
   if (const auto text = pls_power_on_text(telegram)) status_.power_on_text = *text;
@@ -168,53 +154,124 @@ void PlsDriver::note(const SickTelegram& telegram) {
   if (auto errors = pls_errors(telegram)) status_.errors = std::move(*errors);
 }
 
-void PlsDriver::handle_power_on(const SickTelegram& telegram, std::int64_t now_ns) {
+void PlsDriver::take_power_on(const SickTelegram& telegram, std::int64_t now_ns) {
   ++status_.counters.restarts;
   configured_ = false;
-  failed_switches_ = 0;
-  fallback_.clear();
+  setup_.retry_rate();
   found(telegram, now_ns);
 }
 
-void PlsDriver::handle_scan(const SickTelegram& telegram, std::int64_t now_ns) {
+void PlsDriver::take_scan(const SickTelegram& telegram, std::int64_t now_ns) {
   if (phase_ != Phase::kRun) {
     ++status_.counters.unsolicited;
     return;
   }
   const std::optional<PlsMeasuredValues> values = pls_measured_values(telegram);
   if (!values) return;
-  last_scan_ns_ = now_ns;
-  failed_setups_ = 0;
-  if (std::optional<PlsScan> scan = maker_.make(*values, telegram, line_)) {
+  supervisor_.scan_came(now_ns);
+  setup_.reset();
+  if (std::optional<PlsScan> scan = maker_.make(*values, telegram, line_.settings())) {
     ++status_.counters.scans;
     scans_.push_back(std::move(*scan));
   }
 }
 
-void PlsDriver::handle_reply(const SickTelegram& telegram, std::int64_t now_ns) {
+void PlsDriver::take_reply(const SickTelegram& telegram, std::int64_t now_ns) {
   if (!exchange_.open()) return;
   if (telegram.code == pls_reply::kNotAcknowledged) {
     exchange_.refused(now_ns);
   } else if (telegram.code == exchange_.code()) {
     exchange_.replied(pls_mode_reply(telegram));
   }
-  if (!exchange_.open()) go_on(now_ns);
+  if (!exchange_.open()) exchange_ended(now_ns);
 }
 
-void PlsDriver::set_line(const LineSettings& line) {
-  drops_before_ = drops();
-  if (line == line_) return;
-  line_ = line;
-  decoder_.clear();
-  orders_.push_back({line_, {}});
+/// What was asked for is answered, or was in vain.
+void PlsDriver::exchange_ended(std::int64_t now_ns) {
+  if (phase_ == Phase::kRun) return supervisor_.request_ended(now_ns);
+  if (phase_ != Phase::kSetUp) return;
+  switch (setup_.go_on(now_ns)) {
+    case PlsSetup::Result::kGoesOn:
+      enter_setup();
+      break;
+    case PlsSetup::Result::kDone:
+      run(now_ns);
+      break;
+    case PlsSetup::Result::kNotFollowed:
+      ++status_.counters.switches_not_followed;
+      search(setup_.reason(), false, now_ns);
+      break;
+    case PlsSetup::Result::kFailed:
+      // The first time it may have been a disturbance; after that the sensor gets a rest.
+      if (setup_.failures() == 1) {
+        search(setup_.reason(), false, now_ns);
+      } else {
+        rest(setup_.reason(), setup_.failures(), now_ns);
+      }
+      break;
+  }
 }
 
-void PlsDriver::write(std::vector<std::uint8_t> bytes) {
-  orders_.push_back({std::nullopt, std::move(bytes)});
+/// `listen_first`: where the sensor was heard last, before anything is asked.
+void PlsDriver::search(const std::string& reason, bool listen_first, std::int64_t now_ns) {
+  exchange_.stop();
+  enter_search(Phase::kSearch, std::max(search_.failures(), setup_.failures()), reason);
+  search_.start(listen_first, now_ns);
 }
 
-void PlsDriver::flush_exchange() {
-  if (auto command = exchange_.take_command()) write(std::move(*command));
+void PlsDriver::rest(const std::string& reason, int failures, std::int64_t now_ns) {
+  exchange_.stop();
+  enter_search(Phase::kRest, failures, reason);
+  search_.rest(failures, now_ns);
+}
+
+void PlsDriver::follow_garbage(std::int64_t now_ns) {
+  if (!search_.hears_garbage()) return;
+  if (phase_ == Phase::kSearch) {
+    search_.follow_garbage(now_ns);
+  } else if (phase_ == Phase::kRest) {
+    search(status_.reason, true, now_ns);
+  }
+}
+
+/// A telegram came over the present line.
+void PlsDriver::found(const SickTelegram& telegram, std::int64_t now_ns) {
+  const std::optional<LineSettings> known = line_.known();
+  const bool asked = phase_ == Phase::kSearch && search_.asked();
+  // A question stops the stream, whatever comes before its answer.
+  const bool streams = !asked && configured_ && known == line_.settings() &&
+                       settings_.output == PlsOutput::kContinuous;
+  if (known && known->parity != line_.settings().parity) maker_.forget();
+  line_.heard();
+  search_.reset();
+  if (streams && telegram.code == pls_reply::kMeasuredValues) {
+    run(now_ns);
+    take_scan(telegram, now_ns);
+    return;
+  }
+  if (asked && pls_mode_reply(telegram) == PlsModeReply::kDone) {
+    setup_.start_stopped(now_ns);
+  } else {
+    setup_.start(now_ns);
+  }
+  enter_setup();
+}
+
+void PlsDriver::run(std::int64_t now_ns) {
+  exchange_.stop();
+  enter(Phase::kRun, PlsState::kRunning, {});
+  configured_ = true;
+  supervisor_.start(now_ns);
+  supervise(now_ns);
+}
+
+void PlsDriver::supervise(std::int64_t now_ns) {
+  if (!supervisor_.silent(now_ns)) return supervisor_.tick(now_ns);
+  ++status_.counters.silences;
+  // It may have restarted without being heard, and may follow to another rate now.
+  setup_.retry_rate();
+  search("no scan for " + std::to_string(supervisor_.silence_ns(now_ns) / kNsPerMs) + " ms", false,
+         now_ns);
 }
 
 void PlsDriver::enter(Phase phase, PlsState state, std::string reason) {
@@ -223,19 +280,13 @@ void PlsDriver::enter(Phase phase, PlsState state, std::string reason) {
   status_.reason = std::move(reason);
 }
 
-/// What the decoder dropped so far, as one number that grows with any garbage.
-std::uint64_t PlsDriver::drops() const {
-  const SickCounters& counters = decoder_.counters();
-  return counters.bad_crc + counters.implausible_length + counters.truncated + counters.noise_bytes;
+void PlsDriver::enter_search(Phase phase, int failures, const std::string& reason) {
+  const bool failed = failures >= settings_.searches_until_failed;
+  enter(phase, failed ? PlsState::kFailed : PlsState::kDetecting, std::string(reason));
 }
 
-std::int64_t PlsDriver::scan_time_ns() const {
-  return line_time_ns(kScan_bytes, line_);
-}
-
-std::int64_t PlsDriver::silence_ns() const {
-  const std::int64_t period_ns = std::max(settings_.scan_period_ns, scan_time_ns());
-  return std::max(settings_.shortest_silence_ns, settings_.silent_scan_periods * period_ns);
+void PlsDriver::enter_setup() {
+  enter(Phase::kSetUp, PlsState::kConfiguring, setup_.reason());
 }
 
 }  // namespace topogeo::devices

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/devices/mcp_binary.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 using devices::McpCommand;
 using devices::McpField;
 
-// As a base is said to come up.
+// After power-on, by MIRO's base driver, which quotes the B21 User's Guide of RWI.
 constexpr std::uint32_t kTranslateVelocity = 0x0800;
 constexpr std::uint32_t kTranslateAcceleration = 0x4000;
 constexpr std::uint32_t kRotateVelocity = 0x0080;
@@ -149,10 +150,7 @@ void McpEmulator::press_bumpers(std::uint16_t pressed, std::int64_t now_ns) {
     translation_.halt();
     rotation_.halt();
   }
-  std::string line(16, '\0');
-  line.resize(static_cast<std::size_t>(
-      std::snprintf(line.data(), line.size(), "%%BS %04x", 0xFFFFU & ~unsigned{bumpers_})));
-  if (!binary_) send_line(line, now_ns);
+  if (!binary_) send_line(fmt::format("%BS {:04x}", 0xFFFFU & ~unsigned{bumpers_}), now_ns);
 }
 
 void McpEmulator::take_joystick(const Velocity& velocity) {

@@ -1,12 +1,12 @@
 // What an emulated base makes of what it hears.
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
@@ -83,17 +83,15 @@ void McpEmulator::hear_binary(std::uint8_t byte, std::int64_t now_ns) {
 }
 
 void McpEmulator::answer(McpCommand command, std::uint32_t value, std::int64_t now_ns) {
-  std::array<char, 32> text{};
-  const std::string_view name = devices::mnemonic(command);
-  const int length = std::snprintf(text.data(), text.size(), "%s%.2s %x",
-                                   settings_.prompt ? "*" : "", name.data(), value);
+  const std::string text =
+      fmt::format("{}{} {:x}", settings_.prompt ? "*" : "", devices::mnemonic(command), value);
   std::vector<std::uint8_t> payload{static_cast<std::uint8_t>(command)};
   const bool narrow =
       command == McpCommand::kBatteryVoltage || command == McpCommand::kBatteryCurrent;
   for (unsigned shift = narrow ? 16 : 32; shift > 0; shift -= 8) {
     payload.push_back(static_cast<std::uint8_t>(value >> (shift - 8) & 0xFFU));
   }
-  say({text.data(), static_cast<std::size_t>(length)}, payload, now_ns);
+  say(text, payload, now_ns);
 }
 
 void McpEmulator::execute(const McpOrder& order, std::int64_t now_ns) {

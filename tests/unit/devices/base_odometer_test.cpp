@@ -160,12 +160,12 @@ TEST_F(BaseMotionTest, SaysSettingsBeforeWhatTheyAreForAndNothingTwice) {
             (std::vector<McpOrder>{{McpCommand::kRotateHalt}, {McpCommand::kTranslateMinus}}));
 }
 
-TEST_F(BaseMotionTest, SaysARelativeMoveOnceAndTheSameAgainWhenItIsWantedAgain) {
+TEST_F(BaseMotionTest, SendsARelativeMoveOnceAndTheSameAgainWhenItIsWantedAgain) {
   motion_.want_turn(std::numbers::pi / 2);
   const auto first = all_of(motion_);
   ASSERT_FALSE(first.empty());
   EXPECT_EQ(first.back(), (McpOrder{McpCommand::kRotateNegative, 256}));
-  EXPECT_TRUE(motion_.relative_told());
+  EXPECT_TRUE(motion_.relative_sent());
   EXPECT_TRUE(all_of(motion_).empty());
   motion_.want_turn(std::numbers::pi / 2);
   EXPECT_EQ(all_of(motion_), first.empty() ? first : std::vector{first.back()});

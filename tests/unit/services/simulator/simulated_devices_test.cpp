@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include "simulator/fault_desk.hpp"
+#include "simulator/fault_injector.hpp"
 #include "services/simulator/host_port.hpp"
 
 namespace topogeo::simulator {
@@ -48,7 +48,7 @@ class SimulatedDevicesTest : public testing::Test {
   double way_m() { return devices_.robot().way_m(); }
 
   SimulatedDevices devices_{world::parse_world(kCorridor, "w"), options()};
-  FaultDesk faults_{devices_};
+  FaultInjector faults_{devices_};
   HostPort laser_{devices_.port(Device::kLaser).link()};
   HostPort base_{devices_.port(Device::kBase).link()};
 };

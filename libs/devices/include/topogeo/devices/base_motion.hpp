@@ -1,5 +1,5 @@
-// What a base was told to do and what it still has to be told: velocities and relative moves as
-// commands of the MCP, each sent only when it changes something.
+// The motion that is wanted of a base and the commands of the MCP that are still to be sent for it:
+// velocities and relative moves, each command only when it changes something.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct BaseVelocity {
 
 /// The commands by which the two axes differ.
 struct BaseAxisCommands {
-  McpCommand velocity, acceleration, halt, plus, minus, far_plus, far_minus;
+  McpCommand velocity, acceleration, halt, plus, minus, relative_plus, relative_minus;
 };
 
 /// One motor's axis, in its own counts.
@@ -33,34 +33,34 @@ class BaseAxis {
   /// A move by `counts` with at most `counts_per_s`; it is sent once.
   void want_distance(std::int64_t counts, std::int64_t counts_per_s);
   void want_acceleration(std::int64_t counts_per_s2);
-  /// The base may have forgotten what it was told.
+  /// The base may have forgotten what was sent.
   void forget();
   /// The base may have missed the last run or halt.
-  void forget_run() { told_ = Run::kUnknown; }
-  /// A relative move that is wanted was told.
-  [[nodiscard]] bool distance_told() const { return told_ == Run::kFar; }
+  void forget_run() { sent_ = Run::kUnknown; }
+  /// The relative move that is wanted was sent.
+  [[nodiscard]] bool distance_sent() const { return sent_ == Run::kRelative; }
   [[nodiscard]] bool moves() const { return wanted_ != Run::kHalt; }
-  /// It is to halt and was told so.
-  [[nodiscard]] bool halt_told() const { return wanted_ == Run::kHalt && told_ == Run::kHalt; }
+  /// A halt is wanted and was sent.
+  [[nodiscard]] bool halt_sent() const { return wanted_ == Run::kHalt && sent_ == Run::kHalt; }
 
-  /// The command that halts, if it has to be told.
+  /// The command that halts, if it has to be sent.
   std::optional<McpOrder> next_halt();
-  /// The next command to tell, if any; it counts as told.
+  /// The next command to send, if any; it counts as sent.
   std::optional<McpOrder> next();
-  /// The acceleration, whether or not it was told before.
+  /// The acceleration, whether or not it was sent before.
   [[nodiscard]] McpOrder acceleration() const;
 
  private:
-  enum class Run : std::uint8_t { kUnknown, kHalt, kPlus, kMinus, kFar };
+  enum class Run : std::uint8_t { kUnknown, kHalt, kPlus, kMinus, kRelative };
 
   BaseAxisCommands commands_;
   Run wanted_ = Run::kHalt;
   std::uint32_t speed_ = 0;
   std::int64_t distance_ = 0;
   std::uint32_t acceleration_ = 1;
-  Run told_ = Run::kUnknown;
-  std::optional<std::uint32_t> told_speed_{};
-  std::optional<std::uint32_t> told_acceleration_{};
+  Run sent_ = Run::kUnknown;
+  std::optional<std::uint32_t> sent_speed_{};
+  std::optional<std::uint32_t> sent_acceleration_{};
 };
 
 class BaseMotion {
@@ -76,10 +76,10 @@ class BaseMotion {
   /// Holds for what is wanted from now on, accelerations at once.
   void set_limits(const BaseLimits& limits);
   [[nodiscard]] const BaseLimits& limits() const { return limits_; }
-  /// The base may have forgotten what it was told: all of it is told again.
+  /// The base may have forgotten what was sent: all of it is sent again.
   void forget();
-  /// The base does not do what was told last, which is told again; speeds and accelerations are
-  /// not.
+  /// The base does not do what was sent last: that is sent again, without speeds and
+  /// accelerations.
   void forget_run();
 
   /// Halts first, then settings before what they are for.
@@ -89,13 +89,13 @@ class BaseMotion {
   McpOrder repeat_acceleration();
 
   [[nodiscard]] bool moves() const { return translation_.moves() || rotation_.moves(); }
-  /// Both axes are to halt and were told so.
-  [[nodiscard]] bool halt_told() const { return translation_.halt_told() && rotation_.halt_told(); }
+  /// Halts of both axes are wanted and were sent.
+  [[nodiscard]] bool halt_sent() const { return translation_.halt_sent() && rotation_.halt_sent(); }
   [[nodiscard]] bool translates() const { return translation_.moves(); }
   [[nodiscard]] bool rotates() const { return rotation_.moves(); }
-  /// A relative move is wanted and everything about it was told.
-  [[nodiscard]] bool relative_told() const;
-  /// What the base makes of what is wanted; for a relative move its highest speed.
+  /// A relative move is wanted and all its commands were sent.
+  [[nodiscard]] bool relative_sent() const;
+  /// The velocity that the base will reach; for a relative move its highest.
   [[nodiscard]] const BaseVelocity& aim() const { return aim_; }
 
  private:

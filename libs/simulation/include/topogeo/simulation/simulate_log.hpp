@@ -25,7 +25,7 @@ struct Kidnapping {
 
 /// Scans on a part of the way driven that see nothing of the world.
 struct Blinding {
-  world::WayInterval way;
+  world::DistanceInterval way;
   /// What every beam reads then; without it no beam has an echo.
   std::optional<double> reading_m;
 };

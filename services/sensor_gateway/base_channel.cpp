@@ -1,4 +1,4 @@
-#include "base_desk.hpp"
+#include "base_channel.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -51,8 +51,9 @@ msg::BaseState to_msg(devices::BaseState state) {
 
 }  // namespace
 
-BaseDesk::BaseDesk(service::Service& service, const DeviceConfig& config, const HostTime& time,
-                   std::function<void(const OdometrySample&)> on_odometry)
+BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
+                         const HostTime& time,
+                         std::function<void(const OdometrySample&)> on_odometry)
     : service_(service),
       time_(time),
       on_odometry_(std::move(on_odometry)),
@@ -77,10 +78,10 @@ BaseDesk::BaseDesk(service::Service& service, const DeviceConfig& config, const 
   timer_ = loop.add_timer(kStatusPeriod, [this] { publish_status(); });
 }
 
-BaseDesk::~BaseDesk() {
+BaseChannel::~BaseChannel() {
   service_.loop().cancel_timer(timer_);
   if (stopped_ || !line_.is_open()) return;
-  // An exception ends the service: nobody runs the loop any more, so only what the line takes at
+  // An exception ends the service: the loop does not run any more, so only what the line takes at
   // once gets to the base. Its watchdog does the rest.
   try {
     driver_.halt(line_.now_ns());
@@ -91,7 +92,7 @@ BaseDesk::~BaseDesk() {
   }
 }
 
-void BaseDesk::after_driver(std::int64_t) {
+void BaseChannel::after_driver(std::int64_t) {
   for (const devices::BaseOdometry& sample : driver_.take_odometry()) {
     msg::Odometry message;
     messaging::set_header(message, service_.robot_id(), time_.stamp_ns(sample.stamp_ns),
@@ -106,10 +107,10 @@ void BaseDesk::after_driver(std::int64_t) {
     }
     on_odometry_({sample.stamp_ns, sample.T_odom_robot, sample.linear_mps, sample.angular_radps});
   }
-  if (driver_.status().state != told_state_ || ready() != told_ready_) publish_status();
+  if (driver_.status().state != published_state_ || ready() != published_ready_) publish_status();
 }
 
-void BaseDesk::on_command(const msg::MotionCommand& command) {
+void BaseChannel::on_command(const msg::MotionCommand& command) {
   const double valid_s = std::min(command.valid_for_s(), kLongestCommand_s);
   if (!std::isfinite(command.linear_mps()) || !std::isfinite(command.angular_radps()) ||
       !(valid_s > 0.0)) {
@@ -128,7 +129,7 @@ void BaseDesk::on_command(const msg::MotionCommand& command) {
   after_driver(now_ns);
 }
 
-void BaseDesk::on_command(const msg::BaseCommand& command) {
+void BaseChannel::on_command(const msg::BaseCommand& command) {
   const std::int64_t now_ns = line_.now_ns();
   const std::string client = command.client_id().c_str();
   switch (command.kind()) {
@@ -137,7 +138,7 @@ void BaseDesk::on_command(const msg::BaseCommand& command) {
       driver_.halt(now_ns);
       break;
     case msg::kBaseReset:
-      spdlog::warn("{} says that the base may move again", client);
+      spdlog::warn("{} allows the base to move again", client);
       driver_.reset_stop(now_ns);
       break;
     case msg::kBaseSetLimits:
@@ -155,17 +156,17 @@ void BaseDesk::on_command(const msg::BaseCommand& command) {
   after_driver(now_ns);
 }
 
-std::string BaseDesk::describe() const {
+std::string BaseChannel::describe() const {
   const devices::BaseStatus& status = driver_.status();
   const std::string name(devices::base_state_name(status.state));
   if (!line_.why_closed().empty()) return name + ": " + line_.why_closed();
   return status.reason.empty() ? name : name + ": " + status.reason;
 }
 
-void BaseDesk::publish_status() {
+void BaseChannel::publish_status() {
   const devices::BaseStatus& status = driver_.status();
-  told_state_ = status.state;
-  told_ready_ = ready();
+  published_state_ = status.state;
+  published_ready_ = ready();
   msg::BaseStatus message;
   messaging::set_header(message, service_.robot_id(), time_.stamp_ns(line_.now_ns()),
                         statuses_sent_);
@@ -183,7 +184,7 @@ void BaseDesk::publish_status() {
   }
 }
 
-void BaseDesk::count() {
+void BaseChannel::count() {
   messaging::StatusPublisher& status = service_.status();
   const devices::BaseStatus& base = driver_.status();
   const auto set = [&](const std::string& name, std::uint64_t value) {
@@ -203,7 +204,7 @@ void BaseDesk::count() {
   }
 }
 
-void BaseDesk::stop() {
+void BaseChannel::stop() {
   if (std::exchange(stopped_, true) || !line_.is_open()) return;
   driver_.halt(line_.now_ns());
   line_.carry_out();

@@ -1,4 +1,4 @@
-// The base of the robot: its line, its odometry, its state, and what it is told.
+// The base of the robot: its line, its odometry, its state, and the commands to it.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,21 @@
 namespace topogeo::sensor_gateway {
 
 /// Lives in the loop of its service.
-class BaseDesk {
+class BaseChannel {
  public:
   /// `on_odometry` gets every sample, stamped by the steady clock.
-  BaseDesk(service::Service& service, const DeviceConfig& config, const HostTime& time,
-           std::function<void(const OdometrySample&)> on_odometry);
-  BaseDesk(const BaseDesk&) = delete;
-  BaseDesk& operator=(const BaseDesk&) = delete;
-  BaseDesk(BaseDesk&&) = delete;
-  BaseDesk& operator=(BaseDesk&&) = delete;
+  BaseChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
+              std::function<void(const OdometrySample&)> on_odometry);
+  BaseChannel(const BaseChannel&) = delete;
+  BaseChannel& operator=(const BaseChannel&) = delete;
+  BaseChannel(BaseChannel&&) = delete;
+  BaseChannel& operator=(BaseChannel&&) = delete;
   /// Halts the base, unless stop() has done it.
-  ~BaseDesk();
+  ~BaseChannel();
 
   /// Whether it takes motion commands.
   [[nodiscard]] bool ready() const { return driver_.status().commands_taken; }
-  /// A few words for people: "ready", or the state and why.
+  /// For people: "ready", or the state and why.
   [[nodiscard]] std::string describe() const;
   /// Sets the counters of the service's status.
   void count();
@@ -60,8 +60,8 @@ class BaseDesk {
   std::uint64_t statuses_sent_ = 0;
   std::uint64_t commands_ = 0;
   std::uint64_t refused_ = 0;
-  devices::BaseState told_state_ = devices::BaseState::kOffline;
-  bool told_ready_ = false;
+  devices::BaseState published_state_ = devices::BaseState::kOffline;
+  bool published_ready_ = false;
   bool stopped_ = false;
   std::uint64_t timer_ = 0;
   SerialLine line_;

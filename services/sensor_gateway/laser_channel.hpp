@@ -20,19 +20,19 @@
 namespace topogeo::sensor_gateway {
 
 /// Lives in the loop of its service.
-class LaserDesk {
+class LaserChannel {
  public:
-  /// `gate` gets the scans and `on_scans` hears that it did.
-  LaserDesk(service::Service& service, const DeviceConfig& config, const HostTime& time,
-            ScanGate& gate, std::function<void(std::int64_t now_ns)> on_scans);
-  LaserDesk(const LaserDesk&) = delete;
-  LaserDesk& operator=(const LaserDesk&) = delete;
-  LaserDesk(LaserDesk&&) = delete;
-  LaserDesk& operator=(LaserDesk&&) = delete;
-  ~LaserDesk();
+  /// `gate` gets the scans; then `on_scans` is called.
+  LaserChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
+               ScanGate& gate, std::function<void(std::int64_t now_ns)> on_scans);
+  LaserChannel(const LaserChannel&) = delete;
+  LaserChannel& operator=(const LaserChannel&) = delete;
+  LaserChannel(LaserChannel&&) = delete;
+  LaserChannel& operator=(LaserChannel&&) = delete;
+  ~LaserChannel();
 
   [[nodiscard]] bool running() const;
-  /// A few words for people: "running", or the state and why.
+  /// For people: "running", or the state and why.
   [[nodiscard]] std::string describe() const;
   /// Sets the counters of the service's status.
   void count();
@@ -50,7 +50,7 @@ class LaserDesk {
   devices::PlsDriver driver_;
   messaging::Writer<msg::LaserStatus> statuses_;
   std::uint64_t statuses_sent_ = 0;
-  msg::LaserState told_state_ = msg::kLaserOffline;
+  msg::LaserState published_state_ = msg::kLaserOffline;
   std::uint32_t beams_ = 0;
   std::uint32_t dazzled_ = 0;
   bool warning_field_ = false;

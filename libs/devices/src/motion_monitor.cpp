@@ -1,4 +1,4 @@
-#include "topogeo/devices/base_watch.hpp"
+#include "topogeo/devices/motion_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,17 +6,20 @@
 namespace topogeo::devices {
 namespace {
 
-/// From a command to its effect in a report, apart from the acceleration: writing it, a report on
-/// its way, motors that lag.
+/// From a command to its effect in a report, apart from the acceleration: writing it, motors that
+/// lag, a report on the line. Not measured on hardware; too long a time only delays that the
+/// joystick is noticed.
 constexpr std::int64_t kLag_ns = 300'000'000;
+/// A person who drives by joystick stops for shorter times.
 constexpr std::int64_t kJoystickRest_ns = 1'000'000'000;
+/// A single report may have a speed that was garbled on the line.
 constexpr unsigned kUncommandedReports = 2;
 
-bool stalls(std::uint16_t status, bool told, bool stands) {
-  return told && stands && phase_of(status) == McpPhase::kAccelerate;
+bool stalls(std::uint16_t status, bool commanded, bool stands) {
+  return commanded && stands && phase_of(status) == McpPhase::kAccelerate;
 }
 
-/// Phases of a motor that has ended what it was told, or never began.
+/// Phases of a motor that has ended what was commanded, or never began.
 bool rests(std::uint16_t status) {
   const McpPhase phase = phase_of(status);
   return phase == McpPhase::kStop || phase == McpPhase::kHalt || phase == McpPhase::kLimp;
@@ -43,18 +46,18 @@ double SpeedRange::excess(double speed, std::int64_t now_ns) {
   return std::max({0.0, least_ - speed, speed - largest_});
 }
 
-BaseWatch::BaseWatch(const McpUnits& units, const BaseSettings& settings)
+MotionMonitor::MotionMonitor(const McpUnits& units, const BaseSettings& settings)
     : units_(units), settings_(settings), period_ns_(ticks_ns(report_period_ticks(settings))) {}
 
-void BaseWatch::aim_at(const BaseVelocity& velocity, const BaseLimits& limits,
-                       std::int64_t now_ns) {
+void MotionMonitor::aim_at(const BaseVelocity& velocity, const BaseLimits& limits,
+                           std::int64_t now_ns) {
   if (velocity == BaseVelocity{}) stalls_ = 0;
   const std::int64_t lag_ns = kLag_ns + 2 * period_ns_;
   linear_.aim_at(velocity.linear_mps, limits.linear_mps2, lag_ns, now_ns);
   angular_.aim_at(velocity.angular_radps, limits.angular_radps2, lag_ns, now_ns);
 }
 
-void BaseWatch::restart(std::int64_t now_ns) {
+void MotionMonitor::restart(std::int64_t now_ns) {
   const BaseLimits& limits = settings_.limits;
   for (const double sign : {1.0, -1.0, 0.0}) {
     aim_at({sign * limits.linear_mps, sign * limits.angular_radps}, limits, now_ns);
@@ -65,7 +68,7 @@ void BaseWatch::restart(std::int64_t now_ns) {
   joystick_ = false;
 }
 
-void BaseWatch::take(const McpReport& report, const BaseMotion& motion, std::int64_t now_ns) {
+void MotionMonitor::take(const McpReport& report, const BaseMotion& motion, std::int64_t now_ns) {
   const double linear_mps = units_.linear_mps(report);
   const double angular_radps = units_.angular_radps(report);
   const bool linear_stands = std::abs(linear_mps) <= settings_.standstill_mps;

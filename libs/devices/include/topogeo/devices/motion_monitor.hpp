@@ -1,5 +1,5 @@
-// Whether a base moves as it was told: motion that nobody commanded is the joystick, motion that
-// was commanded and does not come about is the emergency stop. No message of the base says either.
+// Whether a base moves as commanded: motion without a command is the joystick, motion that was
+// commanded and does not come about is the emergency stop. The base has no message for either.
 #pragma once
 
 #include <cstdint>
@@ -29,13 +29,13 @@ class SpeedRange {
   std::int64_t settled_ns_ = 0;
 };
 
-class BaseWatch {
+class MotionMonitor {
  public:
-  BaseWatch(const McpUnits& units, const BaseSettings& settings);
+  MotionMonitor(const McpUnits& units, const BaseSettings& settings);
 
-  /// What the base is told from now on.
+  /// The motion that is commanded from now on.
   void aim_at(const BaseVelocity& velocity, const BaseLimits& limits, std::int64_t now_ns);
-  /// The base started anew; `now_ns`: what moves for a while afterwards was commanded before.
+  /// The base started anew: motion for a while after `now_ns` may have been commanded before.
   void restart(std::int64_t now_ns);
   void take(const McpReport& report, const BaseMotion& motion, std::int64_t now_ns);
 
@@ -43,13 +43,13 @@ class BaseWatch {
   [[nodiscard]] bool stands() const { return stands_; }
   /// A motor brakes.
   [[nodiscard]] bool slows_down() const { return slows_down_; }
-  /// A motor is without power because it was told so or because of an error.
+  /// A motor is without power, by a command or because of an error.
   [[nodiscard]] bool limp() const { return limp_; }
-  /// Somebody drives it by joystick; holds until it has stood for a second.
+  /// It is driven by joystick; holds until it has stood for a second.
   [[nodiscard]] bool joystick() const { return joystick_; }
-  /// It was told to move and does not for as many reports as settings.stalled_reports.
+  /// It was commanded to move and did not for settings.stalled_reports reports.
   [[nodiscard]] bool stalled() const { return stalls_ >= settings_.stalled_reports; }
-  /// It should have begun or ended to move long since: a command was lost.
+  /// It should have begun or ended to move by now: a command was lost.
   [[nodiscard]] bool disobeys() const { return disobeys_; }
   /// Reports since it began to stand.
   [[nodiscard]] unsigned reports_standing() const { return reports_standing_; }

@@ -8,7 +8,7 @@
 
 namespace topogeo::devices {
 
-/// After the base understands commands: the joystick out of the way, echo off, errors and bumpers,
+/// To a base that understands commands: the joystick out of the way, echo off, errors and bumpers,
 /// torques, what the reports hold, their period, the watchdog. The fields come before the period.
 std::vector<McpOrder> set_up_orders(const BaseSettings& settings);
 

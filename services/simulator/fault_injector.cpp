@@ -1,4 +1,4 @@
-#include "fault_desk.hpp"
+#include "fault_injector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,13 @@
 namespace topogeo::simulator {
 namespace {
 
+// A disturbance about as long as a report, ten times a second: some reports get through.
 constexpr std::int64_t kGarbagePeriod_ns = 100'000'000;
 constexpr std::size_t kGarbage_bytes = 24;
+/// More scans or reports than a fault of the longest duration can hit.
 constexpr int kForEver = 1'000'000'000;
-constexpr std::uint8_t kPolluted = 0x80;  // in the status byte of a PLS
+/// In the status byte of a PLS (SICK LMS quick manual, telegram listing).
+constexpr std::uint8_t kPolluted = 0x80;
 
 Device device_of(const msg::SimulatorCommand& message) {
   switch (message.fault()) {
@@ -59,6 +62,7 @@ const char* name(msg::SimulatedFault kind) {
 }  // namespace
 
 Fault fault_from_msg(const msg::SimulatorCommand& message) {
+  // An hour outlasts every test; no base of this kind reaches 3 m/s or 3 rad/s.
   constexpr double kLongest_s = 3600.0;
   constexpr double kFastest = 3.0;
   const auto check = [](bool ok, const char* field, const char* expected) {
@@ -79,7 +83,7 @@ std::string describe(const Fault& fault) {
                      fault.device == Device::kLaser ? "laser" : "base", fault.duration_s);
 }
 
-void FaultDesk::begin(const Fault& fault) {
+void FaultInjector::begin(const Fault& fault) {
   const std::int64_t end_ns = devices_.now_ns() + std::llround(fault.duration_s * 1e9);
   const auto same = std::find_if(active_.begin(), active_.end(), [&](const Active& active) {
     return active.fault.kind == fault.kind && active.fault.device == fault.device;
@@ -92,7 +96,7 @@ void FaultDesk::begin(const Fault& fault) {
   set(fault, true);
 }
 
-void FaultDesk::tick() {
+void FaultInjector::tick() {
   const std::int64_t now_ns = devices_.now_ns();
   for (const Active& active : active_) {
     if (active.end_ns <= now_ns) {
@@ -102,13 +106,13 @@ void FaultDesk::tick() {
       garbage_ns_ = now_ns + kGarbagePeriod_ns;
       devices_.base().send_garbage(kGarbage_bytes, now_ns);
     } else if (active.fault.kind == msg::kSimulatedJoystick) {
-      set(active.fault, true);  // who holds it drives on whatever the host says
+      set(active.fault, true);  // whoever holds it drives on whatever the host commands
     }
   }
   std::erase_if(active_, [now_ns](const Active& active) { return active.end_ns <= now_ns; });
 }
 
-void FaultDesk::set(const Fault& fault, bool on) {
+void FaultInjector::set(const Fault& fault, bool on) {
   if (fault.kind == msg::kSimulatedUnplug) {
     PseudoTerminal& port = devices_.port(fault.device);
     if (on) {
@@ -123,12 +127,12 @@ void FaultDesk::set(const Fault& fault, bool on) {
   }
 }
 
-void FaultDesk::strike(simulation::PlsFault fault, bool on) {
+void FaultInjector::strike(simulation::PlsFault fault, bool on) {
   simulation::PlsEmulator& laser = devices_.laser();
   laser.inject(fault, (on ? kForEver : 0) - laser.pending(fault));
 }
 
-void FaultDesk::set_laser(const Fault& fault, bool on) {
+void FaultInjector::set_laser(const Fault& fault, bool on) {
   simulation::PlsEmulator& laser = devices_.laser();
   const std::int64_t now_ns = devices_.now_ns();
   switch (fault.kind) {
@@ -151,7 +155,7 @@ void FaultDesk::set_laser(const Fault& fault, bool on) {
   }
 }
 
-void FaultDesk::set_base(const Fault& fault, bool on) {
+void FaultInjector::set_base(const Fault& fault, bool on) {
   simulation::McpEmulator& base = devices_.base();
   const std::int64_t now_ns = devices_.now_ns();
   switch (fault.kind) {

@@ -1,4 +1,4 @@
-#include "laser_desk.hpp"
+#include "laser_channel.hpp"
 
 #include <chrono>
 #include <utility>
@@ -13,7 +13,7 @@ namespace {
 constexpr std::chrono::milliseconds kLaserStatusPeriod{500};
 constexpr std::int64_t kRateWindow_ns = 4'000'000'000;
 
-/// What was dropped, by reason, in words that are the same everywhere.
+/// What was dropped, by reason, named alike everywhere.
 std::vector<std::pair<std::string, std::uint64_t>> drops_of(const devices::PlsCounters& counters,
                                                             const LineStatistics& line,
                                                             const ScanGate& gate) {
@@ -53,8 +53,9 @@ std::string_view name(msg::LaserState state) {
 
 }  // namespace
 
-LaserDesk::LaserDesk(service::Service& service, const DeviceConfig& config, const HostTime& time,
-                     ScanGate& gate, std::function<void(std::int64_t)> on_scans)
+LaserChannel::LaserChannel(service::Service& service, const DeviceConfig& config,
+                           const HostTime& time, ScanGate& gate,
+                           std::function<void(std::int64_t)> on_scans)
     : service_(service),
       time_(time),
       gate_(gate),
@@ -67,11 +68,11 @@ LaserDesk::LaserDesk(service::Service& service, const DeviceConfig& config, cons
   timer_ = service_.loop().add_timer(kLaserStatusPeriod, [this] { publish_status(); });
 }
 
-LaserDesk::~LaserDesk() {
+LaserChannel::~LaserChannel() {
   service_.loop().cancel_timer(timer_);
 }
 
-void LaserDesk::after_driver(std::int64_t now_ns) {
+void LaserChannel::after_driver(std::int64_t now_ns) {
   std::vector<devices::PlsScan> scans = driver_.take_scans();
   for (devices::PlsScan& scan : scans) {
     beams_ = static_cast<std::uint32_t>(scan.ranges_m.size());
@@ -82,14 +83,14 @@ void LaserDesk::after_driver(std::int64_t now_ns) {
     gate_.add(std::move(scan), now_ns);
   }
   if (!scans.empty()) on_scans_(now_ns);
-  if (state(driver_.status()) != told_state_) publish_status();
+  if (state(driver_.status()) != published_state_) publish_status();
 }
 
-bool LaserDesk::running() const {
+bool LaserChannel::running() const {
   return state(driver_.status()) == msg::kLaserRunning;
 }
 
-msg::LaserState LaserDesk::state(const devices::PlsStatus& status) const {
+msg::LaserState LaserChannel::state(const devices::PlsStatus& status) const {
   switch (status.state) {
     case devices::PlsState::kDetecting:
     case devices::PlsState::kConfiguring:
@@ -103,7 +104,7 @@ msg::LaserState LaserDesk::state(const devices::PlsStatus& status) const {
   return msg::kLaserOffline;
 }
 
-std::string LaserDesk::reason(const devices::PlsStatus& status) const {
+std::string LaserChannel::reason(const devices::PlsStatus& status) const {
   if (!line_.why_closed().empty()) return line_.why_closed();
   if (status.state != devices::PlsState::kRunning) return status.reason;
   if (status.stuck) return "the same scan again and again";
@@ -112,21 +113,21 @@ std::string LaserDesk::reason(const devices::PlsStatus& status) const {
   return {};
 }
 
-std::string LaserDesk::describe() const {
+std::string LaserChannel::describe() const {
   const devices::PlsStatus status = driver_.status();
   const std::string why = reason(status);
   const std::string text(name(state(status)));
   return why.empty() ? text : text + ": " + why;
 }
 
-void LaserDesk::publish_status() {
+void LaserChannel::publish_status() {
   const devices::PlsStatus status = driver_.status();
   const std::int64_t now_ns = line_.now_ns();
   while (!recent_ns_.empty() && recent_ns_.front() < now_ns - kRateWindow_ns) {
     recent_ns_.pop_front();
   }
   const msg::LaserState state_now = state(status);
-  told_state_ = state_now;
+  published_state_ = state_now;
   msg::LaserStatus message;
   messaging::set_header(message, service_.robot_id(), time_.stamp_ns(now_ns), statuses_sent_);
   message.state(state_now);
@@ -156,7 +157,7 @@ void LaserDesk::publish_status() {
   }
 }
 
-void LaserDesk::count() {
+void LaserChannel::count() {
   messaging::StatusPublisher& publisher = service_.status();
   const devices::PlsStatus status = driver_.status();
   const auto set = [&](const std::string& counter, std::uint64_t value) {

@@ -1,4 +1,4 @@
-// Makes the faults that the simulator is told to make, and ends them when their time is over.
+// Makes the faults that commands ask for, and ends them when their time is over.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,10 @@ Fault fault_from_msg(const msg::SimulatorCommand& message);
 /// "silence of the laser for 2 s", for people.
 std::string describe(const Fault& fault);
 
-class FaultDesk {
+class FaultInjector {
  public:
   /// `devices` outlives it.
-  explicit FaultDesk(SimulatedDevices& devices) : devices_(devices) {}
+  explicit FaultInjector(SimulatedDevices& devices) : devices_(devices) {}
 
   /// Begins now; one of the same kind and device that goes on already lasts longer instead.
   void begin(const Fault& fault);

@@ -1,0 +1,78 @@
+// Whether a base is there: sets it up, waits for its reports, notices when they cease and asks now
+// and then whether it is back.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "topogeo/devices/base_settings.hpp"
+#include "topogeo/devices/base_writer.hpp"
+
+namespace topogeo::devices {
+
+class BaseLink {
+ public:
+  /// What came of a message or of time that has passed.
+  enum class Change : std::uint8_t {
+    kNone,
+    kSetUp,    ///< the base is set up from nothing
+    kRunning,  ///< it reports after it was set up
+    kResumed,  ///< it reports again and has kept its settings
+    kOffline   ///< it does not answer, see reason()
+  };
+
+  /// Keeps a reference to `writer`, which it also empties.
+  BaseLink(const BaseSettings& settings, BaseWriter& writer);
+
+  /// The port is open; what follows is kSetUp.
+  void open(std::int64_t now_ns);
+  /// The port is gone; what follows is kOffline.
+  void close();
+  /// A usable report came; `restarted`: of a base whose clock began anew.
+  Change reported(bool restarted, std::int64_t now_ns);
+  /// Anything came, after its messages were dealt with.
+  Change received(std::span<const std::uint8_t> bytes, std::int64_t now_ns);
+  /// The base gave another sign of life than a report. Unless reports follow, too, it is set up
+  /// when the next question would be due.
+  void answered() { answered_ = true; }
+  Change tick(std::int64_t now_ns);
+  [[nodiscard]] std::int64_t due_ns() const;
+
+  [[nodiscard]] bool closed() const { return phase_ == Phase::kClosed; }
+  [[nodiscard]] bool running() const { return phase_ == Phase::kRunning; }
+  [[nodiscard]] bool offline() const { return closed() || !reason_.empty(); }
+  /// Why it is offline.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+  /// How often the base was set up.
+  [[nodiscard]] std::uint64_t starts() const { return starts_; }
+
+ private:
+  enum class Phase : std::uint8_t {
+    kClosed,
+    kStarting,  ///< the start sequence is being written
+    kWaiting,   ///< for the first report after it
+    kRunning,
+    kProbing  ///< after a question whether anything answers
+  };
+
+  void start(std::int64_t now_ns);
+  void probe(std::int64_t now_ns);
+  [[nodiscard]] bool restarted(std::span<const std::uint8_t> bytes);
+
+  BaseSettings settings_;
+  BaseWriter& writer_;
+  std::int64_t period_ns_;
+  std::int64_t silence_ns_;
+  Phase phase_ = Phase::kClosed;
+  std::string reason_;
+  std::int64_t heard_ns_ = 0;        // when the last usable report came
+  std::int64_t started_ns_ = 0;      // when the base was set up last
+  std::int64_t phase_until_ns_ = 0;  // of kWaiting and kProbing
+  bool reconnects_ = false;          // kStarting after a silence
+  bool answered_ = false;            // since the last start
+  std::string probe_answer_{};       // the end of what came since the last question
+  std::uint64_t starts_ = 0;
+};
+
+}  // namespace topogeo::devices

@@ -1,0 +1,98 @@
+#include "topogeo/devices/base_interlocks.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace topogeo::devices {
+namespace {
+
+/// Empty for events that are no fault of a motor.
+std::string_view motor_fault_of(McpEventKind kind) {
+  switch (kind) {
+    case McpEventKind::kTranslateError:
+      return "translation motor: servo error";
+    case McpEventKind::kTranslateCurrent:
+      return "translation motor: current";
+    case McpEventKind::kRotateError:
+      return "rotation motor: servo error";
+    case McpEventKind::kRotateCurrent:
+      return "rotation motor: current";
+    default:
+      return {};
+  }
+}
+
+bool clears_motor_fault(McpEventKind kind) {
+  return kind == McpEventKind::kTranslateCleared || kind == McpEventKind::kRotateCleared ||
+         kind == McpEventKind::kErrorCleared;
+}
+
+}  // namespace
+
+BaseInterlocks::BaseInterlocks(const BaseSettings& settings)
+    : command_timeout_ns_(static_cast<std::int64_t>(settings.command_timeout_s * 1e9)) {}
+
+std::optional<BaseState> BaseInterlocks::state() const {
+  if (stopped_) return BaseState::kEmergencyStop;
+  if (halted_) return BaseState::kHalted;
+  if (watchdog_expired_) return BaseState::kWatchdogExpired;
+  if (bump_latched_ || pressed_ != 0) return BaseState::kBumped;
+  return std::nullopt;
+}
+
+void BaseInterlocks::motion_taken() {
+  motor_fault_ = {};
+  watchdog_expired_ = false;
+}
+
+void BaseInterlocks::standing_taken() {
+  bump_latched_ = false;
+  watchdog_expired_ = false;
+}
+
+bool BaseInterlocks::emergency_stop() {
+  return !std::exchange(stopped_, true);
+}
+
+void BaseInterlocks::release() {
+  halted_ = false;
+  stopped_ = false;
+}
+
+bool BaseInterlocks::joystick(bool moves) {
+  const bool moved = std::exchange(joystick_, moves);
+  return moves && !moved;
+}
+
+bool BaseInterlocks::bumpers(std::uint16_t active_low, std::int64_t now_ns) {
+  const auto pressed = static_cast<std::uint16_t>(~active_low);
+  const bool more = (pressed & ~pressed_) != 0;
+  pressed_ = pressed;
+  if (!more) return false;
+  bump_latched_ = true;
+  last_motion_command_ns_ = now_ns;
+  return true;
+}
+
+bool BaseInterlocks::motor_event(McpEventKind kind) {
+  const std::string_view fault = motor_fault_of(kind);
+  if (!fault.empty() || clears_motor_fault(kind)) motor_fault_ = fault;
+  return !fault.empty();
+}
+
+void BaseInterlocks::offline() {
+  watchdog_expired_ = false;
+  bump_latched_ = false;
+  motor_fault_ = {};
+}
+
+void BaseInterlocks::tick(std::int64_t now_ns) {
+  if (now_ns >= due_ns()) bump_latched_ = false;
+}
+
+std::int64_t BaseInterlocks::due_ns() const {
+  return bump_latched_ ? last_motion_command_ns_ + command_timeout_ns_
+                       : std::numeric_limits<std::int64_t>::max();
+}
+
+}  // namespace topogeo::devices

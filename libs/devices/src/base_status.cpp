@@ -1,0 +1,39 @@
+#include "topogeo/devices/base_status.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace topogeo::devices {
+namespace {
+
+struct StateText {
+  std::string_view name;
+  std::string_view reason;
+};
+
+// In the order of BaseState.
+constexpr std::array<StateText, 10> kStateTexts{{
+    {"ready", ""},
+    {"moving", ""},
+    {"offline", "no line to the base"},
+    {"starting", "the base is being set up"},
+    {"emergency stop",
+     "motion was commanded and does not come about: emergency stop, or the wheels are held"},
+    {"halted", "halted on demand"},
+    {"watchdog expired", "the base had heard nothing for too long and stopped"},
+    {"bumped", "a bumper was pressed"},
+    {"joystick", "the base moves without a command"},
+    {"motors off", "the motors are limp"},
+}};
+
+}  // namespace
+
+std::string_view base_state_name(BaseState state) {
+  return kStateTexts.at(static_cast<std::size_t>(state)).name;
+}
+
+std::string_view base_state_reason(BaseState state) {
+  return kStateTexts.at(static_cast<std::size_t>(state)).reason;
+}
+
+}  // namespace topogeo::devices
