@@ -6,15 +6,18 @@
 namespace topogeo::devices {
 namespace {
 
+/// Long enough to hold a report with little delay, short enough for the clocks' drift not to count.
 constexpr std::int64_t kWindow_ns = 5'000'000'000;
-constexpr std::int64_t kSlewDivisor = 50;  // 2 %
+/// 2 %: more than any two clocks drift apart, too little to be seen in a speed.
+constexpr std::int64_t kSlewDivisor = 50;
 
 /// No message comes earlier than the least delayed one but for ticks and the clocks' drift.
 constexpr std::int64_t kEarliest_ns = 25'000'000;
 /// A host that was busy for longer than this takes the base for restarted.
 constexpr std::int64_t kLatest_ns = 3'000'000'000;
 constexpr std::int64_t kPause_ns = 1'000'000'000;
-constexpr double kFastestSpeed = 2.5;  // what 16 bits of encoder counts can say, and a little
+/// m/s: what 16 bits of encoder counts can hold (2.33 m/s for a B21), and a little.
+constexpr double kFastestSpeed = 2.5;
 /// A device's clock is not more wrong than one part in this.
 constexpr std::int64_t kDriftDivisor = 1000;
 /// The first message may be a late one: after so long the least delay is known.
@@ -25,12 +28,12 @@ constexpr double kMargin_rad = 0.03;
 constexpr std::int64_t kFreshMargin_ns = 1'000'000'000;
 /// The same bit may be wrong twice.
 constexpr unsigned kFewDoubts = 2;
-/// After so many reports in succession whose ways do not fit their speeds or whose clocks
-/// do not fit ours, neither is believed any more.
+/// After so many reports in succession whose distances do not fit their speeds or whose clocks do
+/// not fit the host's, the next one that agrees with them is accepted.
 constexpr unsigned kManyDoubts = 4;
 /// Reports' speeds may be so wrong, as a share,
 constexpr double kSpeedDoubt = 0.5;
-/// and change so many times as fast as the base is told to change them.
+/// and change so many times as fast as the commanded accelerations.
 constexpr double kHaste = 2.0;
 
 }  // namespace
@@ -45,7 +48,7 @@ std::int64_t DeviceClock::lateness_ns(std::int64_t device_ns, std::int64_t arriv
 
 void DeviceClock::settle(std::int64_t device_ns, std::int64_t offset_ns) {
   if (device_ns - window_ns_ > kWindow_ns) {
-    // What a pause outlasted says nothing of the clocks now.
+    // Offsets from before a long pause do not hold for the clocks now.
     before_ns_ = device_ns - window_ns_ > 2 * kWindow_ns ? offset_ns : least_ns_;
     least_ns_ = offset_ns;
     window_ns_ = device_ns;
@@ -78,8 +81,8 @@ BaseOdometer::BaseOdometer(const BaseSettings& settings)
       tracker_(units_),
       host_clock_(report_line_time_ns(settings)) {}
 
-/// Without a checksum one wrong digit would move the robot. Its way has to fit the speeds that the
-/// two reports tell, or in any case `loosely` what a base can do.
+/// Without a checksum one wrong digit would move the robot. Its distance has to fit the speeds of
+/// the two reports, or in any case `loosely` what a base can do.
 bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
                                    std::int64_t elapsed_ns, bool loosely) const {
   McpPoseTracker tracker(units_);
@@ -89,12 +92,13 @@ bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
   if (loosely || elapsed_ns > kPause_ns) {  // in a pause it may have moved and stopped again
     return moved.position_m().norm() <= kMargin_m + kFastestSpeed * elapsed_s;
   }
-  const auto fits = [elapsed_s](double way, double speed_from, double speed_to, double acceleration,
-                                double margin) {
+  const auto fits = [elapsed_s](double distance, double speed_from, double speed_to,
+                                double acceleration, double margin) {
     const double speed = std::max(std::abs(speed_from), std::abs(speed_to));
     const double doubt =
         kSpeedDoubt * speed + std::abs(speed_to - speed_from) / 2 + acceleration * elapsed_s / 4;
-    return std::abs(way - elapsed_s * (speed_from + speed_to) / 2) <= margin + doubt * elapsed_s;
+    return std::abs(distance - elapsed_s * (speed_from + speed_to) / 2) <=
+           margin + doubt * elapsed_s;
   };
   const geometry::Pose2 half_turn{0.0, 0.0, -0.5 * moved.theta_rad};
   const Eigen::Vector2d way_m = half_turn * moved.position_m();

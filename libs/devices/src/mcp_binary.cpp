@@ -133,7 +133,7 @@ void McpBinaryDecoder::search(std::uint8_t byte) {
 }
 
 /// Noise may end with marks of a start, so that more than two stand before the length. A 00 after
-/// them says that the last of them is the length itself.
+/// them means that the last of them is the length itself.
 void McpBinaryDecoder::take_length(std::uint8_t byte) {
   if (byte == kStart) {
     ++marks_;

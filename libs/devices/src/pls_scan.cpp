@@ -24,7 +24,7 @@ constexpr std::array<Geometry, 6> kGeometries{{{361, -90.0, 0.5},
                                                {201, -50.0, 0.5},
                                                {101, -50.0, 1.0}}};
 
-/// Fills in the ranges and what the readings say besides; returns how many are returns.
+/// Fills in the ranges and the flags of the readings; returns how many are returns.
 std::size_t read(const PlsMeasuredValues& values, double unit_m, const PlsSettings& settings,
                  PlsScan& scan) {
   std::size_t returns = 0;

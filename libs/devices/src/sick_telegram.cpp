@@ -15,7 +15,7 @@ constexpr std::size_t kHeader_bytes = 4;
 constexpr std::size_t kCrc_bytes = 2;
 constexpr std::uint8_t kFromSensor = 0x80;
 constexpr std::uint8_t kMeasuredValues = 0xB0;
-/// Bits 10 to 15 of the number of readings say other things.
+/// Bits 10 to 15 of the number of readings are flags.
 constexpr std::size_t kCountMask = 0x3FF;
 /// Dealt with bytes are moved out of the buffer when they are this many.
 constexpr std::size_t kCompactAt_bytes = 4096;
@@ -205,7 +205,7 @@ void SickDecoder::skip_noise(std::size_t size) {
   if (position() > first) counters_.noise_bytes += position() - first;
 }
 
-/// A lone STX, or the start of an echo, says too little to be called a telegram cut short.
+/// A lone STX, or the start of an echo, is too little to count as a telegram cut short.
 bool SickDecoder::starts_reply() const {
   if (silent_at_ - position() < 2) return false;
   return listener_ == Listener::kSensor || (buffer_[head_ + 1] & kFromSensor) != 0;

@@ -21,18 +21,18 @@ struct BaseOdometry {
 };
 
 /// A device's clock on the host's steady clock: messages come late by varying times but never
-/// early, so that the least delay of the last seconds tells how the clocks stand to each other.
+/// early, so that the least delay of the last seconds shows the offset between the clocks.
 class DeviceClock {
  public:
   /// `transmission_ns`: what even the least delayed message took.
   explicit DeviceClock(std::int64_t transmission_ns) : transmission_ns_(transmission_ns) {}
 
-  /// Host time of the device's time `device_ns`, said in a message that arrived at `arrival_ns`.
+  /// Host time of the device's time `device_ns`, of a message that arrived at `arrival_ns`.
   /// Later than every answer before, never later than the arrival unless it must be; runs at most
   /// 2 % faster or slower than the device's clock.
   std::int64_t map(std::int64_t device_ns, std::int64_t arrival_ns);
-  /// How much later than the least delayed ones a message came; negative if earlier, which is not
-  /// said of the first seconds. 0 before the first.
+  /// How much later than the least delayed ones a message came; negative if earlier, but never in
+  /// the first seconds. 0 before the first.
   [[nodiscard]] std::int64_t lateness_ns(std::int64_t device_ns, std::int64_t arrival_ns) const;
   /// The device's clock starts anew.
   void restart() { started_ = false; }

@@ -1,4 +1,4 @@
-// What differs between bases and what nobody could confirm on hardware, in one place.
+// What differs between bases and what is not confirmed on hardware, in one place.
 #pragma once
 
 #include <cstdint>
@@ -25,13 +25,14 @@ struct BaseSettings {
   /// 9600 in most sources; one B21 speaks at 38400.
   LineSettings line{};
   McpCalibration calibration{};
-  /// Nobody can set larger ones.
+  /// BaseDriver::set_limits cannot exceed them.
   BaseLimits limits{};
 
   /// Fields of the reports (McpField): at least clock, x, y, heading, and speed and status of both
   /// axes.
   std::uint32_t report_mask = 0x000A0A7A;
-  /// 0: as short as the line allows, at least 26/256 s, below which a base is said not to go.
+  /// 0: as short as the line allows, at least 26/256 s, below which a base does not go (MIRO's
+  /// driver).
   double report_period_s = 0.0;
   McpChecksum checksum = McpChecksum::kLearn;
 
@@ -42,7 +43,7 @@ struct BaseSettings {
   double command_timeout_s = 0.5;
   /// A base that gives no usable report for so long is offline; never less than four periods.
   double silence_s = 0.5;
-  /// Between two commands; a base is said to lose those that follow sooner.
+  /// Between two commands; a base loses those that follow sooner (MIRO's driver).
   double write_gap_s = 0.01;
   /// From asking for the binary dialect to the first packet.
   double direct_mode_wait_s = 0.25;
@@ -56,10 +57,10 @@ struct BaseSettings {
   /// From an error of the motors to their shutdown (ED), 1/256 s.
   std::uint16_t error_delay_ticks = 0x80;
 
-  /// As many reports in succession that tell of acceleration and standstill, though motion was
+  /// As many reports in succession of acceleration and standstill, though motion was
   /// commanded, are an emergency stop: no message for it is known. >= 2
   unsigned stalled_reports = 3;
-  /// Slower than this counts as standstill; encoder noise of a base at rest is said to reach 256
+  /// Slower than this counts as standstill; encoder noise of a base at rest reaches 256
   /// counts/s.
   double standstill_mps = 0.01;
   double standstill_radps = 0.03;

@@ -1,6 +1,6 @@
 // The ASCII dialect of the MCP: lines of two-letter commands with hexadecimal arguments, reports of
-// a line per field. It has no checksum: what a line says is taken only if its name, its place and
-// its length are right.
+// a line per field. It has no checksum: the value of a line is taken only if its name, its place
+// and its length are right.
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,7 @@ namespace topogeo::devices {
 using McpPacket = std::array<std::uint8_t, 6>;
 /// The opcode, the argument with the most significant byte first, the exclusive or of the five.
 McpPacket binary_packet(const McpOrder& order);
-/// As many zeros in succession make a base look for the start of a packet again.
+/// As many zeros in succession make a base search for the start of a packet again.
 inline constexpr std::size_t kMcpSyncZeros = 7;
 
 /// Appends the frame of a payload (opcode and data). Throws std::invalid_argument unless it has

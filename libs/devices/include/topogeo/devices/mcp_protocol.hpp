@@ -1,4 +1,4 @@
-// What an RWI base and its host say to each other, apart from how the two dialects of its
+// The messages between an RWI base and its host, apart from how the two dialects of its
 // controller (MCP) write it down: mcp_ascii.hpp and mcp_binary.hpp.
 //
 // Put together from public drivers of the B21, since no manual is public; nothing of it was
@@ -39,7 +39,7 @@ enum class McpCommand : std::uint8_t {
   kTranslateLimp = 0x23,
   kTranslateForward = 0x24,   ///< 32 bits, encoder counts
   kTranslateBackward = 0x25,  ///< 32 bits, encoder counts
-  kTranslatePlus = 0x26,      ///< run forward until told otherwise
+  kTranslatePlus = 0x26,      ///< run forward until the next command
   kTranslateMinus = 0x27,
   kTranslateTorque = 0x2D,  ///< 8 bits
   kTranslateTo = 0x3B,      ///< 32 bits, absolute
@@ -50,7 +50,7 @@ enum class McpCommand : std::uint8_t {
   kRotateLimp = 0x43,
   kRotatePositive = 0x44,  ///< 32 bits, rotation counts, clockwise on a B21
   kRotateNegative = 0x45,
-  kRotatePlus = 0x46,  ///< run clockwise until told otherwise
+  kRotatePlus = 0x46,  ///< run clockwise until the next command
   kRotateMinus = 0x47,
   kRotateTo = 0x5B,  ///< 32 bits, absolute; 0x80000000 is where the base was switched on
   kRotateWhere = 0x5C,
@@ -154,10 +154,10 @@ enum class McpEventKind : std::uint8_t {
   kErrorCleared,
   kWatchdogExpired,
   kLostSync,  ///< the base does not find the start of our packets
-  kIndex      ///< value: what the base says of its indices
+  kIndex      ///< value: the state of its indices
 };
 
-/// What the base says unasked.
+/// A message that the base sends unasked.
 struct McpEvent {
   McpEventKind kind = McpEventKind::kBump;
   std::uint32_t value = 0;

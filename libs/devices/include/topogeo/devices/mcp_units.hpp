@@ -10,7 +10,7 @@
 namespace topogeo::devices {
 
 /// What differs from base to base. Not confirmed on hardware: a wrong `counts_per_m` is a robot
-/// that drives twice as far as it was told, so measure it before the first drive.
+/// that drives twice as far as commanded, so measure it before the first drive.
 struct McpCalibration {
   /// Encoder counts of a metre; 28120 for a B21 with 500 counts per motor turn, a reduction of
   /// 19.75 and wheels of 4.4 inches, 25630 for a B21b (18.0); others were measured to 54820.
@@ -18,7 +18,7 @@ struct McpCalibration {
   /// Units of BPX and BPY in a metre; 0 stands for counts_per_m / 256.
   double position_units_per_m = 0.0;
   double rotation_counts_per_turn = 1024.0;
-  /// The base counts rotation clockwise; other RWI bases turn the other way.
+  /// The base counts rotation clockwise; other RWI bases count the other direction.
   bool clockwise_positive = true;
   /// Forward of the base is backward of the robot.
   bool reversed = false;

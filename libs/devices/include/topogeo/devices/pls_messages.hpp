@@ -1,4 +1,4 @@
-// What the telegrams of a SICK PLS laser, and of an LMS-2xx at its defaults, say.
+// The contents of the telegrams of a SICK PLS laser, and of an LMS-2xx at its defaults.
 #pragma once
 
 #include <cstddef>
@@ -56,7 +56,7 @@ enum class PlsSeverity : std::uint8_t { kNone, kInfo, kWarning, kError, kFatal }
 struct PlsHealth {
   PlsSeverity severity = PlsSeverity::kNone;
   bool restarting = false;   ///< bit 5
-  bool implausible = false;  ///< bit 6: the measured values are not to be believed
+  bool implausible = false;  ///< bit 6: the sensor calls its measured values implausible
   bool polluted = false;     ///< bit 7: the window is dirty
   bool operator==(const PlsHealth&) const = default;
 };
@@ -94,7 +94,7 @@ enum class PlsModeReply : std::uint8_t { kDone = 0, kRefused = 1, kFault = 2 };
 
 struct PlsStatusReport {
   std::string software;               ///< version, of seven characters
-  std::optional<std::uint32_t> baud;  ///< the rate in use, if the report says one that is known
+  std::optional<std::uint32_t> baud;  ///< the rate in use, if the report holds a known one
   PlsHealth health{};
 };
 [[nodiscard]] std::optional<PlsStatusReport> pls_status_report(const SickTelegram& telegram);
@@ -111,7 +111,7 @@ struct PlsError {
 /// out.
 [[nodiscard]] std::optional<std::string> pls_power_on_text(const SickTelegram& telegram);
 
-/// Where a status report of the PLS says its rate, and how (BeeSoft's laser server is the only
+/// Where a status report of the PLS holds its rate, and how (BeeSoft's laser server is the only
 /// source; not confirmed on hardware).
 inline constexpr std::size_t kPlsStatusBaudAt = 115;
 [[nodiscard]] std::optional<std::uint16_t> pls_status_baud_code(std::uint32_t baud);

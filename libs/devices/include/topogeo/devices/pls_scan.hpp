@@ -1,4 +1,4 @@
-// Scans from the measured values of a SICK PLS or LMS, and which of those are not to be believed.
+// Scans from the measured values of a SICK PLS or LMS, and the reasons to drop one.
 #pragma once
 
 #include <cstddef>

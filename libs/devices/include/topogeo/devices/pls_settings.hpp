@@ -23,7 +23,7 @@ struct PlsSettings {
   std::uint32_t baud = 500'000;
   /// The rate after power-on unless the owner made another one permanent (all drivers).
   std::uint32_t power_on_baud = 9600;
-  /// Rates to look for the sensor at, in this order (BeeSoft's and CARMEN's, then the others).
+  /// Rates to search for the sensor at, in this order (BeeSoft's and CARMEN's, then the others).
   std::vector<std::uint32_t> detection_bauds{9600, 38400, 500'000, 19200};
   /// A PLS has even parity, an LMS none; with both, the kind of sensor is found out. All rates are
   /// tried with the first before the second.
@@ -57,7 +57,7 @@ struct PlsSettings {
   std::int64_t longest_pause_ns = 5'000'000'000;
   /// After so many searches without success the state is failed; the search goes on.
   int searches_until_failed = 3;
-  /// Without a scan for so many scan periods, and at least this time, the sensor is looked for
+  /// Without a scan for so many scan periods, and at least this time, the sensor is searched for
   /// anew.
   int silent_scan_periods = 4;
   std::int64_t shortest_silence_ns = 1'000'000'000;
@@ -70,8 +70,8 @@ struct PlsSettings {
   std::int64_t sweep_to_send_ns = 10'000'000;
   /// Readings from here on are no return. CARMEN uses 50 m for the PLS.
   double range_max_m = 50.0;
-  /// Codes from here on are no return, whatever the unit (8183 and above say so in an LMS; how a
-  /// PLS says it is not confirmed on hardware).
+  /// Codes from here on are no return, whatever the unit (8183 and above in an LMS; the codes
+  /// of a PLS are not confirmed on hardware).
   std::uint16_t first_no_return_code = 8183;
   /// What a dazzled reading counts as: no return, or its distance.
   bool dazzled_is_no_return = true;
@@ -79,8 +79,8 @@ struct PlsSettings {
   bool drop_implausible = true;
   bool drop_at_error = true;
   /// From this many identical scans in a row on, they are dropped: a window that is covered or a
-  /// sensor that hangs. 2 drops every repetition, 0 none. That the noise of a PLS tells scans of a
-  /// standing robot apart is not confirmed on hardware, hence the default.
+  /// sensor that hangs. 2 drops every repetition, 0 none. That the noise of a PLS makes scans of a
+  /// standing robot differ is not confirmed on hardware, hence the default.
   int stuck_scans = 25;
   /// Scans with fewer returns may repeat: there is nothing to see.
   std::size_t stuck_returns = 10;

@@ -1,4 +1,4 @@
-// What the driver of a serial device and the line that it talks through say to each other. A driver
+// The interface between the driver of a serial device and the owner of its port. A driver
 // does no input or output and has no clock: whoever owns the port hands it bytes and the time, and
 // carries out what it orders.
 #pragma once

@@ -5,7 +5,7 @@
 // The host's telegrams carry an address below 80 and a command; the sensor's carry an address with
 // bit 7 set, the command's number plus 80, and a status byte as their last. Between telegrams the
 // sensor sends single bytes: ACK (06) and NAK (15). There is no byte stuffing, so the start of a
-// telegram may also stand inside another, and only the check word tells them apart.
+// telegram may also stand inside another, and only the check word distinguishes them.
 #pragma once
 
 #include <cstddef>

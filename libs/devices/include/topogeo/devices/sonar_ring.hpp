@@ -14,8 +14,8 @@ struct SonarMount {
   double half_cone_rad = 15.0 * std::numbers::pi / 180.0;  ///< half of the opening angle, > 0
 };
 
-/// MACONDO's six: two to the front, two to the left, two to the right. MACONDO says only which
-/// way they look; the mounting is that of a round body of 26 cm, the pairs 20 cm apart.
+/// MACONDO's six: two to the front, two to the left, two to the right. MACONDO gives only their
+/// directions; the mounting is that of a round body of 26 cm, the pairs 20 cm apart.
 std::vector<SonarMount> macondo_sonars();
 
 inline constexpr double kB21Radius_m = 0.267;
