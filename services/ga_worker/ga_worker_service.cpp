@@ -4,12 +4,12 @@
 #include <set>
 #include <stdexcept>
 
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
+#include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::ga_worker {

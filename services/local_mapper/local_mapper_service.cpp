@@ -4,10 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::local_mapper {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/tracking/live_pose.hpp"
 #include "topogeo/messaging/message.hpp"
@@ -12,6 +10,7 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/host.hpp"
+#include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::localizer {

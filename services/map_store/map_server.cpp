@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include <spdlog/spdlog.h>
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::map_store {
 

@@ -4,11 +4,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 #include "result_files.hpp"
 

@@ -5,11 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::navigator {
 

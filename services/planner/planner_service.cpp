@@ -4,10 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 #include "answer.hpp"
 

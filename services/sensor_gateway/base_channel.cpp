@@ -7,10 +7,9 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::sensor_gateway {
 

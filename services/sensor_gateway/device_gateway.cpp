@@ -5,10 +5,9 @@
 #include <limits>
 #include <string>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::sensor_gateway {
 

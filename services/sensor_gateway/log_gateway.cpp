@@ -4,11 +4,10 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::sensor_gateway {
 

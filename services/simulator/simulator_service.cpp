@@ -4,10 +4,9 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::simulator {
 namespace {

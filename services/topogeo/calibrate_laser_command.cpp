@@ -11,14 +11,13 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/calibration/laser_calibration.hpp"
 #include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "calibration_log.hpp"
 #include "commands.hpp"

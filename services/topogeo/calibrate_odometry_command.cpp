@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/calibration/odometry_calibration.hpp"
 #include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
@@ -20,6 +18,7 @@
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "calibration_log.hpp"
 #include "commands.hpp"

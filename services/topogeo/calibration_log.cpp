@@ -8,14 +8,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "job.hpp"
 

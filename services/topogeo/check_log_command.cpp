@@ -6,11 +6,11 @@
 #include <string>
 
 #include <nlohmann/json.hpp>
-#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/scan/carmen_log_check.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
@@ -18,6 +17,7 @@
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/relations.hpp"
 #include "topogeo/storage/tum.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
 

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/render/contact_sheet.hpp"
@@ -18,6 +16,7 @@
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
 #include "commands.hpp"

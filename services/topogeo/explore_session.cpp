@@ -4,13 +4,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
 namespace topogeo::cli {

@@ -5,11 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
 namespace topogeo::cli {

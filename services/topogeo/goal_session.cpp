@@ -6,13 +6,12 @@
 #include <utility>
 #include <variant>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
 #include "target_text.hpp"

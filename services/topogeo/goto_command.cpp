@@ -8,12 +8,11 @@
 #include <stdexcept>
 #include <string>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
 #include "goal_session.hpp"

@@ -1,10 +1,9 @@
 #include "goto_run.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {

@@ -6,12 +6,11 @@
 #include <numbers>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {

@@ -12,8 +12,6 @@
 #include <variant>
 #include <vector>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
@@ -22,6 +20,7 @@
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"

@@ -7,13 +7,13 @@
 #include <string>
 
 #include <nlohmann/json.hpp>
-#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
 #include "target_text.hpp"

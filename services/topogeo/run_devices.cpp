@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/topomap/pose_at.hpp"
 #include "topogeo/world/world.hpp"
 

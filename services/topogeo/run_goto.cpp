@@ -6,12 +6,11 @@
 #include <stdexcept>
 #include <string>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
 #include "goto_run.hpp"

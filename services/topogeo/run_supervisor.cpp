@@ -4,8 +4,7 @@
 #include <chrono>
 #include <iostream>
 
-#include <spdlog/fmt/fmt.h>
-
+#include "topogeo/support/format.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::cli {

@@ -4,8 +4,9 @@
 #include <random>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
+
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {

@@ -1,6 +1,6 @@
 #include "service_table.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {

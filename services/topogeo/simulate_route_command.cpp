@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
@@ -20,6 +18,7 @@
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
 #include "target_text.hpp"

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <system_error>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
-#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {

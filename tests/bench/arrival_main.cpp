@@ -14,10 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "arrival_picture.hpp"
 #include "arrival_run.hpp"

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include <cairo.h>
-#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::bench {
 namespace {

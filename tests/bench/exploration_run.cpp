@@ -8,14 +8,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/pipeline/world_grid.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/planning/zones.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/random.hpp"
 #include "topogeo/support/seed.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"

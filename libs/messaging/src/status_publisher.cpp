@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/support/host.hpp"
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::messaging {
 

@@ -5,9 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/navigation/path_follower.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "elapsed.hpp"
 

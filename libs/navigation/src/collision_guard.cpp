@@ -4,10 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/scan/scan.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "arc_sweep.hpp"
 #include "scan_smoothing.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 #include "arrival.hpp"
 #include "goal_in_hand.hpp"

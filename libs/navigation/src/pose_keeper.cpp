@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::navigation {
 namespace {

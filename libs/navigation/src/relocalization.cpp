@@ -1,6 +1,6 @@
 #include "relocalization.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 #include "elapsed.hpp"
 

@@ -6,10 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::pipeline {
 

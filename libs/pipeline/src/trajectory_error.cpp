@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <Eigen/Geometry>
-#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "loop_pairs.hpp"
 

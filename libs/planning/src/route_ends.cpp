@@ -5,9 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/planning/motion_primitives.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "nearest_in_sight.hpp"
 

@@ -9,7 +9,8 @@
 
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
-#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/support/format.hpp"
 
 #include "snapping.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::render {
 namespace {

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <spdlog/fmt/fmt.h>
-
+#include "topogeo/support/format.hpp"
 #include "topogeo/topomap/arc_length.hpp"
 
 #include "axes.hpp"

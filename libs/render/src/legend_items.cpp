@@ -1,6 +1,6 @@
 #include "legend_items.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::render {
 namespace {

@@ -1,7 +1,7 @@
 // Panels of the local topo-geometric map: plan and thumbnail.
 #include <string>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 #include "axes.hpp"
 #include "branch_style.hpp"

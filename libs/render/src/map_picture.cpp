@@ -2,9 +2,8 @@
 
 #include <stdexcept>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "draw_map.hpp"
 #include "layout.hpp"

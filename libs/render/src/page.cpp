@@ -8,7 +8,8 @@
 #include <utility>
 
 #include <cairo-svg.h>
-#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::render {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::render {
 namespace {

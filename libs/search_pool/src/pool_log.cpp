@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::search_pool {
 

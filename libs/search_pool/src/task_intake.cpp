@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::search_pool {
 

@@ -5,8 +5,7 @@
 #include <random>
 #include <stdexcept>
 
-#include <spdlog/fmt/fmt.h>
-
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
 namespace topogeo::search_pool {

@@ -5,9 +5,8 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/devices/mcp_binary.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::simulation {
 namespace {

@@ -6,10 +6,9 @@
 #include <string_view>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::simulation {
 namespace {

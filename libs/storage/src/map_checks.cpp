@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 #include "map_conversions.hpp"
 

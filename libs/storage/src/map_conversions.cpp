@@ -7,7 +7,8 @@
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
-#include <spdlog/fmt/fmt.h>
+
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::storage {
 namespace {

@@ -6,8 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
 
 #include "map_conversions.hpp"

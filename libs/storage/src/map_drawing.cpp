@@ -9,8 +9,9 @@
 #include <utility>
 
 #include <nlohmann/json.hpp>
-#include <spdlog/fmt/fmt.h>
 #include <zlib.h>
+
+#include "topogeo/support/format.hpp"
 
 #include "map_conversions.hpp"
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include <google/protobuf/io/coded_stream.h>
-#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
 
 #include "file_content.hpp"

@@ -1,9 +1,9 @@
 #include "topogeo/storage/report.hpp"
 
 #include <nlohmann/json.hpp>
-#include <spdlog/fmt/fmt.h>
 
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::storage {

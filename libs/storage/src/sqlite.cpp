@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::storage {
 namespace {

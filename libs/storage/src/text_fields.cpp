@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::storage {
 namespace {

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/format.hpp"
 
 #include "file_content.hpp"
 #include "text_fields.hpp"

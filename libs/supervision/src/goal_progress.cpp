@@ -5,9 +5,10 @@
 #include <ostream>
 #include <string_view>
 
-#include <spdlog/fmt/fmt.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
+
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::supervision {
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include <fcntl.h>
-#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
 #include "topogeo/support/file_descriptor.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::support {
 namespace fs = std::filesystem;

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
+
+#include "topogeo/support/log.hpp"
 
 namespace topogeo::support {
 namespace {

@@ -5,8 +5,9 @@
 #include <ostream>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
+
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::support {
 namespace {

@@ -3,9 +3,8 @@
 #include <chrono>
 #include <exception>
 
-#include <spdlog/spdlog.h>
-
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::service {

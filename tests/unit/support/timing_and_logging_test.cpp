@@ -2,9 +2,9 @@
 #include <stdexcept>
 
 #include <gtest/gtest.h>
-#include <spdlog/spdlog.h>
 
 #include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/log.hpp"
 #include "topogeo/support/logging.hpp"
 #include "topogeo/support/version.hpp"
 
