@@ -2,41 +2,40 @@
 
 #include <stdexcept>
 
+#include <SQLiteCpp/Statement.h>
+
 #include "topogeo/support/format.hpp"
+
+#include "sqlite_rows.hpp"
 
 namespace topogeo::storage {
 
-bool has_table(SqliteConnection& connection, const std::string& name) {
-  SqliteStatement statement(connection,
-                            "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?");
-  return statement.bind_text(1, name).step();
+void write_meta(SQLite::Database& database, const std::string& key, const std::string& value) {
+  SQLite::Statement statement(database, "INSERT OR REPLACE INTO meta(key, value) VALUES(?, ?)");
+  statement.bind(1, key);
+  statement.bind(2, value);
+  statement.exec();
 }
 
-void write_meta(SqliteConnection& connection, const std::string& key, const std::string& value) {
-  SqliteStatement(connection, "INSERT OR REPLACE INTO meta(key, value) VALUES(?, ?)")
-      .bind_text(1, key)
-      .bind_text(2, value)
-      .run();
-}
-
-std::string read_meta(SqliteConnection& connection, const std::string& key) {
-  SqliteStatement statement(connection, "SELECT value FROM meta WHERE key = ?");
-  if (!statement.bind_text(1, key).step()) {
-    throw std::runtime_error(fmt::format("{}: damaged (no '{}')", connection.name(), key));
+std::string read_meta(SQLite::Database& database, const std::string& key) {
+  SQLite::Statement statement(database, "SELECT value FROM meta WHERE key = ?");
+  statement.bind(1, key);
+  if (!statement.executeStep()) {
+    throw std::runtime_error(fmt::format("{}: damaged (no '{}')", database.getFilename(), key));
   }
-  return statement.text(0);
+  return text_at(statement, 0);
 }
 
-std::uint64_t read_meta_number(SqliteConnection& connection, const std::string& key) {
-  const std::string text = read_meta(connection, key);
+std::uint64_t read_meta_number(SQLite::Database& database, const std::string& key) {
+  const std::string text = read_meta(database, key);
   try {
     std::size_t used = 0;
     const std::uint64_t value = std::stoull(text, &used);
     if (used == text.size()) return value;
   } catch (const std::logic_error&) {  // reported below
   }
-  throw std::runtime_error(
-      fmt::format("{}: damaged ({} is '{}', expected a number)", connection.name(), key, text));
+  throw std::runtime_error(fmt::format("{}: damaged ({} is '{}', expected a number)",
+                                       database.getFilename(), key, text));
 }
 
 }  // namespace topogeo::storage

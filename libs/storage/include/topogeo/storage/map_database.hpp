@@ -16,9 +16,11 @@
 
 #include "topogeo/storage/map_document.hpp"
 
-namespace topogeo::storage {
+namespace SQLite {
+class Database;
+}
 
-class SqliteConnection;
+namespace topogeo::storage {
 
 /// For one thread. Every call throws std::runtime_error naming the file and the cause when the file
 /// is damaged, the disk is full or another program holds the lock for more than five seconds; the
@@ -78,7 +80,7 @@ class MapDatabase {
   void read_hashes(const char* table, BlobHashes& hashes);
 
   std::string name_;
-  std::unique_ptr<SqliteConnection> connection_;
+  std::unique_ptr<SQLite::Database> database_;
   std::string robot_id_;
   std::uint64_t seed_ = 0;
   std::uint64_t trajectory_version_ = 0;
