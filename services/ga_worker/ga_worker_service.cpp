@@ -21,7 +21,7 @@ constexpr std::chrono::seconds kRateWindow{5};
 /// A client that has not connected by then, or does not take its results so long, is gone.
 constexpr std::chrono::seconds kClientPatience{10};
 constexpr std::chrono::seconds kDrainPatience{10};
-/// A client that has not heard yet that the worker goes may still send a task.
+/// A client whose last status of the worker is older may still send a task.
 constexpr std::chrono::milliseconds kDrainQuiet{30};
 constexpr std::chrono::milliseconds kFarewell{200};
 /// A slot with less would make the features of maps again for nearly every task.
@@ -114,7 +114,7 @@ void GaWorkerService::on_map_copy(const msg::MapCopy& message) {
 void GaWorkerService::keep(const msg::LocalMap& message, const char* what) {
   try {
     topomap::LocalMap map = service::from_msg(message);  // checks content_hash
-    map.track = {};                                      // matching does not look at it
+    map.track = {};                                      // matching does not use it
     for (search_pool::ReadyJob& job :
          intake_.add_map(std::make_shared<const topomap::LocalMap>(std::move(map)))) {
       runner_->add(std::move(job));
@@ -124,21 +124,21 @@ void GaWorkerService::keep(const msg::LocalMap& message, const char* what) {
   }
 }
 
-void GaWorkerService::look_for_maps() {
-  if (look_timer_) service_.loop().cancel_timer(*look_timer_);
-  look_timer_.reset();
+void GaWorkerService::request_missing_maps() {
+  if (request_timer_) service_.loop().cancel_timer(*request_timer_);
+  request_timer_.reset();
   const Clock::time_point now = Clock::now();
-  const search_pool::TaskIntake::Due due = intake_.look(now);
+  const search_pool::TaskIntake::Due due = intake_.check(now);
   for (const search_pool::TaskIntake::Request& wanted : due.requests) request(wanted);
   for (const search_pool::TaskIntake::GivenUp& given_up : due.given_up) {
     if (auto asked = asked_.extract(given_up.job.ticket)) {
       refuse(asked.mapped(), msg::kMatchMapMissing, given_up.why);
     }
   }
-  if (const std::optional<Clock::time_point> next = intake_.next_look()) {
-    look_timer_ = service_.loop().call_after(
+  if (const std::optional<Clock::time_point> next = intake_.next_check()) {
+    request_timer_ = service_.loop().call_after(
         std::max<std::chrono::nanoseconds>(std::chrono::nanoseconds::zero(), *next - now),
-        [this] { look_for_maps(); });
+        [this] { request_missing_maps(); });
   }
 }
 
@@ -206,7 +206,7 @@ void GaWorkerService::on_task(const msg::MatchTask& message, const messaging::Sa
   if (std::optional<search_pool::ReadyJob> ready = intake_.add(std::move(job), now)) {
     runner_->add(std::move(*ready));
   } else {
-    look_for_maps();
+    request_missing_maps();
   }
 }
 
@@ -276,7 +276,7 @@ void GaWorkerService::on_event(const messaging::Event& event) {
   }
 }
 
-// Nobody waits for what is left to do for them.
+// No one waits for what is left to do for them.
 void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entry>& gone) {
   for (const search_pool::ClientRegistry::Entry& entry : gone) {
     const std::string& client_id = entry.first;
@@ -351,9 +351,9 @@ void GaWorkerService::drain() {
   constexpr std::chrono::milliseconds kLook{5};
   const Clock::time_point start = Clock::now();
   Clock::time_point busy_until = start;
-  bool told_again = false;
-  while (!told_again) {
-    told_again = service_.loop().run_for(kLook);
+  bool stopped_again = false;
+  while (!stopped_again) {
+    stopped_again = service_.loop().run_for(kLook);
     const Clock::time_point now = Clock::now();
     if (!asked_.empty() || !unsent_.empty()) busy_until = now;
     if (now - busy_until > kDrainQuiet || now - start > kDrainPatience) break;

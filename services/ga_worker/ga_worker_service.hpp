@@ -40,7 +40,7 @@ class GaWorkerService {
   /// Throws std::invalid_argument for 0 slots or texts that do not fit their bounds.
   GaWorkerService(service::Service& service, const WorkerOptions& options);
 
-  /// Tells that it takes no more tasks, finishes those in hand and sends their results. To be
+  /// Publishes that it takes no more tasks, finishes those in hand and sends their results. To be
   /// called after the loop has ended; a second signal ends it at once.
   void drain();
 
@@ -73,7 +73,7 @@ class GaWorkerService {
   void keep(const msg::LocalMap& message, const char* what);
   /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
   /// time.
-  void look_for_maps();
+  void request_missing_maps();
   void request(const search_pool::TaskIntake::Request& request);
   void refuse(const Asked& asked, msg::MatchStatus status, const std::string& why);
   void answer(msg::MatchResult result, const service::ParticipantId& participant);
@@ -94,7 +94,7 @@ class GaWorkerService {
   messaging::Reader<msg::MatchTask> tasks_;
   search_pool::ClientRegistry clients_;
   search_pool::TaskIntake intake_;
-  std::optional<std::uint64_t> look_timer_;
+  std::optional<std::uint64_t> request_timer_;
   std::map<std::uint64_t, Asked> asked_;  // by ticket
   std::list<Unsent> unsent_;              // to clients who do not take them yet
   std::uint64_t next_ticket_ = 0;

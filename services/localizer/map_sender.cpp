@@ -9,7 +9,7 @@ namespace topogeo::localizer {
 
 namespace {
 
-/// A worker whose reader is not connected by then has other troubles; it asks again.
+/// A worker whose reader is not connected by then asks again when it is.
 constexpr std::chrono::seconds kPatience{5};
 /// Requests that wait, at most.
 constexpr std::size_t kMostPending = 256;

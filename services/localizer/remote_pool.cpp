@@ -25,10 +25,10 @@ namespace {
 /// Longest wait for an event that wakes the pool anyway.
 constexpr std::chrono::seconds kLongestWait{1};
 
-/// Workers tell their status every 500 ms; one that is silent for a second is gone. Liveliness of
-/// DDS alone does not do: while any other worker lives, Fast DDS 2.9 takes the dead one to live,
+/// Workers publish their status every 500 ms; one that is silent for a second is gone. Liveliness
+/// of DDS alone does not do: while any other worker lives, Fast DDS 2.9 takes the dead one to live,
 /// too, until the lease of its participant ends (upstream report 4373). Ticks of the loop are
-/// counted and not time, so that a loop that stood still takes nobody to be gone.
+/// counted and not time, so that no worker is lost because the loop stood still.
 constexpr std::chrono::milliseconds kTick{125};
 constexpr int kSilentTicks = 9;
 
@@ -36,8 +36,8 @@ BoardTime now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-PoolLog::Tell teller(PoolLog::Tell tell) {
-  if (tell) return tell;
+PoolLog::Sink sink_or_log(PoolLog::Sink sink) {
+  if (sink) return sink;
   return [](const std::string& line) { spdlog::info("{}", line); };
 }
 
@@ -51,7 +51,7 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
       matcher_fingerprint_(localization::matcher_fingerprint()),
       board_(options_.board),
       registry_({options_.version, matcher_fingerprint_, options_.config_fingerprint}),
-      log_(teller(options_.tell)),
+      log_(sink_or_log(options_.log)),
       statuses_(participant),
       results_(participant, {{}, options_.client_id}),
       tasks_out_(participant),
@@ -102,7 +102,7 @@ void RemotePool::work() {
     if (const std::optional<std::size_t> here = board_.next_local(now())) {
       log_.searching_here(board_.workers(), now());
       board_.solved(*here, solve(board_.task(*here)), now());
-      tell_recoveries();
+      log_recoveries();
       run_loop(std::chrono::nanoseconds::zero(), {});
       continue;
     }
@@ -138,14 +138,14 @@ void RemotePool::run_loop(std::chrono::nanoseconds duration, const std::function
 
 void RemotePool::go_on() {
   send_waiting();
-  tell_recoveries();
+  log_recoveries();
   if (until_ && !woken_ && until_()) {
     woken_ = true;
     loop_.stop();
   }
 }
 
-void RemotePool::tell_recoveries() {
+void RemotePool::log_recoveries() {
   for (const Recovery& recovery : board_.take_recoveries()) log_.recovered(recovery);
 }
 
@@ -208,7 +208,7 @@ void RemotePool::settle(const MatchTask& task) {
   for (const TaskBoard::Difference& difference : board_.settle(truth, now())) {
     blame(task, difference, truth);
   }
-  tell_recoveries();
+  log_recoveries();
 }
 
 void RemotePool::blame(const MatchTask& task, const TaskBoard::Difference& difference,
@@ -219,7 +219,7 @@ void RemotePool::blame(const MatchTask& task, const TaskBoard::Difference& diffe
     reason = "wrong match result";
   } else {
     if (difference.answer.fitness < truth.fitness) reason = "poorer match result";
-    what = fmt::format("what it says is right, of fitness {:.6f}; searched here, fitness {:.6f}",
+    what = fmt::format("its answer is valid, of fitness {:.6f}; searched here, fitness {:.6f}",
                        difference.answer.fitness, truth.fitness);
   }
   if (difference.unchecked > 0) {
@@ -235,8 +235,8 @@ void RemotePool::blame(const MatchTask& task, const TaskBoard::Difference& diffe
 void RemotePool::on_result(const msg::MatchResult& message, const messaging::SampleInfo& info) {
   const std::string worker_id = message.worker_id().to_string();
   const std::uint64_t task_id = message.task_id();
-  // Whatever it says, it counts only from the process that the task was sent to.
-  if (!registry_.speaks_for(service::participant_of(info.writer), worker_id)) {
+  // An answer counts only from the process that the task was sent to.
+  if (!registry_.is_owner(service::participant_of(info.writer), worker_id)) {
     board_.ignore_answer();
     return;
   }
@@ -318,7 +318,7 @@ void RemotePool::on_status(const msg::WorkerStatus& status, const messaging::Sam
   report.build = {status.version().to_string(), status.matcher_fingerprint(),
                   status.config_fingerprint()};
   const service::ParticipantId from = service::participant_of(info.writer);
-  const WorkerRegistry::Verdict verdict = registry_.hear(report, from, info.instance.bytes);
+  const WorkerRegistry::Verdict verdict = registry_.update(report, from, info.instance.bytes);
   if (verdict.fault) on_fault_(verdict.fault->reason, verdict.fault->detail);
   if (!verdict.usable) return;
   board_.worker_up(report.worker_id, status.draining() ? 0 : status.slots(), now());

@@ -43,12 +43,12 @@ struct RemotePoolOptions {
   std::string version;                   ///< workers of another one are not used
   std::uint64_t config_fingerprint = 0;  ///< workers that were given another one are not used
   search_pool::BoardConfig board;
-  /// Compute again what every answer says of its poses. Off only to measure what it costs.
+  /// Compute again the fitness and verdict of every answer. Off only to measure what it costs.
   bool verify = true;
   /// Asked after every wait: true when the program is to end. Empty: never.
   std::function<bool()> stopping;
   /// Gets lines for the user; empty: they are logged.
-  search_pool::PoolLog::Tell tell;
+  search_pool::PoolLog::Sink log;
 };
 
 /// Everything happens in the thread that calls it. match() runs the event loop while it waits, so
@@ -107,7 +107,7 @@ class RemotePool : public localization::MatchPool {
   localization::MatchResult solve(const localization::MatchTask& task);
   /// Lets the matcher know the task's maps.
   void prepare(const localization::MatchTask& task);
-  void tell_recoveries();
+  void log_recoveries();
   /// Runs the loop until `until` holds, for `duration` at most.
   void run_loop(std::chrono::nanoseconds duration, const std::function<bool()>& until);
 

@@ -1,4 +1,4 @@
-// What a map store is told of drawings on its command line.
+// Drawings on the command line of a map store.
 #pragma once
 
 #include <filesystem>

@@ -21,8 +21,8 @@ class ElementUpdates {
     std::vector<msg::MapElement> gone;     ///< to be disposed, first
     std::vector<msg::MapElement> changed;  ///< to be written, the summary last
   };
-  /// Elements that are as they were are not in it. `stamp_ns` is of the last stop in the map. Tell
-  /// what was sent with sent() and disposed().
+  /// Elements that are as they were are not in it. `stamp_ns` is of the last stop in the map.
+  /// Report what was sent with sent() and disposed().
   [[nodiscard]] Update update_to(const topomap::GlobalMap& map, std::int64_t stamp_ns) const;
 
   void sent(const msg::MapElement& element);

@@ -28,7 +28,7 @@ class HybridUpdates {
   };
   /// Tiles that are as they were are not in it. Every update has a version of its own, so that no
   /// tile of an update that was sent in part passes for one of the next. `stamp_ns` is of the last
-  /// stop in the map. Tell what was sent with sent() and disposed(). Throws std::invalid_argument
+  /// stop in the map. Report what was sent with sent() and disposed(). Throws std::invalid_argument
   /// like service::to_messages.
   Update update_to(const planning::HybridMap& map, std::int64_t stamp_ns);
 

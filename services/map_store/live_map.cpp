@@ -7,7 +7,7 @@ namespace topogeo::map_store {
 
 LiveMap::LiveMap(const topomap::GlobalMapConfig& config) : config_(config), builder_(config) {}
 
-void LiveMap::look(std::span<const topomap::StopPose> stops) {
+void LiveMap::check(std::span<const topomap::StopPose> stops) {
   if (used_.size() < rebuild_until_) return;
   for (std::size_t i = 0; i < std::min(used_.size(), stops.size()); ++i) {
     const geometry::Pose2 moved = geometry::between(used_[i], stops[i].T_map_robot);

@@ -24,7 +24,7 @@ class LiveMap {
 
   /// Starts anew if a pose has moved since its map was fused. Not while a new start is under way:
   /// it would never come to its end.
-  void look(std::span<const topomap::StopPose> stops);
+  void check(std::span<const topomap::StopPose> stops);
 
   /// Fuses the next of `maps`, whose pose is the next of `stops`. False when all are. Throws
   /// std::invalid_argument when the map cannot be fused; it is then left out.

@@ -1,4 +1,4 @@
-// Keeps the map of a robot in a directory and shows it to everybody.
+// Keeps the map of a robot in a directory and shows it to all readers.
 #include <exception>
 #include <memory>
 #include <optional>

@@ -60,7 +60,7 @@ class MapInput {
   [[nodiscard]] std::optional<topomap::Trajectory> final_trajectory() const;
 
  private:
-  /// What tells a map from another one of its id.
+  /// What distinguishes a map from another one of its id.
   struct Arrived {
     std::uint64_t sequence = 0;
     std::uint64_t content_hash = 0;

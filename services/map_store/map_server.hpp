@@ -1,4 +1,4 @@
-// Shows a map that is finished, or drawn, to everybody.
+// Shows a map that is finished, or drawn, to all readers.
 #pragma once
 
 #include "topogeo/planning/hybrid_map.hpp"

@@ -120,7 +120,7 @@ bool MapStoreService::store() {
 void MapStoreService::work_on_live_map() {
   const topomap::Trajectory trajectory = input_.newest_trajectory();
   // Not between a map and its publication, or frequent corrections would leave nothing to publish.
-  if (Clock::now() >= next_publish_) live_map_.look(trajectory.stops);
+  if (Clock::now() >= next_publish_) live_map_.check(trajectory.stops);
   const auto start = Clock::now();
   bool more = true;
   while (more && Clock::now() - start < kLiveSlice) {
@@ -131,8 +131,9 @@ void MapStoreService::work_on_live_map() {
     }
   }
   publish_hybrid();
-  const bool news = live_map_.size() != published_maps_ || trajectory.version != published_version_;
-  if (more || !news || Clock::now() < next_publish_) return;
+  const bool changed =
+      live_map_.size() != published_maps_ || trajectory.version != published_version_;
+  if (more || !changed || Clock::now() < next_publish_) return;
   const auto publish_start = Clock::now();
   hybrid_pending_ = live_map_.snapshot(trajectory.version);
   publish(*hybrid_pending_);

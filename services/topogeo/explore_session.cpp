@@ -15,7 +15,7 @@
 namespace topogeo::cli {
 namespace {
 
-constexpr double kWayStep_m = 0.1;
+constexpr double kPathStep_m = 0.1;
 
 std::int64_t monotonic_ns() {
   return static_cast<std::int64_t>(1e9 * support::monotonic_s());
@@ -103,18 +103,18 @@ navigation::NavigatorStatus ExploreSession::navigator() const {
   return status;
 }
 
-void ExploreSession::remember_way() {
+void ExploreSession::record_path() {
   if (!pose_ || pose_->state() != msg::kStateTracking) return;
   const Eigen::Vector2d at_m = service::from_msg(pose_->T_map_robot()).position_m();
-  const double step_m = way_m_.empty() ? 0.0 : (at_m - way_m_.back()).norm();
-  if (!way_m_.empty() && step_m < kWayStep_m) return;
+  const double step_m = path_m_.empty() ? 0.0 : (at_m - path_m_.back()).norm();
+  if (!path_m_.empty() && step_m < kPathStep_m) return;
   driven_m_ += step_m;
-  way_m_.push_back(at_m);
+  path_m_.push_back(at_m);
 }
 
 void ExploreSession::tick() {
   take_map();
-  remember_way();
+  record_path();
   const auto goal = tour_.step(navigator(), monotonic_ns());
   if (goal) {
     goal_id_ = goal->goal_id;
@@ -142,11 +142,11 @@ std::string ExploreSession::summary() const {
 
 void ExploreSession::write_picture(const std::filesystem::path& file) const {
   if (!map_) throw std::runtime_error("no picture: there was no map");
-  planning::HybridRoute way;
-  way.status = planning::RouteStatus::kFound;
-  way.points_m = way_m_;
+  planning::HybridRoute path;
+  path.status = planning::RouteStatus::kFound;
+  path.points_m = path_m_;
   support::write_file_atomically(
-      file, render::route_picture(*map_, way, fmt::format("explored in {:.1f} m", driven_m_),
+      file, render::route_picture(*map_, path, fmt::format("explored in {:.1f} m", driven_m_),
                                   render::picture_format(file)));
 }
 

@@ -43,14 +43,14 @@ class ExploreSession {
   [[nodiscard]] std::string trouble() const;
   /// A line for the end: targets, metres, what was given up.
   [[nodiscard]] std::string summary() const;
-  /// The map and the way driven, as a picture (.png or .svg). Throws std::runtime_error when it
+  /// The map and the path driven, as a picture (.png or .svg). Throws std::runtime_error when it
   /// cannot be written.
   void write_picture(const std::filesystem::path& file) const;
 
  private:
   void listen(messaging::EventLoop& loop);
   void take_map();
-  void remember_way();
+  void record_path();
   [[nodiscard]] navigation::NavigatorStatus navigator() const;
   [[nodiscard]] bool is_own(const auto& message) const {
     return message.robot_id() == robot_id_.c_str();
@@ -68,7 +68,7 @@ class ExploreSession {
   std::uint64_t map_versions_ = 0;
   std::uint64_t goal_id_ = 0;  // as the tour numbers it
   std::optional<msg::LivePose> pose_;
-  std::vector<Eigen::Vector2d> way_m_;  // map frame
+  std::vector<Eigen::Vector2d> path_m_;  // map frame
   double driven_m_ = 0.0;
 
   messaging::Reader<msg::MapElement> elements_;

@@ -79,20 +79,20 @@ void GoalSession::send() {
 }
 
 void GoalSession::tick() {
-  if (client_.route() && !told_way_) {
-    told_way_ = true;
+  if (client_.route() && !route_printed_) {
+    route_printed_ = true;
     progress_.print(fmt::format("the route to {} is {:.1f} m long, through {} zones and {} borders",
                                 options_.target, client_.route()->length_m(),
                                 client_.route()->zones().size(),
                                 client_.route()->node_ids().size()));
   }
-  if (client_.route() && options_.picture && !drawn_) draw_way();
+  if (client_.route() && options_.picture && !drawn_) draw_route();
   if (client_.taken()) progress_.show(*client_.status(), support::monotonic_s());
 }
 
-void GoalSession::draw_way() {
+void GoalSession::draw_route() {
   const std::shared_ptr<const planning::HybridMap> map = client_.map();
-  if (!map) return;  // on its way
+  if (!map) return;  // it comes later
   drawn_ = true;
   const std::string title =
       fmt::format("to {}: {:.1f} m", options_.target, client_.route()->length_m());

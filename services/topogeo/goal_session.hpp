@@ -1,5 +1,5 @@
 // A goal from the command line: waits for the services, sends it, shows how the robot gets on,
-// draws the way.
+// draws the route.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct GoalOptions {
   std::string target;                            ///< X,Y, #NODE or the name of a place
   std::optional<double> heading_deg;             ///< map frame
   bool look_around = false;                      ///< see msg::Goal
-  std::optional<std::filesystem::path> picture;  ///< of the way
+  std::optional<std::filesystem::path> picture;  ///< of the route
   double patience_s = 60.0;                      ///< see supervision::GoalWatch
 };
 
@@ -41,20 +41,20 @@ class GoalSession {
   [[nodiscard]] supervision::GoalProgress& progress() { return progress_; }
 
   void send();
-  /// Shows what is new and draws the way when it is known. Call it some ten times a second.
+  /// Shows what is new and draws the route when it is known. Call it some ten times a second.
   /// Throws std::runtime_error when the picture cannot be written.
   void tick();
   /// Of the goal; nothing while it may still be reached.
   [[nodiscard]] std::optional<supervision::GoalEnd> end() const { return client_.end(); }
 
  private:
-  void draw_way();
+  void draw_route();
 
   GoalOptions options_;
   service::Goal goal_;
   GoalClient client_;
   supervision::GoalProgress progress_;
-  bool told_way_ = false;
+  bool route_printed_ = false;
   bool drawn_ = false;
 };
 

@@ -1,4 +1,4 @@
-// What the services of one or more runs last said of themselves.
+// The last status of each service of one or more runs.
 #pragma once
 
 #include <cstdint>

@@ -104,20 +104,20 @@ int run_all(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace topogeo::bench;  // NOLINT(google-build-using-namespace)
-  command_line::Command app{"Explores simulated floors from unknown starts"};
+  topogeo::command_line::Command app{"Explores simulated floors from unknown starts"};
   Options options;
   app.add_option("--floor", options.floor, "one of them alone")
-      ->check(command_line::one_of({"office", "warehouse", "two loops"}));
+      ->check(topogeo::command_line::one_of({"office", "warehouse", "two loops"}));
   app.add_option("--seed", options.first_seed, "of the first start")->capture_default_str();
   app.add_option("--starts", options.starts, "on each floor")->capture_default_str();
   app.add_option("--jobs", options.jobs, "runs at the same time")
-      ->check(command_line::range(1, 64))
+      ->check(topogeo::command_line::range(1, 64))
       ->capture_default_str();
   app.add_option("--wheels", options.wheels, "how odometry errs")
-      ->check(command_line::one_of({"mild", "b21"}))
+      ->check(topogeo::command_line::one_of({"mild", "b21"}))
       ->capture_default_str();
   app.add_option("--pictures", options.pictures, "directory for a picture of each run")
-      ->check(command_line::existing_directory());
+      ->check(topogeo::command_line::existing_directory());
   app.add_flag("--verbose", options.verbose, "print each target");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {

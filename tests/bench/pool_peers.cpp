@@ -70,7 +70,7 @@ PoolClient::PoolClient(const Maps& maps, bool verify) {
   pool.client_id = "bench-" + number;
   pool.version = support::kVersion;
   pool.verify = verify;
-  pool.tell = [](const std::string& /*line*/) {};
+  pool.log = [](const std::string& /*line*/) {};
   pool_.emplace(*participant_, loop_, pool, [this](std::string_view why, std::string_view detail) {
     fault_ = std::string(why) + ": " + std::string(detail);
   });

@@ -205,7 +205,7 @@ class PoolTest : public ::testing::Test {
     options.version = support::kVersion;
     options.config_fingerprint = 0x12;
     options.board = board_options_;
-    options.tell = [this](const std::string& line) { lines_.push_back(line); };
+    options.log = [this](const std::string& line) { lines_.push_back(line); };
     pool_.emplace(participant_, loop_, options,
                   [this](std::string_view reason, std::string_view detail) {
                     faults_.emplace_back(reason);

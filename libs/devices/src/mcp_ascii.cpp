@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include <spdlog/fmt/fmt.h>
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::devices {
 namespace {

@@ -19,7 +19,7 @@ namespace {
 
 using support::YamlNode;
 
-// What map files of ROS hold unless their owner chose otherwise (map_saver of nav2).
+// What map_saver of ROS writes; map_server reads any.
 constexpr double kOccupiedThreshold = 0.65;
 constexpr double kFreeThreshold = 0.196;
 constexpr int kFreePixel = 254;

@@ -19,7 +19,7 @@ void append(std::vector<Cell>& cells, std::vector<Cell> piece, bool backwards) {
   cells.insert(cells.end(), piece.begin() + skip, piece.end());
 }
 
-// Ways shorter than this one stay in the ellipse around its ends that is as long as it: how far
+// Paths shorter than this one stay in the ellipse around its ends that is as long as it: how far
 // that can reach. 0 when none is shorter.
 std::int32_t margin_of(std::span<const Cell> cells) {
   const double cost = cost_cells(cells);
@@ -44,7 +44,7 @@ std::vector<Cell> cells_along(const GridFrame& frame, std::span<const Eigen::Vec
 
 }  // namespace
 
-// Ways on the grid from a cell to the nodes of its zone, with half a step across the border.
+// Paths on the grid from a cell to the nodes of its zone, with half a step across the border.
 struct RouteQuery::Reach {
   std::vector<std::uint32_t> nodes;
   std::vector<std::optional<CellPath>> paths;

@@ -5,8 +5,8 @@
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "draw_map.hpp"
 #include "layout.hpp"
-#include "map_drawing.hpp"
 #include "page.hpp"
 
 namespace topogeo::render {

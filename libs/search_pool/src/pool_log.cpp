@@ -41,7 +41,7 @@ const char* to_string(WorkerFault fault) {
 
 }  // namespace
 
-PoolLog::PoolLog(Tell tell) : tell_(std::move(tell)) {}
+PoolLog::PoolLog(Sink sink) : sink_(std::move(sink)) {}
 
 void PoolLog::workers(const std::vector<std::string>& ids, BoardTime now) {
   if (last_change_ && now - *last_change_ < kPeriod) return;
@@ -56,7 +56,7 @@ void PoolLog::workers(const std::vector<std::string>& ids, BoardTime now) {
   std::string line;
   if (!joined.empty()) line += sentence(joined, "joined") + ", ";
   if (!left.empty()) line += sentence(left, "left") + ", ";
-  tell_(line + count_of(ids.size(), "worker"));
+  sink_(line + count_of(ids.size(), "worker"));
   known_ = present;
   last_change_ = now;
 }
@@ -68,11 +68,11 @@ void PoolLog::searching_here(std::size_t workers, BoardTime now) {
   const char* who = workers > 0    ? "no worker answers"
                     : last_change_ ? "no worker left"
                                    : "no worker";
-  tell_(std::string(who) + ", searching in this process");
+  sink_(std::string(who) + ", searching in this process");
 }
 
 void PoolLog::recovered(const Recovery& recovery) {
-  tell_(fmt::format("worker {} {} with {}, answered elsewhere after {:.2f} s", recovery.worker_id,
+  sink_(fmt::format("worker {} {} with {}, answered elsewhere after {:.2f} s", recovery.worker_id,
                     to_string(recovery.fault), count_of(recovery.tasks, "task"),
                     std::chrono::duration<double>(recovery.duration).count()));
 }

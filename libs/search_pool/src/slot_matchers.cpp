@@ -25,10 +25,10 @@ localization::MatchResult SlotMatchers::solve(const ReadyJob& job) {
   Kept& kept = of(job.job.client_id);
   const localization::MatchTask& task = job.job.task;
   if (!kept.matcher.has_map(task.reference_map_id, task.reference_hash)) {
-    teach(kept, job.reference);
+    add_map(kept, job.reference);
   }
   if (!kept.matcher.has_map(task.query_map_id, task.query_hash)) {
-    teach(kept, job.query);
+    add_map(kept, job.query);
   }
   localization::MatchResult result = kept.matcher.solve(task);
   make_room();
@@ -58,7 +58,7 @@ SlotMatchers::Kept& SlotMatchers::of(const std::string& client_id) {
   return kept_.front();
 }
 
-void SlotMatchers::teach(Kept& kept, const MapPointer& map) {
+void SlotMatchers::add_map(Kept& kept, const MapPointer& map) {
   kept.matcher.add_map(*map);
   ++kept.maps;
   kept.bytes += feature_bytes(*map);

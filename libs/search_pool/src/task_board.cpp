@@ -14,7 +14,8 @@ using localization::MatchTask;
 
 namespace {
 
-constexpr std::size_t kKeptTasks = 1024;  // to compare late answers with
+/// To compare late answers with: more than workers hold while one answer travels.
+constexpr std::size_t kKeptTasks = 1024;
 
 }  // namespace
 
@@ -104,7 +105,7 @@ std::vector<MatchResult> TaskBoard::take_results() {
     results.push_back(*task.result);
     Worker* worker = task.proven ? nullptr : workers_.find(task.answered_by);
     if (worker != nullptr) ++worker->unchecked;
-    // Another answer may come from somebody who got the task and did not give the one that counts.
+    // Another answer may come from a worker that got the task too.
     if (task.sends <= (task.answered_by.empty() ? 0U : 1U)) continue;
     kept_.insert_or_assign(task.task.task_id, task);
     if (kept_.size() > kKeptTasks) kept_.erase(kept_.begin());
@@ -157,7 +158,7 @@ std::optional<TaskBoard::Assignment> TaskBoard::next_remote(BoardTime now) {
     if (now - sent < workers_.straggler_time()) break;  // the others are younger
     const BoardTask& task = batch_.at(index);
     if (auto* worker = workers_.choose(task.tried, now)) {
-      tell_stalled(task);
+      report_stalled(task);
       return assign(index, *worker, now);
     }
   }
@@ -185,7 +186,7 @@ std::optional<std::size_t> TaskBoard::next_local(BoardTime now) {
   if (batch_.out().empty()) return {};
   const auto& [sent, oldest] = *batch_.out().begin();
   if (now - sent < workers_.straggler_time()) return {};
-  tell_stalled(batch_.at(oldest));
+  report_stalled(batch_.at(oldest));
   return oldest;
 }
 
@@ -357,7 +358,7 @@ std::vector<std::uint64_t> TaskBoard::open_in_hand(const Worker& worker) const {
   return open;
 }
 
-void TaskBoard::tell_stalled(const BoardTask& task) {
+void TaskBoard::report_stalled(const BoardTask& task) {
   for (const std::string& worker_id : task.workers) {
     const Worker* worker = workers_.find(worker_id);
     if (worker == nullptr || worker->in_hand.empty()) continue;

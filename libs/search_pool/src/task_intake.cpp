@@ -53,7 +53,7 @@ bool TaskIntake::lacks(std::uint64_t content_hash) const {
                      [&](const auto& entry) { return entry.first.second == content_hash; });
 }
 
-TaskIntake::Due TaskIntake::look(Time now) {
+TaskIntake::Due TaskIntake::check(Time now) {
   Due due;
   while (!waiting_.empty() && waiting_.front().until <= now) {
     ReadyJob& job = waiting_.front().job;
@@ -77,7 +77,7 @@ TaskIntake::Due TaskIntake::look(Time now) {
   return due;
 }
 
-std::optional<TaskIntake::Time> TaskIntake::next_look() const {
+std::optional<TaskIntake::Time> TaskIntake::next_check() const {
   if (waiting_.empty()) return {};
   Time next = waiting_.front().until;
   for (const auto& [lack, time] : requested_) next = std::min(next, time);

@@ -7,7 +7,7 @@ namespace topogeo::search_pool {
 namespace {
 
 constexpr std::size_t kAnswerTimes = 65;     // of which the median is taken
-constexpr std::uint64_t kMedianPeriod = 16;  // answers between two looks at the median
+constexpr std::uint64_t kMedianPeriod = 16;  // answers between two medians
 
 bool takes_tasks(const Worker& worker) {
   return worker.present && worker.reachable && !worker.excluded && worker.slots > 0;

@@ -10,9 +10,9 @@ namespace topogeo::search_pool {
 namespace {
 
 // Ids come from the network: what is remembered of them has a bound.
-constexpr std::size_t kFormer = 1024;
-constexpr std::size_t kTold = 4096;
-constexpr std::size_t kOthers = 8;
+constexpr std::size_t kFormer = 1024;    // more than leave while an answer travels
+constexpr std::size_t kReported = 4096;  // beyond them faults are reported again
+constexpr std::size_t kOthers = 8;       // under one id, which should have one process
 
 std::string named(const std::string& worker_id, const std::string& host) {
   return "worker " + worker_id + (host.empty() ? "" : " on host " + host);
@@ -22,8 +22,8 @@ std::string named(const std::string& worker_id, const std::string& host) {
 
 WorkerRegistry::WorkerRegistry(Build own) : own_(std::move(own)) {}
 
-WorkerRegistry::Verdict WorkerRegistry::hear(const WorkerReport& report, const ProcessId& from,
-                                             const InstanceId& instance) {
+WorkerRegistry::Verdict WorkerRegistry::update(const WorkerReport& report, const ProcessId& from,
+                                               const InstanceId& instance) {
   const auto [found, is_new] = entries_.try_emplace(report.worker_id);
   Entry& entry = found->second;
   if (is_new) entry.owner = from;
@@ -47,7 +47,7 @@ WorkerRegistry::Verdict WorkerRegistry::hear(const WorkerReport& report, const P
 
 std::optional<WorkerRegistry::Fault> WorkerRegistry::refusal(const WorkerReport& report) {
   const std::string who = named(report.worker_id, report.host);
-  const bool is_new = !told_.contains(report.worker_id);
+  const bool is_new = !reported_.contains(report.worker_id);
   const Build& build = report.build;
   if (build.version != own_.version) {
     if (is_new) ++counts_.other_version;
@@ -70,8 +70,8 @@ std::optional<WorkerRegistry::Fault> WorkerRegistry::refusal(const WorkerReport&
 }
 
 bool WorkerRegistry::first_time(const std::string& worker_id) {
-  if (told_.size() >= kTold) told_.clear();
-  return told_.insert(worker_id).second;
+  if (reported_.size() >= kReported) reported_.clear();
+  return reported_.insert(worker_id).second;
 }
 
 void WorkerRegistry::remove(const std::string& worker_id) {
@@ -90,7 +90,7 @@ std::optional<std::string> WorkerRegistry::gone(const InstanceId& instance,
   if (found == entries_.end()) return {};
   Entry& entry = found->second;
   if (process == ProcessId{}) {
-    // Of one of several: silence will tell which.
+    // Of one of several: the ticks without a report show which.
     if (!entry.others.empty()) return {};
   } else if (process != entry.owner) {
     entry.others.erase(process);
@@ -112,7 +112,7 @@ std::vector<std::string> WorkerRegistry::tick(int silent_ticks) {
   return silent;
 }
 
-bool WorkerRegistry::speaks_for(const ProcessId& from, const std::string& worker_id) const {
+bool WorkerRegistry::is_owner(const ProcessId& from, const std::string& worker_id) const {
   const auto found = entries_.find(worker_id);
   if (found != entries_.end()) return found->second.owner == from;
   return std::any_of(former_.rbegin(), former_.rend(), [&](const Former& former) {

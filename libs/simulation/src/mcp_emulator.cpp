@@ -8,6 +8,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "topogeo/devices/mcp_binary.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::simulation {
 namespace {

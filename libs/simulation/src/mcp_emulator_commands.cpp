@@ -10,6 +10,7 @@
 
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::simulation {
 namespace {

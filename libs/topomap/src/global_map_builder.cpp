@@ -6,10 +6,10 @@
 
 #include "branch_names.hpp"
 #include "driven_way.hpp"
-#include "field_of_view.hpp"
 #include "map_extraction.hpp"
 #include "node_fusion.hpp"
 #include "ridge_refinement.hpp"
+#include "seen_region.hpp"
 #include "virtual_links.hpp"
 #include "vote_grid.hpp"
 
@@ -73,7 +73,7 @@ GlobalMapBuilder::~GlobalMapBuilder() = default;
 
 void GlobalMapBuilder::integrate(const LocalMap& map, const geometry::Pose2& T_map_robot) {
   check_input(map, T_map_robot);
-  const FieldOfView view(map, state_->config.gap_m);
+  const SeenRegion view(map, state_->config.gap_m);
   state_->grid.add(map, T_map_robot, view);
   state_->nodes.add(map, T_map_robot, view);
   state_->names.add(map, T_map_robot);

@@ -12,7 +12,7 @@ bool compatible(NodeKind a, NodeKind b) {
 }
 
 void NodeFusion::add(const LocalMap& map, const geometry::Pose2& T_map_robot,
-                     const FieldOfView& view) {
+                     const SeenRegion& view) {
   ++view_;
   for (const LocalNode& n : map.nodes) {
     if (!n.in_main_graph || n.kind == NodeKind::kFictitious || n.kind == NodeKind::kVirtual) {
@@ -82,7 +82,7 @@ void NodeFusion::merge(std::uint32_t id, const FusedNode& seen) {
 }
 
 void NodeFusion::vote_against(const geometry::Pose2& T_map_robot, const LocalMap& map,
-                              const FieldOfView& view) {
+                              const SeenRegion& view) {
   double reach_m = 0.0;
   for (const ScanPoint& p : map.points) {
     reach_m = std::max(reach_m, Eigen::Vector2d(p.x_m, p.y_m).norm());

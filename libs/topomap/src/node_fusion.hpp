@@ -16,7 +16,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
-#include "field_of_view.hpp"
+#include "seen_region.hpp"
 
 namespace topogeo::topomap {
 
@@ -39,7 +39,7 @@ class NodeFusion {
   explicit NodeFusion(const GlobalMapConfig& config) : config_(config) {}
 
   /// Merges the nodes of one view.
-  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const FieldOfView& view);
+  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view);
 
   /// Index = the node's id for good.
   [[nodiscard]] const std::vector<FusedNode>& nodes() const { return nodes_; }
@@ -62,7 +62,7 @@ class NodeFusion {
   [[nodiscard]] std::optional<std::uint32_t> equivalent(const FusedNode& seen) const;
   void merge(std::uint32_t id, const FusedNode& seen);
   void vote_against(const geometry::Pose2& T_map_robot, const LocalMap& map,
-                    const FieldOfView& view);
+                    const SeenRegion& view);
   void fade(FusedNode& node) const;
 
   GlobalMapConfig config_;

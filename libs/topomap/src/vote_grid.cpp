@@ -13,14 +13,14 @@ std::int32_t to_cell(double coordinate_m, double cell_m) {
 }  // namespace
 
 void VoteGrid::add(const LocalMap& map, const geometry::Pose2& T_map_robot,
-                   const FieldOfView& view) {
+                   const SeenRegion& view) {
   const ViewWindow window = draw(map, T_map_robot, view);
   vote_for(window);
   vote_against(window, inverse(T_map_robot), view);
 }
 
 VoteGrid::ViewWindow VoteGrid::draw(const LocalMap& map, const geometry::Pose2& T_map_robot,
-                                    const FieldOfView& view) const {
+                                    const SeenRegion& view) const {
   // The window holds everything that the view could have seen: its scan points and its branches.
   Eigen::Vector2d low = T_map_robot.position_m();
   Eigen::Vector2d high = low;
@@ -46,7 +46,7 @@ VoteGrid::ViewWindow VoteGrid::draw(const LocalMap& map, const geometry::Pose2& 
 }
 
 void VoteGrid::draw_branch(const LocalBranch& branch, const geometry::Pose2& T_map_robot,
-                           const FieldOfView& view, ViewWindow& window) const {
+                           const SeenRegion& view, ViewWindow& window) const {
   const bool votes = branch.in_main_graph && !branch.is_virtual;
   const double step = 0.5 * config_.cell_m;
   for (std::size_t i = 0; i < branch.points.size(); ++i) {
@@ -114,7 +114,7 @@ void VoteGrid::vote_for(const ViewWindow& window) {
 }
 
 void VoteGrid::vote_against(const ViewWindow& window, const geometry::Pose2& T_robot_map,
-                            const FieldOfView& view) {
+                            const SeenRegion& view) {
   const std::int32_t chunk_y0 = window.low.y >> kChunkBits;
   const std::int32_t chunk_y1 = (window.low.y + window.height - 1) >> kChunkBits;
   const std::int32_t chunk_x0 = window.low.x >> kChunkBits;

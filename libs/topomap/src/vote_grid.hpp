@@ -12,7 +12,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
-#include "field_of_view.hpp"
+#include "seen_region.hpp"
 
 namespace topogeo::topomap {
 
@@ -64,7 +64,7 @@ class VoteGrid {
   explicit VoteGrid(const GlobalMapConfig& config) : config_(config) {}
 
   /// The votes of one view.
-  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const FieldOfView& view);
+  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view);
 
   [[nodiscard]] const Chunks& chunks() const { return chunks_; }
 
@@ -83,13 +83,13 @@ class VoteGrid {
   };
 
   [[nodiscard]] ViewWindow draw(const LocalMap& map, const geometry::Pose2& T_map_robot,
-                                const FieldOfView& view) const;
+                                const SeenRegion& view) const;
   void draw_branch(const LocalBranch& branch, const geometry::Pose2& T_map_robot,
-                   const FieldOfView& view, ViewWindow& window) const;
+                   const SeenRegion& view, ViewWindow& window) const;
   void draw_point(const BranchPoint& point_map, bool certain, bool votes, ViewWindow& window) const;
   void vote_for(const ViewWindow& window);
   void vote_against(const ViewWindow& window, const geometry::Pose2& T_robot_map,
-                    const FieldOfView& view);
+                    const SeenRegion& view);
   VoteCell& cell(CellIndex at);
   void fade(VoteCell& cell) const;
 

@@ -171,7 +171,7 @@ TEST_F(AuditTest, ALateAnswerIsComparedAfterItsBatch) {
   EXPECT_EQ(board_.workers(), 0U);
 }
 
-TEST_F(AuditTest, ItIsToldHowManyAnswersOfAnErringWorkerStand) {
+TEST_F(AuditTest, ReportsHowManyAnswersOfAnErringWorkerStand) {
   use(1, 0);
   up("a", 2);
   begin(4);

@@ -108,7 +108,7 @@ TEST_F(TaskBoardTest, AnExcludedWorkerIsNotUsedAgain) {
   begin(2);
   EXPECT_THAT(send_all(seconds(0)), ElementsAre(std::pair{0U, "a"}, std::pair{1U, "b"}));
   EXPECT_TRUE(board_.exclude("a", milliseconds(1)));
-  EXPECT_FALSE(board_.exclude("a", milliseconds(1))) << "that is no news";
+  EXPECT_FALSE(board_.exclude("a", milliseconds(1))) << "it is excluded already";
   EXPECT_TRUE(board_.is_excluded("a"));
   EXPECT_EQ(board_.workers(), 1U);
   EXPECT_THAT(send_all(milliseconds(1)), ElementsAre(std::pair{0U, "b"}));

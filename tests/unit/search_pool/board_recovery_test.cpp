@@ -31,7 +31,7 @@ TEST_F(TaskBoardTest, ALostWorkerIsMeasuredFromItsLastSignOfLife) {
   EXPECT_EQ(recoveries[0].duration, BoardTime(milliseconds(100)));
   EXPECT_EQ(board_.counts().last_recovery, BoardTime(milliseconds(100)));
   EXPECT_EQ(board_.counts().longest_recovery, BoardTime(milliseconds(100)));
-  EXPECT_THAT(board_.take_recoveries(), IsEmpty()) << "told once";
+  EXPECT_THAT(board_.take_recoveries(), IsEmpty()) << "reported once";
 }
 
 TEST_F(TaskBoardTest, AStalledWorkerIsMeasuredFromWhenItGotItsTask) {
@@ -96,7 +96,7 @@ TEST_F(TaskBoardTest, AWorkerThatLeavesInOrderNeedsNoRecovery) {
   EXPECT_EQ(board_.counts().workers_lost, 0U);
 }
 
-TEST(RecoveryWatch, TheSameWorkerToldAgainIsOneCase) {
+TEST(RecoveryWatch, TheSameWorkerTwiceIsOneCase) {
   RecoveryWatch watch;
   watch.begin("a", WorkerFault::kStalled, milliseconds(10), {1});
   watch.begin("a", WorkerFault::kLost, milliseconds(20), {1, 2});

@@ -83,7 +83,7 @@ TEST_F(TaskBoardTest, AWorkerThatWasGoneAndIsBackHasLostItsTasks) {
   begin(1);
   send_all(seconds(0));
   up("a");
-  EXPECT_THAT(send_all(milliseconds(1)), IsEmpty()) << "it only says so again";
+  EXPECT_THAT(send_all(milliseconds(1)), IsEmpty()) << "it only reports so again";
   board_.worker_gone("a");
   up("a");
   EXPECT_THAT(send_all(milliseconds(2)), ElementsAre(std::pair{0U, "a"}));

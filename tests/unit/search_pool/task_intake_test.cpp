@@ -32,7 +32,7 @@ TEST_F(TaskIntakeTest, AJobWhoseMapsAreThereIsReadyAtOnce) {
   EXPECT_EQ(ready->job.ticket, 5U);
   EXPECT_EQ(ready->reference, zero_);
   EXPECT_EQ(ready->query, one_);
-  EXPECT_FALSE(intake_.next_look());
+  EXPECT_FALSE(intake_.next_check());
 }
 
 TEST_F(TaskIntakeTest, AJobWaitsForItsMapsAndOthersPassIt) {
@@ -48,7 +48,7 @@ TEST_F(TaskIntakeTest, AJobWaitsForItsMapsAndOthersPassIt) {
   EXPECT_EQ(ready[0].query, two_);
   EXPECT_EQ(ready[1].reference, two_);
   EXPECT_EQ(intake_.waiting(), 0U);
-  EXPECT_FALSE(intake_.next_look());
+  EXPECT_FALSE(intake_.next_check());
 }
 
 TEST_F(TaskIntakeTest, AMapOfOtherContentIsNotTheOneThatIsMeant) {
@@ -66,26 +66,26 @@ TEST_F(TaskIntakeTest, AMapThatMayBeOnItsWayIsAskedForAfterAShortWaitAndAgain) {
   intake_.add_map(zero_);
   intake_.add(job(zero_, one_, 1), at(0));
   intake_.add(job(one_, zero_, 2), at(5));
-  EXPECT_EQ(intake_.next_look(), at(20));
-  EXPECT_THAT(intake_.look(at(19)).requests, IsEmpty());
-  const TaskIntake::Due due = intake_.look(at(20));
+  EXPECT_EQ(intake_.next_check(), at(20));
+  EXPECT_THAT(intake_.check(at(19)).requests, IsEmpty());
+  const TaskIntake::Due due = intake_.check(at(20));
   ASSERT_THAT(due.requests, SizeIs(1)) << "one for both";
   EXPECT_EQ(due.requests[0].client_id, "client");
   EXPECT_EQ(due.requests[0].robot_id, "robot");
   EXPECT_EQ(due.requests[0].map_id, 1U);
   EXPECT_EQ(due.requests[0].content_hash, topomap::content_hash(*one_));
-  EXPECT_EQ(intake_.next_look(), at(520));
-  EXPECT_THAT(intake_.look(at(519)).requests, IsEmpty());
-  EXPECT_THAT(intake_.look(at(520)).requests, SizeIs(1));
+  EXPECT_EQ(intake_.next_check(), at(520));
+  EXPECT_THAT(intake_.check(at(519)).requests, IsEmpty());
+  EXPECT_THAT(intake_.check(at(520)).requests, SizeIs(1));
 }
 
 TEST_F(TaskIntakeTest, EachClientIsAskedForWhatItsOwnTaskNames) {
   intake_.add(job(zero_, one_, 1, "a"), at(0));
   intake_.add(job(zero_, one_, 2, "b"), at(100));
-  EXPECT_THAT(intake_.look(at(50)).requests, SizeIs(2)) << "two maps of a";
-  EXPECT_THAT(intake_.look(at(150)).requests, SizeIs(2)) << "two maps of b";
+  EXPECT_THAT(intake_.check(at(50)).requests, SizeIs(2)) << "two maps of a";
+  EXPECT_THAT(intake_.check(at(150)).requests, SizeIs(2)) << "two maps of b";
   EXPECT_THAT(intake_.add_map(zero_), IsEmpty());
-  EXPECT_THAT(intake_.look(at(1000)).requests, SizeIs(2)) << "one of each";
+  EXPECT_THAT(intake_.check(at(1000)).requests, SizeIs(2)) << "one of each";
   EXPECT_THAT(intake_.add_map(one_), SizeIs(2));
 }
 
@@ -93,18 +93,18 @@ TEST_F(TaskIntakeTest, GivesUpWhatDoesNotComeAndNamesIt) {
   intake_.add_map(zero_);
   intake_.add(job(zero_, one_, 1), at(0));
   intake_.add(job(zero_, two_, 2), at(700));
-  EXPECT_THAT(intake_.look(at(1999)).given_up, IsEmpty());
-  const TaskIntake::Due due = intake_.look(at(2000));
+  EXPECT_THAT(intake_.check(at(1999)).given_up, IsEmpty());
+  const TaskIntake::Due due = intake_.check(at(2000));
   ASSERT_THAT(due.given_up, SizeIs(1));
   EXPECT_EQ(due.given_up[0].job.ticket, 1U);
   EXPECT_THAT(due.given_up[0].why, HasSubstr("local map 1 ("));
   EXPECT_EQ(intake_.waiting(), 1U);
   EXPECT_FALSE(intake_.lacks(topomap::content_hash(*one_)));
-  EXPECT_THAT(intake_.look(at(2700)).given_up, SizeIs(1));
-  EXPECT_FALSE(intake_.next_look());
+  EXPECT_THAT(intake_.check(at(2700)).given_up, SizeIs(1));
+  EXPECT_FALSE(intake_.next_check());
   // A task that comes later starts over.
   intake_.add(job(zero_, one_, 3), at(3000));
-  EXPECT_EQ(intake_.next_look(), at(3020));
+  EXPECT_EQ(intake_.next_check(), at(3020));
 }
 
 TEST_F(TaskIntakeTest, AJobKeepsTheMapThatCameFirstEvenWithoutMemory) {
@@ -118,7 +118,7 @@ TEST_F(TaskIntakeTest, AJobKeepsTheMapThatCameFirstEvenWithoutMemory) {
   EXPECT_THAT(intake.add_map(one_), SizeIs(1));
   // What was dropped is asked for again.
   EXPECT_FALSE(intake.add(job(zero_, one_, 2), at(10)));
-  EXPECT_THAT(intake.look(at(30)).requests, SizeIs(1));
+  EXPECT_THAT(intake.check(at(30)).requests, SizeIs(1));
 }
 
 TEST_F(TaskIntakeTest, ForgetsAClientThatIsGone) {
@@ -126,7 +126,7 @@ TEST_F(TaskIntakeTest, ForgetsAClientThatIsGone) {
   intake_.add(job(zero_, one_, 2, "stays"), at(0));
   EXPECT_THAT(intake_.remove("goes"), ::testing::ElementsAre(1));
   EXPECT_EQ(intake_.waiting(), 1U);
-  const TaskIntake::Due due = intake_.look(at(100));
+  const TaskIntake::Due due = intake_.check(at(100));
   ASSERT_THAT(due.requests, SizeIs(2));
   EXPECT_EQ(due.requests[0].client_id, "stays");
 }

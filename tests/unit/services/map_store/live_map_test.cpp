@@ -34,7 +34,7 @@ class Live : public testing::Test {
     }
   }
   void work(LiveMap& live) {
-    live.look(stops_);
+    live.check(stops_);
     while (live.step(maps_, stops_)) {
     }
   }
@@ -82,14 +82,14 @@ TEST_F(Live, SmallCorrectionsStayLargerOnesStartAnew) {
 TEST_F(Live, NewStartIsFinishedBeforeTheNext) {
   work(live_);
   stops_[0].T_map_robot.x_m += 1.0;
-  live_.look(stops_);
+  live_.check(stops_);
   ASSERT_TRUE(live_.step(maps_, stops_));
   stops_[0].T_map_robot.x_m += 1.0;
-  live_.look(stops_);
+  live_.check(stops_);
   EXPECT_EQ(live_.rebuilds(), 1U);
   while (live_.step(maps_, stops_)) {
   }
-  live_.look(stops_);
+  live_.check(stops_);
   EXPECT_EQ(live_.rebuilds(), 2U);
 }
 

@@ -1,4 +1,4 @@
-// Whom a worker works for.
+// The clients that a worker works for.
 #pragma once
 
 #include <chrono>

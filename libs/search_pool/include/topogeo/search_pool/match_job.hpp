@@ -1,4 +1,4 @@
-// A match task on its way through a worker.
+// A match task inside a worker, from its arrival to its result.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What a user should read of the search pool in the log: who came and went, and how long it took to
-// get over a worker.
+// The lines of the log that concern a user of the search pool: which workers came and went, and how
+// long a loss delayed answers.
 #pragma once
 
 #include <chrono>
@@ -14,26 +14,26 @@
 
 namespace topogeo::search_pool {
 
-/// Knows no clock: the time, of one steady clock, is told to it.
+/// Has no clock: callers pass the time, of one steady clock.
 class PoolLog {
  public:
-  using Tell = std::function<void(const std::string& line)>;
+  using Sink = std::function<void(const std::string& line)>;
 
-  explicit PoolLog(Tell tell);
+  explicit PoolLog(Sink sink);
 
-  /// The workers that can be used now. Told when others than before, once per second at most; what
-  /// came and went again in between is left out.
+  /// The workers that can be used now. Logged when others than before, once per second at most;
+  /// what came and went again in between is left out.
   void workers(const std::vector<std::string>& ids, BoardTime now);
-  /// A task has to be solved in this process, with so many workers there. Told when it is the first
-  /// one since a worker answered, once per second at most.
+  /// A task has to be solved in this process, with so many workers there. Logged when it is the
+  /// first one since a worker answered, once per second at most.
   void searching_here(std::size_t workers, BoardTime now);
   /// A worker has answered.
   void answered() { searches_here_ = false; }
   void recovered(const Recovery& recovery);
 
  private:
-  Tell tell_;
-  std::set<std::string> known_;  // as told last
+  Sink sink_;
+  std::set<std::string> known_;  // as logged last
   std::optional<BoardTime> last_change_;
   std::optional<BoardTime> last_search_here_;
   bool searches_here_ = false;

@@ -1,4 +1,4 @@
-// How long the search pool takes to get over a worker that leaves it in the lurch.
+// How long it takes until the tasks of a worker that failed are answered by others.
 #pragma once
 
 #include <cstddef>
@@ -29,16 +29,16 @@ struct Recovery {
 
 class RecoveryWatch {
  public:
-  /// Something happened to a worker with open tasks, which showed its last sign of life at `since`.
-  /// Told again of the same worker, the tasks come to those before and the earliest time counts.
+  /// A worker with open tasks failed, which showed its last sign of life at `since`.
+  /// Called again for the same worker, its tasks are added and the earliest time counts.
   void begin(const std::string& worker_id, WorkerFault fault, BoardTime since,
              const std::vector<std::uint64_t>& task_ids);
   /// A task has its answer, from a worker or (empty) from this process.
   void answered(std::uint64_t task_id, const std::string& worker_id, BoardTime now);
-  /// Nobody waits for the tasks any more.
+  /// The tasks need no answer any more.
   void abandon() { cases_.clear(); }
 
-  /// What was got over since the last call, in the order in which it was. A worker that answered
+  /// Recoveries since the last call, in their order. A worker that answered
   /// all of its tasks itself after all is left out.
   std::vector<Recovery> take();
 
@@ -48,7 +48,7 @@ class RecoveryWatch {
     BoardTime since{0};
     std::size_t tasks = 0;
     std::set<std::uint64_t> left;  // task ids
-    bool elsewhere = false;        // an answer came from somebody else
+    bool elsewhere = false;        // an answer did not come from it
   };
   std::map<std::string, Case> cases_;  // by worker id
   std::vector<Recovery> done_;

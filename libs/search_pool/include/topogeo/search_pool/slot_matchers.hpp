@@ -35,7 +35,7 @@ class SlotMatchers {
   };
 
   Kept& of(const std::string& client_id);
-  static void teach(Kept& kept, const MapPointer& map);
+  static void add_map(Kept& kept, const MapPointer& map);
   void make_room();
 
   std::size_t capacity_bytes_;

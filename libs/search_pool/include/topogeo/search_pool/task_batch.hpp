@@ -16,7 +16,7 @@
 
 namespace topogeo::search_pool {
 
-/// A task and what became of it so far.
+/// A task and its state.
 struct BoardTask {
   localization::MatchTask task;
   bool here_only = false;  ///< only this process is to work on it
@@ -44,7 +44,7 @@ class TaskBatch {
   [[nodiscard]] const BoardTask& at(std::size_t index) const { return tasks_.at(index); }
   [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t task_id) const;
 
-  /// The only way to change a task: the lists below follow it.
+  /// All changes of a task go through here, so that the lists below follow it.
   template <class Change>
   void change(std::size_t index, const Change& change) {
     take_off_lists(index);
@@ -53,9 +53,9 @@ class TaskBatch {
   }
 
   // Each open task is on one of these lists.
-  /// With nobody, any worker will do.
+  /// Without a worker; any will do.
   [[nodiscard]] const std::set<std::size_t>& fresh() const { return fresh_; }
-  /// With nobody, not any worker will do.
+  /// Without a worker; not any will do.
   [[nodiscard]] const std::set<std::size_t>& again() const { return again_; }
   /// With a worker, by the time when it was sent last.
   [[nodiscard]] const std::set<std::pair<BoardTime, std::size_t>>& out() const { return out_; }

@@ -1,9 +1,9 @@
-// Who works on which match task: the bookkeeping of the search pool (design, the search pool).
+// Which worker has which match task: the bookkeeping of the search pool (docs/architecture.md).
 //
-// Tasks come in batches; answers of a batch do not depend on who gave them or when. No worker is
-// believed for long: some of its answers are solved again here (audits), and one that differs costs
-// it all that it has answered in the batch. The board knows no DDS and no clock: what happens and
-// when is told to it, and it says what to do next.
+// Tasks come in batches; the answers of a batch do not depend on who gave them or when. Workers are
+// checked: some of their answers are solved again here (audits), and after one that differs all
+// answers of the worker in this batch are discarded. The board has no network and no clock: callers
+// pass events with their time and ask what to do next.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ struct BoardCounts {
   std::uint64_t audits = 0;                 ///< answers that were solved again by the client
   std::uint64_t audit_differences = 0;      ///< of these, other than the client's: a fault
   std::uint64_t redone = 0;                 ///< answered tasks done again, as their worker erred
-  std::uint64_t ignored = 0;                ///< answers that nobody waits for
+  std::uint64_t ignored = 0;                ///< answers to no open task
   std::uint64_t map_missing = 0;
   std::uint64_t failed = 0;            ///< refused by a worker with a reason of its own
   std::uint64_t workers_lost = 0;      ///< gone with tasks in hand
@@ -43,12 +43,12 @@ struct BoardCounts {
 /// Why a worker gives no answer.
 enum class Refusal : std::uint8_t { kMapMissing, kFailed };
 
-/// What became of an answer.
+/// What an answer was good for.
 enum class Reception : std::uint8_t {
   kFirst,      ///< it counts
   kDuplicate,  ///< the task had the same answer before
   kDifferent,  ///< the task had another answer before: to be settled
-  kUnknown,    ///< nobody waits for it
+  kUnknown,    ///< no task waits for it
 };
 
 class TaskBoard {
@@ -66,11 +66,11 @@ class TaskBoard {
 
   explicit TaskBoard(const BoardConfig& options = {});
 
-  /// A worker says that it is there, with so many slots; 0: it takes no more tasks.
+  /// A worker is there, with so many slots; 0: it takes no more tasks.
   void worker_up(const std::string& worker_id, std::uint32_t slots, BoardTime now);
   /// A worker is not there any more: its tasks go to others.
   void worker_gone(const std::string& worker_id);
-  /// A worker must not be used any more; its tasks go to others. True if that is news.
+  /// A worker must not be used any more; its tasks go to others. True if it was in use.
   bool exclude(const std::string& worker_id, BoardTime now);
   /// The same for one that gave a wrong answer: what it has answered in this batch is done again,
   /// but for what was compared.
@@ -136,7 +136,7 @@ class TaskBoard {
   void take_all_from(const std::string& worker_id, Worker& worker);
   void forget_lost(BoardTime now);
   [[nodiscard]] std::vector<std::uint64_t> open_in_hand(const Worker& worker) const;
-  void tell_stalled(const BoardTask& task);
+  void report_stalled(const BoardTask& task);
 
   BoardConfig options_;
   WorkerLoads workers_;

@@ -19,14 +19,13 @@ namespace topogeo::search_pool {
 
 struct IntakeOptions {
   std::size_t map_bytes = std::size_t{32} << 20U;  ///< that all maps together may take
-  /// Maps travel on another topic than the tasks that name them, so one that lacks may be on its
-  /// way.
+  /// Maps travel on another topic than the tasks that name them, so one that lacks may come soon.
   std::chrono::nanoseconds first_request = std::chrono::milliseconds(20);
   std::chrono::nanoseconds request_period = std::chrono::milliseconds(500);
   std::chrono::nanoseconds patience = std::chrono::seconds(2);  ///< with a map that lacks
 };
 
-/// Has no clock: the caller says what time it is. Not safe for several threads.
+/// Has no clock: the caller passes the time. Not safe for several threads.
 class TaskIntake {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -58,9 +57,9 @@ class TaskIntake {
   /// True when a job waits for a map of this content.
   [[nodiscard]] bool lacks(std::uint64_t content_hash) const;
   /// What is to be done at `now`: each map that lacks is asked for once per period and client.
-  Due look(Time now);
-  /// When look() has something to do next; nothing while no job waits.
-  [[nodiscard]] std::optional<Time> next_look() const;
+  Due check(Time now);
+  /// When check() has something to do next; nothing while no job waits.
+  [[nodiscard]] std::optional<Time> next_check() const;
   /// Takes out the waiting jobs of a client that is gone and returns their tickets.
   std::vector<std::uint64_t> remove(const std::string& client_id);
 
@@ -78,7 +77,7 @@ class TaskIntake {
 
   template <class Action>  // (Lack, map id)
   static void for_each_lack(const ReadyJob& job, Action action);
-  /// Forgets the requests for maps that nobody waits for any more.
+  /// Forgets the requests for maps that no job waits for any more.
   void forget_requests();
 
   IntakeOptions options_;

@@ -49,7 +49,7 @@ class WorkerLoads {
   /// none of those that have `tried`; null for none.
   [[nodiscard]] Workers::value_type* choose(const std::set<std::string>& tried, BoardTime now);
   /// True when some worker, but none of those that have `tried`, takes tasks and answers in time,
-  /// as far as one knows: it has room for a task sooner or later.
+  /// as far as is known: it has room for a task sooner or later.
   [[nodiscard]] bool any_in_service(const std::set<std::string>& tried, BoardTime now) const;
   /// Takes a task out of a worker's hands; when it was given to it, or nothing when it was not.
   static std::optional<BoardTime> take(Worker& worker, std::uint64_t task_id);

@@ -1,7 +1,7 @@
-// Which workers there are, from what they say of themselves, and which of them are of use.
+// Which workers there are, by their reports, and which of them are of use.
 //
-// A worker id belongs to the process that showed it first; another one under the same id is not
-// listened to until the first has gone.
+// A worker id belongs to the process that showed it first; another one under the same id is
+// ignored until the first has gone.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct Build {
   std::uint64_t config_fingerprint = 0;   ///< of the configuration; a worker's 0: any will do
 };
 
-/// What a worker says of itself.
+/// What a worker reports of itself.
 struct WorkerReport {
   std::string worker_id;
   std::string host;
@@ -54,17 +54,17 @@ class WorkerRegistry {
   explicit WorkerRegistry(Build own);
 
   /// A report came from a process, on an instance of the status topic.
-  Verdict hear(const WorkerReport& report, const ProcessId& from, const InstanceId& instance);
+  Verdict update(const WorkerReport& report, const ProcessId& from, const InstanceId& instance);
   /// An instance is gone with its writer in `process`; all zero: it is not known in which. Returns
   /// the worker that is gone with it, if it was one.
   std::optional<std::string> gone(const InstanceId& instance, const ProcessId& process);
   /// Time has passed. The workers that were silent for `silent_ticks` ticks are gone.
   std::vector<std::string> tick(int silent_ticks);
 
-  /// True when messages under this id are to be believed from this process: it is the one that is
-  /// listened to, or was until it went.
-  [[nodiscard]] bool speaks_for(const ProcessId& from, const std::string& worker_id) const;
-  /// The process that is listened to under an id; all zero when there is none.
+  /// True when messages under this id are to be accepted from this process: the id belongs to it,
+  /// or did until it went.
+  [[nodiscard]] bool is_owner(const ProcessId& from, const std::string& worker_id) const;
+  /// The process that an id belongs to; all zero when there is none.
   [[nodiscard]] ProcessId owner(const std::string& worker_id) const;
   [[nodiscard]] std::vector<std::string> workers_of(const ProcessId& process) const;
   /// "id on host", as far as known.
@@ -86,13 +86,13 @@ class WorkerRegistry {
 
   void remove(const std::string& worker_id);
   std::optional<Fault> refusal(const WorkerReport& report);
-  /// True when nothing was said about this worker yet.
+  /// True when no fault was reported for this worker yet.
   bool first_time(const std::string& worker_id);
 
   Build own_;
   std::map<std::string, Entry> entries_;  // by worker id
   std::deque<Former> former_;             // last ones, for answers that come late
-  std::set<std::string> told_;            // workers with a fault
+  std::set<std::string> reported_;        // workers with a fault
   RegistryCounts counts_;
 };
 

@@ -1,4 +1,4 @@
-#include "field_of_view.hpp"
+#include "seen_region.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -14,7 +14,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 }  // namespace
 
-FieldOfView::FieldOfView(const LocalMap& map, double gap_m)
+SeenRegion::SeenRegion(const LocalMap& map, double gap_m)
     : origin_m_(map.T_robot_laser.position_m()) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   double angle = 0.0;
@@ -47,12 +47,12 @@ FieldOfView::FieldOfView(const LocalMap& map, double gap_m)
   }
 }
 
-void FieldOfView::add_opening(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+void SeenRegion::add_opening(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
   const Eigen::Vector2d along = to_m - from_m;
   openings_.push_back({from_m, along, std::max(along.squaredNorm(), 1e-12)});
 }
 
-bool FieldOfView::seen(const Eigen::Vector2d& point_m) const {
+bool SeenRegion::seen(const Eigen::Vector2d& point_m) const {
   if (points_m_.size() < 2) return false;
   const Eigen::Vector2d ray = point_m - origin_m_;
   double angle = geometry::atan2(ray.y(), ray.x());
@@ -63,7 +63,7 @@ bool FieldOfView::seen(const Eigen::Vector2d& point_m) const {
   return cross(points_m_[i] - points_m_[i - 1], point_m - points_m_[i - 1]) > 0.0;
 }
 
-bool FieldOfView::certain(const Eigen::Vector2d& point_m, double radius_m) const {
+bool SeenRegion::certain(const Eigen::Vector2d& point_m, double radius_m) const {
   const double radius2 = radius_m * radius_m;
   for (const Segment& s : openings_) {
     const Eigen::Vector2d offset = point_m - s.from_m;

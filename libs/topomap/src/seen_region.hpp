@@ -9,11 +9,11 @@
 
 namespace topogeo::topomap {
 
-class FieldOfView {
+class SeenRegion {
  public:
   /// From the scan points of `map`, in beam order seen from the laser. Neighbouring points further
   /// apart than gap_m leave an opening between them.
-  FieldOfView(const LocalMap& map, double gap_m);
+  SeenRegion(const LocalMap& map, double gap_m);
 
   /// True when the point (robot frame) was seen and nothing unseen lies within radius_m of it: the
   /// diagram at that point is then the same as if everything were known.

@@ -1,4 +1,4 @@
-#include "map_drawing.hpp"
+#include "draw_map.hpp"
 
 #include <algorithm>
 #include <cmath>

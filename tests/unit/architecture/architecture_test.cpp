@@ -1,0 +1,90 @@
+// What may depend on what in this source tree (docs/architecture.md, "Rules").
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "source_rules.hpp"
+
+namespace topogeo::architecture {
+namespace {
+
+using testing::IsEmpty;
+
+const std::vector<Include>& project_includes() {
+  static const std::vector<Include> kIncludes =
+      includes_below(TOPOGEO_SOURCE_DIR, {"libs", "services"});
+  return kIncludes;
+}
+
+/// Libraries that take seconds to compile or belong to one layer. Where a public header is named,
+/// the library costs nothing there (small_vector) or the header is the one door to it.
+const std::vector<RestrictedLibrary>& restricted_libraries() {
+  static const std::vector<RestrictedLibrary> kLibraries = {
+      {"fastdds/", {"libs/messaging/src/"}},
+      {"fastcdr/", {"libs/messaging/src/"}},
+      {"topogeo/msg/type_supports.h", {"libs/messaging/src/"}},
+      {"CLI/", {"libs/command_line/src/command_line.cpp"}},
+      {"SQLiteCpp/", {"libs/storage/src/"}},
+      {"sqlite3.h", {"libs/storage/src/"}},
+      {"google/protobuf/", {"libs/storage/src/"}},
+      {"proto/map.pb.h", {"libs/storage/src/"}},
+      {"ceres/", {"libs/localization/src/"}},
+      {"boost/", {}},
+      {"boost/asio", {"services/sensor_gateway/serial_port.cpp"}},
+      {"boost/container/small_vector.hpp",
+       {"libs/voronoi/include/topogeo/voronoi/crack_graph.hpp"}},
+      {"boost/geometry/", {"libs/topomap/src/"}},
+      {"boost/graph/",
+       {"libs/localization/include/topogeo/localization/mapping/pose_graph.hpp",
+        "libs/localization/src/", "libs/planning/src/"}},
+      {"boost/iterator/", {"libs/planning/src/"}},
+      {"boost/property_map/", {"libs/localization/src/", "libs/planning/src/"}},
+      {"cairo", {"libs/render/src/"}},
+      {"yaml-cpp/", {"libs/support/src/"}},
+      {"nlohmann/", {"libs/storage/src/", "services/topogeo/"}},
+      {"zlib.h", {"libs/scan/src/", "libs/storage/src/"}},
+      {"fmt/", {"libs/support/include/topogeo/support/format.hpp"}},
+      {"spdlog/", {"libs/support/include/topogeo/support/log.hpp", "libs/support/src/"}},
+  };
+  return kLibraries;
+}
+
+TEST(Architecture, LibrariesUseThoseBeforeThem) {
+  EXPECT_THAT(against_order(project_includes(),
+                            libraries_in_order(std::filesystem::path(TOPOGEO_SOURCE_DIR) /
+                                               "libs/CMakeLists.txt")),
+              IsEmpty());
+}
+
+TEST(Architecture, LargeLibrariesAreIncludedInNamedPlaces) {
+  EXPECT_THAT(out_of_place(project_includes(), restricted_libraries()), IsEmpty());
+}
+
+TEST(Architecture, ServicesDoNotIncludeEachOther) {
+  // `topogeo config --devices` prints these settings.
+  EXPECT_THAT(between_services(TOPOGEO_SOURCE_DIR, project_includes(),
+                               {"services/sensor_gateway/device_config.hpp"}),
+              IsEmpty());
+}
+
+TEST(Architecture, SettingsIncludeNoAlgorithm) {
+  EXPECT_THAT(algorithms_in_settings(project_includes()), IsEmpty());
+}
+
+TEST(Architecture, EachFolderThatIsNamedIsUsed) {
+  for (const RestrictedLibrary& library : restricted_libraries()) {
+    for (const std::string_view place : library.places) {
+      if (!place.ends_with('/')) continue;
+      EXPECT_TRUE(std::ranges::any_of(project_includes(),
+                                      [&](const Include& include) {
+                                        return include.file.starts_with(place) &&
+                                               include.header.starts_with(library.headers);
+                                      }))
+          << place << " does not include " << library.headers;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::architecture

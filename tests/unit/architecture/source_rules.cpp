@@ -1,0 +1,154 @@
+#include "source_rules.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+
+namespace topogeo::architecture {
+namespace {
+
+std::string place(const Include& include) {
+  return include.file + ":" + std::to_string(include.line) + ": includes " + include.header;
+}
+
+/// The part of a path after `root`, up to the next slash: "scan" of "libs/scan/src/scan.cpp".
+std::string part_after(std::string_view path, std::string_view root) {
+  if (!path.starts_with(root)) return {};
+  path.remove_prefix(root.size());
+  return std::string(path.substr(0, path.find('/')));
+}
+
+bool is_public_header(std::string_view file) {
+  if (!file.ends_with(".hpp")) return false;
+  return file.starts_with("services/") || file.find("/include/") != std::string_view::npos;
+}
+
+bool is_allowed(std::string_view file, const std::vector<std::string_view>& places) {
+  return std::ranges::any_of(places, [&](std::string_view place) {
+    if (!place.ends_with('/')) return file == place;
+    return file.starts_with(place) && !is_public_header(file);
+  });
+}
+
+std::vector<std::filesystem::path> sources_below(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw std::runtime_error(folder.string() + ": expected a directory");
+  }
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const std::filesystem::path extension = entry.path().extension();
+    if (extension == ".hpp" || extension == ".cpp") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+std::vector<Include> includes_below(const std::filesystem::path& root,
+                                    const std::vector<std::string>& folders) {
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"].*)re");
+  std::vector<Include> includes;
+  for (const std::string& folder : folders) {
+    for (const std::filesystem::path& path : sources_below(root / folder)) {
+      std::ifstream file(path);
+      std::string text;
+      for (int line = 1; std::getline(file, text); ++line) {
+        std::smatch match;
+        if (!std::regex_match(text, match, kInclude)) continue;
+        includes.push_back({path.lexically_relative(root).string(), line, match[1]});
+      }
+    }
+  }
+  return includes;
+}
+
+std::vector<std::string> libraries_in_order(const std::filesystem::path& cmake_lists) {
+  std::ifstream file(cmake_lists);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  std::smatch match;
+  if (!std::regex_search(text, match, std::regex(R"(foreach\(lib\s+([^)]+)\))"))) {
+    throw std::runtime_error(cmake_lists.string() + ": expected foreach(lib ...)");
+  }
+  std::istringstream names(match[1]);
+  return {std::istream_iterator<std::string>(names), {}};
+}
+
+std::vector<std::string> against_order(const std::vector<Include>& includes,
+                                       const std::vector<std::string>& libraries) {
+  std::vector<std::string> found;
+  for (const Include& include : includes) {
+    const std::string by = part_after(include.file, "libs/");
+    const std::string of = part_after(include.header, "topogeo/");
+    if (by.empty() || of.empty() || (by == "messaging" && of == "msg")) continue;
+    const auto user = std::ranges::find(libraries, by);
+    if (user == libraries.end()) {
+      found.push_back(place(include) + ", but '" + by + "' is not in libs/CMakeLists.txt");
+    } else if (std::find(libraries.begin(), user, of) == user && of != by) {
+      found.push_back(place(include) + ", but '" + of + "' does not stand before '" + by +
+                      "' in libs/CMakeLists.txt");
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> out_of_place(const std::vector<Include>& includes,
+                                      const std::vector<RestrictedLibrary>& libraries) {
+  std::vector<std::string> found;
+  for (const Include& include : includes) {
+    const RestrictedLibrary* longest = nullptr;
+    for (const RestrictedLibrary& library : libraries) {
+      if (!include.header.starts_with(library.headers)) continue;
+      if (longest == nullptr || library.headers.size() > longest->headers.size()) {
+        longest = &library;
+      }
+    }
+    if (longest == nullptr || is_allowed(include.file, longest->places)) continue;
+    std::string line = place(include) + ", expected in";
+    for (const std::string_view allowed : longest->places) line += " " + std::string(allowed);
+    found.push_back(line);
+  }
+  return found;
+}
+
+std::vector<std::string> between_services(const std::filesystem::path& root,
+                                          const std::vector<Include>& includes,
+                                          const std::vector<std::string_view>& shared) {
+  const std::filesystem::path services = root / "services";
+  std::vector<std::string> found;
+  for (const Include& include : includes) {
+    const std::string user = part_after(include.file, "services/");
+    if (user.empty() || include.header.starts_with("topogeo/")) continue;
+    for (const auto& entry : std::filesystem::directory_iterator(services)) {
+      const std::string other = entry.path().filename().string();
+      if (other == user || other == "common" || !exists(entry.path() / include.header)) continue;
+      if (exists(services / user / include.header)) continue;  // its own of the same name
+      const std::string header = "services/" + other + "/" + include.header;
+      if (std::ranges::find(shared, header) == shared.end()) {
+        found.push_back(place(include) + ", a header of services/" + other);
+      }
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> algorithms_in_settings(const std::vector<Include>& includes) {
+  std::vector<std::string> found;
+  for (const Include& include : includes) {
+    if (!include.file.ends_with("_config.hpp")) continue;
+    const std::string& header = include.header;
+    const bool standard = header.find_first_of("./") == std::string::npos;
+    if (standard || header.starts_with("Eigen/") || header.starts_with("topogeo/geometry/") ||
+        header.ends_with("_config.hpp") || header.ends_with("_settings.hpp") ||
+        header == "topogeo/support/config_schema.hpp") {
+      continue;
+    }
+    found.push_back(place(include) + ", expected settings alone");
+  }
+  return found;
+}
+
+}  // namespace topogeo::architecture

@@ -1,0 +1,52 @@
+// Checks which files of a source tree include which others, by their #include lines.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace topogeo::architecture {
+
+struct Include {
+  std::string file;  ///< from the root of the tree: libs/scan/src/scan.cpp
+  int line = 0;
+  std::string header;  ///< without brackets or quotes
+};
+
+/// Of all .hpp and .cpp files below the folders, in order of their paths. Throws std::runtime_error
+/// for a folder that does not exist.
+std::vector<Include> includes_below(const std::filesystem::path& root,
+                                    const std::vector<std::string>& folders);
+
+/// The names in `foreach(lib ...)` of a CMakeLists.txt. Throws std::runtime_error when there are
+/// none.
+std::vector<std::string> libraries_in_order(const std::filesystem::path& cmake_lists);
+
+/// A library that takes long to compile or belongs to one layer, and the places that may include
+/// it: files, or folders, which end in '/' and stand for what is not a public header in them. Of
+/// several libraries that begin a header's name the longest counts.
+struct RestrictedLibrary {
+  std::string_view headers;  ///< how their names begin
+  std::vector<std::string_view> places;
+};
+
+/// Each of these returns a line for each include that breaks the rule.
+
+/// A library includes headers of itself and of those before it; libs/messaging alone the messages.
+std::vector<std::string> against_order(const std::vector<Include>& includes,
+                                       const std::vector<std::string>& libraries);
+
+std::vector<std::string> out_of_place(const std::vector<Include>& includes,
+                                      const std::vector<RestrictedLibrary>& libraries);
+
+/// services/a includes no header of services/b, unless `shared` names the header.
+std::vector<std::string> between_services(const std::filesystem::path& root,
+                                          const std::vector<Include>& includes,
+                                          const std::vector<std::string_view>& shared);
+
+/// What holds settings, a *_config.hpp, includes no algorithm: settings, geometry and the
+/// declaration of settings alone.
+std::vector<std::string> algorithms_in_settings(const std::vector<Include>& includes);
+
+}  // namespace topogeo::architecture
