@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "topogeo/localization/mapping/search_space.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/support/seed.hpp"
 
