@@ -38,21 +38,14 @@ search_pool::IntakeOptions intake_options(const WorkerOptions& options) {
   return intake;
 }
 
-messaging::ReaderOptions addressed_to(const std::string& worker_id) {
-  return {{}, worker_id};
-}
-
 }  // namespace
 
 GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions& options)
     : service_(service),
       options_(options),
-      statuses_(service.participant()),
-      results_(service.participant()),
-      requests_(service.participant()),
-      maps_(service.participant()),
-      copies_(service.participant(), addressed_to(options.worker_id)),
-      tasks_(service.participant(), addressed_to(options.worker_id)),
+      statuses_(service.advertise<msg::WorkerStatus>()),
+      results_(service.advertise<msg::MatchResult>()),
+      requests_(service.advertise<msg::MapRequest>()),
       intake_(intake_options(options)) {
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
@@ -85,42 +78,30 @@ void GaWorkerService::fill_status() {
 }
 
 void GaWorkerService::listen() {
-  messaging::EventLoop& loop = service_.loop();
-  loop.on_event([this](const messaging::Event& event) { on_event(event); });
-  loop.add<msg::MatchTask>(
-      tasks_, [this](const msg::MatchTask& message, const messaging::SampleInfo& info) {
-        on_task(message, info);
-      });
-  loop.add<msg::MapCopy>(copies_, [this](const msg::MapCopy& message,
-                                         const messaging::SampleInfo&) { on_map_copy(message); });
-  loop.add<msg::LocalMap>(maps_, [this](const msg::LocalMap& message,
-                                        const messaging::SampleInfo&) { on_map(message); });
-  loop.add(results_);
-  loop.add(requests_);
-  loop.add(statuses_);
+  service_.loop().on_event([this](const messaging::Event& event) { on_event(event); });
+  const service::Subscription to_me{.addressee = options_.worker_id, .any_robot = true};
+  service_.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { keep(map); },
+                                    {.any_robot = true});
+  service_.subscribe<msg::MapCopy>(
+      [this](const msg::MapCopy& copy) {
+        if (intake_.lacks(copy.local_map().content_hash())) keep(copy.local_map());
+      },
+      to_me);
+  service_.subscribe<msg::MatchTask>(
+      [this](const msg::MatchTask& task, const messaging::SampleInfo& info) {
+        on_task(task, info);
+      },
+      to_me);
 }
 
 // --- maps
 
-void GaWorkerService::on_map(const msg::LocalMap& message) {
-  keep(message, "local map");
-}
-
-void GaWorkerService::on_map_copy(const msg::MapCopy& message) {
-  const msg::LocalMap& map = message.local_map();
-  if (intake_.lacks(map.content_hash())) keep(map, "map copy");
-}
-
-void GaWorkerService::keep(const msg::LocalMap& message, const char* what) {
-  try {
-    topomap::LocalMap map = service::from_msg(message);  // checks content_hash
-    map.track = {};                                      // matching does not use it
-    for (search_pool::ReadyJob& job :
-         intake_.add_map(std::make_shared<const topomap::LocalMap>(std::move(map)))) {
-      runner_->add(std::move(job));
-    }
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault(std::string("invalid ") + what, error.what());
+void GaWorkerService::keep(const msg::LocalMap& message) {
+  topomap::LocalMap map = service::from_msg(message);  // checks content_hash
+  map.track = {};                                      // matching does not use it
+  for (search_pool::ReadyJob& job :
+       intake_.add_map(std::make_shared<const topomap::LocalMap>(std::move(map)))) {
+    runner_->add(std::move(job));
   }
 }
 

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/match.h"
@@ -61,8 +60,6 @@ class GaWorkerService {
   void fill_status();
   void listen();
 
-  void on_map(const msg::LocalMap& message);
-  void on_map_copy(const msg::MapCopy& message);
   void on_task(const msg::MatchTask& message, const messaging::SampleInfo& info);
   void on_outcome(const search_pool::TaskRunner::Outcome& outcome);
   void on_event(const messaging::Event& event);
@@ -70,7 +67,8 @@ class GaWorkerService {
   /// Why a task is not for this worker; nothing when it is.
   [[nodiscard]] std::optional<std::pair<msg::MatchStatus, std::string>> objection(
       const msg::MatchTask& message) const;
-  void keep(const msg::LocalMap& message, const char* what);
+  /// Throws std::invalid_argument for a map that is not what it says.
+  void keep(const msg::LocalMap& message);
   /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
   /// time.
   void request_missing_maps();
@@ -89,9 +87,6 @@ class GaWorkerService {
   messaging::Writer<msg::WorkerStatus> statuses_;
   messaging::Writer<msg::MatchResult> results_;
   messaging::Writer<msg::MapRequest> requests_;
-  messaging::Reader<msg::LocalMap> maps_;
-  messaging::Reader<msg::MapCopy> copies_;
-  messaging::Reader<msg::MatchTask> tasks_;
   search_pool::ClientRegistry clients_;
   search_pool::TaskIntake intake_;
   std::optional<std::uint64_t> request_timer_;

@@ -13,22 +13,13 @@ namespace topogeo::local_mapper {
 LocalMapperService::LocalMapperService(service::Service& service, bool replay)
     : service_(service),
       mapper_(service.setup().config.config.local_mapper, service.robot_id()),
-      scans_(service.participant(),
-             {replay ? std::string(messaging::kReplayRole) : std::string(), {}}),
-      ends_in_(service.participant()),
-      local_maps_(service.participant()),
-      tracked_poses_(service.participant()),
-      ends_out_(service.participant()) {
-  messaging::EventLoop& loop = service_.loop();
-  loop.add<msg::Scan>(
-      scans_, [this](const msg::Scan& message, const messaging::SampleInfo&) { on_scan(message); });
-  loop.add<msg::StreamEnd>(ends_in_,
-                           [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
-                             on_stream_end(message);
-                           });
-  loop.add(local_maps_);
-  loop.add(tracked_poses_);
-  loop.add(ends_out_);
+      local_maps_(service.advertise<msg::LocalMap>()),
+      tracked_poses_(service.advertise<msg::TrackedPose>()),
+      ends_out_(service.advertise<msg::StreamEnd>()) {
+  service.subscribe<msg::Scan>(
+      [this](const msg::Scan& scan) { on_scan(scan); },
+      {.role = replay ? std::string(messaging::kReplayRole) : std::string()});
+  service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
   for (const char* counter : {"scans", "local_maps", "tracked_scans", "matched_scans"}) {
     service_.status().set_counter(counter, 0.0);
   }
@@ -36,7 +27,6 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay)
 }
 
 void LocalMapperService::on_scan(const msg::Scan& message) {
-  if (!service_.is_own(message)) return;
   if (finished_) {
     service_.status().fault("scan after the end", std::to_string(message.sequence_number()));
     return;
@@ -53,7 +43,7 @@ void LocalMapperService::on_scan(const msg::Scan& message) {
       service_.status().fault("unusable scan", error.what());
     }
     if (map) publish(*map);
-    tell_tracked();
+    publish_tracked();
   }
   finish_if_complete();
 }
@@ -99,14 +89,18 @@ void LocalMapperService::publish(const topomap::LocalMap& map) {
   matched_ += static_cast<std::uint64_t>(
       std::count_if(map.track.begin(), map.track.end(),
                     [](const topomap::TrackedScan& scan) { return scan.matched; }));
-  if (!service_.send(local_maps_, service::to_msg(map), "local map")) return;
+  try {
+    if (!service_.send(local_maps_, service::to_msg(map), "local map")) return;
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(error.what());  // no fault of the scan; the run cannot go on without
+  }
   service_.status().set_counter("local_maps", static_cast<double>(++maps_));
   service_.status().set_counter("tracked_scans", static_cast<double>(tracked_));
   service_.status().set_counter("matched_scans", static_cast<double>(matched_));
 }
 
 // One that cannot be sent now is old by the time it could.
-void LocalMapperService::tell_tracked() {
+void LocalMapperService::publish_tracked() {
   const topomap::TrackedScan* scan = mapper_.last_tracked();
   if (scan == nullptr || maps_ == 0) return;
   const auto stop = static_cast<std::uint32_t>(maps_ - 1);
@@ -116,7 +110,7 @@ void LocalMapperService::tell_tracked() {
 }
 
 void LocalMapperService::on_stream_end(const msg::StreamEnd& message) {
-  if (message.stage() != "gateway" || !service_.is_own(message)) return;
+  if (message.stage() != "gateway") return;
   scans_in_stream_ = message.count();
   finish_if_complete();
 }

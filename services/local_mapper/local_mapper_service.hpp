@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/sensor.h"
@@ -35,13 +34,11 @@ class LocalMapperService {
   void on_stream_end(const msg::StreamEnd& message);
   void publish(const topomap::LocalMap& map);
   /// Where the last scan is against the last stop.
-  void tell_tracked();
+  void publish_tracked();
   void finish_if_complete();
 
   service::Service& service_;
   pipeline::LocalMapper mapper_;
-  messaging::Reader<msg::Scan> scans_;
-  messaging::Reader<msg::StreamEnd> ends_in_;
   messaging::Writer<msg::LocalMap> local_maps_;
   messaging::Writer<msg::TrackedPose> tracked_poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;

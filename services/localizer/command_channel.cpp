@@ -10,23 +10,17 @@ namespace topogeo::localizer {
 CommandChannel::CommandChannel(service::Service& service, std::function<void()> on_arrival)
     : service_(service),
       on_arrival_(std::move(on_arrival)),
-      commands_(service.participant()),
-      replies_(service.participant()) {
-  service_.loop().add<msg::LocalizationCommand>(
-      commands_, [this](const msg::LocalizationCommand& message, const messaging::SampleInfo&) {
-        on_command(message);
-      });
-  service_.loop().add(replies_);
+      replies_(service.advertise<msg::LocalizationReply>()) {
+  service.subscribe<msg::LocalizationCommand>(
+      [this](const msg::LocalizationCommand& command) { on_command(command); });
 }
 
 void CommandChannel::on_command(const msg::LocalizationCommand& message) {
-  if (!service_.is_own(message)) return;
   try {
     waiting_.push_back(service::from_msg(message));
   } catch (const std::invalid_argument& error) {
-    service_.status().fault("invalid command", error.what());
     reply(message.request_id(), message.client_id().to_string(), {false, error.what()}, 0);
-    return;
+    throw;
   }
   on_arrival_();
 }

@@ -7,7 +7,6 @@
 #include <functional>
 #include <string>
 
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/conversions.hpp"
@@ -36,7 +35,6 @@ class CommandChannel {
 
   service::Service& service_;
   std::function<void()> on_arrival_;
-  messaging::Reader<msg::LocalizationCommand> commands_;
   messaging::Writer<msg::LocalizationReply> replies_;
   std::deque<service::LocalizationCommand> waiting_;
   std::uint64_t sequence_ = 0;

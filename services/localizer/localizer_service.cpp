@@ -68,39 +68,23 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
             }),
       slam_(make_slam(service, options, pool_, optimizer_)),
       commands_(service, [this] { schedule(); }),
-      maps_in_(service.participant()),
-      odometry_(service.participant()),
-      tracked_poses_(service.participant()),
-      ends_in_(service.participant()),
       trajectory_(service),
-      poses_(service.participant()),
-      ends_out_(service.participant()) {
-  messaging::EventLoop& loop = service_.loop();
-  loop.add<msg::LocalMap>(maps_in_, [this](const msg::LocalMap& message,
-                                           const messaging::SampleInfo&) { on_map(message); });
-  loop.add<msg::Odometry>(
-      odometry_,
-      [this](const msg::Odometry& message, const messaging::SampleInfo&) { on_odometry(message); });
-  loop.add<msg::TrackedPose>(
-      tracked_poses_, [this](const msg::TrackedPose& message, const messaging::SampleInfo&) {
-        service_.take(message, "tracked pose", [this](const msg::TrackedPose& pose) {
-          tracked_ = {pose.local_map_id(), service::from_msg(pose)};
-        });
-      });
-  loop.add<msg::StreamEnd>(ends_in_,
-                           [this](const msg::StreamEnd& message, const messaging::SampleInfo&) {
-                             on_stream_end(message);
-                           });
-  loop.add(poses_);
-  loop.add(ends_out_);
-  loop.add_timer(kCountPeriod, [this] { count_pool(); });
+      poses_(service.advertise<msg::LivePose>()),
+      ends_out_(service.advertise<msg::StreamEnd>()) {
+  service.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { on_map(map); });
+  service.subscribe<msg::Odometry>(
+      [this](const msg::Odometry& odometry) { on_odometry(odometry); });
+  service.subscribe<msg::TrackedPose>([this](const msg::TrackedPose& pose) {
+    tracked_ = {pose.local_map_id(), service::from_msg(pose)};
+  });
+  service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
+  service.loop().add_timer(kCountPeriod, [this] { count_pool(); });
   count();
   service_.status().set_state(msg::kServiceWaiting, "for local maps");
   schedule();
 }
 
 void LocalizerService::on_map(const msg::LocalMap& message) {
-  if (!service_.is_own(message)) return;
   const std::string name = "local map " + std::to_string(message.id());
   if (message.id() < hashes_.size()) {
     // A reader gets a map again when its writer comes back; another map of that id is from
@@ -114,29 +98,19 @@ void LocalizerService::on_map(const msg::LocalMap& message) {
     service_.status().fault("local map after the end", name);
     return;
   }
-  try {
-    queue_[message.id()] = std::make_shared<const topomap::LocalMap>(service::from_msg(message));
-    schedule();
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault("invalid local map", name + ": " + error.what());
-  }
+  queue_[message.id()] = std::make_shared<const topomap::LocalMap>(service::from_msg(message));
+  schedule();
 }
 
 void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
-  if (message.stage() != "local_mapper" || !service_.is_own(message)) return;
+  if (message.stage() != "local_mapper") return;
   maps_in_stream_ = message.count();
   schedule();
 }
 
 void LocalizerService::on_odometry(const msg::Odometry& message) {
-  if (!service_.is_own(message)) return;
-  try {
-    newest_ = {message.stamp_ns(), message.sequence_number(),
-               service::from_msg(message.T_odom_robot())};
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault("invalid odometry", error.what());
-    return;
-  }
+  newest_ = {message.stamp_ns(), message.sequence_number(),
+             service::from_msg(message.T_odom_robot())};
   send_pose();
 }
 

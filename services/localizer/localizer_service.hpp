@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "topogeo/localization/session/slam_session.hpp"
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/sensor.h"
@@ -68,10 +67,6 @@ class LocalizerService {
   BackgroundOptimizer optimizer_;
   localization::SlamSession slam_;
   CommandChannel commands_;
-  messaging::Reader<msg::LocalMap> maps_in_;
-  messaging::Reader<msg::Odometry> odometry_;
-  messaging::Reader<msg::TrackedPose> tracked_poses_;
-  messaging::Reader<msg::StreamEnd> ends_in_;
   TrajectoryPublisher trajectory_;
   messaging::Writer<msg::LivePose> poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;

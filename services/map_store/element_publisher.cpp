@@ -5,9 +5,9 @@
 namespace topogeo::map_store {
 
 ElementPublisher::ElementPublisher(service::Service& service)
-    : service_(service), updates_(service.robot_id()), elements_(service.participant()) {
-  service_.loop().add(elements_);
-}
+    : service_(service),
+      updates_(service.robot_id()),
+      elements_(service.advertise<msg::MapElement>()) {}
 
 bool ElementPublisher::publish(const topomap::GlobalMap& map, std::int64_t stamp_ns) {
   const ElementUpdates::Update update = updates_.update_to(map, stamp_ns);

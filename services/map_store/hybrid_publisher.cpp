@@ -21,11 +21,8 @@ std::uint64_t first_version() {
 HybridPublisher::HybridPublisher(service::Service& service)
     : service_(service),
       updates_(service.robot_id(), first_version()),
-      tiles_(service.participant()),
-      summaries_(service.participant()) {
-  service_.loop().add(tiles_);
-  service_.loop().add(summaries_);
-}
+      tiles_(service.advertise<msg::GridTile>()),
+      summaries_(service.advertise<msg::HybridMap>()) {}
 
 void HybridPublisher::publish(const pipeline::HybridMapParts& parts, std::int64_t stamp_ns) {
   if (!pipeline::has_grid(parts)) return;

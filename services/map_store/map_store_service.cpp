@@ -40,22 +40,16 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       live_map_(service.setup().config.config.global_map),
       elements_(service),
       hybrid_(service),
-      local_maps_(service.participant()),
-      segments_(service.participant()),
-      closures_(service.participant()),
-      ends_in_(service.participant()),
-      ends_out_(service.participant()) {
+      ends_out_(service.advertise<msg::StreamEnd>()) {
   if (!options_.drawing.empty()) database_.put_drawing(options_.drawing);
   if (options_.drawing.grid) hybrid_pending_.emplace();  // there is a map before any scan
-  listen(local_maps_, "local map", [this](const msg::LocalMap& message) { on_local_map(message); });
-  listen(segments_, "trajectory segment",
-         [this](const msg::TrajectorySegment& message) { input_.add(message); });
-  listen(closures_, "loop closures",
-         [this](const msg::LoopClosures& message) { input_.add(message); });
-  listen(ends_in_, "stream end", [this](const msg::StreamEnd& message) {
-    if (message.stage() == "localizer") input_.set_end(message);
+  listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); });
+  listen<msg::TrajectorySegment>(
+      [this](const msg::TrajectorySegment& segment) { input_.add(segment); });
+  listen<msg::LoopClosures>([this](const msg::LoopClosures& closures) { input_.add(closures); });
+  listen<msg::StreamEnd>([this](const msg::StreamEnd& end) {
+    if (end.stage() == "localizer") input_.set_end(end);
   });
-  service_.loop().add(ends_out_);
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
     finish_if_complete();
@@ -74,19 +68,12 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
 }
 
 template <class T, class Handler>
-void MapStoreService::listen(const messaging::Reader<T>& reader, const char* what,
-                             Handler handler) {
-  service_.loop().add<T>(reader,
-                         [this, what, handler](const T& message, const messaging::SampleInfo&) {
-                           if (!service_.is_own(message) || finished_) return;
-                           try {
-                             handler(message);
-                           } catch (const std::invalid_argument& error) {
-                             service_.status().fault(std::string("invalid ") + what, error.what());
-                             return;
-                           }
-                           finish_if_complete();
-                         });
+void MapStoreService::listen(Handler handler) {
+  service_.subscribe<T>([this, handler](const T& message) {
+    if (finished_) return;
+    handler(message);
+    finish_if_complete();
+  });
 }
 
 void MapStoreService::on_local_map(const msg::LocalMap& message) {

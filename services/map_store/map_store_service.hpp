@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/stream.h"
@@ -43,7 +42,7 @@ class MapStoreService {
   using Clock = std::chrono::steady_clock;
 
   template <class T, class Handler>
-  void listen(const messaging::Reader<T>& reader, const char* what, Handler handler);
+  void listen(Handler handler);
   void on_local_map(const msg::LocalMap& message);
 
   /// Puts what is new into the database; false, and a fault, when that fails.
@@ -69,10 +68,6 @@ class MapStoreService {
   ElementPublisher elements_;
   HybridPublisher hybrid_;
 
-  messaging::Reader<msg::LocalMap> local_maps_;
-  messaging::Reader<msg::TrajectorySegment> segments_;
-  messaging::Reader<msg::LoopClosures> closures_;
-  messaging::Reader<msg::StreamEnd> ends_in_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
   std::uint64_t stored_version_ = 0;

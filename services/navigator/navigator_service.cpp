@@ -54,26 +54,13 @@ NavigatorService::NavigatorService(service::Service& service)
     : service_(service),
       clock_(host_offset_ns()),
       navigator_(service.setup().config.config.navigator),
-      goals_(service.participant()),
-      routes_(service.participant()),
-      live_map_(service.participant(), service.loop(),
-                [this](const auto& message, const char* what, const auto& use) {
-                  service_.take(message, what, use);
-                }),
-      poses_(service.participant()),
-      odometry_(service.participant()),
-      scans_(service.participant()),
-      sonars_(service.participant()),
-      bases_(service.participant()),
-      commands_(service.participant()),
-      statuses_(service.participant()),
-      blockages_(service.participant()) {
+      live_map_(service),
+      commands_(service.advertise<msg::MotionCommand>()),
+      statuses_(service.advertise<msg::NavigatorStatus>()),
+      blockages_(service.advertise<msg::Blockages>()) {
   listen_to_orders();
   listen_to_sensors();
   messaging::EventLoop& loop = service_.loop();
-  loop.add(commands_);
-  loop.add(statuses_);
-  loop.add(blockages_);
   loop.add_timer(kPeriod, [this] { tick(); });
   loop.add_timer(kMapPeriod, [this] { take_map(); });
   for (const char* counter : {"goals", "arrivals", "routes", "commands", "map_version"}) {
@@ -93,48 +80,29 @@ NavigatorService::~NavigatorService() {
 }
 
 void NavigatorService::listen_to_orders() {
-  messaging::EventLoop& loop = service_.loop();
-  loop.add<msg::Goal>(goals_, [this](const msg::Goal& message, const messaging::SampleInfo&) {
-    service_.take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
-  });
-  loop.add<msg::Route>(routes_, [this](const msg::Route& message, const messaging::SampleInfo&) {
-    service_.take(message, "route", [this](const msg::Route& route) { on_route(route); });
-  });
+  service_.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); });
+  service_.subscribe<msg::Route>([this](const msg::Route& route) { on_route(route); });
 }
 
 void NavigatorService::listen_to_sensors() {
-  messaging::EventLoop& loop = service_.loop();
-  loop.add<msg::LivePose>(poses_,
-                          [this](const msg::LivePose& message, const messaging::SampleInfo&) {
-                            service_.take(message, "pose", [this](const msg::LivePose& pose) {
-                              if (!is_newer(Source::kPose, pose.stamp_ns())) return;
-                              navigator_.add(service::to_pose_fix(service::from_msg(pose)));
-                            });
-                          });
-  loop.add<msg::Odometry>(
-      odometry_, [this](const msg::Odometry& message, const messaging::SampleInfo&) {
-        service_.take(message, "odometry", [this](const msg::Odometry& odometry) {
-          const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
-          note_stamp(sample.stamp_ns);
-          if (is_newer(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
-        });
-      });
-  loop.add<msg::Scan>(scans_, [this](const msg::Scan& message, const messaging::SampleInfo&) {
-    service_.take(message, "scan", [this](const msg::Scan& scan) { on_scan(scan); });
+  service_.subscribe<msg::LivePose>([this](const msg::LivePose& pose) {
+    if (!is_newer(Source::kPose, pose.stamp_ns())) return;
+    navigator_.add(service::to_pose_fix(service::from_msg(pose)));
   });
-  loop.add<msg::Sonar>(sonars_, [this](const msg::Sonar& message, const messaging::SampleInfo&) {
-    service_.take(message, "sonar", [this](const msg::Sonar& sonar) {
-      const navigation::SonarRound round = service::sonar_from_msg(sonar);
-      if (is_newer(Source::kSonar, round.stamp_ns)) navigator_.add(round);
-    });
+  service_.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
+    const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
+    note_stamp(sample.stamp_ns);
+    if (is_newer(Source::kOdometry, sample.stamp_ns)) navigator_.add(sample);
   });
-  loop.add<msg::BaseStatus>(
-      bases_, [this](const msg::BaseStatus& message, const messaging::SampleInfo&) {
-        service_.take(message, "base status", [this](const msg::BaseStatus& base) {
-          if (!is_newer(Source::kBase, base.stamp_ns())) return;
-          navigator_.add(service::base_from_msg(base));
-        });
-      });
+  service_.subscribe<msg::Scan>([this](const msg::Scan& scan) { on_scan(scan); });
+  service_.subscribe<msg::Sonar>([this](const msg::Sonar& sonar) {
+    const navigation::SonarRound round = service::sonar_from_msg(sonar);
+    if (is_newer(Source::kSonar, round.stamp_ns)) navigator_.add(round);
+  });
+  service_.subscribe<msg::BaseStatus>([this](const msg::BaseStatus& base) {
+    if (!is_newer(Source::kBase, base.stamp_ns())) return;
+    navigator_.add(service::base_from_msg(base));
+  });
 }
 
 bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {

@@ -12,7 +12,6 @@
 #include <memory>
 #include <optional>
 
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
 #include "topogeo/msg/planning.h"
@@ -79,14 +78,7 @@ class NavigatorService {
   std::optional<navigation::NavigatorStatus> published_;
   std::optional<std::uint64_t> published_blockages_;
 
-  messaging::Reader<msg::Goal> goals_;
-  messaging::Reader<msg::Route> routes_;
   service::LiveHybridMap live_map_;
-  messaging::Reader<msg::LivePose> poses_;
-  messaging::Reader<msg::Odometry> odometry_;
-  messaging::Reader<msg::Scan> scans_;
-  messaging::Reader<msg::Sonar> sonars_;
-  messaging::Reader<msg::BaseStatus> bases_;
   messaging::Writer<msg::MotionCommand> commands_;
   messaging::Writer<msg::NavigatorStatus> statuses_;
   messaging::Writer<msg::Blockages> blockages_;

@@ -24,30 +24,11 @@ constexpr double kMoved_m = 0.1;
 }  // namespace
 
 PlannerService::PlannerService(service::Service& service)
-    : service_(service),
-      live_map_(service.participant(), service.loop(),
-                [this](const auto& message, const char* what, const auto& use) {
-                  service_.take(message, what, use);
-                }),
-      poses_(service.participant()),
-      reports_(service.participant()),
-      goals_(service.participant()),
-      routes_(service.participant()) {
-  messaging::EventLoop& loop = service_.loop();
-  loop.add<msg::LivePose>(
-      poses_, [this](const msg::LivePose& message, const messaging::SampleInfo&) {
-        service_.take(message, "pose", [this](const msg::LivePose& pose) { on_pose(pose); });
-      });
-  loop.add<msg::Blockages>(
-      reports_, [this](const msg::Blockages& message, const messaging::SampleInfo&) {
-        service_.take(message, "blockages",
-                      [this](const msg::Blockages& report) { on_blockages(report); });
-      });
-  loop.add<msg::Goal>(goals_, [this](const msg::Goal& message, const messaging::SampleInfo&) {
-    service_.take(message, "goal", [this](const msg::Goal& goal) { on_goal(goal); });
-  });
-  loop.add(routes_);
-  loop.add_timer(kMapPeriod, [this] { take_map(); });
+    : service_(service), live_map_(service), routes_(service.advertise<msg::Route>()) {
+  service.subscribe<msg::LivePose>([this](const msg::LivePose& pose) { on_pose(pose); });
+  service.subscribe<msg::Blockages>([this](const msg::Blockages& report) { on_blockages(report); });
+  service.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); });
+  service.loop().add_timer(kMapPeriod, [this] { take_map(); });
   for (const char* counter : {"goals", "routes_found", "routes_refused", "map_version"}) {
     service_.status().set_counter(counter, 0.0);
   }

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/trajectory.h"
@@ -42,9 +41,6 @@ class PlannerService {
   std::uint64_t sent_ = 0;
 
   service::LiveHybridMap live_map_;
-  messaging::Reader<msg::LivePose> poses_;
-  messaging::Reader<msg::Blockages> reports_;
-  messaging::Reader<msg::Goal> goals_;
   messaging::Writer<msg::Route> routes_;
 };
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -57,24 +58,15 @@ BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
       time_(time),
       on_odometry_(std::move(on_odometry)),
       driver_(config.base),
-      odometry_(service.participant()),
-      statuses_(service.participant()),
-      motion_commands_(service.participant()),
-      base_commands_(service.participant()),
+      odometry_(service.advertise<msg::Odometry>()),
+      statuses_(service.advertise<msg::BaseStatus>()),
       line_(service.loop(), driver_, PortOptions{config.base_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
-  messaging::EventLoop& loop = service_.loop();
-  loop.add(odometry_);
-  loop.add(statuses_);
-  loop.add<msg::MotionCommand>(
-      motion_commands_, [this](const msg::MotionCommand& command, const messaging::SampleInfo&) {
-        if (service_.is_own(command)) on_command(command);
-      });
-  loop.add<msg::BaseCommand>(base_commands_,
-                             [this](const msg::BaseCommand& command, const messaging::SampleInfo&) {
-                               if (service_.is_own(command)) on_command(command);
-                             });
-  timer_ = loop.add_timer(kStatusPeriod, [this] { publish_status(); });
+  service.subscribe<msg::MotionCommand>(
+      [this](const msg::MotionCommand& command) { on_command(command); });
+  service.subscribe<msg::BaseCommand>(
+      [this](const msg::BaseCommand& command) { on_command(command); });
+  timer_ = service.loop().add_timer(kStatusPeriod, [this] { publish_status(); });
 }
 
 BaseChannel::~BaseChannel() {
@@ -113,12 +105,9 @@ void BaseChannel::on_command(const msg::MotionCommand& command) {
   const double valid_s = std::min(command.valid_for_s(), kLongestCommand_s);
   if (!std::isfinite(command.linear_mps()) || !std::isfinite(command.angular_radps()) ||
       !(valid_s > 0.0)) {
-    service_.status().fault("invalid motion command",
-                            std::to_string(command.sequence_number()) + ": " +
-                                std::to_string(command.linear_mps()) + " m/s, " +
+    throw std::invalid_argument(std::to_string(command.linear_mps()) + " m/s, " +
                                 std::to_string(command.angular_radps()) + " rad/s for " +
                                 std::to_string(command.valid_for_s()) + " s");
-    return;
   }
   const std::int64_t now_ns = line_.now_ns();
   const bool taken = driver_.command(command.linear_mps(), command.angular_radps(),

@@ -54,8 +54,6 @@ class BaseChannel {
   devices::BaseDriver driver_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::BaseStatus> statuses_;
-  messaging::Reader<msg::MotionCommand> motion_commands_;
-  messaging::Reader<msg::BaseCommand> base_commands_;
   std::uint64_t odometry_sent_ = 0;
   std::uint64_t statuses_sent_ = 0;
   std::uint64_t commands_ = 0;

@@ -34,10 +34,8 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
     : service_(service),
       readers_(readers),
       gate_(gate_options(service, config)),
-      scans_(service.participant()),
-      stream_end_(service.participant()) {
-  service_.loop().add(scans_);
-  service_.loop().add(stream_end_);
+      scans_(service.advertise<msg::Scan>()),
+      stream_end_(service.advertise<msg::StreamEnd>()) {
   service_.status().set_counter("scans_sent", 0.0);
   if (config.base_port.empty()) {
     spdlog::warn("there is no base: by the odometry the robot stands still");

@@ -61,10 +61,9 @@ LaserChannel::LaserChannel(service::Service& service, const DeviceConfig& config
       gate_(gate),
       on_scans_(std::move(on_scans)),
       driver_(config.laser),
-      statuses_(service.participant()),
+      statuses_(service.advertise<msg::LaserStatus>()),
       line_(service.loop(), driver_, PortOptions{config.laser_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
-  service_.loop().add(statuses_);
   timer_ = service_.loop().add_timer(kLaserStatusPeriod, [this] { publish_status(); });
 }
 

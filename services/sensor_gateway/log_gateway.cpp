@@ -46,12 +46,9 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
       readers_(options.readers.value_or(1)),
       reader_(std::move(reader)),
       pace_(options.rate),
-      scans_(service.participant(), messaging::kReplayRole),
-      odometry_(service.participant(), messaging::kReplayRole),
-      stream_end_(service.participant()) {
-  service_.loop().add(scans_);
-  service_.loop().add(odometry_);
-  service_.loop().add(stream_end_);
+      scans_(service.advertise<msg::Scan>(messaging::kReplayRole)),
+      odometry_(service.advertise<msg::Odometry>(messaging::kReplayRole)),
+      stream_end_(service.advertise<msg::StreamEnd>()) {
   service_.status().set_counter("scans_sent", 0.0);
   service_.status().set_counter("scans_total", static_cast<double>(scans_total));
   service_.status().set_state(msg::kServiceWaiting,

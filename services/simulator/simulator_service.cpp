@@ -32,17 +32,12 @@ SimulatorService::SimulatorService(service::Service& service, world::World world
       time_factor_(options.time_factor),
       devices_(std::move(world), options.devices),
       faults_(devices_),
-      truth_(service.participant()),
-      sonar_(service.participant()),
-      commands_(service.participant()),
+      truth_(service.advertise<msg::GroundTruth>()),
+      sonar_(service.advertise<msg::Sonar>()),
       start_(Clock::now()),
       start_stamp_ns_(nanoseconds(std::chrono::system_clock::now().time_since_epoch())) {
-  service_.loop().add(truth_);
-  service_.loop().add(sonar_);
-  service_.loop().add<msg::SimulatorCommand>(
-      commands_, [this](const msg::SimulatorCommand& command, const messaging::SampleInfo&) {
-        if (service_.is_own(command)) on_command(command);
-      });
+  service.subscribe<msg::SimulatorCommand>(
+      [this](const msg::SimulatorCommand& command) { on_command(command); });
   service_.loop().add_timer(kTick, [this] { tick(); });
   service_.status().set_state(msg::kServiceRunning,
                               "laser at " + options.devices.laser_port.string() + ", base at " +
@@ -125,14 +120,10 @@ void SimulatorService::publish_state() {
 }
 
 void SimulatorService::on_command(const msg::SimulatorCommand& command) {
-  try {
-    const Fault fault = fault_from_msg(command);
-    spdlog::info("{}, as {} wants it", describe(fault), command.client_id().c_str());
-    faults_.begin(fault);
-    service_.status().add_to_counter("faults_made");
-  } catch (const std::invalid_argument& error) {
-    service_.status().fault("unusable command", error.what());
-  }
+  const Fault fault = fault_from_msg(command);
+  spdlog::info("{}, as {} wants it", describe(fault), command.client_id().c_str());
+  faults_.begin(fault);
+  service_.status().add_to_counter("faults_made");
 }
 
 }  // namespace topogeo::simulator

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdint>
 
-#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/simulation.h"
@@ -45,7 +44,6 @@ class SimulatorService {
   FaultInjector faults_;
   messaging::Writer<msg::GroundTruth> truth_;
   messaging::Writer<msg::Sonar> sonar_;
-  messaging::Reader<msg::SimulatorCommand> commands_;
   Clock::time_point start_;        // when the world's clock was 0, moved on by what it was late
   std::int64_t start_stamp_ns_;    // of that, since the epoch
   std::int64_t truth_due_ns_ = 0;  // in the world, and the next two

@@ -45,7 +45,7 @@ GoalClient::GoalClient(const messaging::Participant& participant, messaging::Eve
       statuses_(participant),
       routes_(participant),
       // The services count what they cannot use of a map; here it is only drawn.
-      live_map_(participant, loop, [this](const auto& message, const char*, const auto& use) {
+      live_map_(participant, loop, [this](const auto& message, const auto& use) {
         if (!is_own(message)) return;
         try {
           use(message);

@@ -148,7 +148,7 @@ std::shared_ptr<const planning::HybridMap> live_map(const PlacesOptions& options
   std::shared_ptr<const planning::HybridMap> map;
   std::string defect;
   std::optional<service::LiveHybridMap> live;
-  live.emplace(participant, loop, [&](const auto& message, const char*, const auto& use) {
+  live.emplace(participant, loop, [&](const auto& message, const auto& use) {
     if (message.robot_id() != options.robot_id.c_str()) return;
     try {
       use(message);

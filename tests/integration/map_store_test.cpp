@@ -101,8 +101,8 @@ struct LateReader {
   messaging::EventLoop loop;
   messaging::Reader<msg::MapElement> elements{participant};
   service::MapMirror map_mirror;
-  service::LiveHybridMap hybrid{
-      participant, loop, [](const auto& message, const char*, const auto& use) { use(message); }};
+  service::LiveHybridMap hybrid{participant, loop,
+                                [](const auto& message, const auto& use) { use(message); }};
 };
 
 void expect_same(const planning::HybridMap& got, const planning::HybridMap& expected) {

@@ -1,5 +1,6 @@
 #include "topogeo/service/service.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 
@@ -41,8 +42,15 @@ void Service::run() {
   spdlog::debug("stopped");
 }
 
-void Service::tell_blocked(std::string_view what) {
+void Service::report_blocked(std::string_view what) {
   status_->fault("send blocked", what);
+}
+
+void Service::report_invalid(const messaging::TopicInfo& topic, std::uint64_t sequence_number,
+                             std::string_view why) {
+  std::string name(topic.name.substr(topic.name.rfind('/') + 1));
+  std::ranges::replace(name, '_', ' ');
+  status_->fault("invalid " + name, "number " + std::to_string(sequence_number) + ": " + std::string(why));
 }
 
 }  // namespace topogeo::service

@@ -77,7 +77,7 @@ TEST_F(Delivery, ThousandsOfLocalMapsReachALateReader) {
 TEST_F(Delivery, SlowReaderSlowsAReplayAndLosesNothing) {
   constexpr std::uint64_t kScans = 500;
   Writer<msg::Scan> writer(sender_, kReplayRole);
-  Reader<msg::Scan> reader(receiver_, {.role = std::string(kReplayRole), .addressee = {}});
+  Reader<msg::Scan> reader(receiver_, {.role = std::string(kReplayRole)});
   ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
   ASSERT_TRUE(reader.wait_for_matched(1, kPatience));
 
@@ -189,8 +189,8 @@ TEST_F(Delivery, EverNewInstancesDoNotUseUpTheLimit) {
 
 TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   Writer<msg::MatchTask> writer(sender_);
-  Reader<msg::MatchTask> one(receiver_, {.role = {}, .addressee = "one"});
-  Reader<msg::MatchTask> two(receiver_, {.role = {}, .addressee = "two"});
+  Reader<msg::MatchTask> one(receiver_, {.addressee = "one"});
+  Reader<msg::MatchTask> two(receiver_, {.addressee = "two"});
   ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
   for (std::uint64_t i = 0; i < 30; ++i) {
     auto task = message<msg::MatchTask>(i);
@@ -215,8 +215,8 @@ template <class T, class SetAddressee>
 void expect_addressed(const Participant& sender, const Participant& receiver,
                       const SetAddressee& set_addressee) {
   Writer<T> writer(sender);
-  Reader<T> me(receiver, {.role = {}, .addressee = "me"});
-  Reader<T> mee(receiver, {.role = {}, .addressee = "mee"});
+  Reader<T> me(receiver, {.addressee = "me"});
+  Reader<T> mee(receiver, {.addressee = "mee"});
   ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
   std::vector<std::string> for_me;
   std::vector<std::string> for_mee;
@@ -261,7 +261,7 @@ TEST_F(Delivery, EveryAddressedTopicReachesTheAddresseeAlone) {
 TEST_F(Delivery, AddresseeMayHaveQuotes) {
   const std::string name = "it's \"me\"";
   Writer<msg::MatchTask> writer(sender_);
-  Reader<msg::MatchTask> reader(receiver_, {.role = {}, .addressee = name});
+  Reader<msg::MatchTask> reader(receiver_, {.addressee = name});
   ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
   auto task = message<msg::MatchTask>();
   set_text(task.worker_id(), name, "worker_id");
@@ -270,7 +270,7 @@ TEST_F(Delivery, AddresseeMayHaveQuotes) {
 }
 
 TEST_F(Delivery, AddresseeOnATopicWithoutOneIsAnError) {
-  EXPECT_THROW(Reader<msg::Goal>(receiver_, {.role = {}, .addressee = "me"}), std::runtime_error);
+  EXPECT_THROW(Reader<msg::Goal>(receiver_, {.addressee = "me"}), std::runtime_error);
 }
 
 TEST_F(Delivery, PartitionsDoNotSeeEachOtherButTheWildcardSeesAll) {

@@ -13,10 +13,10 @@
 namespace topogeo::messaging {
 
 struct ReaderOptions {
-  std::string role;  ///< replaces the role of the topic, for example kReplayRole
+  std::string role = {};  ///< replaces the role of the topic, for example kReplayRole
   /// Only messages to it, which the writer selects; empty: every message. A reader with an
   /// addressee gets no disposals.
-  std::string addressee;
+  std::string addressee = {};
 };
 
 /// T is one of the types of topics.hpp. Include its header topogeo/msg/<file>.h to use it.

@@ -10,36 +10,39 @@
 #include "topogeo/msg/hybrid_map.h"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/service.hpp"
 
 namespace topogeo::service {
 
 class LiveHybridMap {
  public:
-  /// Lives in the loop. For each tile and summary that comes it calls take(message, what, use),
-  /// which passes over messages of other robots and calls use(message) for the others; that throws
-  /// std::invalid_argument like HybridMapMirror::put. See Service::take.
+  /// Of the robot of a service, in its loop.
+  explicit LiveHybridMap(Service& service) {
+    service.subscribe<msg::GridTile>(
+        [this](const msg::GridTile& tile, const messaging::SampleInfo& info) { put(tile, info); },
+        {}, [this](const messaging::SampleInfo& info) { remove_tile(info); });
+    service.subscribe<msg::HybridMap>(
+        [this](const msg::HybridMap& summary) { mirror_.put(summary); }, {},
+        [this](const messaging::SampleInfo& info) { remove_summary(info); });
+  }
+
+  /// For programs that are no service; lives in the loop. For each tile and summary that comes it
+  /// calls take(message, use), which passes over messages of other robots and calls use(message)
+  /// for the others; that throws std::invalid_argument like HybridMapMirror::put.
   template <class Take>
-  LiveHybridMap(const messaging::Participant& participant, messaging::EventLoop& loop, Take take)
-      : tiles_(participant), summaries_(participant) {
-    using messaging::SampleInfo;
-    // A map_store that has gone leaves its last map standing; only a disposal takes away.
+  LiveHybridMap(const messaging::Participant& participant, messaging::EventLoop& loop, Take take) {
     loop.add<msg::GridTile>(
-        tiles_,
-        [this, take](const msg::GridTile& message, const SampleInfo& info) {
-          take(message, "grid tile",
-               [&](const msg::GridTile& tile) { mirror_.put(tile, info.instance); });
+        messaging::Reader<msg::GridTile>(participant),
+        [this, take](const msg::GridTile& message, const messaging::SampleInfo& info) {
+          take(message, [&](const msg::GridTile& tile) { put(tile, info); });
         },
-        [this](const SampleInfo& info) {
-          if (info.state == messaging::InstanceState::kDisposed) mirror_.remove(info.instance);
-        });
+        [this](const messaging::SampleInfo& info) { remove_tile(info); });
     loop.add<msg::HybridMap>(
-        summaries_,
-        [this, take](const msg::HybridMap& message, const SampleInfo&) {
-          take(message, "hybrid map", [&](const msg::HybridMap& summary) { mirror_.put(summary); });
+        messaging::Reader<msg::HybridMap>(participant),
+        [this, take](const msg::HybridMap& message, const messaging::SampleInfo&) {
+          take(message, [&](const msg::HybridMap& summary) { mirror_.put(summary); });
         },
-        [this](const SampleInfo& info) {
-          if (info.state == messaging::InstanceState::kDisposed) mirror_.remove_summary();
-        });
+        [this](const messaging::SampleInfo& info) { remove_summary(info); });
   }
   LiveHybridMap(const LiveHybridMap&) = delete;
   LiveHybridMap& operator=(const LiveHybridMap&) = delete;
@@ -49,9 +52,18 @@ class LiveHybridMap {
   [[nodiscard]] std::uint64_t version() const { return mirror_.version(); }
 
  private:
+  void put(const msg::GridTile& tile, const messaging::SampleInfo& info) {
+    mirror_.put(tile, info.instance);
+  }
+  // A map_store that has gone leaves its last map standing; only a disposal takes away.
+  void remove_tile(const messaging::SampleInfo& info) {
+    if (info.state == messaging::InstanceState::kDisposed) mirror_.remove(info.instance);
+  }
+  void remove_summary(const messaging::SampleInfo& info) {
+    if (info.state == messaging::InstanceState::kDisposed) mirror_.remove_summary();
+  }
+
   HybridMapMirror mirror_;
-  messaging::Reader<msg::GridTile> tiles_;
-  messaging::Reader<msg::HybridMap> summaries_;
 };
 
 }  // namespace topogeo::service

@@ -1,25 +1,36 @@
 // A running service: its participant, event loop, status and the signals that end it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/messaging/status_publisher.hpp"
+#include "topogeo/messaging/topics.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/service/service_options.hpp"
 
 namespace topogeo::service {
 
-/// One at a time in a process. Readers and writers of a service are made with participant(), added
-/// to loop(), and live at least as long as run().
+/// Which messages of a topic Service::subscribe takes.
+struct Subscription {
+  std::string role = {};       ///< see messaging::ReaderOptions
+  std::string addressee = {};  ///< see messaging::ReaderOptions
+  bool any_robot = false;      ///< false: those of other robots are counted and ignored
+};
+
+/// One at a time in a process. Readers and writers live as long as the service.
 class Service {
  public:
-  /// Joins the domain and tells that the service starts. `any_robot`: it serves every robot and
+  /// Joins the domain and publishes that the service starts. `any_robot`: it serves every robot and
   /// its status names none. Throws like messaging::Participant and StatusPublisher.
   explicit Service(const Setup& setup, bool any_robot = false);
   Service(const Service&) = delete;
@@ -39,17 +50,55 @@ class Service {
   /// kServiceFailed with its text and comes out here.
   void run();
 
+  /// Calls `handler` in the loop for the messages of T's topic, as handler(message) or
+  /// handler(message, info). Messages of another schema version never arrive. std::invalid_argument
+  /// from the handler becomes the fault "invalid <topic>", for example "invalid local map".
+  /// `on_gone` gets the instances that were disposed or have lost their writer. Throws like
+  /// messaging::Reader.
+  template <class T, class Handler>
+  void subscribe(Handler handler, const Subscription& subscription = {},
+                 messaging::EventLoop::InstanceHandler on_gone = {}) {
+    const messaging::Reader<T> reader(participant_, {subscription.role, subscription.addressee});
+    loop_.add<T>(
+        reader,
+        [this, handler = std::move(handler), any_robot = subscription.any_robot](
+            const T& message, const messaging::SampleInfo& info) {
+          if (!any_robot && !is_own(message)) return;
+          try {
+            if constexpr (std::is_invocable_v<const Handler&, const T&,
+                                              const messaging::SampleInfo&>) {
+              handler(message, info);
+            } else {
+              handler(message);
+            }
+          } catch (const std::invalid_argument& error) {
+            report_invalid(messaging::TopicTraits<T>::info(), message.sequence_number(),
+                           error.what());
+          }
+        },
+        std::move(on_gone));
+  }
+
+  /// A writer whose events are watched. Throws like messaging::Writer.
+  template <class T>
+  messaging::Writer<T> advertise(std::string_view role = {}) {
+    messaging::Writer<T> writer(participant_, role);
+    loop_.add(writer);
+    return writer;
+  }
+
   /// Sends, again and again while the history is full, counted as fault "send blocked". False when
   /// the program is asked to end before it could be sent. Throws like Writer::write.
   template <class T>
   bool send(messaging::Writer<T>& writer, const T& message, std::string_view what) {
     while (!writer.write(message)) {
       if (stopping()) return false;
-      tell_blocked(what);
+      report_blocked(what);
     }
     return true;
   }
 
+ private:
   /// False, and counted as "ignored: other robot", for messages of other robots.
   template <class T>
   bool is_own(const T& message) {
@@ -58,20 +107,9 @@ class Service {
     return false;
   }
 
-  /// Calls `use` for a message of this robot; std::invalid_argument from it becomes the fault
-  /// "invalid <what>".
-  template <class T, class Use>
-  void take(const T& message, const char* what, const Use& use) {
-    if (!is_own(message)) return;
-    try {
-      use(message);
-    } catch (const std::invalid_argument& error) {
-      status_->fault(std::string("invalid ") + what, error.what());
-    }
-  }
-
- private:
-  void tell_blocked(std::string_view what);
+  void report_blocked(std::string_view what);
+  void report_invalid(const messaging::TopicInfo& topic, std::uint64_t sequence_number,
+                      std::string_view why);
 
   Setup setup_;
   messaging::Participant participant_;

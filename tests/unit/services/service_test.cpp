@@ -1,0 +1,150 @@
+// What a service takes from its topics: messages of its robot that its handlers can use.
+#include "topogeo/service/service.hpp"
+
+#include <vector>
+
+#include "messaging/fixture.hpp"
+
+namespace topogeo::service {
+namespace {
+
+using messaging::kPatience;
+
+Setup setup_in(const std::string& partition) {
+  Setup setup;
+  setup.name = "mapper";
+  setup.options.partition = partition;
+  return setup;
+}
+
+template <class T>
+T message_of(const std::string& robot_id, std::uint64_t sequence_number = 0) {
+  T result;
+  messaging::set_header(result, robot_id, 1'000, sequence_number);
+  return result;
+}
+
+class ServiceTest : public ::testing::Test {
+ protected:
+  /// Runs the service until `condition` holds.
+  bool run_until(const std::function<bool()>& condition) {
+    return messaging::eventually([&] {
+      service_.loop().run_for(std::chrono::milliseconds(5));
+      statuses_.take([this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+        if (info.valid) status_ = status;
+      });
+      return condition();
+    });
+  }
+  [[nodiscard]] double counter(const std::string& name) const {
+    for (const msg::Counter& c : status_.counters()) {
+      if (name == c.name().c_str()) return c.value();
+    }
+    return 0.0;
+  }
+
+  std::string partition_ = messaging::random_partition();
+  Service service_{setup_in(partition_)};
+  messaging::Participant peer_{messaging::options_in(partition_)};
+  messaging::Reader<msg::ServiceStatus> statuses_{peer_};
+  msg::ServiceStatus status_;
+};
+
+TEST_F(ServiceTest, HandlersGetTheMessagesOfTheRobotAlone) {
+  std::vector<std::uint64_t> goals;
+  std::vector<std::string> closures;
+  service_.subscribe<msg::Goal>([&](const msg::Goal& goal) { goals.push_back(goal.goal_id()); });
+  service_.subscribe<msg::LoopClosures>(
+      [&](const msg::LoopClosures& message, const messaging::SampleInfo& info) {
+        EXPECT_TRUE(info.valid);
+        closures.push_back(message.robot_id().to_string());
+      },
+      {.any_robot = true});
+  messaging::Writer<msg::Goal> goal_writer(peer_);
+  messaging::Writer<msg::LoopClosures> closure_writer(peer_);
+  auto goal = message_of<msg::Goal>("another");
+  goal.goal_id(1);
+  ASSERT_TRUE(goal_writer.write(goal));
+  goal = message_of<msg::Goal>("robot");
+  goal.goal_id(2);
+  ASSERT_TRUE(goal_writer.write(goal));
+  ASSERT_TRUE(closure_writer.write(message_of<msg::LoopClosures>("another")));
+
+  EXPECT_TRUE(run_until([&] {
+    return goals.size() == 1 && closures.size() == 1 && counter("ignored: other robot") == 1.0;
+  }));
+  EXPECT_EQ(goals, std::vector<std::uint64_t>{2});
+  EXPECT_EQ(closures, std::vector<std::string>{"another"});
+}
+
+TEST_F(ServiceTest, InvalidMessageIsAFaultNamedAfterTheTopic) {
+  service_.subscribe<msg::LocalMap>(
+      [](const msg::LocalMap&) { throw std::invalid_argument("points: no finite number"); });
+  messaging::Writer<msg::LocalMap> writer(peer_);
+  ASSERT_TRUE(writer.write(message_of<msg::LocalMap>("robot", 17)));
+  ASSERT_TRUE(run_until([&] { return status_.fault_count() == 1; }));
+  EXPECT_EQ(status_.faults()[0].reason().to_string(), "invalid local map");
+  EXPECT_EQ(status_.message().to_string(),
+            "invalid local map: number 17: points: no finite number");
+}
+
+TEST_F(ServiceTest, OtherErrorsOfAHandlerEndTheService) {
+  service_.subscribe<msg::Goal>([](const msg::Goal&) { throw std::runtime_error("no memory"); });
+  messaging::Writer<msg::Goal> writer(peer_);
+  ASSERT_TRUE(writer.write(message_of<msg::Goal>("robot")));
+  EXPECT_THROW(service_.run(), std::runtime_error);
+  EXPECT_EQ(service_.status().state(), msg::kServiceFailed);
+}
+
+TEST_F(ServiceTest, DisposedInstancesAreReported) {
+  int tiles = 0;
+  int gone = 0;
+  service_.subscribe<msg::GridTile>([&](const msg::GridTile&) { ++tiles; }, {},
+                                    [&](const messaging::SampleInfo& info) {
+                                      EXPECT_EQ(info.state, messaging::InstanceState::kDisposed);
+                                      ++gone;
+                                    });
+  messaging::Writer<msg::GridTile> writer(peer_);
+  ASSERT_TRUE(writer.write(message_of<msg::GridTile>("robot")));
+  ASSERT_TRUE(run_until([&] { return tiles == 1; }));
+  writer.dispose(message_of<msg::GridTile>("robot"));
+  EXPECT_TRUE(run_until([&] { return gone == 1; }));
+}
+
+TEST_F(ServiceTest, AddresseeAndRoleAreThoseOfTheSubscription) {
+  std::vector<std::uint64_t> tasks;
+  service_.subscribe<msg::MatchTask>(
+      [&](const msg::MatchTask& task) { tasks.push_back(task.task_id()); },
+      {.addressee = "me", .any_robot = true});
+  int scans = 0;
+  service_.subscribe<msg::Scan>([&](const msg::Scan&) { ++scans; },
+                                {.role = std::string(messaging::kReplayRole)});
+  messaging::Writer<msg::MatchTask> task_writer(peer_);
+  messaging::Writer<msg::Scan> scan_writer(peer_, messaging::kReplayRole);
+  ASSERT_TRUE(task_writer.wait_for_matched(1, kPatience));
+  ASSERT_TRUE(scan_writer.wait_for_matched(1, kPatience));
+  for (const auto& [who, id] : {std::pair{"you", 1U}, std::pair{"me", 2U}}) {
+    auto task = message_of<msg::MatchTask>("any");
+    messaging::set_text(task.worker_id(), who, "worker_id");
+    task.task_id(id);
+    ASSERT_TRUE(task_writer.write(task));
+  }
+  ASSERT_TRUE(scan_writer.write(message_of<msg::Scan>("robot")));
+  EXPECT_TRUE(run_until([&] { return scans == 1 && !tasks.empty(); }));
+  EXPECT_EQ(tasks, std::vector<std::uint64_t>{2});
+}
+
+TEST_F(ServiceTest, AdvertisedWriterReachesAPeerAndItsEventsAreWatched) {
+  messaging::Writer<msg::Route> writer = service_.advertise<msg::Route>();
+  const messaging::Reader<msg::Route> reader(peer_);
+  ASSERT_TRUE(reader.wait_for_matched(1, kPatience));
+  EXPECT_TRUE(service_.send(writer, message_of<msg::Route>("robot"), "route"));
+
+  const messaging::Writer<msg::Goal> odd = service_.advertise<msg::Goal>("command");
+  const messaging::Reader<msg::Goal> strict(peer_);  // wants what role command does not offer
+  EXPECT_TRUE(run_until([&] { return status_.fault_count() > 0; }));
+  EXPECT_EQ(status_.faults()[0].reason().to_string(), "incompatible_qos");
+}
+
+}  // namespace
+}  // namespace topogeo::service
