@@ -79,19 +79,18 @@ void GaWorkerService::fill_status() {
 
 void GaWorkerService::listen() {
   service_.loop().on_event([this](const messaging::Event& event) { on_event(event); });
-  const service::Subscription to_me{.addressee = options_.worker_id, .any_robot = true};
   service_.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { keep(map); },
                                     {.any_robot = true});
   service_.subscribe<msg::MapCopy>(
       [this](const msg::MapCopy& copy) {
         if (intake_.lacks(copy.local_map().content_hash())) keep(copy.local_map());
       },
-      to_me);
+      {.addressee = options_.worker_id, .any_robot = true});
   service_.subscribe<msg::MatchTask>(
       [this](const msg::MatchTask& task, const messaging::SampleInfo& info) {
         on_task(task, info);
       },
-      to_me);
+      {.addressee = options_.worker_id, .any_robot = true, .main_input = true});
 }
 
 // --- maps

@@ -18,7 +18,7 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay)
       ends_out_(service.advertise<msg::StreamEnd>()) {
   service.subscribe<msg::Scan>(
       [this](const msg::Scan& scan) { on_scan(scan); },
-      {.role = replay ? std::string(messaging::kReplayRole) : std::string()});
+      {.role = replay ? std::string(messaging::kReplayRole) : std::string(), .main_input = true});
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
   for (const char* counter : {"scans", "local_maps", "tracked_scans", "matched_scans"}) {
     service_.status().set_counter(counter, 0.0);

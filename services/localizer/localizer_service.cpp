@@ -13,6 +13,8 @@
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
+#include "run_summary.hpp"
+
 namespace topogeo::localizer {
 
 namespace {
@@ -70,8 +72,10 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
       commands_(service, [this] { schedule(); }),
       trajectory_(service),
       poses_(service.advertise<msg::LivePose>()),
+      summaries_(service.advertise<msg::RunSummary>()),
       ends_out_(service.advertise<msg::StreamEnd>()) {
-  service.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { on_map(map); });
+  service.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { on_map(map); },
+                                   {.main_input = true});
   service.subscribe<msg::Odometry>(
       [this](const msg::Odometry& odometry) { on_odometry(odometry); });
   service.subscribe<msg::TrackedPose>([this](const msg::TrackedPose& pose) {
@@ -212,6 +216,10 @@ void LocalizerService::finish() {
   publish(true);
   send_pose();
   count();
+  const RunParts parts{*slam_, slam_.follower(),
+                       options_.continued ? slam_.mapping_session() : nullptr, pool_.counts()};
+  const msg::RunSummary summary = make_run_summary(parts, service_.robot_id(), last_stop_.stamp_ns);
+  if (!service_.send(summaries_, summary, "run summary")) return;
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stop_.stamp_ns, 0);
   messaging::set_text(end.stage(), "localizer", "stage");

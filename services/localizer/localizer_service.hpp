@@ -69,6 +69,7 @@ class LocalizerService {
   CommandChannel commands_;
   TrajectoryPublisher trajectory_;
   messaging::Writer<msg::LivePose> poses_;
+  messaging::Writer<msg::RunSummary> summaries_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
   std::map<std::uint32_t, MapPointer> queue_;  // not yet worked on, by id

@@ -20,13 +20,9 @@ bool same(const std::vector<topomap::LoopClosure>& a, const std::vector<topomap:
 
 TrajectoryPublisher::TrajectoryPublisher(service::Service& service)
     : service_(service),
-      segment_writer_(service.participant()),
-      closure_writer_(service.participant()),
-      decision_writer_(service.participant()) {
-  service.loop().add(segment_writer_);
-  service.loop().add(closure_writer_);
-  service.loop().add(decision_writer_);
-}
+      segment_writer_(service.advertise<msg::TrajectorySegment>()),
+      closure_writer_(service.advertise<msg::LoopClosures>()),
+      decision_writer_(service.advertise<msg::LoopDecisions>()) {}
 
 bool TrajectoryPublisher::publish(const localization::Slam& slam,
                                   const topomap::Trajectory& trajectory, std::int64_t stamp_ns,

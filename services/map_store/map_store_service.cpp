@@ -43,7 +43,8 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       ends_out_(service.advertise<msg::StreamEnd>()) {
   if (!options_.drawing.empty()) database_.put_drawing(options_.drawing);
   if (options_.drawing.grid) hybrid_pending_.emplace();  // there is a map before any scan
-  listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); });
+  listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); },
+                        {.main_input = true});
   listen<msg::TrajectorySegment>(
       [this](const msg::TrajectorySegment& segment) { input_.add(segment); });
   listen<msg::LoopClosures>([this](const msg::LoopClosures& closures) { input_.add(closures); });
@@ -68,12 +69,14 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
 }
 
 template <class T, class Handler>
-void MapStoreService::listen(Handler handler) {
-  service_.subscribe<T>([this, handler](const T& message) {
-    if (finished_) return;
-    handler(message);
-    finish_if_complete();
-  });
+void MapStoreService::listen(Handler handler, const service::Subscription& subscription) {
+  service_.subscribe<T>(
+      [this, handler](const T& message) {
+        if (finished_) return;
+        handler(message);
+        finish_if_complete();
+      },
+      subscription);
 }
 
 void MapStoreService::on_local_map(const msg::LocalMap& message) {

@@ -42,7 +42,7 @@ class MapStoreService {
   using Clock = std::chrono::steady_clock;
 
   template <class T, class Handler>
-  void listen(Handler handler);
+  void listen(Handler handler, const service::Subscription& subscription = {});
   void on_local_map(const msg::LocalMap& message);
 
   /// Puts what is new into the database; false, and a fault, when that fails.

@@ -85,10 +85,12 @@ void NavigatorService::listen_to_orders() {
 }
 
 void NavigatorService::listen_to_sensors() {
-  service_.subscribe<msg::LivePose>([this](const msg::LivePose& pose) {
-    if (!is_newer(Source::kPose, pose.stamp_ns())) return;
-    navigator_.add(service::to_pose_fix(service::from_msg(pose)));
-  });
+  service_.subscribe<msg::LivePose>(
+      [this](const msg::LivePose& pose) {
+        if (!is_newer(Source::kPose, pose.stamp_ns())) return;
+        navigator_.add(service::to_pose_fix(service::from_msg(pose)));
+      },
+      {.main_input = true});
   service_.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
     const navigation::OdometrySample sample = service::odometry_from_msg(odometry);
     note_stamp(sample.stamp_ns);

@@ -25,7 +25,8 @@ constexpr double kMoved_m = 0.1;
 
 PlannerService::PlannerService(service::Service& service)
     : service_(service), live_map_(service), routes_(service.advertise<msg::Route>()) {
-  service.subscribe<msg::LivePose>([this](const msg::LivePose& pose) { on_pose(pose); });
+  service.subscribe<msg::LivePose>([this](const msg::LivePose& pose) { on_pose(pose); },
+                                   {.main_input = true});
   service.subscribe<msg::Blockages>([this](const msg::Blockages& report) { on_blockages(report); });
   service.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); });
   service.loop().add_timer(kMapPeriod, [this] { take_map(); });

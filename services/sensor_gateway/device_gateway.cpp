@@ -90,6 +90,7 @@ bool DeviceGateway::publish(const scan::Scan& scan) {
   }
   last_stamp_ns_ = message.stamp_ns();
   ++sent_;
+  service_.status().count_input("scan");
   return true;
 }
 

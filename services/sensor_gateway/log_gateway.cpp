@@ -110,6 +110,7 @@ bool LogGateway::send_pending() {
     if (!scans_.write(*pending_scan_)) return false;
     pending_scan_.reset();
     ++sent_;
+    service_.status().count_input("scan");
   }
   if (!odometry_.write(*pending_odometry_)) return false;
   last_odometry_ = *std::exchange(pending_odometry_, std::nullopt);

@@ -20,39 +20,30 @@
 namespace topogeo::cli {
 namespace {
 
-/// What the localizer counted; "accepted" and "rejected: <reason>" are its names.
-void add_matches(storage::Report& report, const ServiceTable& services) {
-  const msg::ServiceStatus* localizer = services.find("localizer");
-  const auto count = [&](const std::string& name) {
-    return static_cast<std::uint64_t>(counter(localizer, name));
-  };
-  report.matches_tried = count("tasks");
-  report.matches_accepted = count("accepted");
-  for (std::size_t i = 1; i < localization::kReasons; ++i) {
-    const std::string reason = localization::to_string(static_cast<localization::Reason>(i));
-    report.matches_rejected.emplace_back(reason, count("rejected: " + reason));
+void add_matches(storage::Report& report, const msg::RunSummary& summary) {
+  report.matches_tried = summary.matches_tried();
+  report.matches_accepted = summary.matches_accepted();
+  for (const msg::ReasonCount& count : summary.matches_rejected()) {
+    const auto reason = static_cast<localization::Reason>(count.reason());
+    report.matches_rejected.emplace_back(localization::to_string(reason), count.matches());
   }
 }
 
 /// Stops by state and searches, under the names that pipeline::localization_counts gives them.
-void add_localization(storage::Report& report, const ServiceTable& services) {
-  const msg::ServiceStatus* localizer = services.find("localizer");
-  const auto add = [&](const std::string& name) {
-    report.localization.emplace_back(name, static_cast<std::uint64_t>(counter(localizer, name)));
-  };
-  for (std::size_t i = 0; i < localization::kLocalizationStates; ++i) {
-    add(localization::to_string(static_cast<localization::LocalizationState>(i)));
+void add_localization(storage::Report& report, const msg::RunSummary& summary) {
+  for (const msg::StateCount& count : summary.stops_by_state()) {
+    const auto state = static_cast<localization::LocalizationState>(count.state());
+    report.localization.emplace_back(localization::to_string(state), count.stops());
   }
-  add("searches");
+  report.localization.emplace_back("searches", summary.searches());
 }
 
 /// Stops of a continued map, under the names that pipeline::continuation_counts gives them.
-void add_continuation(storage::Report& report, const ServiceTable& services) {
-  const msg::ServiceStatus* localizer = services.find("localizer");
-  for (const char* name : {"stored_stops", "added_stops", "unmapped_stops"}) {
-    report.continuation.emplace_back(name, static_cast<std::uint64_t>(counter(localizer, name)));
-  }
-  const std::string message = localizer == nullptr ? "" : localizer->message().to_string();
+void add_continuation(storage::Report& report, const msg::RunSummary& summary) {
+  report.continuation = {{"stored_stops", summary.stored_stops()},
+                         {"added_stops", summary.added_stops()},
+                         {"unmapped_stops", summary.unmapped_stops()}};
+  const std::string message = summary.message().to_string();
   if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
 }
 
@@ -86,33 +77,32 @@ storage::Report make_report(const RunOptions& options, const support::EffectiveC
   report.workers = options.workers;
   report.configuration = config;
   results::add_map(report, storage::read_map_file(options.job.out / "map.pb"));
-  add_matches(report, result.services);
+  add_matches(report, result.summary);
   results::add_loop_candidates(report, result.loop_decisions);
-  if (options.job.map) add_localization(report, result.services);
-  if (options.job.continued) add_continuation(report, result.services);
+  if (options.job.map) add_localization(report, result.summary);
+  if (options.job.continued) add_continuation(report, result.summary);
   report.stages = result.times;
   for (const support::StageTime& time : result.times) report.cpu_s += time.cpu_s;
   report.cpu_s += support::process_cpu_s();
   return report;
 }
 
-void print_pool(std::ostream& out, const ServiceTable& services) {
-  const msg::ServiceStatus* localizer = services.find("localizer");
-  if (localizer == nullptr) return;
-  const auto count = [&](std::string_view name) {
-    return static_cast<std::uint64_t>(counter(localizer, name));
-  };
-  const std::uint64_t in_process = count("tasks_in_process");
-  out << "search: " << count("tasks") << " matches, " << in_process
+void print_pool(std::ostream& out, const RunResult& result) {
+  const msg::RunSummary& summary = result.summary;
+  out << "search: " << summary.matches_tried() << " matches, " << summary.tasks_in_process()
       << " in the localizer's process";
-  if (const std::uint64_t sent = count("tasks_sent"); sent > 0) {
-    out << ", " << sent << " sent to workers (" << count("tasks_resent") << " of them again)";
+  if (summary.tasks_sent() > 0) {
+    out << ", " << summary.tasks_sent() << " sent to workers (" << summary.tasks_resent()
+        << " of them again)";
   }
-  if (const std::uint64_t lost = count("workers_lost"); lost > 0) {
-    out << "; " << lost << " workers lost with tasks in hand, answered elsewhere after "
-        << count("longest_recovery_ms") << " ms at most";
+  if (summary.workers_lost() > 0) {
+    out << "; " << summary.workers_lost()
+        << " workers lost with tasks in hand, answered elsewhere after "
+        << static_cast<std::uint64_t>(summary.longest_recovery_ms()) << " ms at most";
   }
   out << '\n';
+  const msg::ServiceStatus* localizer = result.services.find("localizer");
+  if (localizer == nullptr) return;
   for (const msg::FaultCount& fault : localizer->faults()) {
     out << "fault of the localizer: " << fault.reason().c_str() << ", " << fault.count()
         << (fault.count() == 1 ? " time" : " times") << ", see logs/localizer.log\n";
@@ -160,7 +150,7 @@ int run_log(const RunOptions& options) {
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
   tell_skipped(job.reader.statistics());
-  print_pool(std::cout, result.services);
+  print_pool(std::cout, result);
   print_summary(std::cout, report, options.job.out);
   if (options.job.reference) {
     print_comparison(std::cout, compare(options.job.out, *options.job.reference));

@@ -145,7 +145,7 @@ int run_devices(RunOptions options) {
   storage::Report report = make_report(options, inputs.config.effective, result);
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
-  print_pool(std::cout, result.services);
+  print_pool(std::cout, result);
   print_summary(std::cout, report, options.job.out);
   if (options.simulation) compare_with_truth(options, result);
   if (options.job.reference) {

@@ -36,11 +36,11 @@ void prepare_simulation(RunOptions& options);
 std::vector<topomap::StampedPose> truth_at(std::span<const topomap::StampedPose> poses,
                                            std::span<const topomap::StampedPose> truth);
 
-/// All that is known of a run but its wall time and what was skipped of a log.
+/// The report of a run without its wall time and the skipped lines of a log.
 storage::Report make_report(const RunOptions& options, const support::EffectiveConfig& config,
                             const RunResult& result);
-/// Who did the searching, and what went wrong on the way.
-void print_pool(std::ostream& out, const ServiceTable& services);
+/// Prints who did the searching, and the faults of the localizer.
+void print_pool(std::ostream& out, const RunResult& result);
 
 /// Adds --seed, --baud, --odometry, --speed and --people, which need the option `simulation`.
 void add_simulation_options(command_line::Command& app, SimulatorOptions& options,

@@ -15,8 +15,9 @@ using std::chrono::milliseconds;
 
 /// Speeds change more slowly than the base could change them, so that it keeps up.
 constexpr double kShareOfAcceleration = 0.6;
-/// For what was sent on a topic of its own, on a machine with much else to do.
-constexpr double kLastMessage_s = 30.0;
+/// For what the localizer sends at its end on topics of their own: discovery on a busy machine
+/// takes some seconds.
+constexpr double kSummaryPatience_s = 30.0;
 
 }  // namespace
 
@@ -29,7 +30,8 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       run_(options),
       status_reader_(run_.participant()),
       end_reader_(run_.participant()),
-      decision_reader_(run_.participant()) {
+      decision_reader_(run_.participant()),
+      summary_reader_(run_.participant()) {
   messaging::EventLoop& loop = run_.loop();
   loop.add<msg::ServiceStatus>(
       status_reader_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
@@ -45,6 +47,12 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       decision_reader_, [this](const msg::LoopDecisions& segment, const messaging::SampleInfo&) {
         if (segment.robot_id() == options_.job.robot_id.c_str()) decisions_.add(segment);
       });
+  loop.add<msg::RunSummary>(summary_reader_,
+                            [this](const msg::RunSummary& summary, const messaging::SampleInfo&) {
+                              if (summary.robot_id() != options_.job.robot_id.c_str()) return;
+                              result_.summary = summary;
+                              summary_came_ = true;
+                            });
   if (options_.explore) {
     exploration_.emplace(run_.participant(), loop, options_.job.robot_id,
                          pipeline::load_config(options_.job.config).config.exploration);
@@ -73,7 +81,7 @@ RunResult RunSupervisor::run() {
     result_.collisions = tour_->truth().last().collisions();
   }
   finish_bar();
-  if (result_.finished) wait_for_last_messages();
+  if (result_.finished) wait_for_summary();
   // Without the end of the stream samples are still on their way.
   result_.times = run_.stop(!result_.finished);
   result_.failure = run_.failure();
@@ -176,26 +184,23 @@ void RunSupervisor::print(const std::string& text) {
   std::cerr << "topogeo: " << text << '\n';
 }
 
-// What the localizer counted and decided was sent before the end of the stream, but on topics of
-// their own, whose writers may not even be known yet when the machine is busy.
-void RunSupervisor::wait_for_last_messages() {
-  const auto localizer = [this] { return result_.services.find("localizer"); };
-  const auto expected = [&] {
-    return static_cast<std::size_t>(counter(localizer(), "loop_decisions"));
+// Summary and decisions were sent before the end of the stream, but on topics of their own, whose
+// writers may not even be known yet when the machine is busy.
+void RunSupervisor::wait_for_summary() {
+  const auto complete = [this] {
+    return summary_came_ && decisions_.all().size() >= result_.summary.loop_decisions();
   };
-  const auto finished = [&] {
-    return localizer() != nullptr && localizer()->state() == msg::kServiceFinished;
-  };
-  const double end_s = support::monotonic_s() + kLastMessage_s;
-  while ((!finished() || decisions_.all().size() < expected()) && support::monotonic_s() < end_s) {
+  const double end_s = support::monotonic_s() + kSummaryPatience_s;
+  while (!complete() && support::monotonic_s() < end_s) {
     if (run_.loop().run_for(milliseconds(5))) break;  // a signal
   }
   result_.loop_decisions = decisions_.all();
-  if (finished() && result_.loop_decisions.size() == expected()) return;
+  if (complete()) return;
   result_.finished = false;
-  run_.fail(finished() ? fmt::format("{} of {} loop decisions came from the localizer",
-                                     result_.loop_decisions.size(), expected())
-                       : "the localizer published no result: there is a map, but no report");
+  run_.fail(summary_came_
+                ? fmt::format("{} of {} loop decisions came from the localizer",
+                              result_.loop_decisions.size(), result_.summary.loop_decisions())
+                : "no summary came from the localizer: there is a map, but no report");
 }
 
 }  // namespace topogeo::cli

@@ -29,6 +29,7 @@ struct RunResult {
   std::string failure;                    ///< why it did not finish, when no signal did that
   std::vector<support::StageTime> times;  ///< of each service
   ServiceTable services;                  ///< their last statuses
+  msg::RunSummary summary;                ///< of the localizer, when finished
   std::vector<localization::LoopDecision> loop_decisions;  ///< all, when finished
   // Of a simulation:
   std::vector<topomap::StampedPose> truth;  ///< where the robot really was
@@ -56,7 +57,7 @@ class RunSupervisor {
   void show_progress();
   void finish_bar();
   void print(const std::string& text);
-  void wait_for_last_messages();
+  void wait_for_summary();
 
   RunOptions options_;
   std::uint64_t laser_lines_;
@@ -66,11 +67,13 @@ class RunSupervisor {
   support::ProgressBar bar_;
   supervision::StallWatch stall_;
   service::DecisionAssembly decisions_;
+  bool summary_came_ = false;
 
   ServiceRun run_;
   messaging::Reader<msg::ServiceStatus> status_reader_;
   messaging::Reader<msg::StreamEnd> end_reader_;
   messaging::Reader<msg::LoopDecisions> decision_reader_;
+  messaging::Reader<msg::RunSummary> summary_reader_;
   std::optional<TourDriver> tour_;  // while exploring it stands still and keeps the truth
   std::optional<ExploreSession> exploration_;
   bool stream_ended_ = false;  // the gateway was asked to end

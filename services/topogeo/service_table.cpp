@@ -93,22 +93,4 @@ std::string describe_states(const ServiceTable& table) {
   return states.empty() ? "no service has published its status" : states;
 }
 
-std::string status_line(const msg::ServiceStatus& status) {
-  std::string line = fmt::format("{:<14} {:<28} {:<12} {:<8} {:>7.1f} s", status.service().c_str(),
-                                 status.instance().c_str(), status.host().c_str(),
-                                 to_string(status.state()), status.uptime_s());
-  if (const std::string message = text(status.message()); !message.empty()) line += "  " + message;
-  line += " ";
-  for (const msg::Counter& c : status.counters()) {
-    line += fmt::format(" {}={:.10g}", c.name().c_str(), c.value());
-  }
-  if (status.fault_count() > 0) {
-    line += fmt::format("  FAULTS {}:", status.fault_count());
-    for (const msg::FaultCount& f : status.faults()) {
-      line += fmt::format(" {}={}", f.reason().c_str(), f.count());
-    }
-  }
-  return line;
-}
-
 }  // namespace topogeo::cli

@@ -47,7 +47,4 @@ std::string_view to_string(msg::ServiceState state);
 /// "localizer waiting: for 2 workers", one for each service, separated by "; ".
 std::string describe_states(const ServiceTable& table);
 
-/// One line for people: service, instance, host, state, uptime, message, counters, faults.
-std::string status_line(const msg::ServiceStatus& status);
-
 }  // namespace topogeo::cli

@@ -1,6 +1,9 @@
-// topogeo status: one line for each service that lives on the domain.
+// topogeo status: the services that live on a domain, how they are and what they are fed.
 #include <iostream>
 #include <memory>
+#include <string>
+
+#include <unistd.h>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
@@ -9,41 +12,76 @@
 
 #include "commands.hpp"
 #include "domain_view.hpp"
-#include "service_table.hpp"
+#include "status_table.hpp"
 
 namespace topogeo::cli {
 namespace {
 
-int show_status(const DomainView& view) {
-  const messaging::Participant participant = join(view, "topogeo status");
-  const messaging::Reader<msg::ServiceStatus> reader(participant);
+struct StatusOptions {
+  DomainView view;
+  std::string service;  ///< only those of this name; empty: all
+  bool verbose = false;
+  bool json = false;
+};
+
+void print(const StatusOptions& options, const StatusTable& table,
+           StatusTable::Clock::time_point now) {
+  if (options.json) {
+    std::cout << table.json(now);
+  } else if (options.verbose || !options.service.empty()) {
+    std::cout << table.details(now);
+  } else {
+    std::cout << table.text(now);
+  }
+}
+
+int show_status(const StatusOptions& options) {
+  const messaging::Participant participant = join(options.view, "topogeo status");
   messaging::EventLoop loop;
-  ServiceTable table;
+  StatusTable table;
   loop.add<msg::ServiceStatus>(
-      reader,
+      messaging::Reader<msg::ServiceStatus>(participant),
       [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
-        if (status.state() != msg::kServiceStopped) table.update(status, info);
+        if (!options.service.empty() && status.service() != options.service.c_str()) return;
+        table.update(status, info, StatusTable::Clock::now());
       },
       [&](const messaging::SampleInfo& info) { table.remove(info); });
 
+  const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
   const bool found = look(
-      view, loop, [&] { return !table.rows().empty(); },
+      options.view, loop, [&] { return !table.empty(); },
       [&] {
-        if (view.watch) std::cout << '\n';
-        for (const msg::ServiceStatus* row : table.rows()) std::cout << status_line(*row) << '\n';
+        const StatusTable::Clock::time_point now = StatusTable::Clock::now();
+        table.forget(now);
+        if (redraw) std::cout << "\x1b[H\x1b[J";  // home, clear to the end
+        print(options, table, now);
+        if (options.view.watch && !redraw) std::cout << '\n';
       });
-  if (!found) std::cerr << "topogeo: " << nothing_alive(view, "service") << '\n';
-  return found ? service::kOk : service::kFailure;
+  if (found) return table.healthy(StatusTable::Clock::now()) ? service::kOk : service::kFailure;
+  if (options.json && !options.view.watch) std::cout << "[]\n";
+  const std::string what = options.service.empty() ? "service" : "'" + options.service + "'";
+  std::cerr << "topogeo: " << nothing_alive(options.view, what) << '\n';
+  return service::kFailure;
 }
 
 }  // namespace
 
 void add_status_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
-      app.add_subcommand("status", "Print one line for each live service");
-  auto view = std::make_shared<DomainView>();
-  add_view_options(*command, *view);
-  command->callback([view, &exit_code] { exit_code = show_status(*view); });
+      app.add_subcommand("status", "Show the services on the network: state, input, faults");
+  auto options = std::make_shared<StatusOptions>();
+  command->add_option("service", options->service, "only services of this name, with all details")
+      ->type_name("SERVICE");
+  add_view_options(*command, options->view);
+  command->add_flag("--verbose", options->verbose, "details of all services: counters, versions");
+  command->add_flag("--json", options->json, "for programs: fields as in idl/status.idl");
+  command->footer(
+      "INPUT/s is the rate of what a service works on (scans, local maps, tasks, poses) over the\n"
+      "last 5 s, AGE the time since the last one. A service without status for 1.5 s is silent, "
+      "one\n"
+      "that ended without an order is lost.\n"
+      "Exit code: 0 all services are well, 1 some are failed, lost or silent, or there are none.");
+  command->callback([options, &exit_code] { exit_code = show_status(*options); });
 }
 
 }  // namespace topogeo::cli

@@ -17,6 +17,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class CommandsTest : public testing::Test {
@@ -91,14 +92,20 @@ TEST_F(CommandsTest, StatusShowsTheServicesOfARun) {
     Program status(scratch_, "topogeo", {"status", "--domain", own_domain()});
     const int code = status.wait();
     ASSERT_TRUE(code == 0 || code == 1) << code;
-    if (status.out().find("localizer") != std::string::npos &&
-        status.out().find("scans_sent=") != std::string::npos) {
-      for (const char* name :
-           {"sensor_gateway", "local_mapper", "localizer", "ga_worker", "map_store", "planner"}) {
-        EXPECT_THAT(status.out(), HasSubstr(name));
-      }
-      return;
+    if (code == 1 || status.out().find("localizer") == std::string::npos) continue;
+    EXPECT_THAT(status.out(), StartsWith("SERVICE "));
+    for (const char* name :
+         {"sensor_gateway", "local_mapper", "localizer", "ga_worker", "map_store", "planner"}) {
+      EXPECT_THAT(status.out(), HasSubstr(name));
     }
+    Program details(scratch_, "topogeo", {"status", "localizer", "--domain", own_domain()});
+    EXPECT_EQ(details.wait(), 0);
+    EXPECT_THAT(details.out(), HasSubstr("tasks_sent"));
+    EXPECT_THAT(details.out(), Not(HasSubstr("map_store")));
+    Program list(scratch_, "topogeo", {"status", "--json", "--domain", own_domain()});
+    EXPECT_EQ(list.wait(), 0);
+    EXPECT_GE(json::parse(list.out()).size(), 6U);
+    return;
   }
   FAIL() << "the services were never seen";
 }
@@ -107,6 +114,25 @@ TEST_F(CommandsTest, StatusWithoutServicesSaysSo) {
   Program status(scratch_, "topogeo", {"status", "--domain", own_domain()});
   EXPECT_EQ(status.wait(), 1);
   EXPECT_THAT(status.err(), HasSubstr("no service is alive on domain " + own_domain()));
+  Program one(scratch_, "topogeo", {"status", "planner", "--json", "--domain", own_domain()});
+  EXPECT_EQ(one.wait(), 1);
+  EXPECT_EQ(one.out(), "[]\n");
+  EXPECT_THAT(one.err(), HasSubstr("no 'planner' is alive on domain " + own_domain()));
+}
+
+TEST_F(CommandsTest, WorkersThatLeaveAtTheEndOfARunAreNoLoss) {
+  const std::string log = scratch_ / "log.clf.gz";
+  write_log("corridor", log);
+  Program run(scratch_, "topogeo",
+              {"run", "--log", log, "--out", scratch_ / "out", "--domain", own_domain()});
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.err(), Not(HasSubstr("ga_worker")));
+  EXPECT_THAT(run.out(), Not(HasSubstr("lost")));
+  EXPECT_THAT(run.out(), Not(HasSubstr("fault")));
+  const std::string localizer = read_file(scratch_ / "out" / "logs" / "localizer.log");
+  for (const char* word : {"lost", "stalled", "warning", "error"}) {
+    EXPECT_THAT(localizer, Not(HasSubstr(word)));
+  }
 }
 
 TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {

@@ -71,6 +71,11 @@ void StatusPublisher::set_state(msg::ServiceState state, std::string_view messag
   publish();
 }
 
+void StatusPublisher::count_input(std::string_view name) {
+  if (input_.total() == 0) set_text_cut(status_.input(), name);
+  input_.count(std::chrono::steady_clock::now());
+}
+
 void StatusPublisher::set_counter(const std::string& name, double value) {
   if (name.size() > kMaxNameSize) {
     throw std::invalid_argument("counter '" + name + "': longer than " +
@@ -129,9 +134,12 @@ void StatusPublisher::on_event(const Event& event) {
 }
 
 void StatusPublisher::publish() {
+  const auto now = std::chrono::steady_clock::now();
   status_.stamp_ns(support::wall_clock_ns());
-  status_.uptime_s(
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+  status_.uptime_s(std::chrono::duration<double>(now - start_).count());
+  status_.inputs(input_.total());
+  status_.input_rate_per_s(input_.rate_per_s(now));
+  status_.input_age_s(input_.age_s(now));
   status_.counters().clear();
   for (const auto& [name, value] : counters_) {
     msg::Counter counter;

@@ -53,6 +53,10 @@ TopicInfo make_info(std::string_view name, std::string_view role, std::string_vi
   }
 #include "topogeo/messaging/topics.def"
 
+std::string_view short_name(const TopicInfo& topic) {
+  return topic.name.substr(topic.name.rfind('/') + 1);
+}
+
 std::span<const TopicInfo* const> all_topics() {
   static const std::vector<const TopicInfo*> topics = [] {
     std::vector<const TopicInfo*> all = {

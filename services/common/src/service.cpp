@@ -48,7 +48,7 @@ void Service::report_blocked(std::string_view what) {
 
 void Service::report_invalid(const messaging::TopicInfo& topic, std::uint64_t sequence_number,
                              std::string_view why) {
-  std::string name(topic.name.substr(topic.name.rfind('/') + 1));
+  std::string name(messaging::short_name(topic));
   std::ranges::replace(name, '_', ' ');
   status_->fault("invalid " + name, "number " + std::to_string(sequence_number) + ": " + std::string(why));
 }

@@ -87,6 +87,20 @@ void fill(msg::StreamEnd& end) {
   end.version(5);
 }
 
+void fill(msg::RunSummary& summary) {
+  summary.matches_tried(1'000);
+  msg::ReasonCount reason;
+  reason.reason(msg::kReasonImplausible);
+  reason.matches(12);
+  summary.matches_rejected().assign(6, reason);
+  msg::StateCount state;
+  state.state(msg::kStateLost);
+  state.stops(3);
+  summary.stops_by_state().assign(4, state);
+  set_text(summary.message(), "2 stops are not mapped", "message");
+  summary.longest_recovery_ms(12.5);
+}
+
 /// As large as a crowded hall: several hundred kilobytes, so that it travels in fragments.
 void fill(msg::LocalMap& map) {
   map.id(7);
@@ -150,6 +164,10 @@ void fill(msg::ServiceStatus& status) {
   set_text(status.service(), "localizer", "service");
   set_text(status.instance(), "host-1", "instance");
   status.state(msg::kServiceRunning);
+  set_text(status.input(), "local_map", "input");
+  status.inputs(345);
+  status.input_rate_per_s(12.5);
+  status.input_age_s(0.25);
   msg::Counter counter;
   set_text(counter.name(), "scans", "name");
   counter.value(1223.0);

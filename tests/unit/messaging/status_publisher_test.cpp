@@ -1,4 +1,4 @@
-// Others see what a service says of itself.
+// Peers get state, input, counters and faults of a service.
 #include "topogeo/messaging/status_publisher.hpp"
 
 #include <vector>
@@ -38,11 +38,19 @@ TEST_F(Status, StateCountersAndFaultsArrive) {
   EXPECT_EQ(seen_.process_id(), static_cast<std::uint32_t>(::getpid()));
   EXPECT_EQ(seen_.fault_count(), 0U);
 
+  EXPECT_EQ(seen_.inputs(), 0U);
+
+  status.count_input("scan");
+  status.count_input("scan");
   status.add_to_counter("scans");
   status.add_to_counter("scans", 2.0);
   status.fault("nan_range", "beam 7");
   status.fault("nan_range", "beam 8");
   ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() == 2; }));
+  EXPECT_EQ(seen_.input().to_string(), "scan");
+  EXPECT_EQ(seen_.inputs(), 2U);
+  EXPECT_GT(seen_.input_rate_per_s(), 0.0);
+  EXPECT_GE(seen_.input_age_s(), 0.0);
   ASSERT_EQ(seen_.counters().size(), 1U);
   EXPECT_EQ(seen_.counters()[0].name().to_string(), "scans");
   EXPECT_EQ(seen_.counters()[0].value(), 3.0);

@@ -1,4 +1,4 @@
-// Tells the others how a service is: state, counters, faults.
+// Publishes how a service is: state, main input, counters, faults.
 #pragma once
 
 #include <chrono>
@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/input_meter.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/status.h"
@@ -38,6 +39,9 @@ class StatusPublisher {
   void set_state(msg::ServiceState state, std::string_view message = {});
   [[nodiscard]] msg::ServiceState state() const { return status_.state(); }
 
+  /// Counts one of what the service works on, for example "scan". A service has one such input.
+  void count_input(std::string_view name);
+
   /// Sent with the next period. Throws std::invalid_argument for a name over 48 bytes and
   /// std::length_error for the 65th name.
   void set_counter(const std::string& name, double value);
@@ -48,7 +52,7 @@ class StatusPublisher {
   /// happened this time.
   void fault(std::string_view reason, std::string_view detail);
 
-  /// Turns events that nobody should overlook into faults: incompatible QoS, lost samples (but not
+  /// Turns events that must not be overlooked into faults: incompatible QoS, lost samples (but not
   /// those of a state that a newer one has replaced), missed deadlines, invalid messages. The
   /// publisher sets itself as event handler of its loop.
   void on_event(const Event& event);
@@ -66,6 +70,7 @@ class StatusPublisher {
   EventLoop& loop_;
   Writer<msg::ServiceStatus> writer_;
   msg::ServiceStatus status_;
+  InputMeter input_;
   std::map<std::string, double> counters_;
   std::map<std::string, Fault, std::less<>> faults_;
   std::chrono::steady_clock::time_point start_;

@@ -53,6 +53,9 @@ struct TopicTraits {
   const TopicInfo& TopicTraits<msg::Type>::info();
 #include "topogeo/messaging/topics.def"
 
+/// Name without prefix and version: "local_map".
+std::string_view short_name(const TopicInfo& topic);
+
 /// All topics, ascending by name.
 std::span<const TopicInfo* const> all_topics();
 

@@ -25,6 +25,7 @@ struct Subscription {
   std::string role = {};       ///< see messaging::ReaderOptions
   std::string addressee = {};  ///< see messaging::ReaderOptions
   bool any_robot = false;      ///< false: those of other robots are counted and ignored
+  bool main_input = false;     ///< what the service works on: rate and age are in its status
 };
 
 /// One at a time in a process. Readers and writers live as long as the service.
@@ -61,9 +62,12 @@ class Service {
     const messaging::Reader<T> reader(participant_, {subscription.role, subscription.addressee});
     loop_.add<T>(
         reader,
-        [this, handler = std::move(handler), any_robot = subscription.any_robot](
-            const T& message, const messaging::SampleInfo& info) {
+        [this, handler = std::move(handler), any_robot = subscription.any_robot,
+         main_input = subscription.main_input](const T& message,
+                                               const messaging::SampleInfo& info) {
           if (!any_robot && !is_own(message)) return;
+          if (main_input)
+            status_->count_input(messaging::short_name(messaging::TopicTraits<T>::info()));
           try {
             if constexpr (std::is_invocable_v<const Handler&, const T&,
                                               const messaging::SampleInfo&>) {

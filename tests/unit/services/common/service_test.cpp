@@ -88,6 +88,19 @@ TEST_F(ServiceTest, InvalidMessageIsAFaultNamedAfterTheTopic) {
             "invalid local map: number 17: points: no finite number");
 }
 
+TEST_F(ServiceTest, MainInputIsCountedInTheStatus) {
+  service_.subscribe<msg::LocalMap>([](const msg::LocalMap&) {}, {.main_input = true});
+  service_.subscribe<msg::Goal>([](const msg::Goal&) {});
+  messaging::Writer<msg::LocalMap> maps(peer_);
+  messaging::Writer<msg::Goal> goals(peer_);
+  ASSERT_TRUE(maps.write(message_of<msg::LocalMap>("robot")));
+  ASSERT_TRUE(maps.write(message_of<msg::LocalMap>("another")));
+  ASSERT_TRUE(goals.write(message_of<msg::Goal>("robot")));
+  EXPECT_TRUE(
+      run_until([&] { return status_.inputs() == 1 && counter("ignored: other robot") == 1.0; }));
+  EXPECT_EQ(status_.input().to_string(), "local_map");
+}
+
 TEST_F(ServiceTest, OtherErrorsOfAHandlerEndTheService) {
   service_.subscribe<msg::Goal>([](const msg::Goal&) { throw std::runtime_error("no memory"); });
   messaging::Writer<msg::Goal> writer(peer_);

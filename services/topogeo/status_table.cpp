@@ -1,0 +1,299 @@
+#include "status_table.hpp"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include <nlohmann/json.hpp>
+
+#include "topogeo/support/format.hpp"
+
+#include "service_table.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+/// How much of the names of hosts and robots the table shows where there is room, and at least.
+constexpr std::size_t kLongestName = 16;
+constexpr std::size_t kShortestName = 4;
+/// Names of services tell more: they keep that much more.
+constexpr std::size_t kMoreOfServices = 6;
+
+std::string shortened(std::string text, std::size_t size) {
+  if (text.size() > size) text = text.substr(0, size - 1) + "~";
+  return text;
+}
+
+/// "0.3 s", "12 s", "5 min", "3 h".
+std::string age_text(double age_s) {
+  constexpr double kMinute_s = 60.0;
+  constexpr double kHour_s = 3600.0;
+  if (age_s < 10.0) return fmt::format("{:.1f} s", std::max(0.0, age_s));
+  if (age_s < 2.0 * kMinute_s) return fmt::format("{:.0f} s", age_s);
+  if (age_s < 2.0 * kHour_s) return fmt::format("{:.0f} min", age_s / kMinute_s);
+  return fmt::format("{:.0f} h", age_s / kHour_s);
+}
+
+std::string rate_text(double rate_per_s) {
+  return rate_per_s < 10.0 ? fmt::format("{:.1f}", rate_per_s) : fmt::format("{:.0f}", rate_per_s);
+}
+
+/// Lines of at most `columns` bytes that begin with two blanks, broken between words.
+std::string wrapped(const std::string& text, std::size_t columns) {
+  const std::string indent = "  ";
+  std::string lines;
+  std::string line = indent;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = std::min(text.find(' ', begin), text.size());
+    end = std::min(end, begin + columns - indent.size());  // of a word without end
+    const std::string word = text.substr(begin, end - begin);
+    if (line.size() > indent.size() && line.size() + 1 + word.size() > columns) {
+      lines += line + "\n";
+      line = indent;
+    }
+    line += (line.size() > indent.size() ? " " : "") + word;
+    begin = end < text.size() && text[end] == ' ' ? end + 1 : end;
+  }
+  return lines + line + "\n";
+}
+
+/// Cells of a table whose columns are as wide as their widest cell.
+class Grid {
+ public:
+  explicit Grid(std::vector<std::string> titles) : cells_{std::move(titles)} {}
+
+  void add(std::vector<std::string> cells) { cells_.push_back(std::move(cells)); }
+
+  /// All of the same width, the titles first; columns of the titles `right` are aligned there.
+  [[nodiscard]] std::vector<std::string> lines(const std::set<std::string>& right) const {
+    std::vector<std::string> lines(cells_.size());
+    for (std::size_t c = 0; c < cells_[0].size(); ++c) {
+      std::size_t width = 0;
+      for (const auto& cells : cells_) width = std::max(width, cells[c].size());
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string& cell = cells_[i][c];
+        const std::string blanks(width - cell.size(), ' ');
+        lines[i] += (c == 0 ? "" : "  ");
+        lines[i] += right.contains(cells_[0][c]) ? blanks + cell : cell + blanks;
+      }
+    }
+    return lines;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> cells_;
+};
+
+std::string trimmed(std::string line) {
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+}  // namespace
+
+void StatusTable::update(const msg::ServiceStatus& status, const messaging::SampleInfo& info,
+                         Clock::time_point now) {
+  Name name{status.service().c_str(), status.instance().c_str()};
+  if (status.state() == msg::kServiceStopped) {
+    rows_.erase(name);
+    names_.erase(info.instance);
+    return;
+  }
+  rows_[name] = {status, now, false};
+  names_[info.instance] = std::move(name);
+}
+
+void StatusTable::remove(const messaging::SampleInfo& info) {
+  const auto name = names_.extract(info.instance);
+  if (!name) return;
+  const auto row = rows_.find(name.mapped());
+  if (row == rows_.end()) return;
+  if (row->second.status.state() == msg::kServiceFinished) {
+    rows_.erase(row);
+  } else {
+    row->second.lost = true;
+  }
+}
+
+void StatusTable::forget(Clock::time_point now) {
+  std::erase_if(rows_, [&](const auto& entry) { return now - entry.second.heard > kForget; });
+}
+
+void StatusTable::keep_only(std::string_view service) {
+  std::erase_if(rows_, [&](const auto& entry) { return entry.first.first != service; });
+}
+
+bool StatusTable::unwell(const Row& row, Clock::time_point now) {
+  return row.lost || row.status.state() == msg::kServiceFailed || now - row.heard > kSilent;
+}
+
+bool StatusTable::healthy(Clock::time_point now) const {
+  return std::ranges::none_of(rows_, [&](const auto& row) { return unwell(row.second, now); });
+}
+
+std::string StatusTable::state(const Row& row, Clock::time_point now) {
+  if (row.status.state() != msg::kServiceFailed) {
+    if (row.lost) return "lost";
+    if (now - row.heard > kSilent) return "silent";
+  }
+  return std::string(to_string(row.status.state()));
+}
+
+std::string StatusTable::reason(const Row& row, Clock::time_point now) {
+  const std::string message = row.status.message().to_string();
+  const std::string age = age_text(std::chrono::duration<double>(now - row.heard).count());
+  std::string why;
+  if (row.lost) {
+    why = "ended without a word " + age + " ago";
+  } else if (now - row.heard > kSilent) {
+    why = "no status for " + age;
+  }
+  return why.empty() || message.empty() ? why + message : why + "; before: " + message;
+}
+
+double StatusTable::input_age_s(const Row& row, Clock::time_point now) {
+  return row.status.input_age_s() + std::chrono::duration<double>(now - row.heard).count();
+}
+
+std::vector<const StatusTable::Row*> StatusTable::ordered() const {
+  std::vector<const Row*> rows;
+  for (const auto& [name, row] : rows_) rows.push_back(&row);
+  std::ranges::stable_sort(rows, {},
+                           [](const Row* row) { return row->status.robot_id().to_string(); });
+  return rows;
+}
+
+StatusTable::Shown StatusTable::shown() const {
+  std::set<std::string> hosts;
+  std::set<std::string> robots;
+  std::set<std::tuple<std::string, std::string, std::string>> names;
+  for (const auto& [name, row] : rows_) {
+    const msg::ServiceStatus& s = row.status;
+    hosts.insert(s.host().to_string());
+    if (const std::string robot = s.robot_id().to_string(); !robot.empty()) robots.insert(robot);
+    names.emplace(name.first, s.host().to_string(), s.robot_id().to_string());
+  }
+  return {names.size() < rows_.size(), robots.size() > 1, hosts.size() > 1};
+}
+
+std::vector<std::string> StatusTable::lines(Clock::time_point now, const Shown& shown,
+                                            std::size_t longest_name) const {
+  std::vector<std::string> titles = {"SERVICE"};
+  if (shown.pid) titles.emplace_back("PID");
+  if (shown.robot) titles.emplace_back("ROBOT");
+  if (shown.host) titles.emplace_back("HOST");
+  for (const char* title : {"STATE", "INPUT/s", "AGE", "FAULTS"}) titles.emplace_back(title);
+  Grid grid(std::move(titles));
+  for (const Row* row : ordered()) {
+    const msg::ServiceStatus& s = row->status;
+    std::vector<std::string> cells = {
+        shortened(s.service().to_string(), longest_name + kMoreOfServices)};
+    if (shown.pid) cells.push_back(std::to_string(s.process_id()));
+    if (shown.robot) cells.push_back(shortened(s.robot_id().to_string(), longest_name));
+    if (shown.host) cells.push_back(shortened(s.host().to_string(), longest_name));
+    cells.push_back(state(*row, now));
+    cells.push_back(s.inputs() == 0 ? "-" : rate_text(s.input_rate_per_s()));
+    cells.push_back(s.inputs() == 0 ? "-" : age_text(input_age_s(*row, now)));
+    cells.push_back(std::to_string(s.fault_count()));
+    grid.add(std::move(cells));
+  }
+  return grid.lines({"PID", "INPUT/s", "AGE", "FAULTS"});
+}
+
+std::string StatusTable::text(Clock::time_point now, std::size_t columns) const {
+  const Shown shown = this->shown();
+  std::size_t longest_name = kLongestName;
+  std::vector<std::string> lines = this->lines(now, shown, longest_name);
+  while (lines[0].size() > columns && longest_name > kShortestName) {
+    lines = this->lines(now, shown, --longest_name);
+  }
+  const std::string title = "  REASON";
+  std::string text = lines[0] + (lines[0].size() + title.size() <= columns ? title : "") + "\n";
+  const std::vector<const Row*> rows = ordered();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string& line = lines[i + 1];
+    const std::string why = reason(*rows[i], now);
+    if (why.empty() || line.size() + 2 + why.size() <= columns) {
+      text += trimmed(line + "  " + why) + "\n";
+    } else {
+      text += trimmed(line) + "\n" + wrapped(why, columns);
+    }
+  }
+  return text + sums(now);
+}
+
+std::string StatusTable::sums(Clock::time_point now) const {
+  std::uint64_t faults = 0;
+  std::size_t ill = 0;
+  for (const auto& [name, row] : rows_) {
+    faults += row.status.fault_count();
+    if (unwell(row, now)) ++ill;
+  }
+  return fmt::format("{} service{}, {} failed, lost or silent, {} fault{}\n", rows_.size(),
+                     rows_.size() == 1 ? "" : "s", ill == 0 ? "none" : std::to_string(ill), faults,
+                     faults == 1 ? "" : "s");
+}
+
+std::string StatusTable::details(Clock::time_point now) const {
+  std::string text;
+  for (const Row* row : ordered()) {
+    const msg::ServiceStatus& s = row->status;
+    const std::string robot = s.robot_id().to_string();
+    text += fmt::format("{}{}  {}{}\n", text.empty() ? "" : "\n", s.service().c_str(),
+                        state(*row, now), robot.empty() ? "" : ", robot " + robot);
+    const auto add = [&text](std::string_view name, const std::string& value) {
+      text += fmt::format("  {:<10} {}\n", name, value);
+    };
+    if (const std::string why = reason(*row, now); !why.empty()) add("reason", why);
+    add("process", fmt::format("{} on {}, version {}, instance {}", s.process_id(),
+                               s.host().c_str(), s.version().c_str(), s.instance().c_str()));
+    add("up", age_text(s.uptime_s()));
+    if (s.inputs() > 0) {
+      add("input", fmt::format("{} {}, {}/s, the last {} ago", s.inputs(), s.input().c_str(),
+                               rate_text(s.input_rate_per_s()), age_text(input_age_s(*row, now))));
+    }
+    for (const msg::FaultCount& fault : s.faults()) {
+      add("fault", fmt::format("{} {}", fault.count(), fault.reason().c_str()));
+    }
+    for (const msg::Counter& counter : s.counters()) {
+      add("counter", fmt::format("{:<34} {:.10g}", counter.name().c_str(), counter.value()));
+    }
+  }
+  return text;
+}
+
+std::string StatusTable::json(Clock::time_point now) const {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Row* row : ordered()) {
+    const msg::ServiceStatus& s = row->status;
+    nlohmann::ordered_json service = {
+        {"service", s.service().c_str()},
+        {"instance", s.instance().c_str()},
+        {"robot_id", s.robot_id().c_str()},
+        {"host", s.host().c_str()},
+        {"process_id", s.process_id()},
+        {"version", s.version().c_str()},
+        {"state", state(*row, now)},
+        {"message", s.message().c_str()},
+        {"uptime_s", s.uptime_s()},
+        {"silent_s", std::chrono::duration<double>(now - row->heard).count()},
+        {"input", s.input().c_str()},
+        {"inputs", s.inputs()},
+        {"input_rate_per_s", s.input_rate_per_s()},
+        {"input_age_s", nullptr},
+        {"fault_count", s.fault_count()},
+        {"faults", nlohmann::ordered_json::object()},
+        {"counters", nlohmann::ordered_json::object()}};
+    if (s.inputs() > 0) service["input_age_s"] = input_age_s(*row, now);
+    for (const msg::FaultCount& fault : s.faults()) {
+      service["faults"][fault.reason().c_str()] = fault.count();
+    }
+    for (const msg::Counter& counter : s.counters()) {
+      service["counters"][counter.name().c_str()] = counter.value();
+    }
+    list.push_back(std::move(service));
+  }
+  return list.dump(2) + "\n";
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,79 @@
+// The live services of a domain as tables for people and as JSON for programs.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "topogeo/messaging/events.hpp"
+#include "topogeo/msg/status.h"
+
+namespace topogeo::cli {
+
+class StatusTable {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Services publish twice a second: one that is silent for this long hangs or is cut off.
+  static constexpr std::chrono::milliseconds kSilent{1500};
+  /// How long a service that was lost stays in the table, for people who watch it.
+  static constexpr std::chrono::seconds kForget{10};
+  /// Width of a terminal that was not resized.
+  static constexpr std::size_t kColumns = 80;
+
+  void update(const msg::ServiceStatus& status, const messaging::SampleInfo& info,
+              Clock::time_point now);
+  /// The service has no writer any more. It stays as "lost" unless its last state was a final one.
+  void remove(const messaging::SampleInfo& info);
+  /// Forgets services that have been silent or lost for kForget.
+  void forget(Clock::time_point now);
+  /// Only services of this name from now on.
+  void keep_only(std::string_view service);
+
+  [[nodiscard]] bool empty() const { return rows_.empty(); }
+  /// No service is failed, lost or silent.
+  [[nodiscard]] bool healthy(Clock::time_point now) const;
+
+  /// A line for each service by robot, name and instance, no wider than `columns`: state, rate and
+  /// age of the main input, faults, reason. Columns that are the same everywhere are left out; a
+  /// reason that does not fit stands below. Last a line with the sums.
+  [[nodiscard]] std::string text(Clock::time_point now, std::size_t columns = kColumns) const;
+  /// Everything, a block of lines for each service.
+  [[nodiscard]] std::string details(Clock::time_point now) const;
+  /// An array of objects with the field names of the IDL; "state" as in the table.
+  [[nodiscard]] std::string json(Clock::time_point now) const;
+
+ private:
+  struct Row {
+    msg::ServiceStatus status;
+    Clock::time_point heard;
+    bool lost = false;
+  };
+  using Name = std::pair<std::string, std::string>;  // service, instance
+
+  [[nodiscard]] static bool unwell(const Row& row, Clock::time_point now);
+  [[nodiscard]] static std::string state(const Row& row, Clock::time_point now);
+  [[nodiscard]] static std::string reason(const Row& row, Clock::time_point now);
+  [[nodiscard]] static double input_age_s(const Row& row, Clock::time_point now);
+  [[nodiscard]] std::vector<const Row*> ordered() const;
+  /// Columns that are not the same everywhere.
+  struct Shown {
+    bool pid = false;
+    bool robot = false;
+    bool host = false;
+  };
+  [[nodiscard]] Shown shown() const;
+  /// Titles and services, all but the reasons.
+  [[nodiscard]] std::vector<std::string> lines(Clock::time_point now, const Shown& shown,
+                                               std::size_t longest_name) const;
+  [[nodiscard]] std::string sums(Clock::time_point now) const;
+
+  std::map<Name, Row> rows_;
+  std::map<messaging::Handle, Name> names_;
+};
+
+}  // namespace topogeo::cli

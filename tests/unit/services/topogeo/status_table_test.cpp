@@ -1,0 +1,190 @@
+// The table of `topogeo status` from statuses and times, without DDS.
+#include "topogeo/status_table.hpp"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "topogeo/messaging/message.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+using testing::Not;
+
+const StatusTable::Clock::time_point kNow{std::chrono::hours(1)};
+
+messaging::SampleInfo info_of(std::uint8_t number) {
+  messaging::SampleInfo info;
+  info.valid = true;
+  info.instance.bytes[0] = number;
+  return info;
+}
+
+msg::ServiceStatus status_of(const std::string& service, msg::ServiceState state,
+                             const std::string& message = {}) {
+  msg::ServiceStatus status;
+  messaging::set_header(status, "robot", 0, 0);
+  messaging::set_text(status.service(), service, "service");
+  messaging::set_text(status.instance(), service + "-1", "instance");
+  messaging::set_text(status.host(), "pc", "host");
+  messaging::set_text(status.version(), "1.2", "version");
+  messaging::set_text(status.message(), message, "message");
+  status.process_id(4321);
+  status.state(state);
+  return status;
+}
+
+msg::ServiceStatus fed(msg::ServiceStatus status, const std::string& input, double rate_per_s,
+                       double age_s) {
+  messaging::set_text(status.input(), input, "input");
+  status.inputs(100);
+  status.input_rate_per_s(rate_per_s);
+  status.input_age_s(age_s);
+  return status;
+}
+
+std::size_t widest_line(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t widest = 0;
+  for (std::string line; std::getline(lines, line);) widest = std::max(widest, line.size());
+  return widest;
+}
+
+TEST(StatusTable, ShowsOneLineForEachService) {
+  StatusTable table;
+  table.update(fed(status_of("sensor_gateway", msg::kServiceRunning), "scan", 12.34, 0.05),
+               info_of(1), kNow);
+  msg::ServiceStatus localizer =
+      fed(status_of("localizer", msg::kServiceWaiting, "for local maps"), "local_map", 2.0, 30.0);
+  localizer.fault_count(3);
+  table.update(localizer, info_of(2), kNow);
+  table.update(status_of("planner", msg::kServiceRunning), info_of(3), kNow);
+  EXPECT_EQ(table.text(kNow + milliseconds(500)),
+            "SERVICE         STATE    INPUT/s    AGE  FAULTS  REASON\n"
+            "localizer       waiting      2.0   30 s       3  for local maps\n"
+            "planner         running        -      -       0\n"
+            "sensor_gateway  running       12  0.6 s       0\n"
+            "3 services, none failed, lost or silent, 3 faults\n");
+  EXPECT_TRUE(table.healthy(kNow));
+}
+
+TEST(StatusTable, StaysWithinEightyColumnsWhateverTheNames) {
+  StatusTable table;
+  const std::string text_255 = "the results cannot be written: " + std::string(150, 'x') +
+                               " is on a disk that is full, and it will be tried again soon";
+  for (int i = 0; i < 2; ++i) {
+    msg::ServiceStatus status = status_of("calibration_gateway", msg::kServiceFailed, text_255);
+    messaging::set_text(status.instance(), "instance-" + std::to_string(i), "instance");
+    status.process_id(4'000'000 + static_cast<std::uint32_t>(i));
+    status.fault_count(99'999);
+    table.update(fed(status, "scan", 1234.5, 7300.0), info_of(static_cast<std::uint8_t>(i)), kNow);
+  }
+  msg::ServiceStatus other = status_of("map_store", msg::kServiceRunning);
+  messaging::set_text(other.host(), std::string(60, 'h'), "host");
+  messaging::set_text(other.robot_id(), std::string(32, 'r'), "robot_id");
+  table.update(other, info_of(9), kNow);
+  const std::string text = table.text(kNow);
+  EXPECT_LE(widest_line(text), 80U) << text;
+  EXPECT_THAT(text, HasSubstr("PID"));
+  EXPECT_THAT(text, HasSubstr("ROBOT"));
+  EXPECT_THAT(text, HasSubstr("HOST"));
+  EXPECT_THAT(text, HasSubstr("tried again soon")) << "reasons are not cut";
+}
+
+TEST(StatusTable, LeavesOutWhatIsTheSameEverywhere) {
+  StatusTable table;
+  table.update(status_of("planner", msg::kServiceRunning), info_of(1), kNow);
+  EXPECT_THAT(table.text(kNow), Not(HasSubstr("HOST")));
+  EXPECT_THAT(table.text(kNow), Not(HasSubstr("ROBOT")));
+  EXPECT_THAT(table.text(kNow), Not(HasSubstr("PID")));
+  msg::ServiceStatus of_any = status_of("ga_worker", msg::kServiceRunning);
+  messaging::set_text(of_any.robot_id(), "", "robot_id");
+  table.update(of_any, info_of(2), kNow);
+  EXPECT_THAT(table.text(kNow), Not(HasSubstr("ROBOT"))) << "a service of every robot is of none";
+}
+
+TEST(StatusTable, FailedAndSilentServicesAreUnwell) {
+  StatusTable table;
+  table.update(status_of("planner", msg::kServiceRunning, "at work"), info_of(1), kNow);
+  EXPECT_TRUE(table.healthy(kNow + milliseconds(1400)));
+  EXPECT_FALSE(table.healthy(kNow + seconds(3)));
+  EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("silent"));
+  EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("no status for 3.0 s; before: at work"));
+  EXPECT_THAT(table.text(kNow + seconds(3)), HasSubstr("1 service, 1 failed, lost or silent"));
+  table.update(status_of("planner", msg::kServiceFailed, "disk full"), info_of(1), kNow);
+  EXPECT_FALSE(table.healthy(kNow));
+  EXPECT_THAT(table.text(kNow), HasSubstr("failed"));
+  EXPECT_THAT(table.text(kNow), HasSubstr("disk full"));
+}
+
+TEST(StatusTable, KilledServiceStaysAsLostForAWhile) {
+  StatusTable table;
+  table.update(status_of("planner", msg::kServiceRunning), info_of(1), kNow);
+  table.remove(info_of(1));
+  EXPECT_THAT(table.text(kNow + seconds(1)), HasSubstr("lost"));
+  EXPECT_FALSE(table.healthy(kNow + seconds(1)));
+  table.forget(kNow + seconds(9));
+  EXPECT_FALSE(table.empty());
+  table.forget(kNow + seconds(11));
+  EXPECT_TRUE(table.empty());
+}
+
+TEST(StatusTable, ServiceThatEndsInOrderIsNoLoss) {
+  StatusTable table;
+  table.update(status_of("ga_worker", msg::kServiceRunning), info_of(1), kNow);
+  table.update(status_of("ga_worker", msg::kServiceStopped), info_of(1), kNow);
+  table.remove(info_of(1));
+  EXPECT_TRUE(table.empty());
+  table.update(status_of("sensor_gateway", msg::kServiceFinished), info_of(2), kNow);
+  table.remove(info_of(2));
+  EXPECT_TRUE(table.empty());
+  EXPECT_TRUE(table.healthy(kNow));
+}
+
+TEST(StatusTable, DetailsNameInputFaultsAndCounters) {
+  StatusTable table;
+  msg::ServiceStatus status =
+      fed(status_of("localizer", msg::kServiceRunning), "local_map", 2.5, 0.2);
+  msg::Counter counter;
+  messaging::set_text(counter.name(), "tasks", "name");
+  counter.value(1234567.0);
+  status.counters().push_back(counter);
+  msg::FaultCount fault;
+  messaging::set_text(fault.reason(), "invalid local map", "reason");
+  fault.count(2);
+  status.faults().push_back(fault);
+  table.update(status, info_of(1), kNow);
+  table.update(status_of("planner", msg::kServiceRunning), info_of(2), kNow);
+  const std::string text = table.details(kNow);
+  EXPECT_THAT(text, HasSubstr("localizer  running, robot robot\n"));
+  EXPECT_THAT(text, HasSubstr("100 local_map, 2.5/s, the last 0.2 s ago"));
+  EXPECT_THAT(text, HasSubstr("2 invalid local map"));
+  EXPECT_THAT(text, HasSubstr("1234567\n"));
+  EXPECT_THAT(text, HasSubstr("4321 on pc, version 1.2, instance localizer-1"));
+  table.keep_only("planner");
+  EXPECT_THAT(table.details(kNow), Not(HasSubstr("localizer")));
+}
+
+TEST(StatusTable, JsonHasTheFieldsOfTheMessage) {
+  StatusTable table;
+  table.update(fed(status_of("localizer", msg::kServiceRunning), "local_map", 2.5, 0.2), info_of(1),
+               kNow);
+  table.update(status_of("planner", msg::kServiceStarting), info_of(2), kNow);
+  const auto json = nlohmann::json::parse(table.json(kNow + seconds(1)));
+  ASSERT_EQ(json.size(), 2U);
+  EXPECT_EQ(json[0]["service"], "localizer");
+  EXPECT_EQ(json[0]["state"], "running");
+  EXPECT_EQ(json[0]["input"], "local_map");
+  EXPECT_NEAR(json[0]["input_age_s"].get<double>(), 1.2, 1e-9);
+  EXPECT_EQ(json[1]["state"], "starting");
+  EXPECT_TRUE(json[1]["input_age_s"].is_null());
+  EXPECT_EQ(StatusTable().json(kNow), "[]\n");
+}
+
+}  // namespace
+}  // namespace topogeo::cli
