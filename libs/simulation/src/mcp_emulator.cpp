@@ -5,8 +5,6 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/support/format.hpp"
 

@@ -6,8 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include <spdlog/fmt/fmt.h>
-
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/support/format.hpp"

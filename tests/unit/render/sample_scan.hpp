@@ -37,7 +37,7 @@ inline ScanView view_of(const scan::Scan& scan, const geometry::Pose2& T_robot_l
                         const voronoi::VoronoiConfig& config = {}) {
   voronoi::LocalVoronoi diagram_maker(config);
   topomap::LocalMapConfig local_map;
-  local_map.points_range_m = config.range_limit_m;
+  local_map.points_range_m = std::min(config.range_limit_m, 80.0);  // the largest that is allowed
   return make_scan_view(scan, diagram_maker, local_map, T_robot_laser);
 }
 

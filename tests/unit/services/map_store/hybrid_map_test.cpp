@@ -291,7 +291,7 @@ TEST(HybridMapMirror, RefusesNonsenseAndStaysAsItWas) {
   refused([](auto& s) { s.rows(4000000000U); }, "rows is");
   refused([&](auto& s) { s.resolution_m(nan); }, "resolution_m is");
   refused([&](auto& s) { s.T_map_grid().x_m(nan); }, "x_m is nan");
-  refused([&](auto& s) { s.forbidden_cells(nan); }, "forbidden_cells is");
+  refused([&](auto& s) { s.forbidden_cells(nan); }, "forbidden_cells' = 'nan'");
   refused([](auto& s) { s.tile_versions().pop_back(); }, "tile_versions: expected 4");
   refused([](auto& s) { s.columns(200); }, "tile_versions: expected 8");
   refused([](auto& s) { s.places()[1].name("left"); }, "place 'left'");

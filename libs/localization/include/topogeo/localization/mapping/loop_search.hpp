@@ -21,29 +21,11 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/loop_search_config.hpp"
 #include "topogeo/localization/mapping/relative_solution.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
-
-struct LoopSearchConfig {
-  std::uint32_t beam_width = 60;  ///< paths that advance together; wider finds better ones, at a
-                                  ///< cost in proportion (benchmark backward/60)
-  std::uint32_t waiting = 120;    ///< paths kept at each pose for backtracking
-  std::uint64_t largest_work = 400'000;  ///< steps tried in all, so that a hopeless loop ends too
-  double probability =
-      0.99;  ///< of the ellipse whose rectangle a pose must lie in: a loop needs
-             ///< all its poses inside, so 95 % of each would refuse many right ones
-  double heading_sigmas = 3.0;
-  double resolution_m = 0.15;           ///< of the genetic search:
-  double resolution_rad = 0.034906585;  ///< the least half-width of an uncertainty
-  bool draw = true;
-  double largest_draw2 = 9.0;      ///< squared deviations: a step is drawn 3 of them at most
-  double same_place_m = 0.03;      ///< of paths nearer to each other than this and this heading
-  double same_place_rad = 0.01;    ///< only the best is kept when there are too many
-  std::uint32_t paths_wanted = 3;  ///< best paths returned
-  friend bool operator==(const LoopSearchConfig&, const LoopSearchConfig&) = default;
-};
 
 /// One pose of the loop as it is known before the search.
 struct LoopPose {

@@ -14,16 +14,11 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/mapping/loop_search.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/thesis/backward_config.hpp"
 #include "topogeo/localization/thesis/solution_store.hpp"
 #include "topogeo/localization/thesis/visible_rectangle.hpp"
 
 namespace topogeo::localization {
-
-/// The resolutions are also the spacing of the grid of poses that are tried where nothing overlaps.
-struct BackwardConfig : LoopSearchConfig {
-  std::uint32_t largest_grid = 125;  ///< poses of such a grid; a wider space has a wider spacing
-  friend bool operator==(const BackwardConfig&, const BackwardConfig&) = default;
-};
 
 /// What the forward correction knows of one pose of the loop.
 struct BackwardPose {

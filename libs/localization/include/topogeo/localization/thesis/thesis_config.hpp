@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "topogeo/localization/thesis/backward_correction.hpp"
+#include "topogeo/localization/thesis/backward_config.hpp"
 
 namespace topogeo::localization {
 
