@@ -1,6 +1,5 @@
 #include "goto_run.hpp"
 
-
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"

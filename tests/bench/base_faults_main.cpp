@@ -1,13 +1,13 @@
 // The faults of a base and its line on a simulated clock, as a table in Markdown: how often each
 // was injected, wrong odometry, unsafe motion, the longest recovery.
-#include "devices/base_faults.hpp"
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <iomanip>
 #include <iostream>
+
+#include "devices/base_faults.hpp"
 
 namespace {
 

@@ -1,10 +1,10 @@
 // The faults of a laser and its line on a simulated clock, as a table in Markdown: how often each
 // was injected, wrong scans, the longest recovery.
-#include "devices/pls_faults.hpp"
-
 #include <cstdint>
 #include <exception>
 #include <iostream>
+
+#include "devices/pls_faults.hpp"
 
 namespace {
 

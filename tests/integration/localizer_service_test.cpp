@@ -1,9 +1,8 @@
 // The localizer as a process: local maps in any order in, the trajectory of one process out.
-#include "topogeo/localization/mapping/localizer.hpp"
-
 #include <algorithm>
 #include <csignal>
 
+#include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"

@@ -50,7 +50,8 @@ void Service::report_invalid(const messaging::TopicInfo& topic, std::uint64_t se
                              std::string_view why) {
   std::string name(messaging::short_name(topic));
   std::ranges::replace(name, '_', ' ');
-  status_->fault("invalid " + name, "number " + std::to_string(sequence_number) + ": " + std::string(why));
+  status_->fault("invalid " + name,
+                 "number " + std::to_string(sequence_number) + ": " + std::string(why));
 }
 
 }  // namespace topogeo::service

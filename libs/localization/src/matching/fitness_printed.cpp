@@ -132,7 +132,7 @@ void PrintedFitness::add_branches(const Pose& pose, Mean& mean) const {
 }
 
 // 6.35 of the two projecting points; infinite when fewer than two ends project. Of two ends that
-// lie beside each other and both project the nearer one counts (prop. 6.2.3).
+// lie beside each other and both project the nearer one counts (Thesis, 6.2.5, proposition 6.2.3).
 double PrintedFitness::branch_distance_m(const Pose& pose, const BranchCurve& query,
                                          const BranchCurve& reference) const {
   const Eigen::Vector2d query_a = pose.to_reference(query.points_m.front());

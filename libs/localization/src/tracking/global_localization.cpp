@@ -17,8 +17,8 @@ using geometry::Pose2;
 
 namespace {
 
-// These depend on each other and on the time that a search may take (benchmark relocalize/csail), so
-// none is a setting.
+// These depend on each other and on the time that a search may take (benchmark relocalize/csail),
+// so none is a setting.
 constexpr double kCoarseCell_m = 0.25;   // a scan may be off by half of it and still score
 constexpr double kCoarseWidth_m = 0.60;  // of the kernel: spans the 5 degrees between headings
 constexpr double kFineCell_m = 0.05;     // as the cells of the global map

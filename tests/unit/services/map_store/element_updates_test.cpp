@@ -1,9 +1,10 @@
 // The map on its way: what map_store sends, and what a reader makes of it.
+#include "map_store/element_updates.hpp"
+
 #include <gtest/gtest.h>
 
 #include "topogeo/service/map_mirror.hpp"
 
-#include "map_store/element_updates.hpp"
 #include "services/common/random_values.hpp"
 
 namespace topogeo {

@@ -11,8 +11,8 @@
 #include "topogeo/service/hybrid_map_messages.hpp"
 #include "topogeo/service/hybrid_map_mirror.hpp"
 
-#include "planning/floors.hpp"
 #include "map_store/hybrid_updates.hpp"
+#include "planning/floors.hpp"
 
 namespace topogeo {
 namespace {

@@ -1,8 +1,8 @@
+#include "navigator/stamp_clock.hpp"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
-
-#include "navigator/stamp_clock.hpp"
 
 namespace topogeo::navigator {
 namespace {

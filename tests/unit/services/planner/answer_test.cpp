@@ -5,13 +5,13 @@
 //   y = 2  #           .       #      door from y = 1.5 to 2.5, at x = 6
 //          #           #       #
 //   y = 0  #####################      x = 0 to 10
+#include "planner/answer.hpp"
+
 #include <limits>
 #include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "planner/answer.hpp"
 
 namespace topogeo::planner {
 namespace {

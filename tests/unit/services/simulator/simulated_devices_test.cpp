@@ -8,8 +8,8 @@
 
 #include <gmock/gmock.h>
 
-#include "simulator/fault_injector.hpp"
 #include "services/simulator/host_port.hpp"
+#include "simulator/fault_injector.hpp"
 
 namespace topogeo::simulator {
 namespace {

@@ -1,0 +1,293 @@
+#include "navigation_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::navigation {
+namespace {
+
+NavigatorConfig checked(const NavigatorConfig& config) {
+  check(config);
+  return config;
+}
+
+}  // namespace
+
+NavigationStep::NavigationStep(const NavigatorConfig& settings)
+    : config(checked(settings)),
+      poses(config),
+      base(config.guard, config.stuck_s),
+      surroundings(config.blockage_s),
+      driver(config),
+      wait({config.obstacle_wait_s, config.obstacle_wait_s + RouteDriver::kPlanEvery_s,
+            config.route_wait_s}),
+      arrival(config),
+      relocalization(config.look_around_m) {}
+
+geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
+  now_ns = std::max(now_ns, at_ns);
+  locate();
+  surroundings.update(status.T_map_robot ? routes.map() : nullptr, poses.keeper(), now_ns);
+  if (goal.arrived()) return stop(NavigatorState::kArrived, HaltReason::kNone, status.message);
+  if (!goal.order()) {
+    return goal.cancelled() ? stop(NavigatorState::kIdle, HaltReason::kCancelled, "cancelled")
+                            : stop(NavigatorState::kIdle, HaltReason::kNone, "no goal");
+  }
+  std::string message;
+  const HaltReason reason = halted(message);
+  if (reason != HaltReason::kNone) return halt(reason, std::move(message));
+  if (!status.T_map_robot) return relocalize();
+  if (routes.map() == nullptr) {
+    return stop(NavigatorState::kStopped, HaltReason::kNoMap, "no map has come yet");
+  }
+  const geometry::Pose2 pose = *status.T_map_robot;
+  if (!routes.map()->frame().cell_of(pose.position_m())) {
+    return stop(
+        NavigatorState::kStopped, HaltReason::kOutsideMap,
+        fmt::format("the robot is at {:.2f}, {:.2f}, which is not on the map", pose.x_m, pose.y_m));
+  }
+  take_route();
+  if (!routes.has_route()) return wait_for_route();
+  return drive(pose);
+}
+
+// Finds out where the robot is now, and forgets what was placed by a pose that was wrong.
+void NavigationStep::locate() {
+  constexpr double kCorrected_m = 0.05;  // less is no reason for another path
+  constexpr double kMemory_m = 0.15;     // obstacles are that much out of place after a jump
+  constexpr double kRoute_m = 0.5;       // and the route may begin elsewhere after this one
+  if (goal.order()) status.driven_m += poses.take_driven_m();
+  const bool primitive_finished = !driver.follower().take_finished().empty();
+  if (const auto corrected_m = poses.update(primitive_finished, now_ns)) {
+    if (*corrected_m > kCorrected_m) driver.need_path();
+    arrival.note_look();
+  }
+  status.T_map_robot = poses.keeper().good_pose(now_ns);
+  const double jump_m = poses.take_jump_m();
+  if (jump_m > kMemory_m) surroundings.forget();
+  if (jump_m > kRoute_m) driver.doubt_route();
+}
+
+/// Why it must not move at all; kNone when it may.
+HaltReason NavigationStep::halted(std::string& message) const {
+  if (goal.paused()) {
+    message = "paused; drives on after a resume";
+    return HaltReason::kPaused;
+  }
+  if (!poses.keeper().has_odometry(now_ns)) {
+    message = fmt::format("no odometry for more than {:.1f} s", config.oldest_odometry_s);
+    return HaltReason::kNoOdometry;
+  }
+  return base.halted(now_ns, message);
+}
+
+geometry::Velocity NavigationStep::halt(HaltReason reason, std::string message) {
+  driver.need_path();
+  arrival.interrupt();
+  base.release();
+  return stop(NavigatorState::kStopped, reason, std::move(message));
+}
+
+geometry::Velocity NavigationStep::relocalize() {
+  driver.doubt_route();
+  driver.need_path();
+  surroundings.forget();
+  if (status.reason != HaltReason::kPoseLost) relocalization.begin(now_ns);
+  Relocalization::Step next =
+      relocalization.step({poses.keeper().why_not(now_ns), goal.order()->look_around,
+                           poses.keeper().doubtful(), poses.keeper().T_odom_robot(now_ns)},
+                          base.guard(), now_ns);
+  if (!next.wanted) {
+    return stop(NavigatorState::kRelocalizing, HaltReason::kPoseLost, std::move(next.message));
+  }
+  status.state = NavigatorState::kRelocalizing;
+  status.reason = HaltReason::kPoseLost;
+  status.message = std::move(next.message);
+  return command(*next.wanted);
+}
+
+void NavigationStep::take_route() {
+  RouteKeeper::Use use;
+  if (wait.reported()) use.least_blockages_version = surroundings.blockages().version;
+  if (!driver.needs_path() && !wait.reported()) use.path = driver.follower().path();
+  use.settles = arrival.settling();
+  switch (routes.take_offer(use)) {
+    case RouteAnswer::kKept:
+      return;
+    case RouteAnswer::kRefused:
+      driver.forget();
+      return;
+    case RouteAnswer::kTaken:
+      ++status.routes;
+      wait.forget();
+      base.release();
+      driver.trust_route();
+      driver.need_path();
+      arrival.reset();
+      return;
+  }
+}
+
+geometry::Velocity NavigationStep::wait_for_route() {
+  if (!routes.refused().empty()) {
+    return stop(
+        surroundings.anything_reported() ? NavigatorState::kBlocked : NavigatorState::kStopped,
+        HaltReason::kNoRoute, routes.refused());
+  }
+  const double waited_s = routes.waited_s(now_ns);
+  return stop(driver.doubts_route() ? NavigatorState::kRelocalizing : NavigatorState::kStopped,
+              HaltReason::kWaitsForRoute,
+              waited_s < config.route_wait_s
+                  ? "waits for the planner"
+                  : fmt::format("the planner has not answered for {:.0f} s", waited_s));
+}
+
+geometry::Velocity NavigationStep::drive(const geometry::Pose2& T_map_robot) {
+  std::optional<double> progress_m;
+  if (!arrival.settling() && driver.follower().has_path() && !driver.needs_path()) {
+    progress_m = driver.follower().progress_m();
+  }
+  if (poses.must_stand(arrival.needs_look(), progress_m, now_ns)) {
+    return stop(NavigatorState::kRelocalizing, HaltReason::kNone, "stands and looks where it is");
+  }
+  if (arrival.settling()) return settle(T_map_robot);
+  // Far from its route it waits for one from where it is; if none comes, it goes back to the old.
+  if (driver.astray(T_map_robot.position_m()) && routes.wait_s(now_ns) < config.route_wait_s) {
+    return stop(NavigatorState::kRelocalizing, HaltReason::kWaitsForRoute,
+                "is not on its route; waits for another one");
+  }
+  return follow(T_map_robot);
+}
+
+geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
+  constexpr double kNearEnough_m = 0.08;  // a goal that is too narrow for the last centimetres
+  const SeenObstacles obstacles = surroundings.seen(now_ns);
+  const RouteDriver::Scene scene{routes, T_map_robot, obstacles, wait.over(now_ns), now_ns};
+  if (driver.needs_path() || !driver.follower().has_path()) {
+    if ((wait.waits() && driver.just_planned(now_ns)) || !find_path(scene)) {
+      return wait_for_obstacle();
+    }
+  }
+  const bool held = base.held(now_ns);
+  const RouteDriver::Step driven = driver.follow(scene, held);
+  if (driven.another_path) {
+    base.release();
+    begin_path();
+  }
+  const bool hindered = driven.before_block || (held && !driven.another_path);
+  if (hindered && (routes.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m) {
+    return settle_here();
+  }
+  if (hindered) {
+    wait.begin(now_ns, status.driven_m);
+  } else {
+    wait.drive_on(status.driven_m);
+  }
+  if (driven.follower.done) {
+    arrival.begin(now_ns);
+    return settle(T_map_robot);
+  }
+  status.state = NavigatorState::kDriving;
+  status.reason = HaltReason::kNone;
+  status.rest_m = driven.follower.rest_m;
+  status.rest_s = driven.follower.rest_s;
+  status.message = fmt::format("drives, {:.1f} m to go", driven.follower.rest_m);
+  const geometry::Velocity allowed = command(driven.follower.command);
+  if (hindered) describe_wait();
+  return allowed;
+}
+
+bool NavigationStep::find_path(const RouteDriver::Scene& scene) {
+  if (!driver.find_path(scene)) return false;
+  begin_path();
+  return true;
+}
+
+void NavigationStep::begin_path() {
+  status.detours += driver.take_detours();
+  poses.set_path(driver.follower().path(), routes.route().nodes_m);
+  routes.stop_waiting();
+}
+
+geometry::Velocity NavigationStep::wait_for_obstacle() {
+  wait.begin(now_ns, status.driven_m);
+  describe_wait();
+  return stop(status.state, status.reason, status.message);
+}
+
+// Reports what is in the way as soon as that is due.
+void NavigationStep::describe_wait() {
+  constexpr double kAround_m = 1.0;  // of what is in the way, as much as fills a door
+  if (wait.report_due(now_ns)) {
+    const auto& block = driver.block();
+    const auto& pose = status.T_map_robot;
+    const Eigen::Vector2d robot_m = pose ? pose->position_m() : Eigen::Vector2d::Zero();
+    surroundings.report(block ? block->obstacle_m : robot_m,
+                        block ? kAround_m : config.detour.half_side_m, routes.map()->frame(),
+                        now_ns);
+    wait.set_reported(now_ns);
+  }
+  status.state = NavigatorState::kBlocked;
+  status.reason = wait.reason();
+  status.message = wait.message(driver.describe_block(), now_ns);
+}
+
+geometry::Velocity NavigationStep::settle(const geometry::Pose2& T_map_robot) {
+  ArrivalStep next = arrival.step({T_map_robot, poses.keeper().fix_ns(), poses.keeper().tracking(),
+                                   routes.goal_m(), routes.route().heading_rad},
+                                  now_ns);
+  if (next.kind == ArrivalStep::Kind::kArrived) {
+    goal.arrive();
+    driver.forget();
+    status.rest_m = 0.0;
+    status.rest_s = 0.0;
+    return stop(NavigatorState::kArrived, HaltReason::kNone, std::move(next.message));
+  }
+  if (next.kind == ArrivalStep::Kind::kMoves) {
+    driver.follower().follow(std::move(next.path), next.heading_rad);
+  }
+  return stop(NavigatorState::kDriving, HaltReason::kNone, std::move(next.message));
+}
+
+// Something keeps it off the last centimetres.
+geometry::Velocity NavigationStep::settle_here() {
+  arrival.accept_position();
+  base.release();
+  wait.end();
+  driver.follower().follow({}, routes.route().heading_rad);
+  return stop(NavigatorState::kDriving, HaltReason::kNone,
+              "gets no nearer to the goal; turns to its heading");
+}
+
+geometry::Velocity NavigationStep::stop(NavigatorState state, HaltReason reason,
+                                        std::string message) {
+  status.state = state;
+  status.reason = reason;
+  status.message = std::move(message);
+  status.command = {};
+  driver.follower().commanded({}, now_ns);
+  base.stand();
+  return {};
+}
+
+geometry::Velocity NavigationStep::command(const geometry::Velocity& wanted) {
+  const GuardedBase::Command command =
+      base.command(wanted, poses.keeper().T_odom_robot(now_ns), now_ns);
+  const GuardVerdict& verdict = command.verdict;
+  status.free_ahead_m = verdict.free_m;
+  if (command.newly_stopped) ++status.guard_stops;
+  if (command.stopped) {
+    if (verdict.contact_m && status.T_map_robot) {
+      surroundings.add_contact(*status.T_map_robot * *verdict.contact_m, now_ns);
+    }
+    status.message = verdict.message;
+  }
+  status.command = verdict.allowed;
+  driver.follower().commanded(verdict.allowed, now_ns);
+  return verdict.allowed;
+}
+
+}  // namespace topogeo::navigation
