@@ -108,8 +108,9 @@ function(topogeo_add_lint_unit name result targets)
   set(content "")
   set(count 0)
   foreach(source IN LISTS ARGN)
-    # Each program has a main().
-    string(APPEND content "#define main main_${count}\n#include \"${source}\"\n#undef main\n")
+    # Each program has a main(), each fuzzer its entry.
+    string(APPEND content "#define main main_${count}\n#define LLVMFuzzerTestOneInput fuzz_${count}\n"
+                          "#include \"${source}\"\n#undef main\n#undef LLVMFuzzerTestOneInput\n")
     math(EXPR count "${count} + 1")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${content}" @ONLY)

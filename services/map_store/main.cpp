@@ -39,7 +39,7 @@ std::shared_ptr<const storage::MapDocument> map_to_continue(
   }
 }
 
-struct Options {
+struct StoreOptions {
   map_store::MapStoreOptions store;
   std::optional<std::filesystem::path> continued;
   std::optional<std::filesystem::path> map;
@@ -49,7 +49,7 @@ struct Options {
   [[nodiscard]] bool serves() const { return map || (drawing.drawing && store.directory.empty()); }
 };
 
-void add_options(command_line::Command& app, Options& options) {
+void add_options(command_line::Command& app, StoreOptions& options) {
   map_store::MapStoreOptions& store = options.store;
   app.add_option("--out", store.directory,
                  "directory of the results, made if missing; needed unless a map is only shown");
@@ -66,7 +66,7 @@ void add_options(command_line::Command& app, Options& options) {
 }
 
 /// Shows a stored map, a drawing, or both.
-void serve(const service::Setup& setup, const Options& options) {
+void serve(const service::Setup& setup, const StoreOptions& options) {
   if (options.continued || !options.store.directory.empty()) {
     throw service::UsageError("--map shows a map as it is: --out and --continue do not go with it");
   }
@@ -88,7 +88,7 @@ void serve(const service::Setup& setup, const Options& options) {
 }
 
 /// Keeps the map of a drive.
-void keep(const service::Setup& setup, Options options) {
+void keep(const service::Setup& setup, StoreOptions options) {
   map_store::MapStoreOptions& store = options.store;
   if (store.directory.empty()) {
     throw service::UsageError("--out is required (or --map or --drawing, see --help)");
@@ -111,7 +111,7 @@ void keep(const service::Setup& setup, Options options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options;
+  StoreOptions options;
   return service::run_service(
       argc, argv, "map_store", "Stores local maps and trajectory and makes the global map.",
       [&](command_line::Command& app) { add_options(app, options); },

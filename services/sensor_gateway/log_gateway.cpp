@@ -17,7 +17,7 @@ namespace {
 
 /// Scans in a row before signals and timers get their turn.
 constexpr int kBatch = 16;
-constexpr milliseconds kPoll{20};
+constexpr milliseconds kReplayPoll{20};
 /// Falling further behind than this moves the schedule instead of rushing after it.
 constexpr std::chrono::seconds kLargestDelay{1};
 
@@ -58,7 +58,7 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
 
 void LogGateway::wait_for_readers() {
   if (scans_.matched() < readers_) {
-    service_.loop().call_after(kPoll, [this] { wait_for_readers(); });
+    service_.loop().call_after(kReplayPoll, [this] { wait_for_readers(); });
     return;
   }
   service_.status().set_state(msg::kServiceRunning);
@@ -130,8 +130,8 @@ void LogGateway::count() {
 }
 
 void LogGateway::finish() {
-  if (!scans_.wait_for_acknowledgments(kPoll) ||
-      (end_sent_ && !stream_end_.wait_for_acknowledgments(kPoll))) {
+  if (!scans_.wait_for_acknowledgments(kReplayPoll) ||
+      (end_sent_ && !stream_end_.wait_for_acknowledgments(kReplayPoll))) {
     service_.loop().call_after(milliseconds(0), [this] { finish(); });
     return;
   }

@@ -39,7 +39,7 @@ struct CalibrateOptions {
 };
 
 /// All that is read before the work starts.
-struct Inputs {
+struct CalibrationInputs {
   pipeline::LoadedConfig config;
   OpenLog log;
   std::vector<topomap::StampedPose> reference;
@@ -57,7 +57,7 @@ std::vector<topomap::StampedPose> read_reference(const CalibrateOptions& options
   }
 }
 
-Inputs read_inputs(const CalibrateOptions& options) {
+CalibrationInputs read_inputs(const CalibrateOptions& options) {
   pipeline::LoadedConfig config = load_for_calibration(options.config, options.out);
   auto reference = read_reference(options);
   OpenLog log = open_log(options.log, config.config.log);
@@ -71,7 +71,7 @@ struct Measured {
   std::string yardstick;
 };
 
-Measured measure_by_reference(Inputs& inputs, const std::filesystem::path& reference) {
+Measured measure_by_reference(CalibrationInputs& inputs, const std::filesystem::path& reference) {
   Measured measured;
   measured.maps = make_maps(inputs.config.config, inputs.log, "following", [](const auto&) {});
   const double longest_way_m = inputs.config.config.localizer.recent_way_m;
@@ -86,13 +86,13 @@ Measured measure_by_reference(Inputs& inputs, const std::filesystem::path& refer
   return measured;
 }
 
-Measured measure_by_matches(Inputs& inputs) {
+Measured measure_by_matches(CalibrationInputs& inputs) {
   MatchedLog log = match_log(inputs.config.config, inputs.log);
   return {std::move(log.maps), log.matched.motions,
           describe_matches(inputs.config.config, log.matched)};
 }
 
-OdometryCalibration calibrate(const CalibrateOptions& options, const Inputs& inputs,
+OdometryCalibration calibrate(const CalibrateOptions& options, const CalibrationInputs& inputs,
                               const Measured& measured) {
   localization::OdometryCalibrationConfig config;
   config.fallback = inputs.config.config.localizer.odometry;
@@ -118,7 +118,8 @@ std::string value_text(const localization::Estimate& estimate) {
   return fmt::format("{}{:.3g}", estimate.at_most ? "<" : "", estimate.value);
 }
 
-void print_table(std::ostream& out, const Inputs& inputs, const OdometryCalibration& found) {
+void print_table(std::ostream& out, const CalibrationInputs& inputs,
+                 const OdometryCalibration& found) {
   const localization::OdometryNoise& configured = inputs.config.config.localizer.odometry;
   const auto row = [&](const auto&... cells) {
     out << fmt::format("{:<24}{:>10}{:>10}{:>12}{:>12}{:>10}{:>11}  {}\n", cells...);
@@ -142,7 +143,7 @@ void print_table(std::ostream& out, const Inputs& inputs, const OdometryCalibrat
 }
 
 /// Matches are searched for as far as the configured noise reaches, and no farther.
-void warn_of_narrow_search(std::ostream& out, const Inputs& inputs,
+void warn_of_narrow_search(std::ostream& out, const CalibrationInputs& inputs,
                            const OdometryCalibration& found) {
   constexpr double kFarAbove = 2.0;
   for (std::size_t p = 0; p < localization::kNoiseParameters; ++p) {
@@ -181,7 +182,7 @@ std::string yaml_block(const localization::OdometryNoise& noise) {
 }
 
 int calibrate_log(const CalibrateOptions& options) {
-  Inputs inputs = read_inputs(options);
+  CalibrationInputs inputs = read_inputs(options);
   const Measured measured = options.reference ? measure_by_reference(inputs, *options.reference)
                                               : measure_by_matches(inputs);
   tell_skipped(inputs.log.reader.statistics());

@@ -10,7 +10,7 @@
 namespace topogeo::bench {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// Lower end of Wilson's interval of 95 % for a share.
 double at_least(std::size_t good, std::size_t of) {
@@ -58,7 +58,7 @@ std::string line(const std::string& name, const std::vector<ArrivalRow>& rows,
     way_m += result.way_m;
     time_s += result.time_s;
     errors_m.push_back(result.error_m);
-    errors_deg.push_back(kDegrees * result.heading_error_rad);
+    errors_deg.push_back(kDegreesPerRadian * result.heading_error_rad);
   }
   if (runs == 0) return {};
   const auto n = static_cast<double>(runs);
@@ -82,8 +82,8 @@ std::string failures(const std::vector<ArrivalRow>& rows) {
         "- `--floor \"{}\" --run {}`, obstacle: {}; {:.1f} cm and {:.1f} degrees off, told pose "
         "{:.1f} cm off, {} collisions, {:.0f} s; {}\n",
         row.floor, row.run, to_string(row.obstacle), 100.0 * result.error_m,
-        kDegrees * result.heading_error_rad, 100.0 * result.pose_error_m, result.collisions,
-        result.time_s, result.end);
+        kDegreesPerRadian * result.heading_error_rad, 100.0 * result.pose_error_m,
+        result.collisions, result.time_s, result.end);
   }
   return text.empty() ? text : "\nNot well ended:\n" + text;
 }

@@ -16,8 +16,8 @@ using topogeo::devices::BaseFaultLine;
 using topogeo::devices::BaseFaultResult;
 using topogeo::devices::BaseFaultTest;
 
-constexpr std::size_t kTimes = 1000;
-constexpr std::uint64_t kSeed = 1;
+constexpr std::size_t kBaseTimes = 1000;
+constexpr std::uint64_t kBaseSeed = 1;
 constexpr std::array kLines{BaseFaultLine{BaseDialect::kAscii, 9600},
                             BaseFaultLine{BaseDialect::kBinary, 38400}};
 
@@ -29,7 +29,8 @@ void print_table(const BaseFaultLine& line) {
                "| worst recovery, ms | allowed, ms | counted as |\n"
             << "|---|---|---|---|---|---|---|---|---|---|\n";
   for (const BaseFaultTest& test : topogeo::devices::base_fault_tests(line)) {
-    const BaseFaultResult result = topogeo::devices::run_base_fault(test, line, kTimes, kSeed);
+    const BaseFaultResult result =
+        topogeo::devices::run_base_fault(test, line, kBaseTimes, kBaseSeed);
     const auto ms = [](std::int64_t time_ns) { return time_ns / 1'000'000; };
     std::cout << "| " << test.name << " | " << result.times << " | " << result.odometries << " | "
               << result.wrong << " | " << std::fixed << std::setprecision(3) << result.worst_m

@@ -18,7 +18,7 @@
 namespace topogeo::bench {
 namespace {
 
-struct Options {
+struct ExplorationOptions {
   std::string floor;  ///< empty: all
   std::uint64_t first_seed = 1;
   std::uint64_t starts = 3;
@@ -34,7 +34,7 @@ struct Run {
   ExplorationResult result;
 };
 
-Run carry_out(const Options& options, const std::string& floor, std::uint64_t seed) {
+Run carry_out(const ExplorationOptions& options, const std::string& floor, std::uint64_t seed) {
   ExplorationConfig config;
   config.wheels = options.wheels == "b21" ? Wheels::kB21 : Wheels::kMild;
   ExplorationRecord record;
@@ -76,7 +76,7 @@ void print(const std::vector<Run>& runs) {
   for (const Run& run : runs) std::cout << line_of(run);
 }
 
-int run_all(const Options& options) {
+int run_all(const ExplorationOptions& options) {
   std::vector<std::pair<std::string, std::uint64_t>> wanted;
   for (const std::string_view floor : kNavigationFloors) {
     if (!options.floor.empty() && options.floor != floor) continue;
@@ -105,7 +105,7 @@ int run_all(const Options& options) {
 int main(int argc, char** argv) {
   using namespace topogeo::bench;  // NOLINT(google-build-using-namespace)
   topogeo::command_line::Command app{"Explores simulated floors from unknown starts"};
-  Options options;
+  ExplorationOptions options;
   app.add_option("--floor", options.floor, "one of them alone")
       ->check(topogeo::command_line::one_of({"office", "warehouse", "two loops"}));
   app.add_option("--seed", options.first_seed, "of the first start")->capture_default_str();

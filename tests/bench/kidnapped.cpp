@@ -82,7 +82,7 @@ simulation::SimulationOptions options_of(std::uint64_t seed) {
   return options;
 }
 
-bool is_right(const Pose2& pose, const Pose2& truth) {
+bool is_near(const Pose2& pose, const Pose2& truth) {
   constexpr double kRight_m = 0.3;
   constexpr double kRight_rad = 0.0872664626;
   return (pose.position_m() - truth.position_m()).norm() <= kRight_m &&
@@ -133,7 +133,7 @@ void collect(const localization::TrackedStep& step, const Pose2& truth, Samples&
                         match.reason == localization::Reason::kSecondSolution;
     if (counts) {
       samples.matches.push_back(
-          {{1.0, match.doubt, match.rivalry}, is_right(step.measured[i], truth)});
+          {{1.0, match.doubt, match.rivalry}, is_near(step.measured[i], truth)});
     }
   }
   // What odometry hands on, as far as its own covariance does not say it: is the robot where the
@@ -259,7 +259,7 @@ Outcome run(std::uint64_t seed, Calibration& calibration, Samples& samples) {
     if (!map) continue;
     localizer.add(std::make_shared<const topomap::LocalMap>(*map));
     const Pose2 here = floor.truth(T_world_robot);
-    const bool right = is_right(localizer.stops().back().T_map_robot, here);
+    const bool right = is_near(localizer.stops().back().T_map_robot, here);
     if (localizer.last_step()) collect(*localizer.last_step(), here, samples);
     const localization::Belief belief = localizer.belief();
     count(belief, right, calibration);

@@ -30,7 +30,7 @@ namespace {
 
 using namespace topogeo;
 
-struct Options {
+struct LongLogOptions {
   double way_m = 2000.0;
   std::uint64_t seed = 1;
   std::filesystem::path out;
@@ -38,7 +38,7 @@ struct Options {
 };
 
 // A scan each half metre or 45 degrees: 4,000 of them or a few more on 2 km.
-simulation::SimulatedLog drive(const Options& options) {
+simulation::SimulatedLog drive(const LongLogOptions& options) {
   simulation::SimulationOptions simulation;
   simulation.seed = options.seed;
   simulation.scan_step_m = 0.5;
@@ -81,7 +81,7 @@ void write_csv(const std::filesystem::path& file, const std::vector<bench::StepC
   if (!out) throw std::runtime_error(file.string() + ": cannot write");
 }
 
-void run(const Options& options) {
+void run_log(const LongLogOptions& options) {
   support::check_writable_directory(options.out);
   const pipeline::Config config =
       pipeline::load_config(options.config_file.empty()
@@ -136,7 +136,7 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   command_line::Command app{
       "what a step costs along a long synthetic log; cost.csv and cost.png in a folder"};
-  Options options;
+  LongLogOptions options;
   app.add_option("--out", options.out, "folder for the results")->required();
   app.add_option("--way", options.way_m, "metres to drive")
       ->capture_default_str()
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
       ->check(command_line::existing_file());
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
-    run(options);
+    run_log(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "topogeo_long_log: %s\n", error.what());
     return 1;

@@ -43,7 +43,7 @@ struct Row {
   }
 };
 
-double median(std::vector<double> values) {
+double median_of(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -55,7 +55,8 @@ void print(std::FILE* out, const std::string& log, std::size_t apart, const Row&
   if (pairs == 0) return;
   const double per_pair = 1.0 / static_cast<double>(pairs);
   std::fprintf(out, "| %s | i,i+%zu | %s | %zu | %.3f | %.2f | ", log.c_str(), apart,
-               row.name.c_str(), pairs, median(row.error_m), kDegrees * median(row.error_rad));
+               row.name.c_str(), pairs, median_of(row.error_m),
+               kDegrees * median_of(row.error_rad));
   if (row.name == "odometry") {
     std::fputs("- | - | ", out);
   } else {
@@ -201,9 +202,9 @@ void print_closure(std::FILE* out, MatchingRun& run, std::size_t most) {
   }
   if (closure.error_m.empty()) return;
   std::fprintf(out, "| %s | %zu | %.4f | %.2f | %.4f | %.2f |\n", run.name().c_str(),
-               closure.error_m.size(), median(closure.error_m),
-               kDegrees * median(closure.error_rad), median(against_reference.error_m),
-               kDegrees * median(against_reference.error_rad));
+               closure.error_m.size(), median_of(closure.error_m),
+               kDegrees * median_of(closure.error_rad), median_of(against_reference.error_m),
+               kDegrees * median_of(against_reference.error_rad));
   std::fflush(out);
 }
 

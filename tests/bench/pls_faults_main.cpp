@@ -9,7 +9,7 @@
 namespace {
 
 constexpr std::size_t kTimes = 1000;
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kLaserSeed = 1;
 
 void print_table(std::uint32_t baud) {
   using topogeo::devices::PlsFaultResult;
@@ -20,7 +20,7 @@ void print_table(std::uint32_t baud) {
                "| allowed, ms | counted as |\n"
             << "|---|---|---|---|---|---|---|---|\n";
   for (const PlsFaultTest& test : topogeo::devices::pls_fault_tests(baud)) {
-    const PlsFaultResult result = topogeo::devices::run_pls_fault(test, baud, kTimes, kSeed);
+    const PlsFaultResult result = topogeo::devices::run_pls_fault(test, baud, kTimes, kLaserSeed);
     const auto ms = [](std::int64_t time_ns) { return time_ns / 1'000'000; };
     std::cout << "| " << test.name << " | " << result.times << " | " << result.scans << " | "
               << result.wrong_scans << " | " << result.uncounted << " | "

@@ -83,7 +83,7 @@ void map_csail(benchmark::State& state) {
 
 BENCHMARK(forward_synthetic)->Name("forward/synthetic")->Unit(benchmark::kMillisecond);
 
-[[maybe_unused]] const bool kWithLogs = [] {
+[[maybe_unused]] const bool kStepsWithLogs = [] {
   if (!std::filesystem::exists(csail_log())) return false;
   benchmark::RegisterBenchmark("forward/csail", forward_csail)->Unit(benchmark::kMillisecond);
   benchmark::RegisterBenchmark("map/csail", map_csail)->Unit(benchmark::kSecond)->Iterations(1);

@@ -49,7 +49,7 @@ class StubWorker {
       : answers_(answers),
         statuses_(participant),
         results_(participant),
-        tasks_(participant, {{}, {"worker_id = %0", {"'" + worker_id + "'"}}}) {
+        tasks_(participant, {.role = {}, .addressee = worker_id}) {
     loop.add<msg::MatchTask>(
         tasks_, [this](const msg::MatchTask& task, const messaging::SampleInfo&) { answer(task); });
     messaging::set_header(status_, "", 0, 0);

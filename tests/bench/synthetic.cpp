@@ -20,7 +20,7 @@ using bench::SyntheticResult;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-struct Options {
+struct SyntheticOptions {
   std::vector<std::string> worlds;
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 20;
@@ -54,7 +54,8 @@ void tell(const std::string& floor, const SyntheticResult& r) {
 }
 
 // All seeds of one floor, `jobs` at a time; results in the order of the seeds.
-std::vector<SyntheticResult> run_floor(const bench::SyntheticFloor& floor, const Options& options,
+std::vector<SyntheticResult> run_floor(const bench::SyntheticFloor& floor,
+                                       const SyntheticOptions& options,
                                        const pipeline::Config& config) {
   std::vector<SyntheticResult> results(options.seeds);
   std::atomic<std::uint64_t> next = 0;
@@ -85,7 +86,7 @@ std::vector<SyntheticResult> run_floor(const bench::SyntheticFloor& floor, const
   return results;
 }
 
-constexpr const char* kHeader =
+constexpr const char* kSyntheticHeader =
     "| floor | runs | m a run | odometry rms m | rms m, mean | rms m, worst | runs above 0.05 m | "
     "rms m from the first pose, mean | worst | heading deg, mean | worst | loops closed | of "
     "returns, pieces of 10 m with a closure | closures | false | runs with a false one | CPU s a "
@@ -132,14 +133,14 @@ void print(const std::string& name, const std::vector<SyntheticResult>& runs, bo
   std::fflush(stdout);
 }
 
-void run(const Options& options) {
+void run(const SyntheticOptions& options) {
   const pipeline::Config config =
       pipeline::load_config(options.config_file.empty()
                                 ? std::nullopt
                                 : std::optional<std::filesystem::path>(options.config_file))
           .config;
   if (!options.save.empty()) support::check_writable_directory(options.save);
-  if (options.markdown) std::fputs(kHeader, stdout);
+  if (options.markdown) std::fputs(kSyntheticHeader, stdout);
   std::vector<SyntheticResult> all;
   for (const bench::SyntheticFloor& floor : bench::synthetic_floors()) {
     const auto& wanted = options.worlds;
@@ -158,7 +159,7 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   command_line::Command app{
       "how far maps of synthetic floors are from the truth; each run on standard error"};
-  Options options;
+  SyntheticOptions options;
   std::vector<std::string> names;
   for (const auto& floor : bench::synthetic_floors()) names.push_back(floor.name);
   app.add_option("--worlds", options.worlds, "floors by name, separated by commas; default all")

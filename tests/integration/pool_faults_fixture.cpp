@@ -99,7 +99,7 @@ ServiceRun::ServiceRun(const Scratch& scratch, const Drive& drive, const std::st
                       std::filesystem::path(drive.log()).filename().string()});
   start("local_mapper", {"--replay"});
   localizer_ = start("localizer", {});
-  if (!scan_writer_.wait_for_matched(1, kPatience) ||
+  if (!scan_writer_.wait_for_matched(1, kFaultPatience) ||
       !wait_until([this] { return status_.state() == msg::kServiceWaiting; })) {
     throw std::runtime_error("the services do not start");
   }
@@ -140,7 +140,7 @@ void ServiceRun::send_scan() {
 }
 
 bool ServiceRun::go_on_until(const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = std::chrono::steady_clock::now() + kFaultPatience;
   while (!condition() && std::chrono::steady_clock::now() < end) look();
   return condition();
 }
@@ -151,7 +151,7 @@ bool ServiceRun::go_on_until_stop(std::size_t stop) {
 
 bool ServiceRun::finish() {
   const bool all_sent = go_on_until([this] { return next_scan_ == drive_.scans().size(); });
-  if (!all_sent || !scan_writer_.wait_for_acknowledgments(kPatience)) return false;
+  if (!all_sent || !scan_writer_.wait_for_acknowledgments(kFaultPatience)) return false;
   msg::StreamEnd end;
   messaging::set_header(end, "robot", drive_.scans().back().stamp_ns, 0);
   messaging::set_text(end.stage(), "gateway", "stage");
@@ -162,7 +162,7 @@ bool ServiceRun::finish() {
 }
 
 bool ServiceRun::wait_until(const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = std::chrono::steady_clock::now() + kFaultPatience;
   while (!condition() && std::chrono::steady_clock::now() < end) loop_.run_for(milliseconds(1));
   return condition();
 }
@@ -172,7 +172,7 @@ bool ServiceRun::wait_for_workers(std::size_t count) {
 }
 
 bool ServiceRun::wait_until_idle() {
-  if (!scan_writer_.wait_for_acknowledgments(kPatience)) return false;
+  if (!scan_writer_.wait_for_acknowledgments(kFaultPatience)) return false;
   return wait_until([this] { return stops_ == maps_ && counter("stops") == double(stops_); });
 }
 

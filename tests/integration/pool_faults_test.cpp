@@ -207,7 +207,7 @@ TEST_F(PoolFaultsTest, TwoRobotsOfOneNameShareTheWorkers) {
     first.look();
     second.look();
   };
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = std::chrono::steady_clock::now() + kFaultPatience;
   constexpr std::size_t kFar = 70;
   while (std::max(first.stops(), second.stops()) < kFar && std::chrono::steady_clock::now() < end) {
     look();

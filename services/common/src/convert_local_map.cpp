@@ -67,7 +67,7 @@ topomap::LocalBranch from_branch(const msg::LocalBranch& branch, std::size_t ind
   return out;
 }
 
-msg::ScanPoint to_point(const topomap::ScanPoint& point) {
+msg::ScanPoint to_scan_point(const topomap::ScanPoint& point) {
   msg::ScanPoint out;
   out.x_m(point.x_m);
   out.y_m(point.y_m);
@@ -111,7 +111,7 @@ msg::LocalMap to_msg(const topomap::LocalMap& map) {
   out.T_robot_laser(to_msg(map.T_robot_laser));
   for (const auto& node : map.nodes) out.nodes().push_back(to_node(node));
   for (const auto& branch : map.branches) out.branches().push_back(to_branch(branch));
-  for (const auto& point : map.points) out.points().push_back(to_point(point));
+  for (const auto& point : map.points) out.points().push_back(to_scan_point(point));
   for (const auto& scan : map.track) out.track().push_back(to_tracked(scan));
   return out;
 }

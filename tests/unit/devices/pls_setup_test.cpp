@@ -9,7 +9,7 @@
 namespace topogeo::devices {
 namespace {
 
-using Result = PlsSetup::Result;
+using SetupResult = PlsSetup::Result;
 
 class PlsSetupTest : public ::testing::Test {
  protected:
@@ -23,12 +23,12 @@ class PlsSetupTest : public ::testing::Test {
     auto orders = line_.take_orders();
     return orders.empty() ? std::vector<std::uint8_t>{} : orders.back().bytes;
   }
-  Result reply(PlsModeReply reply = PlsModeReply::kDone) {
+  SetupResult reply(PlsModeReply reply = PlsModeReply::kDone) {
     exchange_.replied(reply);
     return setup_.go_on(0);
   }
   /// All tries without an answer.
-  Result stay_silent() {
+  SetupResult stay_silent() {
     while (exchange_.open()) exchange_.tick(exchange_.due_ns());
     return setup_.go_on(0);
   }
@@ -42,11 +42,11 @@ class PlsSetupTest : public ::testing::Test {
 TEST_F(PlsSetupTest, StopsInstallsChangesTheRateProvesItAsksAndStarts) {
   setup_.start(0);
   EXPECT_EQ(written(), pls_mode_command(PlsMode::kOnRequest));
-  EXPECT_EQ(reply(), Result::kGoesOn);
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);
   EXPECT_EQ(written(), pls_mode_command(PlsMode::kInstallation, "SICK_PLS"));
-  EXPECT_EQ(reply(), Result::kGoesOn);
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);
   EXPECT_EQ(written(), pls_baud_command(500'000).value());
-  EXPECT_EQ(reply(), Result::kGoesOn);
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);
   EXPECT_EQ(line_.settings().baud, 500'000U);
   EXPECT_EQ(setup_.reason(), "rests after the change to 500000 baud");
   EXPECT_EQ(setup_.due_ns(), settings_.settle_ns);
@@ -54,22 +54,22 @@ TEST_F(PlsSetupTest, StopsInstallsChangesTheRateProvesItAsksAndStarts) {
   setup_.tick(settings_.settle_ns);
   EXPECT_EQ(written(), pls_mode_command(PlsMode::kOnRequest));
   EXPECT_EQ(setup_.due_ns(), std::numeric_limits<std::int64_t>::max());
-  EXPECT_EQ(reply(), Result::kGoesOn);
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);
   EXPECT_EQ(line_.known()->baud, 500'000U);
   EXPECT_EQ(written(), sick_command(pls_command::kRequestStatus));
-  EXPECT_EQ(stay_silent(), Result::kGoesOn) << "not every sensor has a status";
+  EXPECT_EQ(stay_silent(), SetupResult::kGoesOn) << "not every sensor has a status";
   EXPECT_EQ(written(), sick_command(pls_command::kRequestErrors));
-  EXPECT_EQ(reply(), Result::kGoesOn);
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);
   EXPECT_EQ(written(), pls_mode_command(PlsMode::kStream));
-  EXPECT_EQ(reply(), Result::kDone);
+  EXPECT_EQ(reply(), SetupResult::kDone);
   EXPECT_EQ(setup_.fallback(), "");
   EXPECT_EQ(setup_.failures(), 0);
 }
 
 TEST_F(PlsSetupTest, RunsAtTheRateThatItHasWhenThePasswordIsRefused) {
   setup_.start(0);
-  EXPECT_EQ(reply(), Result::kGoesOn);
-  EXPECT_EQ(reply(PlsModeReply::kRefused), Result::kGoesOn);
+  EXPECT_EQ(reply(), SetupResult::kGoesOn);
+  EXPECT_EQ(reply(PlsModeReply::kRefused), SetupResult::kGoesOn);
   EXPECT_EQ(written(), sick_command(pls_command::kRequestStatus));
   EXPECT_EQ(setup_.fallback(), "runs at 9600 baud: the password is refused");
 }
@@ -78,10 +78,10 @@ TEST_F(PlsSetupTest, GivesTheRateUpWhenTheSensorDoesNotFollowTwice) {
   for (int i = 0; i < 2; ++i) {
     line_.set({9600, Parity::kEven});
     setup_.start_stopped(0);
-    EXPECT_EQ(reply(), Result::kGoesOn);  // installation mode
-    EXPECT_EQ(reply(), Result::kGoesOn);  // the rate
+    EXPECT_EQ(reply(), SetupResult::kGoesOn);  // installation mode
+    EXPECT_EQ(reply(), SetupResult::kGoesOn);  // the rate
     setup_.tick(settings_.settle_ns);
-    EXPECT_EQ(stay_silent(), Result::kNotFollowed);
+    EXPECT_EQ(stay_silent(), SetupResult::kNotFollowed);
   }
   line_.set({9600, Parity::kEven});
   setup_.start_stopped(0);
@@ -98,7 +98,7 @@ TEST_F(PlsSetupTest, AnLmsChangesItsRateWithoutAPassword) {
 
 TEST_F(PlsSetupTest, CountsItsFailuresUntilScansCome) {
   setup_.start(0);
-  EXPECT_EQ(stay_silent(), Result::kFailed);
+  EXPECT_EQ(stay_silent(), SetupResult::kFailed);
   EXPECT_EQ(setup_.reason(), "the sensor does not stop its stream");
   EXPECT_EQ(setup_.failures(), 1);
   setup_.reset();

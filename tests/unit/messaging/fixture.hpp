@@ -20,7 +20,7 @@
 namespace topogeo::messaging {
 
 /// Long enough for a busy machine; nothing waits so long when it works.
-constexpr std::chrono::seconds kPatience{20};
+constexpr std::chrono::seconds kPatience{60};
 
 inline std::string random_partition() {
   std::random_device device;

@@ -19,7 +19,7 @@ using planning::CellState;
 using planning::OccupancyGrid;
 
 constexpr double kToured_m = 0.25;
-constexpr std::int64_t kStep_ns = 200'000'000;
+constexpr std::int64_t kTourStep_ns = 200'000'000;
 
 // clang-format off
 const std::vector<std::string> kFloor = {
@@ -174,7 +174,7 @@ TEST(ExplorationTour, SeesAllThatCanBeReachedAndEnds) {
   int steps = 0;
   for (; steps < 4000 && !tour.done(); ++steps) {
     tour.set_map(robot.map());
-    goal = tour.step(robot.step(goal), steps * kStep_ns);
+    goal = tour.step(robot.step(goal), steps * kTourStep_ns);
     if (!goal) continue;
     EXPECT_GT(goal->goal_id, last_goal);
     last_goal = goal->goal_id;
@@ -182,7 +182,7 @@ TEST(ExplorationTour, SeesAllThatCanBeReachedAndEnds) {
   EXPECT_TRUE(tour.done()) << tour.message();
   EXPECT_EQ(robot.unknown(), 0U);
   EXPECT_GT(tour.targets(), 4U);
-  EXPECT_FALSE(tour.step(robot.step({}), steps * kStep_ns));
+  EXPECT_FALSE(tour.step(robot.step({}), steps * kTourStep_ns));
 }
 
 TEST(ExplorationTour, EndsWhenTheNavigatorGetsNowhere) {
@@ -192,7 +192,7 @@ TEST(ExplorationTour, EndsWhenTheNavigatorGetsNowhere) {
   std::optional<TourGoal> goal;
   for (int i = 0; i < 4000 && !tour.done(); ++i) {
     tour.set_map(robot.map());
-    goal = tour.step(robot.step(goal), i * kStep_ns);
+    goal = tour.step(robot.step(goal), i * kTourStep_ns);
   }
   EXPECT_TRUE(tour.done());
   EXPECT_GT(tour.given_up(), 0U);
@@ -206,7 +206,7 @@ TEST(ExplorationTour, WhereThereWasNoPathAtFirstItGoesLater) {
   std::optional<TourGoal> goal;
   for (int i = 0; i < 4000 && !tour.done(); ++i) {
     tour.set_map(robot.map());
-    goal = tour.step(robot.step(goal), i * kStep_ns);
+    goal = tour.step(robot.step(goal), i * kTourStep_ns);
   }
   EXPECT_TRUE(tour.done());
   EXPECT_EQ(robot.refusals, 0);
@@ -226,9 +226,9 @@ TEST(ExplorationTour, ATargetWithoutProgressIsGivenUp) {
   blocked.goal_id = goal->goal_id;
   blocked.rest_m = 3.0;
   blocked.T_map_robot = geometry::Pose2{0.25 * 5.5, 0.25 * 10.5, 0.0};
-  EXPECT_FALSE(tour.step(blocked, 4 * kStep_ns));
+  EXPECT_FALSE(tour.step(blocked, 4 * kTourStep_ns));
   EXPECT_EQ(tour.given_up(), 0U);
-  const auto other = tour.step(blocked, 60 * kStep_ns);
+  const auto other = tour.step(blocked, 60 * kTourStep_ns);
   EXPECT_EQ(tour.given_up(), 1U);
   ASSERT_TRUE(other);
   EXPECT_GT(other->goal_id, goal->goal_id);
@@ -239,9 +239,9 @@ TEST(ExplorationTour, WaitsForMapAndPose) {
   EXPECT_FALSE(tour.step({}, 0));
   TextRobot robot;
   tour.set_map(robot.map());
-  EXPECT_FALSE(tour.step({}, kStep_ns));  // it does not know where it is
+  EXPECT_FALSE(tour.step({}, kTourStep_ns));  // it does not know where it is
   EXPECT_FALSE(tour.done());
-  EXPECT_TRUE(tour.step(robot.step({}), 2 * kStep_ns));
+  EXPECT_TRUE(tour.step(robot.step({}), 2 * kTourStep_ns));
 }
 
 }  // namespace

@@ -24,9 +24,9 @@ using test::Floor;
 using test::view;
 
 // A drive over a floor, stop by stop, with scans half a metre apart between the stops.
-class Drive {
+class LinkedDrive {
  public:
-  explicit Drive(Floor floor) : floor_(std::move(floor)) {}
+  explicit LinkedDrive(Floor floor) : floor_(std::move(floor)) {}
 
   /// Drives straight to a stop and makes its map; one with nothing in it when the laser is covered.
   void stop_at(const Pose2& pose, bool covered = false) {
@@ -101,8 +101,8 @@ void expect_linked_well(const GlobalMap& map) {
 }
 
 // The laser sees 8 m ahead: with the cover on from x = 4 to 21 nothing between 11 and 22 is seen.
-Drive covered_in_the_middle() {
-  Drive drive(corridor(30));
+LinkedDrive covered_in_the_middle() {
+  LinkedDrive drive(corridor(30));
   drive.along_x(0, 3);
   drive.along_x(4, 21, true);
   drive.along_x(22, 29);
@@ -128,7 +128,7 @@ TEST(VirtualLink, JoinsWhatACoveredLaserLeftApart) {
 
 TEST(VirtualLink, ClearanceIsToTheNearestPointThatEitherStopSaw) {
   // Scan points without branches: the walls are known, yet nothing joins the parts.
-  Drive drive(corridor(30));
+  LinkedDrive drive(corridor(30));
   drive.along_x(0, 3);
   Floor bare = corridor(30);
   bare.branches.clear();
@@ -153,7 +153,7 @@ TEST(VirtualLink, FollowsTheDrivenWayAndMeetsTheMiddleOfABranch) {
   Floor floor = corridor(20);
   floor.walls.insert(floor.walls.end(), {{{20, -11}, {30, -11}}, {{20, -9}, {30, -9}}});
   floor.branches.push_back({{20, -10}, {30, -10}, 1.0});
-  Drive drive(floor);
+  LinkedDrive drive(floor);
   drive.along_x(0, 19);
   drive.along_x(19, 10);
   for (int y = -1; y >= -10; --y) {
@@ -194,11 +194,11 @@ TEST(VirtualLink, IsTakenByARouteThoughItsClearanceIsUnknown) {
 }
 
 TEST(VirtualLink, IsNotMadeWhereLocalMapsOverlap) {
-  Drive whole(corridor(30));
+  LinkedDrive whole(corridor(30));
   whole.along_x(0, 29);
   EXPECT_TRUE(links(whole.map()).empty());
   // The view from 16 reaches to where the view from 22 begins.
-  Drive short_cover(corridor(30));
+  LinkedDrive short_cover(corridor(30));
   short_cover.along_x(0, 16);
   short_cover.along_x(17, 21, true);
   short_cover.along_x(22, 29);
@@ -208,7 +208,7 @@ TEST(VirtualLink, IsNotMadeWhereLocalMapsOverlap) {
 }
 
 TEST(VirtualLink, GoesWhenLaterStopsSeeWhatJoinsTheParts) {
-  Drive drive = covered_in_the_middle();
+  LinkedDrive drive = covered_in_the_middle();
   ASSERT_EQ(links(drive.map()).size(), 1U);
   drive.along_x(28, 2);
   const GlobalMap map = drive.map();
@@ -217,7 +217,7 @@ TEST(VirtualLink, GoesWhenLaterStopsSeeWhatJoinsTheParts) {
 }
 
 TEST(VirtualLink, IsMadeOnceHoweverOftenTheWayIsDriven) {
-  Drive drive = covered_in_the_middle();
+  LinkedDrive drive = covered_in_the_middle();
   const GlobalMap once = drive.map();
   drive.along_x(28, 22);
   drive.along_x(21, 4, true);
@@ -231,7 +231,7 @@ TEST(VirtualLink, IsMadeOnceHoweverOftenTheWayIsDriven) {
 
 TEST(VirtualLink, NeedsStopsThatFollowEachOther) {
   // Somebody carried the robot: the ids of the maps leave one out.
-  Drive drive(corridor(30));
+  LinkedDrive drive(corridor(30));
   drive.along_x(0, 3);
   drive.along_x(22, 29);
   ASSERT_EQ(links(drive.map()).size(), 1U);
@@ -241,7 +241,7 @@ TEST(VirtualLink, NeedsStopsThatFollowEachOther) {
 
 TEST(VirtualLink, StaysShortEnoughForAMessage) {
   // 2 km unseen.
-  Drive drive(corridor(2030));
+  LinkedDrive drive(corridor(2030));
   drive.along_x(0, 3);
   drive.along_x(4, 2009, true);
   drive.along_x(2010, 2020);
@@ -252,7 +252,7 @@ TEST(VirtualLink, StaysShortEnoughForAMessage) {
 }
 
 TEST(VirtualLink, IsTheSameBuiltStepByStepAndAnew) {
-  const Drive drive = covered_in_the_middle();
+  const LinkedDrive drive = covered_in_the_middle();
   GlobalMapBuilder one_by_one;
   for (std::size_t i = 0; i < drive.maps_.size(); ++i) {
     one_by_one.integrate(drive.maps_[i], drive.stops_[i].T_map_robot);

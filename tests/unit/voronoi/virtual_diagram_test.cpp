@@ -23,33 +23,33 @@ using test_world::World;
 //   -----------+
 const World kDeadEnd{{-6, 0.8, 4, 0.8}, {4, 0.8, 4, -0.8}, {4, -0.8, -6, -0.8}};
 
-struct Seen {
+struct SeenDiagram {
   LocalVoronoiDiagram diagram;
   double line_y_m = 0.0;  ///< of the virtual group, which comes last; laser frame
 };
 
 /// What the robot sees `y_m` beside the axis, turned by `heading_rad`.
-Seen seen_from(double y_m, double heading_rad) {
+SeenDiagram seen_from(double y_m, double heading_rad) {
   LocalVoronoi voronoi{VoronoiConfig{}};
-  Seen seen{voronoi.compute(scan_of(kDeadEnd, {0.0, y_m, heading_rad}))};
-  EXPECT_TRUE(seen.diagram.is_virtual);
-  EXPECT_EQ(seen.diagram.groups.groups.size(), 2U);
-  EXPECT_FALSE(seen.diagram.branches.empty());
-  const PointRun& line = seen.diagram.groups.groups.back();
-  seen.line_y_m = seen.diagram.groups.points[line.begin].position_m.y();
-  return seen;
+  SeenDiagram seen_diagram{voronoi.compute(scan_of(kDeadEnd, {0.0, y_m, heading_rad}))};
+  EXPECT_TRUE(seen_diagram.diagram.is_virtual);
+  EXPECT_EQ(seen_diagram.diagram.groups.groups.size(), 2U);
+  EXPECT_FALSE(seen_diagram.diagram.branches.empty());
+  const PointRun& line = seen_diagram.diagram.groups.groups.back();
+  seen_diagram.line_y_m = seen_diagram.diagram.groups.points[line.begin].position_m.y();
+  return seen_diagram;
 }
 
 TEST(VirtualDiagram, TheLineStopsAtReadings) {
   for (const double y_m : {-0.3, -0.1, 0.05, 0.3}) {
     for (const double heading_rad : {-0.3, -0.1, 0.0, 0.1, 0.3}) {
       SCOPED_TRACE(std::to_string(y_m) + " m, " + std::to_string(heading_rad) + " rad");
-      const Seen seen = seen_from(y_m, heading_rad);
-      const PointRun line = seen.diagram.groups.groups.back();
+      const SeenDiagram seen_diagram = seen_from(y_m, heading_rad);
+      const PointRun line = seen_diagram.diagram.groups.groups.back();
       ASSERT_GT(line.size(), 4U);
       for (std::uint32_t i = line.begin; i < line.end; ++i) {
-        const Eigen::Vector2d& point_m = seen.diagram.groups.points[i].position_m;
-        EXPECT_DOUBLE_EQ(point_m.y(), seen.line_y_m);
+        const Eigen::Vector2d& point_m = seen_diagram.diagram.groups.points[i].position_m;
+        EXPECT_DOUBLE_EQ(point_m.y(), seen_diagram.line_y_m);
         // A point belongs to the nearest beam, a quarter of a degree off at most.
         const Eigen::Vector2d in_world_m = Pose2{0.0, y_m, heading_rad} * point_m;
         EXPECT_LT(in_world_m.x(), 4.02);
@@ -77,16 +77,17 @@ TEST(VirtualDiagram, NoBranchIsBeyondTheLineOrTooNarrowForTheRobot) {
   for (const double y_m : {-0.3, -0.1, 0.0, 0.05, 0.3}) {
     for (const double heading_rad : {-0.3, -0.1, 0.0, 0.1, 0.3}) {
       SCOPED_TRACE(std::to_string(y_m) + " m, " + std::to_string(heading_rad) + " rad");
-      const Seen seen = seen_from(y_m, heading_rad);
-      for (const DiagramBranch& branch : seen.diagram.branches) {
+      const SeenDiagram seen_diagram = seen_from(y_m, heading_rad);
+      for (const DiagramBranch& branch : seen_diagram.diagram.branches) {
         ASSERT_GE(branch.points.size(), 2U);
-        for (const DiagramPoint& point : seen.diagram.points_of(branch)) {
-          EXPECT_LT(point.position_m.y() * (seen.line_y_m < 0.0 ? -1.0 : 1.0),
-                    std::abs(seen.line_y_m));
+        for (const DiagramPoint& point : seen_diagram.diagram.points_of(branch)) {
+          EXPECT_LT(point.position_m.y() * (seen_diagram.line_y_m < 0.0 ? -1.0 : 1.0),
+                    std::abs(seen_diagram.line_y_m));
           EXPECT_GE(point.clearance_m, 0.2);
         }
       }
-      EXPECT_EQ(seen.diagram.branches.back().points.end, seen.diagram.points.size());
+      EXPECT_EQ(seen_diagram.diagram.branches.back().points.end,
+                seen_diagram.diagram.points.size());
     }
   }
 }

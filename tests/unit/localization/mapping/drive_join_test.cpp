@@ -9,7 +9,7 @@ namespace topogeo::localization {
 namespace {
 
 using geometry::Pose2;
-using Drive = std::vector<std::shared_ptr<const topomap::LocalMap>>;
+using DriveMaps = std::vector<std::shared_ptr<const topomap::LocalMap>>;
 
 Eigen::Matrix3d known_to(double sigma_m) {
   return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, 1e-6).asDiagonal();
@@ -26,8 +26,8 @@ PoseGraph map_along_x() {
 }
 
 // A drive along y in odometry that starts at (5, 5) and looks along y.
-Drive drive_along_y(std::uint32_t stops) {
-  Drive drive;
+DriveMaps drive_along_y(std::uint32_t stops) {
+  DriveMaps drive;
   for (std::uint32_t i = 0; i < stops; ++i) {
     auto map = std::make_shared<topomap::LocalMap>();
     map->T_odom_robot = Pose2{5.0, 5.0, 1.5707963267948966} * Pose2{1.0 * i, 0.0, 0.0};

@@ -10,7 +10,7 @@ namespace topogeo::localization {
 namespace {
 
 using geometry::Pose2;
-using Verdict = LoopClosing::Verdict;
+using LoopVerdict = LoopClosing::Verdict;
 
 Eigen::Matrix3d spread(double sigma_m, double sigma_rad) {
   return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
@@ -35,9 +35,9 @@ PoseGraphEdge loop(std::uint32_t from, std::uint32_t to, double off_m) {
 TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 11, 0.05), 0.9), Verdict::kAgrees);
+  EXPECT_EQ(loops.consider(graph, loop(0, 11, 0.05), 0.9), LoopVerdict::kAgrees);
   EXPECT_TRUE(loops.waiting().empty());  // the caller adds it
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, 0.3), 0.8), Verdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, 0.3), 0.8), LoopVerdict::kMoves);
   ASSERT_EQ(loops.waiting().size(), 1U);
   EXPECT_EQ(loops.waiting()[0].from, 1U);
   ASSERT_EQ(loops.decisions().size(), 2U);
@@ -54,13 +54,13 @@ TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
 TEST(LoopClosing, AFarCorrectionWaitsForAnotherStopThatAgrees) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 10, 1.0), 0.9), Verdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(0, 10, 1.0), 0.9), LoopVerdict::kPending);
   EXPECT_TRUE(loops.waiting().empty());
   EXPECT_EQ(loops.unconfirmed(), 1U);
   // The same stop again proves nothing, nor does another one that moves the robot elsewhere.
-  EXPECT_EQ(loops.consider(graph, loop(1, 10, 1.0), 0.9), Verdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, -1.0), 0.9), Verdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(2, 11, 1.1), 0.9), Verdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, loop(1, 10, 1.0), 0.9), LoopVerdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, -1.0), 0.9), LoopVerdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(2, 11, 1.1), 0.9), LoopVerdict::kMoves);
   ASSERT_EQ(loops.waiting().size(), 3U);  // both loops of stop 10 with it
   EXPECT_EQ(loops.waiting()[0].from, 0U);
   EXPECT_EQ(loops.waiting()[1].from, 1U);
@@ -73,26 +73,26 @@ TEST(LoopClosing, AWaitingLoopConfirmsAFarOne) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
   loops.accept(graph, loop(0, 10, 1.0), 0.7);
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, 1.0), 0.9), Verdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, 1.0), 0.9), LoopVerdict::kMoves);
 }
 
 TEST(LoopClosing, APendingLoopIsDroppedInTheEnd) {
   const PoseGraph graph = straight(40);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 20, 1.0), 0.9), Verdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(0, 33, 1.0), 0.9), Verdict::kPending);  // 13 stops later
-  EXPECT_EQ(loops.consider(graph, loop(0, 34, 1.0), 0.9), Verdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, loop(0, 20, 1.0), 0.9), LoopVerdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(0, 33, 1.0), 0.9), LoopVerdict::kPending);  // 13 stops later
+  EXPECT_EQ(loops.consider(graph, loop(0, 34, 1.0), 0.9), LoopVerdict::kMoves);
   EXPECT_EQ(loops.waiting().size(), 2U);
   LoopClosing dropped({});
-  EXPECT_EQ(dropped.consider(graph, loop(0, 20, 1.0), 0.9), Verdict::kPending);
+  EXPECT_EQ(dropped.consider(graph, loop(0, 20, 1.0), 0.9), LoopVerdict::kPending);
   dropped.drop_pending();
-  EXPECT_EQ(dropped.consider(graph, loop(0, 21, 1.0), 0.9), Verdict::kPending);
+  EXPECT_EQ(dropped.consider(graph, loop(0, 21, 1.0), 0.9), LoopVerdict::kPending);
 }
 
 TEST(LoopClosing, StepsThatCannotBeBentRefuseALoop) {
   const PoseGraph graph = straight(5);  // at stop 4 odometry is known to 0.4 m
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 4, 6.0), 0.9), Verdict::kRefused);
+  EXPECT_EQ(loops.consider(graph, loop(0, 4, 6.0), 0.9), LoopVerdict::kRefused);
   ASSERT_EQ(loops.decisions().size(), 1U);
   EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kNoClosing);
   EXPECT_TRUE(loops.waiting().empty());

@@ -14,7 +14,7 @@ namespace {
 using MapPointer = std::shared_ptr<const topomap::LocalMap>;
 
 // Keeps what it is given and answers with the number of the task.
-class RecordingPool : public MatchPool {
+class RequestedPool : public MatchPool {
  public:
   void add_map(MapPointer map) override { maps.push_back(std::move(map)); }
   std::vector<MatchResult> match(std::span<const MatchTask> tasks) override {
@@ -44,7 +44,7 @@ const UncertainPose kPredicted{{0.5, 0.1, 0.2}, Eigen::Vector3d(0.04, 0.01, 0.01
 TEST(MatchRequests, NamesMapsAndSeedsByRobotIdsAndNumber) {
   LocalizerConfig config;
   config.seed = 17;
-  RecordingPool pool;
+  RequestedPool pool;
   MatchRequests requests(config, pool);
   const MapPointer reference = map_of(8, "one");
   const MapPointer query = map_of(3, "two");
@@ -66,7 +66,7 @@ TEST(MatchRequests, NamesMapsAndSeedsByRobotIdsAndNumber) {
 }
 
 TEST(MatchRequests, CountsWhatComesBack) {
-  RecordingPool pool;
+  RequestedPool pool;
   MatchRequests requests({}, pool);
   requests.add_map(map_of(0, "robot"));
   requests.add_map(map_of(1, "robot"));
@@ -82,14 +82,14 @@ TEST(MatchRequests, CountsWhatComesBack) {
 }
 
 TEST(MatchRequests, NoTasksAskNothingOfThePool) {
-  RecordingPool pool;
+  RequestedPool pool;
   MatchRequests requests({}, pool);
   EXPECT_TRUE(requests.run({}).empty());
   EXPECT_EQ(pool.batches, 0);
 }
 
 TEST(MatchRequests, RefusesAMapThatWasNotAdded) {
-  RecordingPool pool;
+  RequestedPool pool;
   MatchRequests requests({}, pool);
   requests.add_map(map_of(0, "robot"));
   EXPECT_THROW(requests.make(0, 1, kPredicted), std::out_of_range);

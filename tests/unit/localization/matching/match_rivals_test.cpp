@@ -15,8 +15,8 @@ namespace {
 
 using geometry::Pose2;
 
-topomap::LocalMap seen_from(const world::World& world, const Pose2& T_world_robot,
-                            std::uint32_t id) {
+topomap::LocalMap map_seen_from(const world::World& world, const Pose2& T_world_robot,
+                                std::uint32_t id) {
   topomap::LocalMap map;
   map.id = id;
   map.points = test::exact_points(world, T_world_robot);
@@ -45,8 +45,8 @@ struct Matched {
 };
 
 Matched match(const world::World& world, const Pose2& T_predicted, double sigma_m) {
-  const topomap::LocalMap reference = seen_from(world, {}, 0);
-  const topomap::LocalMap query = seen_from(world, {0.4, 0.1, 0.1}, 1);
+  const topomap::LocalMap reference = map_seen_from(world, {}, 0);
+  const topomap::LocalMap query = map_seen_from(world, {0.4, 0.1, 0.1}, 1);
   Matcher matcher;
   matcher.add_map(reference);
   matcher.add_map(query);

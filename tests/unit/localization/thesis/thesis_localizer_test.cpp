@@ -19,7 +19,7 @@ using geometry::Pose2;
 using test::DrivenMaps;
 using test::round_trip;
 
-struct Outcome {
+struct ThesisOutcome {
   topomap::Trajectory trajectory;
   std::vector<topomap::LoopClosure> closures;
   std::vector<LoopDecision> decisions;
@@ -27,10 +27,10 @@ struct Outcome {
   int corrections = 0;  // steps that moved earlier poses
 };
 
-Outcome localize(const test::Maps& maps, const LocalizerConfig& config = {}) {
+ThesisOutcome localize_by_thesis(const test::Maps& maps, const LocalizerConfig& config = {}) {
   InProcessPool pool;
   ThesisLocalizer localizer(config, pool);
-  Outcome outcome;
+  ThesisOutcome outcome;
   for (const auto& map : maps) outcome.corrections += localizer.add(map) ? 1 : 0;
   localizer.finish();
   outcome.trajectory = localizer.trajectory();
@@ -40,14 +40,14 @@ Outcome localize(const test::Maps& maps, const LocalizerConfig& config = {}) {
   return outcome;
 }
 
-double end_error_m(const Outcome& outcome, const DrivenMaps& driven) {
+double end_error_m(const ThesisOutcome& outcome, const DrivenMaps& driven) {
   const Pose2 found = outcome.trajectory.stops.back().T_map_robot;
   const Pose2 truth = geometry::between(driven.T_world_robot.front(), driven.T_world_robot.back());
   return (found.position_m() - truth.position_m()).norm();
 }
 
 TEST(ThesisLocalizer, ClosesTheCycleOfTheFloor) {
-  const Outcome outcome = localize(round_trip().maps);
+  const ThesisOutcome outcome = localize_by_thesis(round_trip().maps);
   ASSERT_EQ(outcome.trajectory.stops.size(), round_trip().maps.size());
   EXPECT_EQ(outcome.trajectory.stops.front().T_map_robot, Pose2{});
   EXPECT_GT(outcome.corrections, 0);
@@ -59,7 +59,7 @@ TEST(ThesisLocalizer, ClosesTheCycleOfTheFloor) {
   }
   LocalizerConfig open;
   open.revisit_matches = 0;
-  const Outcome forward = localize(round_trip().maps, open);
+  const ThesisOutcome forward = localize_by_thesis(round_trip().maps, open);
   EXPECT_TRUE(forward.closures.empty());
   EXPECT_EQ(forward.corrections, 0);
   EXPECT_LT(end_error_m(outcome, round_trip()), 0.3);
@@ -67,7 +67,7 @@ TEST(ThesisLocalizer, ClosesTheCycleOfTheFloor) {
 }
 
 TEST(ThesisLocalizer, ExplainsEveryLoopThatItConsidered) {
-  const Outcome outcome = localize(round_trip().maps);
+  const ThesisOutcome outcome = localize_by_thesis(round_trip().maps);
   std::size_t accepted = 0;
   for (const LoopDecision& decision : outcome.decisions) {
     EXPECT_LT(decision.earlier_id, decision.later_id);
@@ -81,8 +81,8 @@ TEST(ThesisLocalizer, ExplainsEveryLoopThatItConsidered) {
 
 TEST(ThesisLocalizer, GivesTheSameBitsAgain) {
   const test::Maps maps(round_trip().maps.begin(), round_trip().maps.begin() + 40);
-  const Outcome a = localize(maps);
-  const Outcome b = localize(maps);
+  const ThesisOutcome a = localize_by_thesis(maps);
+  const ThesisOutcome b = localize_by_thesis(maps);
   EXPECT_EQ(a.trajectory.version, b.trajectory.version);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     EXPECT_EQ(a.trajectory.stops[i].T_map_robot, b.trajectory.stops[i].T_map_robot);
@@ -100,7 +100,7 @@ TEST(ThesisLocalizer, GoesByOdometryWhereNothingMatches) {
     map->T_odom_robot = {1.0 * id, 0.5 * id, 0.1 * id};
     maps.push_back(map);
   }
-  const Outcome outcome = localize(maps);
+  const ThesisOutcome outcome = localize_by_thesis(maps);
   const Eigen::Vector3d off =
       geometry::difference(outcome.trajectory.stops[2].T_map_robot, maps[2]->T_odom_robot);
   EXPECT_LT(off.norm(), 1e-12);

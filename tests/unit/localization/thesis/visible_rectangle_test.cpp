@@ -15,7 +15,7 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn_rad = std::numbers::pi;
 
 void expect_view(const VisibleRectangle& view, double low_x, double low_y, double high_x,
                  double high_y) {
@@ -56,19 +56,21 @@ TEST(VisibleRectangle, OfAnEmptyMapIsTheRobot) {
 TEST(VisibleRectangle, SeenFromElsewhereIsMovedAndTurned) {
   // 4 m forward and 1 m to both sides, a robot that looks left at (10, 5).
   const VisibleRectangle view{{0.0, -1.0}, {4.0, 1.0}};
-  expect_view(seen_from(view, {10.0, 5.0, kPi / 2.0}, {0.0, 0.0, 0.0}), 9.0, 5.0, 11.0, 9.0);
-  expect_view(seen_from(view, {10.0, 5.0, kPi / 2.0}, {0.5, 0.25, 0.0}), 8.5, 4.75, 11.5, 9.25);
+  expect_view(seen_from(view, {10.0, 5.0, kHalfTurn_rad / 2.0}, {0.0, 0.0, 0.0}), 9.0, 5.0, 11.0,
+              9.0);
+  expect_view(seen_from(view, {10.0, 5.0, kHalfTurn_rad / 2.0}, {0.5, 0.25, 0.0}), 8.5, 4.75, 11.5,
+              9.25);
 }
 
 TEST(VisibleRectangle, SwingsOutBetweenTheExtremeHeadings) {
   // The corners of the rectangle at 3, 4 m lie 5 m away; turned by up to half a turn to both sides
   // each of them comes to lie ahead.
   const VisibleRectangle view{{0.0, -4.0}, {3.0, 4.0}};
-  expect_view(seen_from(view, {}, {0.0, 0.0, kPi}), -5.0, -5.0, 5.0, 5.0);
+  expect_view(seen_from(view, {}, {0.0, 0.0, kHalfTurn_rad}), -5.0, -5.0, 5.0, 5.0);
   expect_view(seen_from(view, {}, {0.0, 0.0, 100.0}), -5.0, -5.0, 5.0, 5.0);
   // By 60 degrees: the front corners, 53 degrees off, pass straight ahead; (0, 4) and (0, -4) turn
   // backward by 4 sin 60.
-  const VisibleRectangle turned = seen_from(view, {}, {0.0, 0.0, kPi / 3.0});
+  const VisibleRectangle turned = seen_from(view, {}, {0.0, 0.0, kHalfTurn_rad / 3.0});
   EXPECT_NEAR(turned.high_m.x(), 5.0, 1e-12);
   EXPECT_NEAR(turned.low_m.x(), -4.0 * std::sqrt(0.75), 1e-12);
 }
@@ -81,7 +83,7 @@ TEST(VisibleRectangle, EnvelopeContainsEveryPoseOfTheSearchSpace) {
     view.low_m = {random.uniform(-3.0, 1.0), random.uniform(-8.0, 0.0)};
     view.high_m = view.low_m + Eigen::Vector2d(random.uniform(0.0, 8.0), random.uniform(0.0, 9.0));
     const Pose2 T_frame_robot{random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0),
-                              random.uniform(-kPi, kPi)};
+                              random.uniform(-kHalfTurn_rad, kHalfTurn_rad)};
     const Eigen::Vector3d half(random.uniform(0.0, 3.0), random.uniform(0.0, 3.0),
                                random.uniform(0.0, 3.5));
     const VisibleRectangle seen = seen_from(view, T_frame_robot, half);

@@ -11,6 +11,7 @@ class TopicDataType;
 }
 
 namespace topogeo::msg {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration
 #define TOPOGEO_TOPIC(Type, name, role, replay_role, addressee) class Type;
 #include "topogeo/messaging/topics.def"
 }  // namespace topogeo::msg
