@@ -42,7 +42,7 @@ CommandAnswer carry_out(const service::LocalizationCommand& command, const Comma
   switch (command.kind) {
     case msg::kCommandSetPose:
       if (maps) return {false, "it makes a map, in which its pose is not to be chosen"};
-      slam.follower()->set_pose(T_map_stop(command, now), command.covariance);
+      slam.follower()->set_pose(stop_pose(command, now), command.covariance);
       return {true, "goes on from there"};
     case msg::kCommandSearch:
       if (maps) return {false, "it makes a map: there is no finished one to search"};
@@ -56,7 +56,7 @@ CommandAnswer carry_out(const service::LocalizationCommand& command, const Comma
   return {false, "unknown command"};
 }
 
-geometry::Pose2 T_map_stop(const service::LocalizationCommand& command, const CommandMoment& now) {
+geometry::Pose2 stop_pose(const service::LocalizationCommand& command, const CommandMoment& now) {
   return command.T_map_robot * geometry::inverse(now.T_stop_robot);
 }
 

@@ -23,11 +23,11 @@ struct CommandMoment {
 };
 
 /// Carries out a command between two steps. A pose that a command sets is that of now; the session
-/// takes it over at the last stop: see T_map_stop().
+/// takes it over at the last stop: see stop_pose().
 CommandAnswer carry_out(const service::LocalizationCommand& command, const CommandMoment& now,
                         localization::SlamSession& slam);
 
 /// Where the last stop is by the pose of a command.
-geometry::Pose2 T_map_stop(const service::LocalizationCommand& command, const CommandMoment& now);
+geometry::Pose2 stop_pose(const service::LocalizationCommand& command, const CommandMoment& now);
 
 }  // namespace topogeo::localizer

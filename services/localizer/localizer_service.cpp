@@ -265,7 +265,7 @@ CommandAnswer LocalizerService::carry_out(const service::LocalizationCommand& co
   }
   CommandAnswer answer = localizer::carry_out(command, now, slam_);
   if (answer.accepted && command.kind == msg::kCommandSetPose && last_map_) {
-    last_stop_.T_map_robot = T_map_stop(command, now);
+    last_stop_.T_map_robot = stop_pose(command, now);
     last_stop_.covariance = command.covariance;
   }
   return answer;

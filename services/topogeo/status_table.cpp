@@ -216,7 +216,9 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
     if (why.empty() || line.size() + 2 + why.size() <= columns) {
       text += trimmed(line + "  " + why) + "\n";
     } else {
-      text += trimmed(line) + "\n" + wrapped(why, columns);
+      text += trimmed(line);
+      text += '\n';
+      text += wrapped(why, columns);
     }
   }
   return text + sums(now);

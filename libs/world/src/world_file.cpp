@@ -25,7 +25,7 @@ constexpr double kThickestWall_m = 1.0;
 constexpr double kSmallest_m = 0.01;
 constexpr double kLargestColumn_m = 100.0;
 /// A sprinter's speed.
-constexpr double kFastestPerson_mps = 10.0;
+constexpr double kFastestPerson_m_s = 10.0;
 constexpr double kWidestPerson_m = 2.0;
 /// Over eleven days, longer than any drive.
 constexpr double kLatestStart_s = 1e6;
@@ -157,7 +157,7 @@ class WorldParser {
     }
     if (person.path_m.empty()) node.at("path").fail("a point or more", "none");
     person.speed_m_per_s =
-        number_or(node.at("speed"), 0.0, kFastestPerson_mps, "m/s", person.speed_m_per_s);
+        number_or(node.at("speed"), 0.0, kFastestPerson_m_s, "m/s", person.speed_m_per_s);
     person.radius_m =
         number_or(node.at("radius"), kSmallest_m, kWidestPerson_m, "m", person.radius_m);
     person.start_s = number_or(node.at("start"), 0.0, kLatestStart_s, "s", person.start_s);

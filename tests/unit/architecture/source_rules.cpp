@@ -86,10 +86,15 @@ std::vector<std::string> against_order(const std::vector<Include>& includes,
     if (by.empty() || of.empty() || (by == "messaging" && of == "msg")) continue;
     const auto user = std::ranges::find(libraries, by);
     if (user == libraries.end()) {
-      found.push_back(place(include) + ", but '" + by + "' is not in libs/CMakeLists.txt");
+      found.push_back(
+          place(include).append(", but '").append(by).append("' is not in libs/CMakeLists.txt"));
     } else if (std::find(libraries.begin(), user, of) == user && of != by) {
-      found.push_back(place(include) + ", but '" + of + "' does not stand before '" + by +
-                      "' in libs/CMakeLists.txt");
+      found.push_back(place(include)
+                          .append(", but '")
+                          .append(of)
+                          .append("' does not stand before '")
+                          .append(by)
+                          .append("' in libs/CMakeLists.txt"));
     }
   }
   return found;

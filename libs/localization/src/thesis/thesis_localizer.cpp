@@ -78,6 +78,7 @@ std::vector<ThesisNeighbour> ThesisLocalizer::forward_neighbours() {
   }
   std::vector<ThesisNeighbour> with = map_.neighbours(stop, T_map_predicted, relative);
   std::vector<std::uint32_t> overlaps;
+  overlaps.reserve(with.size());
   for (const ThesisNeighbour& neighbour : with) overlaps.push_back(neighbour.id);
   const std::vector<std::uint32_t> fresh =
       newly_seen(overlaps, map_.stop(stop - 1).overlaps, stop - 1);

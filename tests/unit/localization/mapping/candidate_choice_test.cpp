@@ -13,6 +13,7 @@ using geometry::Pose2;
 
 std::vector<std::uint32_t> ids(const std::vector<MatchCandidate>& candidates) {
   std::vector<std::uint32_t> found;
+  found.reserve(candidates.size());
   for (const MatchCandidate& candidate : candidates) found.push_back(candidate.id);
   return found;
 }

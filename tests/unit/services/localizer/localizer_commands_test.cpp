@@ -73,7 +73,7 @@ TEST_F(LocalizerCommands, APoseIsThatOfNow) {
   service::LocalizationCommand command = command_of(msg::kCommandSetPose);
   command.T_map_robot = {5.0, 1.0, 0.0};
   now_.T_stop_robot = {2.0, 0.0, 0.0};  // driven since the last stop
-  const Pose2 stop = T_map_stop(command, now_);
+  const Pose2 stop = stop_pose(command, now_);
   EXPECT_NEAR(stop.x_m, 3.0, 1e-12);
   EXPECT_NEAR(stop.y_m, 1.0, 1e-12);
 }

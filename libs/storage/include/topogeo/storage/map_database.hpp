@@ -16,7 +16,7 @@
 
 #include "topogeo/storage/map_document.hpp"
 
-namespace SQLite {
+namespace SQLite {  // NOLINT(readability-identifier-naming): not ours
 class Database;
 }
 
