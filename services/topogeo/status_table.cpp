@@ -214,7 +214,8 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
     const std::string& line = lines[i + 1];
     const std::string why = reason(*rows[i], now);
     if (why.empty() || line.size() + 2 + why.size() <= columns) {
-      text += trimmed(line + "  " + why);
+      std::string whole = line;
+      text += trimmed(whole.append("  ").append(why));
       text += '\n';
     } else {
       text += trimmed(line);
