@@ -94,9 +94,13 @@ devices::LineSettings PseudoTerminal::host(devices::Parity parity) const {
 }
 
 std::vector<std::uint8_t> PseudoTerminal::receive() const {
-  std::vector<std::uint8_t> bytes(4096);
-  const ssize_t got = ::read(device_end_.get(), bytes.data(), bytes.size());
-  bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  // One read may end at the bytes of an earlier write; only one that finds none makes Linux hand
+  // over what is still on its way.
+  std::vector<std::uint8_t> bytes;
+  std::array<std::uint8_t, 4096> part{};
+  for (ssize_t got = 0; (got = ::read(device_end_.get(), part.data(), part.size())) > 0;) {
+    bytes.insert(bytes.end(), part.begin(), part.begin() + got);
+  }
   return bytes;
 }
 

@@ -33,7 +33,7 @@ class PseudoTerminal {
   /// The rate that the program at the other end has set. A pseudo-terminal of Linux forgets the
   /// parity, so that it is taken for `parity`.
   [[nodiscard]] devices::LineSettings host(devices::Parity parity) const;
-  /// What the program has written since; empty when there is nothing.
+  /// All that the program has written since; empty when there is nothing.
   [[nodiscard]] std::vector<std::uint8_t> receive() const;
   /// What does not fit, because no program reads, is lost as on a line. Returns how much that is.
   std::size_t send(std::span<const std::uint8_t> bytes) const;

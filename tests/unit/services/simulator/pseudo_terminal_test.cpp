@@ -28,6 +28,16 @@ TEST(PseudoTerminal, CarriesBytesAsTheyAreBothWays) {
   EXPECT_EQ(host.read(), all);
 }
 
+TEST(PseudoTerminal, HandsOverAllThatWasWritten) {
+  PseudoTerminal terminal(link_name("writes"));
+  terminal.plug();
+  const HostPort host(terminal.link());
+  constexpr std::size_t kWrites = 6;
+  const std::string part(1500, 'x');  // together more than a terminal hands over at once
+  for (std::size_t i = 0; i < kWrites; ++i) host.write(part);
+  EXPECT_EQ(terminal.receive().size(), kWrites * part.size());
+}
+
 TEST(PseudoTerminal, ShowsTheRateThatTheHostHasSet) {
   PseudoTerminal terminal(link_name("rate"));
   terminal.plug();
