@@ -129,7 +129,7 @@ void LocalizerService::send_pose() {
   service::LivePose live;
   live.stamp_ns = newest_.stamp_ns;
   live.sequence = newest_.sequence;
-  live.belief = slam_->belief();
+  live.status = slam_->status();
   live.mode = slam_.mapping() ? msg::kModeMapping : msg::kModeLocalization;
   live.T_map_robot = pose.T_a_b;
   live.covariance = pose.covariance;

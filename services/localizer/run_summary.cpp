@@ -24,7 +24,7 @@ void add_matches(msg::RunSummary& summary, const localization::SlamCounts& count
 void add_localization(msg::RunSummary& summary, const localization::MapLocalizer& localizer) {
   std::array<std::uint64_t, localization::kLocalizationStates> stops{};
   for (const localization::LocalizedStop& stop : localizer.stops()) {
-    ++stops.at(static_cast<std::size_t>(stop.belief.state));
+    ++stops.at(static_cast<std::size_t>(stop.status.state));
   }
   for (std::size_t i = 0; i < stops.size(); ++i) {
     msg::StateCount count;

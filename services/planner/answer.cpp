@@ -49,9 +49,9 @@ msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
     return no_route(msg::kRouteNoMap, "the map has no zone: nowhere on it is room for the robot");
   }
   if (!pose) return no_route(msg::kRouteNoPose, "the robot has no pose yet");
-  if (!localization::located(pose->belief.state)) {
+  if (!localization::located(pose->status.state)) {
     return no_route(msg::kRouteNoPose,
-                    std::string("the robot's pose is not known: ") + to_string(pose->belief.state));
+                    std::string("the robot's pose is not known: ") + to_string(pose->status.state));
   }
   const planning::HybridRoute route =
       planning::HybridPlanner(*map, config)

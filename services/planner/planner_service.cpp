@@ -37,9 +37,9 @@ PlannerService::PlannerService(service::Service& service)
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
-  const bool was_known = pose_ && localization::located(pose_->belief.state);
+  const bool was_known = pose_ && localization::located(pose_->status.state);
   pose_ = service::from_msg(message);
-  if (!localization::located(pose_->belief.state)) return;
+  if (!localization::located(pose_->status.state)) return;
   const bool moved =
       refused_at_ &&
       (refused_at_->position_m() - pose_->T_map_robot.position_m()).norm() >= kMoved_m;

@@ -47,7 +47,8 @@ constexpr double kSidewaysVariance = 0.01;   // m2/m
 pipeline::Config searching_widely(pipeline::Config config, const Pose2& T_robot_laser) {
   config.local_mapper.T_robot_laser = T_robot_laser;
   config.local_mapper.voronoi.forward_rad = -T_robot_laser.theta_rad;
-  for (auto* noise : {&config.localizer.odometry, &config.local_mapper.tracker.odometry}) {
+  for (auto* noise : {&config.localizer.odometry, &config.local_mapper.tracker.odometry,
+                      &config.calibration.fallback}) {
     noise->translation_m2_per_rad = std::max(noise->translation_m2_per_rad, kTurnShiftVariance);
     noise->lateral_m2_per_m = std::max(noise->lateral_m2_per_m, kSidewaysVariance);
   }
@@ -66,14 +67,11 @@ Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Confi
   Found found;
   found.log = match_log(config, log);
   if (first) tell_skipped(log.reader.statistics());
-  localization::OdometryCalibrationConfig fitting;
-  fitting.fallback = config.localizer.odometry;
-  fitting.seed = config.localizer.seed;
   try {
     Bar bar("refitting", "fits");
     found.laser = localization::calibrate_laser(
         localization::odometry_stretches(found.log.maps), found.log.matched.motions,
-        config.local_mapper.T_robot_laser, fitting,
+        config.local_mapper.T_robot_laser, config.calibration,
         [&](std::size_t done, std::size_t total) { bar.update(done, total); });
     bar.finish();
   } catch (const std::runtime_error& error) {
@@ -137,7 +135,7 @@ int calibrate_laser_log(const CalibrateLaserOptions& options) {
   constexpr const char* kTurn = "0.2 rad of turn";
   print_part("x", laser.x_m, 1.0, "m forward", laser.with_turn, kTurn);
   print_part("y", laser.y_m, 1.0, "m to the left", laser.with_turn, kTurn);
-  print_part("yaw", laser.yaw_rad, kMountingDegrees, "degrees counter-clockwise", laser.with_way,
+  print_part("yaw", laser.yaw_rad, kMountingDegrees, "degrees counter-clockwise", laser.with_path,
              "0.2 m of path");
   const std::string block = laser_yaml(laser);
   std::cout << '\n' << block;

@@ -74,15 +74,15 @@ struct Measured {
 Measured measure_by_reference(CalibrationInputs& inputs, const std::filesystem::path& reference) {
   Measured measured;
   measured.maps = make_maps(inputs.config.config, inputs.log, "following", [](const auto&) {});
-  const double longest_way_m = inputs.config.config.localizer.recent_way_m;
+  const double longest_path_m = inputs.config.config.localizer.recent_way_m;
   measured.motions =
-      localization::motions_from_reference(measured.maps, inputs.reference, longest_way_m);
+      localization::motions_from_reference(measured.maps, inputs.reference, longest_path_m);
   if (measured.motions.empty()) {
     throw service::BadInputError(reference.string() +
                                  ": no two stops of the log lie within its time");
   }
   measured.yardstick = fmt::format("{} motions of up to {:g} m in {}", measured.motions.size(),
-                                   longest_way_m, reference.filename().string());
+                                   longest_path_m, reference.filename().string());
   return measured;
 }
 
@@ -94,13 +94,11 @@ Measured measure_by_matches(CalibrationInputs& inputs) {
 
 OdometryCalibration calibrate(const CalibrateOptions& options, const CalibrationInputs& inputs,
                               const Measured& measured) {
-  localization::OdometryCalibrationConfig config;
-  config.fallback = inputs.config.config.localizer.odometry;
-  config.seed = inputs.config.config.localizer.seed;
   try {
     Bar bar("refitting", "fits");
     OdometryCalibration found = localization::calibrate_odometry(
-        localization::odometry_stretches(measured.maps), measured.motions, config,
+        localization::odometry_stretches(measured.maps), measured.motions,
+        inputs.config.config.calibration,
         [&](std::size_t done, std::size_t total) { bar.update(done, total); });
     bar.finish();
     return found;
@@ -165,7 +163,7 @@ void print_systematic(std::ostream& out, const localization::SystematicErrors& e
   };
   out << "systematic errors, counted as noise in `value`, taken out in `corrected`\n"
          "(+: the odometry reads too much, or drifts to the left):\n";
-  line("distance", errors.way, 100.0, "% of the distance");
+  line("distance", errors.distance, 100.0, "% of the distance");
   line("heading", errors.heading_rad_per_m, kDegrees, "degrees per m");
   line("turn", errors.turn, 100.0, "% of the turn");
   line("ahead", errors.ahead_m, 1.0, "m from laser.x_m to where the laser is");

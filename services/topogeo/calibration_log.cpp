@@ -104,15 +104,15 @@ MatchedLog match_log(const pipeline::Config& config, OpenLog& log) {
 }
 
 std::string describe_drive(const localization::LocalMaps& maps) {
-  double way_m = 0.0;
+  double path_m = 0.0;
   double turn_rad = 0.0;
   for (const auto& stretch : localization::odometry_stretches(maps)) {
     for (const geometry::Pose2& step : stretch) {
-      way_m += std::sqrt(step.position_m().squaredNorm());
+      path_m += std::sqrt(step.position_m().squaredNorm());
       turn_rad += std::fabs(step.theta_rad);
     }
   }
-  return fmt::format("{} stops, {:.1f} m of path, {:.1f} rad of turn", maps.size(), way_m,
+  return fmt::format("{} stops, {:.1f} m of path, {:.1f} rad of turn", maps.size(), path_m,
                      turn_rad);
 }
 

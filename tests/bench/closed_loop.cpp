@@ -113,7 +113,7 @@ void ClosedLoop::locate() {
   const localization::UncertainPose now = localization::live_pose(
       {stop->T_map_robot, stop->covariance}, local_maps_.back()->T_odom_robot,
       mapper_.last_tracked(), robot_.T_odom_robot(), config_.system.localizer.odometry);
-  const localization::LocalizationState state = localizer_.belief().state;
+  const localization::LocalizationState state = localizer_.status().state;
   located_ = localization::located(state);
   pose_.emplace();
   pose_->stamp_ns = now_ns_;

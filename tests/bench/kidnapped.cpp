@@ -227,7 +227,7 @@ class Watch {
   double way_since_m_ = 0.0;
 };
 
-void count(const localization::Belief& belief, bool right, Calibration& calibration) {
+void count(const localization::LocalizationStatus& belief, bool right, Calibration& calibration) {
   if (is_known(belief.state)) {
     const auto bin = std::min<std::size_t>(9, static_cast<std::size_t>(belief.confidence * 10.0));
     ++calibration.stops[bin];
@@ -261,7 +261,7 @@ Outcome run(std::uint64_t seed, Calibration& calibration, Samples& samples) {
     const Pose2 here = floor.truth(T_world_robot);
     const bool right = is_near(localizer.stops().back().T_map_robot, here);
     if (localizer.last_step()) collect(*localizer.last_step(), here, samples);
-    const localization::Belief belief = localizer.belief();
+    const localization::LocalizationStatus belief = localizer.status();
     count(belief, right, calibration);
     watch.add_stop(belief.state, right);
   }

@@ -58,7 +58,7 @@ storage::MapDocument map_of(const std::vector<scan::Scan>& scans, std::size_t co
 
 Row ask(const storage::MapDocument& map, const std::vector<Question>& questions,
         const pipeline::Config& config, std::FILE* csv, const std::string& name) {
-  const localization::GlobalLocalizer localizer({}, map.local_maps, map.trajectory);
+  const localization::GlobalLocalizer localizer(map.local_maps, map.trajectory);
   Row row;
   for (const Question& question : questions) {
     const auto points = topomap::scan_points(*question.scan, config.local_mapper.T_robot_laser,

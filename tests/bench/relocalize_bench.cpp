@@ -37,7 +37,7 @@ void relocalize_csail(benchmark::State& state) {
     }
   }
   const storage::MapDocument map = run.finish();
-  const localization::GlobalLocalizer localizer({}, map.local_maps, map.trajectory);
+  const localization::GlobalLocalizer localizer(map.local_maps, map.trajectory);
   std::size_t next = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(localizer.find(scans[next], {}));

@@ -150,7 +150,7 @@ TEST_F(LocalizerTest, TheLivePoseFollowsTheOdometryBetweenStops) {
   ASSERT_TRUE(odometry_writer_.write(odometry));
   ASSERT_TRUE(wait_until([&] { return last_pose_ && last_pose_->sequence_number() == 9; }));
   const service::LivePose pose = service::from_msg(*last_pose_);
-  EXPECT_EQ(pose.belief.state, localization::LocalizationState::kTracking);
+  EXPECT_EQ(pose.status.state, localization::LocalizationState::kTracking);
   EXPECT_EQ(pose.mode, msg::kModeMapping);
   EXPECT_EQ(pose.local_map_id, 0U);
   EXPECT_NEAR(pose.T_map_robot.x_m, 0.4, 1e-12);

@@ -145,7 +145,7 @@ void NavigatorOnRobot::sense() {
   service::LivePose pose;
   pose.stamp_ns = moved_ns_;
   pose.sequence = sent_;
-  pose.belief = {static_cast<localization::LocalizationState>(pose_state_), 0.9};
+  pose.status = {static_cast<localization::LocalizationState>(pose_state_), 0.9};
   pose.T_map_robot = robot_.T_world_robot();
   pose.covariance = 1e-4 * Eigen::Matrix3d::Identity();
   static_cast<void>(poses_.write(service::to_msg(pose, robot_id_)));

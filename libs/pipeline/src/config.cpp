@@ -9,6 +9,8 @@ namespace {
 void share_values(Config& c) {
   c.local_mapper.voronoi.forward_rad = -c.local_mapper.T_robot_laser.theta_rad;
   c.local_mapper.tracker.odometry = c.localizer.odometry;
+  c.calibration.fallback = c.localizer.odometry;
+  c.calibration.seed = c.localizer.seed;
 }
 
 // Values that must fit each other, which the ranges of the keys do not state.
@@ -45,6 +47,7 @@ support::ConfigSchema describe(Config& config) {
   planning::describe(config.navigator.detour, schema);
   markov::describe(config.navigator.markov.markov, schema);
   navigation::describe(config.exploration, schema);
+  localization::describe(config.calibration, schema);
   return schema;
 }
 

@@ -101,20 +101,20 @@ std::string continuation_message(const localization::MappingSession& session) {
   if (waiting == 0) return {};
   const bool grew = session.maps().size() > session.stored_stops();
   return fmt::format("the robot did not find its place in the map ({}): {} stops are not mapped{}",
-                     localization::to_string(session.belief().state), waiting,
+                     localization::to_string(session.status().state), waiting,
                      grew ? "" : ", the map is as it was");
 }
 
 std::string localization_csv(std::span<const localization::LocalizedStop> stops) {
   std::string text =
       "stop,stamp_s,x_m,y_m,theta_rad,state,confidence,sigma_x_m,sigma_y_m,sigma_theta_rad,"
-      "believed_matches\n";
+      "accepted_matches\n";
   for (const localization::LocalizedStop& s : stops) {
     const Eigen::Matrix3d& c = s.covariance;
     text += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", s.id,
                         storage::stamp_text(s.stamp_ns), s.T_map_robot.x_m, s.T_map_robot.y_m,
-                        s.T_map_robot.theta_rad, localization::to_string(s.belief.state),
-                        s.belief.confidence, std::sqrt(c(0, 0)), std::sqrt(c(1, 1)),
+                        s.T_map_robot.theta_rad, localization::to_string(s.status.state),
+                        s.status.confidence, std::sqrt(c(0, 0)), std::sqrt(c(1, 1)),
                         std::sqrt(c(2, 2)), s.accepted_matches);
   }
   return text;
@@ -123,7 +123,7 @@ std::string localization_csv(std::span<const localization::LocalizedStop> stops)
 storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer) {
   std::array<std::uint64_t, localization::kLocalizationStates> stops{};
   for (const localization::LocalizedStop& stop : localizer.stops()) {
-    ++stops.at(static_cast<std::size_t>(stop.belief.state));
+    ++stops.at(static_cast<std::size_t>(stop.status.state));
   }
   storage::ReasonCounts counts;
   for (std::size_t i = 0; i < stops.size(); ++i) {

@@ -19,9 +19,9 @@ navigation::PoseFix to_pose_fix(const LivePose& pose) {
   fix.T_map_robot = pose.T_map_robot;
   // While mapping it is that to the first stop, which says nothing of the map around the robot.
   if (pose.mode == msg::kModeLocalization) fix.covariance = pose.covariance;
-  fix.tracking = pose.belief.state == localization::LocalizationState::kTracking;
-  fix.located = localization::located(pose.belief.state);
-  fix.state_text = localization::to_string(pose.belief.state);
+  fix.tracking = pose.status.state == localization::LocalizationState::kTracking;
+  fix.located = localization::located(pose.status.state);
+  fix.state_text = localization::to_string(pose.status.state);
   return fix;
 }
 

@@ -94,8 +94,8 @@ std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message) {
 msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id) {
   msg::LivePose out;
   messaging::set_header(out, robot_id, pose.stamp_ns, pose.sequence);
-  out.state(static_cast<msg::LocalizationState>(pose.belief.state));  // same values, see the IDL
-  out.confidence(pose.belief.confidence);
+  out.state(static_cast<msg::LocalizationState>(pose.status.state));  // same values, see the IDL
+  out.confidence(pose.status.confidence);
   out.mode(pose.mode);
   out.T_map_robot(to_msg(pose.T_map_robot));
   out.covariance(to_msg(pose.covariance));

@@ -14,7 +14,7 @@ namespace topogeo::localization::test {
 
 using geometry::Pose2;
 
-// Translation along, by turn, lateral; heading by way, by turn: the order of the struct.
+// Translation along, by turn, lateral; heading by distance, by turn: the order of the struct.
 inline constexpr OdometryNoise kTrue{0.002, 0.003, 0.0008, 0.0003, 0.001};
 inline constexpr OdometryNoise kFallback{0.11, 0.12, 0.13, 0.14, 0.15};
 
@@ -22,7 +22,7 @@ inline constexpr OdometryNoise kFallback{0.11, 0.12, 0.13, 0.14, 0.15};
 struct Drive {
   OdometryNoise noise = kTrue;
   std::uint32_t stops = 300;
-  double way_m = 0.35;  // of a step, three to a stretch
+  double path_m = 0.35;  // of a step, three to a stretch
   double turn_rad =
       0.5;  // deviation of the turn of a step; every other stretch is straight, by chance
   double stated_over_true = 1.0;  // deviations of the measurements
@@ -55,11 +55,11 @@ inline Pose2 moved(const Pose2& pose, const Eigen::Vector3d& by) {
 
 /// What really happened while the odometry said `step`.
 inline Pose2 true_step(support::Random& random, const Drive& drive, const Pose2& step) {
-  const double way_m = std::sqrt(step.position_m().squaredNorm());
+  const double path_m = std::sqrt(step.position_m().squaredNorm());
   const Pose2 random_part = moved(step, draw(random, advance({}, step, drive.noise).covariance));
   return {
       random_part.x_m / (1.0 + drive.too_long), random_part.y_m / (1.0 + drive.too_long),
-      random_part.theta_rad - drive.left_rad_per_m * way_m - drive.turn_too_much * step.theta_rad};
+      random_part.theta_rad - drive.left_rad_per_m * path_m - drive.turn_too_much * step.theta_rad};
 }
 
 inline Motions simulate(const Drive& drive, std::uint64_t seed) {
@@ -71,7 +71,7 @@ inline Motions simulate(const Drive& drive, std::uint64_t seed) {
     Pose2 T = T_world_robot.back();
     const double turn_rad = random.below(2) == 0 ? drive.turn_rad : 0.0;
     for (int i = 0; i < 3; ++i) {
-      stretch.push_back({drive.way_m, 0.0, turn_rad * random.normal()});
+      stretch.push_back({drive.path_m, 0.0, turn_rad * random.normal()});
       T = T * true_step(random, drive, stretch.back());
     }
     made.stretches.push_back(stretch);

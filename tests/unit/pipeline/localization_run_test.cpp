@@ -29,11 +29,11 @@ TEST(LocalizationCsv, HasALineForEachStop) {
   stop.stamp_ns = 1'500'000'000;
   stop.T_map_robot = {1.0, -2.0, 0.5};
   stop.covariance = Eigen::Vector3d(0.01, 0.04, 0.0001).asDiagonal();
-  stop.belief = {localization::LocalizationState::kAmbiguous, 0.25};
+  stop.status = {localization::LocalizationState::kAmbiguous, 0.25};
   stop.accepted_matches = 2;
   EXPECT_EQ(localization_csv(std::vector{stop}),
             "stop,stamp_s,x_m,y_m,theta_rad,state,confidence,sigma_x_m,sigma_y_m,sigma_theta_rad,"
-            "believed_matches\n"
+            "accepted_matches\n"
             "3,1.500000,1.000000,-2.000000,0.500000,AMBIGUOUS,0.2500,0.1000,0.2000,0.0100,2\n");
 }
 

@@ -87,7 +87,7 @@ LaserCalibration calibrate_laser(
   result.y_m = part(position_m.y(), T_robot_laser.y_m, bootstrap[1], likelihood[1],
                     kLargestMountingSpread_m);
   for (std::size_t p = 0; p < kNoiseParameters; ++p) {
-    (kOdometryParameters[p].per_turn ? result.with_turn : result.with_way) =
+    (kOdometryParameters[p].per_turn ? result.with_turn : result.with_path) =
         found.parameters[p].stretches;
   }
   result.motions = found.motions;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "topogeo/support/config_schema.hpp"
 #include "topogeo/support/random.hpp"
 
 #include "odometry_calibration_fit.hpp"
@@ -24,19 +25,14 @@ const std::array<NoiseParameter, kNoiseParameters> kOdometryParameters{{
 namespace {
 
 // Fixed: a stretch with less shows nothing but the noise of the measurement.
-constexpr double kSomeWay_m = 0.2;
-constexpr double kSomeTurn_rad = 0.2;
+constexpr double kLeastPath_m = 0.2;
+constexpr double kLeastTurn_rad = 0.2;
 constexpr double kLargestNoise = kLargestOdometryNoise;
 
 void check_measurements(std::span<const OdometryStretch> stretches,
                         std::span<const MeasuredMotion> motions,
                         const OdometryCalibrationConfig& config) {
-  if (config.blocks < 4 || config.blocks > 1000 || config.resamples < 2 ||
-      config.resamples > 100'000 || !(config.largest_mahalanobis2 > 0.0)) {
-    throw std::invalid_argument(
-        "calibrate_odometry: expected 4 to 1000 blocks, 2 to 100000 resamples and a largest "
-        "Mahalanobis distance above 0");
-  }
+  support::check_ranges(config);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const MeasuredMotion& motion = motions[i];
     const std::string name = "calibrate_odometry: motion " + std::to_string(i);
@@ -56,7 +52,7 @@ void check_measurements(std::span<const OdometryStretch> stretches,
 /// How many of the stretches that a motion covers have enough distance, or turn.
 struct Coverage {
   std::size_t stretches = 0;
-  std::size_t with_way = 0;
+  std::size_t with_path = 0;
   std::size_t with_turn = 0;
 };
 
@@ -69,15 +65,15 @@ Coverage coverage(std::span<const OdometryStretch> stretches,
   Coverage count;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     if (!covered[i]) continue;
-    double way_m = 0.0;
+    double path_m = 0.0;
     double turn_rad = 0.0;
     for (const geometry::Pose2& step : stretches[i]) {
-      way_m += std::sqrt(step.position_m().squaredNorm());
+      path_m += std::sqrt(step.position_m().squaredNorm());
       turn_rad += std::fabs(step.theta_rad);
     }
     ++count.stretches;
-    if (way_m >= kSomeWay_m) ++count.with_way;
-    if (turn_rad >= kSomeTurn_rad) ++count.with_turn;
+    if (path_m >= kLeastPath_m) ++count.with_path;
+    if (turn_rad >= kLeastTurn_rad) ++count.with_turn;
   }
   return count;
 }
@@ -195,19 +191,19 @@ OdometryCalibration calibrate_odometry(
     const std::function<void(std::size_t done, std::size_t total)>& progress) {
   check_measurements(stretches, motions, config);
   const Coverage covered = coverage(stretches, motions);
-  const bool way = covered.with_way >= kFewestStretches;
+  const bool path = covered.with_path >= kFewestStretches;
   const bool turn = covered.with_turn >= kFewestStretches;
-  if (!way && !turn) {
+  if (!path && !turn) {
     throw std::runtime_error(
         "too little motion: of " + std::to_string(covered.stretches) +
-        " measured stretches between stops " + std::to_string(covered.with_way) +
+        " measured stretches between stops " + std::to_string(covered.with_path) +
         " are 0.2 m long and " + std::to_string(covered.with_turn) +
         " have 0.2 rad of turn, expected at least " + std::to_string(kFewestStretches));
   }
 
   FitModel model;
   for (std::size_t p = 0; p < kNoiseParameters; ++p) {
-    model.noise[p] = kOdometryParameters[p].per_turn ? turn : way;
+    model.noise[p] = kOdometryParameters[p].per_turn ? turn : path;
   }
   std::size_t done = 0;
   const auto step = [&] {
@@ -216,7 +212,7 @@ OdometryCalibration calibrate_odometry(
   const Bootstrap bootstrap(stretches, motions, config);
   const Fits as_is = bootstrap.run(model, step);
   FitModel full = model;
-  full.systematic = {way, way, turn, turn, turn, way};
+  full.systematic = {path, path, turn, turn, turn, path};
   const Fits corrected = bootstrap.run(full, step);
 
   OdometryCalibration result;
@@ -224,7 +220,7 @@ OdometryCalibration calibrate_odometry(
     const NoiseParameter& parameter = kOdometryParameters[p];
     NoiseEstimate& found = result.parameters[p];
     found.known = model.noise[p];
-    found.stretches = parameter.per_turn ? covered.with_turn : covered.with_way;
+    found.stretches = parameter.per_turn ? covered.with_turn : covered.with_path;
     const double fallback = config.fallback.*parameter.field;
     const auto independent = static_cast<double>(covered.stretches);
     found.as_is = found.known ? bootstrap.noise(model, as_is, p, independent) : Estimate{fallback};

@@ -189,8 +189,8 @@ Steps steps_without(std::span<const OdometryStretch> stretches, const MeasuredMo
   for (std::uint32_t i = motion.first; i < motion.last; ++i) {
     for (const Pose2& measured : stretches[i]) {
       Pose2 step{measured.x_m / (1.0 + systematic[0]), measured.y_m / (1.0 + systematic[0]), 0.0};
-      const double way_m = std::sqrt(step.position_m().squaredNorm());
-      step.theta_rad = (measured.theta_rad - systematic[1] * way_m) / (1.0 + systematic[2]);
+      const double path_m = std::sqrt(step.position_m().squaredNorm());
+      step.theta_rad = (measured.theta_rad - systematic[1] * path_m) / (1.0 + systematic[2]);
       found.T_first_before.push_back(found.T_first_last);
       found.steps.push_back(step);
       found.T_first_last = found.T_first_last * step;
@@ -236,15 +236,15 @@ MotionTerms make_terms(std::span<const OdometryStretch> stretches, const Measure
   Eigen::Vector2d shortening = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < steps.steps.size(); ++i) {
     const Pose2& step = steps.steps[i];
-    const double way_m = std::sqrt(step.position_m().squaredNorm());
+    const double path_m = std::sqrt(step.position_m().squaredNorm());
     const Eigen::Vector2d before = steps.T_first_before[i].position_m();
     const Eigen::Vector2d after = (steps.T_first_before[i] * step).position_m();
     const Eigen::Vector2d from_middle = end - 0.5 * (before + after);
     const Eigen::Vector2d from_after = end - after;
-    terms.systematic.col(1) += way_m * Eigen::Vector3d(-from_middle.y(), from_middle.x(), 1.0);
+    terms.systematic.col(1) += path_m * Eigen::Vector3d(-from_middle.y(), from_middle.x(), 1.0);
     terms.systematic.col(2) +=
         step.theta_rad * Eigen::Vector3d(-from_after.y(), from_after.x(), 1.0);
-    const double wander_rad2 = noise.heading_rad2_per_m * way_m;
+    const double wander_rad2 = noise.heading_rad2_per_m * path_m;
     shortening += 0.5 * (heading_rad2 + 0.5 * wander_rad2) * (after - before);
     heading_rad2 += wander_rad2 + noise.heading_rad2_per_rad * std::fabs(step.theta_rad);
   }

@@ -98,7 +98,7 @@ MatchedMotions motions_from_matches(const LocalMaps& maps,
 
 std::vector<MeasuredMotion> motions_from_reference(const LocalMaps& maps,
                                                    std::span<const StampedPose> reference,
-                                                   double longest_way_m) {
+                                                   double longest_path_m) {
   const Eigen::Matrix3d covariance = match_covariance(1e9 * Eigen::Matrix3d::Identity(), 0.0);
   const std::vector<OdometryStretch> stretches = odometry_stretches(maps);
   std::vector<std::optional<Pose2>> poses;
@@ -108,13 +108,13 @@ std::vector<MeasuredMotion> motions_from_reference(const LocalMaps& maps,
   std::vector<MeasuredMotion> motions;
   for (std::uint32_t first = 0; first + 1 < maps.size(); ++first) {
     if (!poses[first]) continue;
-    double way_m = 0.0;
+    double path_m = 0.0;
     std::uint32_t wanted = first + 1;
     for (std::uint32_t last = first + 1; last < maps.size(); ++last) {
       for (const Pose2& step : stretches[last - 1]) {
-        way_m += std::sqrt(step.position_m().squaredNorm());
+        path_m += std::sqrt(step.position_m().squaredNorm());
       }
-      if (last > first + 1 && way_m > longest_way_m) break;
+      if (last > first + 1 && path_m > longest_path_m) break;
       if (last < wanted) continue;
       // Long motions that begin together show nearly the same: 1, 2, 3, 4, 6, 9, 13 ... stops.
       wanted = last + std::max(1U, (last - first) / 2);

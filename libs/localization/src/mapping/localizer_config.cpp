@@ -59,6 +59,7 @@ void describe(LocalizerConfig& config, support::ConfigSchema& schema) {
   schema.add("localizer.seed", &config.seed, std::uint64_t{0}, ~std::uint64_t{0}, "",
              "of everything random; the same log, seed and configuration give the same bytes");
   describe_tasks(config, schema);
+  describe(config.thesis, schema);
 }
 
 }  // namespace topogeo::localization

@@ -8,7 +8,7 @@ namespace topogeo::localization {
 
 const char* to_string(LoopOutcome outcome) {
   static constexpr std::array<const char*, kLoopOutcomes> kNames{
-      "accepted", "match not believed", "unconfirmed", "no consistent closing", "outvoted"};
+      "accepted", "match not accepted", "unconfirmed", "no consistent closing", "outvoted"};
   return kNames.at(static_cast<std::size_t>(outcome));
 }
 

@@ -20,6 +20,13 @@ namespace {
 
 // With no match at all along the loop the distance from the expected pose still has to rank paths.
 constexpr double kLeastMeanFitness = 0.1;
+// Squared deviations: a step is drawn by 3 of them at most, which nearly all right ones need less
+// of.
+constexpr double kLargestDraw2 = 9.0;
+// Of paths that are nearer to each other than this only the best is kept when there are too many;
+// the errors of a refined match are of this size, so that they are one path.
+constexpr double kSamePlace_m = 0.03;
+constexpr double kSamePlace_rad = 0.01;
 
 [[noreturn]] void refuse_loop(const std::string& what) {
   throw std::invalid_argument("loop search: " + what);
@@ -37,9 +44,8 @@ void check_loop(std::span<const LoopPose> poses, std::span<const LoopCandidate> 
   if (config.beam_width == 0 || config.paths_wanted == 0) {
     refuse_loop("beam_width and paths_wanted must be at least 1");
   }
-  if (!(config.resolution_m > 0.0 && config.resolution_rad > 0.0 && config.same_place_m > 0.0 &&
-        config.same_place_rad > 0.0)) {
-    refuse_loop("resolutions and same_place must be positive");
+  if (!(config.resolution_m > 0.0 && config.resolution_rad > 0.0)) {
+    refuse_loop("resolutions must be positive");
   }
   if (poses.size() < 2) {
     refuse_loop("a loop has at least two poses, got " + std::to_string(poses.size()));
@@ -181,7 +187,7 @@ void LoopSearch::seed() {
     offer(level, candidate.T_first_last.T_a_b, candidate.fitness, nullptr, i);
     if (!config_.draw) continue;
     const Draw drawn = draw(level, candidate.T_first_last.T_a_b, candidate.T_first_last.covariance);
-    if (drawn.distance2 > config_.largest_draw2) continue;
+    if (drawn.distance2 > kLargestDraw2) continue;
     offer(level, drawn.T_first_pose, candidate.fitness * geometry::exp(-0.5 * drawn.distance2),
           nullptr, i);
   }
@@ -203,7 +209,7 @@ void LoopSearch::expand(std::uint32_t k) {
       if (!config_.draw) continue;
       const Draw drawn = draw(level, T_first_pose, turned(step.covariance, node.T_first_pose));
       ++work_;
-      if (drawn.distance2 > config_.largest_draw2) continue;
+      if (drawn.distance2 > kLargestDraw2) continue;
       offer(level, drawn.T_first_pose,
             node.fitness + step.fitness * geometry::exp(-0.5 * drawn.distance2), &node,
             node.candidate);
@@ -224,9 +230,9 @@ bool LoopSearch::take(std::uint32_t k) {
   while (level.next_waiting < level.waiting.size() && level.nodes.size() < config_.beam_width) {
     const LoopNode& node = level.waiting[level.next_waiting++];
     if (crowded && !places
-                        .insert({cell(node.T_first_pose.x_m, config_.same_place_m),
-                                 cell(node.T_first_pose.y_m, config_.same_place_m),
-                                 cell(node.T_first_pose.theta_rad, config_.same_place_rad)})
+                        .insert({cell(node.T_first_pose.x_m, kSamePlace_m),
+                                 cell(node.T_first_pose.y_m, kSamePlace_m),
+                                 cell(node.T_first_pose.theta_rad, kSamePlace_rad)})
                         .second) {
       continue;
     }

@@ -12,7 +12,8 @@ namespace topogeo::localization {
 
 namespace {
 
-// Fitted by tests/bench/kidnapped.cpp --fit.
+// The figures below were fitted to simulated drives by tests/bench/kidnapped.cpp --fit and depend
+// on each other: other ones would be another confidence for all users, so none is a setting.
 struct Logistic {
   double constant;
   double first;
@@ -23,15 +24,15 @@ constexpr Logistic kOdometryRight{5.7, -8.5, 0.0};  // contradiction, distance i
 
 constexpr double kForeseen = 0.35;  // overlap from which on a match should show something in common
 constexpr std::size_t kFewPoints = 12;  // of a blinded laser: what it sees refutes nothing
-// What Belief::confidence promises: a pose that is right to 0.3 m and 5 degrees leads through
-// doors.
+// What LocalizationStatus::confidence promises: a pose that is right to 0.3 m and 5 degrees leads
+// through doors.
 constexpr double kRight_m = 0.3;
 constexpr double kRight_rad = 0.087266463;
 // A carried robot is lost within three stops (map_localizer_test), a doubted one seldom
 // (tests/bench/kidnapped.cpp).
 constexpr double kLostBelow = 0.25;
 constexpr double kTrackingFrom = 0.5;   // right more probably than not
-constexpr double kFirmer = 0.05;        // difference of confidence that counts
+constexpr double kFirmer = 0.05;        // the few matches between two stops cost no more than this
 constexpr double kDoubtfulShare = 0.3;  // matches that are not accepted err together
 constexpr double kElsewhere = 30.0;     // weight of a place that fits better, for each 1 of fitness
 constexpr double kMostConfident = 0.996;    // matches err together, however many agree
@@ -122,7 +123,7 @@ double covariance_confidence(const Eigen::Matrix3d& covariance) {
   return position * std::sqrt(1.0 - geometry::exp(exponent));
 }
 
-Belief StateMonitor::add(const StepEvidence& evidence) {
+LocalizationStatus StateMonitor::add(const StepEvidence& evidence) {
   struct Support {
     double before;  // confidence of what it comes from
     double right;   // that it is right itself
@@ -169,15 +170,15 @@ Belief StateMonitor::add(const StepEvidence& evidence) {
   doubted_ = confidence < kLostBelow ? doubted_ + 1 : 0;
   const bool started = restarted_.has_value();
   restarted_.reset();
-  belief_.confidence = confidence * covariance_confidence(evidence.covariance);
+  status_.confidence = confidence * covariance_confidence(evidence.covariance);
   if (doubted_ >= kOftenDoubted) {  // one bad scan proves nothing
-    belief_.state = LocalizationState::kLost;
-  } else if ((any_accepted_match || started) && belief_.confidence >= kTrackingFrom) {
-    belief_.state = LocalizationState::kTracking;
+    status_.state = LocalizationState::kLost;
+  } else if ((any_accepted_match || started) && status_.confidence >= kTrackingFrom) {
+    status_.state = LocalizationState::kTracking;
   } else {
-    belief_.state = LocalizationState::kAmbiguous;
+    status_.state = LocalizationState::kAmbiguous;
   }
-  return belief_;
+  return status_;
 }
 
 void StateMonitor::restart(double confidence) {

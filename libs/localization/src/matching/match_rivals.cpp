@@ -42,8 +42,9 @@ MatchSolution strongest_rival(const MatchContext& context, const Pose2& T_found)
   for (int ray = 0; ray < kRays; ++ray) {
     const geometry::SinCos to = geometry::sincos(first_rad + 2.0 * std::numbers::pi * ray / kRays);
     for (int step = 0; step < kMostSteps; ++step) {
-      const double way_m = kNearest_m + kStep_m * step;
-      const Pose2 T{T_found.x_m + way_m * to.cos, T_found.y_m + way_m * to.sin, T_found.theta_rad};
+      const double distance_m = kNearest_m + kStep_m * step;
+      const Pose2 T{T_found.x_m + distance_m * to.cos, T_found.y_m + distance_m * to.sin,
+                    T_found.theta_rad};
       if (!searched(T)) continue;
       const double fitness = combined.of_maps(T, heading);
       if (fitness > rival.fitness) rival = {T, fitness};

@@ -1,4 +1,4 @@
-// Looks for another pose that the maps allow as well as the one that was found.
+// Searches another pose that the maps allow as well as the one that was found.
 #pragma once
 
 #include "topogeo/geometry/pose2.hpp"

@@ -19,17 +19,17 @@ UncertainPose inverse(const UncertainPose& a) {
 
 UncertainPose advance(const UncertainPose& from, const Pose2& T_before_after,
                       const OdometryNoise& noise) {
-  const double way_m =
+  const double distance_m =
       std::sqrt(T_before_after.x_m * T_before_after.x_m + T_before_after.y_m * T_before_after.y_m);
   const double turn_rad = std::fabs(T_before_after.theta_rad);
   const double turn_m2 = noise.translation_m2_per_rad * turn_rad;
   Eigen::Matrix3d step = Eigen::Matrix3d::Zero();
-  step(0, 0) = noise.translation_m2_per_m * way_m + turn_m2;
-  step(1, 1) = noise.lateral_m2_per_m * way_m + turn_m2;
+  step(0, 0) = noise.translation_m2_per_m * distance_m + turn_m2;
+  step(1, 1) = noise.lateral_m2_per_m * distance_m + turn_m2;
   // The heading wanders along the path, not only at its end: integrated over a straight step.
-  const double wander_rad2 = noise.heading_rad2_per_m * way_m;
-  step(1, 1) += wander_rad2 * way_m * way_m / 3.0;
-  step(1, 2) = step(2, 1) = wander_rad2 * way_m / 2.0;
+  const double wander_rad2 = noise.heading_rad2_per_m * distance_m;
+  step(1, 1) += wander_rad2 * distance_m * distance_m / 3.0;
+  step(1, 2) = step(2, 1) = wander_rad2 * distance_m / 2.0;
   step(2, 2) = wander_rad2 + noise.heading_rad2_per_rad * turn_rad;
   return {from.T_a_b * T_before_after,
           geometry::compose_covariance(from.T_a_b, from.covariance, T_before_after, step)};

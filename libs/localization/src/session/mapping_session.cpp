@@ -78,7 +78,7 @@ bool MappingSession::follow(const MapPointer& map) {
 bool MappingSession::confirmed() {
   const std::optional<TrackedStep>& step = follower_->last_step();
   const bool tracked =
-      follower_->belief().state == LocalizationState::kTracking && step && !step->accepted.empty();
+      follower_->status().state == LocalizationState::kTracking && step && !step->accepted.empty();
   if (!step) searched_ = true;
   tracked_stops_ = tracked ? tracked_stops_ + 1 : 0;
   tracked_distance_m_ = tracked ? tracked_distance_m_ + step->evidence.distance_m : 0.0;
@@ -88,7 +88,7 @@ bool MappingSession::confirmed() {
 
 void MappingSession::join() {
   const std::vector<StoredMatch> matches = follower_->last_step()->accepted;
-  const double confidence = follower_->belief().confidence;
+  const double confidence = follower_->status().confidence;
   std::vector<MapPointer> drive;
   for (const MapPointer& map : std::exchange(waiting_, {})) {
     drive.push_back(numbered(map, drive.empty()));

@@ -83,7 +83,7 @@ bool CycleClosing::close(ThesisMap& map, ThesisMatching& matching) {
   const std::uint32_t stop = last_of(map);
   bool moved = false;
   std::vector<std::uint32_t> tried;  // ascending
-  for (std::uint32_t round = 0; round < thesis_.alternations; ++round) {
+  for (std::uint32_t round = 0; round < config_.thesis.alternations; ++round) {
     const std::vector<ThesisNeighbour> seen = seen_again(map, tried);
     if (seen.empty()) break;
     for (const ThesisNeighbour& neighbour : seen) tried.push_back(neighbour.id);
@@ -128,7 +128,8 @@ std::vector<ThesisNeighbour> CycleClosing::seen_again(ThesisMap& map,
 bool CycleClosing::close_with(ThesisMap& map, ThesisMatching& matching,
                               std::span<const ThesisNeighbour> seen_again) {
   const std::uint32_t stop = last_of(map);
-  std::vector<ThesisMatch> matches = matching.match(map, seen_again, thesis_.cycle_solutions);
+  std::vector<ThesisMatch> matches =
+      matching.match(map, seen_again, config_.thesis.cycle_solutions);
   const Pose2 T_map_before = map.poses()[stop];
   std::erase_if(matches, [&](const ThesisMatch& match) {
     if (match.result.verdict == Verdict::kAccepted ||
@@ -147,7 +148,7 @@ bool CycleClosing::close_with(ThesisMap& map, ThesisMatching& matching,
   BackwardProblem problem = backward_problem(map, first);
   problem.candidates = candidates_of(map, matches, first);
   ++attempts_;
-  const BackwardResult found = correct_backward(problem, map.solutions(), thesis_.backward);
+  const BackwardResult found = correct_backward(problem, map.solutions(), config_.thesis.backward);
   if (found.outcome != LoopSearchOutcome::kClosed) {
     ++failures_;
     for (const ThesisMatch& match : matches) {

@@ -15,28 +15,26 @@ bool may_be_right(const MatchResult& result) {
 }
 
 // The grid of the backward correction is that of the genetic search.
-ThesisConfig with_resolution(ThesisConfig thesis, const GeneticParameters& genetic) {
-  thesis.backward.resolution_m = genetic.resolution_m;
-  thesis.backward.resolution_rad = genetic.resolution_rad;
-  return thesis;
+LocalizerConfig with_one_resolution(LocalizerConfig config) {
+  config.thesis.backward.resolution_m = config.genetic.resolution_m;
+  config.thesis.backward.resolution_rad = config.genetic.resolution_rad;
+  return config;
 }
 
 }  // namespace
 
-ThesisLocalizer::ThesisLocalizer(const LocalizerConfig& config, MatchPool& pool,
-                                 const ThesisConfig& thesis)
-    : config_(config),
-      thesis_(thesis),
-      map_(config, thesis.cycle_solutions),
-      matching_(config, pool),
-      cycles_(config, with_resolution(thesis, config.genetic)) {}
+ThesisLocalizer::ThesisLocalizer(const LocalizerConfig& config, MatchPool& pool)
+    : config_(with_one_resolution(config)),
+      map_(config_, config_.thesis.cycle_solutions),
+      matching_(config_, pool),
+      cycles_(config_) {}
 
 bool ThesisLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   map_.append(std::move(map));
   matching_.add(map_);
   if (map_.size() == 1) {
     map_.place_first();
-    belief_ = {LocalizationState::kTracking, 1.0};
+    status_ = {LocalizationState::kTracking, 1.0};
     return false;
   }
   correct_forward();
@@ -58,7 +56,7 @@ void ThesisLocalizer::correct_forward() {
   const bool sure = best != nullptr && best->result.verdict == Verdict::kAccepted;
   if (!sure) ++steps_in_doubt_;
   const double fitness = best == nullptr ? 0.0 : best->result.fitness;
-  belief_ = {sure ? LocalizationState::kTracking : LocalizationState::kAmbiguous,
+  status_ = {sure ? LocalizationState::kTracking : LocalizationState::kAmbiguous,
              sure ? fitness : 0.5 * fitness};
 }
 
@@ -93,7 +91,7 @@ std::vector<ThesisNeighbour> ThesisLocalizer::forward_neighbours() {
                      const bool previous_b = b.id + 1 == stop;
                      return previous_a != previous_b ? previous_a : a.overlap > b.overlap;
                    });
-  if (with.size() > thesis_.matches) with.resize(thesis_.matches);
+  if (with.size() > config_.thesis.matches) with.resize(config_.thesis.matches);
   return with;
 }
 

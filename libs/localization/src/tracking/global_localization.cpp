@@ -35,6 +35,16 @@ constexpr std::size_t kClimbing = 300;     // best seeds that climb in the fine 
 constexpr std::size_t kAligned = 8;        // best climbed places that are aligned point to line
 constexpr double kNearStop_m = 6.0;        // a stored stop this near sees most of what a scan does
 
+// The answer to one scan. The limits were chosen on logs with known poses (tests/bench,
+// topogeo_relocalization) so that no wrong place is accepted.
+constexpr std::size_t kPosesWanted =
+    5;  // distinct ones; the second shows whether the first is sure
+constexpr double kSmallestFitness = 0.60;  // a pose with less is rejected
+constexpr double kLargestDoubt = 2.2;      // and one with more, as by `gate.largest_doubt`
+constexpr double kLargestRivalry =
+    0.85;  // fitness of the best pose elsewhere over that of the best
+constexpr std::size_t kFewestPoints = 25;  // of the scan, thinned; fewer prove nothing
+
 /// At most about `count`, spread over the scan.
 std::vector<SurfacePoint> spread(const std::vector<SurfacePoint>& points, std::size_t count) {
   const std::size_t stride = std::max<std::size_t>(1, (points.size() + count - 1) / count);
@@ -101,10 +111,9 @@ bool same_global_place(const Pose2& a, const Pose2& b) {
          std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) < kApart_rad;
 }
 
-GlobalLocalizer::GlobalLocalizer(const GlobalLocalizationConfig& config,
-                                 std::span<const topomap::LocalMap> maps,
+GlobalLocalizer::GlobalLocalizer(std::span<const topomap::LocalMap> maps,
                                  const topomap::Trajectory& trajectory)
-    : config_(config), maps_(maps) {
+    : maps_(maps) {
   if (trajectory.stops.empty() || maps.size() < trajectory.stops.size()) {
     throw std::invalid_argument("global localization: " + std::to_string(maps.size()) +
                                 " local maps for " + std::to_string(trajectory.stops.size()) +
@@ -336,7 +345,7 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
                                    const Pose2& T_robot_laser) const {
   GlobalAnswer answer;
   const MatchFeatures query = extract_scan_features(points, T_robot_laser);
-  if (query.coarse.size() < config_.fewest_points) return answer;
+  if (query.coarse.size() < kFewestPoints) return answer;
   std::vector<GlobalPose> found;
   for (const Climbed& place : places(query, kAligned)) found.push_back(aligned(query, place));
   const auto value = [](const GlobalPose& p) {
@@ -345,7 +354,7 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
   std::stable_sort(found.begin(), found.end(),
                    [&](const GlobalPose& a, const GlobalPose& b) { return value(a) > value(b); });
   for (const GlobalPose& pose : found) {
-    if (answer.poses.size() == config_.poses_wanted) break;
+    if (answer.poses.size() == kPosesWanted) break;
     const bool known =
         std::any_of(answer.poses.begin(), answer.poses.end(), [&](const GlobalPose& other) {
           return same_global_place(other.T_map_robot, pose.T_map_robot);
@@ -355,11 +364,10 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
   if (answer.poses.empty()) return answer;
   const GlobalPose& best = answer.poses.front();
   if (answer.poses.size() > 1) answer.rivalry = value(answer.poses[1]) / value(best);
-  if (best.fitness < config_.smallest_fitness || best.doubt > config_.largest_doubt) {
+  if (best.fitness < kSmallestFitness || best.doubt > kLargestDoubt) {
     answer.verdict = Verdict::kRejected;
   } else {
-    answer.verdict =
-        answer.rivalry > config_.largest_rivalry ? Verdict::kAmbiguous : Verdict::kAccepted;
+    answer.verdict = answer.rivalry > kLargestRivalry ? Verdict::kAmbiguous : Verdict::kAccepted;
   }
   return answer;
 }

@@ -23,7 +23,7 @@ constexpr double kLeastConformity = 0.3;  // a share of points through walls is 
 
 topomap::StopPose pose_of(const LocalizedStop& stop) {
   return {stop.id,         stop.stamp_ns, stop.T_map_robot,
-          stop.covariance, stop.id,       located(stop.belief.state)};
+          stop.covariance, stop.id,       located(stop.status.state)};
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
     look_around(stop);
     accepted = decide();
   }
-  stops_.push_back({map->id, map->stamp_ns, pose_.T_a_b, pose_.covariance, belief_, accepted});
+  stops_.push_back({map->id, map->stamp_ns, pose_.T_a_b, pose_.covariance, status_, accepted});
   return false;
 }
 
@@ -89,8 +89,8 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   pose_ = fused(step.accepted.empty() ? uncertain : accepted);
   step.evidence.covariance = pose_.covariance;
   if (!sure) step.evidence.better_elsewhere = better_elsewhere(stop);
-  belief_ = monitor_.add(step.evidence);
-  if (belief_.state == LocalizationState::kLost) {
+  status_ = monitor_.add(step.evidence);
+  if (status_.state == LocalizationState::kLost) {
     begin_search();
     look_around(stop);
   }
@@ -136,7 +136,7 @@ void MapLocalizer::begin_search() {
 
 void MapLocalizer::search() {
   begin_search();
-  belief_ = {LocalizationState::kSearching, 0.0};
+  status_ = {LocalizationState::kSearching, 0.0};
 }
 
 // Adds the places of the whole map that fit this stop, and weighs all by it.
@@ -180,14 +180,14 @@ void MapLocalizer::match_hypotheses(const DriveStop& stop) {
 // Takes the pose of the one place that is left, or the state of the search. Returns whether the
 // best place was seen at this stop.
 std::uint32_t MapLocalizer::decide() {
-  belief_ = {LocalizationState::kSearching, 0.0};
+  status_ = {LocalizationState::kSearching, 0.0};
   const std::optional<PlaceHypothesis> best = search_.best();
   if (!best) return 0;
   pose_ = best->pose;
-  belief_.confidence = best->weight * covariance_confidence(pose_.covariance);
+  status_.confidence = best->weight * covariance_confidence(pose_.covariance);
   std::uint32_t accepted = 0;
   if (best->seen > 0 && best->weight >= 0.5) {
-    belief_.state = LocalizationState::kAmbiguous;
+    status_.state = LocalizationState::kAmbiguous;
     accepted = best->missed == 0 ? 1 : 0;
   }
   if (!PlaceSearch::found(*best)) return accepted;
@@ -196,7 +196,7 @@ std::uint32_t MapLocalizer::decide() {
   evidence.points = kFewestSearched;
   evidence.covariance = pose_.covariance;
   monitor_.restart(best->weight);
-  belief_ = monitor_.add(evidence);
+  status_ = monitor_.add(evidence);
   search_.begin();
   return accepted;
 }
@@ -208,12 +208,12 @@ void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& cov
   has_pose_ = true;
   search_.begin();
   monitor_.restart(kGivenPoseRight);
-  belief_ = {LocalizationState::kAmbiguous,
+  status_ = {LocalizationState::kAmbiguous,
              kGivenPoseRight * covariance_confidence(pose_.covariance)};
   if (!stops_.empty()) {
     stops_.back().T_map_robot = pose_.T_a_b;
     stops_.back().covariance = pose_.covariance;
-    stops_.back().belief = belief_;
+    stops_.back().status = status_;
   }
 }
 

@@ -19,7 +19,7 @@ StoredMapMatching::StoredMapMatching(const LocalizerConfig& config,
                                      std::shared_ptr<const StoredMap> map, MatchPool& pool)
     : config_(config),
       map_(std::move(map)),
-      places_({}, map_->maps, map_->trajectory),
+      places_(map_->maps, map_->trajectory),
       requests_(config, pool) {
   for (const topomap::LocalMap& local_map : map_->maps) {
     requests_.add_map(std::shared_ptr<const topomap::LocalMap>(map_, &local_map));

@@ -110,12 +110,12 @@ TEST(LaserCalibrationTest, WithoutTurnsOnlyTheYawIsKnown) {
 TEST(LaserCalibrationTest, OnTheSpotOnlyThePositionIsKnown) {
   Drive drive;
   drive.noise = small_noise();
-  drive.way_m = 0.0;
+  drive.path_m = 0.0;
   drive.T_robot_laser = {0.2, 0.1, 0.1};
   const LaserCalibration found = calibrate_mounting(drive, 4);
   EXPECT_FALSE(found.yaw_rad.known);
   EXPECT_EQ(found.yaw_rad.value, 0.0);
-  EXPECT_EQ(found.with_way, 0U);
+  EXPECT_EQ(found.with_path, 0U);
   // What is known is where the robot turns, seen from the laser: with a laser that is taken to look
   // forward, that is (0.2, 0.1) turned back by the yaw.
   const Eigen::Vector2d place = Pose2{0.0, 0.0, -0.1} * Eigen::Vector2d(0.2, 0.1);

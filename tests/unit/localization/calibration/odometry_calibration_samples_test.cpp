@@ -22,7 +22,7 @@ using geometry::Pose2;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-// Stops a second apart, one metre on, with one scan between each two at half the way.
+// Stops a second apart, one metre on, with one scan between each two half way between them.
 LocalMaps straight_maps(std::uint32_t stops) {
   LocalMaps maps;
   for (std::uint32_t i = 0; i < stops; ++i) {

@@ -110,13 +110,13 @@ TEST(OdometryCalibrationTest, FindsSystematicErrorsAndTakesThemOut) {
   drive.T_robot_laser = {0.12, -0.03, 0.02};
   const OdometryCalibration found = calibrate(simulate(drive, 5));
   const SystematicErrors& s = found.systematic;
-  EXPECT_NEAR(s.way.value, 0.03, 4.0 * s.way.spread);
+  EXPECT_NEAR(s.distance.value, 0.03, 4.0 * s.distance.spread);
   EXPECT_NEAR(s.heading_rad_per_m.value, 0.05, 4.0 * s.heading_rad_per_m.spread);
   EXPECT_NEAR(s.turn.value, 0.06, 4.0 * s.turn.spread);
   EXPECT_NEAR(s.ahead_m.value, 0.12, 4.0 * s.ahead_m.spread);
   EXPECT_NEAR(s.left_m.value, -0.03, 4.0 * s.left_m.spread);
   EXPECT_NEAR(s.yaw_rad.value, 0.02, 4.0 * s.yaw_rad.spread);
-  EXPECT_LT(s.way.spread, 0.01);
+  EXPECT_LT(s.distance.spread, 0.01);
   EXPECT_LT(s.heading_rad_per_m.spread, 0.01);
   EXPECT_LT(s.turn.spread, 0.03);
   EXPECT_LT(s.ahead_m.spread, 0.02);
@@ -180,7 +180,7 @@ TEST(OdometryCalibrationTest, ALogWithoutTurnsSaysNothingOfThem) {
 
 TEST(OdometryCalibrationTest, ALogOfTurnsOnTheSpotSaysNothingOfTheWay) {
   Drive drive;
-  drive.way_m = 0.0;
+  drive.path_m = 0.0;
   const OdometryCalibration found = calibrate(simulate(drive, 1));
   for (std::size_t p = 0; p < kNoiseParameters; ++p) {
     EXPECT_EQ(found.parameters[p].known, kOdometryParameters[p].per_turn);
@@ -227,7 +227,7 @@ TEST(OdometryCalibrationTest, TooLittleMotionIsToldWithNumbers) {
     EXPECT_NE(std::string(error.what()).find("at least 20"), std::string::npos) << error.what();
   }
   drive = {};
-  drive.way_m = 0.0;
+  drive.path_m = 0.0;
   drive.turn_rad = 0.0;
   EXPECT_THROW(calibrate(simulate(drive, 1)), std::runtime_error);
   EXPECT_THROW(calibrate({}), std::runtime_error);

@@ -57,34 +57,34 @@ void drive(StateMonitor& monitor, std::size_t stops) {
 TEST(StateMonitor, ALongDriveOfBelievedMatchesStaysTracking) {
   StateMonitor monitor;
   drive(monitor, 500);
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kTracking);
-  EXPECT_GT(monitor.belief().confidence, 0.9);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kTracking);
+  EXPECT_GT(monitor.status().confidence, 0.9);
 }
 
 TEST(StateMonitor, AKidnappedRobotIsLostWithinThreeStopsAndStaysSo) {
   StateMonitor monitor;
   drive(monitor, 20);
   monitor.add(step({refuted(19), refuted(18), refuted(17)}));
-  EXPECT_NE(monitor.belief().state, LocalizationState::kTracking);
+  EXPECT_NE(monitor.status().state, LocalizationState::kTracking);
   // The stops of the new place fit each other perfectly.
   monitor.add(step({good(20), refuted(19), refuted(18)}));
   monitor.add(step({good(21), good(20), refuted(19)}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
   drive(monitor, 50);
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
-  EXPECT_LT(monitor.belief().confidence, 0.25);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
+  EXPECT_LT(monitor.status().confidence, 0.25);
   // Until it recognises a place of before.
   monitor.add(step({good(monitor.steps() - 1), good(5)}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kTracking);
 }
 
 TEST(StateMonitor, OneStopThatFitsNothingIsForgivenWhenTheNextOneFitsWhatWasBefore) {
   StateMonitor monitor;
   drive(monitor, 20);
   monitor.add(step({refuted(19), refuted(18)}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kAmbiguous);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kAmbiguous);
   monitor.add(step({refuted(20), good(19)}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kTracking);
 }
 
 TEST(StateMonitor, ABlindedLaserLosesTheRobotWithinThreeStops) {
@@ -93,7 +93,7 @@ TEST(StateMonitor, ABlindedLaserLosesTheRobotWithinThreeStops) {
   StepEvidence blind = step({});
   blind.points = 0;
   for (int i = 0; i < 3; ++i) monitor.add(blind);
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
 }
 
 TEST(StateMonitor, OdometryAloneMakesItAmbiguousLongBeforeItIsLost) {
@@ -101,20 +101,20 @@ TEST(StateMonitor, OdometryAloneMakesItAmbiguousLongBeforeItIsLost) {
   drive(monitor, 5);
   for (int i = 1; i <= 10; ++i) {
     monitor.add(step({}, 0.01 * i));
-    EXPECT_EQ(monitor.belief().state, LocalizationState::kAmbiguous) << i;
+    EXPECT_EQ(monitor.status().state, LocalizationState::kAmbiguous) << i;
   }
 }
 
 TEST(StateMonitor, AlongABareCorridorConfidenceFallsWithTheCovariance) {
   StateMonitor monitor;
   monitor.add(step({}));
-  double last = monitor.belief().confidence;
+  double last = monitor.status().confidence;
   for (int i = 1; i <= 20; ++i) {
     monitor.add(step({good(monitor.steps() - 1)}, 0.02 * i));
-    EXPECT_LT(monitor.belief().confidence, last);
-    last = monitor.belief().confidence;
+    EXPECT_LT(monitor.status().confidence, last);
+    last = monitor.status().confidence;
   }
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kAmbiguous);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kAmbiguous);
 }
 
 TEST(StateMonitor, LittleInViewThatFitsContradictsNothing) {
@@ -134,23 +134,23 @@ TEST(StateMonitor, LittleInViewThatFitsContradictsNothing) {
   little.inliers = 0.97;
   little.expected_overlap = 0.8;
   for (int i = 0; i < 5; ++i) monitor.add(step({little}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kAmbiguous);
-  EXPECT_GT(monitor.belief().confidence, 0.8);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kAmbiguous);
+  EXPECT_GT(monitor.status().confidence, 0.8);
 }
 
 TEST(StateMonitor, AnInitialPoseRestartsIt) {
   StateMonitor monitor;
   drive(monitor, 3);
   for (int i = 0; i < 4; ++i) monitor.add(step({refuted(std::nullopt), refuted(std::nullopt)}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
   monitor.restart(0.9);
   monitor.add(step({}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kTracking);
-  EXPECT_NEAR(monitor.belief().confidence, 0.9, 0.05);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kTracking);
+  EXPECT_NEAR(monitor.status().confidence, 0.9, 0.05);
   // A pose that the scan contradicts is not taken on trust.
   monitor.restart(0.9);
   for (int i = 0; i < 2; ++i) monitor.add(step({refuted(std::nullopt), refuted(std::nullopt)}));
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
 }
 
 TEST(StateMonitor, MatchesThatFitDoNotHelpWhereAnotherPlaceFitsMuchBetter) {
@@ -159,7 +159,7 @@ TEST(StateMonitor, MatchesThatFitDoNotHelpWhereAnotherPlaceFitsMuchBetter) {
   StepEvidence evidence = step({good(std::nullopt)});
   evidence.better_elsewhere = 0.3;
   for (int i = 0; i < 2; ++i) monitor.add(evidence);
-  EXPECT_EQ(monitor.belief().state, LocalizationState::kLost);
+  EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
 }
 
 TEST(StateMonitor, AMatchWithAStepToComeIsAnError) {

@@ -19,9 +19,9 @@ using geometry::Pose2;
 
 constexpr OdometryNoise kSmallNoise{0.0004, 0.0004, 0.0001, 0.0004, 0.0005};
 
-UncertainPose drive_straight(double way_m, int steps, const OdometryNoise& noise) {
+UncertainPose drive_straight(double distance_m, int steps, const OdometryNoise& noise) {
   UncertainPose pose;
-  for (int i = 0; i < steps; ++i) pose = advance(pose, {way_m / steps, 0.0, 0.0}, noise);
+  for (int i = 0; i < steps; ++i) pose = advance(pose, {distance_m / steps, 0.0, 0.0}, noise);
   return pose;
 }
 
@@ -33,12 +33,12 @@ TEST(OdometryModelTest, HasTheModelOfTheSourceAsASpecialCase) {
   const std::vector<std::pair<double, double>> steps{{1.0, 0.0}, {2.0, 0.0}, {0.5, 0.4}};
   Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
   UncertainPose found;
-  for (const auto& [way_m, turn_rad] : steps) {
+  for (const auto& [distance_m, turn_rad] : steps) {
     Eigen::Matrix3d j = Eigen::Matrix3d::Identity();
-    j(1, 2) = way_m;  // 6.7 at heading 0
-    const Eigen::Vector3d q(k11 * way_m, 0.0, k33 * turn_rad);
+    j(1, 2) = distance_m;  // 6.7 at heading 0
+    const Eigen::Vector3d q(k11 * distance_m, 0.0, k33 * turn_rad);
     expected = (j * expected * j.transpose() + Eigen::Matrix3d(q.asDiagonal())).eval();
-    found = advance(found, {way_m, 0.0, turn_rad}, source);
+    found = advance(found, {distance_m, 0.0, turn_rad}, source);
   }
   EXPECT_TRUE(found.covariance.isApprox(expected, 1e-12)) << found.covariance;
 }
@@ -75,15 +75,15 @@ TEST(OdometryModelTest, EveryVarianceGrowsOnAStraightWay) {
 
 TEST(OdometryModelTest, DoesNotDependOnHowAStraightWayIsCut) {
   const OdometryNoise noise;
-  const double way_m = 5.0;
-  const Eigen::Matrix3d fine = drive_straight(way_m, 1000, noise).covariance;
+  const double distance_m = 5.0;
+  const Eigen::Matrix3d fine = drive_straight(distance_m, 1000, noise).covariance;
   for (const int steps : {1, 3, 20, 200}) {
-    const Eigen::Matrix3d cut = drive_straight(way_m, steps, noise).covariance;
+    const Eigen::Matrix3d cut = drive_straight(distance_m, steps, noise).covariance;
     EXPECT_TRUE(cut.isApprox(fine, 1e-9)) << steps << "\n" << cut;
   }
   // The limit: lateral noise, and heading noise q per metre that leaves q L^3 / 3 across.
-  const double limit_m2 =
-      noise.lateral_m2_per_m * way_m + noise.heading_rad2_per_m * way_m * way_m * way_m / 3.0;
+  const double limit_m2 = noise.lateral_m2_per_m * distance_m +
+                          noise.heading_rad2_per_m * distance_m * distance_m * distance_m / 3.0;
   EXPECT_NEAR(fine(1, 1) / limit_m2, 1.0, 1e-9);
 }
 

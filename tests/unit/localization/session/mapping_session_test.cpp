@@ -138,7 +138,7 @@ TEST_F(MappingSessionTest, AnInitialPoseSparesTheSearch) {
   const Maps drive = second();
   for (std::size_t i = 0; i < 3; ++i) session.add(drive[i]);
   EXPECT_EQ(session.maps().size(), kFirst + 3);
-  EXPECT_EQ(session.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(session.status().state, LocalizationState::kTracking);
 }
 
 TEST_F(MappingSessionTest, InAnotherBuildingTheMapStaysAsItWas) {
@@ -151,7 +151,7 @@ TEST_F(MappingSessionTest, InAnotherBuildingTheMapStaysAsItWas) {
   EXPECT_EQ(session.waiting_stops(), other.size());
   EXPECT_TRUE(same_poses(session.trajectory(), stored_->trajectory));
   EXPECT_EQ(session.trajectory().version, stored_->trajectory.version);
-  EXPECT_NE(session.belief().state, LocalizationState::kTracking);
+  EXPECT_NE(session.status().state, LocalizationState::kTracking);
 }
 
 TEST_F(MappingSessionTest, StopsAndResumesMapping) {

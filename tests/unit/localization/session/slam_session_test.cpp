@@ -63,7 +63,7 @@ TEST_F(SlamSessionTest, LocalizingNeverMapsAndStartsAtTheGivenPose) {
   ASSERT_NE(session.follower(), nullptr);
   EXPECT_FALSE(session.mapping());
   session->add(driven_->maps[0]);
-  EXPECT_EQ(session->belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(session->status().state, LocalizationState::kTracking);
   EXPECT_LT(session->last_stop()->T_map_robot.position_m().norm(), 0.1);
   EXPECT_EQ(session->trajectory().stops.size(), 1U);
 }
@@ -71,7 +71,7 @@ TEST_F(SlamSessionTest, LocalizingNeverMapsAndStartsAtTheGivenPose) {
 TEST_F(SlamSessionTest, WithoutAPoseItSearches) {
   const SlamSession session({}, pool_, nullptr, {stored_, Use::kLocalize, std::nullopt});
   session->add(driven_->maps[0]);
-  EXPECT_NE(session->belief().state, LocalizationState::kTracking);
+  EXPECT_NE(session->status().state, LocalizationState::kTracking);
 }
 
 TEST_F(SlamSessionTest, ContinuingExtendsTheStoredMap) {

@@ -39,7 +39,7 @@ bool is_right(const Pose2& a, const Pose2& b) {
 TEST(GlobalLocalizer, FindsScansThatAreNotInTheMapAndAcceptsNoWrongPlace) {
   const FinishedMap map("floor");
   const world::World world = test::world("floor");
-  const GlobalLocalizer localizer({}, map.maps, map.trajectory);
+  const GlobalLocalizer localizer(map.maps, map.trajectory);
   int asked = 0;
   int right = 0;
   int accepted = 0;
@@ -63,7 +63,7 @@ TEST(GlobalLocalizer, FindsScansThatAreNotInTheMapAndAcceptsNoWrongPlace) {
 
 TEST(GlobalLocalizer, AnswersTheSameTwice) {
   const FinishedMap map("floor");
-  const GlobalLocalizer localizer({}, map.maps, map.trajectory);
+  const GlobalLocalizer localizer(map.maps, map.trajectory);
   const auto points = points_at(test::world("floor"), map.trajectory.stops[20].T_map_robot);
   const GlobalAnswer a = localizer.find(points, {});
   const GlobalAnswer b = localizer.find(points, {});
@@ -77,7 +77,7 @@ TEST(GlobalLocalizer, AnswersTheSameTwice) {
 TEST(GlobalLocalizer, ARoomOfAnotherBuildingIsNotAccepted) {
   const FinishedMap map("floor");
   const FinishedMap other("room");
-  const GlobalLocalizer localizer({}, map.maps, map.trajectory);
+  const GlobalLocalizer localizer(map.maps, map.trajectory);
   for (std::size_t i = 0; i < other.maps.size(); i += 3) {
     EXPECT_NE(localizer.find(other.maps[i].points, {}).verdict, Verdict::kAccepted) << i;
   }
@@ -85,18 +85,18 @@ TEST(GlobalLocalizer, ARoomOfAnotherBuildingIsNotAccepted) {
 
 TEST(GlobalLocalizer, AScanOfNextToNothingIsRejected) {
   const FinishedMap map("room");
-  const GlobalLocalizer localizer({}, map.maps, map.trajectory);
+  const GlobalLocalizer localizer(map.maps, map.trajectory);
   const GlobalAnswer answer = localizer.find({}, {});
   EXPECT_EQ(answer.verdict, Verdict::kRejected);
   EXPECT_TRUE(answer.poses.empty());
 }
 
 TEST(GlobalLocalizer, AMapWithoutStopsOrPointsIsAnError) {
-  EXPECT_THROW(GlobalLocalizer({}, {}, {}), std::invalid_argument);
+  EXPECT_THROW(GlobalLocalizer({}, {}), std::invalid_argument);
   const std::vector<topomap::LocalMap> blind(1);
   topomap::Trajectory trajectory;
   trajectory.stops.resize(1);
-  EXPECT_THROW(GlobalLocalizer({}, blind, trajectory), std::invalid_argument);
+  EXPECT_THROW(GlobalLocalizer(blind, trajectory), std::invalid_argument);
 }
 
 TEST(KernelGrid, IsFullAtAPointAndNothingBeyondItsWidth) {

@@ -78,8 +78,8 @@ TEST_F(MapLocalizerTest, FollowsAnotherDriveFromAnInitialPose) {
   for (std::size_t i = 0; i < 60; ++i) {
     follow(localizer, i, i + 1);
     EXPECT_TRUE(right(localizer, i)) << i;
-    EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking) << i;
-    EXPECT_GT(localizer.belief().confidence, 0.8) << i;
+    EXPECT_EQ(localizer.status().state, LocalizationState::kTracking) << i;
+    EXPECT_GT(localizer.status().confidence, 0.8) << i;
   }
   EXPECT_EQ(localizer.searches(), 0U);
 }
@@ -87,9 +87,9 @@ TEST_F(MapLocalizerTest, FollowsAnotherDriveFromAnInitialPose) {
 TEST_F(MapLocalizerTest, FindsItselfWithoutAPose) {
   MapLocalizer localizer = make();
   add(localizer, 40, {});
-  EXPECT_NE(localizer.belief().state, LocalizationState::kTracking);  // one scan is not enough
+  EXPECT_NE(localizer.status().state, LocalizationState::kTracking);  // one scan is not enough
   follow(localizer, 41, 48);
-  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
   EXPECT_TRUE(right(localizer, 47));
 }
 
@@ -97,17 +97,17 @@ TEST_F(MapLocalizerTest, ACarriedRobotIsLostWithinThreeStopsAndFindsItself) {
   MapLocalizer localizer = make();
   localizer.set_pose(drive_->T_world_robot[0], kKnown);
   follow(localizer, 0, 12);
-  ASSERT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  ASSERT_EQ(localizer.status().state, LocalizationState::kTracking);
   const std::size_t elsewhere = 60;
   add(localizer, elsewhere, {1.0, 0.0, 0.0});  // odometry noticed nothing
   follow(localizer, elsewhere + 1, elsewhere + 3);
   bool lost = false;
   for (std::size_t i = 12; i < 15; ++i) {
-    lost |= localizer.stops()[i].belief.state == LocalizationState::kLost;
+    lost |= localizer.stops()[i].status.state == LocalizationState::kLost;
   }
   EXPECT_TRUE(lost);
   follow(localizer, elsewhere + 3, elsewhere + 9);
-  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
   EXPECT_TRUE(right(localizer, elsewhere + 8));
   EXPECT_EQ(localizer.searches(), 1U);
 }
@@ -124,11 +124,11 @@ TEST_F(MapLocalizerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
     blind.T_odom_robot = T_odom_;
     localizer.add(std::make_shared<const topomap::LocalMap>(blind));
   }
-  EXPECT_FALSE(localizer.belief().state == LocalizationState::kTracking);
-  EXPECT_LT(localizer.belief().confidence, 0.3);
+  EXPECT_FALSE(localizer.status().state == LocalizationState::kTracking);
+  EXPECT_LT(localizer.status().confidence, 0.3);
   add(localizer, 14, {0.5, 0.0, 0.0});
   follow(localizer, 15, 20);
-  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
   EXPECT_TRUE(right(localizer, 19));
 }
 
@@ -137,7 +137,7 @@ TEST_F(MapLocalizerTest, InAnotherBuildingItNeverTracks) {
   MapLocalizer localizer = make();
   for (std::size_t i = 0; i < std::min<std::size_t>(other.maps.size(), 20); ++i) {
     localizer.add(other.maps[i]);
-    EXPECT_NE(localizer.belief().state, LocalizationState::kTracking) << i;
+    EXPECT_NE(localizer.status().state, LocalizationState::kTracking) << i;
   }
 }
 
@@ -145,7 +145,7 @@ TEST_F(MapLocalizerTest, AWrongInitialPoseIsNotBelievedForLong) {
   MapLocalizer localizer = make();
   localizer.set_pose(drive_->T_world_robot[70], kKnown);
   follow(localizer, 0, 12);
-  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
   EXPECT_TRUE(right(localizer, 11));
 }
 
@@ -154,11 +154,11 @@ TEST_F(MapLocalizerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
   localizer.set_pose(drive_->T_world_robot[0], kKnown);
   follow(localizer, 0, 5);
   localizer.search();
-  EXPECT_EQ(localizer.belief().state, LocalizationState::kSearching);
+  EXPECT_EQ(localizer.status().state, LocalizationState::kSearching);
   follow(localizer, 5, 6);
   localizer.set_pose(drive_->T_world_robot[5], kKnown);
   follow(localizer, 6, 7);
-  EXPECT_EQ(localizer.belief().state, LocalizationState::kTracking);
+  EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
   EXPECT_TRUE(right(localizer, 6));
 }
 

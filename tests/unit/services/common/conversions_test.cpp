@@ -152,8 +152,8 @@ TEST_P(Conversions, LivePoseIsExact) {
   const LivePose back = from_msg(to_msg(pose, "robot"));
   EXPECT_EQ(back.stamp_ns, pose.stamp_ns);
   EXPECT_EQ(back.sequence, pose.sequence);
-  EXPECT_EQ(back.belief.state, pose.belief.state);
-  EXPECT_EQ(back.belief.confidence, pose.belief.confidence);
+  EXPECT_EQ(back.status.state, pose.status.state);
+  EXPECT_EQ(back.status.confidence, pose.status.confidence);
   EXPECT_EQ(back.mode, pose.mode);
   EXPECT_EQ(back.T_map_robot, pose.T_map_robot);
   EXPECT_EQ(back.covariance, pose.covariance);

@@ -95,9 +95,9 @@ TEST(NavigationConversions, SonarsWithoutAConeOrWithNegativeRangesAreRefused) {
 
 TEST(NavigationConversions, OnlyATrackedPoseIsOneToDriveBy) {
   LivePose pose;
-  pose.belief.state = localization::LocalizationState::kTracking;
+  pose.status.state = localization::LocalizationState::kTracking;
   EXPECT_TRUE(to_pose_fix(pose).tracking);
-  pose.belief.state = localization::LocalizationState::kAmbiguous;
+  pose.status.state = localization::LocalizationState::kAmbiguous;
   EXPECT_FALSE(to_pose_fix(pose).tracking);
   EXPECT_EQ(to_pose_fix(pose).state_text, "AMBIGUOUS");
 }

@@ -55,9 +55,9 @@ TEST_F(LocalizerCommands, SwitchesToLocalizationAndBack) {
   EXPECT_FALSE(slam_.mapping());
   EXPECT_FALSE(send(msg::kCommandSwitchToLocalization).accepted);
   EXPECT_TRUE(send(msg::kCommandSearch).accepted);
-  EXPECT_EQ(slam_->belief().state, localization::LocalizationState::kSearching);
+  EXPECT_EQ(slam_->status().state, localization::LocalizationState::kSearching);
   EXPECT_TRUE(send(msg::kCommandSetPose).accepted);
-  EXPECT_EQ(slam_->belief().state, localization::LocalizationState::kAmbiguous);
+  EXPECT_EQ(slam_->status().state, localization::LocalizationState::kAmbiguous);
   EXPECT_TRUE(send(msg::kCommandSwitchToMapping).accepted);
   EXPECT_TRUE(slam_.mapping());
 }

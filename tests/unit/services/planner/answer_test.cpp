@@ -57,7 +57,7 @@ std::vector<Eigen::Vector2d> shut_door_m() {
 
 std::optional<service::LivePose> pose_at(double x_m, double y_m, double theta_rad = 0.0) {
   service::LivePose pose;
-  pose.belief.state = localization::LocalizationState::kTracking;
+  pose.status.state = localization::LocalizationState::kTracking;
   pose.T_map_robot = {x_m, y_m, theta_rad};
   return pose;
 }
@@ -161,11 +161,11 @@ TEST(Answer, WithoutMapOrPoseThereIsNone) {
   EXPECT_EQ(answer(goal, nullptr, pose_at(1.55, 2.05), {}).status(), msg::kRouteNoMap);
   EXPECT_EQ(answer(goal, &map, std::nullopt, {}).status(), msg::kRouteNoPose);
   auto lost = pose_at(1.55, 2.05);
-  lost->belief.state = localization::LocalizationState::kLost;
+  lost->status.state = localization::LocalizationState::kLost;
   const msg::Route route = answer(goal, &map, lost, {});
   EXPECT_EQ(route.status(), msg::kRouteNoPose);
   EXPECT_THAT(route.message().to_string(), HasSubstr("LOST"));
-  lost->belief.state = localization::LocalizationState::kAmbiguous;
+  lost->status.state = localization::LocalizationState::kAmbiguous;
   EXPECT_EQ(answer(goal, &map, lost, {}).status(), msg::kRouteFound);
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "topogeo/localization/calibration/odometry_calibration_config.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/navigation/explorer_config.hpp"
 #include "topogeo/navigation/navigator_config.hpp"
@@ -28,6 +29,7 @@ struct Config {
   planning::HybridPlannerConfig hybrid_planner;
   navigation::NavigatorConfig navigator;
   navigation::TourConfig exploration;
+  localization::OdometryCalibrationConfig calibration;
 };
 
 /// Every key of the file: what the libraries declare of their settings, one after the other.

@@ -23,7 +23,7 @@ struct LoopCandidate {
   std::uint32_t earlier_id = 0;
   std::uint32_t later_id = 0;
   std::string outcome;  ///< "accepted" or why it was not taken
-  std::string reason;   ///< of the match: "accepted" or why it is not believed
+  std::string reason;   ///< of the match: "accepted" or why it was rejected
   geometry::Pose2 T_earlier_later;
   double correction_m = 0.0;  ///< how far the match moves the later stop
   double correction_rad = 0.0;

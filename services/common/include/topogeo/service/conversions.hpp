@@ -119,7 +119,7 @@ topomap::TrackedScan from_msg(const msg::TrackedPose& message);
 struct LivePose {
   std::int64_t stamp_ns = 0;   ///< of the scan
   std::uint64_t sequence = 0;  ///< of the scan
-  localization::Belief belief;
+  localization::LocalizationStatus status;
   msg::LocalizerMode mode = msg::kModeMapping;
   geometry::Pose2 T_map_robot;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame

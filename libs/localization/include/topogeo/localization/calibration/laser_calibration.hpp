@@ -35,7 +35,7 @@ struct LaserCalibration {
   MountingEstimate x_m;       ///< forward of the point that odometry refers to
   MountingEstimate y_m;       ///< to the left of it
   MountingEstimate yaw_rad;   ///< counter-clockwise
-  std::size_t with_way = 0;   ///< stretches that bear on yaw
+  std::size_t with_path = 0;  ///< stretches that bear on yaw
   std::size_t with_turn = 0;  ///< stretches that bear on x and y
   std::size_t motions = 0;    ///< used
   std::size_t outlying = 0;   ///< left out

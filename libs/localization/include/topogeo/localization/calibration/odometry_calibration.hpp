@@ -33,6 +33,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/calibration/odometry_calibration_config.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
@@ -62,14 +63,6 @@ inline constexpr std::size_t kNoiseParameters = 5;
 /// In the order of the configuration file.
 extern const std::array<NoiseParameter, kNoiseParameters> kOdometryParameters;
 
-struct OdometryCalibrationConfig {
-  OdometryNoise fallback;              ///< for what the log does not show
-  double largest_mahalanobis2 = 25.0;  ///< of a residual (3 d.o.f.); as the gate of matches
-  std::uint32_t blocks = 20;           ///< of the bootstrap, 4 to 1000
-  std::uint32_t resamples = 100;       ///< of the bootstrap, 2 to 100000
-  std::uint64_t seed = 1;              ///< of the bootstrap
-};
-
 struct Estimate {
   double value = 0.0;
   double spread = 0.0;  ///< one standard deviation
@@ -86,9 +79,9 @@ struct NoiseEstimate {
 
 /// Errors of odometry that repeat; positive: the odometry measures too much.
 struct SystematicErrors {
-  Estimate way;                ///< per metre driven: 0.02 where 1 m is measured as 1.02 m
+  Estimate distance;           ///< per metre driven: 0.02 where 1 m is measured as 1.02 m
   Estimate heading_rad_per_m;  ///< counter-clockwise turn measured on a straight path
-  Estimate turn;               ///< per radian of turn, as `way`; 0 +- 0 in a log without turns
+  Estimate turn;               ///< per radian of turn, as `distance`; 0 +- 0 in a log without turns
   // Where the laser (what is measured) sits, seen from where it should on the robot. The first two
   // are 0 +- 0 without turns, the last without driving.
   Estimate ahead_m;
@@ -115,8 +108,9 @@ struct OdometryCalibration {
 inline constexpr std::size_t kFewestStretches = 20;
 
 /// `progress`, if any, is called with how many of the refits are done. Throws std::invalid_argument
-/// when a motion names no stretch or its pose or covariance is none, std::runtime_error when the
-/// motions cover fewer than `kFewestStretches` stretches or nothing moves.
+/// when a setting is out of range, a motion names no stretch or its pose or covariance is none,
+/// std::runtime_error when the motions cover fewer than `kFewestStretches` stretches or nothing
+/// moves.
 OdometryCalibration calibrate_odometry(
     std::span<const OdometryStretch> stretches, std::span<const MeasuredMotion> motions,
     const OdometryCalibrationConfig& config,

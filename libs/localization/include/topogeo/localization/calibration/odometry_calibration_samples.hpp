@@ -3,11 +3,11 @@
 // Without a reference trajectory the yardstick is single matches between recent stops, not the
 // corrected trajectory: that contains the odometry itself (every stop hangs on it, and where a
 // match knows little, along a bare corridor, on nothing else), so residuals against it come out too
-// small, and nobody knows the covariance between two of its poses. A match knows its own, and its
-// errors do not add up with the way. For the same reason every accepted match is refined once more
-// without the odometry as prior. What the corrected trajectory is good for is to tell which matches
-// are wrong: all of them together have shaped it, so a match far from it stands against the others,
-// while a slip of the odometry, which must count, shows in all of them alike.
+// small, and the covariance between two of its poses is not known. A match knows its own, and its
+// errors do not add up along the path. For the same reason every accepted match is refined once
+// more without the odometry as prior. The corrected trajectory does show which matches are wrong:
+// all of them together have shaped it, so a match far from it stands against the others, while a
+// slip of the odometry, which must count, shows in all of them alike.
 #pragma once
 
 #include <cstdint>
@@ -59,12 +59,12 @@ MatchedMotions motions_from_matches(const LocalMaps& maps,
                                     std::span<const RecordingPool::Match> matches,
                                     const topomap::Trajectory& trajectory);
 
-/// Motions from every stop to some of those up to `longest_way_m` of odometry on, by a trajectory
+/// Motions from every stop to some of those up to `longest_path_m` of odometry on, by a trajectory
 /// of the robot in time order. A stop between two of its poses that are at most 0.5 s apart is
 /// interpolated; other stops are left out. The stated deviations are 2 cm and 0.3 degrees, as the
 /// floor of matches.
 std::vector<MeasuredMotion> motions_from_reference(const LocalMaps& maps,
                                                    std::span<const topomap::StampedPose> reference,
-                                                   double longest_way_m);
+                                                   double longest_path_m);
 
 }  // namespace topogeo::localization

@@ -25,8 +25,8 @@ struct GraphSolution {
   std::vector<Eigen::Matrix3d> covariance;   ///< of each pose in the map frame
 };
 
-/// Optimises, leaves out the loops that are outvoted by then and optimises again without them. Says
-/// the same for the same problem. An unusable result gives the poses as they were.
+/// Optimises, leaves out the loops that are outvoted by then and optimises again without them. The
+/// same problem has the same solution. An unusable result gives the poses as they were.
 GraphSolution solve(const GraphProblem& problem);
 
 /// Where the jobs are done. One at a time.

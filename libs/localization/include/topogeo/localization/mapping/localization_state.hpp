@@ -23,7 +23,7 @@ inline bool located(LocalizationState state) {
   return state == LocalizationState::kTracking || state == LocalizationState::kAmbiguous;
 }
 
-struct Belief {
+struct LocalizationStatus {
   LocalizationState state = LocalizationState::kSearching;
   double confidence = 0.0;  ///< probability that the pose is right (0.3 m, 5 degrees), [0, 1]
 };

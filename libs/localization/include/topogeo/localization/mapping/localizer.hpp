@@ -74,7 +74,7 @@ class Localizer : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return loops_.decisions();
   }
-  [[nodiscard]] Belief belief() const override { return monitor_.belief(); }
+  [[nodiscard]] LocalizationStatus status() const override { return monitor_.status(); }
   [[nodiscard]] SlamCounts counts() const override;
 
  private:

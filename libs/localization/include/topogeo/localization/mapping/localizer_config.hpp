@@ -5,6 +5,7 @@
 
 #include "topogeo/localization/matching/match_config.hpp"
 #include "topogeo/localization/matching/odometry_config.hpp"
+#include "topogeo/localization/thesis/thesis_config.hpp"
 
 namespace topogeo::support {
 class ConfigSchema;
@@ -37,9 +38,10 @@ struct LocalizerConfig {
   std::uint32_t optimization_delay = 2;
   std::uint32_t final_passes = 3;
   GateConfig gate;
+  ThesisConfig thesis;
 };
 
-/// Declares the sections `localizer`, `odometry`, `match` and `gate`.
+/// Declares the sections `localizer`, `odometry`, `match`, `gate`, `thesis` and `backward`.
 void describe(LocalizerConfig& config, support::ConfigSchema& schema);
 
 }  // namespace topogeo::localization

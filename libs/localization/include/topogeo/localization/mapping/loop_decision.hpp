@@ -20,7 +20,7 @@ enum class LoopOutcome : std::uint8_t {
 
 inline constexpr std::size_t kLoopOutcomes = 5;
 
-/// "accepted", "match not believed", "unconfirmed", "no consistent closing", "outvoted".
+/// "accepted", "match not accepted", "unconfirmed", "no consistent closing", "outvoted".
 const char* to_string(LoopOutcome outcome);
 
 struct LoopDecision {
@@ -36,7 +36,7 @@ struct LoopDecision {
   double fitness = 0.0;  ///< of the match, [0, 1]
 };
 
-/// Outcome and reason in words, as in reports: "accepted", "match not believed: few inliers", ...
+/// Outcome and reason in words, as in reports: "accepted", "match not accepted: few inliers", ...
 std::string explanation(const LoopDecision& decision);
 
 }  // namespace topogeo::localization

@@ -1,4 +1,4 @@
-// Looks for consistent poses along a loop: from candidates of its last pose back to its first one,
+// Searches consistent poses along a loop: from candidates of its last pose back to its first one,
 // which keeps its place. The search of Thesis, 7.3.1.2 (docs/algorithms.md, "Backward correction").
 //
 // Each pose is replaced from the known steps of its successor; the path whose summed fitness is

@@ -16,10 +16,7 @@ struct LoopSearchConfig {
   double heading_sigmas = 3.0;
   double resolution_m = 0.15;           ///< of the genetic search:
   double resolution_rad = 0.034906585;  ///< the least half-width of an uncertainty
-  bool draw = true;
-  double largest_draw2 = 9.0;      ///< squared deviations: a step is drawn 3 of them at most
-  double same_place_m = 0.03;      ///< of paths nearer to each other than this and this heading
-  double same_place_rad = 0.01;    ///< only the best is kept when there are too many
+  bool draw = true;  ///< tries each pose also where it comes nearer to the expected one
   std::uint32_t paths_wanted = 3;  ///< best paths returned
   friend bool operator==(const LoopSearchConfig&, const LoopSearchConfig&) = default;
 };

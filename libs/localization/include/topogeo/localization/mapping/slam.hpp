@@ -45,7 +45,7 @@ class Slam {
   /// Every loop that was considered so far, in the order of the decisions.
   [[nodiscard]] virtual const std::vector<LoopDecision>& loop_decisions() const = 0;
   /// How well the pose of the last stop is known.
-  [[nodiscard]] virtual Belief belief() const = 0;
+  [[nodiscard]] virtual LocalizationStatus status() const = 0;
   [[nodiscard]] virtual SlamCounts counts() const = 0;
 
  protected:

@@ -55,23 +55,24 @@ struct StepEvidence {
 
 class StateMonitor {
  public:
-  /// The belief after one more stop. The first stop after a start or restart() is right by
+  /// The status after one more stop. The first stop after a start or restart() is right by
   /// definition with the `confidence` of restart() (1 at the start). Throws
   /// std::invalid_argument when a match names a step that has not been.
-  Belief add(const StepEvidence& evidence);
+  LocalizationStatus add(const StepEvidence& evidence);
 
   /// The next stop's pose comes from elsewhere (an operator, a search of the whole map) and is
-  /// right with this probability, whatever the stops before say. Earlier steps keep their numbers.
+  /// right with this probability, whatever the stops before showed. Earlier steps keep their
+  /// numbers.
   void restart(double confidence);
 
-  [[nodiscard]] const Belief& belief() const { return belief_; }
+  [[nodiscard]] const LocalizationStatus& status() const { return status_; }
   [[nodiscard]] std::size_t steps() const { return confidence_.size(); }
 
  private:
   std::vector<double> confidence_;         // of each step that its pose is consistent with the map
   std::optional<double> restarted_ = 1.0;  // confidence of the next step
   std::uint32_t doubted_ = 0;              // steps in succession that came out below kLostBelow
-  Belief belief_;
+  LocalizationStatus status_;
 };
 
 /// Probability that an accepted or doubtful match is right.

@@ -1,8 +1,8 @@
 // The fitness that localization uses: the topological form and the agreement of the scan points,
 // times the likelihood of the pose by odometry.
 //
-// Nodes and branches say where a place is like another one, scan points how well it lies on it;
-// without the odometry either takes the robot to a look-alike.
+// Nodes and branches show which places are alike, scan points how well one lies on the other;
+// without the odometry both lead to look-alikes.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Equality to the last bit, for what must not differ between machines: unlike ==, tells 0 from -0
-// and not a number from itself never.
+// Equality to the last bit, for what must not differ between machines: unlike for ==, 0 and -0
+// differ, and a value that is not a number equals itself.
 #pragma once
 
 #include "topogeo/geometry/pose2.hpp"

@@ -74,8 +74,8 @@ class MappingSession : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return mapper_->loop_decisions();
   }
-  [[nodiscard]] Belief belief() const override {
-    return follower_ ? follower_->belief() : mapper_->belief();
+  [[nodiscard]] LocalizationStatus status() const override {
+    return follower_ ? follower_->status() : mapper_->status();
   }
   [[nodiscard]] SlamCounts counts() const override;
 

@@ -5,12 +5,20 @@
 
 #include "topogeo/localization/mapping/loop_search_config.hpp"
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::localization {
 
 /// The resolutions are also the spacing of the grid of poses that are tried where nothing overlaps.
 struct BackwardConfig : LoopSearchConfig {
-  std::uint32_t largest_grid = 125;  ///< poses of such a grid; a wider space has a wider spacing
+  std::uint32_t largest_grid = 125;
   friend bool operator==(const BackwardConfig&, const BackwardConfig&) = default;
 };
+
+/// Declares the section `backward`. Not declared: the resolutions, which are those of `match`, and
+/// `draw` and `paths_wanted`, of which the tests alone want other values.
+void describe(BackwardConfig& config, support::ConfigSchema& schema);
 
 }  // namespace topogeo::localization

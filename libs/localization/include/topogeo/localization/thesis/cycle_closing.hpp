@@ -17,7 +17,6 @@
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/thesis/backward_correction.hpp"
-#include "topogeo/localization/thesis/thesis_config.hpp"
 #include "topogeo/localization/thesis/thesis_map.hpp"
 #include "topogeo/localization/thesis/thesis_matching.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -27,9 +26,9 @@ namespace topogeo::localization {
 class CycleClosing {
  public:
   /// Of `config` it reads revisit_matches (maps seen again that are matched per step; 0: cycles
-  /// stay open) and unaided_correction_*.
-  CycleClosing(const LocalizerConfig& config, const ThesisConfig& thesis)
-      : config_(config), thesis_(thesis) {}
+  /// stay open), unaided_correction_* and thesis, whose backward
+  /// correction has the resolution of the genetic search.
+  explicit CycleClosing(const LocalizerConfig& config) : config_(config) {}
 
   /// Closes the cycles of the last stop, whose pose by the forward correction is known: forward and
   /// backward in turn, since other maps may overlap once a cycle has closed. True when poses moved.
@@ -52,7 +51,6 @@ class CycleClosing {
               const geometry::Pose2& T_map_before);
 
   LocalizerConfig config_;
-  ThesisConfig thesis_;
   std::vector<topomap::LoopClosure> closures_;
   std::vector<LoopDecision> decisions_;
   std::uint64_t attempts_ = 0;

@@ -5,15 +5,21 @@
 
 #include "topogeo/localization/thesis/backward_config.hpp"
 
+namespace topogeo::support {
+class ConfigSchema;
+}
+
 namespace topogeo::localization {
 
-/// What only the thesis's algorithm asks for; the reasons stand beside the numbers.
+/// What only the thesis's algorithm reads.
 struct ThesisConfig {
-  std::uint32_t matches = 8;  ///< of a new map with those that it overlaps with, best first: more
-                              ///< of them hardly ever hold the fittest match
-  std::uint32_t cycle_solutions = 40;  ///< per map seen again, as in the thesis
-  std::uint32_t alternations = 3;      ///< of forward and backward in one step, at most
+  std::uint32_t matches = 8;
+  std::uint32_t cycle_solutions = 40;
+  std::uint32_t alternations = 3;
   BackwardConfig backward;
 };
+
+/// Declares the sections `thesis` and `backward`.
+void describe(ThesisConfig& config, support::ConfigSchema& schema);
 
 }  // namespace topogeo::localization

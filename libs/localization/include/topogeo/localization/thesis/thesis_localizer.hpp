@@ -19,7 +19,6 @@
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/thesis/cycle_closing.hpp"
-#include "topogeo/localization/thesis/thesis_config.hpp"
 #include "topogeo/localization/thesis/thesis_map.hpp"
 #include "topogeo/localization/thesis/thesis_matching.hpp"
 
@@ -31,7 +30,7 @@ class ThesisLocalizer : public Slam {
   /// revisit_matches (maps seen again that are matched per step; 0: cycles stay open),
   /// smallest_expected_overlap, largest_half_width_* and unaided_correction_*. The pool must
   /// outlive the localizer.
-  ThesisLocalizer(const LocalizerConfig& config, MatchPool& pool, const ThesisConfig& thesis = {});
+  ThesisLocalizer(const LocalizerConfig& config, MatchPool& pool);
 
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
   /// Nothing: the thesis has no work that waits for the end.
@@ -47,7 +46,7 @@ class ThesisLocalizer : public Slam {
   }
   /// The confidence is the fitness of the match that placed the stop, halved where the gate
   /// doubted it; the thesis has no other, and none is calibrated.
-  [[nodiscard]] Belief belief() const override { return belief_; }
+  [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
 
  private:
@@ -56,11 +55,10 @@ class ThesisLocalizer : public Slam {
   const ThesisMatch* best_of(const std::vector<ThesisMatch>& matches);
 
   LocalizerConfig config_;
-  ThesisConfig thesis_;
   ThesisMap map_;
   ThesisMatching matching_;
   CycleClosing cycles_;
-  Belief belief_;
+  LocalizationStatus status_;
   std::uint64_t steps_in_doubt_ = 0;
 };
 

@@ -26,14 +26,6 @@
 
 namespace topogeo::localization {
 
-struct GlobalLocalizationConfig {
-  std::uint32_t poses_wanted = 5;    ///< distinct poses in the answer, at least 2
-  double smallest_fitness = 0.60;    ///< below it a pose is rejected
-  double largest_doubt = 2.2;        ///< the same above it; see doubt()
-  double largest_rivalry = 0.85;     ///< fitness of the best pose elsewhere over that of the best
-  std::uint32_t fewest_points = 25;  ///< of the scan, thinned; fewer prove nothing
-};
-
 /// A pose that fits, with the evidence.
 struct GlobalPose {
   geometry::Pose2 T_map_robot;
@@ -62,8 +54,7 @@ class GlobalLocalizer {
  public:
   /// `maps[i]` is the local map of `trajectory.stops[i]`; both must outlive the localizer. Throws
   /// std::invalid_argument for a map without stops or points, or with fewer maps than stops.
-  GlobalLocalizer(const GlobalLocalizationConfig& config, std::span<const topomap::LocalMap> maps,
-                  const topomap::Trajectory& trajectory);
+  GlobalLocalizer(std::span<const topomap::LocalMap> maps, const topomap::Trajectory& trajectory);
 
   /// Where a scan (points in the robot frame) may have been taken. The same on every machine.
   [[nodiscard]] GlobalAnswer find(std::span<const topomap::ScanPoint> points,
@@ -103,7 +94,6 @@ class GlobalLocalizer {
   [[nodiscard]] GlobalPose examine(const MatchFeatures& query, const geometry::Pose2& T) const;
   [[nodiscard]] GlobalPose aligned(const MatchFeatures& query, const Climbed& place) const;
 
-  GlobalLocalizationConfig config_;
   std::span<const topomap::LocalMap> maps_;
   std::vector<StoredStop> stops_;
   KernelGrid coarse_;

@@ -7,9 +7,10 @@
 
 namespace topogeo::localization {
 
-/// T_map_robot now: the pose of the last stop, what the newest scan that was matched with the scan
-/// of that stop says, and the odometry since. Without such a scan (`tracked` null, or not matched)
-/// the odometry since the stop. `T_odom_stop`: the odometry at the stop.
+/// T_map_robot now: the pose of the last stop, then the relative pose of the newest scan that was
+/// matched with the scan of that stop, then the odometry since. Without such a scan (`tracked`
+/// null, or not matched) the odometry since the stop alone. `T_odom_stop`: the odometry at the
+/// stop.
 UncertainPose live_pose(const UncertainPose& T_map_stop, const geometry::Pose2& T_odom_stop,
                         const topomap::TrackedScan* tracked, const geometry::Pose2& T_odom_robot,
                         const OdometryNoise& noise);

@@ -37,7 +37,7 @@ struct LocalizedStop {
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_map_robot;                           ///< means nothing when searching or lost
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
-  Belief belief;
+  LocalizationStatus status;
   std::uint32_t accepted_matches = 0;
 };
 
@@ -86,7 +86,7 @@ class MapLocalizer : public Slam {
   [[nodiscard]] std::vector<topomap::LoopClosure> loop_closures() const override { return {}; }
   /// None.
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override;
-  [[nodiscard]] Belief belief() const override { return belief_; }
+  [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
   /// Of the last stop; nothing when that was searched for.
   [[nodiscard]] const std::optional<TrackedStep>& last_step() const { return last_step_; }
@@ -117,7 +117,7 @@ class MapLocalizer : public Slam {
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
   std::vector<LocalizedStop> stops_;
   std::optional<TrackedStep> last_step_;
-  Belief belief_;
+  LocalizationStatus status_;
   std::size_t searches_ = 0;
   std::uint32_t first_drive_id_ = 0;
   std::uint64_t steps_in_doubt_ = 0;
