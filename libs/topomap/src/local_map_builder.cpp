@@ -78,8 +78,7 @@ void LocalMapBuilder::Work::add_diagram_nodes(const LocalVoronoiDiagram& diagram
     } else if (confirms(from.clearance_m, from.hidden_m)) {
       kind = NodeKind::kReal;
     }
-    add_node(kind, {T_robot_laser * from.position_m, from.clearance_m},
-             {from.base_groups.data(), from.base_groups.size()});
+    add_node(kind, {T_robot_laser * from.position_m, from.clearance_m}, diagram.groups_of(from));
   }
 }
 

@@ -293,10 +293,8 @@ void CrackGraph::drop_short_pieces(double shortest_m) {
   }
 }
 
-void CrackGraph::write(LocalVoronoiDiagram& out) {
+void CrackGraph::write_nodes(LocalVoronoiDiagram& out) {
   out.nodes.clear();
-  out.branches.clear();
-  out.points.clear();
   node_of_.assign(junctions_.size(), kLoose);
   members_.assign(junctions_.size(), 0);
   for (Piece& piece : pieces_) {
@@ -317,13 +315,36 @@ void CrackGraph::write(LocalVoronoiDiagram& out) {
     const double weight = 1.0 / ++members_[root];
     node.position_m += weight * (junctions_[i].position_m - node.position_m);
     node.clearance_m += weight * (junctions_[i].clearance_m - node.clearance_m);
-    // One at a time: merged junctions share most groups, and more than six would allocate.
+  }
+}
+
+// Junctions that are one node share most of their groups.
+void CrackGraph::write_node_groups(LocalVoronoiDiagram& out) {
+  node_groups_.clear();
+  for (std::uint32_t i = 0; i < junctions_.size(); ++i) {
+    const std::uint32_t node = node_of_[root_of(i)];
+    if (node == kLoose) continue;
     for (int k = 0; k < junctions_[i].group_count; ++k) {
-      const std::uint16_t group = junctions_[i].groups[static_cast<std::size_t>(k)];
-      const auto at = std::lower_bound(node.base_groups.begin(), node.base_groups.end(), group);
-      if (at == node.base_groups.end() || *at != group) node.base_groups.insert(at, group);
+      node_groups_.push_back({node, junctions_[i].groups[static_cast<std::size_t>(k)]});
     }
   }
+  std::ranges::sort(node_groups_);
+  const auto repeated = std::ranges::unique(node_groups_);
+  node_groups_.erase(repeated.begin(), repeated.end());
+  out.node_groups.clear();
+  for (const NodeGroup& entry : node_groups_) {
+    PointRun& run = out.nodes[entry.node].base_groups;
+    if (run.size() == 0) run.begin = static_cast<std::uint32_t>(out.node_groups.size());
+    out.node_groups.push_back(entry.group);
+    run.end = static_cast<std::uint32_t>(out.node_groups.size());
+  }
+}
+
+void CrackGraph::write(LocalVoronoiDiagram& out) {
+  write_nodes(out);
+  write_node_groups(out);
+  out.branches.clear();
+  out.points.clear();
   for (const Piece& piece : pieces_) {
     if (piece.dropped) continue;
     DiagramBranch branch;

@@ -18,7 +18,7 @@ const std::vector<Include>& project_includes() {
 }
 
 /// Libraries that take seconds to compile or belong to one layer. Where a public header is named,
-/// the library costs nothing there (small_vector) or the header is the one door to it.
+/// it is the one door to the library.
 const std::vector<RestrictedLibrary>& restricted_libraries() {
   static const std::vector<RestrictedLibrary> kLibraries = {
       {"fastdds/", {"libs/messaging/src/"}},
@@ -32,8 +32,6 @@ const std::vector<RestrictedLibrary>& restricted_libraries() {
       {"ceres/", {"libs/localization/src/"}},
       {"boost/", {}},
       {"boost/asio", {"services/sensor_gateway/serial_port.cpp"}},
-      {"boost/container/small_vector.hpp",
-       {"libs/voronoi/include/topogeo/voronoi/crack_graph.hpp"}},
       {"boost/geometry/", {"libs/topomap/src/"}},
       {"boost/graph/",
        {"libs/localization/include/topogeo/localization/mapping/pose_graph.hpp",

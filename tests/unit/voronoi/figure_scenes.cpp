@@ -184,7 +184,7 @@ Seen describe(const voronoi::LocalVoronoiDiagram& diagram, const world::World& w
   seen.groups = group_names(diagram, world, T_world_laser);
   for (const voronoi::DiagramNode& node : diagram.nodes) {
     seen.nodes.push_back(
-        {joined_names(node.base_groups, seen.groups), node.position_m, node.clearance_m});
+        {joined_names(diagram.groups_of(node), seen.groups), node.position_m, node.clearance_m});
   }
   const auto end_name = [&](std::uint32_t node) {
     return node == voronoi::DiagramBranch::kLoose ? std::string("open") : seen.nodes[node].name;

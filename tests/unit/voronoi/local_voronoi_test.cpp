@@ -46,7 +46,7 @@ std::string bytes_of(const LocalVoronoiDiagram& diagram) {
     add(node.position_m.x());
     add(node.position_m.y());
     add(node.clearance_m);
-    for (const std::uint16_t group : node.base_groups) add(group);
+    for (const std::uint16_t group : diagram.groups_of(node)) add(group);
   }
   for (const DiagramBranch& branch : diagram.branches) {
     add(branch.node_a);
@@ -236,7 +236,7 @@ TEST(LocalVoronoi, DiagramsAreWellFormedOnRandomScenes) {
       for (const std::uint32_t node : {branch.node_a, branch.node_b}) {
         if (node == DiagramBranch::kLoose) continue;
         ++degree[node];
-        const auto& groups = diagram.nodes[node].base_groups;
+        const auto groups = diagram.groups_of(diagram.nodes[node]);
         EXPECT_TRUE(std::ranges::includes(groups, branch.base_groups)) << "seed " << seed;
       }
       const auto points = diagram.points_of(branch);
@@ -248,7 +248,7 @@ TEST(LocalVoronoi, DiagramsAreWellFormedOnRandomScenes) {
     for (std::size_t i = 0; i < degree.size(); ++i) {
       EXPECT_GE(degree[i], 1);
       EXPECT_GE(diagram.nodes[i].base_groups.size(), 3U);
-      EXPECT_TRUE(std::ranges::is_sorted(diagram.nodes[i].base_groups));
+      EXPECT_TRUE(std::ranges::is_sorted(diagram.groups_of(diagram.nodes[i])));
     }
   }
 }

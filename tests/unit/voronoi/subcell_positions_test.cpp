@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -138,13 +139,14 @@ struct Judge {
 
   /// Distance of a node of three groups from where the true walls have it, by Newton's method.
   [[nodiscard]] std::optional<double> error_m(const DiagramNode& node) const {
-    if (node.base_groups.size() != 3) return std::nullopt;
+    const std::span<const std::uint16_t> groups = diagram.groups_of(node);
+    if (groups.size() != 3) return std::nullopt;
     const Eigen::Vector2d start_m = T_world_laser * node.position_m;
     Eigen::Vector2d p_m = start_m;
     for (int step = 0; step < 20; ++step) {
       std::array<Foot, 3> feet;
       for (std::size_t i = 0; i < 3; ++i) {
-        const auto foot = dense_foot(node.base_groups[i], p_m);
+        const auto foot = dense_foot(groups[i], p_m);
         if (!foot) return std::nullopt;
         feet[i] = *foot;
       }

@@ -9,12 +9,12 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
-#include <boost/container/small_vector.hpp>
 
 #include "topogeo/voronoi/generator_groups.hpp"
 #include "topogeo/voronoi/nearest_site_grid.hpp"
@@ -33,8 +33,9 @@ struct DiagramNode {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   double clearance_m = 0.0;
   double hidden_m = 0.0;  ///< as of a point
-  /// Equally near, ascending, at least three; rarely more than four.
-  boost::container::small_vector<std::uint16_t, 6> base_groups;
+  /// Run of LocalVoronoiDiagram::node_groups: equally near, ascending, at least three; rarely more
+  /// than four.
+  PointRun base_groups;
 };
 
 struct DiagramBranch {
@@ -51,18 +52,22 @@ struct LocalVoronoiDiagram {
   GeneratorGroups groups;          ///< of the scan; virtual groups come after them
   std::vector<DiagramNode> nodes;  ///< every one has a branch
   std::vector<DiagramBranch> branches;
-  std::vector<DiagramPoint> points;  ///< of all branches
-  bool is_virtual = false;           ///< fewer than two groups, or none that meet in sight
+  std::vector<DiagramPoint> points;        ///< of all branches
+  std::vector<std::uint16_t> node_groups;  ///< base groups of all nodes
+  bool is_virtual = false;                 ///< fewer than two groups, or none that meet in sight
 
   [[nodiscard]] std::span<const DiagramPoint> points_of(const DiagramBranch& branch) const {
     return {points.data() + branch.points.begin, branch.points.size()};
+  }
+  [[nodiscard]] std::span<const std::uint16_t> groups_of(const DiagramNode& node) const {
+    return {node_groups.data() + node.base_groups.begin, node.base_groups.size()};
   }
 };
 
 /// Follows the cracks of a grid. A reusable work space.
 class CrackGraph {
  public:
-  /// Replaces nodes, branches and points of `out`.
+  /// Replaces nodes with their groups, branches and points of `out`.
   void trace(const NearestSiteGrid& grid, std::span<const Site> sites, const VoronoiConfig& config,
              LocalVoronoiDiagram& out);
 
@@ -95,6 +100,8 @@ class CrackGraph {
   void merge_junctions(double longest_m);
   void drop_short_pieces(double shortest_m);
   void write(LocalVoronoiDiagram& out);
+  void write_nodes(LocalVoronoiDiagram& out);
+  void write_node_groups(LocalVoronoiDiagram& out);
 
   [[nodiscard]] std::array<int, 2> row_col(std::uint32_t corner) const;
   [[nodiscard]] std::array<std::uint16_t, 4> sites_around(std::uint32_t corner) const;
@@ -118,6 +125,12 @@ class CrackGraph {
   std::vector<DiagramPoint> points_;
   std::vector<std::uint32_t> node_of_;  ///< per junction
   std::vector<int> members_;            ///< per junction: those merged into it
+  struct NodeGroup {
+    std::uint32_t node = 0;
+    std::uint16_t group = 0;
+    friend auto operator<=>(const NodeGroup&, const NodeGroup&) = default;
+  };
+  std::vector<NodeGroup> node_groups_;
 };
 
 }  // namespace topogeo::voronoi
