@@ -17,7 +17,7 @@ namespace {
 constexpr double kStanding_m_s = 1e-6;  // slower is no motion ahead or back
 constexpr double kNsToSeconds = 1e-9;
 
-bool heard(const SonarReading& reading) {
+bool has_echo(const SonarReading& reading) {
   return reading.range_m > scan::Scan::kNoReturn;
 }
 
@@ -46,32 +46,32 @@ void CollisionGuard::add(const SonarRound& sonar) {
   } else if (last_) {
     T_odom_sonar_round_ = last_->T_odom_robot;
   }
-  listen(sonar);
+  watch_silence(sonar);
   compare_echoes();
 }
 
-// Notes since when the sonars hear nothing although there is something to be heard.
-void CollisionGuard::listen(const SonarRound& sonar) {
-  const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), heard);
-  const auto must_hear = [&](const SonarReading& reading) {
+// Notes since when the sonars have no echo although the laser sees something in their reach.
+void CollisionGuard::watch_silence(const SonarRound& sonar) {
+  const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), has_echo);
+  const auto needs_echo = [&](const SonarReading& reading) {
     return laser_sees(reading, config_.sonar_reach_m);
   };
   if (any || !scan_ || !fresh(scan_->stamp_ns, sonar.stamp_ns) ||
-      !std::any_of(sonar.readings.begin(), sonar.readings.end(), must_hear)) {
+      !std::any_of(sonar.readings.begin(), sonar.readings.end(), needs_echo)) {
     silent_since_ns_.reset();
   } else if (!silent_since_ns_) {
     silent_since_ns_ = sonar.stamp_ns;
   }
 }
 
-// What the sonars hear, and whether the laser sees it, too, and better.
+// The echoes of the sonars, and whether the laser sees what they come from, too, and better.
 void CollisionGuard::compare_echoes() {
   constexpr double kSame_m = 0.2;  // laser and sonar see one thing: the error of both
   constexpr double kAhead = 0.5;   // within 60 degrees of ahead or back
   echoes_.clear();
   if (!sonar_) return;
   for (const SonarReading& reading : sonar_->readings) {
-    if (!heard(reading)) continue;
+    if (!has_echo(reading)) continue;
     const double range_m = static_cast<double>(reading.range_m);
     // Beside the body a least reading is a door post, which its motion does not bring nearer.
     const bool ahead = std::fabs(geometry::sincos(reading.T_robot_sonar.theta_rad).cos) > kAhead;
@@ -123,7 +123,7 @@ HaltReason CollisionGuard::health(std::int64_t now_ns, std::string* message) con
           config_.silent_s) {
     return because(
         HaltReason::kSonarSilent,
-        fmt::format("no sonar has heard anything for {:.1f} s, though the laser sees something "
+        fmt::format("no sonar has had an echo for {:.1f} s, though the laser sees something "
                     "near",
                     age_s(*silent_since_ns_)));
   }

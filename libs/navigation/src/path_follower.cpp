@@ -11,15 +11,12 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kSecondsPerNanosecond = 1e-9;
 constexpr double kBrake = 0.7;           // of the acceleration: stops are planned with a reserve
 constexpr double kTurnBrake = 0.6;       // the same of turns
 constexpr double kSlowest_m_s = 0.03;    // bases do not move when they are to go slower
 constexpr double kSlowest_rad_s = 0.06;  // the same
 constexpr double kLost_rad = 0.9;        // so far off the heading it turns on the spot again
 constexpr double kCorner_rad = 0.02;     // less is no turn on the spot
-constexpr double kStands_m_s = 1e-3;     // what counts as standing
-constexpr double kStands_rad_s = 5e-3;   // the same
 
 }  // namespace
 
@@ -55,7 +52,8 @@ std::vector<planning::PathSample> straight_path(std::span<const Eigen::Vector2d>
   return samples;
 }
 
-PathFollower::PathFollower(const FollowerConfig& config) : config_(config) {
+PathFollower::PathFollower(const FollowerConfig& config)
+    : config_(config), commands_(config.delay_s) {
   check(config);
 }
 
@@ -105,38 +103,11 @@ double PathFollower::rest_m() const {
 }
 
 void PathFollower::commanded(const geometry::Velocity& command, std::int64_t now_ns) {
-  constexpr std::int64_t kKept_ns = 1'500'000'000;
-  commands_.push_back({now_ns, command});
-  while (commands_.size() > 1 && commands_[1].stamp_ns < now_ns - kKept_ns) commands_.pop_front();
+  commands_.add(command, now_ns);
 }
 
 std::vector<planning::MotionPrimitive> PathFollower::take_finished() {
   return std::exchange(finished_, {});
-}
-
-bool PathFollower::stands() const {
-  if (commands_.empty()) return true;
-  const std::int64_t since_ns =
-      commands_.back().stamp_ns - static_cast<std::int64_t>(config_.delay_s * 1e9);
-  return std::all_of(commands_.rbegin(), commands_.rend(), [&](const Command& command) {
-    return command.stamp_ns < since_ns ||
-           (std::fabs(command.velocity.linear_m_per_s) < kStands_m_s &&
-            std::fabs(command.velocity.angular_rad_per_s) < kStands_rad_s);
-  });
-}
-
-geometry::Pose2 PathFollower::predicted(const geometry::Pose2& T_map_robot,
-                                        std::int64_t now_ns) const {
-  geometry::Pose2 pose = T_map_robot;
-  const std::int64_t from_ns = now_ns - static_cast<std::int64_t>(config_.delay_s * 1e9);
-  for (std::size_t i = 0; i < commands_.size(); ++i) {
-    const std::int64_t begin_ns = std::max(commands_[i].stamp_ns, from_ns);
-    const std::int64_t end_ns = i + 1 < commands_.size() ? commands_[i + 1].stamp_ns : now_ns;
-    if (end_ns <= begin_ns) continue;
-    pose = pose * moved(commands_[i].velocity,
-                        static_cast<double>(end_ns - begin_ns) * kSecondsPerNanosecond);
-  }
-  return pose;
 }
 
 // The nearest place of the leg, not far from the last one.
@@ -285,7 +256,7 @@ geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, dou
       return turn(error_rad);
     }
     finish_turn(T_map_robot.theta_rad);
-    if (stands()) phase_ = Phase::kDone;
+    if (commands_.stands()) phase_ = Phase::kDone;
   }
   return {};
 }
@@ -293,15 +264,10 @@ geometry::Velocity PathFollower::control(const geometry::Pose2& T_map_robot, dou
 geometry::Velocity PathFollower::ramped(const geometry::Velocity& wanted,
                                         std::int64_t now_ns) const {
   constexpr double kLongest_s = 0.2;
-  constexpr double kDown = 1.5;  // braking may be that much harder than speeding up
-  geometry::Velocity last;
-  double time_s = 0.05;
-  if (!commands_.empty()) {
-    last = commands_.back().velocity;
-    time_s =
-        std::clamp(static_cast<double>(now_ns - commands_.back().stamp_ns) * kSecondsPerNanosecond,
-                   0.0, kLongest_s);
-  }
+  constexpr double kDown = 1.5;      // braking may be that much harder than speeding up
+  constexpr double kUsual_s = 0.05;  // between two steps, for the first one
+  const geometry::Velocity last = commands_.last();
+  const double time_s = std::clamp(commands_.since_last_s(now_ns, kUsual_s), 0.0, kLongest_s);
   const double up = config_.acceleration_m_per_s2 * time_s;
   const double turn = config_.turn_acceleration_rad_per_s2 * time_s;
   return {
@@ -315,7 +281,7 @@ FollowerStep PathFollower::step(const geometry::Pose2& T_map_robot, std::int64_t
   FollowerStep result;
   if (!active_) return result;
   const geometry::Velocity wanted =
-      control(predicted(T_map_robot, now_ns), std::max(0.0, speed_limit_m_per_s));
+      control(commands_.predicted(T_map_robot, now_ns), std::max(0.0, speed_limit_m_per_s));
   result.command = ramped(wanted, now_ns);
   result.done = phase_ == Phase::kDone;
   result.rest_m = rest_m();

@@ -204,7 +204,7 @@ TEST_F(NavigatorHalt, SonarsHearNothing) {
   drive_off();
   drive.sonars_hear = false;
   expect_halt(HaltReason::kSonarSilent, NavigatorState::kStopped, 20.0);
-  EXPECT_THAT(drive.status().message, HasSubstr("no sonar has heard anything"));
+  EXPECT_THAT(drive.status().message, HasSubstr("no sonar has had an echo"));
   drive.sonars_hear = true;
   expect_arrival();
 }

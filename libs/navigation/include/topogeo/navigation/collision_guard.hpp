@@ -59,7 +59,7 @@ class CollisionGuard {
   /// Whether the scan has a point in the sonar's cone, at most so far from it.
   [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
   void compare_echoes();
-  void listen(const SonarRound& sonar);
+  void watch_silence(const SonarRound& sonar);
 
   GuardConfig config_;
   geometry::OdometryTrack odometry_{0};
@@ -67,7 +67,7 @@ class CollisionGuard {
   std::optional<ScanPoints> scan_;  ///< smoothed
   std::optional<SonarRound> sonar_;
   struct Echo {
-    Eigen::Vector2d point_m;  ///< robot frame when it was heard
+    Eigen::Vector2d point_m;  ///< robot frame at that time
     bool laser_sees;          ///< in the last scan, however old that is
   };
   std::vector<Echo> echoes_;  ///< of the last round

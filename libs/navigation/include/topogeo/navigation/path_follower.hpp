@@ -3,13 +3,12 @@
 //
 // On a leg the curvature of the motion is that of the path, corrected for the distance from it and
 // the heading error so that both die out over a distance of `kSettle_m`, whatever the speed. All
-// control is on the pose where the base will be when it obeys: the given one carried on by the
-// commands of the last `delay_s`. Paths of smooth_path() have few legs; those of straight_path()
-// one for every advance primitive, so that they are executed one after the other.
+// control is on the pose where the base will be when it obeys (command_history.hpp). Paths of
+// smooth_path() have few legs; those of straight_path() one for every advance primitive, so that
+// they are executed one after the other.
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +17,7 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
+#include "topogeo/navigation/command_history.hpp"
 #include "topogeo/navigation/follower_config.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 
@@ -76,8 +76,6 @@ class PathFollower {
   };
 
   [[nodiscard]] std::size_t leg_end(std::size_t from) const;
-  [[nodiscard]] geometry::Pose2 predicted(const geometry::Pose2& T_map_robot,
-                                          std::int64_t now_ns) const;
   [[nodiscard]] Place locate(const geometry::Pose2& T_map_robot);
   [[nodiscard]] double curve_speed(double to_go_m) const;
   [[nodiscard]] geometry::Velocity turn(double error_rad) const;
@@ -89,7 +87,6 @@ class PathFollower {
   void begin_leg(std::size_t from);
   void finish_turn(double heading_rad);
   void finish_leg(const Eigen::Vector2d& at_m);
-  [[nodiscard]] bool stands() const;
 
   FollowerConfig config_;
   std::vector<planning::PathSample> path_;
@@ -102,11 +99,7 @@ class PathFollower {
   double progress_m_ = 0.0;
   double off_m_ = 0.0;
 
-  struct Command {
-    std::int64_t stamp_ns;
-    geometry::Velocity velocity;
-  };
-  std::deque<Command> commands_;  ///< of the last second
+  CommandHistory commands_;
 
   std::optional<double> turn_from_rad_;
   std::optional<Eigen::Vector2d> leg_from_m_;
