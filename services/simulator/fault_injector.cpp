@@ -160,11 +160,11 @@ void FaultInjector::set_base(const Fault& fault, bool on) {
   const std::int64_t now_ns = devices_.now_ns();
   switch (fault.kind) {
     case msg::kSimulatedBadCrc:
-      return base.corrupt_reports(on ? kForEver : 0);
+      return base.line_faults().corrupt(on ? kForEver : 0);
     case msg::kSimulatedTruncated:
-      return base.truncate_reports(on ? kForEver : 0);
+      return base.line_faults().truncate(on ? kForEver : 0);
     case msg::kSimulatedSilence:
-      return base.set_silent(on);
+      return base.line_faults().set_silent(on);
     case msg::kSimulatedRestart:
       return on ? base.switch_off(now_ns) : base.switch_on(now_ns);
     case msg::kSimulatedEcho:

@@ -26,13 +26,13 @@ TEST_P(BaseDriverOn, StartsTheBaseUp) {
   BaseOnLine all(settings());
   EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
   ASSERT_TRUE(all.start(4 * kSecond));
-  const auto& heard = all.base.mcp.heard();
-  EXPECT_THAT(heard, Contains(McpOrder{McpCommand::kJoystickOff, 1}));
-  EXPECT_THAT(heard, Contains(McpOrder{McpCommand::kWatchdog, 256}));
+  const auto& orders = all.base.mcp.orders();
+  EXPECT_THAT(orders, Contains(McpOrder{McpCommand::kJoystickOff, 1}));
+  EXPECT_THAT(orders, Contains(McpOrder{McpCommand::kWatchdog, 256}));
   EXPECT_EQ(all.base.mcp.binary(), GetParam().dialect == BaseDialect::kBinary);
   EXPECT_TRUE(all.base.mcp.binary() || !all.base.mcp.echoes());
   const auto position = [&](McpCommand command) {
-    return std::ranges::find(heard, command, &McpOrder::command) - heard.begin();
+    return std::ranges::find(orders, command, &McpOrder::command) - orders.begin();
   };
   EXPECT_LT(position(McpCommand::kReportMask), position(McpCommand::kReportPeriod));
   EXPECT_EQ(all.driver.status().reason, "");
@@ -79,9 +79,9 @@ TEST_P(BaseDriverOn, SaysOnlyWhatChanges) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
   all.drive(0.3, 0.0, 2 * kSecond);
-  all.base.mcp.forget_heard();
+  all.base.mcp.forget_orders();
   all.drive(0.3, 0.0, 2 * kSecond);
-  for (const McpOrder& order : all.base.mcp.heard()) {
+  for (const McpOrder& order : all.base.mcp.orders()) {
     EXPECT_NE(order.command, McpCommand::kTranslatePlus);
     EXPECT_NE(order.command, McpCommand::kTranslateVelocity);
     EXPECT_NE(order.command, McpCommand::kRotateHalt);
@@ -165,11 +165,11 @@ TEST_P(BaseDriverOn, ASilentBaseIsOfflineUntilItsNextReport) {
   ASSERT_TRUE(all.start());
   all.drive(0.3, 0.0, 2 * kSecond);
   for (const std::int64_t silence_ns : {kSecond, 7 * kSecond, 100 * kSecond}) {
-    all.base.mcp.set_silent(true);
+    all.base.mcp.line_faults().set_silent(true);
     all.drive(0.3, 0.0, silence_ns);
     EXPECT_EQ(all.driver.status().state, BaseState::kOffline);
     EXPECT_TRUE(silence_ns < 2 * kSecond || all.base.stands());
-    all.base.mcp.set_silent(false);
+    all.base.mcp.line_faults().set_silent(false);
     const std::uint64_t before = all.odometries;
     all.pass(2 * period_ns() + 60 * kMs);
     EXPECT_GT(all.odometries, before) << silence_ns;

@@ -89,13 +89,13 @@ std::int64_t strike_base(Scene& scene, unsigned reports) {
 
 std::int64_t corrupt(Scene& scene) {
   const unsigned reports = scene.few();
-  scene.all.base.mcp.corrupt_reports(reports);
+  scene.all.base.mcp.line_faults().corrupt(reports);
   return strike_base(scene, reports);
 }
 
 std::int64_t truncate(Scene& scene) {
   const unsigned reports = scene.few();
-  scene.all.base.mcp.truncate_reports(reports);
+  scene.all.base.mcp.line_faults().truncate(reports);
   return strike_base(scene, reports);
 }
 
@@ -107,17 +107,17 @@ std::int64_t garbage(Scene& scene) {
 }
 
 std::int64_t short_silence(Scene& scene) {
-  scene.all.base.mcp.set_silent(true);
+  scene.all.base.mcp.line_faults().set_silent(true);
   scene.drive(scene.some(kMs, 2 * scene.period_ns));
-  scene.all.base.mcp.set_silent(false);
+  scene.all.base.mcp.line_faults().set_silent(false);
   return scene.all.line.now_ns();
 }
 
 std::int64_t long_silence(Scene& scene) {
-  scene.all.base.mcp.set_silent(true);
+  scene.all.base.mcp.line_faults().set_silent(true);
   scene.drive(scene.some(kSecond, 10 * kSecond));
   must_be(BaseState::kOffline, scene);
-  scene.all.base.mcp.set_silent(false);
+  scene.all.base.mcp.line_faults().set_silent(false);
   return scene.all.line.now_ns();
 }
 
@@ -177,10 +177,11 @@ std::int64_t other_watchdog(Scene& scene) {
 }
 
 std::int64_t commands_cease(Scene& scene) {
-  scene.all.base.mcp.forget_heard();
+  scene.all.base.mcp.forget_orders();
   const std::int64_t start_ns = scene.all.line.now_ns();
   const auto halted = [&] {
-    return std::ranges::count(scene.all.base.mcp.heard(), McpOrder{McpCommand::kTranslateHalt}) > 0;
+    return std::ranges::count(scene.all.base.mcp.orders(), McpOrder{McpCommand::kTranslateHalt}) >
+           0;
   };
   (void)scene.all.pass_until(5 * kSecond, halted);
   if (scene.all.line.now_ns() - start_ns > kSecond * 6 / 10) ++scene.unsafe;
@@ -204,13 +205,13 @@ std::int64_t emergency_stop(Scene& scene) {
 
 std::int64_t joystick(Scene& scene) {
   scene.all.drive(0.2, 0.0, 3 * kSecond);
-  scene.all.base.mcp.forget_heard();
+  scene.all.base.mcp.forget_orders();
   for (int i = 0; i < 20; ++i) {
     scene.all.base.mcp.take_joystick({-0.3, scene.random.uniform(-0.5, 0.5)});
     scene.all.drive(0.2, 0.0, kSecond / 10);
   }
   must_be(BaseState::kJoystick, scene);
-  if (std::ranges::count(scene.all.base.mcp.heard(), McpOrder{McpCommand::kTranslateHalt}) == 0) {
+  if (std::ranges::count(scene.all.base.mcp.orders(), McpOrder{McpCommand::kTranslateHalt}) == 0) {
     ++scene.unsafe;
   }
   scene.all.base.mcp.take_joystick({});

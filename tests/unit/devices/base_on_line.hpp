@@ -60,7 +60,7 @@ class RollingBase final : public simulation::SerialDevice {
     way_.erase(way_.begin(), keep);
   }
   [[nodiscard]] bool stands() const {
-    const simulation::Velocity velocity = mcp.commanded_velocity();
+    const geometry::Velocity velocity = mcp.commanded_velocity();
     return velocity.linear_m_per_s == 0.0 && velocity.angular_rad_per_s == 0.0;
   }
 
@@ -72,7 +72,7 @@ class RollingBase final : public simulation::SerialDevice {
 
   void roll(std::int64_t now_ns) {
     const double dt_s = 1e-9 * static_cast<double>(now_ns - rolled_ns_);
-    const simulation::Velocity velocity = mcp.commanded_velocity();
+    const geometry::Velocity velocity = mcp.commanded_velocity();
     if (dt_s > 0.0) {
       mcp.moved(velocity.linear_m_per_s * dt_s, velocity.angular_rad_per_s * dt_s, dt_s);
     }

@@ -20,12 +20,12 @@ TEST_P(BaseSafetyOn, HaltsWhenCommandsCease) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
   all.drive(0.4, 0.2, 3 * kSecond);
-  all.base.mcp.forget_heard();
+  all.base.mcp.forget_orders();
   const std::int64_t last_ns = all.line.now_ns() - kSecond / 10;
   const auto halted = [&] {
-    const auto& heard = all.base.mcp.heard();
-    return std::ranges::count(heard, McpOrder{McpCommand::kTranslateHalt}) > 0 &&
-           std::ranges::count(heard, McpOrder{McpCommand::kRotateHalt}) > 0;
+    const auto& orders = all.base.mcp.orders();
+    return std::ranges::count(orders, McpOrder{McpCommand::kTranslateHalt}) > 0 &&
+           std::ranges::count(orders, McpOrder{McpCommand::kRotateHalt}) > 0;
   };
   ASSERT_TRUE(all.pass_until(kSecond, halted));
   EXPECT_NEAR(static_cast<double>(all.line.now_ns() - last_ns), 0.53e9, 0.03e9);
@@ -89,13 +89,13 @@ TEST_P(BaseSafetyOn, TheEmergencyStopHaltsAndTheRobotDoesNotJumpWhenPowerReturns
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
   all.drive(0.4, 0.0, 3 * kSecond);
-  all.base.mcp.forget_heard();
+  all.base.mcp.forget_orders();
   all.base.mcp.press_emergency_stop();
   all.drive(0.4, 0.0, 2 * kSecond);  // whoever commands goes on
   EXPECT_EQ(all.driver.status().state, BaseState::kEmergencyStop);
   EXPECT_FALSE(all.driver.status().commands_taken);
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt}));
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kRotateHalt}));
+  EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kTranslateHalt}));
+  EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kRotateHalt}));
   all.base.mcp.release_emergency_stop();
   const geometry::Pose2 before = all.base.mcp.T_start_robot();
   all.drive(0.4, 0.0, 3 * kSecond);
@@ -125,14 +125,14 @@ TEST_P(BaseSafetyOn, TheJoystickTakesOverAndIsLeftAlone) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
   all.drive(0.2, 0.0, 3 * kSecond);
-  all.base.mcp.forget_heard();
+  all.base.mcp.forget_orders();
   for (int i = 0; i < 20; ++i) {  // held against whatever the base is told
     all.base.mcp.take_joystick({-0.3, 0.4});
     all.drive(0.2, 0.0, kSecond / 10);
   }
   EXPECT_EQ(all.driver.status().state, BaseState::kJoystick);
   EXPECT_FALSE(all.driver.status().commands_taken);
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt}));
+  EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kTranslateHalt}));
   all.base.mcp.take_joystick({});
   all.drive(0.2, 0.0, kSecond);
   EXPECT_TRUE(all.base.stands());
@@ -192,24 +192,24 @@ TEST_P(BaseSafetyOn, AHaltIsOverWhenBothAxesStand) {
   ASSERT_TRUE(all.start());
   all.drive(0.3, 0.5, 2 * kSecond);
   EXPECT_FALSE(all.driver.stands());
-  all.base.mcp.forget_heard();
+  all.base.mcp.forget_orders();
   all.driver.halt(all.line.now_ns());
   EXPECT_FALSE(all.driver.stands());
   for (int i = 0; i < 200 && !all.driver.stands(); ++i) all.pass(10 * kMs);
   EXPECT_TRUE(all.driver.stands());
   EXPECT_TRUE(all.base.stands());
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kTranslateHalt, 0}));
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kRotateHalt, 0}));
+  EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kTranslateHalt, 0}));
+  EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kRotateHalt, 0}));
 }
 
 TEST_P(BaseSafetyOn, AMotorFaultIsSaidAndAcknowledged) {
   BaseOnLine all(settings());
   ASSERT_TRUE(all.start());
   all.drive(0.3, 0.0, 2 * kSecond);
-  all.base.mcp.forget_heard();
+  all.base.mcp.forget_orders();
   all.base.mcp.fail_motor(all.line.now_ns());
   all.pass(2 * kSecond);
-  EXPECT_THAT(all.base.mcp.heard(), Contains(McpOrder{McpCommand::kAcknowledge, 0}));
+  EXPECT_THAT(all.base.mcp.orders(), Contains(McpOrder{McpCommand::kAcknowledge, 0}));
   EXPECT_TRUE(all.base.stands());
 }
 

@@ -194,7 +194,7 @@ TEST(McpEmulator, CutsReportsOfAnyLength) {
     Terminal terminal;
     (void)terminal.type("HD\rSD " + mask + "\rSP 100\r");
     const std::size_t whole = terminal.hear(50 * kSecond).size();
-    terminal.base.truncate_reports(50);
+    terminal.base.line_faults().truncate(50);
     const std::size_t cut = terminal.hear(50 * kSecond).size();
     EXPECT_GT(cut, 0U) << mask;
     EXPECT_LT(cut, whole) << mask;

@@ -1,12 +1,13 @@
 // An RWI B21 base behind its serial line: both dialects of the controller (MCP), the motors'
 // motion, the reports, the watchdog, the joystick, the emergency stop, and faults on demand. What
 // the wheels really do, the world decides: see commanded_velocity() and moved().
+//
+// McpOrderReader reads the line, McpDrive moves the motors, McpLineFaults damages what is sent.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,14 +15,13 @@
 
 #include "topogeo/devices/mcp_ascii.hpp"
 #include "topogeo/devices/mcp_protocol.hpp"
-#include "topogeo/devices/mcp_units.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/simulation/mcp_axis.hpp"
+#include "topogeo/simulation/mcp_drive.hpp"
+#include "topogeo/simulation/mcp_line_faults.hpp"
+#include "topogeo/simulation/mcp_order_reader.hpp"
 #include "topogeo/simulation/serial_device.hpp"
 #include "topogeo/simulation/serial_output.hpp"
-#include "topogeo/simulation/tour_follower.hpp"
-#include "topogeo/support/random.hpp"
 
 namespace topogeo::simulation {
 
@@ -34,7 +34,7 @@ struct McpEmulatorSettings {
   devices::McpAsciiForm form{};
   /// Puts a `*` before its answers.
   bool prompt = false;
-  /// Repeats what it hears until HD, or for ever: no publication decides it.
+  /// Repeats what it receives until HD, or for ever: no publication decides it.
   bool echo_at_start = true;
   bool echo_can_be_switched_off = true;
   /// On expiry of the watchdog the motors go limp; otherwise they halt.
@@ -60,101 +60,89 @@ class McpEmulator final : public SerialDevice {
 
   // The world's side.
   /// How its motors turn the wheels since the last tick; robot frame.
-  [[nodiscard]] Velocity commanded_velocity() const;
+  [[nodiscard]] geometry::Velocity commanded_velocity() const {
+    return drive_.commanded_velocity();
+  }
   /// What the encoders of the wheels saw in the last `time_s`: forward and counter-clockwise.
-  void moved(double forward_m, double turn_rad, double time_s);
+  void moved(double forward_m, double turn_rad, double time_s) {
+    drive_.moved(forward_m, turn_rad, time_s);
+  }
   /// All that the encoders saw since it was made, each step half its turn, forward, the other half.
-  [[nodiscard]] const geometry::Pose2& T_start_robot() const { return T_start_robot_; }
+  [[nodiscard]] const geometry::Pose2& T_start_robot() const { return drive_.T_start_robot(); }
   /// Bits of the switches that are pressed.
   void press_bumpers(std::uint16_t pressed, std::int64_t now_ns);
 
   // The operator's side.
   /// Without effect while the host has switched the joystick off. Both 0: let go.
-  void take_joystick(const Velocity& velocity);
+  void take_joystick(const geometry::Velocity& velocity);
   /// The motors lose their power.
-  void press_emergency_stop() { power_ = false; }
-  void release_emergency_stop() { power_ = true; }
+  void press_emergency_stop() { drive_.set_power(false); }
+  void release_emergency_stop() { drive_.set_power(true); }
   void set_battery(double battery_v, std::int64_t now_ns);
   /// A servo error: the translation motor goes limp until it gets a new command.
   void fail_motor(std::int64_t now_ns);
 
   // Faults.
-  /// Without power it neither hears nor sends anything, its wheels stand, and all that it was
+  /// Without power it neither receives nor sends anything, its wheels stand, and all that it was
   /// commanded and has counted is gone.
   void switch_off(std::int64_t now_ns);
   /// Switches on, or off and on again: as on the first day, once the time of the start-up is over.
   void switch_on(std::int64_t now_ns);
-  void set_silent(bool silent) { silent_ = silent; }
   void set_echo(bool echo) { echo_ = echo; }
-  /// One bit of each of the next reports is wrong; in the binary dialect it may be the checksum's.
-  void corrupt_reports(unsigned reports) { corrupt_ = reports; }
-  /// The next reports end somewhere in the middle.
-  void truncate_reports(unsigned reports) { truncate_ = reports; }
+  [[nodiscard]] McpLineFaults& line_faults() { return faults_; }
   /// Sends bytes that mean nothing.
   void send_garbage(std::size_t bytes, std::int64_t now_ns);
 
   // What the tests read.
   [[nodiscard]] bool ready() const { return ready_; }
-  [[nodiscard]] bool binary() const { return binary_; }
+  [[nodiscard]] bool binary() const { return reader_.binary(); }
   [[nodiscard]] bool echoes() const { return echo_; }
-  [[nodiscard]] const std::vector<devices::McpOrder>& heard() const { return heard_; }
-  void forget_heard() { heard_.clear(); }
+  [[nodiscard]] const std::vector<devices::McpOrder>& orders() const { return orders_; }
+  void forget_orders() { orders_.clear(); }
   [[nodiscard]] std::uint64_t reports() const { return reports_; }
 
  private:
-  void hear_ascii(std::uint8_t byte, std::int64_t now_ns);
-  void hear_binary(std::uint8_t byte, std::int64_t now_ns);
-  void hear_line(std::int64_t now_ns);
-  void execute(const devices::McpOrder& order, std::int64_t now_ns);
-  bool execute_motion(const devices::McpOrder& order);
-  void answer(devices::McpCommand command, std::uint32_t value, std::int64_t now_ns);
-  void say(std::string_view ascii, const std::vector<std::uint8_t>& binary, std::int64_t now_ns);
-  void send(std::vector<std::uint8_t> bytes, std::int64_t now_ns);
-  void send_line(std::string line, std::int64_t now_ns);
-  void send_report(devices::McpCommand kind, std::uint32_t mask, std::int64_t now_ns);
-  void damage(std::vector<std::uint8_t>& report);
-  [[nodiscard]] devices::McpReport report(std::uint32_t mask, std::int64_t now_ns) const;
-  [[nodiscard]] std::uint32_t clock(std::int64_t now_ns) const;
-  void move_motors(std::int64_t now_ns);
-  void expire_watchdog(std::int64_t now_ns);
-
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
+  /// The reports that it sends by itself.
+  struct Reporting {
+    std::uint32_t mask = 0;
+    std::int64_t period_ns = 0;
+    std::int64_t due_ns = kNever;
+  };
+
+  void echo(std::uint8_t byte, std::int64_t now_ns);
+  void execute(const devices::McpOrder& order, std::int64_t now_ns);
+  bool execute_setting(const devices::McpOrder& order, std::int64_t now_ns);
+  void execute_question(const devices::McpOrder& order, std::int64_t now_ns);
+  void answer(devices::McpCommand command, std::uint32_t value, std::int64_t now_ns);
+  /// Sends a message in the dialect that is spoken.
+  void send(std::string_view ascii, const std::vector<std::uint8_t>& binary, std::int64_t now_ns);
+  void send_bytes(std::vector<std::uint8_t> bytes, std::int64_t now_ns);
+  void send_line(std::string line, std::int64_t now_ns);
+  void send_report(devices::McpCommand kind, std::uint32_t mask, std::int64_t now_ns);
+  [[nodiscard]] devices::McpReport report(std::uint32_t mask, std::int64_t now_ns) const;
+  [[nodiscard]] std::uint32_t clock(std::int64_t now_ns) const;
+  void expire_watchdog(std::int64_t now_ns);
+
   McpEmulatorSettings settings_;
-  devices::McpUnits units_;
-  support::Random random_;
+  McpOrderReader reader_;
+  McpDrive drive_;
+  McpLineFaults faults_;
   SerialOutput output_;
 
   bool on_ = false;
-  bool ready_ = false;         // the start-up is over
-  std::int64_t on_ns_ = 0;     // switched on
-  std::int64_t moved_ns_ = 0;  // the motors are as of then
-  bool binary_ = false;
+  bool ready_ = false;      // the start-up is over
+  std::int64_t on_ns_ = 0;  // switched on
   bool echo_ = true;
-  std::string line_;
-  std::vector<std::uint8_t> packet_;
-  unsigned zeros_ = 0;
-  bool synchronised_ = false;
-  std::vector<devices::McpOrder> heard_;
-
-  std::uint32_t mask_ = 0;
-  std::int64_t period_ns_ = 0;
-  std::int64_t report_ns_ = kNever;
+  Reporting reporting_;
   std::int64_t watchdog_ns_ = kNever;
   bool joystick_off_ = false;
   bool stop_on_bump_ = true;
   std::uint16_t bumpers_ = 0;
   double battery_v_ = 0.0;
-  bool power_ = true;
-  McpAxis translation_;
-  McpAxis rotation_;
-  geometry::Pose2 T_base_robot_{};  // registers
-  double heading_rad_ = 0.0;        // the same, not wrapped
-  geometry::Pose2 T_start_robot_{};
 
-  bool silent_ = false;
-  unsigned corrupt_ = 0;
-  unsigned truncate_ = 0;
+  std::vector<devices::McpOrder> orders_;
   std::uint64_t reports_ = 0;
 };
 
