@@ -1,10 +1,11 @@
 #include "localizer_service.hpp"
 
-#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <memory>
 #include <stdexcept>
+#include <string>
 
-#include "topogeo/localization/matching/match_gate.hpp"
-#include "topogeo/localization/tracking/live_pose.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -13,12 +14,14 @@
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
+#include "run_counters.hpp"
 #include "run_summary.hpp"
 
 namespace topogeo::localizer {
 
 namespace {
 
+/// Twice for each status, so that none shows figures older than that.
 constexpr std::chrono::milliseconds kCountPeriod{250};
 
 /// Different for every process that ever ran, as far as workers can remember.
@@ -73,16 +76,17 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
       trajectory_(service),
       poses_(service.advertise<msg::LivePose>()),
       summaries_(service.advertise<msg::RunSummary>()),
-      ends_out_(service.advertise<msg::StreamEnd>()) {
+      ends_out_(service.advertise<msg::StreamEnd>()),
+      live_(service.setup().config.config.localizer.odometry) {
   service.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { on_map(map); },
                                    {.main_input = true});
   service.subscribe<msg::Odometry>(
       [this](const msg::Odometry& odometry) { on_odometry(odometry); });
   service.subscribe<msg::TrackedPose>([this](const msg::TrackedPose& pose) {
-    tracked_ = {pose.local_map_id(), service::from_msg(pose)};
+    live_.set_tracked(pose.local_map_id(), service::from_msg(pose));
   });
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
-  service.loop().add_timer(kCountPeriod, [this] { count_pool(); });
+  service.loop().add_timer(kCountPeriod, [this] { set_pool_counters(pool_, service_.status()); });
   count();
   service_.status().set_state(msg::kServiceWaiting, "for local maps");
   schedule();
@@ -90,51 +94,43 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
 
 void LocalizerService::on_map(const msg::LocalMap& message) {
   const std::string name = "local map " + std::to_string(message.id());
-  if (message.id() < hashes_.size()) {
-    // A reader gets a map again when its writer comes back; another map of that id is from
-    // another run.
-    if (message.content_hash() != hashes_[message.id()]) {
-      service_.status().fault("local map of another run", name);
-    }
-    return;
+  const StopQueue::Arrival arrival = queue_.arrival(message.id(), message.content_hash());
+  if (arrival == StopQueue::Arrival::kOtherRun) {
+    service_.status().fault("local map of another run", name);
   }
+  if (arrival != StopQueue::Arrival::kNew) return;
   if (finished_) {
     service_.status().fault("local map after the end", name);
     return;
   }
-  queue_[message.id()] = std::make_shared<const topomap::LocalMap>(service::from_msg(message));
+  queue_.add(std::make_shared<const topomap::LocalMap>(service::from_msg(message)));
   schedule();
 }
 
 void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
   if (message.stage() != "local_mapper") return;
-  maps_in_stream_ = message.count();
+  queue_.end_at(message.count());
   schedule();
 }
 
 void LocalizerService::on_odometry(const msg::Odometry& message) {
-  newest_ = {message.stamp_ns(), message.sequence_number(),
-             service::from_msg(message.T_odom_robot())};
+  live_.set_odometry(message.stamp_ns(), message.sequence_number(),
+                     service::from_msg(message.T_odom_robot()));
   send_pose();
 }
 
-// The pose now, from the corrected pose of the last stop.
 void LocalizerService::send_pose() {
-  if (!last_map_) return;
-  const bool tracked = tracked_ && tracked_->stop == last_map_->id;
-  const localization::UncertainPose pose = localization::live_pose(
-      {last_stop_.T_map_robot, last_stop_.covariance}, last_map_->T_odom_robot,
-      tracked ? &tracked_->scan : nullptr, newest_.T_odom_robot,
-      service_.setup().config.config.localizer.odometry);
+  const std::optional<PoseOfNow> now = live_.now();
+  if (!now) return;
   service::LivePose live;
-  live.stamp_ns = newest_.stamp_ns;
-  live.sequence = newest_.sequence;
+  live.stamp_ns = now->stamp_ns;
+  live.sequence = now->sequence;
   live.status = slam_->status();
   live.mode = slam_.mapping() ? msg::kModeMapping : msg::kModeLocalization;
-  live.T_map_robot = pose.T_a_b;
-  live.covariance = pose.covariance;
-  live.local_map_id = last_stop_.source_id;
-  live.trajectory_version = version_;
+  live.T_map_robot = now->T_map_robot.T_a_b;
+  live.covariance = now->T_map_robot.covariance;
+  live.local_map_id = live_.stop_pose().source_id;
+  live.trajectory_version = trajectory_.version();
   // One that cannot be sent now is old by the time it could.
   if (!poses_.write(service::to_msg(live, service_.robot_id()))) {
     service_.status().add_to_counter("poses_not_sent");
@@ -153,14 +149,12 @@ void LocalizerService::work() {
   try {
     if (!waited_) wait_for_workers();
     carry_out_commands();
-    while (!queue_.empty() && queue_.begin()->first == hashes_.size()) {
+    while (const StopQueue::MapPointer map = queue_.take()) {
       if (service::Service::stopping()) throw Stopped();
-      const MapPointer map = queue_.begin()->second;
-      queue_.erase(queue_.begin());
       step(map);
       carry_out_commands();
     }
-    if (!finished_ && maps_in_stream_ && hashes_.size() >= *maps_in_stream_) finish();
+    if (!finished_ && queue_.finished()) finish();
   } catch (const Stopped& stopped) {
     spdlog::debug("{}", stopped.what());
     service_.loop().stop();
@@ -183,16 +177,12 @@ void LocalizerService::wait_for_workers() {
   service_.status().set_state(msg::kServiceWaiting, "for local maps");
 }
 
-void LocalizerService::step(const MapPointer& map) {
+void LocalizerService::step(const StopQueue::MapPointer& map) {
   if (service_.status().state() != msg::kServiceRunning) {
     service_.status().set_state(msg::kServiceRunning);
   }
-  hashes_.push_back(topomap::content_hash(*map));
   slam_->add(map);
-  last_map_ = map;
-  if (map->stamp_ns >= newest_.stamp_ns) {
-    newest_ = {map->stamp_ns, map->sequence, map->T_odom_robot};
-  }
+  live_.set_stop(map);
   publish(false);
   send_pose();  // a correction shows at once, also when no odometry comes any more
   count();
@@ -200,7 +190,7 @@ void LocalizerService::step(const MapPointer& map) {
 
 std::size_t LocalizerService::stops_in_map() const {
   return slam_.mapping_session() != nullptr ? slam_.mapping_session()->maps().size()
-                                            : hashes_.size();
+                                            : queue_.taken();
 }
 
 void LocalizerService::finish() {
@@ -218,18 +208,19 @@ void LocalizerService::finish() {
   count();
   const RunParts parts{*slam_, slam_.follower(),
                        options_.continued ? slam_.mapping_session() : nullptr, pool_.counts()};
-  const msg::RunSummary summary = make_run_summary(parts, service_.robot_id(), last_stop_.stamp_ns);
+  const msg::RunSummary summary =
+      make_run_summary(parts, service_.robot_id(), live_.stop_pose().stamp_ns);
   if (!service_.send(summaries_, summary, "run summary")) return;
   msg::StreamEnd end;
-  messaging::set_header(end, service_.robot_id(), last_stop_.stamp_ns, 0);
+  messaging::set_header(end, service_.robot_id(), live_.stop_pose().stamp_ns, 0);
   messaging::set_text(end.stage(), "localizer", "stage");
   const std::size_t stops = stops_in_map();
   end.count(stops);
   end.last_id(stops == 0 ? 0 : stops - 1);
-  end.version(version_);
+  end.version(trajectory_.version());
   if (!service_.send(ends_out_, end, "stream end")) return;
   const localization::SlamCounts counts = slam_->counts();
-  spdlog::info("{} stops, {} match tasks, {} loop closures", hashes_.size(), counts.tasks,
+  spdlog::info("{} stops, {} match tasks, {} loop closures", queue_.taken(), counts.tasks,
                trajectory_.closures());
   std::string message;
   if (slam_.mapping_session() != nullptr) {
@@ -241,9 +232,8 @@ void LocalizerService::finish() {
 
 void LocalizerService::publish(bool whole) {
   const topomap::Trajectory trajectory = slam_->trajectory();
-  version_ = trajectory.version;
-  if (const auto last = slam_->last_stop()) last_stop_ = *last;
-  if (!trajectory_.publish(*slam_, trajectory, last_stop_.stamp_ns, whole)) throw Stopped();
+  if (const auto last = slam_->last_stop()) live_.correct(*last);
+  if (!trajectory_.publish(*slam_, trajectory, live_.stop_pose().stamp_ns, whole)) throw Stopped();
 }
 
 // --- commands
@@ -255,18 +245,14 @@ void LocalizerService::carry_out_commands() {
         send_pose();
         return answer;
       },
-      last_stop_.stamp_ns);
+      live_.stop_pose().stamp_ns);
 }
 
 CommandAnswer LocalizerService::carry_out(const service::LocalizationCommand& command) {
-  CommandMoment now{finished_, stops_in_map(), {}};
-  if (last_map_) {
-    now.T_stop_robot = geometry::between(last_map_->T_odom_robot, newest_.T_odom_robot);
-  }
+  const CommandMoment now{finished_, stops_in_map(), live_.T_stop_robot()};
   CommandAnswer answer = localizer::carry_out(command, now, slam_);
-  if (answer.accepted && command.kind == msg::kCommandSetPose && last_map_) {
-    last_stop_.T_map_robot = stop_pose(command, now);
-    last_stop_.covariance = command.covariance;
+  if (answer.accepted && command.kind == msg::kCommandSetPose && live_.has_stop()) {
+    live_.correct(stop_pose(command, now), command.covariance);
   }
   return answer;
 }
@@ -275,26 +261,12 @@ CommandAnswer LocalizerService::carry_out(const service::LocalizationCommand& co
 
 void LocalizerService::count() {
   messaging::StatusPublisher& status = service_.status();
-  const localization::SlamCounts counts = slam_->counts();
   const auto set = [&status](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };
-  set("local_maps", hashes_.size());
-  set("stops", hashes_.size());
-  set("tasks", counts.tasks);
-  set("evaluations", counts.evaluations);
-  for (std::size_t i = 0; i < localization::kReasons; ++i) {
-    const auto reason = static_cast<localization::Reason>(i);
-    const std::string name = localization::to_string(reason);
-    set(reason == localization::Reason::kNone ? name : "rejected: " + name, counts.reasons[i]);
-  }
-  set("loop_closures", trajectory_.closures());
-  set("loop_decisions", slam_->loop_decisions().size());
-  set("optimizations", counts.optimizations);
-  set("failed_optimizations", counts.failed_optimizations);
-  set("unconfirmed_loops", counts.unconfirmed_loops);
-  set("removed_loops", counts.removed_loops);
-  set("steps_in_doubt", counts.steps_in_doubt);
+  set("local_maps", queue_.taken());
+  set("stops", queue_.taken());
+  set_slam_counters(*slam_, trajectory_.closures(), status);
   if (const localization::MappingSession* session = slam_.mapping_session()) {
     if (options_.continued) {
       for (const auto& [name, value] : pipeline::continuation_counts(*session)) set(name, value);
@@ -304,40 +276,7 @@ void LocalizerService::count() {
   if (const auto* in_map = slam_.follower()) {
     for (const auto& [name, value] : pipeline::localization_counts(*in_map)) set(name, value);
   }
-  count_pool();
-}
-
-void LocalizerService::count_pool() {
-  messaging::StatusPublisher& status = service_.status();
-  const search_pool::BoardCounts& counts = pool_.counts();
-  const search_pool::RegistryCounts& refused = pool_.registry_counts();
-  const auto set = [&status](const std::string& name, std::uint64_t value) {
-    status.set_counter(name, static_cast<double>(value));
-  };
-  const auto set_ms = [&status](const std::string& name, search_pool::BoardTime time) {
-    status.set_counter(name, std::chrono::duration<double, std::milli>(time).count());
-  };
-  set("workers", pool_.workers());
-  set("workers_lost", counts.workers_lost);
-  set("workers_excluded", counts.workers_excluded);
-  set("workers_of_other_version", refused.other_version);
-  set("workers_of_other_matcher", refused.other_matcher);
-  set("workers_of_other_configuration", refused.other_configuration);
-  set("workers_of_one_id", refused.shared_ids);
-  set("tasks_sent", counts.sent);
-  set("tasks_resent", counts.resent);
-  set("tasks_redone", counts.redone);
-  set("tasks_in_process", counts.in_process);
-  set("tasks_failed", counts.failed);
-  set("maps_missing", counts.map_missing);
-  set("maps_sent", pool_.maps_sent());
-  set("answers_ignored", counts.ignored);
-  set("audits", counts.audits);
-  set("audit_differences", counts.audit_differences);
-  set("duplicates", counts.duplicates);
-  set("duplicate_differences", counts.duplicate_differences);
-  set_ms("recovery_ms", counts.last_recovery);
-  set_ms("longest_recovery_ms", counts.longest_recovery);
+  set_pool_counters(pool_, status);
 }
 
 }  // namespace topogeo::localizer

@@ -2,15 +2,10 @@
 // the decision on each loop and the live pose out, with the matching done by RemotePool.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "topogeo/localization/session/slam_session.hpp"
 #include "topogeo/messaging/writer.hpp"
@@ -22,7 +17,9 @@
 
 #include "background_optimizer.hpp"
 #include "command_channel.hpp"
+#include "live_pose_estimate.hpp"
 #include "remote_pool.hpp"
+#include "stop_queue.hpp"
 #include "trajectory_publisher.hpp"
 
 namespace topogeo::localizer {
@@ -42,8 +39,6 @@ class LocalizerService {
   LocalizerService(service::Service& service, const LocalizerOptions& options);
 
  private:
-  using MapPointer = std::shared_ptr<const topomap::LocalMap>;
-
   void on_map(const msg::LocalMap& message);
   void on_odometry(const msg::Odometry& message);
   void send_pose();
@@ -55,11 +50,10 @@ class LocalizerService {
   void wait_for_workers();
   void carry_out_commands();
   CommandAnswer carry_out(const service::LocalizationCommand& command);
-  void step(const MapPointer& map);
+  void step(const StopQueue::MapPointer& map);
   void finish();
   void publish(bool whole);
   void count();
-  void count_pool();
 
   service::Service& service_;
   LocalizerOptions options_;
@@ -72,23 +66,8 @@ class LocalizerService {
   messaging::Writer<msg::RunSummary> summaries_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
-  std::map<std::uint32_t, MapPointer> queue_;  // not yet worked on, by id
-  std::vector<std::uint64_t> hashes_;          // of those worked on; index: id
-  MapPointer last_map_;
-  topomap::StopPose last_stop_;
-  struct Newest {
-    std::int64_t stamp_ns = 0;
-    std::uint64_t sequence = 0;
-    geometry::Pose2 T_odom_robot;
-  };
-  Newest newest_;  // odometry that came last
-  struct Tracked {
-    std::uint32_t stop = 0;  // as local_mapper numbers it
-    topomap::TrackedScan scan;
-  };
-  std::optional<Tracked> tracked_;  // the scan that came last
-  std::uint64_t version_ = 0;
-  std::optional<std::uint64_t> maps_in_stream_;
+  StopQueue queue_;
+  LivePoseEstimate live_;
   bool scheduled_ = false;
   bool waited_ = false;
   bool finished_ = false;

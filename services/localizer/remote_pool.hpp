@@ -51,6 +51,9 @@ struct RemotePoolOptions {
   search_pool::PoolLog::Sink log;
 };
 
+/// Makes its readers and writers itself: a process has one service::Service, tests and benchmarks
+/// several pools; and statuses come from workers of every robot, with the process of their writer.
+///
 /// Everything happens in the thread that calls it. match() runs the event loop while it waits, so
 /// it must not be called from a message handler, only from a posted or timed one or outside.
 class RemotePool : public localization::MatchPool {

@@ -27,6 +27,7 @@ TrajectoryPublisher::TrajectoryPublisher(service::Service& service)
 bool TrajectoryPublisher::publish(const localization::Slam& slam,
                                   const topomap::Trajectory& trajectory, std::int64_t stamp_ns,
                                   bool whole) {
+  version_ = trajectory.version;
   if (!send_segments(trajectory, whole)) return false;
   if (!send_decisions(slam.loop_decisions(), stamp_ns)) return false;
   std::vector<topomap::LoopClosure> closures = slam.loop_closures();

@@ -27,6 +27,8 @@ class TrajectoryPublisher {
   [[nodiscard]] bool publish(const localization::Slam& slam, const topomap::Trajectory& trajectory,
                              std::int64_t stamp_ns, bool whole);
 
+  /// Of the trajectory that was published last.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
   /// Closed loops that were sent last.
   [[nodiscard]] std::size_t closures() const { return closures_.size(); }
 
@@ -40,6 +42,7 @@ class TrajectoryPublisher {
   messaging::Writer<msg::LoopClosures> closure_writer_;
   messaging::Writer<msg::LoopDecisions> decision_writer_;
   TrajectoryUpdates updates_;
+  std::uint64_t version_ = 0;
   std::vector<topomap::LoopClosure> closures_;
   std::size_t decisions_ = 0;
   std::uint64_t segments_sent_ = 0;

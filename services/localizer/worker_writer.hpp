@@ -14,7 +14,7 @@
 
 namespace topogeo::localizer {
 
-/// Knows which processes are connected, because a message to a worker whose reader is not would be
+/// Keeps which processes are connected, because a message to a worker whose reader is not would be
 /// lost. Forgets the ids of a process that is gone: a writer has room for a bounded number of them,
 /// and every worker that starts has a new one.
 template <class T>

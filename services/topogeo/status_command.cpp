@@ -48,7 +48,7 @@ int show_status(const StatusOptions& options) {
       [&](const messaging::SampleInfo& info) { table.remove(info); });
 
   const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
-  const bool found = look(
+  const bool found = collect_and_show(
       options.view, loop, [&] { return !table.empty(); },
       [&] {
         const StatusTable::Clock::time_point now = StatusTable::Clock::now();

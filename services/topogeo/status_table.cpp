@@ -9,20 +9,13 @@
 #include "topogeo/support/format.hpp"
 
 #include "service_table.hpp"
+#include "text_grid.hpp"
 
 namespace topogeo::cli {
 namespace {
 
-/// How much of the names of hosts and robots the table shows where there is room, and at least.
-constexpr std::size_t kLongestName = 16;
-constexpr std::size_t kShortestName = 4;
-/// Names of services tell more: they keep that much more.
+/// Names of services matter more: they keep that much more.
 constexpr std::size_t kMoreOfServices = 6;
-
-std::string shortened(std::string text, std::size_t size) {
-  if (text.size() > size) text = text.substr(0, size - 1) + "~";
-  return text;
-}
 
 /// "0.3 s", "12 s", "5 min", "3 h".
 std::string age_text(double age_s) {
@@ -36,57 +29,6 @@ std::string age_text(double age_s) {
 
 std::string rate_text(double rate_per_s) {
   return rate_per_s < 10.0 ? fmt::format("{:.1f}", rate_per_s) : fmt::format("{:.0f}", rate_per_s);
-}
-
-/// Lines of at most `columns` bytes that begin with two blanks, broken between words.
-std::string wrapped(const std::string& text, std::size_t columns) {
-  const std::string indent = "  ";
-  std::string lines;
-  std::string line = indent;
-  for (std::size_t begin = 0; begin < text.size();) {
-    std::size_t end = std::min(text.find(' ', begin), text.size());
-    end = std::min(end, begin + columns - indent.size());  // of a word without end
-    const std::string word = text.substr(begin, end - begin);
-    if (line.size() > indent.size() && line.size() + 1 + word.size() > columns) {
-      lines += line + "\n";
-      line = indent;
-    }
-    line += (line.size() > indent.size() ? " " : "") + word;
-    begin = end < text.size() && text[end] == ' ' ? end + 1 : end;
-  }
-  return lines + line + "\n";
-}
-
-/// Cells of a table whose columns are as wide as their widest cell.
-class Grid {
- public:
-  explicit Grid(std::vector<std::string> titles) : cells_{std::move(titles)} {}
-
-  void add(std::vector<std::string> cells) { cells_.push_back(std::move(cells)); }
-
-  /// All of the same width, the titles first; columns of the titles `right` are aligned there.
-  [[nodiscard]] std::vector<std::string> lines(const std::set<std::string>& right) const {
-    std::vector<std::string> lines(cells_.size());
-    for (std::size_t c = 0; c < cells_[0].size(); ++c) {
-      std::size_t width = 0;
-      for (const auto& cells : cells_) width = std::max(width, cells[c].size());
-      for (std::size_t i = 0; i < lines.size(); ++i) {
-        const std::string& cell = cells_[i][c];
-        const std::string blanks(width - cell.size(), ' ');
-        lines[i] += (c == 0 ? "" : "  ");
-        lines[i] += right.contains(cells_[0][c]) ? blanks + cell : cell + blanks;
-      }
-    }
-    return lines;
-  }
-
- private:
-  std::vector<std::vector<std::string>> cells_;
-};
-
-std::string trimmed(std::string line) {
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line;
 }
 
 }  // namespace
@@ -116,7 +58,7 @@ void StatusTable::remove(const messaging::SampleInfo& info) {
 }
 
 void StatusTable::forget(Clock::time_point now) {
-  std::erase_if(rows_, [&](const auto& entry) { return now - entry.second.heard > kForget; });
+  std::erase_if(rows_, [&](const auto& entry) { return now - entry.second.received > kForget; });
 }
 
 void StatusTable::keep_only(std::string_view service) {
@@ -124,7 +66,7 @@ void StatusTable::keep_only(std::string_view service) {
 }
 
 bool StatusTable::unwell(const Row& row, Clock::time_point now) {
-  return row.lost || row.status.state() == msg::kServiceFailed || now - row.heard > kSilent;
+  return row.lost || row.status.state() == msg::kServiceFailed || now - row.received > kSilent;
 }
 
 bool StatusTable::healthy(Clock::time_point now) const {
@@ -134,25 +76,25 @@ bool StatusTable::healthy(Clock::time_point now) const {
 std::string StatusTable::state(const Row& row, Clock::time_point now) {
   if (row.status.state() != msg::kServiceFailed) {
     if (row.lost) return "lost";
-    if (now - row.heard > kSilent) return "silent";
+    if (now - row.received > kSilent) return "silent";
   }
   return std::string(to_string(row.status.state()));
 }
 
 std::string StatusTable::reason(const Row& row, Clock::time_point now) {
   const std::string message = row.status.message().to_string();
-  const std::string age = age_text(std::chrono::duration<double>(now - row.heard).count());
+  const std::string age = age_text(std::chrono::duration<double>(now - row.received).count());
   std::string why;
   if (row.lost) {
     why = "ended without a word " + age + " ago";
-  } else if (now - row.heard > kSilent) {
+  } else if (now - row.received > kSilent) {
     why = "no status for " + age;
   }
   return why.empty() || message.empty() ? why + message : why + "; before: " + message;
 }
 
 double StatusTable::input_age_s(const Row& row, Clock::time_point now) {
-  return row.status.input_age_s() + std::chrono::duration<double>(now - row.heard).count();
+  return row.status.input_age_s() + std::chrono::duration<double>(now - row.received).count();
 }
 
 std::vector<const StatusTable::Row*> StatusTable::ordered() const {
@@ -183,7 +125,7 @@ std::vector<std::string> StatusTable::lines(Clock::time_point now, const Shown& 
   if (shown.robot) titles.emplace_back("ROBOT");
   if (shown.host) titles.emplace_back("HOST");
   for (const char* title : {"STATE", "INPUT/s", "AGE", "FAULTS"}) titles.emplace_back(title);
-  Grid grid(std::move(titles));
+  TextGrid grid(std::move(titles));
   for (const Row* row : ordered()) {
     const msg::ServiceStatus& s = row->status;
     std::vector<std::string> cells = {
@@ -207,23 +149,9 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
   while (lines[0].size() > columns && longest_name > kShortestName) {
     lines = this->lines(now, shown, --longest_name);
   }
-  const std::string title = "  REASON";
-  std::string text = lines[0] + (lines[0].size() + title.size() <= columns ? title : "") + "\n";
-  const std::vector<const Row*> rows = ordered();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::string& line = lines[i + 1];
-    const std::string why = reason(*rows[i], now);
-    if (why.empty() || line.size() + 2 + why.size() <= columns) {
-      std::string whole = line;
-      text += trimmed(whole.append("  ").append(why));
-      text += '\n';
-    } else {
-      text += trimmed(line);
-      text += '\n';
-      text += wrapped(why, columns);
-    }
-  }
-  return text + sums(now);
+  std::vector<std::string> reasons;
+  for (const Row* row : ordered()) reasons.push_back(reason(*row, now));
+  return with_remarks(lines, "REASON", reasons, columns) + sums(now);
 }
 
 std::string StatusTable::sums(Clock::time_point now) const {
@@ -280,7 +208,7 @@ std::string StatusTable::json(Clock::time_point now) const {
         {"state", state(*row, now)},
         {"message", s.message().c_str()},
         {"uptime_s", s.uptime_s()},
-        {"silent_s", std::chrono::duration<double>(now - row->heard).count()},
+        {"silent_s", std::chrono::duration<double>(now - row->received).count()},
         {"input", s.input().c_str()},
         {"inputs", s.inputs()},
         {"input_rate_per_s", s.input_rate_per_s()},

@@ -12,6 +12,8 @@
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/status.h"
 
+#include "text_grid.hpp"
+
 namespace topogeo::cli {
 
 class StatusTable {
@@ -22,8 +24,6 @@ class StatusTable {
   static constexpr std::chrono::milliseconds kSilent{1500};
   /// How long a service that was lost stays in the table, for people who watch it.
   static constexpr std::chrono::seconds kForget{10};
-  /// Width of a terminal that was not resized.
-  static constexpr std::size_t kColumns = 80;
 
   void update(const msg::ServiceStatus& status, const messaging::SampleInfo& info,
               Clock::time_point now);
@@ -50,7 +50,7 @@ class StatusTable {
  private:
   struct Row {
     msg::ServiceStatus status;
-    Clock::time_point heard;
+    Clock::time_point received;
     bool lost = false;
   };
   using Name = std::pair<std::string, std::string>;  // service, instance

@@ -1,6 +1,8 @@
 #include "worker_table.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -11,8 +13,13 @@ namespace {
 
 using Clock = WorkerTable::Clock;
 
-double silence_s(Clock::time_point heard, Clock::time_point now) {
-  return std::chrono::duration<double>(now - heard).count();
+/// Names of workers matter more than those of hosts: they keep that much more.
+constexpr std::size_t kMoreOfNames = 6;
+/// Kept free for the usual states, "  draining" the longest of them.
+constexpr std::size_t kStateWidth = 10;
+
+double silence_s(Clock::time_point received, Clock::time_point now) {
+  return std::chrono::duration<double>(now - received).count();
 }
 
 std::string duration_text(double seconds) {
@@ -39,13 +46,13 @@ void WorkerTable::remove(const messaging::SampleInfo& info) {
 }
 
 void WorkerTable::forget_silent(Clock::time_point now) {
-  std::erase_if(rows_, [&](const auto& row) { return now - row.second.heard > kForget; });
+  std::erase_if(rows_, [&](const auto& row) { return now - row.second.received > kForget; });
 }
 
 std::string WorkerTable::state(const Row& row, Clock::time_point now) const {
   const msg::WorkerStatus& status = row.status;
-  if (now - row.heard > kSilent) {
-    return fmt::format("silent for {:.0f} s", silence_s(row.heard, now));
+  if (now - row.received > kSilent) {
+    return fmt::format("silent for {:.0f} s", silence_s(row.received, now));
   }
   if (version_ != status.version().c_str()) {
     return fmt::format("other version: {}, this is {}", status.version().c_str(), version_);
@@ -57,33 +64,85 @@ std::string WorkerTable::state(const Row& row, Clock::time_point now) const {
   return status.tasks_in_hand() > 0 || status.load() > 0.0 ? "working" : "idle";
 }
 
-std::string WorkerTable::text(Clock::time_point now) const {
-  constexpr std::string_view kRow =
-      "{:<24} {:<16} {:>7} {:>5} {:>6} {:>7} {:>9} {:>8} {:>7} {:>6} "
-      "{:>5} {:>8}  {}\n";
-  std::string text =
-      fmt::format(fmt::runtime(kRow), "WORKER", "HOST", "PID", "SLOTS", "LOAD", "IN HAND", "DONE",
-                  "TASKS/s", "FAILED", "ROBOTS", "MAPS", "UP", "STATE");
+std::vector<std::string> WorkerTable::lines(std::size_t longest_name) const {
+  std::set<std::string> hosts;
+  std::set<std::string> names;
+  for (const auto& [id, row] : rows_) {
+    hosts.insert(row.status.host().to_string());
+    names.insert(row.status.name().to_string());
+  }
+  const bool show_pid = names.size() < rows_.size();
+  const bool show_host = hosts.size() > 1 && hosts != names;
+  std::vector<std::string> titles = {"WORKER"};
+  if (show_pid) titles.emplace_back("PID");
+  if (show_host) titles.emplace_back("HOST");
+  for (const char* title : {"SLOTS", "LOAD", "DONE", "TASKS/s", "FAILED"}) {
+    titles.emplace_back(title);
+  }
+  TextGrid grid(std::move(titles));
+  for (const auto& [id, row] : rows_) {
+    const msg::WorkerStatus& s = row.status;
+    std::vector<std::string> cells = {shortened(s.name().to_string(), longest_name + kMoreOfNames)};
+    if (show_pid) cells.push_back(std::to_string(s.process_id()));
+    if (show_host) cells.push_back(shortened(s.host().to_string(), longest_name));
+    cells.push_back(std::to_string(s.slots()));
+    cells.push_back(fmt::format("{:.0f} %", 100.0 * s.load()));
+    cells.push_back(std::to_string(s.tasks_done()));
+    cells.push_back(fmt::format("{:.1f}", s.tasks_per_s()));
+    cells.push_back(std::to_string(s.failures()));
+    grid.add(std::move(cells));
+  }
+  return grid.lines({"PID", "SLOTS", "LOAD", "DONE", "TASKS/s", "FAILED"});
+}
+
+std::string WorkerTable::text(Clock::time_point now, std::size_t columns) const {
+  std::size_t longest_name = kLongestName;
+  std::vector<std::string> lines = this->lines(longest_name);
+  while (lines[0].size() + kStateWidth > columns && longest_name > kShortestName) {
+    lines = this->lines(--longest_name);
+  }
+  std::vector<std::string> states;
+  for (const auto& [id, row] : rows_) states.push_back(state(row, now));
+  return with_remarks(lines, "STATE", states, columns) + sums(now);
+}
+
+std::string WorkerTable::sums(Clock::time_point now) const {
   std::uint64_t slots = 0;
   double busy_slots = 0.0;
   double tasks_per_s = 0.0;
   std::uint64_t done = 0;
   for (const auto& [id, row] : rows_) {
+    if (now - row.received > kSilent) continue;
     const msg::WorkerStatus& s = row.status;
-    text += fmt::format(fmt::runtime(kRow), s.name().c_str(), s.host().c_str(), s.process_id(),
-                        s.slots(), fmt::format("{:.0f} %", 100.0 * s.load()), s.tasks_in_hand(),
-                        s.tasks_done(), fmt::format("{:.1f}", s.tasks_per_s()), s.failures(),
-                        s.clients(), s.maps_held(), duration_text(s.uptime_s()), state(row, now));
-    if (now - row.heard > kSilent) continue;
     slots += s.slots();
     busy_slots += s.load() * s.slots();
     tasks_per_s += s.tasks_per_s();
     done += s.tasks_done();
   }
-  text += fmt::format("{} worker{}, {} slot{}, {:.0f} % busy, {} tasks done, {:.1f} tasks/s\n",
-                      rows_.size(), rows_.size() == 1 ? "" : "s", slots, slots == 1 ? "" : "s",
-                      slots == 0 ? 0.0 : 100.0 * busy_slots / static_cast<double>(slots), done,
-                      tasks_per_s);
+  return fmt::format("{} worker{}, {} slot{}, {:.0f} % busy, {} tasks done, {:.1f} tasks/s\n",
+                     rows_.size(), rows_.size() == 1 ? "" : "s", slots, slots == 1 ? "" : "s",
+                     slots == 0 ? 0.0 : 100.0 * busy_slots / static_cast<double>(slots), done,
+                     tasks_per_s);
+}
+
+std::string WorkerTable::details(Clock::time_point now) const {
+  std::string text;
+  for (const auto& [id, row] : rows_) {
+    const msg::WorkerStatus& s = row.status;
+    text += fmt::format("{}{}  {}\n", text.empty() ? "" : "\n", s.name().c_str(), state(row, now));
+    const auto add = [&text](std::string_view name, const std::string& value) {
+      text += fmt::format("  {:<8} {}\n", name, value);
+    };
+    add("process",
+        fmt::format("{} on {}, version {}", s.process_id(), s.host().c_str(), s.version().c_str()));
+    add("id", id);
+    add("up", duration_text(s.uptime_s()));
+    add("load", fmt::format("{:.0f} % of {} slots, {} tasks in hand", 100.0 * s.load(), s.slots(),
+                            s.tasks_in_hand()));
+    add("tasks",
+        fmt::format("{} done, {:.1f}/s, {} failed", s.tasks_done(), s.tasks_per_s(), s.failures()));
+    add("serves", fmt::format("{} robots, {} maps held", s.clients(), s.maps_held()));
+  }
   return text;
 }
 

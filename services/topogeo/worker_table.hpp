@@ -1,14 +1,18 @@
-// What the search workers on a domain last said of themselves, as a table for people.
+// The last status of the search workers on a domain, as a table for people.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
-#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/status.h"
+
+#include "text_grid.hpp"
 
 namespace topogeo::cli {
 
@@ -22,15 +26,18 @@ class WorkerTable {
 
   void update(const msg::WorkerStatus& status, const messaging::SampleInfo& info,
               Clock::time_point now);
-  /// The worker said goodbye, or is known to be gone.
+  /// The worker has left, or was lost.
   void remove(const messaging::SampleInfo& info);
   /// Forgets workers that have been silent for kForget.
   void forget_silent(Clock::time_point now);
 
   [[nodiscard]] bool empty() const { return rows_.empty(); }
-  /// Head line, one line for each worker by name, a line with the sums. Workers tell twice a
-  /// second; one that is silent for kSilent is marked.
-  [[nodiscard]] std::string text(Clock::time_point now) const;
+  /// Head line, one line for each worker by name, no wider than `columns`, a line with the sums.
+  /// Columns that are the same everywhere are left out; a state that does not fit stands below.
+  /// Workers publish twice a second; one that is silent for kSilent is marked.
+  [[nodiscard]] std::string text(Clock::time_point now, std::size_t columns = kColumns) const;
+  /// Everything, a block of lines for each worker.
+  [[nodiscard]] std::string details(Clock::time_point now) const;
   /// The same for programs: an array of objects, field names as in the IDL.
   [[nodiscard]] std::string json(Clock::time_point now) const;
 
@@ -40,9 +47,11 @@ class WorkerTable {
  private:
   struct Row {
     msg::WorkerStatus status;
-    Clock::time_point heard;
+    Clock::time_point received;
   };
   [[nodiscard]] std::string state(const Row& row, Clock::time_point now) const;
+  [[nodiscard]] std::vector<std::string> lines(std::size_t longest_name) const;
+  [[nodiscard]] std::string sums(Clock::time_point now) const;
 
   std::string version_;
   std::uint64_t matcher_fingerprint_;

@@ -20,6 +20,7 @@ namespace {
 
 struct WorkersOptions {
   DomainView view;
+  bool verbose = false;
   bool json = false;
 };
 
@@ -40,10 +41,14 @@ int show_workers(const WorkersOptions& options) {
     const WorkerTable::Clock::time_point now = WorkerTable::Clock::now();
     table.forget_silent(now);
     if (redraw) std::cout << "\x1b[H\x1b[J";  // home, clear to the end
-    std::cout << (options.json ? table.json(now) : table.text(now));
+    if (options.json) {
+      std::cout << table.json(now);
+    } else {
+      std::cout << (options.verbose ? table.details(now) : table.text(now));
+    }
     if (options.view.watch && !redraw) std::cout << '\n';
   };
-  const bool found = look(
+  const bool found = collect_and_show(
       options.view, loop, [&] { return !table.empty(); }, show);
   if (found || options.view.watch) return service::kOk;
   if (options.json) std::cout << "[]\n";
@@ -59,11 +64,13 @@ void add_workers_command(command_line::Command& app, int& exit_code) {
       app.add_subcommand("workers", "List the search workers on the network and their load");
   auto options = std::make_shared<WorkersOptions>();
   add_view_options(*command, options->view);
+  command->add_flag("--verbose", options->verbose,
+                    "details: process, version, tasks in hand, maps");
   command->add_flag("--json", options->json, "for programs: fields as in idl/status.idl");
   command->footer(
-      "LOAD is the busy share of the slots since the last half second, IN HAND counts tasks "
-      "received\n"
-      "and not yet answered, FAILED those refused or failed, ROBOTS the localizers served lately.\n"
+      "LOAD is the busy share of the slots since the last half second, DONE counts the tasks "
+      "answered,\n"
+      "FAILED those refused or failed.\n"
       "`ga_worker --slots N` on any machine of the network adds a worker, Ctrl-C there removes "
       "it.");
   command->callback([options, &exit_code] { exit_code = show_workers(*options); });

@@ -45,7 +45,7 @@ class SimulatedDevicesTest : public testing::Test {
       faults_.tick();
     }
   }
-  double way_m() { return devices_.robot().way_m(); }
+  double path_m() { return devices_.robot().path_m(); }
 
   SimulatedDevices devices_{world::parse_world(kCorridor, "w"), options()};
   FaultInjector faults_{devices_};
@@ -58,13 +58,13 @@ TEST_F(SimulatedDevicesTest, TheBaseDrivesTheRobotAndReportsIt) {
   base_.write("HD\rSD 32\rSP 40\r");  // clock, x and y; four reports a second
   base_.write(kDrive);
   run_for(5.0);
-  EXPECT_NEAR(way_m(), 0.5, 0.05);
+  EXPECT_NEAR(path_m(), 0.5, 0.05);
   EXPECT_THAT(base_.read(), HasSubstr("BPY 80"));
   base_.write("TH\r");
   run_for(3.0);
-  const double stopped_m = way_m();
+  const double stopped_m = path_m();
   run_for(1.0);
-  EXPECT_EQ(way_m(), stopped_m);
+  EXPECT_EQ(path_m(), stopped_m);
 }
 
 TEST_F(SimulatedDevicesTest, AtAnotherRateNothingIsUnderstood) {
@@ -72,7 +72,7 @@ TEST_F(SimulatedDevicesTest, AtAnotherRateNothingIsUnderstood) {
   base_.set_rate(B38400);
   base_.write(kDrive);
   run_for(2.0);
-  EXPECT_EQ(way_m(), 0.0);
+  EXPECT_EQ(path_m(), 0.0);
 }
 
 TEST_F(SimulatedDevicesTest, TheLaserAnswers) {
@@ -114,18 +114,18 @@ TEST_F(SimulatedDevicesTest, TheJoystickDrivesAndTheEmergencyStopHolds) {
                  .duration_s = 2.0,
                  .velocity = {0.3, 0.0}});
   run_with_faults(2.5);
-  const double by_hand_m = way_m();
+  const double by_hand_m = path_m();
   EXPECT_GT(by_hand_m, 0.3);
   run_with_faults(1.0);
-  EXPECT_NEAR(way_m(), by_hand_m, 0.02);
+  EXPECT_NEAR(path_m(), by_hand_m, 0.02);
 
   base_.write(kDrive);
   run_with_faults(2.0);
   faults_.begin({.kind = msg::kSimulatedEmergencyStop, .device = Device::kBase, .duration_s = 1.0});
   run_with_faults(0.5);
-  const double held_m = way_m();
+  const double held_m = path_m();
   run_with_faults(0.4);
-  EXPECT_NEAR(way_m(), held_m, 0.005);
+  EXPECT_NEAR(path_m(), held_m, 0.005);
 }
 
 TEST_F(SimulatedDevicesTest, ASilentBaseSaysNothingUntilItsTimeIsOver) {
@@ -151,13 +151,13 @@ TEST_F(SimulatedDevicesTest, ABaseWithoutPowerStandsAndComesBackAsNew) {
   base_.write(kDrive);
   run_for(2.0);
   faults_.begin({.kind = msg::kSimulatedRestart, .device = Device::kBase, .duration_s = 2.0});
-  const double off_m = way_m();
+  const double off_m = path_m();
   run_with_faults(0.1);
   static_cast<void>(base_.read());
   base_.write(kDrive);
   run_with_faults(1.5);
   EXPECT_EQ(base_.read(), "");
-  EXPECT_EQ(way_m(), off_m);
+  EXPECT_EQ(path_m(), off_m);
 
   run_with_faults(3.0);  // on again, and the time to start up
   EXPECT_EQ(base_.read(), "");

@@ -1,0 +1,64 @@
+// Where the robot is between two stops: from the corrected pose of the last stop, the scans that
+// were matched with its scan, and the odometry since.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::localizer {
+
+/// A pose for a reading of the odometry.
+struct PoseOfNow {
+  std::int64_t stamp_ns = 0;   ///< of the reading
+  std::uint64_t sequence = 0;  ///< of the reading
+  localization::UncertainPose T_map_robot;
+};
+
+class LivePoseEstimate {
+ public:
+  explicit LivePoseEstimate(const localization::OdometryNoise& noise) : noise_(noise) {}
+
+  /// The newest reading of the odometry.
+  void set_odometry(std::int64_t stamp_ns, std::uint64_t sequence,
+                    const geometry::Pose2& T_odom_robot);
+  /// The newest scan after the stop of that local map; counts while that is the last stop.
+  void set_tracked(std::uint32_t local_map_id, const topomap::TrackedScan& scan);
+  /// The robot has made a stop. Its odometry counts unless a newer one has come.
+  void set_stop(std::shared_ptr<const topomap::LocalMap> map);
+  /// The pose of the last stop, as it is corrected now.
+  void correct(const topomap::StopPose& pose) { stop_pose_ = pose; }
+  /// The same by a command.
+  void correct(const geometry::Pose2& T_map_stop, const Eigen::Matrix3d& covariance);
+
+  [[nodiscard]] const topomap::StopPose& stop_pose() const { return stop_pose_; }
+  /// A stop has been made.
+  [[nodiscard]] bool has_stop() const { return map_ != nullptr; }
+  /// The robot now, seen from its last stop by odometry; the identity before the first stop.
+  [[nodiscard]] geometry::Pose2 T_stop_robot() const;
+  /// Nothing before the first stop.
+  [[nodiscard]] std::optional<PoseOfNow> now() const;
+
+ private:
+  struct Tracked {
+    std::uint32_t local_map_id = 0;
+    topomap::TrackedScan scan;
+  };
+
+  localization::OdometryNoise noise_;
+  std::shared_ptr<const topomap::LocalMap> map_;  // of the last stop
+  topomap::StopPose stop_pose_;
+  std::int64_t stamp_ns_ = 0;  // of the newest odometry
+  std::uint64_t sequence_ = 0;
+  geometry::Pose2 T_odom_robot_;
+  std::optional<Tracked> tracked_;
+};
+
+}  // namespace topogeo::localizer

@@ -1,0 +1,20 @@
+// What the status of the localizer counts.
+#pragma once
+
+#include <cstddef>
+
+#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/messaging/status_publisher.hpp"
+
+#include "remote_pool.hpp"
+
+namespace topogeo::localizer {
+
+/// Matches and loops so far.
+void set_slam_counters(const localization::Slam& slam, std::size_t loop_closures,
+                       messaging::StatusPublisher& status);
+
+/// Workers, tasks and answers so far.
+void set_pool_counters(const RemotePool& pool, messaging::StatusPublisher& status);
+
+}  // namespace topogeo::localizer

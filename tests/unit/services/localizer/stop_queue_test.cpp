@@ -1,0 +1,60 @@
+#include "localizer/stop_queue.hpp"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+namespace topogeo::localizer {
+namespace {
+
+using Arrival = StopQueue::Arrival;
+
+StopQueue::MapPointer queued_map(std::uint32_t id) {
+  auto map = std::make_shared<topomap::LocalMap>();
+  map->robot_id = "robot";
+  map->id = id;
+  return map;
+}
+
+TEST(StopQueue, GivesLocalMapsInTheOrderOfTheirIds) {
+  StopQueue queue;
+  queue.add(queued_map(1));
+  EXPECT_EQ(queue.take(), nullptr) << "map 0 has not come";
+  queue.add(queued_map(0));
+  EXPECT_EQ(queue.take()->id, 0U);
+  EXPECT_EQ(queue.take()->id, 1U);
+  EXPECT_EQ(queue.take(), nullptr);
+  EXPECT_EQ(queue.taken(), 2U);
+}
+
+TEST(StopQueue, DistinguishesARepeatedMapFromThatOfAnotherRun) {
+  StopQueue queue;
+  const StopQueue::MapPointer map = queued_map(0);
+  const std::uint64_t hash = topomap::content_hash(*map);
+  EXPECT_EQ(queue.arrival(0, hash), Arrival::kNew);
+  queue.add(map);
+  EXPECT_EQ(queue.arrival(0, hash + 1), Arrival::kNew) << "one that waits may be replaced";
+  ASSERT_NE(queue.take(), nullptr);
+  EXPECT_EQ(queue.arrival(0, hash), Arrival::kRepeated);
+  EXPECT_EQ(queue.arrival(0, hash + 1), Arrival::kOtherRun);
+  EXPECT_EQ(queue.arrival(1, hash), Arrival::kNew);
+}
+
+TEST(StopQueue, IsFinishedWhenAllOfTheStreamHaveBeenTaken) {
+  StopQueue queue;
+  queue.add(queued_map(0));
+  EXPECT_FALSE(queue.finished()) << "the stream has not ended";
+  queue.end_at(1);
+  EXPECT_FALSE(queue.finished()) << "one waits";
+  ASSERT_NE(queue.take(), nullptr);
+  EXPECT_TRUE(queue.finished());
+}
+
+TEST(StopQueue, AnEmptyStreamIsFinishedAtOnce) {
+  StopQueue queue;
+  queue.end_at(0);
+  EXPECT_TRUE(queue.finished());
+}
+
+}  // namespace
+}  // namespace topogeo::localizer
