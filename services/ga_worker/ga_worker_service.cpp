@@ -16,13 +16,16 @@ namespace topogeo::ga_worker {
 
 namespace {
 
+/// Localizers take a worker that is silent for a second to be lost: two statuses.
 constexpr std::chrono::milliseconds kStatusPeriod{500};
+/// The rate of tasks is that of so long: steady, and soon up to date.
 constexpr std::chrono::seconds kRateWindow{5};
 /// A client that has not connected by then, or does not take its results so long, is gone.
 constexpr std::chrono::seconds kClientPatience{10};
 constexpr std::chrono::seconds kDrainPatience{10};
 /// A client whose last status of the worker is older may still send a task.
 constexpr std::chrono::milliseconds kDrainQuiet{30};
+/// For the last status to leave before the writer is deleted.
 constexpr std::chrono::milliseconds kFarewell{200};
 /// A slot with less would make the features of maps again for nearly every task.
 constexpr std::size_t kLeastPerSlot_bytes = std::size_t{4} << 20U;

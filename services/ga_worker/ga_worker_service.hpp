@@ -67,7 +67,7 @@ class GaWorkerService {
   /// Why a task is not for this worker; nothing when it is.
   [[nodiscard]] std::optional<std::pair<msg::MatchStatus, std::string>> objection(
       const msg::MatchTask& message) const;
-  /// Throws std::invalid_argument for a map that is not what it says.
+  /// Throws std::invalid_argument for a map that is not what its hash is of.
   void keep(const msg::LocalMap& message);
   /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
   /// time.

@@ -20,7 +20,7 @@ struct DrawingOptions {
 /// Adds --drawing, --zones, --drawing-pose and --places; `options` must outlive the app.
 void add_drawing_options(command_line::Command& app, DrawingOptions& options);
 
-/// The drawing in the map frame; empty when none of them is there. Throws service::UsageError for
+/// The drawing in the map frame; empty without any of the flags. Throws service::UsageError for
 /// flags that do not go together and a pose that is none, service::BadInputError naming the file
 /// for what cannot be read.
 storage::MapDrawing read_drawing(const DrawingOptions& options, double resolution_m);

@@ -1,6 +1,6 @@
 // The global map while the robot drives, in small steps: new local maps are added, and when earlier
-// poses have moved noticeably, all are fused again. What is stored in the end is not made of this,
-// but fused in one go, so that it does not depend on when what came.
+// poses have moved noticeably, all are fused again. The stored map is not this one: it is fused in
+// one go at the end, so that it does not depend on the order in which local maps came.
 #pragma once
 
 #include <cstdint>

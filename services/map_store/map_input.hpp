@@ -1,4 +1,4 @@
-// What has come of a robot's map so far, in whatever order it comes.
+// Collects local maps, trajectory and loop closures of a robot, which may come in any order.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ class MapInput {
   /// `stored` are the local maps of a map that is continued.
   explicit MapInput(std::vector<topomap::LocalMap> stored = {});
 
-  /// So many maps wait for the trajectory at most; then the oldest is dropped. Some 60 MB: those of
-  /// a robot that is followed in its map join nothing, and those of a drive that does not find into
-  /// the map come for as long as it lasts.
+  /// At most so many maps wait for the trajectory, about 60 MB; then the oldest is dropped. Local
+  /// maps wait in vain while the robot is only localized, and while a drive has not found its place
+  /// in the map that it is to extend.
   static constexpr std::size_t kMostWaiting = 4096;
 
   enum class Arrival : std::uint8_t {
@@ -33,8 +33,8 @@ class MapInput {
   Arrival add(topomap::LocalMap map);
 
   /// Older segments and closures than those held are passed over. They throw std::invalid_argument
-  /// like service::from_msg, and when the first stops are not those of the stored map, or others
-  /// are said to be.
+  /// like service::from_msg, and when the first stops, or the number of stops that were there
+  /// before, are not those of the stored map.
   void add(const msg::TrajectorySegment& message);
   void add(const msg::LoopClosures& message);
   /// The end of the localizer's stream; the last one counts.

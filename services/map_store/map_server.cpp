@@ -9,6 +9,8 @@ namespace topogeo::map_store {
 
 namespace {
 
+/// What did not fit into a history is sent again as often as readers can be expected to have made
+/// room.
 constexpr std::chrono::milliseconds kServerRetryPeriod{500};
 
 }  // namespace

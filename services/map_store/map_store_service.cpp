@@ -54,7 +54,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
     finish_if_complete();
-    tell_losses();
+    report_losses();
     count();
   });
   service_.loop().add_timer(kLivePeriod, [this] {
@@ -211,9 +211,9 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   service_.status().set_state(msg::kServiceFinished);
 }
 
-void MapStoreService::tell_losses() {
-  if (input_.dropped() > 0 && !told_drops_) {
-    told_drops_ = true;
+void MapStoreService::report_losses() {
+  if (input_.dropped() > 0 && !reported_drops_) {
+    reported_drops_ = true;
     spdlog::warn("local maps that have joined no map are dropped, see local_maps_dropped");
   }
   const std::optional<std::uint32_t> lost = input_.lost();

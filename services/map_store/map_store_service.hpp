@@ -53,12 +53,12 @@ class MapStoreService {
   /// Makes and sends the hybrid map of what is there, when it is time to.
   void publish_hybrid();
   void finish_if_complete();
-  /// The map; as it was when it was to be continued and nothing came to it.
+  /// The map of a run; the stored one when it was to be extended and no stop joined it.
   [[nodiscard]] storage::MapDocument final_document(const topomap::Trajectory& trajectory) const;
   void finish(const topomap::Trajectory& trajectory);
   void count();
-  /// Of maps that were dropped.
-  void tell_losses();
+  /// Faults for local maps that were dropped.
+  void report_losses();
 
   service::Service& service_;
   MapStoreOptions options_;
@@ -79,7 +79,7 @@ class MapStoreService {
   Clock::time_point next_hybrid_;
   Clock::time_point next_attempt_;  // to finish, after a failure
   bool finished_ = false;
-  bool told_drops_ = false;
+  bool reported_drops_ = false;
 };
 
 }  // namespace topogeo::map_store

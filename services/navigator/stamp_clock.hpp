@@ -1,4 +1,4 @@
-// What time it is by the clock that the sensors' stamps are of.
+// The time of the clock that stamps the messages of the sensors.
 #pragma once
 
 #include <algorithm>

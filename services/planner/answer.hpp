@@ -13,9 +13,9 @@
 namespace topogeo::planner {
 
 /// The answer to a goal of a position, node or place, without header, goal_id and versions. `map`
-/// and `pose` are empty while there is none; `blocked_m` are points (map frame) in cells that
-/// something fills which is not on the map; those that are beyond it do not matter. Everything that
-/// can be wrong is a status. Throws std::invalid_argument when the route does not fit a message.
+/// and `pose` are empty while there is none; `blocked_m` are points (map frame) of obstacles
+/// that are not on the map; points outside of the map are ignored. Everything that can be wrong is
+/// a status of the answer. Throws std::invalid_argument when the route does not fit a message.
 msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
                   const std::optional<service::LivePose>& pose,
                   std::span<const Eigen::Vector2d> blocked_m,

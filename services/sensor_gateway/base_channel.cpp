@@ -18,9 +18,12 @@ using std::chrono::milliseconds;
 
 namespace {
 
+/// As all statuses: twice a second.
 constexpr milliseconds kStatusPeriod{500};
+/// At the end the base gets so long to take the order to stop: a slow line needs a tenth of it.
 constexpr milliseconds kLongestStop{500};
 constexpr milliseconds kStopPoll{10};
+/// A command never holds for longer, whatever it states: a robot whose navigator hangs must stop.
 constexpr double kLongestCommand_s = 0.5;
 
 msg::BaseState to_msg(devices::BaseState state) {
@@ -53,7 +56,7 @@ msg::BaseState to_msg(devices::BaseState state) {
 
 BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
                          const HostTime& time,
-                         std::function<void(const OdometrySample&)> on_odometry)
+                         std::function<void(const geometry::OdometrySample&)> on_odometry)
     : service_(service),
       time_(time),
       on_odometry_(std::move(on_odometry)),

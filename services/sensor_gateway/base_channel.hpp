@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "topogeo/devices/base_driver.hpp"
+#include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
@@ -13,7 +14,6 @@
 
 #include "device_config.hpp"
 #include "host_time.hpp"
-#include "odometry_track.hpp"
 #include "serial_line.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -23,7 +23,7 @@ class BaseChannel {
  public:
   /// `on_odometry` gets every sample, stamped by the steady clock.
   BaseChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
-              std::function<void(const OdometrySample&)> on_odometry);
+              std::function<void(const geometry::OdometrySample&)> on_odometry);
   BaseChannel(const BaseChannel&) = delete;
   BaseChannel& operator=(const BaseChannel&) = delete;
   BaseChannel(BaseChannel&&) = delete;
@@ -50,7 +50,7 @@ class BaseChannel {
 
   service::Service& service_;
   const HostTime& time_;
-  std::function<void(const OdometrySample&)> on_odometry_;
+  std::function<void(const geometry::OdometrySample&)> on_odometry_;
   devices::BaseDriver driver_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::BaseStatus> statuses_;

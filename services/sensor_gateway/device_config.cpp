@@ -168,7 +168,7 @@ void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   schema.add("base.torque", &base.torque, -1, 255, "",
              "torque limit of the motors; 20 is a good one by one source; -1: left as it is");
   schema.add("base.watchdog_s", &s.watchdog_s, 0.1, 255.0, "s",
-             "the base stops by itself when it has heard nothing for so long");
+             "the base stops by itself when no command has reached it for so long");
   schema.add("base.command_timeout_s", &s.command_timeout_s, 0.05, 0.5, "s",
              "a motion command holds no longer than this");
   schema.add("base.joystick_allowed", &s.joystick_allowed,

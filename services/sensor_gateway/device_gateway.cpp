@@ -15,8 +15,8 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr milliseconds kPoll{20};
-constexpr milliseconds kStatePeriod{250};
+constexpr milliseconds kPoll{20};            // for readers at the start: no scan waits noticeably
+constexpr milliseconds kStatePeriod{250};    // twice for each status, so that it is never older
 constexpr milliseconds kLastDelivery{2000};  // for readers to have what was published
 
 ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config) {
@@ -40,7 +40,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
   if (config.base_port.empty()) {
     spdlog::warn("there is no base: by the odometry the robot stands still");
   } else {
-    base_.emplace(service_, config, time_, [this](const OdometrySample& sample) {
+    base_.emplace(service_, config, time_, [this](const geometry::OdometrySample& sample) {
       gate_.add(sample);
       release(steady_now_ns());
     });

@@ -62,7 +62,7 @@ std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {
   }
   scan::Scan out;
   if (options_.has_base) {
-    const std::optional<OdometryTrack::Answer> answer = track_.at(scan.stamp_ns);
+    const std::optional<geometry::OdometryTrack::Answer> answer = track_.at(scan.stamp_ns);
     if (!answer) {
       drop(ScanDrop::kNoOdometry);
       return std::nullopt;

@@ -12,10 +12,9 @@
 #include <vector>
 
 #include "topogeo/devices/pls_scan.hpp"
+#include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/scan/scan.hpp"
-
-#include "odometry_track.hpp"
 
 namespace topogeo::sensor_gateway {
 
@@ -47,7 +46,7 @@ class ScanGate {
   /// Nothing leaves before this is set.
   void open() { open_ = true; }
   void add(devices::PlsScan scan, std::int64_t now_ns);
-  void add(const OdometrySample& sample) { track_.add(sample); }
+  void add(const geometry::OdometrySample& sample) { track_.add(sample); }
 
   struct Leaving {
     scan::Scan scan;              ///< stamped by the same clock as the times here
@@ -82,7 +81,7 @@ class ScanGate {
   void drop(ScanDrop reason) { ++drops_[static_cast<std::size_t>(reason)]; }
 
   ScanGateOptions options_;
-  OdometryTrack track_;
+  geometry::OdometryTrack track_;
   bool open_ = false;
   std::deque<Waiting> waiting_;
   std::optional<Geometry> geometry_;

@@ -1,4 +1,4 @@
-// Lets a driver talk to its device: a port, the driver and the event loop of a service.
+// Connects a driver with its device: a port, the driver and the event loop of a service.
 #pragma once
 
 #include <cstdint>

@@ -14,6 +14,7 @@ namespace {
 
 using namespace topogeo;  // NOLINT(google-build-using-namespace)
 
+/// --drift none.
 constexpr simulation::OdometryDrift kPerfect{.range_scale_error = 0.0,
                                              .range_sigma_m_per_sqrt_m = 0.0,
                                              .heading_drift_rad_per_m = 0.0,

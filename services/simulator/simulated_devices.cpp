@@ -76,8 +76,8 @@ void SimulatedDevices::exchange(simulation::SerialDevice& device, const PseudoTe
   }
   const devices::LineSettings host = port.host(parity);
   if (host.baud == 0) return;
-  const std::vector<std::uint8_t> heard = port.receive();
-  if (!heard.empty()) device.receive(heard, host, now_ns_);
+  const std::vector<std::uint8_t> received = port.receive();
+  if (!received.empty()) device.receive(received, host, now_ns_);
   bytes_lost_ += port.send(device.take_output(host, now_ns_));
 }
 

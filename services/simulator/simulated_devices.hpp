@@ -1,4 +1,4 @@
-// A world with a robot in it whose laser and base speak over serial lines, on the world's clock.
+// A world with a robot in it whose laser and base are on serial lines, on the world's clock.
 #pragma once
 
 #include <cstdint>

@@ -11,9 +11,13 @@
 namespace topogeo::simulator {
 namespace {
 
+/// About the time of one byte at 9600 baud: serial ports deliver as smoothly as real ones.
 constexpr std::chrono::milliseconds kTick{1};
+/// Of the true pose: often enough to judge every scan by it.
 constexpr std::int64_t kTruthPeriod_ns = 20'000'000;
+/// As a ring of sonars that fires in turns.
 constexpr std::int64_t kSonarPeriod_ns = 100'000'000;
+/// Of the counters in the status, for people.
 constexpr std::int64_t kStatePeriod_ns = 1'000'000'000;
 /// Where the machine leaves this process without time for longer, the world's clock stands still
 /// for the rest: a robot that runs on blindly would hit something.
@@ -111,7 +115,7 @@ void SimulatorService::publish_state() {
   messaging::StatusPublisher& status = service_.status();
   simulation::SimulatedRobot& robot = devices_.robot();
   status.set_counter("time_s", robot.time_s());
-  status.set_counter("way_m", robot.way_m());
+  status.set_counter("way_m", robot.path_m());
   status.set_counter("collisions", static_cast<double>(robot.collisions()));
   status.set_counter("run_into", static_cast<double>(robot.run_into()));
   status.set_counter("laser_scans", static_cast<double>(devices_.laser().scans_sent()));

@@ -1,5 +1,5 @@
 // A simulated robot on DDS and serial ports: paces the world, publishes where the robot really is
-// and what its sonars hear, and takes faults.
+// and what its sonars measure, and takes faults.
 #pragma once
 
 #include <chrono>

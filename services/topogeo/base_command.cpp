@@ -1,4 +1,4 @@
-// topogeo base: what an operator tells the base of a robot.
+// topogeo base: commands of an operator to the base of a robot.
 #include <array>
 #include <chrono>
 #include <cstdint>

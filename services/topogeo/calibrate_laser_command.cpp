@@ -66,7 +66,7 @@ Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Confi
   OpenLog log = open_log(options.log, config.log);
   Found found;
   found.log = match_log(config, log);
-  if (first) tell_skipped(log.reader.statistics());
+  if (first) report_skipped(log.reader.statistics());
   try {
     Bar bar("refitting", "fits");
     found.laser = localization::calibrate_laser(

@@ -183,7 +183,7 @@ int calibrate_log(const CalibrateOptions& options) {
   CalibrationInputs inputs = read_inputs(options);
   const Measured measured = options.reference ? measure_by_reference(inputs, *options.reference)
                                               : measure_by_matches(inputs);
-  tell_skipped(inputs.log.reader.statistics());
+  report_skipped(inputs.log.reader.statistics());
   const OdometryCalibration found = calibrate(options, inputs, measured);
 
   const std::string name = options.log.filename().string();

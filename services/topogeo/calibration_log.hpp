@@ -28,7 +28,7 @@ struct OpenLog {
 /// Throws service::BadInputError.
 OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options);
 
-/// A progress bar on stderr, if that is a terminal, else a line that says what is done.
+/// A progress bar on stderr, if that is a terminal, else a line that names the work.
 class Bar {
  public:
   Bar(const char* label, const char* unit);
@@ -51,7 +51,7 @@ struct MatchedLog {
   localization::MatchedMotions matched;
 };
 /// Makes the local maps and matches each with some of the recent ones. Closing loops would cost as
-/// much again and says nothing of single steps.
+/// much again and shows nothing of single steps.
 MatchedLog match_log(const pipeline::Config& config, OpenLog& log);
 
 /// "52 stops, 41.3 m of path, 30.2 rad of turn".

@@ -17,7 +17,7 @@
 namespace topogeo::cli {
 namespace {
 
-// Of this command alone, so that scripts can tell a faulty log from one that is no log.
+// Of this command alone, so that scripts can distinguish a faulty log from a file that is no log.
 constexpr int kClean = 0;
 constexpr int kFaulty = 1;
 constexpr int kUnreadable = 2;
@@ -47,7 +47,7 @@ void print_faults(const std::string& path, const scan::LogCheck& check) {
         "{} beams from {:.2f} deg by {:.3f} deg; {:.1f} s, {:.2f} scans a second, longest pause "
         "{:.2f} s; {:.1f} m of path\n",
         check.beams, degrees(check.angle_min_rad), degrees(check.angle_step_rad), duration_s(check),
-        rate_hz(check), check.longest_period_s, check.way_m);
+        rate_hz(check), check.longest_period_s, check.path_m);
   }
   if (check.faults() == 0) {
     std::cout << "no fault found\n";
@@ -82,7 +82,7 @@ void print_faults_json(const std::string& path, const scan::LogCheck& check) {
   out["last_stamp_ns"] = check.last_ns;
   out["median_period_s"] = check.median_period_s;
   out["longest_period_s"] = check.longest_period_s;
-  out["way_m"] = check.way_m;
+  out["way_m"] = check.path_m;
   out["faults"] = check.faults();
   nlohmann::ordered_json counts = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < scan::kLogFaults; ++i) {
@@ -96,7 +96,7 @@ void print_faults_json(const std::string& path, const scan::LogCheck& check) {
                         {"text", finding.text}});
   }
   out["findings"] = std::move(findings);
-  // What a damaged log says need not be UTF-8.
+  // The text of a damaged log need not be UTF-8.
   std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 
@@ -125,8 +125,7 @@ int check_log(const LogRequest& request) {
 }  // namespace
 
 void add_check_log_command(command_line::Command& app, int& exit_code) {
-  command_line::Command* command =
-      app.add_subcommand("check-log", "Look for what is wrong with a log");
+  command_line::Command* command = app.add_subcommand("check-log", "Find what is wrong with a log");
   auto request = std::make_shared<LogRequest>();
   constexpr double kMost = 1e6;
   command->add_option("log", request->log, "CARMEN log, plain or gzip")->required();

@@ -76,7 +76,7 @@ Figures figures_of(const CompareOptions& options) {
     }
     const auto max_apart_ns = static_cast<std::int64_t>(std::llround(options.max_apart_s * 1e9));
     return {pipeline::trajectory_error(estimate, reference, max_apart_ns), relations};
-  } catch (const std::invalid_argument& error) {  // of trajectory_error, which knows no files
+  } catch (const std::invalid_argument& error) {  // of trajectory_error, which has no file names
     throw service::BadInputError(options.estimate.string() + " and " + options.reference.string() +
                                  ": " + error.what());
   } catch (const std::exception& error) {

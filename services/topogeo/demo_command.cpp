@@ -1,4 +1,4 @@
-// topogeo demo: maps a synthetic floor with all services and tells how far off the result is.
+// topogeo demo: maps a synthetic floor with all services and prints how far off the result is.
 #include <exception>
 #include <filesystem>
 #include <iostream>

@@ -9,9 +9,10 @@
 namespace topogeo::cli {
 namespace {
 
-// Services tell every half second; discovery takes the rest, longer on a busy machine.
-constexpr std::chrono::milliseconds kListen{1200};
-constexpr std::chrono::milliseconds kListenOnceMore{2000};
+// Services publish every half second; discovery takes the rest, longer on a busy machine.
+constexpr std::chrono::milliseconds kCollect{1200};
+constexpr std::chrono::milliseconds kCollectOnceMore{2000};
+// Between two tables of --watch: as fast as people read them.
 constexpr std::chrono::milliseconds kAgain{1000};
 
 }  // namespace
@@ -40,10 +41,10 @@ messaging::Participant join(const DomainView& view, const std::string& name) {
   return messaging::Participant(options);
 }
 
-bool look(const DomainView& view, messaging::EventLoop& loop, const std::function<bool()>& any,
-          const std::function<void()>& show) {
+bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
+                      const std::function<bool()>& any, const std::function<void()>& show) {
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  if (loop.run_for(kListen) || (!any() && loop.run_for(kListenOnceMore))) return any();
+  if (loop.run_for(kCollect) || (!any() && loop.run_for(kCollectOnceMore))) return any();
   do {
     if (any() || view.watch) show();
     std::cout << std::flush;

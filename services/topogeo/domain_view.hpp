@@ -1,4 +1,4 @@
-// Looking at a domain from the command line: the flags and the rhythm that the commands share.
+// What lives on a domain, shown by a command: the flags and the timing that the commands share.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,10 @@ void add_view_options(command_line::Command& app, DomainView& view);
 /// Joins the domain under a name that DDS tools show. Throws like messaging::Participant.
 messaging::Participant join(const DomainView& view, const std::string& name);
 
-/// Listens for as long as services take to tell of themselves, somewhat longer while there are not
-/// `any`, then shows them; again and again with --watch, until Ctrl-C. Whether there were any.
-bool look(const DomainView& view, messaging::EventLoop& loop, const std::function<bool()>& any,
-          const std::function<void()>& show);
+/// Receives for as long as services take to publish their status, somewhat longer while there are
+/// not `any`, then shows them; again and again with --watch, until Ctrl-C. Whether there were any.
+bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
+                      const std::function<bool()>& any, const std::function<void()>& show);
 
 /// "no <what> is alive on domain 3, partition '*'".
 std::string nothing_alive(const DomainView& view, const std::string& what);

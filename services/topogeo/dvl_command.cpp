@@ -93,18 +93,18 @@ std::uint64_t count_usable(scan::CarmenLogReader reader, std::uint64_t laser_lin
 
 std::string picture_of_scan(const DvlOptions& options, const pipeline::Config& config) {
   scan::CarmenLogReader reader = open_scans(options, config);
-  SlowProgress progress("looking for the scan");
+  SlowProgress progress("reading up to the scan");
   std::uint64_t read = 0;
   while (const std::optional<scan::Scan> scan = reader.next()) {
     progress.update(++read, *options.scan + 1);
     if (scan->sequence != *options.scan) continue;
     progress.finish(read);
-    tell_skipped(reader.statistics());
+    report_skipped(reader.statistics());
     return render::scan_picture(
         ScanViews(config.local_mapper).make(*scan), options.log.filename().string(),
         render::picture_format(options.out), {.max_width_px = options.width_px});
   }
-  tell_skipped(reader.statistics());
+  report_skipped(reader.statistics());
   throw service::UsageError(fmt::format("--scan {}: {} has {} usable scans, 0 to {}", *options.scan,
                                         options.log.string(), read, read - 1));
 }
@@ -146,7 +146,7 @@ std::string sheet_of_log(const DvlOptions& options, const pipeline::Config& conf
     views.back().cells.clear();  // large, and not in a thumbnail
   }
   progress.finish(scans);
-  tell_skipped(reader.statistics());
+  report_skipped(reader.statistics());
   const std::string title = fmt::format("{}   {} of {} scans (counted from 0), range limit {:g} m",
                                         options.log.filename().string(), views.size(), scans,
                                         config.local_mapper.voronoi.range_limit_m);

@@ -15,6 +15,7 @@
 namespace topogeo::cli {
 namespace {
 
+/// Of the driven path in the picture: less does not show.
 constexpr double kPathStep_m = 0.1;
 
 std::int64_t monotonic_ns() {

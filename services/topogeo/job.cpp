@@ -144,7 +144,7 @@ Job prepare(const JobOptions& options) {
   return job;
 }
 
-void tell_skipped(const scan::CarmenLogStatistics& statistics) {
+void report_skipped(const scan::CarmenLogStatistics& statistics) {
   if (statistics.skipped_total() == 0) return;
   for (const std::string& message : statistics.messages) std::cerr << message << '\n';
   if (statistics.skipped_total() > statistics.messages.size()) {

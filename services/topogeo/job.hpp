@@ -66,8 +66,8 @@ struct Job {
 /// std::runtime_error for the directory.
 Job prepare(const JobOptions& options);
 
-/// Says on stderr what was left out of the log; nothing when that is nothing.
-void tell_skipped(const scan::CarmenLogStatistics& statistics);
+/// Reports on stderr what was left out of the log; nothing when that is nothing.
+void report_skipped(const scan::CarmenLogStatistics& statistics);
 
 /// A few lines for people: how much was mapped, how long it took, where the results are.
 void print_summary(std::ostream& out, const storage::Report& report,

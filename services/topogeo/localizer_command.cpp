@@ -1,4 +1,4 @@
-// topogeo localizer: tells a running localizer what to do, and what it answers.
+// topogeo localizer: commands to a running localizer, and its answers.
 #include <chrono>
 #include <iostream>
 #include <memory>

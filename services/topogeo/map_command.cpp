@@ -122,8 +122,8 @@ std::unique_ptr<pipeline::MappingRun> make_run(const Job& job) {
                                                 job.inputs.map, initial_pose);
 }
 
-/// Says on stderr why stops are not in the map; nothing when all are or none was to be.
-void tell_unmapped(const localization::MappingSession* session) {
+/// Reports on stderr why stops are not in the map; nothing when all are or none was to be.
+void report_unmapped(const localization::MappingSession* session) {
   if (session == nullptr) return;
   const std::string message = pipeline::continuation_message(*session);
   if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
@@ -137,7 +137,7 @@ int map_log(const JobOptions& options, bool stages) {
   pipeline::MappingRun& run = *made;
   support::StageTimes times;
   if (!add_scans(job, run, times, interruption)) return kSignalBase + interruption.received();
-  tell_skipped(job.reader.statistics());
+  report_skipped(job.reader.statistics());
 
   if (interruption.received() != 0) return kSignalBase + interruption.received();
   if (!job.inputs.map) std::cerr << "matching revisited places\n";
@@ -146,7 +146,7 @@ int map_log(const JobOptions& options, bool stages) {
     const Interruption::Immediate immediate(interruption);
     document = run.finish();
   }
-  tell_unmapped(run.session());
+  report_unmapped(run.session());
   {
     const auto scope = times.measure("writing");
     results::write_map_outputs(options.out, document, options.log.filename().string());

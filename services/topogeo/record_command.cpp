@@ -28,7 +28,7 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-/// Scans that a stream end speaks of and that have not come by then will not come any more.
+/// Scans that a stream end counts and that have not come by then will not come any more.
 constexpr std::chrono::seconds kPatience{5};
 constexpr milliseconds kRecordTick{50};
 

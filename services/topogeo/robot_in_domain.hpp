@@ -22,6 +22,7 @@ struct RobotInDomain {
 /// Adds --robot, --wait-seconds and what add_domain_options does; `robot` must outlive the app.
 void add_robot_options(command_line::Command& app, RobotInDomain& robot);
 
+/// Between two checks of a condition: people notice no wait of that length.
 inline constexpr std::chrono::milliseconds kRobotTick{50};
 
 /// Runs the loop until `condition` holds; false when it does not within `patience_s` or a signal
@@ -36,7 +37,7 @@ bool wait_for(messaging::EventLoop& loop, double patience_s, const Condition& co
 }
 
 /// Comes back when planner and navigator are there, or at a signal. Throws std::runtime_error that
-/// says who is missing.
+/// names what is missing.
 void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
                        const GoalClient& client);
 

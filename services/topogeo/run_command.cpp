@@ -47,8 +47,8 @@ void add_continuation(storage::Report& report, const msg::RunSummary& summary) {
   if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
 }
 
-/// Where a simulated robot starts that is sent somewhere: at the origin of the map, if nothing else
-/// is said.
+/// Where a simulated robot starts that is sent somewhere: at the origin of the map, unless
+/// a flag has another place.
 RunOptions with_start(RunOptions options, bool unknown) {
   if (!options.job.map) throw service::UsageError("run: --goto needs --map (see --help)");
   if (unknown && options.job.initial_pose) {
@@ -149,7 +149,7 @@ int run_log(const RunOptions& options) {
   results::add_log(report, job.reader.statistics());
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
-  tell_skipped(job.reader.statistics());
+  report_skipped(job.reader.statistics());
   print_pool(std::cout, result);
   print_summary(std::cout, report, options.job.out);
   if (options.job.reference) {

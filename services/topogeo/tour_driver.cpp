@@ -12,6 +12,7 @@
 namespace topogeo::cli {
 namespace {
 
+/// As the navigator: 20 commands in a second, each valid until ten later ones are lost.
 constexpr double kCommandPeriod_s = 0.05;
 constexpr double kValid_s = 0.5;
 /// From a command until the base has obeyed it, about: the network, the line, and the time to reach

@@ -142,16 +142,16 @@ void write_arrival_picture(const std::filesystem::path& file, const MappedFloor&
   canvas.colour({0.3, 0.5, 1.0});
   canvas.line(task.route_m);
   for (const auto& route_m : record.routes_m) canvas.line(route_m);
-  std::vector<Eigen::Vector2d> true_way_m;
-  std::vector<Eigen::Vector2d> told_way_m;
+  std::vector<Eigen::Vector2d> true_path_m;
+  std::vector<Eigen::Vector2d> reported_path_m;
   for (const TracePoint& point : record.trace) {
-    true_way_m.push_back(T_map_world * point.T_world_robot.position_m());
-    if (point.T_map_robot) told_way_m.push_back(point.T_map_robot->position_m());
+    true_path_m.push_back(T_map_world * point.T_world_robot.position_m());
+    if (point.T_map_robot) reported_path_m.push_back(point.T_map_robot->position_m());
   }
   canvas.colour({0.0, 0.65, 0.2});
-  canvas.line(told_way_m);
+  canvas.line(reported_path_m);
   canvas.colour({0.9, 0.0, 0.0});
-  canvas.line(true_way_m);
+  canvas.line(true_path_m);
   if (!record.trace.empty()) canvas.robot(T_map_world * record.trace.back().T_world_robot);
   canvas.colour({0.6, 0.0, 0.7});
   canvas.robot(task.T_map_goal);

@@ -63,7 +63,7 @@ ArrivalResult score(const MappedFloor& floor, const ArrivalTask& task, const Clo
   }
   result.collisions = loop.robot().collisions();
   result.run_into = loop.robot().run_into();
-  result.way_m = loop.robot().way_m();
+  result.path_m = loop.robot().path_m();
   result.detours = status.detours;
   result.guard_stops = status.guard_stops;
   result.plans = loop.plans().size();

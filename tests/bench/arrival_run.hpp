@@ -69,7 +69,7 @@ struct ArrivalResult {
   std::uint64_t collisions = 0;
   std::uint64_t run_into = 0;
   double time_s = 0.0;
-  double way_m = 0.0;
+  double path_m = 0.0;
   std::uint32_t detours = 0;
   std::uint32_t guard_stops = 0;
   std::size_t plans = 0;

@@ -36,7 +36,7 @@ std::string line(const std::string& name, const std::vector<ArrivalRow>& rows,
   std::size_t good = 0;
   std::uint64_t collisions = 0;
   std::uint64_t run_into = 0;
-  double way_m = 0.0;
+  double path_m = 0.0;
   double time_s = 0.0;
   std::uint32_t detours = 0;
   std::uint32_t guard_stops = 0;
@@ -55,7 +55,7 @@ std::string line(const std::string& name, const std::vector<ArrivalRow>& rows,
     replans += result.plans > 0 ? result.plans - 1 : 0;
     if (!result.arrived) continue;
     ++arrived;
-    way_m += result.way_m;
+    path_m += result.path_m;
     time_s += result.time_s;
     errors_m.push_back(result.error_m);
     errors_deg.push_back(kDegreesPerRadian * result.heading_error_rad);
@@ -69,7 +69,7 @@ std::string line(const std::string& name, const std::vector<ArrivalRow>& rows,
       name, runs, arrived, good, 100.0 * static_cast<double>(good) / n,
       100.0 * at_least(good, runs), cm * quantile(errors_m, 0.5), cm * quantile(errors_m, 0.95),
       cm * quantile(errors_m, 1.0), quantile(errors_deg, 0.5), quantile(errors_deg, 0.95),
-      quantile(errors_deg, 1.0), collisions, run_into, time_s > 0.0 ? way_m / time_s : 0.0,
+      quantile(errors_deg, 1.0), collisions, run_into, time_s > 0.0 ? path_m / time_s : 0.0,
       arrived > 0 ? time_s / static_cast<double>(arrived) : 0.0, detours, replans, guard_stops);
 }
 

@@ -99,8 +99,8 @@ Obstacle draw_thing(const std::vector<Eigen::Vector2d>& route_m, double length_m
 
 double way_to(const std::vector<Eigen::Vector2d>& line_m, const Eigen::Vector2d& point_m) {
   double best_m = std::numeric_limits<double>::infinity();
-  double best_way_m = 0.0;
-  double way_m = 0.0;
+  double best_path_m = 0.0;
+  double path_m = 0.0;
   for (std::size_t i = 1; i < line_m.size(); ++i) {
     const Eigen::Vector2d piece = line_m[i] - line_m[i - 1];
     const double share =
@@ -108,11 +108,11 @@ double way_to(const std::vector<Eigen::Vector2d>& line_m, const Eigen::Vector2d&
     const double off_m = (line_m[i - 1] + share * piece - point_m).norm();
     if (off_m < best_m) {
       best_m = off_m;
-      best_way_m = way_m + share * piece.norm();
+      best_path_m = path_m + share * piece.norm();
     }
-    way_m += piece.norm();
+    path_m += piece.norm();
   }
-  return best_way_m;
+  return best_path_m;
 }
 
 void put(const MappedFloor& floor, const Obstacle& obstacle, support::Random& random,

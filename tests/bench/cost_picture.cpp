@@ -24,8 +24,8 @@ struct Axes {
   double longest_m;
   double most_ms;  // a power of ten
 
-  [[nodiscard]] double x_px(double way_m) const {
-    return kLeft_px + (kRight_px - kLeft_px) * way_m / longest_m;
+  [[nodiscard]] double x_px(double path_m) const {
+    return kLeft_px + (kRight_px - kLeft_px) * path_m / longest_m;
   }
   [[nodiscard]] double y_px(double ms) const {
     const double share =
@@ -76,7 +76,7 @@ void draw_quantile(cairo_t* cairo, const Axes& axes, const std::vector<StepCost>
     std::sort(costs_ms.begin(), costs_ms.end());
     const auto index =
         static_cast<std::size_t>(quantile * static_cast<double>(costs_ms.size() - 1));
-    cairo_line_to(cairo, axes.x_px(0.5 * (steps[from].way_m + steps[to - 1].way_m)),
+    cairo_line_to(cairo, axes.x_px(0.5 * (steps[from].path_m + steps[to - 1].path_m)),
                   axes.y_px(costs_ms[index]));
   }
   cairo_stroke(cairo);
@@ -87,7 +87,7 @@ void draw_quantile(cairo_t* cairo, const Axes& axes, const std::vector<StepCost>
 void draw_costs(const std::string& file, const std::string& title,
                 const std::vector<StepCost>& steps) {
   if (steps.empty()) throw std::invalid_argument("steps: expected one or more, got none");
-  Axes axes{std::max(steps.back().way_m, 1.0), 10.0};
+  Axes axes{std::max(steps.back().path_m, 1.0), 10.0};
   for (const StepCost& step : steps) {
     while (step.cpu_ms > axes.most_ms) axes.most_ms *= 10.0;
   }
@@ -100,7 +100,7 @@ void draw_costs(const std::string& file, const std::string& title,
   draw_axes(cairo.get(), axes, title);
   cairo_set_source_rgb(cairo.get(), 0.6, 0.6, 0.65);
   for (const StepCost& step : steps) {
-    cairo_rectangle(cairo.get(), axes.x_px(step.way_m) - 1.0, axes.y_px(step.cpu_ms) - 1.0, 2.0,
+    cairo_rectangle(cairo.get(), axes.x_px(step.path_m) - 1.0, axes.y_px(step.cpu_ms) - 1.0, 2.0,
                     2.0);
   }
   cairo_fill(cairo.get());

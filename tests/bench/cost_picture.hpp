@@ -7,7 +7,7 @@
 namespace topogeo::bench {
 
 struct StepCost {
-  double way_m = 0.0;  ///< driven so far
+  double path_m = 0.0;  ///< driven so far
   double cpu_ms = 0.0;
 };
 

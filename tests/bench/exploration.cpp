@@ -49,7 +49,7 @@ Run carry_out(const ExplorationOptions& options, const std::string& floor, std::
         *options.pictures / name,
         render::route_picture(*record.map, path,
                               fmt::format("{}, start {}: {:.0f} m, {:.1f} % seen", floor, seed,
-                                          run.result.way_m, 100.0 * run.result.seen),
+                                          run.result.path_m, 100.0 * run.result.seen),
                               render::PictureFormat::kPng));
   }
   if (options.verbose) {
@@ -63,8 +63,8 @@ std::string line_of(const Run& run) {
   return fmt::format(
       "| {} | {} | {:.2f} % | {} of {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {} | {} | {} | "
       "{:.3f} | {} |\n",
-      run.floor, run.seed, 100.0 * r.seen, r.entered, r.rooms, r.collisions, r.way_m, r.scripted_m,
-      r.way_m / r.scripted_m, r.time_s, r.targets, r.given_up, r.stops, r.pose_error_m,
+      run.floor, run.seed, 100.0 * r.seen, r.entered, r.rooms, r.collisions, r.path_m, r.scripted_m,
+      r.path_m / r.scripted_m, r.time_s, r.targets, r.given_up, r.stops, r.pose_error_m,
       r.done ? "done" : r.end);
 }
 

@@ -246,7 +246,7 @@ ExplorationResult explore(std::string_view floor, const ExplorationConfig& confi
         {{goal->goal_id, false}, goal->T_map_goal.position_m(), goal->T_map_goal.theta_rad});
     if (record != nullptr) {
       record->log.push_back(fmt::format("{:7.1f} s {:6.1f} m  ({:.2f}, {:.2f}) {}", loop.time_s(),
-                                        loop.robot().way_m(), goal->T_map_goal.x_m,
+                                        loop.robot().path_m(), goal->T_map_goal.x_m,
                                         goal->T_map_goal.y_m, tour.message()));
     }
   }
@@ -256,7 +256,7 @@ ExplorationResult explore(std::string_view floor, const ExplorationConfig& confi
   result.seen = map.map ? reach.seen(map.map->space().grid(), T_map_world) : 0.0;
   reach.count_rooms(T_world_robot, result);
   result.collisions = loop.robot().collisions();
-  result.way_m = loop.robot().way_m();
+  result.path_m = loop.robot().path_m();
   result.scripted_m = scripted_m(world, reach.T_world_start());
   result.time_s = loop.time_s() - start_s;
   result.targets = tour.targets();

@@ -34,7 +34,7 @@ struct ExplorationResult {
   std::size_t rooms = 0;  ///< wide parts of 2 m^2 or more that it can get to
   std::size_t entered = 0;
   std::uint64_t collisions = 0;
-  double way_m = 0.0;
+  double path_m = 0.0;
   double scripted_m = 0.0;  ///< way of a tour past everything by somebody who knows the floor
   double time_s = 0.0;
   std::size_t targets = 0;

@@ -90,18 +90,18 @@ bool is_near(const Pose2& pose, const Pose2& truth) {
 }
 
 double way_of(const simulation::SimulatedLog& log) {
-  double way_m = 0.0;
+  double path_m = 0.0;
   for (std::size_t i = 1; i < log.T_world_robot.size(); ++i) {
-    way_m += (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm();
+    path_m += (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm();
   }
-  return way_m;
+  return path_m;
 }
 
-Eigen::Vector2d place_at(const simulation::SimulatedLog& log, double wanted_way_m) {
-  double way_m = 0.0;
+Eigen::Vector2d place_at(const simulation::SimulatedLog& log, double wanted_path_m) {
+  double path_m = 0.0;
   for (std::size_t i = 1; i < log.T_world_robot.size(); ++i) {
-    way_m += (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm();
-    if (way_m >= wanted_way_m) return log.T_world_robot[i].position_m();
+    path_m += (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm();
+    if (path_m >= wanted_path_m) return log.T_world_robot[i].position_m();
   }
   return log.T_world_robot.back().position_m();
 }
@@ -173,11 +173,11 @@ MappedFloor map_floor(std::uint64_t seed, const pipeline::Config& config) {
 simulation::SimulatedLog drive_and_kidnap(const MappedFloor& floor, std::uint64_t seed) {
   simulation::SimulationOptions options = options_of(seed + 1'000'000);
   support::Random random(seed);
-  const double way_m = way_of(floor.drive);
-  const double at_m = way_m * (0.25 + 0.25 * random.uniform());
+  const double path_m = way_of(floor.drive);
+  const double at_m = path_m * (0.25 + 0.25 * random.uniform());
   double to_m = 0.0;
   do {
-    to_m = way_m * (0.05 + 0.75 * random.uniform());
+    to_m = path_m * (0.05 + 0.75 * random.uniform());
   } while ((place_at(floor.drive, at_m) - place_at(floor.drive, to_m)).norm() < kLeastJump_m);
   options.kidnappings = {{at_m, to_m}};
   return simulation::simulate_log(floor.world, options);

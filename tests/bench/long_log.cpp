@@ -31,7 +31,7 @@ namespace {
 using namespace topogeo;
 
 struct LongLogOptions {
-  double way_m = 2000.0;
+  double path_m = 2000.0;
   std::uint64_t seed = 1;
   std::filesystem::path out;
   std::string config_file;
@@ -44,7 +44,8 @@ simulation::SimulatedLog drive(const LongLogOptions& options) {
   simulation.scan_step_m = 0.5;
   simulation.scan_step_rad = 45.0 * std::numbers::pi / 180.0;
   simulation.odometry = simulation::b21_odometry(options.seed);
-  return simulation::simulate_log(simulation::large_floor(options.seed, options.way_m), simulation);
+  return simulation::simulate_log(simulation::large_floor(options.seed, options.path_m),
+                                  simulation);
 }
 
 double peak_memory_mb() {
@@ -75,7 +76,7 @@ void write_csv(const std::filesystem::path& file, const std::vector<bench::StepC
   std::ofstream out(file);
   out << "step,way_m,cpu_ms\n";
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    out << i << ',' << steps[i].way_m << ',' << steps[i].cpu_ms << '\n';
+    out << i << ',' << steps[i].path_m << ',' << steps[i].cpu_ms << '\n';
   }
   out.close();
   if (!out) throw std::runtime_error(file.string() + ": cannot write");
@@ -93,17 +94,17 @@ void run_log(const LongLogOptions& options) {
   pipeline::MappingRun mapping(config, "robot");
   std::vector<bench::StepCost> steps;  // of the scans at which a stop was made and matched
   std::vector<topomap::StampedPose> truth;
-  double way_m = 0.0;
+  double path_m = 0.0;
   const double start_s = support::process_cpu_s();
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     if (i > 0) {
-      way_m += (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm();
+      path_m += (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm();
     }
     const double before_s = support::process_cpu_s();
     const std::uint64_t tasks_before = mapping.match_counts().tasks;
     mapping.add(log.scans[i]);
     if (mapping.match_counts().tasks != tasks_before) {
-      steps.push_back({way_m, (support::process_cpu_s() - before_s) * 1000.0});
+      steps.push_back({path_m, (support::process_cpu_s() - before_s) * 1000.0});
     }
     truth.push_back({log.scans[i].sequence, log.scans[i].stamp_ns, log.T_world_robot[i]});
   }
@@ -114,7 +115,7 @@ void run_log(const LongLogOptions& options) {
   const auto corrected = topomap::expand_trajectory(map.trajectory, map.local_maps);
   const auto odometry = topomap::expand_odometry(map.local_maps);
   std::printf("%zu scans, %zu stops, %.0f m, %zu loop closures\n", log.scans.size(),
-              map.local_maps.size(), way_m, map.loop_closures.size());
+              map.local_maps.size(), path_m, map.loop_closures.size());
   std::printf("CPU %.1f s, of which after the last scan %.1f s; memory %.0f MB (%.0f MB before)\n",
               end_s - start_s, end_s - added_s, peak_memory_mb(), memory_before_mb);
   for (const support::StageTime& stage : mapping.stages()) {
@@ -138,7 +139,7 @@ int main(int argc, char** argv) {
       "what a step costs along a long synthetic log; cost.csv and cost.png in a folder"};
   LongLogOptions options;
   app.add_option("--out", options.out, "folder for the results")->required();
-  app.add_option("--way", options.way_m, "metres to drive")
+  app.add_option("--way", options.path_m, "metres to drive")
       ->capture_default_str()
       ->check(command_line::range(50.0, 20'000.0));
   app.add_option("--seed", options.seed, "of the floor, the drive and the noise")

@@ -205,10 +205,10 @@ std::optional<std::size_t> partner(const std::vector<View>& views, std::size_t i
   std::optional<std::size_t> best;
   double best_m = 0.25 * apart_m;
   for (std::size_t j = i + 1; j < std::min(views.size(), i + 1 + kAhead); ++j) {
-    const Eigen::Vector2d way_m =
+    const Eigen::Vector2d step_m =
         views[j].T_world_robot.position_m() - views[i].T_world_robot.position_m();
-    if (std::abs(way_m.norm() - apart_m) > best_m) continue;
-    best_m = std::abs(way_m.norm() - apart_m);
+    if (std::abs(step_m.norm() - apart_m) > best_m) continue;
+    best_m = std::abs(step_m.norm() - apart_m);
     best = j;
   }
   return best;

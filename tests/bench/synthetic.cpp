@@ -45,7 +45,7 @@ void tell(const std::string& floor, const SyntheticResult& r) {
                floor.c_str(), static_cast<unsigned long long>(r.seed), r.rms_m, r.rms_from_start_m,
                r.largest_m, r.odometry_rms_m, r.heading_rad / kDegree, r.local_m,
                r.local_rad / kDegree, r.scale, r.odometry_scale, r.loops_closed, r.loops,
-               r.pieces_closed, r.pieces, r.closures, r.false_loops.size(), r.stops, r.way_m,
+               r.pieces_closed, r.pieces, r.closures, r.false_loops.size(), r.stops, r.path_m,
                r.cpu_s);
   for (const bench::FalseLoop& loop : r.false_loops) {
     std::fprintf(stderr, "    false loop %u - %u: off by %.2f m %.1f deg, places %.1f m apart\n",
@@ -118,7 +118,7 @@ void print(const std::string& name, const std::vector<SyntheticResult>& runs, bo
           : "%-24s runs %zu, %.0f m; odometry %.2f m; rms %.3f worst %.3f m, %zu above 0.05; "
             "from start %.3f worst %.3f m; heading %.2f worst %.2f deg; loops %zu of %zu, "
             "pieces %zu of %zu; closures %zu, false %zu in %zu runs; %.1f s CPU\n";
-  std::printf(form, name.c_str(), runs.size(), mean([](const auto& r) { return r.way_m; }),
+  std::printf(form, name.c_str(), runs.size(), mean([](const auto& r) { return r.path_m; }),
               mean([](const auto& r) { return r.odometry_rms_m; }), mean(rms_m), worst(rms_m),
               count([](const auto& r) { return r.rms_m > 0.05 ? 1U : 0U; }), mean(start_m),
               worst(start_m), mean(heading_deg), worst(heading_deg),

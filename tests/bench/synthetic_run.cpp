@@ -31,20 +31,20 @@ std::vector<topomap::StampedPose> truth_of(const simulation::SimulatedLog& log) 
 // Stops with their true poses and the true way to each.
 struct Stops {
   std::vector<geometry::Pose2> T_world_robot;
-  std::vector<double> way_m;
+  std::vector<double> path_m;
 };
 
 Stops stops_of(const storage::MapDocument& document, const simulation::SimulatedLog& log) {
-  std::vector<double> way_m{0.0};
+  std::vector<double> path_m{0.0};
   for (std::size_t i = 1; i < log.scans.size(); ++i) {
-    way_m.push_back(
-        way_m.back() +
+    path_m.push_back(
+        path_m.back() +
         (log.T_world_robot[i].position_m() - log.T_world_robot[i - 1].position_m()).norm());
   }
   Stops stops;
   for (const topomap::LocalMap& map : document.local_maps) {
     stops.T_world_robot.push_back(log.T_world_robot[map.sequence]);
-    stops.way_m.push_back(way_m[map.sequence]);
+    stops.path_m.push_back(path_m[map.sequence]);
   }
   return stops;
 }
@@ -65,10 +65,10 @@ void compare_steps(const storage::MapDocument& document, const Stops& stops,
                    SyntheticResult& result) {
   double sum_m2 = 0.0;
   double sum_rad2 = 0.0;
-  double way_m = 0.0;
-  double odometry_way_m = 0.0;
-  double true_way_m = 0.0;
-  for (std::size_t i = 1; i < stops.way_m.size(); ++i) {
+  double path_m = 0.0;
+  double odometry_path_m = 0.0;
+  double true_path_m = 0.0;
+  for (std::size_t i = 1; i < stops.path_m.size(); ++i) {
     const geometry::Pose2 step = geometry::between(document.trajectory.stops[i - 1].T_map_robot,
                                                    document.trajectory.stops[i].T_map_robot);
     const geometry::Pose2 truth =
@@ -76,23 +76,23 @@ void compare_steps(const storage::MapDocument& document, const Stops& stops,
     const Eigen::Vector3d off = geometry::difference(step, truth);
     sum_m2 += off.head<2>().squaredNorm();
     sum_rad2 += off.z() * off.z();
-    way_m += step.position_m().norm();
-    odometry_way_m += geometry::between(document.local_maps[i - 1].T_odom_robot,
-                                        document.local_maps[i].T_odom_robot)
-                          .position_m()
-                          .norm();
-    true_way_m += truth.position_m().norm();
+    path_m += step.position_m().norm();
+    odometry_path_m += geometry::between(document.local_maps[i - 1].T_odom_robot,
+                                         document.local_maps[i].T_odom_robot)
+                           .position_m()
+                           .norm();
+    true_path_m += truth.position_m().norm();
   }
-  const auto steps = static_cast<double>(stops.way_m.size() - 1);
+  const auto steps = static_cast<double>(stops.path_m.size() - 1);
   result.local_m = std::sqrt(sum_m2 / steps);
   result.local_rad = std::sqrt(sum_rad2 / steps);
-  result.scale = way_m / true_way_m - 1.0;
-  result.odometry_scale = odometry_way_m / true_way_m - 1.0;
+  result.scale = path_m / true_path_m - 1.0;
+  result.odometry_scale = odometry_path_m / true_path_m - 1.0;
 }
 
 bool seen_before(const Stops& stops, std::size_t stop) {
   constexpr double kNear_m = 1.5;
-  for (std::size_t i = 0; i < stop && stops.way_m[stop] - stops.way_m[i] >= kEarlier_m; ++i) {
+  for (std::size_t i = 0; i < stop && stops.path_m[stop] - stops.path_m[i] >= kEarlier_m; ++i) {
     const Eigen::Vector2d apart_m =
         stops.T_world_robot[i].position_m() - stops.T_world_robot[stop].position_m();
     if (apart_m.norm() <= kNear_m) return true;
@@ -103,7 +103,7 @@ bool seen_before(const Stops& stops, std::size_t stop) {
 void count_loops(const Stops& stops, const std::vector<bool>& closed, SyntheticResult& result) {
   constexpr double kShortest_m = 3.0;
   constexpr double kPiece_m = 10.0;
-  const std::size_t n = stops.way_m.size();
+  const std::size_t n = stops.path_m.size();
   const auto any_closed = [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       if (closed[i]) return true;
@@ -117,13 +117,13 @@ void count_loops(const Stops& stops, const std::vector<bool>& closed, SyntheticR
     }
     std::size_t end = begin + 1;
     while (end < n && seen_before(stops, end)) ++end;
-    if (stops.way_m[end - 1] - stops.way_m[begin] >= kShortest_m) {
+    if (stops.path_m[end - 1] - stops.path_m[begin] >= kShortest_m) {
       ++result.loops;
       result.loops_closed += any_closed(begin, end) ? 1 : 0;
       for (std::size_t from = begin; from < end;) {
         std::size_t to = from + 1;
-        while (to < end && stops.way_m[to] - stops.way_m[from] < kPiece_m) ++to;
-        if (stops.way_m[to - 1] - stops.way_m[from] >= kShortest_m) {
+        while (to < end && stops.path_m[to] - stops.path_m[from] < kPiece_m) ++to;
+        if (stops.path_m[to - 1] - stops.path_m[from] >= kShortest_m) {
           ++result.pieces;
           result.pieces_closed += any_closed(from, to) ? 1 : 0;
         }
@@ -138,7 +138,7 @@ void judge_loops(const storage::MapDocument& document, const Stops& stops,
                  SyntheticResult& result) {
   constexpr double kWrong_m = 0.5;
   constexpr double kWrong_rad = 10.0 * kDegree_rad;
-  std::vector<bool> closed(stops.way_m.size(), false);
+  std::vector<bool> closed(stops.path_m.size(), false);
   for (const topomap::LoopClosure& loop : document.loop_closures) {
     const geometry::Pose2 truth =
         geometry::between(stops.T_world_robot[loop.earlier_id], stops.T_world_robot[loop.later_id]);
@@ -149,7 +149,7 @@ void judge_loops(const storage::MapDocument& document, const Stops& stops,
     if (off_m > kWrong_m || off_rad > kWrong_rad) {
       result.false_loops.push_back(
           {loop.earlier_id, loop.later_id, off_m, off_rad, truth.position_m().norm()});
-    } else if (stops.way_m[loop.later_id] - stops.way_m[loop.earlier_id] >= kEarlier_m) {
+    } else if (stops.path_m[loop.later_id] - stops.path_m[loop.earlier_id] >= kEarlier_m) {
       closed[loop.later_id] = true;
     }
   }
@@ -186,7 +186,7 @@ SyntheticResult run_synthetic(const simulation::SimulatedLog& log, const pipelin
   SyntheticResult result;
   result.scans = log.scans.size();
   result.stops = map.local_maps.size();
-  result.way_m = stops.way_m.back();
+  result.path_m = stops.path_m.back();
   const auto truth = truth_of(log);
   const auto corrected = topomap::expand_trajectory(map.trajectory, map.local_maps);
   const pipeline::TrajectoryError error = pipeline::trajectory_error(corrected, truth);

@@ -40,7 +40,7 @@ struct SyntheticResult {
   std::uint64_t seed = 0;
   std::size_t scans = 0;
   std::size_t stops = 0;
-  double way_m = 0.0;             ///< true
+  double path_m = 0.0;            ///< true
   double odometry_rms_m = 0.0;    ///< after the best rigid alignment
   double rms_m = 0.0;             ///< the same of the corrected poses
   double largest_m = 0.0;         ///< error after the alignment

@@ -1,4 +1,4 @@
-// What a user is told about a log, configuration or directory that cannot be used.
+// The error messages for a log, configuration or directory that cannot be used.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,5 @@
-// topogeo calibrate-laser: finds where the simulated laser sits, and says what a log does not tell.
+// topogeo calibrate-laser: finds where the simulated laser sits, and reports what a log does not
+// show.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -69,7 +70,7 @@ class CalibrateLaserTest : public testing::Test {
     EXPECT_NEAR(x.value, truth.x_m, 3.0 * x.spread + 0.001);
     EXPECT_NEAR(y.value, truth.y_m, 3.0 * y.spread + 0.001);
     EXPECT_NEAR(yaw.value * kRadians, truth.theta_rad, (3.0 * yaw.spread + 0.001) * kRadians);
-    EXPECT_LT(x.spread, 0.02);  // so that it says something
+    EXPECT_LT(x.spread, 0.02);  // so that the interval above is narrow
     EXPECT_LT(y.spread, 0.02);
     EXPECT_LT(yaw.spread, 1.0);
   }

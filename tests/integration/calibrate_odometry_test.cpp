@@ -1,5 +1,5 @@
 // topogeo calibrate-odometry: finds the drift of the simulation, writes a configuration that maps,
-// and says what it cannot use.
+// and reports what it cannot use.
 #include <cmath>
 #include <filesystem>
 #include <fstream>

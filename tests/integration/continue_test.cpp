@@ -153,7 +153,7 @@ TEST_F(ContinueTest, MapsThatCannotBeContinuedAreOneLineErrors) {
   struct Case {
     std::vector<std::string> words;
     int code;
-    std::string says;
+    std::string message;
   };
   const std::vector<Case> cases = {
       {{"--continue", scratch_ / "damaged.pb"}, 3, "damaged.pb: cut short or damaged"},
@@ -169,8 +169,8 @@ TEST_F(ContinueTest, MapsThatCannotBeContinuedAreOneLineErrors) {
       std::vector<std::string> words{command, "--log", log};
       words.insert(words.end(), c.words.begin(), c.words.end());
       const Outcome outcome = call(words, "out");
-      EXPECT_EQ(outcome.code, c.code) << c.says;
-      EXPECT_THAT(outcome.err, HasSubstr(c.says));
+      EXPECT_EQ(outcome.code, c.code) << c.message;
+      EXPECT_THAT(outcome.err, HasSubstr(c.message));
     }
   }
   const Outcome both = call({"run", "--log", log, "--continue", map_, "--map", map_}, "out");

@@ -1,4 +1,4 @@
-// topogeo dvl: pictures of one scan and of a log, and what it says of bad input.
+// topogeo dvl: pictures of one scan and of a log, and its errors for bad input.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -19,7 +19,7 @@ class DvlTest : public testing::Test {
  protected:
   DvlTest() : log_(scratch_ / "log.clf.gz") { write_log("room", log_); }
 
-  /// Exit code of `topogeo dvl --log LOG WORDS...`; what it said on stderr is in `err_`.
+  /// Exit code of `topogeo dvl --log LOG WORDS...`; its stderr is in `err_`.
   int dvl(std::vector<std::string> words) {
     words.insert(words.begin(), {"dvl", "--log", log_});
     Program program(scratch_, "topogeo", words);

@@ -39,8 +39,8 @@ enum class Fault : std::uint8_t {
   kEmbellished,     // the right pose is made out to be better than it is
   kPoorer,          // searches for two generations only
   kOtherVersion,    // has another version
-  kOtherMatcher,    // computes differently, as it says itself
-  kCopiedWorkerId,  // shows the id of the first other worker that it hears of
+  kOtherMatcher,    // computes differently, as its status shows
+  kCopiedWorkerId,  // shows the id of the first other worker that it finds
 };
 
 constexpr std::array<std::string_view, 10> kNames = {
@@ -128,7 +128,7 @@ class FaultyWorker {
   }
 
   void announce() {
-    // Who is to answer beside another one is not heard of before tasks get to it.
+    // Who is to answer beside another one does not appear before tasks get to it.
     if (fault_ == Fault::kCopiedWorkerId && tasks_->matched() == 0) return;
     if (!statuses_.write(status_)) std::cerr << "status not sent\n";
   }

@@ -144,9 +144,9 @@ TEST_F(GatewayOnDevices, OdometryOutlivesRestartsOfTheBase) {
     ASSERT_TRUE(settle());
     const geometry::Pose2 truth =
         geometry::between(T_world_start, service::from_msg(truth_->T_world_robot()));
-    const geometry::Pose2 told =
+    const geometry::Pose2 reported =
         geometry::between(T_odom_start, service::from_msg(odometry_.back().T_odom_robot()));
-    EXPECT_LT((truth.position_m() - told.position_m()).norm(), 0.05) << i;
+    EXPECT_LT((truth.position_m() - reported.position_m()).norm(), 0.05) << i;
   }
 }
 
@@ -235,7 +235,7 @@ TEST_F(GatewayOnDevices, SaysWhichPortItMisses) {
 /// Exit code and message of a gateway that cannot start.
 class GatewayMistakes : public testing::Test {
  protected:
-  std::string told(const std::string& text) {
+  std::string error_for(const std::string& text) {
     const std::filesystem::path file = scratch_ / "devices.yaml";
     std::ofstream(file) << text;
     Program gateway(scratch_, "sensor_gateway",
@@ -247,13 +247,15 @@ class GatewayMistakes : public testing::Test {
 };
 
 TEST_F(GatewayMistakes, FileOfDevicesIsChecked) {
-  EXPECT_THAT(told("laser:\n  prt: /dev/ttyS0\n"), HasSubstr("devices.yaml:2: key 'laser.prt'"));
-  EXPECT_THAT(told("laser:\n  baud: fast\n"), HasSubstr("'laser.baud' = 'fast'"));
-  EXPECT_THAT(told("laser:\n  port: /dev/x\n  baud: 9601\n"), HasSubstr("9601"));
-  EXPECT_THAT(told("laser:\n  port: /dev/x\n  detection_bauds: \"9600 slow\"\n"),
+  EXPECT_THAT(error_for("laser:\n  prt: /dev/ttyS0\n"),
+              HasSubstr("devices.yaml:2: key 'laser.prt'"));
+  EXPECT_THAT(error_for("laser:\n  baud: fast\n"), HasSubstr("'laser.baud' = 'fast'"));
+  EXPECT_THAT(error_for("laser:\n  port: /dev/x\n  baud: 9601\n"), HasSubstr("9601"));
+  EXPECT_THAT(error_for("laser:\n  port: /dev/x\n  detection_bauds: \"9600 slow\"\n"),
               HasSubstr("laser.detection_bauds"));
-  EXPECT_THAT(told("laser:\n  port: /dev/x\nbase:\n  port: /dev/x\n"), HasSubstr("another port"));
-  EXPECT_THAT(told("laser:\n  baud: 9600\n"), HasSubstr("at least one port"));
+  EXPECT_THAT(error_for("laser:\n  port: /dev/x\nbase:\n  port: /dev/x\n"),
+              HasSubstr("another port"));
+  EXPECT_THAT(error_for("laser:\n  baud: 9600\n"), HasSubstr("at least one port"));
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ class MapStoreShows : public testing::Test {
     words.insert(words.end(), {"--domain", own_domain(), "--partition", partition_});
     return words;
   }
-  /// Exit code of `topogeo places` with these words; what it says is in out_ and err_.
+  /// Exit code of `topogeo places` with these words; its output is in out_ and err_.
   int places(std::vector<std::string> words) {
     words.insert(words.begin(), "places");
     Program program(scratch_, "topogeo", words);

@@ -129,7 +129,7 @@ Program& ServiceRun::start_worker(const std::string& name) {
 
 // --- how far the run gets
 
-void ServiceRun::look() {
+void ServiceRun::step() {
   if (next_scan_ < drive_.scans().size() && maps_ < stops_ + kBacklog) send_scan();
   loop_.run_for(milliseconds(1));
 }
@@ -141,7 +141,7 @@ void ServiceRun::send_scan() {
 
 bool ServiceRun::go_on_until(const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + kFaultPatience;
-  while (!condition() && std::chrono::steady_clock::now() < end) look();
+  while (!condition() && std::chrono::steady_clock::now() < end) step();
   return condition();
 }
 
@@ -176,7 +176,7 @@ bool ServiceRun::wait_until_idle() {
   return wait_until([this] { return stops_ == maps_ && counter("stops") == double(stops_); });
 }
 
-// --- what is said of it
+// --- its status
 
 double ServiceRun::counter(const std::string& name) const {
   for (const msg::Counter& counter : status_.counters()) {
@@ -203,7 +203,7 @@ void ServiceRun::expect_same_results() {
     EXPECT_FALSE(expected.empty());
     // No EXPECT_EQ: it would print megabytes.
     EXPECT_TRUE(read_file(out_ / file) == expected)
-        << file << " differs from that of the run in one process; the localizer said: " << log();
+        << file << " differs from that of the run in one process; log of the localizer: " << log();
   }
   EXPECT_EQ(counter("tasks"), drive_.expected_tasks());
 }

@@ -73,8 +73,8 @@ class ServiceRun {
   bool go_on_until_stop(std::size_t stop);
   /// Sends the rest and waits for the results.
   bool finish();
-  /// Sends scans (if the localizer has little left to do) and hears what has come.
-  void look();
+  /// Sends scans (if the localizer has little left to do) and receives what has come.
+  void step();
 
   // These do not send scans.
   bool wait_until(const Condition& condition);
@@ -84,20 +84,20 @@ class ServiceRun {
 
   /// Stops localized so far.
   [[nodiscard]] std::size_t stops() const { return stops_; }
-  /// A counter of the localizer; -1: it has not told yet.
+  /// A counter of the localizer; -1: not published yet.
   [[nodiscard]] double counter(const std::string& name) const;
   /// How often a fault happened to the localizer.
   [[nodiscard]] std::uint64_t faults(const std::string& reason) const;
   [[nodiscard]] bool has_ended() const { return ended_; }
   /// What the localizer has logged.
   [[nodiscard]] std::string log() const { return localizer_->err(); }
-  /// What workers say of themselves, by process id.
+  /// Status of the workers, by process id.
   [[nodiscard]] const std::map<pid_t, msg::WorkerStatus>& workers() const { return workers_; }
   [[nodiscard]] std::uint64_t tasks_done(const Program& worker) const;
 
   /// The results are those of one process, and every task was answered.
   void expect_same_results();
-  /// Prints what the localizer says of the longest time that it took to get over a worker; fails
+  /// Prints the longest time that the localizer took to recover from the loss of a worker; fails
   /// if it never had to or nothing but the middleware has noticed.
   void report_recovery();
 

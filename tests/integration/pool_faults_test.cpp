@@ -49,10 +49,10 @@ class PoolFaultsTest : public testing::Test {
   static void kill_with_tasks_in_hand(ServiceRun& run, const std::vector<Program*>& workers) {
     for (const Program* worker : workers) worker->send_signal(SIGSTOP);
     const auto end = std::chrono::steady_clock::now() + milliseconds(40);
-    while (std::chrono::steady_clock::now() < end) run.look();
+    while (std::chrono::steady_clock::now() < end) run.step();
     for (const Program* worker : workers) worker->send_signal(SIGKILL);
   }
-  /// Lets a worker with the fault join for some stops and then ends it. `found_out` says whether
+  /// Lets a worker with the fault join for some stops and then ends it. `found_out`: whether
   /// the localizer has noticed.
   void join_with_fault(ServiceRun& run, const std::string& fault,
                        const std::function<bool(const std::string& worker)>& found_out) {
@@ -159,7 +159,7 @@ TEST_F(PoolFaultsTest, WorkersAnswerMalformedResults) {
   ASSERT_TRUE(run.go_on_until_stop(5));
   expect_excluded(run, "not_a_number");
   expect_excluded(run, "many_solutions");
-  // Nothing in these says which task they answer.
+  // Nothing in these names the task that they answer.
   expect_passed_over(run, "unknown_task");
   expect_passed_over(run, "garbage");
   ASSERT_TRUE(run.finish()) << run.log();
@@ -203,16 +203,16 @@ TEST_F(PoolFaultsTest, TwoRobotsOfOneNameShareTheWorkers) {
   const Program one(scratch_, "ga_worker", {"--domain", own_domain()});
   const Program other(scratch_, "ga_worker", {"--domain", own_domain()});
   ASSERT_TRUE(first.wait_for_workers(2) && second.wait_for_workers(2));
-  const auto look = [&] {
-    first.look();
-    second.look();
+  const auto step = [&] {
+    first.step();
+    second.step();
   };
   const auto end = std::chrono::steady_clock::now() + kFaultPatience;
   constexpr std::size_t kFar = 70;
   while (std::max(first.stops(), second.stops()) < kFar && std::chrono::steady_clock::now() < end) {
-    look();
+    step();
   }
-  // Both have as many tasks for each stop, so stops tell who was served how often.
+  // Both have as many tasks for each stop, so stops show who was served how often.
   const auto [slow, fast] = std::minmax({first.stops(), second.stops()});
   EXPECT_LE(fast, 2 * slow);
   std::cout << "stops while both ran: " << slow << " and " << fast << '\n';

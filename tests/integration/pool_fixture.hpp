@@ -81,7 +81,7 @@ inline std::string random_partition() {
   return "test-" + std::to_string(device()) + std::to_string(device());
 }
 
-/// In the test's own domain: workers of other tests look into every partition of theirs.
+/// In the test's own domain: workers of other tests serve every partition of theirs.
 inline messaging::ParticipantOptions options_in(const std::string& partition) {
   messaging::ParticipantOptions options;
   options.domain = static_cast<std::uint32_t>(std::stoul(own_domain()));
@@ -90,7 +90,7 @@ inline messaging::ParticipantOptions options_in(const std::string& partition) {
   return options;
 }
 
-/// A worker in the test's own process that does what the test says.
+/// A worker in the test's own process that does what the test orders.
 class FakeWorker {
  public:
   using OnTask = std::function<void(FakeWorker&, const msg::MatchTask&)>;
@@ -98,7 +98,7 @@ class FakeWorker {
 
   FakeWorker(const FakeWorker&) = delete;
   FakeWorker& operator=(const FakeWorker&) = delete;
-  /// `dress` changes what it says of itself, which otherwise is what any client wants to hear.
+  /// `dress` changes its status, which otherwise is one that any client accepts.
   FakeWorker(const std::string& partition, messaging::EventLoop& loop, const std::string& worker_id,
              const OnTask& on_task, const Dress& dress = {})
       : loop_(loop),
@@ -123,12 +123,12 @@ class FakeWorker {
   }
   ~FakeWorker() { loop_.cancel_timer(timer_); }
 
-  /// Says that it goes, as a worker that drains does.
+  /// Announces that it leaves, as a worker that drains does.
   void leave() {
     loop_.cancel_timer(timer_);
     statuses_.dispose(status_);
   }
-  /// Says from now on what `dress` makes of its status.
+  /// Publishes from now on what `dress` makes of its status.
   void change(const Dress& dress) {
     dress(status_);
     announce();

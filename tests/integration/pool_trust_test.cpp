@@ -27,7 +27,7 @@ class PoolTrustTest : public PoolTest {
       self.answer(task, solver_.solve(task));
     };
   }
-  /// What the pool makes of a worker that says this of itself: no task gets to it.
+  /// What the pool makes of a worker with this status: no task gets to it.
   void expect_refused(const FakeWorker::Dress& dress, const std::string& reason,
                       const std::string& detail) {
     FakeWorker other(partition_, loop_, "other", honest(), dress);
@@ -60,7 +60,7 @@ class PoolTrustTest : public PoolTest {
     EXPECT_EQ(liar.received, received);
     EXPECT_EQ(faults_.size(), 1U);
   }
-  static std::uint64_t heard_by(const FakeWorker& worker) {
+  static std::uint64_t received_by(const FakeWorker& worker) {
     return static_cast<std::uint64_t>(worker.received);
   }
 
@@ -271,25 +271,25 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
     self.answer(task, result);
   });
   ASSERT_TRUE(wait_until([&] { return !faults_.empty(); }));
-  // That its status is heard does not say yet that tasks get to it.
+  // That its status arrives does not mean yet that tasks get to it.
   std::uint64_t sent = 0;
   ASSERT_TRUE(wait_until([&] {
     pool_->match(tasks_on(maps_, 1, 2000 + sent++));
     return second.received > 0;
   }));
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored == heard_by(second); }));
-  const std::uint64_t unheard = sent - heard_by(second);
+  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored == received_by(second); }));
+  const std::uint64_t not_received = sent - received_by(second);
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
   sent += 30;
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= sent - unheard; }));
+  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= sent - not_received; }));
   loop_.run_for(milliseconds(100));
   EXPECT_THAT(faults_, ElementsAre("two workers of one id"));
   EXPECT_EQ(pool_->workers(), 1U);
   EXPECT_EQ(pool_->counts().in_process, 0U);
-  EXPECT_EQ(heard_by(first), sent);
-  EXPECT_EQ(heard_by(second), sent - unheard) << "both hear what goes to the id";
-  EXPECT_EQ(pool_->counts().ignored, sent - unheard);
+  EXPECT_EQ(received_by(first), sent);
+  EXPECT_EQ(received_by(second), sent - not_received) << "both receive what goes to the id";
+  EXPECT_EQ(pool_->counts().ignored, sent - not_received);
 
   lies = false;
   first.leave();
@@ -298,10 +298,10 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
   const std::vector<MatchTask> more = tasks_on(maps_, 10, 1000);
   expect_same(more, pool_->match(more));
   EXPECT_EQ(pool_->counts().in_process, 0U);
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= sent - unheard + 10; }))
-      << "those of the first, which still hears";
+  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= sent - not_received + 10; }))
+      << "those of the first, which still receives";
   loop_.run_for(milliseconds(100));
-  EXPECT_EQ(pool_->counts().ignored, sent - unheard + 10);
+  EXPECT_EQ(pool_->counts().ignored, sent - not_received + 10);
   EXPECT_EQ(faults_.size(), 1U);
 }
 

@@ -115,7 +115,7 @@ bool Program::ended() {
 
 int Program::wait(double timeout_s) {
   if (!wait_until(timeout_s, [this] { return ended(); })) {
-    throw std::runtime_error("the program does not end; it said: " + err());
+    throw std::runtime_error("the program does not end; its stderr: " + err());
   }
   return WIFSIGNALED(status_) ? kSignalBase + WTERMSIG(status_) : WEXITSTATUS(status_);
 }
@@ -124,7 +124,7 @@ void Program::wait_for_error_text(const std::string& text, double timeout_s) {
   const bool there =
       wait_until(timeout_s, [&] { return err().find(text) != std::string::npos || ended(); });
   if (!there || err().find(text) == std::string::npos) {
-    throw std::runtime_error("the program never said '" + text + "' but: " + err());
+    throw std::runtime_error("the program never printed '" + text + "', its stderr: " + err());
   }
 }
 
@@ -139,7 +139,7 @@ void Program::wait_for_progress(int percent, double timeout_s) {
   const bool there = wait_until(timeout_s, [&] { return reached() || ended(); });
   if (!there || !reached()) {
     throw std::runtime_error("the program never got to " + std::to_string(percent) +
-                             " % but said: " + err());
+                             " % its stderr: " + err());
   }
 }
 

@@ -1,4 +1,4 @@
-// Runs the project's executables from tests and looks at what they do.
+// Runs the project's executables from tests and watches what they do.
 #pragma once
 
 #include <cstdint>

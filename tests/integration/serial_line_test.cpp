@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "program.hpp"
-#include "pseudo_terminal.hpp"
+#include "test_port.hpp"
 
 namespace topogeo::sensor_gateway {
 namespace {
@@ -22,7 +22,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr milliseconds kPatience{20'000};
 
-/// Notes what it is told and orders what the test puts there.
+/// Keeps what it receives and sends what the test puts there.
 class NotingDriver final : public devices::SerialDriver {
  public:
   void opened(std::int64_t now_ns) override {
@@ -97,7 +97,7 @@ class SerialLineTest : public testing::Test {
   }
 
   test::Scratch scratch_;
-  test::PseudoTerminal terminal_{scratch_ / "port"};
+  test::TestPort terminal_{scratch_ / "port"};
   messaging::EventLoop loop_;
   NotingDriver driver_;
   int calls_ = 0;

@@ -40,7 +40,7 @@ TEST_F(SimulationTest, DrivesTheTourThroughSerialPortsAndMapsIt) {
   ASSERT_GT(truth.size(), 20U);
   ASSERT_LE(truth.size(), found.size());
   EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(6.2, 3.0)).norm(), 0.3);
-  // Seen from its start, the robot believes to be where it is.
+  // Seen from its start, the estimated pose is the true one.
   const auto way = [](const auto& poses) {
     return geometry::between(poses.front().pose, poses.back().pose).position_m();
   };

@@ -1,4 +1,4 @@
-// A running localizer that is told to leave its map as it is, and to go on with it.
+// A running localizer that is ordered to leave its map as it is, and to go on with it.
 #include <csignal>
 
 #include "topogeo/localization/session/mapping_session.hpp"
@@ -50,7 +50,7 @@ class SwitchTest : public ::testing::Test {
       })) << i;
     }
   }
-  std::string tell(msg::LocalizationCommandKind kind) {
+  std::string send_command(msg::LocalizationCommandKind kind) {
     service::LocalizationCommand command;
     command.kind = kind;
     command.client_id = "test";
@@ -99,10 +99,10 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   const std::size_t resume = leave + 4;
   ASSERT_GT(end, resume + 4);
   start();
-  EXPECT_EQ(tell(msg::kCommandSwitchToMapping), "refused: it makes a map already");
-  EXPECT_EQ(tell(msg::kCommandSwitchToLocalization), "refused: there is no map yet");
+  EXPECT_EQ(send_command(msg::kCommandSwitchToMapping), "refused: it makes a map already");
+  EXPECT_EQ(send_command(msg::kCommandSwitchToLocalization), "refused: there is no map yet");
   drive(0, leave);
-  EXPECT_EQ(tell(msg::kCommandSwitchToLocalization),
+  EXPECT_EQ(send_command(msg::kCommandSwitchToLocalization),
             "accepted: the map of " + std::to_string(leave) + " stops stays as it is");
   ASSERT_TRUE(wait_until([&] { return stops_in_map() == leave; }));
   const std::uint64_t version = assembly_.version();
@@ -111,9 +111,9 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   EXPECT_EQ(last_pose_->state(), msg::kStateTracking);
   EXPECT_EQ(stops_in_map(), leave);
   EXPECT_EQ(assembly_.version(), version);
-  EXPECT_EQ(tell(msg::kCommandSwitchToLocalization),
+  EXPECT_EQ(send_command(msg::kCommandSwitchToLocalization),
             "refused: it localizes in a finished map already");
-  EXPECT_EQ(tell(msg::kCommandSwitchToMapping),
+  EXPECT_EQ(send_command(msg::kCommandSwitchToMapping),
             "accepted: new stops extend the map of " + std::to_string(leave) + " stops");
   drive(resume, end);
   EXPECT_EQ(last_pose_->mode(), msg::kModeMapping);
@@ -144,11 +144,11 @@ TEST_F(SwitchTest, StopsOfTheMeantimeAreInNoMapWhenTheLogEndsInIt) {
   const std::size_t leave = maps_.size() / 2;
   start();
   drive(0, leave);
-  EXPECT_THAT(tell(msg::kCommandSwitchToLocalization), ::testing::HasSubstr("accepted"));
+  EXPECT_THAT(send_command(msg::kCommandSwitchToLocalization), ::testing::HasSubstr("accepted"));
   drive(leave, leave + 3);
   end_stream(leave + 3);
   EXPECT_EQ(end_->count(), leave);
-  EXPECT_EQ(tell(msg::kCommandSwitchToMapping), "refused: the log has ended");
+  EXPECT_EQ(send_command(msg::kCommandSwitchToMapping), "refused: the log has ended");
 }
 
 }  // namespace

@@ -72,11 +72,11 @@ class WorkerClient {
   bool wait_until(const std::function<bool()>& condition) {
     constexpr std::chrono::seconds kPatience{30};
     const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition() && std::chrono::steady_clock::now() < end) look();
+    while (!condition() && std::chrono::steady_clock::now() < end) run_loop();
     return condition();
   }
   /// Lets messages come in; ends with the first.
-  void look() { loop_.run_for(std::chrono::milliseconds(2)); }
+  void run_loop() { loop_.run_for(std::chrono::milliseconds(2)); }
 
   /// Ids of the workers of a name.
   std::vector<std::string> named(const std::string& name) const {

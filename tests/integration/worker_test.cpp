@@ -1,5 +1,5 @@
-// Real search workers and clients that say what they want, each test in a domain of its own: a
-// worker serves every partition unless it is told not to.
+// Real search workers and clients that ask for what they want, each test in a domain of its own: a
+// worker serves every partition unless a flag restricts it.
 #include <algorithm>
 #include <csignal>
 #include <fstream>
@@ -92,7 +92,7 @@ TEST_F(WorkerTest, HasTheLocalMapsOfBeforeItsTimeFromEveryPartition) {
     const auto process = start();
     const std::string worker = peer->find(name_);
     const MatchTask wanted = task(*zero_, *one_, 1);
-    // The status says what it holds, so that this is not about who asks whom.
+    // The status counts what it holds, so that this is not about who asks whom.
     ASSERT_TRUE(peer->wait_until([&] { return peer->workers[worker].maps_held() == 2; }));
     peer->send(worker, wanted);
     expect_right(*peer, wanted, zero_, one_);
@@ -122,9 +122,9 @@ TEST_F(WorkerTest, ServesRunsWhoseRobotsAndMapsHaveTheSameNames) {
     live->send(worker, task(*zero_, *one_, id));
     run->send(worker, task(*other_zero, *other_one, id));
   }
-  // Both have to look for requests until both have their results.
+  // Both have to answer requests until both have their results.
   ASSERT_TRUE(live->wait_until([&] {
-    run->look();
+    run->run_loop();
     return live->results.size() == 4 && run->results.size() == 4;
   }));
   for (std::uint64_t id = 0; id < 4; ++id) {
@@ -140,7 +140,7 @@ TEST_F(WorkerTest, APartitionRestrictsIt) {
   const auto mine = client("mine");
   const auto other = client("other");
   ASSERT_NE(mine->find(name_), "");
-  for (int i = 0; i < 50; ++i) other->look();
+  for (int i = 0; i < 50; ++i) other->run_loop();
   EXPECT_THAT(other->workers, IsEmpty());
 }
 
@@ -156,7 +156,7 @@ TEST_F(WorkerTest, AsksForAMapThatItLacksUntilItHasTheRightOne) {
     EXPECT_EQ(request.content_hash(),
               topomap::content_hash(request.map_id() == 0 ? *zero_ : *one_));
     msg::LocalMap map = service::to_msg(request.map_id() == 0 ? *zero_ : *one_);
-    // A copy that is not what it says is not taken, and asked for again.
+    // A copy whose hash is wrong is not taken, and asked for again.
     if (request.map_id() == 1 && damaged++ == 0) map.points()[0].x_m(-1.0F);
     peer->send_copy(worker, map);
   };
@@ -227,7 +227,7 @@ TEST_F(WorkerTest, AClientWithALongQueueDoesNotKeepAnotherWaiting) {
   for (; long_task.task_id < kMany; ++long_task.task_id) greedy->send(worker, long_task);
   for (std::uint64_t id = 0; id < 3; ++id) modest->send(worker, task(*zero_, *one_, id));
   ASSERT_TRUE(modest->wait_until([&] {
-    greedy->look();
+    greedy->run_loop();
     return modest->results.size() == 3;
   }));
   EXPECT_LT(greedy->results.size(), kMany / 2);
@@ -305,7 +305,7 @@ TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
     most_load = std::max(most_load, status.load());
     most_in_hand = std::max(most_in_hand, status.tasks_in_hand());
   };
-  // A queue that lasts until a status told of it, however fast the machine.
+  // A queue that lasts until a status has counted it, however fast the machine.
   MatchTask long_task = task(*zero_, *one_, 0);
   long_task.genetic.generations = 3000;
   constexpr std::uint64_t kQueue = 20;

@@ -101,10 +101,10 @@ bool BaseOdometer::moved_plausibly(const McpReport& from, const McpReport& to,
            margin + doubt * elapsed_s;
   };
   const geometry::Pose2 half_turn{0.0, 0.0, -0.5 * moved.theta_rad};
-  const Eigen::Vector2d way_m = half_turn * moved.position_m();
-  return fits(way_m.x(), units_.linear_mps(from), units_.linear_mps(to),
+  const Eigen::Vector2d step_m = half_turn * moved.position_m();
+  return fits(step_m.x(), units_.linear_mps(from), units_.linear_mps(to),
               kHaste * limits_.linear_mps2, kMargin_m) &&
-         std::abs(way_m.y()) <= kMargin_m &&
+         std::abs(step_m.y()) <= kMargin_m &&
          fits(moved.theta_rad, units_.angular_radps(from), units_.angular_radps(to),
               kHaste * limits_.angular_radps2, kMargin_rad);
 }

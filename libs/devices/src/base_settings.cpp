@@ -18,6 +18,7 @@ constexpr std::uint32_t kNeededFields =
     mask_bit(McpField::kHeading) | mask_bit(McpField::kTranslateSpeed) |
     mask_bit(McpField::kTranslateStatus) | mask_bit(McpField::kRotateSpeed) |
     mask_bit(McpField::kRotateStatus);
+/// A tenth of a second: more reports leave no room for commands at 9600 baud.
 constexpr double kLeastPeriodTicks = 26.0;
 /// Of the line's time, that commands' answers and echoes find room between the reports.
 constexpr double kRoom = 1.2;

@@ -9,10 +9,11 @@
 namespace topogeo::devices {
 namespace {
 
+// Each twice around a frame.
 constexpr std::uint8_t kStart = 0x02;
 constexpr std::uint8_t kEnd = 0x03;
-constexpr std::size_t kMaxPayload = 255;
-constexpr unsigned kProofs = 3;
+constexpr std::size_t kMaxPayload = 255;  // its length is one byte
+constexpr unsigned kProofs = 3;           // right checksums, see McpChecksum::kLearn
 
 std::uint8_t exclusive_or(std::span<const std::uint8_t> bytes) {
   std::uint8_t sum = 0;

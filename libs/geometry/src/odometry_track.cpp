@@ -19,9 +19,9 @@ Pose2 interpolate(const OdometrySample& a, const OdometrySample& b, std::int64_t
 /// The chord of the arc, which for the small turns between two reports is the arc.
 Pose2 extrapolate(const OdometrySample& last, std::int64_t stamp_ns) {
   const double time_s = static_cast<double>(stamp_ns - last.stamp_ns) * 1e-9;
-  const double way_m = last.linear_mps * time_s;
+  const double distance_m = last.linear_mps * time_s;
   const double turn_rad = last.angular_radps * time_s;
-  const Pose2 step{way_m * std::cos(turn_rad / 2.0), way_m * std::sin(turn_rad / 2.0),
+  const Pose2 step{distance_m * std::cos(turn_rad / 2.0), distance_m * std::sin(turn_rad / 2.0),
                    wrap_angle(turn_rad)};
   return last.T_odom_robot * step;
 }

@@ -72,7 +72,7 @@ std::string profile_name(const TopicInfo& topic, const std::string& role, const 
 
 void Endpoint::Shared::push(Event event) {
   event.topic = topic;
-  // Woken under the lock: once set_wake({}) has returned, nobody is still on the way to a loop that
+  // Woken under the lock: once set_wake({}) has returned, no thread is about to wake a loop that
   // ends.
   const std::lock_guard lock(mutex);
   if (events.size() == kMaxEvents) events.pop_front();

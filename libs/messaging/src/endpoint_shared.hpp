@@ -14,13 +14,13 @@
 namespace topogeo::messaging::detail {
 
 struct Endpoint::Shared {
-  /// Events that nobody takes are dropped beyond this, oldest first.
+  /// Events that are not taken are dropped beyond this, oldest first.
   static constexpr std::size_t kMaxEvents = 10'000;
 
   explicit Shared(std::string_view topic_name) : topic(topic_name) {}
 
   void push(Event event);
-  /// Counts peers and tells of the change.
+  /// Counts peers and appends the event.
   void set_matched(int current, int change, const eprosima::fastrtps::rtps::InstanceHandle_t& peer);
   void push_incompatible(const eprosima::fastdds::dds::IncompatibleQosStatus& status);
 

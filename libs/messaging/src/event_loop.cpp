@@ -100,7 +100,7 @@ bool EventLoop::Impl::dispatch_samples() {
 }
 
 void EventLoop::Impl::dispatch_events() {
-  const EventHandler tell = [this](const Event& event) {
+  const EventHandler call_handlers = [this](const Event& event) {
     for (std::size_t i = 0; i < event_handlers.size(); ++i) {  // NOLINT(modernize-loop-convert)
       const EventHandler handler = event_handlers[i];
       handler(event);
@@ -108,11 +108,11 @@ void EventLoop::Impl::dispatch_events() {
   };
   for (std::size_t i = 0; i < sources.size(); ++i) {  // NOLINT(modernize-loop-convert)
     const std::shared_ptr<Source> source = sources[i];
-    source->reader->take_events(tell);
+    source->reader->take_events(call_handlers);
   }
   for (std::size_t i = 0; i < writers.size(); ++i) {  // NOLINT(modernize-loop-convert)
     const std::shared_ptr<detail::WriterCore> writer = writers[i];
-    writer->take_events(tell);
+    writer->take_events(call_handlers);
   }
 }
 

@@ -135,7 +135,7 @@ dds::ContentFilteredTopic& ParticipantCore::make_filtered(const TopicInfo& info,
   dds::Topic& related = topic(info);
   const std::lock_guard lock(mutex_);
   const std::string name = std::string(info.name) + "/filter" + std::to_string(filters_made_++);
-  // Only the parameter counts; the expression says the same to other DDS programs.
+  // Only the parameter counts; the expression has the same meaning for other DDS programs.
   const std::string expression = std::string(info.addressee) + " = %0";
   return *require(participant_->create_contentfilteredtopic(name, &related, expression, {addressee},
                                                             kAddressFilterClass),

@@ -57,7 +57,7 @@ struct ReaderCore::Impl {
   void* empty = nullptr;    // handed over with samples that carry no message
   eprosima::fastdds::dds::ContentFilteredTopic* filtered = nullptr;
   eprosima::fastdds::dds::DataReader* reader = nullptr;
-  // Last writer of each instance that is alive, because the middleware does not tell which
+  // Last writer of each instance that is alive, because the middleware does not report which
   // instances a lost writer leaves behind.
   std::map<Handle, Handle> writers;
   std::set<Handle> lost;     // writers that went; messages of theirs may still be waiting here

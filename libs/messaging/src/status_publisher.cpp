@@ -15,9 +15,13 @@ namespace topogeo::messaging {
 
 namespace {
 
+// Tables and the search pool take a program for silent after 1.5 s: three statuses lost.
 constexpr std::chrono::milliseconds kPeriod{500};
+// Of a fault that repeats itself: a log stays readable.
 constexpr std::chrono::seconds kLogPeriod{1};
+// For the last status to leave before the writer is deleted.
 constexpr std::chrono::milliseconds kFarewell{200};
+// Stands for the faults of all further reasons, once the status has no room for another one.
 constexpr std::string_view kOtherFaults = "other";
 constexpr std::size_t kMaxNameSize = 48;  // status.idl
 

@@ -11,6 +11,8 @@ using topomap::ScanPoint;
 
 namespace {
 
+// A scan that cannot be placed makes a stop once the robot has moved by this: a covered laser on a
+// robot that stands makes none.
 constexpr double kLostStop_m = 0.1;
 constexpr double kLostStop_rad = 0.05;
 
@@ -33,10 +35,10 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   const Pose2 T_last = track_.empty() ? Pose2{} : track_.back().T_stop_robot;
   const double step_m = std::sqrt((T.position_m() - T_last.position_m()).squaredNorm());
   const double turn_rad = std::fabs(geometry::wrap_angle(T.theta_rad - T_last.theta_rad));
-  const double way_m = std::sqrt(T.position_m().squaredNorm());
+  const double distance_m = std::sqrt(T.position_m().squaredNorm());
   const bool lost =
-      !pose.matched && (way_m >= kLostStop_m || std::fabs(T.theta_rad) >= kLostStop_rad);
-  const bool stop = lost || way_m + 0.5 * step_m >= config_.stop_distance_m ||
+      !pose.matched && (distance_m >= kLostStop_m || std::fabs(T.theta_rad) >= kLostStop_rad);
+  const bool stop = lost || distance_m + 0.5 * step_m >= config_.stop_distance_m ||
                     std::fabs(T.theta_rad) + 0.5 * turn_rad >= config_.stop_turn_rad ||
                     track_.size() + 1 >= config_.longest_track;
   if (stop) return make_stop(scan, T);

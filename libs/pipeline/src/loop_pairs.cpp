@@ -9,9 +9,11 @@
 namespace topogeo::pipeline {
 namespace {
 
+// The pairs by which the loop error of a trajectory is measured, so these figures are part of what
+// the error means: places nearer than this, with so much path between them.
 constexpr double kNear_m = 1.5;
-constexpr double kWayBetween_m = 20.0;
-constexpr std::size_t kMostPairs = 2000;
+constexpr double kPathBetween_m = 20.0;
+constexpr std::size_t kMostPairs = 2000;     // of longer paths a sample
 constexpr std::size_t kPosesLookedAt = 400;  // about; longer paths are thinned out
 
 /// Gives std::mt19937 the state that Python's generator has after `seed(0)`: init_by_array of the
@@ -65,15 +67,15 @@ void shuffle_as_python(std::vector<IndexPair>& pairs) {
 }
 
 std::vector<IndexPair> loop_pairs(std::span<const geometry::Pose2> path) {
-  std::vector<double> way_m{0.0};
+  std::vector<double> path_m{0.0};
   for (std::size_t i = 1; i < path.size(); ++i) {
-    way_m.push_back(way_m.back() + (path[i].position_m() - path[i - 1].position_m()).norm());
+    path_m.push_back(path_m.back() + (path[i].position_m() - path[i - 1].position_m()).norm());
   }
   const std::size_t step = std::max<std::size_t>(1, path.size() / kPosesLookedAt);
   std::vector<IndexPair> pairs;
   for (std::size_t i = 0; i < path.size(); i += step) {
     for (std::size_t j = i + 1; j < path.size(); j += step) {
-      if (way_m[j] - way_m[i] > kWayBetween_m &&
+      if (path_m[j] - path_m[i] > kPathBetween_m &&
           (path[i].position_m() - path[j].position_m()).norm() < kNear_m) {
         pairs.emplace_back(i, j);
       }

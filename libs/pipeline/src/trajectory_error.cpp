@@ -20,6 +20,8 @@ namespace {
 using geometry::Pose2;
 using topomap::StampedPose;
 
+// Relations over a longer time show whether loops were closed; their errors are also given by
+// themselves.
 constexpr std::int64_t kFarApart_ns = 30'000'000'000;
 
 std::vector<StampedPose> in_time_order(std::span<const StampedPose> poses) {

@@ -14,6 +14,7 @@
 namespace topogeo::render {
 namespace {
 
+// Sizes and colours on the page, chosen by eye.
 constexpr double kSheetMargin_px = 20.0;
 constexpr double kSheetHeader_px = 46.0;
 constexpr double kLegend_px = 52.0;

@@ -16,6 +16,7 @@ namespace {
 using voronoi::GroupPoint;
 using voronoi::PointRun;
 
+// Sizes and colours on the page, chosen by eye.
 constexpr double kDot_px = 1.7;
 constexpr double kNumber_px = 13.0;
 constexpr double kDegree_rad = std::numbers::pi / 180.0;

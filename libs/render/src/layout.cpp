@@ -11,6 +11,7 @@
 namespace topogeo::render {
 namespace {
 
+// Of the page; chosen by eye.
 constexpr double kMargin_px = 24.0;
 constexpr double kTitleHeight_px = 44.0;
 constexpr double kMinWidth_px = 720.0;

@@ -10,6 +10,7 @@
 namespace topogeo::render {
 namespace {
 
+// Sizes and colours on the page, chosen by eye.
 constexpr double kLegendMargin_px = 24.0;
 constexpr double kScaleBarSpace_px = 190.0;
 

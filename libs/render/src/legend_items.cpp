@@ -5,6 +5,7 @@
 namespace topogeo::render {
 namespace {
 
+// Sizes and colours on the page, chosen by eye.
 constexpr double kTextSize_px = 13.0;
 constexpr double kSampleWidth_px = 26.0;
 constexpr double kRowHeight_px = 21.0;

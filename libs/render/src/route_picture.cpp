@@ -14,6 +14,7 @@ using planning::Cell;
 using planning::CellState;
 using planning::HybridMap;
 
+// Sizes and colours on the page, chosen by eye.
 constexpr double kRouteMargin_px = 20.0;
 constexpr double kRouteHeader_px = 40.0;
 constexpr Colour kFilled{0.95, 0.55, 0.10};

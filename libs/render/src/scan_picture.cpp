@@ -12,6 +12,7 @@
 namespace topogeo::render {
 namespace {
 
+// Sizes and colours on the page, chosen by eye.
 constexpr double kScanMargin_px = 20.0;
 constexpr double kScanHeader_px = 66.0;
 constexpr double kPanelTitle_px = 24.0;

@@ -9,6 +9,7 @@
 namespace topogeo::scan {
 namespace {
 
+// Beyond these a number is damaged: no robot has driven as far or turned as often.
 constexpr double kMaxCoordinate_m = 1e6;
 constexpr double kMaxHeading_rad = 1e4;
 

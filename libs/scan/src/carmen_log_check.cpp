@@ -166,15 +166,15 @@ void Checker::compare_geometry(const Scan& scan) {
 void Checker::compare_odometry(const Scan& scan) {
   const double time_s = std::max(0.0, static_cast<double>(scan.stamp_ns - last_->stamp_ns) * 1e-9);
   const geometry::Pose2 step = geometry::between(last_->T_odom_robot, scan.T_odom_robot);
-  const double way_m = std::hypot(step.x_m, step.y_m);
-  const bool far = way_m > options_.largest_mps * time_s + kStepAllowed_m;
+  const double step_m = std::hypot(step.x_m, step.y_m);
+  const bool far = step_m > options_.largest_mps * time_s + kStepAllowed_m;
   const bool turned =
       std::fabs(step.theta_rad) > options_.largest_radps * time_s + kTurnAllowed_rad;
   if (far || turned) {
-    found(LogFault::kJump, text_of(way_m, 3) + " m and " + text_of(step.theta_rad, 3) +
+    found(LogFault::kJump, text_of(step_m, 3) + " m and " + text_of(step.theta_rad, 3) +
                                " rad within " + text_of(time_s, 3) + " s");
   } else {
-    check_.way_m += way_m;
+    check_.path_m += step_m;
   }
 }
 

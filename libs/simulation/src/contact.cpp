@@ -23,8 +23,8 @@ Eigen::Vector2d nearest_m(const world::Segment& segment, const Eigen::Vector2d& 
 
 // Distance until a point that moves along `direction` is `radius_m` away from `center_m`, from
 // outside.
-double way_to_circle(const Eigen::Vector2d& center_m, double radius_m,
-                     const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
+double distance_to_circle(const Eigen::Vector2d& center_m, double radius_m,
+                          const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d to_m = center_m - from_m;
   const double along_m = to_m.dot(direction);
   if (along_m <= 0.0) return kNoContact_m;
@@ -35,8 +35,8 @@ double way_to_circle(const Eigen::Vector2d& center_m, double radius_m,
 }
 
 // The same for a segment, from a point more than `radius_m` away from it.
-double way_to_segment(const world::Segment& segment, double radius_m, const Eigen::Vector2d& from_m,
-                      const Eigen::Vector2d& direction) {
+double distance_to_segment(const world::Segment& segment, double radius_m,
+                           const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d span_m = segment.b_m - segment.a_m;
   const double length_m = span_m.norm();
   if (length_m > 0.0) {
@@ -45,26 +45,26 @@ double way_to_segment(const world::Segment& segment, double radius_m, const Eige
     const double beside_m = normal.dot(from_m - segment.a_m);
     const double approach = normal.dot(direction) * (beside_m > 0.0 ? -1.0 : 1.0);
     if (std::fabs(beside_m) > radius_m && approach > 0.0) {
-      const double way_m = (std::fabs(beside_m) - radius_m) / approach;
-      const double at_m = along.dot(from_m + way_m * direction - segment.a_m);
-      if (at_m >= 0.0 && at_m <= length_m) return way_m;
+      const double distance_m = (std::fabs(beside_m) - radius_m) / approach;
+      const double at_m = along.dot(from_m + distance_m * direction - segment.a_m);
+      if (at_m >= 0.0 && at_m <= length_m) return distance_m;
     }
   }
-  return std::min(way_to_circle(segment.a_m, radius_m, from_m, direction),
-                  way_to_circle(segment.b_m, radius_m, from_m, direction));
+  return std::min(distance_to_circle(segment.a_m, radius_m, from_m, direction),
+                  distance_to_circle(segment.b_m, radius_m, from_m, direction));
 }
 
-class Way {
+class PathAhead {
  public:
-  Way(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, double length_m)
+  PathAhead(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, double length_m)
       : from_m_(from_m), direction_(direction), free_{length_m, std::nullopt} {}
 
-  [[nodiscard]] const FreeWay& free() const { return free_; }
+  [[nodiscard]] const FreePath& free() const { return free_; }
 
   // Whether the surface with this nearest point, `room_m` away from the disc, is out of reach or
   // decides already: touched, or overlapped.
   bool settled(const Eigen::Vector2d& nearest, double room_m) {
-    if (room_m >= free_.way_m + kTouch_m) return true;
+    if (room_m >= free_.distance_m + kTouch_m) return true;
     if (room_m > kTouch_m) return false;
     const Eigen::Vector2d to_m = nearest - from_m_;
     // From a point on the surface itself any move is a move away.
@@ -72,58 +72,58 @@ class Way {
     return true;
   }
 
-  void stop(double way_m, const Eigen::Vector2d& contact_m) {
-    if (way_m >= free_.way_m && free_.contact_m) return;
-    free_ = {way_m, contact_m};
+  void stop(double distance_m, const Eigen::Vector2d& contact_m) {
+    if (distance_m >= free_.distance_m && free_.contact_m) return;
+    free_ = {distance_m, contact_m};
   }
 
  private:
   const Eigen::Vector2d& from_m_;
   const Eigen::Vector2d& direction_;
-  FreeWay free_;
+  FreePath free_;
 };
 
 }  // namespace
 
-FreeWay free_way(const world::World& scene, const Eigen::Vector2d& from_m,
-                 const Eigen::Vector2d& direction, double length_m, double radius_m) {
-  Way way(from_m, direction, length_m);
+FreePath free_path(const world::World& scene, const Eigen::Vector2d& from_m,
+                   const Eigen::Vector2d& direction, double length_m, double radius_m) {
+  PathAhead path(from_m, direction, length_m);
   for (const world::Segment& segment : scene.segments) {
     const Eigen::Vector2d nearest = nearest_m(segment, from_m);
-    if (way.settled(nearest, (nearest - from_m).norm() - radius_m)) continue;
-    const double way_m = way_to_segment(segment, radius_m, from_m, direction);
-    if (way_m < way.free().way_m) {
-      way.stop(way_m, nearest_m(segment, from_m + way_m * direction));
+    if (path.settled(nearest, (nearest - from_m).norm() - radius_m)) continue;
+    const double distance_m = distance_to_segment(segment, radius_m, from_m, direction);
+    if (distance_m < path.free().distance_m) {
+      path.stop(distance_m, nearest_m(segment, from_m + distance_m * direction));
     }
   }
   for (const world::Circle& circle : scene.circles) {
     const double apart_m = (circle.center_m - from_m).norm();
-    if (way.settled(circle.center_m, apart_m - circle.radius_m - radius_m)) continue;
-    const double way_m =
-        way_to_circle(circle.center_m, circle.radius_m + radius_m, from_m, direction);
-    if (way_m >= way.free().way_m) continue;
-    const Eigen::Vector2d there_m = from_m + way_m * direction;
+    if (path.settled(circle.center_m, apart_m - circle.radius_m - radius_m)) continue;
+    const double distance_m =
+        distance_to_circle(circle.center_m, circle.radius_m + radius_m, from_m, direction);
+    if (distance_m >= path.free().distance_m) continue;
+    const Eigen::Vector2d there_m = from_m + distance_m * direction;
     const Eigen::Vector2d out = (there_m - circle.center_m).normalized();
-    way.stop(way_m, circle.center_m + circle.radius_m * out);
+    path.stop(distance_m, circle.center_m + circle.radius_m * out);
   }
-  return way.free();
+  return path.free();
 }
 
 std::optional<Eigen::Vector2d> overlap_m(const world::World& scene, const Eigen::Vector2d& center_m,
                                          double radius_m) {
   std::optional<Eigen::Vector2d> found;
   double least_m = radius_m - kOverlap_m;
-  const auto look = [&](const Eigen::Vector2d& nearest, double apart_m) {
+  const auto compare = [&](const Eigen::Vector2d& nearest, double apart_m) {
     if (apart_m >= least_m) return;
     least_m = apart_m;
     found = nearest;
   };
   for (const world::Segment& segment : scene.segments) {
     const Eigen::Vector2d nearest = nearest_m(segment, center_m);
-    look(nearest, (nearest - center_m).norm());
+    compare(nearest, (nearest - center_m).norm());
   }
   for (const world::Circle& circle : scene.circles) {
-    look(circle.center_m, (circle.center_m - center_m).norm() - circle.radius_m);
+    compare(circle.center_m, (circle.center_m - center_m).norm() - circle.radius_m);
   }
   return found;
 }

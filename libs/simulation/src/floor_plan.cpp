@@ -5,8 +5,8 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr double kWall_m = 0.12;  // between corridor and room
-constexpr double kDoor_m = 0.9;
+constexpr double kWall_m = 0.12;      // between corridor and room
+constexpr double kDoor_m = 0.9;       // as a wide office door
 constexpr double kNarrowest_m = 3.0;  // room
 
 Eigen::Vector2d along(const Side& side) {

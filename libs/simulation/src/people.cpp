@@ -10,9 +10,9 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr double kWandererRadius_m = 0.2;
-constexpr double kStep_s = 0.1;
-constexpr double kFromRobot_m = 0.8;  // who yields or wanders keeps off it
+constexpr double kWandererRadius_m = 0.2;  // of legs, at the height of a laser
+constexpr double kStep_s = 0.1;            // 15 cm of the fastest: less than a radius
+constexpr double kFromRobot_m = 0.8;       // who yields or wanders keeps off it
 
 Eigen::Vector2d any_direction(support::Random& random) {
   const double angle_rad = random.uniform(-std::numbers::pi, std::numbers::pi);

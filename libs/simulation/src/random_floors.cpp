@@ -165,10 +165,10 @@ world::World symmetric_building(std::uint64_t seed) {
   return world;
 }
 
-world::World large_floor(std::uint64_t seed, double way_m) {
-  if (!(way_m >= 50.0 && way_m <= 20'000.0)) {
-    throw std::invalid_argument("way_m: expected a number in [50, 20000], got " +
-                                std::to_string(way_m));
+world::World large_floor(std::uint64_t seed, double path_m) {
+  if (!(path_m >= 50.0 && path_m <= 20'000.0)) {
+    throw std::invalid_argument("path_m: expected a number in [50, 20000], got " +
+                                std::to_string(path_m));
   }
   constexpr std::size_t kBlocks = 4;
   support::Random random = random_of("large floor", seed);
@@ -195,7 +195,7 @@ world::World large_floor(std::uint64_t seed, double way_m) {
   const auto place_m = [&](const Crossing& c) { return Point(x_m[c.first], y_m[c.second]); };
   world.tour_m.push_back(place_m(here));
   double driven_m = 0.0;
-  while (driven_m < way_m) {
+  while (driven_m < path_m) {
     std::vector<Crossing> ways;
     if (here.first > 0) ways.emplace_back(here.first - 1, here.second);
     if (here.first < kBlocks) ways.emplace_back(here.first + 1, here.second);

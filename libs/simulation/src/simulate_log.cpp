@@ -35,12 +35,12 @@ void check_option(const SimulationOptions& o) {
   check_option(o.laser.dropout_probability >= 0.0 && o.laser.dropout_probability <= 1.0,
                "laser.dropout_probability", "[0, 1]");
   for (std::size_t i = 0; i < o.kidnappings.size(); ++i) {
-    check_option(o.kidnappings[i].at_way_m >= (i > 0 ? o.kidnappings[i - 1].at_way_m : 0.0),
-                 "kidnappings.at_way_m", "numbers >= 0 in ascending order");
-    check_option(o.kidnappings[i].to_way_m >= 0.0, "kidnappings.to_way_m", "a number >= 0");
+    check_option(o.kidnappings[i].at_path_m >= (i > 0 ? o.kidnappings[i - 1].at_path_m : 0.0),
+                 "kidnappings.at_path_m", "numbers >= 0 in ascending order");
+    check_option(o.kidnappings[i].to_path_m >= 0.0, "kidnappings.to_path_m", "a number >= 0");
   }
   for (const Blinding& blinding : o.blindings) {
-    check_option(blinding.way.from_m < blinding.way.to_m, "blindings.way", "from_m < to_m");
+    check_option(blinding.path.from_m < blinding.path.to_m, "blindings.path", "from_m < to_m");
     check_option(
         !blinding.reading_m || (*blinding.reading_m > 0.0 && std::isfinite(*blinding.reading_m)),
         "blindings.reading_m", "a number > 0");
@@ -52,34 +52,34 @@ class Journey {
  public:
   Journey(const world::World& world, const SimulationOptions& options)
       : poses_(drive(world.tour_m, options.drive)), kidnappings_(options.kidnappings) {
-    way_m_.push_back(0.0);
+    path_m_.push_back(0.0);
     for (std::size_t i = 1; i < poses_.size(); ++i) {
       const geometry::Pose2 step =
           geometry::between(poses_[i - 1].T_world_robot, poses_[i].T_world_robot);
-      way_m_.push_back(way_m_.back() + step.position_m().norm());
+      path_m_.push_back(path_m_.back() + step.position_m().norm());
     }
     for (const Kidnapping& kidnapping : kidnappings_) {
-      check_option(kidnapping.to_way_m <= way_m_.back(), "kidnappings.to_way_m",
-                   "at most the way of the tour, " + std::to_string(way_m_.back()) + " m");
+      check_option(kidnapping.to_path_m <= path_m_.back(), "kidnappings.to_path_m",
+                   "at most the length of the tour, " + std::to_string(path_m_.back()) + " m");
     }
   }
 
   // One tick further; false at the end.
   bool next() {
     if (at_ + 1 >= poses_.size()) return false;
-    const double step_m = way_m_[at_ + 1] - way_m_[at_];
+    const double step_m = path_m_[at_ + 1] - path_m_[at_];
     turned_rad_ =
         std::fabs(geometry::between(T_world_robot(), poses_[at_ + 1].T_world_robot).theta_rad);
     ++at_;
     ++ticks_;
     driven_m_ += step_m;
     step_m_ = step_m;
-    carried_ = kidnapped_ < kidnappings_.size() && driven_m_ >= kidnappings_[kidnapped_].at_way_m;
+    carried_ = kidnapped_ < kidnappings_.size() && driven_m_ >= kidnappings_[kidnapped_].at_path_m;
     if (carried_) {
       T_world_left_ = T_world_robot();
-      const double to_m = kidnappings_[kidnapped_++].to_way_m;
-      const auto place = std::lower_bound(way_m_.begin(), way_m_.end(), to_m);
-      at_ = std::min(static_cast<std::size_t>(place - way_m_.begin()), poses_.size() - 1);
+      const double to_m = kidnappings_[kidnapped_++].to_path_m;
+      const auto place = std::lower_bound(path_m_.begin(), path_m_.end(), to_m);
+      at_ = std::min(static_cast<std::size_t>(place - path_m_.begin()), poses_.size() - 1);
     }
     return true;
   }
@@ -97,7 +97,7 @@ class Journey {
 
  private:
   std::vector<TimedPose> poses_;
-  std::vector<double> way_m_;  // of each pose
+  std::vector<double> path_m_;  // of each pose
   const std::vector<Kidnapping>& kidnappings_;
   std::size_t kidnapped_ = 0;
   std::size_t at_ = 0;
@@ -115,7 +115,7 @@ std::vector<float> readings(const world::World& scene, const geometry::Pose2& T_
   std::vector<float> ranges_m = measure(
       raycast(scene, T_world_robot * options.T_robot_laser, options.beams), options.laser, random);
   for (const Blinding& blinding : options.blindings) {
-    if (driven_m < blinding.way.from_m || driven_m >= blinding.way.to_m) continue;
+    if (driven_m < blinding.path.from_m || driven_m >= blinding.path.to_m) continue;
     const float reading_m =
         blinding.reading_m ? static_cast<float>(*blinding.reading_m) : scan::Scan::kNoReturn;
     std::fill(ranges_m.begin(), ranges_m.end(), reading_m);

@@ -9,7 +9,7 @@
 namespace topogeo::simulation {
 namespace {
 
-// A cone with its apex at the origin, looking along x.
+// A cone with its apex at the origin, opening along x.
 class Cone {
  public:
   Cone(double half_rad, double range_max_m) : edge_(geometry::sincos(half_rad)) {
@@ -18,7 +18,7 @@ class Cone {
 
   [[nodiscard]] const Echo& nearest() const { return nearest_; }
 
-  void hear(const world::Segment& segment) {
+  void add_echo_of(const world::Segment& segment) {
     // The part of the segment between the two edges: shares [first, last] of it.
     double first = 0.0;
     double last = 1.0;
@@ -36,27 +36,27 @@ class Cone {
     const double share = std::clamp(foot, first, last);
     const Eigen::Vector2d point_m = segment.a_m + share * along;
     const bool edge = share == 0.0 || share == 1.0;
-    hear(point_m, edge ? point_m : Eigen::Vector2d(-along.y(), along.x()));
+    add_echo_of(point_m, edge ? point_m : Eigen::Vector2d(-along.y(), along.x()));
   }
 
-  void hear(const world::Circle& circle) {
+  void add_echo_of(const world::Circle& circle) {
     const Eigen::Vector2d& center_m = circle.center_m;
     const double apart_m = center_m.norm();
-    if (apart_m <= circle.radius_m) return hear({0.0, 0.0}, {1.0, 0.0});
+    if (apart_m <= circle.radius_m) return add_echo_of({0.0, 0.0}, {1.0, 0.0});
     const Eigen::Vector2d edge(edge_.cos, center_m.y() >= 0.0 ? edge_.sin : -edge_.sin);
     const bool inside = edge_.sin * center_m.x() - edge_.cos * std::fabs(center_m.y()) >= 0.0;
-    if (inside) return hear(center_m * (1.0 - circle.radius_m / apart_m), center_m);
+    if (inside) return add_echo_of(center_m * (1.0 - circle.radius_m / apart_m), center_m);
     // The nearest part of its outline that reaches into the cone lies on the cone's edge.
     const double along_m = edge.dot(center_m);
     const double half2 =
         circle.radius_m * circle.radius_m - (center_m - along_m * edge).squaredNorm();
     if (along_m <= 0.0 || half2 < 0.0) return;
     const Eigen::Vector2d point_m = (along_m - std::sqrt(half2)) * edge;
-    hear(point_m, center_m - point_m);
+    add_echo_of(point_m, center_m - point_m);
   }
 
  private:
-  void hear(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal) {
+  void add_echo_of(const Eigen::Vector2d& point_m, const Eigen::Vector2d& normal) {
     const double range_m = point_m.norm();
     if (range_m >= echo_limit_m_ || range_m >= nearest_.range_m) return;
     const double beside = std::fabs(point_m.x() * normal.y() - point_m.y() * normal.x());
@@ -80,9 +80,9 @@ Echo echo(const world::World& scene, const geometry::Pose2& T_world_sonar, doubl
   };
   Cone cone(half_cone_rad, range_max_m);
   for (const world::Segment& segment : scene.segments)
-    cone.hear({seen(segment.a_m), seen(segment.b_m)});
+    cone.add_echo_of({seen(segment.a_m), seen(segment.b_m)});
   for (const world::Circle& circle : scene.circles)
-    cone.hear({seen(circle.center_m), circle.radius_m});
+    cone.add_echo_of({seen(circle.center_m), circle.radius_m});
   return cone.nearest();
 }
 
@@ -90,15 +90,15 @@ std::vector<float> measure(const std::vector<Echo>& echoes, const SonarNoise& no
                            support::Random& random) {
   std::vector<float> readings_m;
   readings_m.reserve(echoes.size());
-  for (const Echo& heard : echoes) {
+  for (const Echo& echo : echoes) {
     const bool lost = random.uniform() < noise.specular_loss_probability &&
-                      heard.incidence_rad > noise.specular_from_rad;
+                      echo.incidence_rad > noise.specular_from_rad;
     const double error_m = noise.sigma_m * random.normal();
-    if (lost || heard.range_m >= noise.range_max_m) {
+    if (lost || echo.range_m >= noise.range_max_m) {
       readings_m.push_back(scan::Scan::kNoReturn);
       continue;
     }
-    double reading_m = heard.range_m + error_m;
+    double reading_m = echo.range_m + error_m;
     if (noise.resolution_m > 0.0) {
       reading_m = std::floor(reading_m / noise.resolution_m + 0.5) * noise.resolution_m;
     }

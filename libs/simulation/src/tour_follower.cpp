@@ -10,7 +10,7 @@
 namespace topogeo::simulation {
 namespace {
 
-constexpr double kArrived_m = 0.05;
+constexpr double kArrived_m = 0.05;  // from a point of the tour: corners are cut by no more
 
 void check_drive(const char* name, double value, double low, double high) {
   if (value >= low && value <= high) return;
@@ -48,8 +48,8 @@ TourFollower::TourFollower(const std::vector<Eigen::Vector2d>& tour_m, const Dri
 }
 
 geometry::Pose2 TourFollower::start() const {
-  const Eigen::Vector2d way = path_m_[1] - path_m_[0];
-  return {path_m_[0].x(), path_m_[0].y(), geometry::atan2(way.y(), way.x())};
+  const Eigen::Vector2d first_m = path_m_[1] - path_m_[0];
+  return {path_m_[0].x(), path_m_[0].y(), geometry::atan2(first_m.y(), first_m.x())};
 }
 
 double TourFollower::rest_m() const {

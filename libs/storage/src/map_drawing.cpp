@@ -18,8 +18,9 @@
 namespace topogeo::storage {
 namespace {
 
+// Farther away double rounding shows in pictures; no building is as large.
 constexpr double kMaxCoordinate_m = 1e6;
-constexpr std::size_t kLeastCorners = 3;
+constexpr std::size_t kLeastCorners = 3;  // of an area
 
 template <typename... Args>
 void require_drawing(bool condition, fmt::format_string<Args...> format, Args&&... args) {

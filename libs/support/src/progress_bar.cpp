@@ -12,8 +12,8 @@
 namespace topogeo::support {
 namespace {
 
-constexpr std::uint64_t kCells = 24;
-constexpr double kRedrawInterval_s = 0.1;
+constexpr std::uint64_t kCells = 24;       // leaves room for the texts in 80 columns
+constexpr double kRedrawInterval_s = 0.1;  // smooth, at no cost
 
 /// "42 s", "3 min 05 s" or "2 h 07 min".
 std::string duration_text(double duration_s) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "branch_names.hpp"
-#include "driven_way.hpp"
+#include "driven_path.hpp"
 #include "map_extraction.hpp"
 #include "node_fusion.hpp"
 #include "ridge_refinement.hpp"
@@ -59,7 +59,7 @@ struct GlobalMapBuilder::State {
   VoteGrid grid;
   NodeFusion nodes;
   BranchNames names;
-  DrivenWay way;
+  DrivenPath path;
 };
 
 GlobalMapBuilder::GlobalMapBuilder(const GlobalMapConfig& config) {
@@ -77,7 +77,7 @@ void GlobalMapBuilder::integrate(const LocalMap& map, const geometry::Pose2& T_m
   state_->grid.add(map, T_map_robot, view);
   state_->nodes.add(map, T_map_robot, view);
   state_->names.add(map, T_map_robot);
-  state_->way.add(map, T_map_robot);
+  state_->path.add(map, T_map_robot);
 }
 
 void GlobalMapBuilder::rebuild(std::span<const LocalMap> maps, std::span<const StopPose> poses) {
@@ -93,7 +93,7 @@ void GlobalMapBuilder::rebuild(std::span<const LocalMap> maps, std::span<const S
 GlobalMap GlobalMapBuilder::snapshot(std::uint64_t version) const {
   const RidgeGraph ridge = refine_ridge(trace_ridge(state_->grid, state_->config), state_->config);
   GlobalMap map = extract_map(ridge, state_->nodes, state_->names, state_->config);
-  add_virtual_links(state_->way, state_->config, map);
+  add_virtual_links(state_->path, state_->config, map);
   map.version = version;
   return map;
 }

@@ -95,20 +95,20 @@ class Parts {
 
 // A stop and where it touches the map.
 struct Touch {
-  std::size_t stop = 0;  ///< index in DrivenWay::stops
+  std::size_t stop = 0;  ///< index in DrivenPath::stops
   Place place;
 };
 
 // A point of the driven path, between two stops.
-struct WayPoint {
+struct PathPoint {
   Eigen::Vector2d position_m;
   std::size_t stop_a = 0;
   std::size_t stop_b = 0;
 };
 
-class WayDrawing {
+class PathDrawing {
  public:
-  WayDrawing(const Eigen::Vector2d& from_m, std::size_t stop, double step_m) : step_m_(step_m) {
+  PathDrawing(const Eigen::Vector2d& from_m, std::size_t stop, double step_m) : step_m_(step_m) {
     points_.push_back({from_m, stop, stop});
   }
 
@@ -125,11 +125,11 @@ class WayDrawing {
     }
   }
 
-  [[nodiscard]] std::vector<WayPoint> points() && { return std::move(points_); }
+  [[nodiscard]] std::vector<PathPoint> points() && { return std::move(points_); }
 
  private:
   double step_m_;
-  std::vector<WayPoint> points_;
+  std::vector<PathPoint> points_;
 };
 
 double length_m(const std::vector<VisitedStop>& stops, std::size_t first, std::size_t last) {
@@ -140,31 +140,31 @@ double length_m(const std::vector<VisitedStop>& stops, std::size_t first, std::s
     here_m = to_m;
   };
   for (std::size_t i = first + 1; i <= last; ++i) {
-    for (const Eigen::Vector2d& at_m : stops[i].way_m) go_to(at_m);
+    for (const Eigen::Vector2d& at_m : stops[i].path_m) go_to(at_m);
     go_to(stops[i].T_map_robot.position_m());
   }
   return length_m;
 }
 
 // From the place that one stop touches to the place that the other does.
-std::vector<WayPoint> way_between(const std::vector<VisitedStop>& stops, const Touch& from,
-                                  const Touch& to) {
+std::vector<PathPoint> path_between(const std::vector<VisitedStop>& stops, const Touch& from,
+                                    const Touch& to) {
   const double step_m = std::max(kStep_m, length_m(stops, from.stop, to.stop) / kMostSteps);
-  WayDrawing way(from.place.position_m, from.stop, step_m);
-  way.line_to(stops[from.stop].T_map_robot.position_m(), from.stop, from.stop);
+  PathDrawing path(from.place.position_m, from.stop, step_m);
+  path.line_to(stops[from.stop].T_map_robot.position_m(), from.stop, from.stop);
   for (std::size_t i = from.stop + 1; i <= to.stop; ++i) {
-    for (const Eigen::Vector2d& at_m : stops[i].way_m) way.line_to(at_m, i - 1, i);
-    way.line_to(stops[i].T_map_robot.position_m(), i - 1, i);
+    for (const Eigen::Vector2d& at_m : stops[i].path_m) path.line_to(at_m, i - 1, i);
+    path.line_to(stops[i].T_map_robot.position_m(), i - 1, i);
   }
-  way.line_to(to.place.position_m, to.stop, to.stop);
-  return std::move(way).points();
+  path.line_to(to.place.position_m, to.stop, to.stop);
+  return std::move(path).points();
 }
 
 struct Link {
   std::uint32_t map_id = 0;  ///< of the stop at its end
   Place from;
   Place to;
-  std::vector<WayPoint> way;  ///< between the two
+  std::vector<PathPoint> path;  ///< between the two
 };
 
 // Leaves the part of the path that lies between the two parts: from where it is last within reach
@@ -173,21 +173,21 @@ void trim(Link& link, Parts& parts, double reach_m) {
   const Place first = link.from;
   const Place last = link.to;
   std::size_t begin = 0;
-  for (std::size_t i = 0; i < link.way.size(); ++i) {
-    if (const auto place = parts.near(link.way[i].position_m, reach_m, &first)) {
+  for (std::size_t i = 0; i < link.path.size(); ++i) {
+    if (const auto place = parts.near(link.path[i].position_m, reach_m, &first)) {
       link.from = *place;
       begin = i;
     }
   }
-  std::size_t end = link.way.size();
+  std::size_t end = link.path.size();
   for (std::size_t i = begin; i < end; ++i) {
-    if (const auto place = parts.near(link.way[i].position_m, reach_m, &last)) {
+    if (const auto place = parts.near(link.path[i].position_m, reach_m, &last)) {
       link.to = *place;
       end = i + 1;
     }
   }
-  link.way.erase(link.way.begin() + static_cast<std::ptrdiff_t>(end), link.way.end());
-  link.way.erase(link.way.begin(), link.way.begin() + static_cast<std::ptrdiff_t>(begin));
+  link.path.erase(link.path.begin() + static_cast<std::ptrdiff_t>(end), link.path.end());
+  link.path.erase(link.path.begin(), link.path.begin() + static_cast<std::ptrdiff_t>(begin));
 }
 
 std::vector<Link> links_needed(const std::vector<VisitedStop>& stops, double reach_m,
@@ -202,7 +202,7 @@ std::vector<Link> links_needed(const std::vector<VisitedStop>& stops, double rea
     if (!place) continue;
     const Touch here{i, *place};
     if (last && !parts.connected(last->place, here.place)) {
-      Link link{stops[i].map_id, last->place, here.place, way_between(stops, *last, here)};
+      Link link{stops[i].map_id, last->place, here.place, path_between(stops, *last, here)};
       trim(link, parts, reach_m);
       parts.join(last->place, here.place);
       links.push_back(std::move(link));
@@ -222,7 +222,7 @@ double clearance_m(const Eigen::Vector2d& at_m, const VisitedStop& a, const Visi
 std::vector<BranchPoint> points_of(const Link& link, const std::vector<VisitedStop>& stops,
                                    const MapNode& from, const MapNode& to) {
   std::vector<BranchPoint> points{{from.position_m, from.clearance_m}};
-  for (const WayPoint& p : link.way) {
+  for (const PathPoint& p : link.path) {
     // What is at a node already would be a step of no length.
     const double to_end_m =
         std::min((p.position_m - from.position_m).norm(), (p.position_m - to.position_m).norm());
@@ -285,8 +285,8 @@ MapNode node_at(const Eigen::Vector2d& place_m, double near_m, std::uint32_t new
 
 }  // namespace
 
-void add_virtual_links(const DrivenWay& way, const GlobalMapConfig& config, GlobalMap& map) {
-  for (const Link& link : links_needed(way.stops(), config.node_merge_m, map)) {
+void add_virtual_links(const DrivenPath& path, const GlobalMapConfig& config, GlobalMap& map) {
+  for (const Link& link : links_needed(path.stops(), config.node_merge_m, map)) {
     const std::uint32_t id = kFirstLinkId + 3 * link.map_id;
     const MapNode from = node_at(link.from.position_m, config.node_merge_m, id + 1, map);
     const MapNode to = node_at(link.to.position_m, config.node_merge_m, id + 2, map);
@@ -296,7 +296,7 @@ void add_virtual_links(const DrivenWay& way, const GlobalMapConfig& config, Glob
     branch.node_b = to.id;
     branch.is_virtual = true;
     branch.observations = 0;
-    branch.points = points_of(link, way.stops(), from, to);
+    branch.points = points_of(link, path.stops(), from, to);
     insert(std::move(branch), map.branches);
   }
 }

@@ -21,7 +21,7 @@
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
-#include "driven_way.hpp"
+#include "driven_path.hpp"
 
 namespace topogeo::topomap {
 
@@ -30,6 +30,6 @@ namespace topogeo::topomap {
 constexpr std::uint32_t kFirstLinkId = 1U << 31U;
 
 /// Adds the links that `map` needs. Nodes and branches are sorted by id, before and after.
-void add_virtual_links(const DrivenWay& way, const GlobalMapConfig& config, GlobalMap& map);
+void add_virtual_links(const DrivenPath& path, const GlobalMapConfig& config, GlobalMap& map);
 
 }  // namespace topogeo::topomap

@@ -23,7 +23,7 @@ inline void check_bound(std::string_view field, std::size_t size, std::size_t bo
                               " entries, allowed are " + std::to_string(bound));
 }
 
-/// Throws std::invalid_argument unless `condition`; `expected` says what it is.
+/// Throws std::invalid_argument unless `condition`; `expected` is its text.
 inline void check(bool condition, std::string_view field, std::string_view expected) {
   if (!condition) {
     throw std::invalid_argument(std::string(field) + ": expected " + std::string(expected));

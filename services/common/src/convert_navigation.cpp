@@ -17,7 +17,7 @@ navigation::PoseFix to_pose_fix(const LivePose& pose) {
   navigation::PoseFix fix;
   fix.stamp_ns = pose.stamp_ns;
   fix.T_map_robot = pose.T_map_robot;
-  // While mapping it is that to the first stop, which says nothing of the map around the robot.
+  // While mapping it is relative to the first stop, not to the map around the robot.
   if (pose.mode == msg::kModeLocalization) fix.covariance = pose.covariance;
   fix.tracking = pose.status.state == localization::LocalizationState::kTracking;
   fix.located = localization::located(pose.status.state);

@@ -13,7 +13,7 @@ ReplayRate parse_rate(const std::string& text) {
     std::size_t used = 0;
     const double factor = std::stod(text, &used);
     if (used == text.size() && factor >= kSlowest && factor <= kFastest) return factor;
-  } catch (const std::logic_error&) {  // told below
+  } catch (const std::logic_error&) {  // reported below
   }
   throw std::invalid_argument("rate '" + text +
                               "': expected realtime, lossless or a factor from 0.01 to 1000");

@@ -11,8 +11,8 @@ namespace topogeo::service {
 
 namespace {
 
-constexpr std::uint32_t kLargestDomain = 232;
-constexpr std::size_t kLongestRobotId = 32;  // idl
+constexpr std::uint32_t kLargestDomain = 232;  // of DDS over UDP, whose ports follow from it
+constexpr std::size_t kLongestRobotId = 32;    // idl
 
 pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
   try {

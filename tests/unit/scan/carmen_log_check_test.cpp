@@ -48,7 +48,7 @@ TEST_F(LogCheckTest, ACleanLogIsSummedUp) {
   EXPECT_EQ(result.first_ns, 10'000'000'000);
   EXPECT_EQ(result.last_ns, 10'500'000'000);
   EXPECT_NEAR(result.longest_period_s, 0.3, 1e-9);
-  EXPECT_NEAR(result.way_m, 0.3, 1e-9);
+  EXPECT_NEAR(result.path_m, 0.3, 1e-9);
 }
 
 TEST_F(LogCheckTest, EachFaultIsFoundWithItsLine) {

@@ -39,11 +39,11 @@ TEST(ChangingWorld, ADoorIsShutButForItsIntervals) {
   const world::World world = world::parse_world(kCorridor, "w");
   ASSERT_EQ(world.changing.size(), 1U);
   const Eigen::Vector2d in_the_door(5.0, 1.0);
-  for (const double way_m : {0.0, 1.99, 4.0, 5.9, 7.0, 100.0}) {
-    EXPECT_NEAR(clearance_m(scene_at(world, way_m), in_the_door), 0.0, 1e-12) << way_m;
+  for (const double path_m : {0.0, 1.99, 4.0, 5.9, 7.0, 100.0}) {
+    EXPECT_NEAR(clearance_m(scene_at(world, path_m), in_the_door), 0.0, 1e-12) << path_m;
   }
-  for (const double way_m : {2.0, 3.99, 6.0}) {
-    EXPECT_NEAR(clearance_m(scene_at(world, way_m), in_the_door), 0.5, 1e-12) << way_m;
+  for (const double path_m : {2.0, 3.99, 6.0}) {
+    EXPECT_NEAR(clearance_m(scene_at(world, path_m), in_the_door), 0.5, 1e-12) << path_m;
   }
 }
 
@@ -119,18 +119,18 @@ TEST(ChangingWorld, TheLaserSeesTheDoorAsItIs) {
   std::size_t open = 0;
   std::size_t shut = 0;
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
-    const double way_m = log.T_world_robot[i].x_m;  // the drive is straight
-    const double ahead_m = 5.0 - way_m;             // the door's middle is to the left of it
+    const double path_m = log.T_world_robot[i].x_m;  // the drive is straight
+    const double ahead_m = 5.0 - path_m;             // the door's middle is to the left of it
     if (ahead_m < 0.5 || ahead_m > 3.5) continue;
     const double angle_rad = std::atan2(1.0, ahead_m);
     const auto beam = static_cast<std::size_t>(
         kAhead + static_cast<std::size_t>(std::lround(angle_rad * 360.0 / std::numbers::pi)));
     const bool seen = log.scans[i].ranges_m[beam] != scan::Scan::kNoReturn;
-    if (way_m >= 2.0 && way_m < 4.0) {
-      EXPECT_FALSE(seen) << way_m;
+    if (path_m >= 2.0 && path_m < 4.0) {
+      EXPECT_FALSE(seen) << path_m;
       ++open;
     } else {
-      EXPECT_TRUE(seen) << way_m;
+      EXPECT_TRUE(seen) << path_m;
       ++shut;
     }
   }
@@ -187,7 +187,7 @@ TEST(People, WanderersWalkWithinTheirRoomAndKeepOffTheRobot) {
     }
     before = now;
   }
-  for (const double way_m : walked_m) EXPECT_GT(way_m, 10.0);
+  for (const double path_m : walked_m) EXPECT_GT(path_m, 10.0);
 }
 
 TEST(People, ASeedGivesTheSameWays) {
@@ -209,7 +209,8 @@ TEST(People, ASeedGivesTheSameWays) {
 TEST(Kidnapping, MovesTheRobotButNotItsOdometry) {
   const world::World world = world::parse_world(kCorridor, "w");
   SimulationOptions options = exact();
-  options.kidnappings = {{.at_way_m = 3.0, .to_way_m = 7.0}, {.at_way_m = 5.0, .to_way_m = 1.0}};
+  options.kidnappings = {{.at_path_m = 3.0, .to_path_m = 7.0},
+                         {.at_path_m = 5.0, .to_path_m = 1.0}};
   const SimulatedLog log = simulate_log(world, options);
   std::vector<double> jumps_m;
   for (std::size_t i = 1; i < log.scans.size(); ++i) {
@@ -233,14 +234,14 @@ TEST(Blinding, ScansOfThatPartSeeNothing) {
   options.blindings = {{{1.0, 2.0}, {}}, {{4.0, 5.0}, 0.1}};
   const SimulatedLog log = simulate_log(world, options);
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
-    const double way_m = log.T_world_robot[i].x_m;
+    const double path_m = log.T_world_robot[i].x_m;
     const float ahead_m = log.scans[i].ranges_m[kAhead];
-    if (way_m >= 1.0 && way_m < 2.0) {
+    if (path_m >= 1.0 && path_m < 2.0) {
       EXPECT_EQ(ahead_m, scan::Scan::kNoReturn);
-    } else if (way_m >= 4.0 && way_m < 5.0) {
+    } else if (path_m >= 4.0 && path_m < 5.0) {
       EXPECT_EQ(ahead_m, 0.1F);
     } else {
-      EXPECT_NEAR(static_cast<double>(ahead_m), 12.0 - way_m, 1e-5);
+      EXPECT_NEAR(static_cast<double>(ahead_m), 12.0 - path_m, 1e-5);
     }
   }
 }

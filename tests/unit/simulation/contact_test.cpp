@@ -21,44 +21,44 @@ Eigen::Vector2d direction(double angle_rad) {
   return {std::cos(angle_rad), std::sin(angle_rad)};
 }
 
-TEST(FreeWay, EndsWhereTheDiscTouches) {
+TEST(FreePath, EndsWhereTheDiscTouches) {
   const world::World wall = with({{{2, -1}, {2, 1}}});
-  const FreeWay ahead = free_way(wall, {0, 0}, {1, 0}, 5.0, 0.5);
-  EXPECT_NEAR(ahead.way_m, 1.5, 1e-12);
+  const FreePath ahead = free_path(wall, {0, 0}, {1, 0}, 5.0, 0.5);
+  EXPECT_NEAR(ahead.distance_m, 1.5, 1e-12);
   ASSERT_TRUE(ahead.contact_m);
   EXPECT_NEAR((*ahead.contact_m - Eigen::Vector2d(2, 0)).norm(), 0.0, 1e-12);
   // The end of the wall meets the disc's rim: 0.3 beside its centre, 0.4 ahead of it.
-  const FreeWay corner = free_way(wall, {0, 1.3}, {1, 0}, 5.0, 0.5);
-  EXPECT_NEAR(corner.way_m, 1.6, 1e-12);
-  EXPECT_FALSE(free_way(wall, {0, 1.6}, {1, 0}, 5.0, 0.5).contact_m);
-  EXPECT_FALSE(free_way(wall, {0, 0}, {-1, 0}, 5.0, 0.5).contact_m);
-  const FreeWay short_of = free_way(wall, {0, 0}, {1, 0}, 1.4, 0.5);
+  const FreePath corner = free_path(wall, {0, 1.3}, {1, 0}, 5.0, 0.5);
+  EXPECT_NEAR(corner.distance_m, 1.6, 1e-12);
+  EXPECT_FALSE(free_path(wall, {0, 1.6}, {1, 0}, 5.0, 0.5).contact_m);
+  EXPECT_FALSE(free_path(wall, {0, 0}, {-1, 0}, 5.0, 0.5).contact_m);
+  const FreePath short_of = free_path(wall, {0, 0}, {1, 0}, 1.4, 0.5);
   EXPECT_FALSE(short_of.contact_m);
-  EXPECT_DOUBLE_EQ(short_of.way_m, 1.4);
+  EXPECT_DOUBLE_EQ(short_of.distance_m, 1.4);
 }
 
-TEST(FreeWay, ColumnsAreSolid) {
+TEST(FreePath, ColumnsAreSolid) {
   const world::World column = with({}, {{{3, 0}, 0.5}});
-  const FreeWay ahead = free_way(column, {0, 0}, {1, 0}, 5.0, 0.5);
-  EXPECT_NEAR(ahead.way_m, 2.0, 1e-12);
+  const FreePath ahead = free_path(column, {0, 0}, {1, 0}, 5.0, 0.5);
+  EXPECT_NEAR(ahead.distance_m, 2.0, 1e-12);
   ASSERT_TRUE(ahead.contact_m);
   EXPECT_NEAR((*ahead.contact_m - Eigen::Vector2d(2.5, 0)).norm(), 0.0, 1e-12);
-  EXPECT_EQ(free_way(column, {2.9, 0}, {1, 0}, 5.0, 0.5).way_m, 0.0);  // inside it
-  EXPECT_EQ(free_way(column, {2.9, 0}, {-1, 0}, 5.0, 0.5).way_m, 5.0);
+  EXPECT_EQ(free_path(column, {2.9, 0}, {1, 0}, 5.0, 0.5).distance_m, 0.0);  // inside it
+  EXPECT_EQ(free_path(column, {2.9, 0}, {-1, 0}, 5.0, 0.5).distance_m, 5.0);
 }
 
-TEST(FreeWay, WhatIsTouchedLetsTheDiscGoAwayAndAlong) {
+TEST(FreePath, WhatIsTouchedLetsTheDiscGoAwayAndAlong) {
   const world::World wall = with({{{1, -9}, {1, 9}}});
-  EXPECT_EQ(free_way(wall, {0.5, 0}, {1, 0}, 1.0, 0.5).way_m, 0.0);
-  EXPECT_EQ(free_way(wall, {0.5, 0}, {0, 1}, 1.0, 0.5).way_m, 1.0);
-  EXPECT_EQ(free_way(wall, {0.5, 0}, {-1, 0}, 1.0, 0.5).way_m, 1.0);
+  EXPECT_EQ(free_path(wall, {0.5, 0}, {1, 0}, 1.0, 0.5).distance_m, 0.0);
+  EXPECT_EQ(free_path(wall, {0.5, 0}, {0, 1}, 1.0, 0.5).distance_m, 1.0);
+  EXPECT_EQ(free_path(wall, {0.5, 0}, {-1, 0}, 1.0, 0.5).distance_m, 1.0);
   // A door that has shut on it.
-  EXPECT_EQ(free_way(wall, {0.8, 0}, {1, 0}, 1.0, 0.5).way_m, 0.0);
-  EXPECT_EQ(free_way(wall, {0.8, 0}, {-1, 0}, 1.0, 0.5).way_m, 1.0);
+  EXPECT_EQ(free_path(wall, {0.8, 0}, {1, 0}, 1.0, 0.5).distance_m, 0.0);
+  EXPECT_EQ(free_path(wall, {0.8, 0}, {-1, 0}, 1.0, 0.5).distance_m, 1.0);
 }
 
 // Against creeping forward in small steps.
-TEST(FreeWay, IsThatOfADiscThatCreeps) {
+TEST(FreePath, IsThatOfADiscThatCreeps) {
   constexpr double kStep_m = 1e-3;
   support::Random random(5);
   int stopped = 0;
@@ -76,17 +76,17 @@ TEST(FreeWay, IsThatOfADiscThatCreeps) {
       continue;
     }
     const Eigen::Vector2d ahead = direction(random.uniform(0.0, 2.0 * std::numbers::pi));
-    const FreeWay way = free_way(world, from_m, ahead, 4.0, radius_m);
+    const FreePath way = free_path(world, from_m, ahead, 4.0, radius_m);
     double crept_m = 0.0;
     while (crept_m < 4.0 && clearance_m(world, from_m + crept_m * ahead) >= radius_m) {
       crept_m += kStep_m;
     }
     // Where it only brushes past something the creeper may step over the contact.
-    if (way.contact_m && crept_m > way.way_m + 2.0 * kStep_m) {
-      EXPECT_NEAR(clearance_m(world, from_m + way.way_m * ahead), radius_m, 1e-9);
+    if (way.contact_m && crept_m > way.distance_m + 2.0 * kStep_m) {
+      EXPECT_NEAR(clearance_m(world, from_m + way.distance_m * ahead), radius_m, 1e-9);
       continue;
     }
-    EXPECT_NEAR(way.way_m, std::min(crept_m, 4.0), 1.1 * kStep_m) << round;
+    EXPECT_NEAR(way.distance_m, std::min(crept_m, 4.0), 1.1 * kStep_m) << round;
     stopped += way.contact_m ? 1 : 0;
   }
   EXPECT_GT(stopped, 30);

@@ -76,7 +76,7 @@ TEST(SimulatedRobot, AContactStopsTheWayAheadAndNothingElse) {
 }
 
 // Driven at random in the rooms of the shipped floor, with slip, doors and people, it never gets
-// into anything; free_way is not asked here.
+// into anything; free_path is not asked here.
 TEST(SimulatedRobot, NeverGetsIntoAWall) {
   const world::World floor = shipped_world("floor.world.yaml");
   std::uint64_t collisions = 0;

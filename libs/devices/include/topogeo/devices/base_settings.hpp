@@ -36,7 +36,7 @@ struct BaseSettings {
   double report_period_s = 0.0;
   McpChecksum checksum = McpChecksum::kLearn;
 
-  /// The base stops by itself when it has heard nothing for so long; refreshed three times as
+  /// The base stops by itself when no command has reached it for so long; refreshed three times as
   /// often. (0, 255]; whether it halts or goes limp then is not confirmed on hardware.
   double watchdog_s = 1.0;
   /// A motion command holds no longer than this. (0, 0.5]

@@ -95,7 +95,7 @@ class MarkovLocalizer {
   [[nodiscard]] std::optional<Estimate> estimate() const;
 
   /// The moves from the estimated position to a pose of the route: turn, advance, turn. Without an
-  /// argument to the expected pose. Empty if there is no estimate. Tell accept_estimate() before
+  /// argument to the expected pose. Empty if there is no estimate. Call accept_estimate() before
   /// the first of them, move() after each.
   [[nodiscard]] std::optional<ReturnMoves> relocalization_moves() const;
   [[nodiscard]] std::optional<ReturnMoves> relocalization_moves(

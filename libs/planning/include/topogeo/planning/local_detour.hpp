@@ -39,9 +39,9 @@ struct Detour {
 };
 
 /// `route` are the cells of a planned route, `goal_m` its exact end, `obstacles_m` points of the
-/// map frame that the sensors see. Cells so near to one of them as the inflation of the space says
-/// are forbidden, too. Throws std::invalid_argument for an empty route, points that are not finite
-/// and a configuration out of range.
+/// map frame that the sensors see. Cells within the inflation of the space
+/// around them are forbidden, too. Throws std::invalid_argument for an empty route, points that are
+/// not finite and a configuration out of range.
 Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
                    const Eigen::Vector2d& robot_m, const Eigen::Vector2d& goal_m,
                    std::span<const Eigen::Vector2d> obstacles_m, const DetourConfig& config = {});

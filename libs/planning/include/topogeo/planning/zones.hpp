@@ -23,7 +23,7 @@
 namespace topogeo::planning {
 
 using ZoneId = std::uint16_t;
-inline constexpr ZoneId kNoZone = 0xffff;
+inline constexpr ZoneId kNoZone = 0xffff;  ///< of a cell that is in none
 
 struct Zone {
   ZoneId id = 0;     ///< index in ZoneMap::zones

@@ -62,7 +62,7 @@ struct LogCheck {
   std::int64_t last_ns = 0;      ///< stamp of the last
   double median_period_s = 0.0;  ///< between scans, 0 with less than two
   double longest_period_s = 0.0;
-  double way_m = 0.0;  ///< by the odometry, jumps left out
+  double path_m = 0.0;  ///< by the odometry, jumps left out
   std::array<std::uint64_t, kLogFaults> counts{};
   std::vector<LogFinding> findings;  ///< in the order of the lines
 

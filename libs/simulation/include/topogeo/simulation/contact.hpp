@@ -9,8 +9,8 @@
 
 namespace topogeo::simulation {
 
-struct FreeWay {
-  double way_m = 0.0;  ///< at most the length asked for
+struct FreePath {
+  double distance_m = 0.0;  ///< at most the length asked for
   /// The point of the surface that the disc touches then; nothing when the whole path is free.
   std::optional<Eigen::Vector2d> contact_m{};
 };
@@ -19,8 +19,8 @@ struct FreeWay {
 /// Columns and people are solid. A surface that the disc touches or overlaps already (a door has
 /// shut on it) stops it at once if the move would bring it nearer and lets it go otherwise. What
 /// changes does not count: see scene_at.
-FreeWay free_way(const world::World& scene, const Eigen::Vector2d& from_m,
-                 const Eigen::Vector2d& direction, double length_m, double radius_m);
+FreePath free_path(const world::World& scene, const Eigen::Vector2d& from_m,
+                   const Eigen::Vector2d& direction, double length_m, double radius_m);
 
 /// The point nearest to the disc's centre of all that overlaps the disc by more than 0.1 mm;
 /// nothing if nothing does.

@@ -77,7 +77,7 @@ class PlsEmulator final : public SerialDevice {
   // Faults.
   /// Strikes the next `count` telegrams, scans or changes of the rate that the fault can strike.
   void inject(PlsFault fault, int count);
-  /// Neither sends nor hears anything until speak_again(); what is on the line is cut.
+  /// Neither sends nor receives anything until speak_again(); what is on the line is cut.
   void fall_silent(std::int64_t now_ns);
   void speak_again(std::int64_t now_ns);
   /// How often the fault is still to strike.
@@ -130,7 +130,7 @@ class PlsEmulator final : public SerialDevice {
   std::uint8_t status_ = 0;
   std::int64_t mirror_ns_ = 0;                 ///< a time at which the mirror was in mid-sweep
   std::int64_t start_up_end_ns_ = 0;           ///< while starting
-  std::int64_t busy_until_ns_ = 0;             ///< commands before are not heard
+  std::int64_t busy_until_ns_ = 0;             ///< commands before are lost
   std::optional<Change> change_;               ///< awaits its time
   std::optional<std::int64_t> measure_at_ns_;  ///< the next scan
   std::vector<std::uint8_t> last_scan_;

@@ -16,16 +16,16 @@
 
 namespace topogeo::simulation {
 
-/// Somebody lifts the robot at one place of its tour and puts it down at another, where it drives
-/// on. Neither odometry nor the time notice.
+/// The robot is lifted at one place of its tour and put down at another, where it drives on.
+/// Neither odometry nor the time notice.
 struct Kidnapping {
-  double at_way_m = 0.0;  ///< of the way driven
-  double to_way_m = 0.0;  ///< of the way of the whole tour; before or after
+  double at_path_m = 0.0;  ///< of the path driven
+  double to_path_m = 0.0;  ///< of the path of the whole tour; before or after
 };
 
-/// Scans on a part of the way driven that see nothing of the world.
+/// Scans on a part of the path driven that see nothing of the world.
 struct Blinding {
-  world::DistanceInterval way;
+  world::DistanceInterval path;
   /// What every beam reads then; without it no beam has an echo.
   std::optional<double> reading_m;
 };
@@ -43,7 +43,7 @@ struct SimulationOptions {
   /// People besides those of the world: they walk about at random, starting near the tour, each at
   /// a speed of its own of 0.5 to 1.5 m/s, and turn away from walls and the robot.
   std::size_t wanderers = 0;
-  std::vector<Kidnapping> kidnappings{};  ///< in the order of their at_way_m
+  std::vector<Kidnapping> kidnappings{};  ///< in the order of their at_path_m
   std::vector<Blinding> blindings{};
 };
 
@@ -52,7 +52,7 @@ struct SimulatedLog {
   std::vector<geometry::Pose2> T_world_robot;  ///< true pose of each scan
 };
 
-/// Drives the tour of the world and scans on the way, the first time at its start, the last time at
+/// Drives the tour of the world and scans along it, the first time at its start, the last time at
 /// its end. Nothing stops the robot: doors that are shut and people in its way are no obstacle, and
 /// a person within 0.15 m of the laser is left out of a scan. The result depends on the arguments
 /// alone, to the last bit. Throws std::invalid_argument for an option out of range or a world

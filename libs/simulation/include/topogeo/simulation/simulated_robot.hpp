@@ -1,5 +1,5 @@
 // A robot that velocities drive through a world: it collides, slips and counts its wheels' turns
-// with errors, sees by laser and hears by sonar. A step costs microseconds, so that whole series of
+// with errors, measures by laser and sonar. A step costs microseconds, so that whole series of
 // drives run in one process. The same arguments and calls give the same results to the last bit.
 #pragma once
 
@@ -66,7 +66,7 @@ class SimulatedRobot {
   /// or time that is no finite number.
   EncoderStep step(const Velocity& command, double dt_s);
 
-  /// Somebody lifts it and puts it down there; its wheels do not notice.
+  /// It is lifted and put down there; its wheels do not turn.
   void carry(const geometry::Pose2& T_world_robot);
 
   [[nodiscard]] const geometry::Pose2& T_world_robot() const { return T_world_robot_; }
@@ -76,7 +76,7 @@ class SimulatedRobot {
   /// Of the wheels, now.
   [[nodiscard]] const Velocity& velocity() const { return velocity_; }
   [[nodiscard]] double time_s() const { return time_s_; }
-  [[nodiscard]] double way_m() const { return way_m_; }  ///< rolled, there and back
+  [[nodiscard]] double path_m() const { return path_m_; }  ///< rolled, there and back
 
   /// Readings of the laser here and now, one per beam; scan::Scan::kNoReturn for none.
   std::vector<float> scan();
@@ -132,7 +132,7 @@ class SimulatedRobot {
   geometry::Pose2 T_odom_robot_;
   Velocity velocity_;
   double time_s_ = 0.0;
-  double way_m_ = 0.0;
+  double path_m_ = 0.0;
   double slippery_m_ = 0.0;     // still to come of a slippery stretch
   double surely_free_m_ = 0.0;  // any motion of this length touches nothing of scene_
   std::optional<Eigen::Vector2d> contact_m_;

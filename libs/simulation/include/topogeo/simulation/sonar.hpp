@@ -1,4 +1,5 @@
-// Sonars: each hears the nearest surface within its cone. Where they sit: devices/sonar_ring.hpp.
+// Sonars: each measures the nearest surface within its cone. Where they sit:
+// devices/sonar_ring.hpp.
 #pragma once
 
 #include <limits>
@@ -18,7 +19,7 @@ struct Echo {
       0.0;  ///< between the path of the sound and the surface's normal; 0: an edge
 };
 
-/// Exact; `range_max_m`: what is as far or farther is not heard. What changes does not count: see
+/// Exact; `range_max_m`: what is as far or farther has no echo. What changes does not count: see
 /// scene_at.
 Echo echo(const world::World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
           double range_max_m);
@@ -33,7 +34,7 @@ struct SonarNoise {
   double specular_loss_probability = 0.0;  ///< with this probability; [0, 1]
 };
 
-/// Readings of a ring; scan::Scan::kNoReturn where nothing is heard. Uses the same count of random
+/// Readings of a ring; scan::Scan::kNoReturn without an echo. Uses the same count of random
 /// numbers for every round.
 std::vector<float> measure(const std::vector<Echo>& echoes, const SonarNoise& noise,
                            support::Random& random);

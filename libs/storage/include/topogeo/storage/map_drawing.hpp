@@ -19,6 +19,7 @@ struct MapDrawing {
   [[nodiscard]] bool empty() const { return places.empty() && zones.empty() && !grid; }
 };
 
+// What people draw by hand stays far below; a damaged file must not fill the memory.
 inline constexpr std::size_t kMaxPlaces = 4096;
 inline constexpr std::size_t kMaxDrawnZones = 4096;
 inline constexpr std::size_t kMaxCorners = 65536;  ///< of a zone

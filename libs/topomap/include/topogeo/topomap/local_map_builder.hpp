@@ -8,7 +8,7 @@
 // Two things are kept that the Thesis would throw away or take for certain. What is off the main
 // graph is marked instead of removed, because matching on everything is more repeatable than on the
 // main graph (`remove_off_main_graph` removes it). And nodes and branches whose clearance circle
-// reaches into what the scan did not see are told from the others: such a node is fictitious, such
+// reaches into what the scan did not see are marked: such a node is fictitious, such
 // a stretch of a branch not confirmed. They serve navigation, but are no landmarks; both tables are
 // in tests/bench/RESULTS.md.
 #pragma once

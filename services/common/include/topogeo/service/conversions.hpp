@@ -66,7 +66,7 @@ msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& a
 localization::MatchTask from_msg(const msg::MatchTask& message);
 
 msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddress& address);
-/// Throws for a refusal, too: look at status() first.
+/// Throws for a refusal, too: check status() first.
 localization::MatchResult from_msg(const msg::MatchResult& message);
 
 /// Number of segments that a trajectory of so many stops has.
@@ -92,7 +92,7 @@ std::uint32_t decision_segment_count(std::size_t decisions);
 msg::LoopDecisions to_segment(std::span<const localization::LoopDecision> decisions,
                               std::uint32_t segment, std::string_view robot_id,
                               std::int64_t stamp_ns, std::uint64_t sequence_number);
-/// The decisions of one segment, checked: as many as `total` says.
+/// The decisions of one segment, checked: as many as `total` has.
 std::vector<localization::LoopDecision> from_msg(const msg::LoopDecisions& message);
 
 /// What a localizer is to do, as in msg::LocalizationCommand.
@@ -143,20 +143,20 @@ struct Goal {
   std::uint64_t goal_id = 0;
   std::string client_id;
   msg::GoalKind kind = msg::kGoalPosition;
-  /// As `kind` says: a point, a NodeNumber or a place's name; of cancel, pause and resume it does
+  /// By `kind`: a point, a NodeNumber or a place's name; of cancel, pause and resume it does
   /// not matter.
   planning::Target target = Eigen::Vector2d(0.0, 0.0);
-  std::optional<double> heading_rad;  ///< where the robot shall look in the end, map frame
+  std::optional<double> heading_rad;  ///< of the robot in the end, map frame
   bool look_around = false;
 };
 
-/// Throws also when the target is not of the kind that `kind` says.
+/// Throws also when the target is not of the kind `kind`.
 msg::Goal to_msg(const Goal& goal, std::string_view robot_id, std::int64_t stamp_ns,
                  std::uint64_t sequence_number);
 /// Refuses a place without a name.
 Goal from_msg(const msg::Goal& message);
 
-/// A route that was found or not, with the motions that take a robot along it which looks to
+/// A route that was found or not, with the motions that take a robot along it whose heading is
 /// `start_heading_rad` (map frame). Header, goal and versions are left to the sender. A clearance
 /// is infinite when there is no obstacle at all.
 msg::Route to_msg(const planning::HybridRoute& route, double start_heading_rad,

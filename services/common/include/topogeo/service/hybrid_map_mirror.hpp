@@ -33,8 +33,8 @@ class HybridMapMirror {
   /// The summary was disposed: there is no map until the next one is whole.
   void remove_summary();
 
-  /// The newest map that was whole: every tile of the grid was here with the version that the
-  /// summary says. Null before the first. While an update is under way this is the map before it.
+  /// The newest map that was whole: every tile of the grid was here with the version of the
+  /// summary. Null before the first. While an update is under way this is the map before it.
   /// It is built here, once for each change, which takes tens of milliseconds for a large map.
   /// Throws std::invalid_argument, once, when a whole map contradicts itself (a cell in a zone that
   /// does not exist, or in none though the robot may be there); the one before then stays.

@@ -20,8 +20,8 @@ class MapMirror {
   /// Takes out the element of an instance that was disposed; one never put is no error.
   void remove(const messaging::Handle& instance);
 
-  /// The map, if it is whole: as many nodes and branches as its summary says and no branch with an
-  /// end that is not there. Empty while an update is under way and before the first.
+  /// The map, if it is whole: as many nodes and branches as its summary counts and no branch with
+  /// an end that is not there. Empty while an update is under way and before the first.
   [[nodiscard]] std::optional<topomap::GlobalMap> map() const;
 
  private:

@@ -26,7 +26,7 @@ navigation::BaseCondition base_from_msg(const msg::BaseStatus& message);
 
 msg::NavigatorStatus to_msg(const navigation::NavigatorStatus& status, std::string_view robot_id,
                             std::int64_t stamp_ns, std::uint64_t sequence_number);
-/// The command is what `linear_mps` and `angular_radps` say.
+/// Commands the speeds `linear_mps` and `angular_radps`.
 navigation::NavigatorStatus from_msg(const msg::NavigatorStatus& message);
 
 /// Throws std::invalid_argument for more points than a message takes (4,096).

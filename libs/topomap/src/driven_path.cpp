@@ -1,4 +1,4 @@
-#include "driven_way.hpp"
+#include "driven_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,14 +40,14 @@ double VisitedStop::clearance_m(const Eigen::Vector2d& point_m) const {
   return points.empty() ? 0.0 : std::sqrt(nearest_sq);
 }
 
-void DrivenWay::add(const LocalMap& map, const geometry::Pose2& T_map_robot) {
+void DrivenPath::add(const LocalMap& map, const geometry::Pose2& T_map_robot) {
   VisitedStop stop;
   stop.map_id = map.id;
   stop.T_map_robot = T_map_robot;
   stop.follows = !stops_.empty() && stops_.back().map_id + 1 == map.id && !map.starts_drive;
   if (stop.follows) {
     for (const TrackedScan& scan : map.track) {
-      stop.way_m.push_back(stops_.back().T_map_robot * scan.T_stop_robot.position_m());
+      stop.path_m.push_back(stops_.back().T_map_robot * scan.T_stop_robot.position_m());
     }
   }
   stop.points = map.points;

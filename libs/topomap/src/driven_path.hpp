@@ -1,4 +1,4 @@
-// Where the robot drove, and what it saw of the map on the way, as far as virtual links need it.
+// Where the robot drove, and what it saw of the map there, as far as virtual links need it.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace topogeo::topomap {
 struct VisitedStop {
   std::uint32_t map_id = 0;
   geometry::Pose2 T_map_robot;
-  /// Its map has the id after that of the stop before it in DrivenWay::stops and is of the same
+  /// Its map has the id after that of the stop before it in DrivenPath::stops and is of the same
   /// drive, so the robot drove from there to here.
   bool follows = false;
-  std::vector<Eigen::Vector2d> way_m;  ///< tracked scans since that stop, map frame
-  std::vector<ScanPoint> points;       ///< of its scan, robot frame
+  std::vector<Eigen::Vector2d> path_m;  ///< tracked scans since that stop, map frame
+  std::vector<ScanPoint> points;        ///< of its scan, robot frame
   /// Places on the branches that vote for the map (real, on the main graph), map frame, nearest to
   /// the robot first.
   std::vector<Eigen::Vector2d> seen_m;
@@ -27,7 +27,7 @@ struct VisitedStop {
   [[nodiscard]] double clearance_m(const Eigen::Vector2d& point_m) const;
 };
 
-class DrivenWay {
+class DrivenPath {
  public:
   /// The next stop in time.
   void add(const LocalMap& map, const geometry::Pose2& T_map_robot);

@@ -1,5 +1,6 @@
-// A pseudo-terminal whose far end belongs to the test, behind a link that keeps its name when the
-// terminal is replaced, as a device in /dev keeps its name when it is plugged in again.
+// A serial port whose far end belongs to the test: a pseudo-terminal behind a link that keeps its
+// name when the terminal is replaced, as a device in /dev keeps its name when it is plugged in
+// again.
 #pragma once
 
 #include <chrono>
@@ -18,12 +19,12 @@
 
 namespace topogeo::test {
 
-class PseudoTerminal {
+class TestPort {
  public:
-  explicit PseudoTerminal(std::filesystem::path link) : link_(std::move(link)) {}
-  PseudoTerminal(const PseudoTerminal&) = delete;
-  PseudoTerminal& operator=(const PseudoTerminal&) = delete;
-  ~PseudoTerminal() { unplug(); }
+  explicit TestPort(std::filesystem::path link) : link_(std::move(link)) {}
+  TestPort(const TestPort&) = delete;
+  TestPort& operator=(const TestPort&) = delete;
+  ~TestPort() { unplug(); }
 
   void plug() {
     unplug();

@@ -1,7 +1,7 @@
 // A few drives in a closed loop, from sensors to wheels: the short form of topogeo_arrival.
-#include <gtest/gtest.h>
-
 #include "arrival_run.hpp"
+
+#include <gtest/gtest.h>
 
 namespace topogeo::bench {
 namespace {
@@ -32,7 +32,7 @@ TEST(Arrival, TouchesNothingThatIsNotOnTheMap) {
     ASSERT_NE(task.obstacle, ObstacleKind::kNone);
     const ArrivalResult result = run_arrival(warehouse(), config, task);
     EXPECT_EQ(result.collisions, 0U) << "run " << seed;
-    EXPECT_GT(result.way_m, 1.0) << "run " << seed << ": " << result.end;
+    EXPECT_GT(result.path_m, 1.0) << "run " << seed << ": " << result.end;
   }
 }
 
@@ -43,7 +43,7 @@ TEST(Arrival, DrivesTheSameAgain) {
   const ArrivalResult first = run_arrival(warehouse(), config, task);
   const ArrivalResult second = run_arrival(warehouse(), config, task);
   EXPECT_EQ(first.error_m, second.error_m);
-  EXPECT_EQ(first.way_m, second.way_m);
+  EXPECT_EQ(first.path_m, second.path_m);
   EXPECT_EQ(first.end, second.end);
 }
 
