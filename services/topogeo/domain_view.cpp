@@ -9,11 +9,30 @@
 namespace topogeo::cli {
 namespace {
 
-// Services publish every half second; discovery takes the rest, longer on a busy machine.
+// Services publish every half second; discovery takes the rest.
 constexpr std::chrono::milliseconds kCollect{1200};
-constexpr std::chrono::milliseconds kCollectOnceMore{2000};
+// On a busy machine some are discovered later: it goes on until no new one has come for longer than
+// a period, for kLongest at most.
+constexpr std::chrono::milliseconds kSettled{800};
+constexpr std::chrono::milliseconds kLongest{3200};
+constexpr std::chrono::milliseconds kSlice{100};
 // Between two tables of --watch: as fast as people read them.
 constexpr std::chrono::milliseconds kAgain{1000};
+
+/// False when the loop was stopped.
+bool collect(messaging::EventLoop& loop, const std::function<std::size_t()>& count) {
+  std::chrono::milliseconds waited{0};
+  std::chrono::milliseconds settled{0};
+  std::size_t before = 0;
+  while (waited < kLongest && (waited < kCollect || settled < kSettled || before == 0)) {
+    if (loop.run_for(kSlice)) return false;
+    const std::size_t now = count();
+    waited += kSlice;
+    settled = now == before ? settled + kSlice : std::chrono::milliseconds::zero();
+    before = now;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -42,14 +61,15 @@ messaging::Participant join(const DomainView& view, const std::string& name) {
 }
 
 bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
-                      const std::function<bool()>& any, const std::function<void()>& show) {
+                      const std::function<std::size_t()>& count,
+                      const std::function<void()>& show) {
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  if (loop.run_for(kCollect) || (!any() && loop.run_for(kCollectOnceMore))) return any();
+  if (!collect(loop, count)) return count() > 0;
   do {
-    if (any() || view.watch) show();
+    if (count() > 0 || view.watch) show();
     std::cout << std::flush;
   } while (view.watch && !loop.run_for(kAgain));
-  return any();
+  return count() > 0;
 }
 
 std::string nothing_alive(const DomainView& view, const std::string& what) {

@@ -1,6 +1,7 @@
 // What lives on a domain, shown by a command: the flags and the timing that the commands share.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -28,10 +29,10 @@ void add_view_options(command_line::Command& app, DomainView& view);
 /// Joins the domain under a name that DDS tools show. Throws like messaging::Participant.
 messaging::Participant join(const DomainView& view, const std::string& name);
 
-/// Receives for as long as services take to publish their status, somewhat longer while there are
-/// not `any`, then shows them; again and again with --watch, until Ctrl-C. Whether there were any.
+/// Receives until all that publish their status have done so, then shows them; again and again with
+/// --watch, until Ctrl-C. `count`: how many there are so far. Returns whether there were any.
 bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
-                      const std::function<bool()>& any, const std::function<void()>& show);
+                      const std::function<std::size_t()>& count, const std::function<void()>& show);
 
 /// "no <what> is alive on domain 3, partition '*'".
 std::string nothing_alive(const DomainView& view, const std::string& what);

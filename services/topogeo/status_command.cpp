@@ -49,7 +49,7 @@ int show_status(const StatusOptions& options) {
 
   const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
   const bool found = collect_and_show(
-      options.view, loop, [&] { return !table.empty(); },
+      options.view, loop, [&] { return table.size(); },
       [&] {
         const StatusTable::Clock::time_point now = StatusTable::Clock::now();
         table.forget(now);

@@ -35,6 +35,7 @@ class StatusTable {
   void keep_only(std::string_view service);
 
   [[nodiscard]] bool empty() const { return rows_.empty(); }
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
   /// No service is failed, lost or silent.
   [[nodiscard]] bool healthy(Clock::time_point now) const;
 

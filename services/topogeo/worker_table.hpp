@@ -32,6 +32,7 @@ class WorkerTable {
   void forget_silent(Clock::time_point now);
 
   [[nodiscard]] bool empty() const { return rows_.empty(); }
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
   /// Head line, one line for each worker by name, no wider than `columns`, a line with the sums.
   /// Columns that are the same everywhere are left out; a state that does not fit stands below.
   /// Workers publish twice a second; one that is silent for kSilent is marked.

@@ -49,7 +49,7 @@ int show_workers(const WorkersOptions& options) {
     if (options.view.watch && !redraw) std::cout << '\n';
   };
   const bool found = collect_and_show(
-      options.view, loop, [&] { return !table.empty(); }, show);
+      options.view, loop, [&] { return table.size(); }, show);
   if (found || options.view.watch) return service::kOk;
   if (options.json) std::cout << "[]\n";
   std::cerr << "topogeo: " << nothing_alive(options.view, "search worker")
