@@ -1,6 +1,7 @@
 #include "text_grid.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace topogeo::cli {
 namespace {
@@ -61,7 +62,10 @@ std::string with_remarks(const std::vector<std::string>& lines, std::string_view
     const std::string& line = lines[i + 1];
     const std::string& remark = remarks[i];
     const bool beside = remark.empty() || line.size() + gap.size() + remark.size() <= columns;
-    text += trimmed(beside ? line + gap + remark : line) + '\n';
+    std::string whole = line;
+    if (beside) whole.append(gap).append(remark);
+    text += trimmed(std::move(whole));
+    text += '\n';
     if (!beside) text += wrapped(remark, columns);
   }
   return text;
