@@ -328,9 +328,8 @@ void CrackGraph::write_node_groups(LocalVoronoiDiagram& out) {
       node_groups_.push_back({node, junctions_[i].groups[static_cast<std::size_t>(k)]});
     }
   }
-  std::ranges::sort(node_groups_);
-  const auto repeated = std::ranges::unique(node_groups_);
-  node_groups_.erase(repeated.begin(), repeated.end());
+  std::sort(node_groups_.begin(), node_groups_.end());
+  node_groups_.erase(std::unique(node_groups_.begin(), node_groups_.end()), node_groups_.end());
   out.node_groups.clear();
   for (const NodeGroup& entry : node_groups_) {
     PointRun& run = out.nodes[entry.node].base_groups;
