@@ -12,34 +12,40 @@ function(topogeo_compile_options target)
 endfunction()
 
 # For code without hot loops, services and tests: a quarter to a half less time to compile than with all
-# optimisation, at the price of GCC warnings that are false with less of it.
+# optimisation, at the price of GCC warnings that are false with less of it. Goes with TOPOGEO_PRECOMPILED_COLD.
 function(topogeo_compile_cold target)
   target_compile_options(${target} PRIVATE ${TOPOGEO_COLD_OPTIMIZATION}
     $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-maybe-uninitialized;-Wno-mismatched-new-delete;-Wno-stringop-overflow>)
 endfunction()
 
-# Headers that most files include, parsed once for all libraries and services. Tests have their own set:
-# they add GoogleMock, and are compiled with less optimisation, which a precompiled header has to agree with.
+# Headers that most files include, parsed once for each set of options: GCC compiles with the optimisation that
+# the precompiled header had, whatever the command line says. Tests add GoogleMock.
 function(topogeo_add_precompiled_headers)
-  set(standard <algorithm> <array> <chrono> <cmath> <cstdint> <deque> <filesystem> <functional> <limits> <map>
-               <memory> <numbers> <numeric> <optional> <span> <sstream> <stdexcept> <string> <string_view>
-               <utility> <vector>)
-  set(empty ${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp)
-  file(CONFIGURE OUTPUT ${empty} CONTENT "// Compiled for its precompiled header alone.\n")
-
-  add_library(topogeo_precompiled OBJECT ${empty})
-  target_link_libraries(topogeo_precompiled PRIVATE Eigen3::Eigen)
-  target_precompile_headers(topogeo_precompiled PRIVATE ${standard} <Eigen/Core>)
-  topogeo_compile_options(topogeo_precompiled)
-
+  topogeo_add_precompiled(topogeo_precompiled)
+  set(TOPOGEO_PRECOMPILED_COLD topogeo_precompiled PARENT_SCOPE)
+  if(TOPOGEO_COLD_OPTIMIZATION)
+    topogeo_add_precompiled(topogeo_precompiled_cold)
+    topogeo_compile_cold(topogeo_precompiled_cold)
+    set(TOPOGEO_PRECOMPILED_COLD topogeo_precompiled_cold PARENT_SCOPE)
+  endif()
   if(TOPOGEO_TESTS)
-    add_library(topogeo_precompiled_tests OBJECT ${empty})
-    target_link_libraries(topogeo_precompiled_tests PRIVATE Eigen3::Eigen GTest::gmock)
-    target_precompile_headers(topogeo_precompiled_tests PRIVATE ${standard} <Eigen/Core> <gmock/gmock.h>
-                              <gtest/gtest.h>)
-    topogeo_compile_options(topogeo_precompiled_tests)
+    topogeo_add_precompiled(topogeo_precompiled_tests <gmock/gmock.h> <gtest/gtest.h>)
+    target_link_libraries(topogeo_precompiled_tests PRIVATE GTest::gmock)
     topogeo_compile_cold(topogeo_precompiled_tests)
   endif()
+endfunction()
+
+# topogeo_add_precompiled(NAME HEADERS...): the headers that all have in common, and HEADERS.
+function(topogeo_add_precompiled name)
+  set(empty ${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp)
+  file(CONFIGURE OUTPUT ${empty} CONTENT "// Compiled for its precompiled header alone.\n")
+  add_library(${name} OBJECT EXCLUDE_FROM_ALL ${empty})
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen)
+  target_precompile_headers(${name} PRIVATE
+    <algorithm> <array> <chrono> <cmath> <cstdint> <deque> <filesystem> <functional> <limits> <map> <memory>
+    <numbers> <numeric> <optional> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector>
+    <Eigen/Core> ${ARGN})
+  topogeo_compile_options(${name})
 endfunction()
 
 # How fast a target is built: precompiled headers of `precompiled`, and its sources in units of several
@@ -64,9 +70,11 @@ function(topogeo_add_library)
                                        PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   topogeo_compile_options(${target})
-  topogeo_build_fast(${target} topogeo_precompiled)
   if(ARG_COLD)
     topogeo_compile_cold(${target})
+    topogeo_build_fast(${target} ${TOPOGEO_PRECOMPILED_COLD})
+  else()
+    topogeo_build_fast(${target} topogeo_precompiled)
   endif()
 endfunction()
 
@@ -78,7 +86,7 @@ function(topogeo_add_service)
   target_link_libraries(${ARG_NAME} PRIVATE ${ARG_DEPENDS})
   topogeo_compile_options(${ARG_NAME})
   topogeo_compile_cold(${ARG_NAME})
-  topogeo_build_fast(${ARG_NAME} topogeo_precompiled)
+  topogeo_build_fast(${ARG_NAME} ${TOPOGEO_PRECOMPILED_COLD})
 endfunction()
 
 # topogeo_add_test(NAME unit_geometry SOURCES ... DEPENDS targets... [TIMEOUT s] [LABELS ...] [PROCESSES]): one

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/support/format.hpp"
@@ -89,16 +89,29 @@ Paired pair_by_time(std::span<const StampedPose> unsorted_estimate,
   return paired;
 }
 
+/// The motion that brings the estimate nearest to the reference, by least squares of the distances:
+/// in the plane the angle is that of the sums of products.
 Pose2 best_alignment(const Paired& paired) {
-  const auto n = static_cast<Eigen::Index>(paired.estimate.size());
-  Eigen::MatrixXd estimated_m(2, n);  // with rows fixed to 2 GCC warns inside of umeyama
-  Eigen::MatrixXd true_m(2, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    estimated_m.col(i) = paired.estimate[static_cast<std::size_t>(i)].position_m();
-    true_m.col(i) = paired.reference[static_cast<std::size_t>(i)].position_m();
+  const auto n = static_cast<double>(paired.estimate.size());
+  Eigen::Vector2d estimated_mean_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d true_mean_m = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < paired.estimate.size(); ++i) {
+    estimated_mean_m += paired.estimate[i].position_m();
+    true_mean_m += paired.reference[i].position_m();
   }
-  const Eigen::MatrixXd T = Eigen::umeyama(estimated_m, true_m, false);
-  return {T(0, 2), T(1, 2), std::atan2(T(1, 0), T(0, 0))};
+  estimated_mean_m /= n;
+  true_mean_m /= n;
+  double along_m2 = 0.0;
+  double across_m2 = 0.0;
+  for (std::size_t i = 0; i < paired.estimate.size(); ++i) {
+    const Eigen::Vector2d a = paired.estimate[i].position_m() - estimated_mean_m;
+    const Eigen::Vector2d b = paired.reference[i].position_m() - true_mean_m;
+    along_m2 += a.dot(b);
+    across_m2 += a.x() * b.y() - a.y() * b.x();
+  }
+  const Pose2 turn{0.0, 0.0, std::atan2(across_m2, along_m2)};
+  const Eigen::Vector2d shift_m = true_mean_m - turn * estimated_mean_m;
+  return {shift_m.x(), shift_m.y(), turn.theta_rad};
 }
 
 /// What the estimate of a relative pose errs by.

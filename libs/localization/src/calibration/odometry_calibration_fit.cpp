@@ -287,7 +287,14 @@ NoiseFit fit_robustly(const FitModel& model, std::span<const MotionTerms> motion
 Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> systematic_covariance(
     const FitModel& model, std::span<const MotionTerms> motions, std::span<const double> weights,
     const NoiseFit& fit) {
-  return normal_equations(model, motions, weights, fit).information.inverse();
+  const auto information = normal_equations(model, motions, weights, fit).information.ldlt();
+  Eigen::Matrix<double, kSystematicErrors, kSystematicErrors> inverse;
+  for (int i = 0; i < kSystematicErrors; ++i) {
+    const SystematicVector unit = SystematicVector::Unit(i);
+    const SystematicVector column = information.solve(unit);  // quicker to compile than inverse()
+    inverse.col(i) = column;
+  }
+  return inverse;
 }
 
 double upper_width(const FitModel& model, std::span<const MotionTerms> motions,
