@@ -22,8 +22,8 @@ double silence_s(Clock::time_point received, Clock::time_point now) {
   return std::chrono::duration<double>(now - received).count();
 }
 
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<std::uint64_t>(std::max(0.0, seconds));
+std::string duration_text(double duration_s) {
+  const auto whole = static_cast<std::uint64_t>(std::max(0.0, duration_s));
   if (whole >= 3600)
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
