@@ -54,7 +54,7 @@ function(topogeo_build_fast target precompiled)
   target_precompile_headers(${target} REUSE_FROM ${precompiled})
   # Sources keep their names in messages and databases, yet share what they include.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${TOPOGEO_UNITY}
-                                             UNITY_BUILD_BATCH_SIZE ${TOPOGEO_UNITY_BATCH})
+                                             UNITY_BUILD_BATCH_SIZE ${TOPOGEO_UNITY_FILES})
   # What GCC says of classes with parts in anonymous namespaces is meant for headers.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
