@@ -12,7 +12,7 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr std::int64_t kNow_ns = 1'000'000'000;
+constexpr std::int64_t kStepTime_ns = 1'000'000'000;
 
 /// In the middle of the lower half of the room of 8 x 6 m, looking along x.
 const geometry::Pose2 kPose{4.0, 2.0, 0.0};
@@ -23,21 +23,21 @@ class NavigationStepTest : public testing::Test {
 
   /// The reason that the step gives not to drive; it must not move.
   HaltReason halts() {
-    EXPECT_EQ(step_.step(kNow_ns), geometry::Velocity{});
+    EXPECT_EQ(step_.step(kStepTime_ns), geometry::Velocity{});
     return step_.status.reason;
   }
   void give_goal() {
     step_.goal.set({7});
-    step_.routes.expect(kNow_ns);
+    step_.routes.expect(kStepTime_ns);
   }
   void give_odometry() {
-    const OdometrySample sample{kNow_ns, {}};
+    const OdometrySample sample{kStepTime_ns, {}};
     step_.poses.add(sample);
     step_.base.add(sample);
   }
   void give_pose(const geometry::Pose2& T_map_robot) {
     PoseFix fix;
-    fix.stamp_ns = kNow_ns;
+    fix.stamp_ns = kStepTime_ns;
     fix.T_map_robot = T_map_robot;
     fix.covariance = Eigen::Matrix3d::Identity() * 1e-6;
     fix.tracking = fix.located = true;
@@ -46,7 +46,7 @@ class NavigationStepTest : public testing::Test {
   /// Nothing within 2 m.
   void give_scan() {
     ScanPoints scan;
-    scan.stamp_ns = kNow_ns;
+    scan.stamp_ns = kStepTime_ns;
     scan.points_m = {{2.0, -2.0}, {2.0, 0.0}, {2.0, 2.0}};
     step_.base.add(scan);
     step_.poses.add(scan);
@@ -103,7 +103,7 @@ TEST_F(NavigationStepTest, DrivesOnceItHasARoute) {
   route.found = true;
   route.points_m = {kPose.position_m(), {6.0, 2.0}};
   step_.routes.offer(route);
-  EXPECT_GT(step_.step(kNow_ns).linear_m_per_s, 0.0) << step_.status.message;
+  EXPECT_GT(step_.step(kStepTime_ns).linear_m_per_s, 0.0) << step_.status.message;
   EXPECT_EQ(step_.status.state, NavigatorState::kDriving);
 }
 
