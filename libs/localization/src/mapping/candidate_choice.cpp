@@ -6,6 +6,9 @@ namespace topogeo::localization {
 
 namespace {
 
+// Of a scan: no match is made of less.
+constexpr double kLeastCommon = 0.15;
+
 std::vector<MatchCandidate> by_overlap(std::vector<MatchCandidate> candidates) {
   std::stable_sort(
       candidates.begin(), candidates.end(),
@@ -20,6 +23,14 @@ void CandidateChoice::consider(std::uint32_t id, const RangeProfile& viewer,
                                const UncertainPose& T_viewer_outline) {
   const double overlap = expected_overlap(viewer, outline, T_viewer_outline, least_overlap_);
   if (overlap >= least_overlap_) found_.push_back({id, overlap});
+}
+
+void CandidateChoice::consider_common(std::uint32_t id, const RangeProfile& viewer,
+                                      std::span<const SurfacePoint> outline,
+                                      const UncertainPose& T_viewer_outline) {
+  if (expected_overlap(viewer, outline, T_viewer_outline, least_overlap_) < least_overlap_) return;
+  const double common = expected_common(viewer, outline, T_viewer_outline);
+  if (common >= kLeastCommon) found_.push_back({id, common});
 }
 
 std::vector<MatchCandidate> CandidateChoice::best(std::size_t count) const {

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "topogeo/localization/mapping/drive_join.hpp"
 
 namespace topogeo::localization {
@@ -104,7 +106,8 @@ void Localizer::append(MapPointer map) {
     const std::uint32_t stop = graph_.add_pose(graph_.poses().back() * step.T_a_b);
     // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
     graph_.add_edge({stop - 1, stop, EdgeKind::kOdometry, step.T_a_b,
-                     invertible(gap ? step.covariance : odometry_.widened(step.covariance))});
+                     invertible(gap ? step.covariance : odometry_.widened(step.covariance)),
+                     invertible(gap ? step.covariance : odometry_.expected(step.covariance))});
     // No stop from before a gap is a recent one.
     matching_.add(std::move(map), gap ? 2.0 * config_.recent_way_m
                                       : std::sqrt(step.T_a_b.position_m().squaredNorm()));
@@ -119,14 +122,43 @@ std::vector<StepMatch> Localizer::match_recent() {
   // uncertain ones, with their wide covariance, still know more than it does.
   const bool any = std::any_of(matches.begin(), matches.end(),
                                [](const StopMatch& match) { return match.accepted(); });
-  if (!any) ++steps_in_doubt_;
+  if (!any) {
+    ++steps_in_doubt_;
+    rely_on_odometry();
+  }
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) {
     evidence.push_back(match.evidence);
-    if (match.accepted() || (!any && match.uncertain())) graph_.add_edge(match.edge);
+    if (match.accepted() || (!any && match.uncertain() && as_odometry_says(match.edge))) {
+      graph_.add_edge(match.edge);
+    }
     if (match.accepted() && match.edge.from + 1 == last()) watch_odometry(match.edge);
   }
   return evidence;
+}
+
+// Whether a match lies where odometry, as good as it was over the last steps, may have brought the
+// robot: a doubtful one elsewhere is a look-alike.
+bool Localizer::as_odometry_says(const PoseGraphEdge& match) const {
+  constexpr double kFarthest2 = 11.3;  // 99 % of right ones (chi-square, three degrees of freedom)
+  UncertainPose odometry;
+  for (std::uint32_t stop = match.from + 1; stop <= match.to; ++stop) {
+    const UncertainPose step = odometry_between_stops(matching_.map(stop - 1).T_odom_robot,
+                                                      matching_.map(stop), config_.odometry);
+    odometry = compose(odometry, {step.T_a_b, invertible(odometry_.expected(step.covariance))});
+  }
+  const Eigen::Vector3d error = geometry::difference(match.T_from_to, odometry.T_a_b);
+  return error.dot((odometry.covariance + match.covariance).inverse() * error) <= kFarthest2;
+}
+
+// Where no match is beyond doubt odometry counts as much as it was right over the last steps.
+void Localizer::rely_on_odometry() {
+  const UncertainPose step = odometry_between_stops(matching_.map(last() - 1).T_odom_robot,
+                                                    matching_.map(last()), config_.odometry);
+  // Of systematic errors the last steps show little.
+  constexpr double kLessWeight = 3.0;
+  const Eigen::Matrix3d expected = kLessWeight * invertible(odometry_.expected(step.covariance));
+  graph_.add_edge({last() - 1, last(), EdgeKind::kOdometry, step.T_a_b, expected, expected});
 }
 
 void Localizer::watch_odometry(const PoseGraphEdge& match) {
@@ -141,25 +173,31 @@ std::vector<StepMatch> Localizer::match_revisited(std::span<const std::uint32_t>
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) {
     evidence.push_back(match.evidence);
-    if (!match.accepted()) loops_.refuse(graph_, match.edge, match.reason, match.fitness);
+    if (match.accepted()) continue;
+    loops_.refuse(graph_, match);
+    if (match.plausible()) loops_.suppose(match, matching_.path_m());
   }
   for (const StopMatch& match : matches) {
     if (!match.accepted()) continue;
-    switch (loops_.consider(graph_, match.edge, match.fitness)) {
+    switch (loops_.consider(graph_, match)) {
       case LoopClosing::Verdict::kRefused:
         break;
       case LoopClosing::Verdict::kPending:
         matching_.reopen(match.edge);
+        if (match.plausible()) loops_.suppose(match, matching_.path_m());
         break;
       case LoopClosing::Verdict::kMoves:
         schedule_.want();
+        loops_.support(match, matching_.path_m());
         break;
       case LoopClosing::Verdict::kAgrees:
+        loops_.support(match, matching_.path_m());
         graph_.add_edge(match.edge);
         schedule_.count_loop();
         break;
     }
   }
+  if (loops_.accept_agreed(graph_, matching_.path_m()) > 0) schedule_.want();
   return evidence;
 }
 
@@ -272,7 +310,10 @@ void Localizer::join(std::span<const MapPointer> drive,
   for (const StoredMatch& match : matches_of_last) {
     const PoseGraphEdge loop = loop_of(match, last());
     if (contains_like(graph_.edges(), loop) || contains_like(loops_.waiting(), loop)) continue;
-    loops_.accept(graph_, loop, match.fitness);
+    StopMatch known;
+    known.edge = loop;
+    known.fitness = match.fitness;
+    loops_.accept(graph_, known);
     matching_.skip(loop);
   }
   optimize_now();

@@ -13,6 +13,9 @@ namespace {
 
 // Two cells of a 5 cm grid: a smaller correction needs no optimisation of its own.
 constexpr double kNoticeable_m = 0.1;
+// Squared Mahalanobis distance from the prediction that a right match exceeds once in a hundred
+// (chi-square, three degrees of freedom): only many that agree are accepted against it.
+constexpr double kSurprising = 11.3;
 // Stops until a pending loop is dropped: by then odometry has drifted too far for two to agree.
 constexpr std::uint32_t kLongestWait = 12;
 
@@ -57,70 +60,87 @@ bool LoopClosing::far(const Correction& correction) const {
          correction.turn_rad() > unaided_correction_rad_;
 }
 
-LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const PoseGraphEdge& loop,
-                                           double fitness) {
-  const Correction correction = correction_of(graph, loop);
+LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const StopMatch& loop) {
+  const Correction correction = correction_of(graph, loop.edge);
+  if (loop.surprise() > kSurprising) {
+    decide(graph, loop, LoopOutcome::kUnconfirmed, Reason::kNone);
+    ++unconfirmed_;
+    return Verdict::kPending;
+  }
   if (far(correction)) {
-    if (!fits_steps(graph, loop, fitness)) {
-      decide(graph, loop, LoopOutcome::kNoClosing, Reason::kNone, fitness);
+    if (!fits_steps(graph, loop.edge, loop.fitness)) {
+      decide(graph, loop, LoopOutcome::kNoClosing, Reason::kNone);
       return Verdict::kRefused;
     }
     if (confirm(graph, loop, correction)) {
-      accept(graph, loop, fitness);
+      accept(graph, loop);
       return Verdict::kMoves;
     }
-    decide(graph, loop, LoopOutcome::kUnconfirmed, Reason::kNone, fitness);
+    decide(graph, loop, LoopOutcome::kUnconfirmed, Reason::kNone);
     pending_.push_back({loop, correction.motion()});
     ++unconfirmed_;
     return Verdict::kPending;
   }
   if (correction.distance_m() > kNoticeable_m) {
-    accept(graph, loop, fitness);
+    accept(graph, loop);
     return Verdict::kMoves;
   }
-  decide(graph, loop, LoopOutcome::kAccepted, Reason::kNone, fitness);
+  decide(graph, loop, LoopOutcome::kAccepted, Reason::kNone);
   return Verdict::kAgrees;
 }
 
 // True when a loop of another stop moves the robot to the same place; pending ones that do are
 // accepted with it.
-bool LoopClosing::confirm(const PoseGraph& graph, const PoseGraphEdge& loop,
+bool LoopClosing::confirm(const PoseGraph& graph, const StopMatch& loop,
                           const Correction& correction) {
   const auto same_place = [&](const Pose2& T_map_corrected) {
     return !far({T_map_corrected, correction.T_map_corrected});
   };
   bool confirmed = std::any_of(waiting_.begin(), waiting_.end(), [&](const PoseGraphEdge& other) {
-    return other.to != loop.to &&
+    return other.to != loop.edge.to &&
            same_place(correction_of(graph, other).motion() * correction.T_map_now);
   });
   std::erase_if(pending_, [&](const PendingLoop& pending) {
-    return pending.edge.to + kLongestWait < loop.to;
+    return pending.match.edge.to + kLongestWait < loop.edge.to;
   });
   const auto agrees = [&](const PendingLoop& pending) {
-    return pending.edge.to != loop.to && same_place(pending.motion * correction.T_map_now);
+    return pending.match.edge.to != loop.edge.to &&
+           same_place(pending.motion * correction.T_map_now);
   };
   for (const PendingLoop& pending : pending_) {
     if (!agrees(pending)) continue;
-    accept(graph, pending.edge, 0.0);
+    accept(graph, pending.match);
     confirmed = true;
   }
   std::erase_if(pending_, agrees);
   return confirmed;
 }
 
-void LoopClosing::refuse(const PoseGraph& graph, const PoseGraphEdge& loop, Reason reason,
-                         double fitness) {
-  decide(graph, loop, LoopOutcome::kGate, reason, fitness);
+std::size_t LoopClosing::accept_agreed(const PoseGraph& graph, std::span<const double> path_m) {
+  const std::vector<StopMatch> agreed = agreement_.accepted(graph, path_m);
+  for (const StopMatch& loop : agreed) {
+    std::erase_if(pending_, [&](const PendingLoop& pending) {
+      return pending.match.edge.from == loop.edge.from && pending.match.edge.to == loop.edge.to;
+    });
+    accept(graph, loop);
+  }
+  return agreed.size();
 }
 
-void LoopClosing::accept(const PoseGraph& graph, const PoseGraphEdge& loop, double fitness) {
-  decide(graph, loop, LoopOutcome::kAccepted, Reason::kNone, fitness);
-  waiting_.push_back(loop);
+void LoopClosing::refuse(const PoseGraph& graph, const StopMatch& loop) {
+  decide(graph, loop, LoopOutcome::kGate, loop.reason);
+}
+
+void LoopClosing::accept(const PoseGraph& graph, const StopMatch& loop) {
+  decide(graph, loop, LoopOutcome::kAccepted, Reason::kNone);
+  waiting_.push_back(loop.edge);
 }
 
 void LoopClosing::outvote(const PoseGraph& graph, std::span<const PoseGraphEdge> loops) {
   for (const PoseGraphEdge& loop : loops) {
-    decide(graph, loop, LoopOutcome::kOutvoted, Reason::kNone, 0.0);
+    StopMatch match;
+    match.edge = loop;
+    decide(graph, match, LoopOutcome::kOutvoted, Reason::kNone);
     ++outvoted_;
   }
 }
@@ -132,12 +152,12 @@ std::vector<PoseGraphEdge> LoopClosing::release(std::size_t count) {
   return released;
 }
 
-void LoopClosing::decide(const PoseGraph& graph, const PoseGraphEdge& loop, LoopOutcome outcome,
-                         Reason reason, double fitness) {
-  const Correction correction = correction_of(graph, loop);
-  decisions_.push_back({static_cast<std::uint32_t>(graph.poses().size() - 1), loop.from, loop.to,
-                        outcome, reason, loop.T_from_to, correction.distance_m(),
-                        correction.turn_rad(), fitness});
+void LoopClosing::decide(const PoseGraph& graph, const StopMatch& loop, LoopOutcome outcome,
+                         Reason reason) {
+  const Correction correction = correction_of(graph, loop.edge);
+  decisions_.push_back({static_cast<std::uint32_t>(graph.poses().size() - 1), loop.edge.from,
+                        loop.edge.to, outcome, reason, loop.edge.T_from_to, loop.predicted,
+                        correction.distance_m(), correction.turn_rad(), loop.fitness, loop.source});
 }
 
 }  // namespace topogeo::localization

@@ -12,6 +12,17 @@ namespace {
 constexpr double kLargestRatio = 100.0;
 // Six times the configured deviation: a worse odometry is none to build on.
 constexpr double kLargestFactor = 36.0;
+// Of expected(): no odometry is better than a fifth of the configured deviation for long, and three
+// times the variance of the last steps covers what they have in common.
+constexpr double kLeastExpected = 0.04;
+constexpr double kMargin = 3.0;
+
+Eigen::Matrix3d scaled(const Eigen::Matrix3d& covariance, double translation, double heading) {
+  const double along = std::sqrt(translation);
+  const double turn = std::sqrt(heading);
+  const Eigen::Vector3d scale(along, along, turn);
+  return scale.asDiagonal() * covariance * scale.asDiagonal();
+}
 
 }  // namespace
 
@@ -38,11 +49,16 @@ void OdometryMonitor::add(const UncertainPose& odometry, const UncertainPose& ma
   heading_.add(error.z() * error.z(), odometry.covariance(2, 2), match.covariance(2, 2));
 }
 
+double OdometryMonitor::Ratio::expected_factor() const {
+  return std::clamp(kMargin * weighted_ / weight_, kLeastExpected, kLargestFactor);
+}
+
 Eigen::Matrix3d OdometryMonitor::widened(const Eigen::Matrix3d& configured) const {
-  const double along = std::sqrt(translation_.factor());
-  const double turn = std::sqrt(heading_.factor());
-  const Eigen::Vector3d scale(along, along, turn);
-  return scale.asDiagonal() * configured * scale.asDiagonal();
+  return scaled(configured, translation_.factor(), heading_.factor());
+}
+
+Eigen::Matrix3d OdometryMonitor::expected(const Eigen::Matrix3d& configured) const {
+  return scaled(configured, translation_.expected_factor(), heading_.expected_factor());
 }
 
 }  // namespace topogeo::localization

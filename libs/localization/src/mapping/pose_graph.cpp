@@ -17,13 +17,20 @@ using geometry::Pose2;
 // moves it.
 constexpr double kLeverArm_m = 5.0;
 
+const Eigen::Matrix3d& calibrated(const PoseGraphEdge& edge) {
+  return edge.calibrated.isZero(0.0) ? edge.covariance : edge.calibrated;
+}
+
 }  // namespace
 
-PoseGraph::PoseGraph() : links_(std::make_unique<PoseLinks>()) {}
+PoseGraph::PoseGraph()
+    : links_(std::make_unique<PoseLinks>()), calibrated_links_(std::make_unique<PoseLinks>()) {}
 PoseGraph::PoseGraph(const PoseGraph& other)
     : poses_(other.poses_),
       edges_(other.edges_),
-      links_(std::make_unique<PoseLinks>(*other.links_)) {}
+      links_(std::make_unique<PoseLinks>(*other.links_)),
+      calibrated_links_(std::make_unique<PoseLinks>(*other.calibrated_links_)),
+      step_sums_(other.step_sums_) {}
 PoseGraph::PoseGraph(PoseGraph&&) noexcept = default;
 PoseGraph& PoseGraph::operator=(const PoseGraph& other) {
   return *this = PoseGraph(other);
@@ -34,6 +41,7 @@ PoseGraph::~PoseGraph() = default;
 std::uint32_t PoseGraph::add_pose(const Pose2& T_map_robot) {
   poses_.push_back(T_map_robot);
   links_->add_stop();
+  calibrated_links_->add_stop();
   return static_cast<std::uint32_t>(poses_.size() - 1);
 }
 
@@ -43,7 +51,9 @@ void PoseGraph::add_edge(const PoseGraphEdge& edge) {
         "pose graph: an edge must lead from an earlier stop to a later one");
   }
   edges_.push_back(edge);
-  links_->add(edge);
+  if (edge.from + 1 == edge.to && step_sums_.size() > edge.to) step_sums_.resize(edge.to);
+  links_->add(edge, edge.covariance);
+  calibrated_links_->add(edge, calibrated(edge));
 }
 
 double PoseGraph::disagreement(const PoseGraphEdge& edge) const {
@@ -54,6 +64,7 @@ double PoseGraph::disagreement(const PoseGraphEdge& edge) const {
 
 void PoseGraph::place_last_pose() {
   const auto last = static_cast<std::uint32_t>(poses_.size() - 1);
+  if (step_sums_.size() > last) step_sums_.resize(last);
   constexpr int kIterations = 5;
   for (int k = 0; k < kIterations; ++k) {
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
@@ -83,7 +94,7 @@ std::vector<PoseGraphEdge> PoseGraph::remove_edges(EdgeKind kind, double largest
       });
   std::vector<PoseGraphEdge> removed(kept, edges_.end());
   edges_.erase(kept, edges_.end());
-  if (!removed.empty()) links_->rebuild(edges_);
+  if (!removed.empty()) rebuild_links();
   return removed;
 }
 
@@ -93,7 +104,18 @@ void PoseGraph::remove_edges(std::span<const PoseGraphEdge> like) {
       return edge.kind == other.kind && edge.from == other.from && edge.to == other.to;
     });
   });
-  if (removed > 0) links_->rebuild(edges_);
+  if (removed > 0) rebuild_links();
+}
+
+void PoseGraph::rebuild_links() {
+  step_sums_.clear();
+  links_->clear();
+  calibrated_links_->clear();
+  for (const PoseGraphEdge& edge : edges_) {
+    if (edge.from + 1 == edge.to && step_sums_.size() > edge.to) step_sums_.resize(edge.to);
+    links_->add(edge, edge.covariance);
+    calibrated_links_->add(edge, calibrated(edge));
+  }
 }
 
 void PoseGraph::move(std::span<const Pose2> T_map_robot) {
@@ -101,6 +123,7 @@ void PoseGraph::move(std::span<const Pose2> T_map_robot) {
     throw std::invalid_argument("pose graph: " + std::to_string(T_map_robot.size()) +
                                 " poses for " + std::to_string(poses_.size()) + " stops");
   }
+  step_sums_.clear();
   const std::size_t last = T_map_robot.size() - 1;
   const Pose2 T_last_map = geometry::inverse(poses_[last]);
   std::copy(T_map_robot.begin(), T_map_robot.end(), poses_.begin());
@@ -120,6 +143,37 @@ std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseGraph::links_to(
 
 std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin, const Reach& reach) const {
   return links_->relative_to(poses_, origin, reach);
+}
+
+UncertainPose PoseGraph::along_path(std::uint32_t from, std::uint32_t to) const {
+  if (from > to) return inverse(along_path(to, from));
+  if (step_sums_.empty()) step_sums_.emplace_back(Eigen::Matrix3d::Zero());
+  while (step_sums_.size() <= to) {
+    const auto stop = static_cast<std::uint32_t>(step_sums_.size());
+    const Pose2& before = poses_[stop - 1];
+    const Pose2& at = poses_[stop];
+    // The error of the step, in the frame of the stop before, turned into the map and moved to its
+    // origin: whatever turns at the stop shifts the origin.
+    const geometry::SinCos r = geometry::sincos(before.theta_rad);
+    Eigen::Matrix3d to_origin;
+    to_origin << r.cos, -r.sin, at.y_m, r.sin, r.cos, -at.x_m, 0.0, 0.0, 1.0;
+    step_sums_.emplace_back(step_sums_.back() + to_origin *
+                                                    calibrated_links_->covariance(stop - 1, stop) *
+                                                    to_origin.transpose());
+  }
+  const geometry::SinCos r = geometry::sincos(poses_[from].theta_rad);
+  Eigen::Matrix3d turn;
+  turn << r.cos, r.sin, 0.0, -r.sin, r.cos, 0.0, 0.0, 0.0, 1.0;
+  Eigen::Matrix3d at_stop = Eigen::Matrix3d::Identity();
+  at_stop(0, 2) = -poses_[to].y_m;
+  at_stop(1, 2) = poses_[to].x_m;
+  const Eigen::Matrix3d from_origin = turn * at_stop;
+  return {geometry::between(poses_[from], poses_[to]),
+          from_origin * (step_sums_[to] - step_sums_[from]) * from_origin.transpose()};
+}
+
+std::vector<UncertainPose> PoseGraph::predict_from(std::uint32_t origin, const Reach& reach) const {
+  return calibrated_links_->relative_to(poses_, origin, reach);
 }
 
 }  // namespace topogeo::localization

@@ -56,6 +56,7 @@ class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
 }  // namespace
 
 OptimizationSummary PoseGraph::optimize() {
+  step_sums_.clear();
   if (poses_.size() < 2 || edges_.empty()) return {true, true, 0.0, 0.0, 0};
   std::vector<std::array<double, 3>> values;
   values.reserve(poses_.size());

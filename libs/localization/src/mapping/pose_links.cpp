@@ -52,7 +52,7 @@ void PoseLinks::add_stop() {
   boost::add_vertex(network_);
 }
 
-void PoseLinks::add(const PoseGraphEdge& edge) {
+void PoseLinks::add(const PoseGraphEdge& edge, const Eigen::Matrix3d& covariance) {
   const auto next = static_cast<std::uint32_t>(links_.size());
   const auto [found, fresh] = link_of_.try_emplace({edge.from, edge.to}, next);
   if (fresh) {
@@ -62,18 +62,17 @@ void PoseLinks::add(const PoseGraphEdge& edge) {
     boost::add_edge(edge.from, edge.to, LinkIndex{next}, network_);
   }
   Link& link = links_[found->second];
-  link.information += edge.covariance.inverse();
+  link.information += covariance.inverse();
   link.covariance = link.information.inverse();
   link.cost = PoseGraph::path_cost(link.covariance);
 }
 
-void PoseLinks::rebuild(std::span<const PoseGraphEdge> edges) {
+void PoseLinks::clear() {
   const std::size_t stops = boost::num_vertices(network_);
   links_.clear();
   link_of_.clear();
   network_.clear();
   for (std::size_t i = 0; i < stops; ++i) boost::add_vertex(network_);
-  for (const PoseGraphEdge& edge : edges) add(edge);
 }
 
 std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseLinks::links_to(

@@ -19,10 +19,15 @@ namespace topogeo::localization {
 class PoseLinks {
  public:
   void add_stop();
-  void add(const PoseGraphEdge& edge);
-  /// The same number of stops with other edges.
-  void rebuild(std::span<const PoseGraphEdge> edges);
+  /// `covariance` of T_from_to, in the frame of `from`.
+  void add(const PoseGraphEdge& edge, const Eigen::Matrix3d& covariance);
+  /// The same number of stops without edges.
+  void clear();
 
+  /// Of the link between two stops, which must be there.
+  [[nodiscard]] const Eigen::Matrix3d& covariance(std::uint32_t from, std::uint32_t to) const {
+    return links_[link_of_.at({from, to})].covariance;
+  }
   /// See PoseGraph::links_to.
   [[nodiscard]] std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> links_to(
       std::uint32_t stop) const;

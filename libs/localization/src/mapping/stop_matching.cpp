@@ -1,12 +1,14 @@
 #include "topogeo/localization/mapping/stop_matching.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <Eigen/LU>
 
 #include "topogeo/localization/mapping/search_space.hpp"
 #include "topogeo/localization/matching/expected_overlap.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 
 namespace topogeo::localization {
@@ -22,6 +24,34 @@ constexpr double kFarthestCompared_m = 20.0;
 constexpr double kWidening =
     3.0;  // of the deviations, when nothing was found where odometry predicts
 
+// Deviation of a prediction however short the path: what an optimisation leaves of the errors in a
+// map, which are not independent from stop to stop.
+constexpr double kMapNoise_m = 0.1;
+constexpr double kMapNoise_rad = 0.015;
+const Eigen::Matrix3d kMapNoise =
+    Eigen::Vector3d(kMapNoise_m * kMapNoise_m, kMapNoise_m* kMapNoise_m,
+                    kMapNoise_rad* kMapNoise_rad)
+        .asDiagonal();
+
+// Of path between two queries for places.
+constexpr double kBetweenQueries_m = 1.0;
+// Of path after a match by prediction: there the predictions are right.
+constexpr double kRevisitHolds_m = 3.0;
+// As well as the coarse search finds one.
+constexpr double kPlaceSigma_m = 0.25;
+constexpr double kPlaceSigma_rad = 0.06;
+constexpr double kLeastPlaceValue = 0.6;
+// Tasks of a query: a place that is right is among the best ones or found by the next queries.
+constexpr std::size_t kPlacesCompared = 3;
+constexpr std::size_t kStopsOfPlace = 2;
+// Where predictions are better than this no place is looked for, unless so many stops in succession
+// did not look as predicted.
+constexpr double kWellKnown_m = 0.25;
+constexpr std::uint32_t kMisfits = 2;
+constexpr std::size_t kStopsOfQuery = 3;
+constexpr double kBetweenStops_m = 1.5;
+constexpr double kQueryLength_m = 5.0;
+
 bool any_accepted(std::span<const StopMatch> matches) {
   return std::any_of(matches.begin(), matches.end(),
                      [](const StopMatch& match) { return match.accepted(); });
@@ -29,18 +59,44 @@ bool any_accepted(std::span<const StopMatch> matches) {
 
 }  // namespace
 
+double StopMatch::surprise() const {
+  if (predicted.covariance.isZero(0.0)) return 0.0;
+  const Eigen::Vector3d moved = geometry::difference(predicted.T_a_b, edge.T_from_to);
+  return moved.dot(predicted.covariance.inverse() * moved);
+}
+
+bool StopMatch::plausible() const {
+  // Wider than the gate: doubt 4.5 is that of right matches in clutter, and more than any set of
+  // wrong ones agrees on (tests/bench/RESULTS.md, "Loops").
+  constexpr double kMostDoubt = 4.5;
+  constexpr double kLeastInliers = 0.6;
+  constexpr double kLeastOverlap = 0.3;
+  constexpr double kMostViolations = 0.3;
+  // Further from the prediction no place is looked for either.
+  constexpr double kFarthest2 = 11.3;
+  if (!predicted.covariance.isZero(0.0)) {
+    const Eigen::Vector3d moved = geometry::difference(predicted.T_a_b, edge.T_from_to);
+    const Eigen::Matrix3d covariance = widened_for_places(predicted.covariance);
+    if (moved.dot(covariance.inverse() * moved) > kFarthest2) return false;
+  }
+  constexpr double kLeastOfWindow = 0.88;
+  if (source == ProposalSource::kWindow) {
+    return fitness >= kLeastOfWindow && overlap >= kLeastOverlap;
+  }
+  return accepted() || (uncertain() && doubt <= kMostDoubt && inliers >= kLeastInliers &&
+                        overlap >= kLeastOverlap && violations <= kMostViolations);
+}
+
 StopMatching::StopMatching(const LocalizerConfig& config, MatchPool& pool)
     : config_(config), requests_(config, pool) {}
 
 void StopMatching::add(std::shared_ptr<const LocalMap> map, double distance_m) {
   requests_.add_map(map);
-  Stop stop;
-  MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
-  stop.profile = std::move(features.profile);
-  stop.outline = outline_of(features.coarse);
-  stop.path_m = stops_.empty() ? 0.0 : stops_.back().path_m + distance_m;
-  stop.map = std::move(map);
-  stops_.push_back(std::move(stop));
+  auto view = std::make_shared<const StopView>(
+      view_of(extract_scan_features(map->points, map->T_robot_laser)));
+  path_m_.push_back(stops_.empty() ? 0.0 : path_m_.back() + distance_m);
+  places_.add(view, path_m_.back());
+  stops_.push_back({std::move(map), std::move(view)});
 }
 
 void StopMatching::skip(const PoseGraphEdge& known) {
@@ -55,13 +111,20 @@ std::uint32_t StopMatching::first_recent(std::uint32_t stop) const {
 }
 
 void StopMatching::consider(CandidateChoice& choice, const PoseGraph& graph, std::uint32_t earlier,
-                            std::uint32_t stop, const UncertainPose& T_stop_earlier) const {
+                            std::uint32_t stop, const UncertainPose& T_stop_earlier,
+                            bool common) const {
   const std::vector<Pose2>& poses = graph.poses();
   const Eigen::Vector2d apart_m = poses[earlier].position_m() - poses[stop].position_m();
   if (apart_m.squaredNorm() > kFarthestCompared_m * kFarthestCompared_m) return;
   if (!searchable(config_, T_stop_earlier)) return;
   if (!comparisons_.worth(earlier, stop, T_stop_earlier.T_a_b)) return;
-  choice.consider(earlier, stops_[stop].profile, stops_[earlier].outline, T_stop_earlier);
+  const StopView& viewer = *stops_[stop].view;
+  const StopView& seen = *stops_[earlier].view;
+  if (common) {
+    choice.consider_common(earlier, viewer.profile, seen.outline, T_stop_earlier);
+  } else {
+    choice.consider(earlier, viewer.profile, seen.outline, T_stop_earlier);
+  }
 }
 
 std::vector<MatchCandidate> StopMatching::recent_candidates(
@@ -70,7 +133,7 @@ std::vector<MatchCandidate> StopMatching::recent_candidates(
   const std::uint32_t first = first_recent(stop);
   CandidateChoice choice(config_.smallest_expected_overlap);
   for (std::uint32_t i = first; i + 1 < stop; ++i) {
-    consider(choice, graph, i, stop, relative[i]);
+    consider(choice, graph, i, stop, relative[i], false);
   }
   // The stop just before is worth a task in any case, however bad odometry is by now.
   if (first < stop) choice.take(stop - 1);
@@ -82,7 +145,7 @@ std::vector<MatchCandidate> StopMatching::revisited_candidates(
   const std::uint32_t first = first_recent(stop);
   CandidateChoice choice(config_.smallest_expected_overlap);
   for (std::uint32_t i = 0; i < first; ++i) {
-    consider(choice, graph, i, stop, relative[i]);
+    consider(choice, graph, i, stop, relative[i], true);
   }
   return choice.best_apart(config_.revisit_matches);
 }
@@ -104,7 +167,26 @@ std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
     if (any_accepted(wider)) matches = std::move(wider);
   }
   last_solutions_ = std::move(solutions);
+  calibrate(matches);
   return matches;
+}
+
+// By the triangles of the last stop with two recent ones that were matched with each other.
+void StopMatching::calibrate(std::span<const StopMatch> matches) {
+  const auto last = static_cast<std::uint32_t>(stops_.size() - 1);
+  for (const StopMatch& match : matches) {
+    if (match.accepted()) recent_[{match.edge.from, last}] = match.T_later_earlier;
+  }
+  for (const StopMatch& far : matches) {
+    for (const StopMatch& near : matches) {
+      if (!far.accepted() || !near.accepted() || far.edge.from >= near.edge.from) continue;
+      const auto between = recent_.find({far.edge.from, near.edge.from});
+      if (between == recent_.end()) continue;
+      calibration_.add_triangle(far.T_later_earlier, near.T_later_earlier, between->second);
+    }
+  }
+  const std::uint32_t first = first_recent(last);
+  std::erase_if(recent_, [&](const auto& entry) { return entry.first.first < first; });
 }
 
 std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
@@ -129,17 +211,129 @@ std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
   return tasks;
 }
 
+// Where the last stops were matched as predicted, the predictions are right; elsewhere the places
+// around are asked now and then.
+bool StopMatching::wants_places(std::uint32_t stop) const {
+  const auto near = [&](const std::set<std::uint32_t>& stops, double distance_m) {
+    const auto after = stops.upper_bound(stop);
+    return (after != stops.begin() && path_m_[stop] - path_m_[*std::prev(after)] < distance_m) ||
+           (after != stops.end() && path_m_[*after] - path_m_[stop] < distance_m);
+  };
+  return !near(revisited_, kRevisitHolds_m) && !near(recognized_, kBetweenQueries_m);
+}
+
 std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
                                                      std::span<const std::uint32_t> stops) {
-  const PoseGraph::Reach reach{0, largest_searchable_cost(config_)};
-  std::vector<MatchTask> tasks;
+  const PoseGraph::Reach near{0, largest_searchable_cost(config_)};
+  std::vector<Comparison> comparisons;
+  recognized_.clear();
+  if (stops.size() == 1 && recognized_last_) recognized_.insert(*recognized_last_);
   for (const std::uint32_t stop : stops) {
-    const std::vector<UncertainPose> relative = graph.relative_to(stop, reach);
+    const bool ask = wants_places(stop);
+    std::vector<UncertainPose> relative = graph.predict_from(stop, ask ? PoseGraph::Reach{} : near);
+    for (UncertainPose& T_stop_earlier : relative) T_stop_earlier.covariance += kMapNoise;
     for (const MatchCandidate& candidate : revisited_candidates(graph, stop, relative)) {
-      tasks.push_back(requests_.make(stop, candidate.id, relative[candidate.id]));
+      const UncertainPose& T_stop_earlier = relative[candidate.id];
+      comparisons.push_back({requests_.make(stop, candidate.id, T_stop_earlier), T_stop_earlier,
+                             ProposalSource::kPrediction});
+    }
+    if (!ask) continue;
+    recognized_.insert(stop);
+    recognized_last_ = stop;
+    for (Comparison& comparison : comparisons_with_places(graph, stop, relative)) {
+      comparisons.push_back(std::move(comparison));
     }
   }
-  return run(tasks, EdgeKind::kRevisit);
+  std::vector<MatchTask> tasks;
+  for (const Comparison& comparison : comparisons) tasks.push_back(comparison.task);
+  std::vector<StopMatch> matches = run(tasks, EdgeKind::kRevisit);
+  bool any_predicted = false;
+  bool any_plausible = false;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    matches[i].predicted = inverse(comparisons[i].T_later_earlier);
+    matches[i].source = comparisons[i].source;
+    if (matches[i].accepted() && matches[i].source == ProposalSource::kPrediction) {
+      revisited_.insert(matches[i].edge.to);
+    }
+    any_predicted |= matches[i].source == ProposalSource::kPrediction;
+    any_plausible |= matches[i].plausible();
+  }
+  matches.insert(matches.end(), windows_.begin(), windows_.end());
+  windows_.clear();
+  if (any_plausible) misfits_ = 0;
+  if (any_predicted && !any_plausible && stops.size() == 1) ++misfits_;
+  return matches;
+}
+
+// Of the stop, and of some before it by the same places, with those stops of the places that should
+// see most of the same.
+std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
+    const PoseGraph& graph, std::uint32_t stop, std::span<const UncertainPose> relative) {
+  std::vector<std::uint32_t> later{stop};
+  for (std::uint32_t i = stop; i-- > 0 && later.size() < kStopsOfQuery;) {
+    if (path_m_[stop] - path_m_[i] > kQueryLength_m) break;
+    if (path_m_[later.back()] - path_m_[i] >= kBetweenStops_m) later.push_back(i);
+  }
+  std::vector<Comparison> found;
+  const Eigen::Matrix3d spread =
+      Eigen::Vector3d(kPlaceSigma_m * kPlaceSigma_m, kPlaceSigma_m * kPlaceSigma_m,
+                      kPlaceSigma_rad * kPlaceSigma_rad)
+          .asDiagonal();
+  const std::vector<Pose2>& poses = graph.poses();
+  std::set<std::pair<std::uint32_t, std::uint32_t>> chosen;
+  std::size_t places = 0;
+  for (const PlaceProposal& place : places_.propose(graph, stop, first_recent(stop), relative,
+                                                    misfits_ < kMisfits ? kWellKnown_m : 0.0)) {
+    if (place.value < kLeastPlaceValue || places == kPlacesCompared) break;
+    bool any = false;
+    if (!place.aligned.covariance.isZero(0.0)) windows_.push_back(window_match(stop, place));
+    for (const std::uint32_t query : later) {
+      CandidateChoice choice(config_.smallest_expected_overlap);
+      const Pose2 T_query_anchor =
+          geometry::inverse(place.T_anchor_robot * geometry::between(poses[stop], poses[query]));
+      const auto predicted = [&](std::uint32_t earlier) {
+        return UncertainPose{
+            T_query_anchor * geometry::between(poses[place.anchor], poses[earlier]), spread};
+      };
+      for (std::uint32_t earlier = place.first_stop; earlier <= place.last_stop; ++earlier) {
+        const UncertainPose T_query_earlier = predicted(earlier);
+        if (earlier >= first_recent(query) || chosen.count({earlier, query}) > 0 ||
+            !comparisons_.worth(earlier, query, T_query_earlier.T_a_b)) {
+          continue;
+        }
+        choice.consider_common(earlier, stops_[query].view->profile, stops_[earlier].view->outline,
+                               {T_query_earlier.T_a_b, 0.25 * spread});
+      }
+      for (const MatchCandidate& candidate :
+           choice.best_apart(query == stop ? kStopsOfPlace : std::size_t{1})) {
+        any = true;
+        chosen.insert({candidate.id, query});
+        // What the graph predicts, for a stop a little before the one that it was asked for.
+        const UncertainPose T_query_earlier{geometry::between(poses[query], poses[candidate.id]),
+                                            relative[candidate.id].covariance};
+        found.push_back({requests_.make(query, candidate.id, predicted(candidate.id)),
+                         T_query_earlier, ProposalSource::kPlace});
+      }
+    }
+    if (any) ++places;
+  }
+  return found;
+}
+
+StopMatch StopMatching::window_match(std::uint32_t stop, const PlaceProposal& place) const {
+  StopMatch match;
+  const UncertainPose calibrated{place.aligned.T_a_b,
+                                 calibration_.of_match(place.aligned.covariance)};
+  match.edge = {
+      place.anchor,         stop, EdgeKind::kRevisit, place.aligned.T_a_b, place.aligned.covariance,
+      calibrated.covariance};
+  match.T_later_earlier = inverse(place.aligned);
+  match.predicted = place.predicted;
+  match.source = ProposalSource::kWindow;
+  match.reason = Reason::kDoubtful;
+  match.fitness = place.value;
+  match.overlap = place.seen;
+  return match;
 }
 
 std::vector<StopMatch> StopMatching::run(std::span<const MatchTask> tasks, EdgeKind kind) {
@@ -156,20 +350,31 @@ std::vector<StopMatch> StopMatching::run(std::span<const MatchTask> tasks, EdgeK
 
 StopMatch StopMatching::judged(const MatchTask& task, const MatchResult& result,
                                EdgeKind kind) const {
-  const double foreseen =
-      expected_overlap(stops_[task.reference_map_id].profile, stops_[task.query_map_id].outline,
-                       {task.T_reference_query, task.covariance});
+  const double foreseen = expected_overlap(stops_[task.reference_map_id].view->profile,
+                                           stops_[task.query_map_id].view->outline,
+                                           {task.T_reference_query, task.covariance});
   const Pose2 T_later_earlier =
       result.status == MatchStatus::kSolved
-          ? without_prior(result.T_reference_query, result.covariance,
+          ? without_prior(result.T_reference_query,
+                          kind == EdgeKind::kRevisit ? data_covariance(result) : result.covariance,
                           {task.T_reference_query, task.covariance.inverse()})
           : task.T_reference_query;
   StopMatch match;
   match.edge = {task.query_map_id, task.reference_map_id, kind, geometry::inverse(T_later_earlier),
                 geometry::inverse_covariance(T_later_earlier, result.covariance)};
+  match.T_later_earlier = {T_later_earlier, result.covariance};
+  if (!result.covariance.isZero(0.0)) {
+    match.edge.calibrated =
+        geometry::inverse_covariance(T_later_earlier, calibration_.of_match(result.covariance));
+  }
+  match.predicted = inverse({task.T_reference_query, task.covariance});
   match.verdict = result.verdict;
   match.reason = result.reason;
   match.fitness = result.fitness;
+  match.doubt = doubt(result);
+  match.overlap = result.overlap;
+  match.inliers = result.inliers;
+  match.violations = result.violations;
   match.evidence = step_match(task, result, foreseen, task.query_map_id);
   match.solutions = result.solutions;
   return match;

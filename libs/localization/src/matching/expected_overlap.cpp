@@ -16,6 +16,23 @@ std::vector<SurfacePoint> outline_of(std::span<const SurfacePoint> coarse) {
   return outline;
 }
 
+double expected_common(const RangeProfile& viewer, std::span<const SurfacePoint> outline,
+                       const UncertainPose& T_viewer_outline) {
+  if (outline.empty()) return 0.0;
+  const Eigen::Matrix3d& covariance = T_viewer_outline.covariance;
+  const double tolerance_m = 0.2 + std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+  double common = 0.0;
+  const geometry::Pose2& T = T_viewer_outline.T_a_b;
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
+  for (const SurfacePoint& point : outline) {
+    const SurfacePoint p = moved(point, T, r);
+    if (viewer.view_of_face(p.position_m, p.normal, tolerance_m) == RangeProfile::View::kSurface) {
+      common += 1.0;
+    }
+  }
+  return common / static_cast<double>(outline.size());
+}
+
 double expected_overlap(const RangeProfile& viewer, std::span<const SurfacePoint> outline,
                         const UncertainPose& T_viewer_outline, double least) {
   if (outline.empty()) return 0.0;

@@ -88,20 +88,27 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
   return {Verdict::kAccepted, Reason::kNone};
 }
 
-Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doubt) {
+Eigen::Matrix3d match_covariance_floor() {
   // Fixed: correlated beams and thick walls, which the least squares does not model.
   constexpr double kFloor_m = 0.02;
   constexpr double kFloor_rad = 0.0052;
+  return Eigen::Vector3d(kFloor_m * kFloor_m, kFloor_m * kFloor_m, kFloor_rad * kFloor_rad)
+      .asDiagonal();
+}
+
+Eigen::Matrix3d data_covariance(const MatchResult& result) {
+  if (result.covariance.isZero(0.0)) return result.covariance;
+  const double widening = 0.5 + doubt(result);
+  return (result.covariance - match_covariance_floor()) / (widening * widening);
+}
+
+Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doubt) {
   constexpr double kLeastInformation =
       0.25;  // along a bare corridor: a deviation of 2 m, not an infinite one
   Eigen::Matrix3d known = information;
   for (int i = 0; i < 3; ++i) known(i, i) += kLeastInformation;
   const double widening = 0.5 + doubt;
-  Eigen::Matrix3d covariance = known.inverse() * (widening * widening);
-  covariance(0, 0) += kFloor_m * kFloor_m;
-  covariance(1, 1) += kFloor_m * kFloor_m;
-  covariance(2, 2) += kFloor_rad * kFloor_rad;
-  return covariance;
+  return known.inverse() * (widening * widening) + match_covariance_floor();
 }
 
 }  // namespace topogeo::localization

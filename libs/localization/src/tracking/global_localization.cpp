@@ -43,7 +43,7 @@ constexpr double kSmallestFitness = 0.60;  // a pose with less is rejected
 constexpr double kLargestDoubt = 2.2;      // and one with more, as by `gate.largest_doubt`
 constexpr double kLargestRivalry =
     0.85;  // fitness of the best pose elsewhere over that of the best
-constexpr std::size_t kFewestPoints = 25;  // of the scan, thinned; fewer prove nothing
+constexpr std::size_t kFewestQueryPoints = 25;  // of the scan, thinned; fewer prove nothing
 
 /// At most about `count`, spread over the scan.
 std::vector<SurfacePoint> spread(const std::vector<SurfacePoint>& points, std::size_t count) {
@@ -345,7 +345,7 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
                                    const Pose2& T_robot_laser) const {
   GlobalAnswer answer;
   const MatchFeatures query = extract_scan_features(points, T_robot_laser);
-  if (query.coarse.size() < kFewestPoints) return answer;
+  if (query.coarse.size() < kFewestQueryPoints) return answer;
   std::vector<GlobalPose> found;
   for (const Climbed& place : places(query, kAligned)) found.push_back(aligned(query, place));
   const auto value = [](const GlobalPose& p) {

@@ -25,6 +25,10 @@ class CandidateChoice {
   /// Considers a map by the overlap that is to be expected; see expected_overlap().
   void consider(std::uint32_t id, const RangeProfile& viewer, std::span<const SurfacePoint> outline,
                 const UncertainPose& T_viewer_outline);
+  /// The same, ordered by expected_common(), of which it wants some.
+  void consider_common(std::uint32_t id, const RangeProfile& viewer,
+                       std::span<const SurfacePoint> outline,
+                       const UncertainPose& T_viewer_outline);
   /// Takes a map before all that are considered.
   void take(std::uint32_t id) { found_.push_back({id, kTaken}); }
 

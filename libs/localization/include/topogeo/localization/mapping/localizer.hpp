@@ -76,6 +76,8 @@ class Localizer : public Slam {
   }
   [[nodiscard]] LocalizationStatus status() const override { return monitor_.status(); }
   [[nodiscard]] SlamCounts counts() const override;
+  /// The stops and all that was measured between them.
+  [[nodiscard]] const PoseGraph& graph() const { return graph_; }
 
  private:
   [[nodiscard]] std::uint32_t last() const;
@@ -85,6 +87,8 @@ class Localizer : public Slam {
   void restore(MapPointer map, const topomap::StopPose& pose);
   std::vector<StepMatch> match_recent();
   std::vector<StepMatch> match_revisited(std::span<const std::uint32_t> stops);
+  [[nodiscard]] bool as_odometry_says(const PoseGraphEdge& match) const;
+  void rely_on_odometry();
   void watch_odometry(const PoseGraphEdge& match);
   void judge_state(std::vector<StepMatch> evidence);
 

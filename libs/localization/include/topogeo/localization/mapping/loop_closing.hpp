@@ -12,9 +12,10 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/loop_agreement.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/mapping/stop_matching.hpp"
 
 namespace topogeo::localization {
 
@@ -30,12 +31,23 @@ class LoopClosing {
     kMoves,        ///< accepted, and waiting for an optimisation
   };
   /// Decides on a match of the last stop, or of any after the end of a log, that passed its gate.
-  Verdict consider(const PoseGraph& graph, const PoseGraphEdge& loop, double fitness);
+  Verdict consider(const PoseGraph& graph, const StopMatch& loop);
+
+  /// Keeps a match, of whatever verdict, that may be right together with others.
+  void suppose(const StopMatch& loop, std::span<const double> path_m) {
+    agreement_.add(loop, path_m);
+  }
+  /// Tells those supposed of a loop that was accepted alone.
+  void support(const StopMatch& loop, std::span<const double> path_m) {
+    agreement_.add_accepted(loop, path_m);
+  }
+  /// Accepts those supposed loops that agree, to wait for an optimisation; returns how many.
+  std::size_t accept_agreed(const PoseGraph& graph, std::span<const double> path_m);
 
   /// Records a match that its gate refused.
-  void refuse(const PoseGraph& graph, const PoseGraphEdge& loop, Reason reason, double fitness);
+  void refuse(const PoseGraph& graph, const StopMatch& loop);
   /// Accepts a loop that is known to be right, to wait for an optimisation.
-  void accept(const PoseGraph& graph, const PoseGraphEdge& loop, double fitness);
+  void accept(const PoseGraph& graph, const StopMatch& loop);
   /// Records loops that an optimisation has left out.
   void outvote(const PoseGraph& graph, std::span<const PoseGraphEdge> loops);
 
@@ -61,18 +73,18 @@ class LoopClosing {
     [[nodiscard]] geometry::Pose2 motion() const;
   };
   struct PendingLoop {
-    PoseGraphEdge edge;
+    StopMatch match;
     geometry::Pose2 motion;  // see Correction, at that time
   };
 
   [[nodiscard]] static Correction correction_of(const PoseGraph& graph, const PoseGraphEdge& loop);
   [[nodiscard]] bool far(const Correction& correction) const;
-  bool confirm(const PoseGraph& graph, const PoseGraphEdge& loop, const Correction& correction);
-  void decide(const PoseGraph& graph, const PoseGraphEdge& loop, LoopOutcome outcome, Reason reason,
-              double fitness);
+  bool confirm(const PoseGraph& graph, const StopMatch& loop, const Correction& correction);
+  void decide(const PoseGraph& graph, const StopMatch& loop, LoopOutcome outcome, Reason reason);
 
   double unaided_correction_m_;
   double unaided_correction_rad_;
+  LoopAgreement agreement_;
   std::vector<PendingLoop> pending_;
   std::vector<PoseGraphEdge> waiting_;
   std::vector<LoopDecision> decisions_;

@@ -7,6 +7,7 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
 
@@ -20,6 +21,16 @@ enum class LoopOutcome : std::uint8_t {
 
 inline constexpr std::size_t kLoopOutcomes = 5;
 
+/// Why two stops were compared.
+enum class ProposalSource : std::uint8_t {
+  kPrediction = 0,  ///< the poses say that they see the same
+  kPlace = 1,       ///< what was seen over the last metres looks like an earlier place
+  kWindow = 2,      ///< the same, matched as a whole and not stop by stop
+};
+
+/// "prediction", "place".
+const char* to_string(ProposalSource source);
+
 /// "accepted", "match not accepted", "unconfirmed", "no consistent closing", "outvoted".
 const char* to_string(LoopOutcome outcome);
 
@@ -31,9 +42,11 @@ struct LoopDecision {
   LoopOutcome outcome = LoopOutcome::kGate;
   Reason reason = Reason::kNone;    ///< of the match
   geometry::Pose2 T_earlier_later;  ///< as matched; as predicted when nothing was in common
+  UncertainPose predicted;          ///< of T_earlier_later, before the match
   double correction_m = 0.0;        ///< how far the match moves the later stop in the map
   double correction_rad = 0.0;
   double fitness = 0.0;  ///< of the match, [0, 1]
+  ProposalSource source = ProposalSource::kPrediction;
 };
 
 /// Outcome and reason in words, as in reports: "accepted", "match not accepted: few inliers", ...

@@ -10,8 +10,9 @@
 namespace topogeo::localization {
 
 /// Factors of the configured variances, from the squared differences between odometry and accepted
-/// matches over the last steps. Never below 1: the configuration is a floor, because a covariance
-/// that is too small costs more than one that is too large.
+/// matches over the last steps. For weighing and searching they are never below 1: the
+/// configuration is a floor, because there a covariance that is too small costs more than one that
+/// is too large.
 class OdometryMonitor {
  public:
   /// One step by odometry, with its configured covariance, and by an accepted match, with its own:
@@ -20,6 +21,10 @@ class OdometryMonitor {
 
   /// The covariance as the last steps have it.
   [[nodiscard]] Eigen::Matrix3d widened(const Eigen::Matrix3d& configured) const;
+
+  /// The covariance as the last steps have it, narrower too where odometry is better than
+  /// configured: what is to be expected of a step without a match.
+  [[nodiscard]] Eigen::Matrix3d expected(const Eigen::Matrix3d& configured) const;
 
   [[nodiscard]] double translation_factor() const { return translation_.factor(); }
   [[nodiscard]] double heading_factor() const { return heading_.factor(); }
@@ -30,7 +35,10 @@ class OdometryMonitor {
    public:
     /// `squared`: of the difference; the variances that odometry and the match state of it.
     void add(double squared, double odometry_variance, double match_variance);
+    /// At least 1.
     [[nodiscard]] double factor() const;
+    /// With a margin, because errors of odometry add up from step to step.
+    [[nodiscard]] double expected_factor() const;
 
    private:
     static constexpr double kMemory = 20.0;

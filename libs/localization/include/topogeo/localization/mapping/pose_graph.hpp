@@ -28,7 +28,12 @@ struct PoseGraphEdge {
   EdgeKind kind = EdgeKind::kOdometry;
   geometry::Pose2 T_from_to;
   Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Identity();  ///< of T_from_to, in the frame of `from`
+      Eigen::Matrix3d::Identity();  ///< of T_from_to, in the frame of `from`; the weight in the
+                                    ///< least squares, with a margin for what matches of one place
+                                    ///< have in common
+  /// The same as errors were measured to be (CovarianceCalibration), for predictions; zero: as
+  /// `covariance`.
+  Eigen::Matrix3d calibrated = Eigen::Matrix3d::Zero();
 };
 
 struct OptimizationSummary {
@@ -101,14 +106,30 @@ class PoseGraph {
   }
   static constexpr double kUnreached_m2 = 1e6;
 
+  /// The same by the calibrated covariances of the edges: where a stop is to be expected. Matches
+  /// of one place share errors that do not grow along a path, so this is too sure for weighing
+  /// measurements against each other.
+  [[nodiscard]] std::vector<UncertainPose> predict_from(std::uint32_t origin,
+                                                        const Reach& reach) const;
+
+  /// From one stop to another by the steps between them alone, whatever else is known; calibrated
+  /// covariances, to first order. Constant time, once the sums up to the later stop are there.
+  [[nodiscard]] UncertainPose along_path(std::uint32_t from, std::uint32_t to) const;
+
   /// Length of a path with this covariance at its end, m^2: the variance of where things are that
   /// are seen from there.
   static double path_cost(const Eigen::Matrix3d& covariance);
 
  private:
+  void rebuild_links();
+
   std::vector<geometry::Pose2> poses_;
   std::vector<PoseGraphEdge> edges_;
   std::unique_ptr<PoseLinks> links_;
+  std::unique_ptr<PoseLinks> calibrated_links_;
+  /// Summed covariance of the steps up to each stop, as a small motion of the whole map about its
+  /// origin; filled as far as it was asked for.
+  mutable std::vector<Eigen::Matrix3d> step_sums_;
 };
 
 }  // namespace topogeo::localization

@@ -9,28 +9,40 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
 #include "topogeo/localization/mapping/candidate_choice.hpp"
+#include "topogeo/localization/mapping/covariance_calibration.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/mapping/match_requests.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/state_monitor.hpp"
 #include "topogeo/localization/mapping/stop_comparisons.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/localization/places/place_recognition.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {
 
 /// The result of a match of two stops.
 struct StopMatch {
-  PoseGraphEdge edge;  ///< as measured; as predicted when nothing was in common
+  PoseGraphEdge edge;             ///< as measured; as predicted when nothing was in common
+  UncertainPose T_later_earlier;  ///< the same, with the covariance of the match itself
+  UncertainPose predicted;        ///< of edge.T_from_to, before the match
+  ProposalSource source = ProposalSource::kPrediction;
   Verdict verdict = Verdict::kRejected;
   Reason reason = Reason::kNothingInCommon;
   double fitness = 0.0;  ///< [0, 1]
-  StepMatch evidence;    ///< of the pose of the later stop
+  double doubt = 0.0;    ///< see doubt(); this and the next as in MatchResult
+  double overlap = 0.0;
+  double inliers = 0.0;
+  double violations = 0.0;
+  StepMatch evidence;  ///< of the pose of the later stop
   std::vector<MatchSolution> solutions;
 
   [[nodiscard]] bool accepted() const { return verdict == Verdict::kAccepted; }
@@ -38,6 +50,10 @@ struct StopMatch {
   [[nodiscard]] bool uncertain() const {
     return reason == Reason::kDoubtful || reason == Reason::kSecondSolution;
   }
+  /// Squared Mahalanobis distance of the match from its prediction; 0 without one.
+  [[nodiscard]] double surprise() const;
+  /// Whether it may be right together with others that agree with it (LoopAgreement).
+  [[nodiscard]] bool plausible() const;
 };
 
 class StopMatching {
@@ -51,7 +67,8 @@ class StopMatching {
   [[nodiscard]] std::size_t size() const { return stops_.size(); }
   [[nodiscard]] const topomap::LocalMap& map(std::size_t stop) const { return *stops_[stop].map; }
   /// Along the odometry from the first stop to this one.
-  [[nodiscard]] double path_m(std::size_t stop) const { return stops_[stop].path_m; }
+  [[nodiscard]] double path_m(std::size_t stop) const { return path_m_[stop]; }
+  [[nodiscard]] std::span<const double> path_m() const { return path_m_; }
 
   /// Matches of the last stop with recent ones; once more in a wider space when none is accepted,
   /// because odometry may be worse than configured. The pose of the last stop in the graph is the
@@ -68,15 +85,22 @@ class StopMatching {
   /// The next stop does not follow the last one: its search starts from nothing.
   void forget_solutions() { last_solutions_.clear(); }
 
+  /// What the triangles of matches say of their covariances.
+  [[nodiscard]] const CovarianceCalibration& calibration() const { return calibration_; }
+
   [[nodiscard]] MatchRequests& requests() { return requests_; }
   [[nodiscard]] const MatchRequests& requests() const { return requests_; }
 
  private:
   struct Stop {
     std::shared_ptr<const topomap::LocalMap> map;
-    double path_m = 0.0;
-    RangeProfile profile;
-    std::vector<SurfacePoint> outline;  // some of its points, to foresee overlap
+    std::shared_ptr<const StopView> view;
+  };
+  /// A task and what it is for.
+  struct Comparison {
+    MatchTask task;
+    UncertainPose T_later_earlier;  // as predicted
+    ProposalSource source = ProposalSource::kPrediction;
   };
 
   [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
@@ -85,17 +109,32 @@ class StopMatching {
   [[nodiscard]] std::vector<MatchCandidate> revisited_candidates(
       const PoseGraph& graph, std::uint32_t stop, std::span<const UncertainPose> relative) const;
   void consider(CandidateChoice& choice, const PoseGraph& graph, std::uint32_t earlier,
-                std::uint32_t stop, const UncertainPose& T_stop_earlier) const;
+                std::uint32_t stop, const UncertainPose& T_stop_earlier, bool common) const;
   std::vector<MatchTask> recent_tasks(const PoseGraph& graph,
                                       std::span<const UncertainPose> relative, double widening);
   std::vector<StopMatch> run(std::span<const MatchTask> tasks, EdgeKind kind);
+  void calibrate(std::span<const StopMatch> matches);
+  [[nodiscard]] bool wants_places(std::uint32_t stop) const;
+  std::vector<Comparison> comparisons_with_places(const PoseGraph& graph, std::uint32_t stop,
+                                                  std::span<const UncertainPose> relative);
+  [[nodiscard]] StopMatch window_match(std::uint32_t stop, const PlaceProposal& place) const;
   [[nodiscard]] StopMatch judged(const MatchTask& task, const MatchResult& result,
                                  EdgeKind kind) const;
 
   LocalizerConfig config_;
   MatchRequests requests_;
   std::vector<Stop> stops_;
+  std::vector<double> path_m_;  // along the odometry, of each stop
+  PlaceRecognition places_;
+  std::set<std::uint32_t> recognized_;  // stops that places were asked for, in this round
+  std::optional<std::uint32_t> recognized_last_;
+  std::vector<StopMatch> windows_;  // of the places of this round
+  std::uint32_t misfits_ = 0;  // stops in succession at which no match fitted its prediction
+  std::set<std::uint32_t> revisited_;  // stops that were matched where they were predicted
   StopComparisons comparisons_;
+  CovarianceCalibration calibration_;
+  /// T_later_earlier of accepted matches with recent stops, by (earlier, later).
+  std::map<std::pair<std::uint32_t, std::uint32_t>, UncertainPose> recent_;
   /// Of the last stop's matches with recent ones, by the id of the older map: where the search for
   /// the next stop against the same map starts.
   std::map<std::uint32_t, std::vector<MatchSolution>> last_solutions_;

@@ -39,4 +39,11 @@ Judgement judge(const MatchTask& task, const MatchResult& result);
 /// beams, thick walls): 2 cm and 0.3 degrees.
 Eigen::Matrix3d match_covariance(const Eigen::Matrix3d& information, double doubt);
 
+/// The covariance without its margins: the inverse Hessian of the data term alone, as far as it is
+/// known. Zero where that of the match is.
+Eigen::Matrix3d data_covariance(const MatchResult& result);
+
+/// What match_covariance() adds whatever the match is like.
+Eigen::Matrix3d match_covariance_floor();
+
 }  // namespace topogeo::localization

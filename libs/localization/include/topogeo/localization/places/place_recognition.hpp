@@ -1,0 +1,97 @@
+// Which earlier places look like what the robot has seen over its last metres
+// (docs/algorithms.md, "Places").
+//
+// One scan of a corridor looks like another; five metres of a drive with their doors and ends do
+// so much less. What was seen over the last metres is searched, coarsely, in submaps: pieces of the
+// older path with all that was seen from them, fixed once they are complete. Proposals are only
+// that: a match of two stops has to confirm them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/places/coarse_search.hpp"
+
+namespace topogeo::localization {
+
+/// What was seen from a stop, in the frame of the robot.
+struct StopView {
+  RangeProfile profile;
+  std::vector<SurfacePoint> outline;    ///< some of its points, to foresee overlap
+  std::vector<SurfacePoint> near;  ///< points within kNear_m, about 0.2 m apart
+
+  static constexpr double kNear_m = 15.0;
+};
+
+StopView view_of(MatchFeatures features);
+
+/// An earlier place that the robot may be at.
+struct PlaceProposal {
+  std::uint32_t anchor = 0;      ///< stop in whose frame the poses are
+  std::uint32_t first_stop = 0;  ///< of the submap
+  std::uint32_t last_stop = 0;
+  geometry::Pose2 T_anchor_robot;  ///< as found
+  UncertainPose predicted;         ///< the same as predicted
+  /// T_anchor_robot after both were aligned as a whole, with the covariance of match_covariance();
+  /// zero where too little is in common.
+  UncertainPose aligned;
+  double value = 0.0;  ///< after that: share of the points in view of the submap that it has too, [0, 1]
+  double seen = 0.0;   ///< share of the points in view of the submap, [0, 1]
+};
+
+/// The covariance within which a place is looked for, from that of its prediction.
+Eigen::Matrix3d widened_for_places(const Eigen::Matrix3d& predicted);
+
+class PlaceRecognition {
+ public:
+  /// Appends a stop, whose number is its index; `path_m` to it from the first.
+  void add(std::shared_ptr<const StopView> view, double path_m);
+
+  /// Submaps of stops before `first_recent` that lie where `stop` may be, searched by what was seen
+  /// over the last metres up to it; best first. `relative`: of the stops, seen from `stop`. Where a
+  /// stop is known better than `least_sigma_m` on both axes its submap is left out.
+  std::vector<PlaceProposal> propose(const PoseGraph& graph, std::uint32_t stop,
+                                     std::uint32_t first_recent,
+                                     std::span<const UncertainPose> relative,
+                                     double least_sigma_m);
+
+ private:
+  struct Submap {
+    std::uint32_t first = 0;  // stops
+    std::uint32_t last = 0;
+    std::uint32_t anchor = 0;
+    std::vector<geometry::Pose2> T_anchor_stop;  // of first to last
+  };
+  struct CachedMap {
+    std::size_t submap;
+    CoarseMap map;
+    std::optional<Reference> reference;  // made when it is needed
+  };
+
+  void cut(const PoseGraph& graph, std::uint32_t first_recent);
+  [[nodiscard]] std::vector<SurfacePoint> points_of(const Submap& submap) const;
+  [[nodiscard]] std::vector<SurfacePoint> query(const PoseGraph& graph,
+                                                   std::uint32_t stop) const;
+  CachedMap& map_of(std::size_t submap);
+  void compare(const Submap& submap, CachedMap& cached, const MatchFeatures& query,
+               PlaceProposal& proposal) const;
+
+  std::vector<std::shared_ptr<const StopView>> views_;
+  std::vector<double> path_m_;
+  std::vector<Submap> submaps_;
+  std::uint32_t next_first_ = 0;  // of the next submap
+  std::list<CachedMap> cache_;    // the one used last first
+};
+
+}  // namespace topogeo::localization

@@ -1,0 +1,55 @@
+#include "topogeo/localization/mapping/covariance_calibration.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "topogeo/localization/matching/match_gate.hpp"
+
+namespace topogeo::localization {
+
+namespace {
+
+// Of the variances beyond the floor: fitted to the triangles of recorded logs, each log left out
+// once (tests/bench/RESULTS.md, "Covariances").
+constexpr double kUsualShare = 0.06;
+// Of the variance: errors along a path have a part in common, which no triangle shows.
+constexpr double kMargin = 1.5;
+constexpr double kFloor_m = 0.002;
+constexpr double kFloor_rad = 0.0005;
+// A triangle further off has a wrong match, which says nothing of the others.
+constexpr double kLargestSquare = 30.0;
+constexpr double kLeastFactor = 0.3;
+constexpr double kLargestFactor = 6.0;
+
+Eigen::Matrix3d usual(const Eigen::Matrix3d& covariance, double factor) {
+  Eigen::Matrix3d c = kUsualShare * factor * (covariance - match_covariance_floor());
+  c(0, 0) += kFloor_m * kFloor_m;
+  c(1, 1) += kFloor_m * kFloor_m;
+  c(2, 2) += kFloor_rad * kFloor_rad;
+  return c;
+}
+
+}  // namespace
+
+void CovarianceCalibration::add_triangle(const UncertainPose& direct, const UncertainPose& first,
+                                         const UncertainPose& second) {
+  const UncertainPose around = compose({first.T_a_b, usual(first.covariance, 1.0)},
+                                       {second.T_a_b, usual(second.covariance, 1.0)});
+  const Eigen::Vector3d error = geometry::difference(around.T_a_b, direct.T_a_b);
+  const Eigen::Matrix3d covariance = around.covariance + usual(direct.covariance, 1.0);
+  const double square = error.dot(covariance.inverse() * error);
+  if (!(square <= kLargestSquare)) return;
+  sum_ += square / 3.0;
+  weight_ += 1.0;
+}
+
+double CovarianceCalibration::factor() const {
+  return std::clamp(sum_ / weight_, kLeastFactor, kLargestFactor);
+}
+
+Eigen::Matrix3d CovarianceCalibration::of_match(const Eigen::Matrix3d& covariance) const {
+  return usual(covariance, kMargin * factor());
+}
+
+}  // namespace topogeo::localization

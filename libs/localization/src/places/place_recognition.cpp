@@ -1,0 +1,267 @@
+#include "topogeo/localization/places/place_recognition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/matching/expected_overlap.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+constexpr double kSubmap_m = 8.0;  // of path; each begins half of it after the one before
+constexpr double kQuery_m = 5.0;   // of path
+constexpr double kQueryLeast_m = 2.5;
+constexpr std::size_t kQueryPoints = 120;
+constexpr double kQuerySpacing_m = 0.20;
+constexpr double kSigmas = 3.0;  // of the prediction, searched
+// Wider than the prediction says, because it is asked where matches by the prediction have failed:
+// a step before may have been wrong.
+constexpr double kWider = 1.5;
+const Eigen::Matrix3d kSurprise = Eigen::Vector3d(0.09, 0.09, 0.01).asDiagonal();
+constexpr double kWidestWindow_m = 12.0;  // searched to each side at most, however wide that is
+constexpr double kFootprint_m = 10.0;     // from the anchor of a submap to where a robot can see it
+// Bounds the time of a step, however large the map is: the most likely submaps are searched.
+constexpr std::size_t kMostSubmaps = 40;
+constexpr std::size_t kCached = 64;  // coarse maps of about 60 kB
+constexpr double kLeastScore = 0.30;
+constexpr std::size_t kPlacesOfSubmap = 3;  // compared; the best one is proposed
+// Of the comparison as a whole: points this far apart; one is there when the submap has one this
+// near, and contradicts it where a stop of the submap saw past it.
+constexpr double kAlignedSpacing_m = 0.10;
+constexpr std::size_t kAlignedPoints = 400;
+constexpr double kSubmapSpacing_m = 0.05;
+constexpr std::size_t kSubmapPoints = 6000;
+constexpr double kThere_m = 0.20;
+constexpr double kPlaceTolerance_m = 0.35;
+constexpr double kUsualDoubt = 1.0;
+// Holds the pose where nothing else does, along a bare corridor: half a metre, 6 degrees.
+const Eigen::Matrix3d kWeak = Eigen::Vector3d(4.0, 4.0, 100.0).asDiagonal();
+constexpr double kLeastSeen = 0.35;
+
+// One point for each square, in order of the squares; at most about `count` of them.
+std::vector<SurfacePoint> thinned(std::vector<SurfacePoint> points, double spacing_m,
+                                  std::size_t count) {
+  const auto cell = [&](const SurfacePoint& p) {
+    return std::pair(static_cast<std::int64_t>(std::floor(p.position_m.y() / spacing_m)),
+                     static_cast<std::int64_t>(std::floor(p.position_m.x() / spacing_m)));
+  };
+  std::stable_sort(points.begin(), points.end(),
+                   [&](const SurfacePoint& a, const SurfacePoint& b) { return cell(a) < cell(b); });
+  points.erase(
+      std::unique(points.begin(), points.end(),
+                  [&](const SurfacePoint& a, const SurfacePoint& b) { return cell(a) == cell(b); }),
+      points.end());
+  if (points.size() <= count) return points;
+  std::vector<SurfacePoint> some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
+  return some;
+}
+
+void add_moved(std::span<const SurfacePoint> points, const Pose2& T,
+               std::vector<SurfacePoint>& out) {
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
+  for (const SurfacePoint& p : points) out.push_back(moved(p, T, r));
+}
+
+std::vector<Eigen::Vector2d> positions(std::span<const SurfacePoint> points) {
+  std::vector<Eigen::Vector2d> out;
+  for (const SurfacePoint& p : points) out.push_back(p.position_m);
+  return out;
+}
+
+}  // namespace
+
+Eigen::Matrix3d widened_for_places(const Eigen::Matrix3d& predicted) {
+  return predicted * (kWider * kWider) + kSurprise;
+}
+
+StopView view_of(MatchFeatures features) {
+  StopView view;
+  view.outline = outline_of(features.coarse);
+  for (const SurfacePoint& point : features.coarse) {
+    if (point.position_m.squaredNorm() <= StopView::kNear_m * StopView::kNear_m) {
+      view.near.push_back(point);
+    }
+  }
+  view.profile = std::move(features.profile);
+  return view;
+}
+
+void PlaceRecognition::add(std::shared_ptr<const StopView> view, double path_m) {
+  views_.push_back(std::move(view));
+  path_m_.push_back(path_m);
+}
+
+// Completes submaps whose stops are all older than the recent ones.
+void PlaceRecognition::cut(const PoseGraph& graph, std::uint32_t first_recent) {
+  while (true) {
+    std::uint32_t last = next_first_;
+    while (last + 1 < first_recent && path_m_[last] - path_m_[next_first_] < kSubmap_m) ++last;
+    if (last >= first_recent || path_m_[last] - path_m_[next_first_] < kSubmap_m) return;
+    Submap submap{next_first_, last, (next_first_ + last) / 2, {}};
+    for (std::uint32_t stop = submap.first; stop <= submap.last; ++stop) {
+      submap.T_anchor_stop.push_back(
+          geometry::between(graph.poses()[submap.anchor], graph.poses()[stop]));
+    }
+    const double begin_m = path_m_[next_first_];
+    while (next_first_ < last && path_m_[next_first_] - begin_m < 0.5 * kSubmap_m) ++next_first_;
+    submaps_.push_back(std::move(submap));
+  }
+}
+
+std::vector<SurfacePoint> PlaceRecognition::points_of(const Submap& submap) const {
+  std::vector<SurfacePoint> points;
+  for (std::uint32_t stop = submap.first; stop <= submap.last; ++stop) {
+    add_moved(views_[stop]->near, submap.T_anchor_stop[stop - submap.first], points);
+  }
+  return thinned(std::move(points), kSubmapSpacing_m, kSubmapPoints);
+}
+
+// What was seen over the last metres up to a stop, in its frame.
+std::vector<SurfacePoint> PlaceRecognition::query(const PoseGraph& graph,
+                                                  std::uint32_t stop) const {
+  std::vector<SurfacePoint> points;
+  for (std::uint32_t i = stop + 1; i-- > 0;) {
+    if (path_m_[stop] - path_m_[i] > kQuery_m) break;
+    add_moved(views_[i]->near, geometry::between(graph.poses()[stop], graph.poses()[i]), points);
+  }
+  return points;
+}
+
+PlaceRecognition::CachedMap& PlaceRecognition::map_of(std::size_t submap) {
+  const auto found = std::find_if(cache_.begin(), cache_.end(),
+                                  [&](const CachedMap& cached) { return cached.submap == submap; });
+  if (found != cache_.end()) {
+    cache_.splice(cache_.begin(), cache_, found);
+  } else {
+    cache_.push_front({submap, CoarseMap(positions(points_of(submaps_[submap]))), std::nullopt});
+    if (cache_.size() > kCached) cache_.pop_back();
+  }
+  return cache_.front();
+}
+
+// Aligns all that was seen over the last metres with the submap, and counts how many of the points
+// the submap has, of those that its stops could see.
+void PlaceRecognition::compare(const Submap& submap, CachedMap& cached, const MatchFeatures& query,
+                               PlaceProposal& proposal) const {
+  if (!cached.reference) {
+    MatchFeatures features;
+    features.surface = points_of(submap);
+    cached.reference = make_reference(std::move(features));
+  }
+  const Reference& reference = *cached.reference;
+  const PosePrior weak{proposal.T_anchor_robot, kWeak};
+  const Alignment aligned = align(reference, query, proposal.T_anchor_robot, weak);
+  const Pose2& T = aligned.T_reference_query;
+  const geometry::SinCos heading = geometry::sincos(T.theta_rad);
+  std::size_t there = 0;
+  std::size_t contradicted = 0;
+  for (const SurfacePoint& point : query.surface) {
+    const SurfacePoint p = moved(point, T, heading);
+    const std::int32_t found = reference.surface_grid.find(p.position_m.x(), p.position_m.y());
+    if (found != NearestPointGrid::kNone &&
+        (reference.features.surface[static_cast<std::size_t>(found)].position_m - p.position_m)
+                .squaredNorm() <= kThere_m * kThere_m) {
+      ++there;
+      continue;
+    }
+    for (std::uint32_t stop = submap.first; stop <= submap.last; ++stop) {
+      const Pose2 T_stop_anchor = geometry::inverse(submap.T_anchor_stop[stop - submap.first]);
+      const geometry::SinCos r = geometry::sincos(T_stop_anchor.theta_rad);
+      const SurfacePoint q = moved(p, T_stop_anchor, r);
+      const auto view =
+          views_[stop]->profile.view_of_face(q.position_m, q.normal, kPlaceTolerance_m);
+      if (view != RangeProfile::View::kFree) continue;
+      ++contradicted;
+      break;
+    }
+  }
+  const auto seen = static_cast<double>(there + contradicted);
+  proposal.seen = seen / static_cast<double>(query.surface.size());
+  proposal.value = seen > 0.0 ? static_cast<double>(there) / seen : 0.0;
+  const Eigen::Matrix3d information = information_at(reference, query, T);
+  if (!information.isZero(0.0)) proposal.aligned = {T, match_covariance(information, kUsualDoubt)};
+  proposal.T_anchor_robot = T;
+}
+
+std::vector<PlaceProposal> PlaceRecognition::propose(const PoseGraph& graph, std::uint32_t stop,
+                                                     std::uint32_t first_recent,
+                                                     std::span<const UncertainPose> relative,
+                                                     double least_sigma_m) {
+  cut(graph, first_recent);
+  std::vector<PlaceProposal> found;
+  if (path_m_[stop] - path_m_.front() < kQueryLeast_m) return found;
+  struct Target {
+    std::size_t submap;
+    CoarseWindow window;
+    UncertainPose predicted;
+    double distance;  // in deviations, beyond the footprint
+  };
+  std::vector<Target> targets;
+  for (std::size_t i = 0; i < submaps_.size(); ++i) {
+    const Submap& submap = submaps_[i];
+    if (submap.last >= first_recent) break;
+    const UncertainPose T_anchor_robot = inverse(relative[submap.anchor]);
+    const Eigen::Matrix3d& known = T_anchor_robot.covariance;
+    if (std::max(known(0, 0), known(1, 1)) < least_sigma_m * least_sigma_m) continue;
+    const Eigen::Matrix3d c = widened_for_places(T_anchor_robot.covariance);
+    Eigen::Vector3d half =
+        kSigmas * Eigen::Vector3d(std::sqrt(c(0, 0)), std::sqrt(c(1, 1)), std::sqrt(c(2, 2)));
+    const Eigen::Vector2d centre = T_anchor_robot.T_a_b.position_m();
+    const double beyond_x = std::max(0.0, std::fabs(centre.x()) - kFootprint_m);
+    const double beyond_y = std::max(0.0, std::fabs(centre.y()) - kFootprint_m);
+    if (beyond_x > half.x() || beyond_y > half.y()) continue;
+    const double distance = beyond_x * beyond_x / c(0, 0) + beyond_y * beyond_y / c(1, 1);
+    // What lies beyond the footprint is not searched: nothing of the submap is in view from there.
+    CoarseWindow window{T_anchor_robot.T_a_b, half};
+    for (const int axis : {0, 1}) {
+      const double low = std::max(centre[axis] - half[axis], -kFootprint_m);
+      const double high = std::min(centre[axis] + half[axis], kFootprint_m);
+      (axis == 0 ? window.centre.x_m : window.centre.y_m) = 0.5 * (low + high);
+      window.half_width[axis] = std::min(0.5 * (high - low), kWidestWindow_m);
+    }
+    window.half_width.z() = std::min(half.z(), std::numbers::pi);
+    targets.push_back({i, window, T_anchor_robot, distance});
+  }
+  if (targets.empty()) return found;
+  std::stable_sort(targets.begin(), targets.end(),
+                   [](const Target& a, const Target& b) { return a.distance < b.distance; });
+  if (targets.size() > kMostSubmaps) targets.resize(kMostSubmaps);
+  MatchFeatures whole;
+  whole.surface = thinned(query(graph, stop), kAlignedSpacing_m, kAlignedPoints);
+  const std::vector<Eigen::Vector2d> points_m =
+      positions(thinned(whole.surface, kQuerySpacing_m, kQueryPoints));
+  for (const Target& target : targets) {
+    const Submap& submap = submaps_[target.submap];
+    CachedMap& cached = map_of(target.submap);
+    std::optional<PlaceProposal> best;
+    for (const CoarseMatch& match :
+         search_coarsely(cached.map, points_m, target.window, kLeastScore, kPlacesOfSubmap)) {
+      PlaceProposal proposal;
+      proposal.anchor = submap.anchor;
+      proposal.first_stop = submap.first;
+      proposal.last_stop = submap.last;
+      proposal.T_anchor_robot = match.T_map_points;
+      proposal.predicted = target.predicted;
+      compare(submap, cached, whole, proposal);
+      if (proposal.seen < kLeastSeen) continue;
+      if (!best || proposal.value * proposal.seen > best->value * best->seen) best = proposal;
+    }
+    if (best) found.push_back(*best);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const PlaceProposal& a, const PlaceProposal& b) {
+    return a.value * a.seen > b.value * b.seen;
+  });
+  return found;
+}
+
+}  // namespace topogeo::localization
