@@ -1,6 +1,7 @@
 #include "topogeo/localization/mapping/stop_matching.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -52,6 +53,13 @@ constexpr std::size_t kStopsOfQuery = 3;
 constexpr double kBetweenStops_m = 1.5;
 constexpr double kQueryLength_m = 5.0;
 
+// Square root of the larger eigenvalue of the position's covariance.
+double weakest_sigma_m(const Eigen::Matrix3d& c) {
+  const double mean = 0.5 * (c(0, 0) + c(1, 1));
+  const double half_difference = 0.5 * (c(0, 0) - c(1, 1));
+  return std::sqrt(mean + std::sqrt(half_difference * half_difference + c(0, 1) * c(0, 1)));
+}
+
 bool any_accepted(std::span<const StopMatch> matches) {
   return std::any_of(matches.begin(), matches.end(),
                      [](const StopMatch& match) { return match.accepted(); });
@@ -79,7 +87,11 @@ bool StopMatch::plausible() const {
     const Eigen::Matrix3d covariance = widened_for_places(predicted.covariance);
     if (moved.dot(covariance.inverse() * moved) > kFarthest2) return false;
   }
+  // Along a bare corridor the scans allow any place: what odometry says there is no evidence.
+  constexpr double kLeastKnown_m = 0.2;
+  constexpr double kMostRivalry = 0.9;
   constexpr double kLeastOfWindow = 0.88;
+  if (weakest_sigma_m > kLeastKnown_m || rivalry > kMostRivalry) return false;
   if (source == ProposalSource::kWindow) {
     return fitness >= kLeastOfWindow && overlap >= kLeastOverlap;
   }
@@ -214,6 +226,7 @@ std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
 // Where the last stops were matched as predicted, the predictions are right; elsewhere the places
 // around are asked now and then.
 bool StopMatching::wants_places(std::uint32_t stop) const {
+  if (config_.revisit_matches == 0) return false;
   const auto near = [&](const std::set<std::uint32_t>& stops, double distance_m) {
     const auto after = stops.upper_bound(stop);
     return (after != stops.begin() && path_m_[stop] - path_m_[*std::prev(after)] < distance_m) ||
@@ -333,6 +346,7 @@ StopMatch StopMatching::window_match(std::uint32_t stop, const PlaceProposal& pl
   match.reason = Reason::kDoubtful;
   match.fitness = place.value;
   match.overlap = place.seen;
+  match.weakest_sigma_m = weakest_sigma_m(place.aligned.covariance);
   return match;
 }
 
@@ -375,6 +389,8 @@ StopMatch StopMatching::judged(const MatchTask& task, const MatchResult& result,
   match.overlap = result.overlap;
   match.inliers = result.inliers;
   match.violations = result.violations;
+  match.rivalry = rivalry(task, result);
+  match.weakest_sigma_m = weakest_sigma_m(data_covariance(result));
   match.evidence = step_match(task, result, foreseen, task.query_map_id);
   match.solutions = result.solutions;
   return match;

@@ -28,16 +28,27 @@ PoseGraph straight(std::uint32_t stops) {
 }
 
 /// A match that puts stop `to` aside by `off_m` from where it is.
-PoseGraphEdge loop(std::uint32_t from, std::uint32_t to, double off_m) {
-  return {from, to, EdgeKind::kRevisit, {1.0 * (to - from), off_m, 0.0}, spread(0.02, 0.005)};
+StopMatch loop(std::uint32_t from, std::uint32_t to, double off_m, double fitness = 0.9) {
+  StopMatch match;
+  match.edge = {from, to, EdgeKind::kRevisit, {1.0 * (to - from), off_m, 0.0}, spread(0.02, 0.005)};
+  match.verdict = Verdict::kAccepted;
+  match.reason = Reason::kNone;
+  match.fitness = fitness;
+  return match;
+}
+
+/// The same, where the robot was expected on its straight path to this deviation.
+StopMatch predicted(StopMatch match, double sigma_m) {
+  match.predicted = {{1.0 * (match.edge.to - match.edge.from), 0.0, 0.0}, spread(sigma_m, 0.05)};
+  return match;
 }
 
 TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 11, 0.05), 0.9), LoopVerdict::kAgrees);
+  EXPECT_EQ(loops.consider(graph, loop(0, 11, 0.05)), LoopVerdict::kAgrees);
   EXPECT_TRUE(loops.waiting().empty());  // the caller adds it
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, 0.3), 0.8), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, 0.3, 0.8)), LoopVerdict::kMoves);
   ASSERT_EQ(loops.waiting().size(), 1U);
   EXPECT_EQ(loops.waiting()[0].from, 1U);
   ASSERT_EQ(loops.decisions().size(), 2U);
@@ -54,13 +65,13 @@ TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
 TEST(LoopClosing, AFarCorrectionWaitsForAnotherStopThatAgrees) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 10, 1.0), 0.9), LoopVerdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(0, 10, 1.0)), LoopVerdict::kPending);
   EXPECT_TRUE(loops.waiting().empty());
   EXPECT_EQ(loops.unconfirmed(), 1U);
   // The same stop again proves nothing, nor does another one that moves the robot elsewhere.
-  EXPECT_EQ(loops.consider(graph, loop(1, 10, 1.0), 0.9), LoopVerdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, -1.0), 0.9), LoopVerdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(2, 11, 1.1), 0.9), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, loop(1, 10, 1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, -1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(2, 11, 1.1)), LoopVerdict::kMoves);
   ASSERT_EQ(loops.waiting().size(), 3U);  // both loops of stop 10 with it
   EXPECT_EQ(loops.waiting()[0].from, 0U);
   EXPECT_EQ(loops.waiting()[1].from, 1U);
@@ -72,36 +83,61 @@ TEST(LoopClosing, AFarCorrectionWaitsForAnotherStopThatAgrees) {
 TEST(LoopClosing, AWaitingLoopConfirmsAFarOne) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  loops.accept(graph, loop(0, 10, 1.0), 0.7);
-  EXPECT_EQ(loops.consider(graph, loop(1, 11, 1.0), 0.9), LoopVerdict::kMoves);
+  loops.accept(graph, loop(0, 10, 1.0, 0.7));
+  EXPECT_EQ(loops.consider(graph, loop(1, 11, 1.0)), LoopVerdict::kMoves);
 }
 
 TEST(LoopClosing, APendingLoopIsDroppedInTheEnd) {
   const PoseGraph graph = straight(40);
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 20, 1.0), 0.9), LoopVerdict::kPending);
-  EXPECT_EQ(loops.consider(graph, loop(0, 33, 1.0), 0.9), LoopVerdict::kPending);  // 13 stops later
-  EXPECT_EQ(loops.consider(graph, loop(0, 34, 1.0), 0.9), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, loop(0, 20, 1.0)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.consider(graph, loop(0, 33, 1.0)), LoopVerdict::kPending);  // 13 stops later
+  EXPECT_EQ(loops.consider(graph, loop(0, 34, 1.0)), LoopVerdict::kMoves);
   EXPECT_EQ(loops.waiting().size(), 2U);
   LoopClosing dropped({});
-  EXPECT_EQ(dropped.consider(graph, loop(0, 20, 1.0), 0.9), LoopVerdict::kPending);
+  EXPECT_EQ(dropped.consider(graph, loop(0, 20, 1.0)), LoopVerdict::kPending);
   dropped.drop_pending();
-  EXPECT_EQ(dropped.consider(graph, loop(0, 21, 1.0), 0.9), LoopVerdict::kPending);
+  EXPECT_EQ(dropped.consider(graph, loop(0, 21, 1.0)), LoopVerdict::kPending);
 }
 
 TEST(LoopClosing, StepsThatCannotBeBentRefuseALoop) {
   const PoseGraph graph = straight(5);  // at stop 4 odometry is known to 0.4 m
   LoopClosing loops({});
-  EXPECT_EQ(loops.consider(graph, loop(0, 4, 6.0), 0.9), LoopVerdict::kRefused);
+  EXPECT_EQ(loops.consider(graph, loop(0, 4, 6.0)), LoopVerdict::kRefused);
   ASSERT_EQ(loops.decisions().size(), 1U);
   EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kNoClosing);
   EXPECT_TRUE(loops.waiting().empty());
 }
 
+TEST(LoopClosing, AMatchFarFromItsPredictionNeedsOthersHoweverSmallTheCorrection) {
+  const PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  EXPECT_EQ(loops.consider(graph, predicted(loop(0, 10, 0.5), 0.4)), LoopVerdict::kMoves);
+  EXPECT_EQ(loops.consider(graph, predicted(loop(0, 11, 0.5), 0.1)), LoopVerdict::kPending);
+  EXPECT_EQ(loops.decisions().back().outcome, LoopOutcome::kUnconfirmed);
+}
+
+TEST(LoopClosing, DoubtfulMatchesThatAgreeAreAcceptedTogether) {
+  const PoseGraph graph = straight(40);
+  std::vector<double> path_m;
+  for (int i = 0; i < 40; ++i) path_m.push_back(i);
+  LoopClosing loops({});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    StopMatch doubtful = loop(i, 30 + i, 1.0);
+    doubtful.verdict = Verdict::kRejected;
+    doubtful.reason = Reason::kDoubtful;
+    loops.suppose(doubtful, path_m);
+  }
+  EXPECT_GE(loops.accept_agreed(graph, path_m), 4U);
+  EXPECT_EQ(loops.waiting().size(), loops.decisions().size());
+  EXPECT_EQ(loops.decisions().front().outcome, LoopOutcome::kAccepted);
+  EXPECT_EQ(loops.accept_agreed(graph, path_m), 0U);
+}
+
 TEST(LoopClosing, GivesWaitingLoopsAwayInTheirOrder) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  for (std::uint32_t i = 0; i < 3; ++i) loops.accept(graph, loop(i, 11, 0.2), 0.9);
+  for (std::uint32_t i = 0; i < 3; ++i) loops.accept(graph, loop(i, 11, 0.2));
   const std::vector<PoseGraphEdge> first = loops.release(2);
   ASSERT_EQ(first.size(), 2U);
   EXPECT_EQ(first[1].from, 1U);
@@ -114,8 +150,10 @@ TEST(LoopClosing, GivesWaitingLoopsAwayInTheirOrder) {
 TEST(LoopClosing, RecordsWhatGateAndOptimisationRefuse) {
   const PoseGraph graph = straight(12);
   LoopClosing loops({});
-  loops.refuse(graph, loop(0, 11, 2.0), Reason::kFewInliers, 0.4);
-  const std::vector outvoted{loop(1, 10, 0.5), loop(2, 9, 0.5)};
+  StopMatch refused = loop(0, 11, 2.0, 0.4);
+  refused.reason = Reason::kFewInliers;
+  loops.refuse(graph, refused);
+  const std::vector outvoted{loop(1, 10, 0.5).edge, loop(2, 9, 0.5).edge};
   loops.outvote(graph, outvoted);
   ASSERT_EQ(loops.decisions().size(), 3U);
   EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kGate);

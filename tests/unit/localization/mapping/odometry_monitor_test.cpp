@@ -35,6 +35,16 @@ TEST(OdometryMonitorTest, StartsAsConfigured) {
   EXPECT_TRUE(OdometryMonitor().widened(kOdometry).isApprox(kOdometry));
 }
 
+TEST(OdometryMonitorTest, ExpectsLessWhereOdometryIsBetterThanConfigured) {
+  const OdometryMonitor good = watch(400, 0.1, 0.1);
+  EXPECT_EQ(good.widened(kOdometry), kOdometry);  // for weighing the configuration is a floor
+  EXPECT_LT(good.expected(kOdometry)(0, 0), 0.2 * kOdometry(0, 0));
+  EXPECT_LT(good.expected(kOdometry)(2, 2), 0.2 * kOdometry(2, 2));
+  EXPECT_GT(good.expected(kOdometry)(0, 0), 0.01 * kOdometry(0, 0));
+  const OdometryMonitor bad = watch(400, 2.0, 2.0);
+  EXPECT_GT(bad.expected(kOdometry)(0, 0), bad.widened(kOdometry)(0, 0));
+}
+
 TEST(OdometryMonitorTest, FindsThatOdometryIsTwiceAndThriceAsBad) {
   const OdometryMonitor monitor = watch(400, 2.0, 3.0);
   EXPECT_NEAR(monitor.translation_factor(), 4.0, 1.5);

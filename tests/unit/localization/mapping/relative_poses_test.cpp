@@ -94,5 +94,35 @@ TEST(RelativePosesTest, PosesThatNothingConnectsAreAsGoodAsUnknown) {
   EXPECT_TRUE(from_there[3].covariance.isZero());
 }
 
+TEST(RelativePoses, PredictionsUseCalibratedCovariances) {
+  PoseGraph graph;
+  graph.add_pose({});
+  graph.add_pose(kFirstStep);
+  graph.add_edge({0, 1, EdgeKind::kOdometry, kFirstStep, variances_of_edge(0.09, 0.09, 0.01),
+                  variances_of_edge(0.01, 0.02, 0.003)});
+  EXPECT_TRUE(graph.relative_to(0)[1].covariance.isApprox(variances_of_edge(0.09, 0.09, 0.01)));
+  EXPECT_TRUE(
+      graph.predict_from(0, {})[1].covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003)));
+}
+
+TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
+  PoseGraph graph = chain();
+  // What else is known of the two ends does not count.
+  graph.add_edge(
+      {0, 2, EdgeKind::kRevisit, kFirstStep * kSecondStep, variances_of_edge(1e-4, 1e-4, 1e-5)});
+  for (const auto& [from, to] : {std::pair{0U, 2U}, std::pair{2U, 0U}, std::pair{1U, 2U}}) {
+    const UncertainPose path = graph.along_path(from, to);
+    const UncertainPose composed = chain().relative_to(from)[to];
+    EXPECT_NEAR(path.T_a_b.x_m, composed.T_a_b.x_m, 1e-12);
+    EXPECT_TRUE(path.covariance.isApprox(composed.covariance, 1e-9)) << from << " " << to;
+  }
+  // Also after the poses have moved, and for a stop that came later.
+  const std::vector<geometry::Pose2> moved{{0, 0, 0}, {2, 1, 0.5}};
+  graph.move(moved);
+  const UncertainPose first = graph.along_path(0, 1);
+  EXPECT_NEAR(first.T_a_b.x_m, 2.0, 1e-12);
+  EXPECT_TRUE(first.covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003), 1e-9));
+}
+
 }  // namespace
 }  // namespace topogeo::localization

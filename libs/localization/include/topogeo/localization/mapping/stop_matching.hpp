@@ -42,6 +42,9 @@ struct StopMatch {
   double overlap = 0.0;
   double inliers = 0.0;
   double violations = 0.0;
+  double rivalry = 0.0;  ///< see rivalry()
+  /// Deviation of the position along the direction in which the scans alone know it least, metres.
+  double weakest_sigma_m = 0.0;
   StepMatch evidence;  ///< of the pose of the later stop
   std::vector<MatchSolution> solutions;
 

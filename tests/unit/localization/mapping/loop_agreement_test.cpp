@@ -1,0 +1,122 @@
+// Straight stops 1 m apart. Matches of stops from 30 on with stops from 0 on: those that agree put
+// the robot to one place, those of a look-alike to another.
+#include "topogeo/localization/mapping/loop_agreement.hpp"
+
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+Eigen::Matrix3d spread_of(double sigma_m, double sigma_rad) {
+  return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
+}
+
+class LoopAgreementTest : public testing::Test {
+ protected:
+  LoopAgreementTest() {
+    graph_.add_pose({});
+    path_m_.push_back(0.0);
+    for (std::uint32_t i = 1; i < 80; ++i) {
+      graph_.add_pose({1.0 * i, 0.0, 0.0});
+      graph_.add_edge({i - 1, i, EdgeKind::kOdometry, {1.0, 0.0, 0.0}, spread_of(0.02, 0.002)});
+      path_m_.push_back(1.0 * i);
+    }
+  }
+
+  /// Doubtful, and puts the later stop `off_m` aside of where it is.
+  static StopMatch match(std::uint32_t from, std::uint32_t to, double off_m) {
+    StopMatch match;
+    match.edge = {
+        from, to, EdgeKind::kRevisit, {1.0 * (to - from), off_m, 0.0}, spread_of(0.02, 0.005)};
+    match.reason = Reason::kDoubtful;
+    return match;
+  }
+
+  void add(std::uint32_t from, std::uint32_t to, double off_m) {
+    agreement_.add(match(from, to, off_m), path_m_);
+  }
+  std::vector<StopMatch> accepted() { return agreement_.accepted(graph_, path_m_); }
+
+  PoseGraph graph_;
+  std::vector<double> path_m_;
+  LoopAgreement agreement_;
+};
+
+TEST_F(LoopAgreementTest, TheWayRoundTwoLoopsMeasuresTheirDisagreement) {
+  const PoseGraphEdge a = match(0, 30, 1.0).edge;
+  EXPECT_NEAR(disagreement(graph_, a, match(4, 33, 1.0).edge, path_m_, 25.0), 0.0, 1e-9);
+  EXPECT_GT(disagreement(graph_, a, match(4, 33, 2.0).edge, path_m_, 25.0), 20.0);
+  // Nothing is said of loops whose ends lie far apart.
+  EXPECT_EQ(disagreement(graph_, a, match(4, 60, 1.0).edge, path_m_, 25.0),
+            std::numeric_limits<double>::infinity());
+}
+
+TEST_F(LoopAgreementTest, OneDoubtfulLoopProvesNothing) {
+  add(0, 30, 1.0);
+  EXPECT_TRUE(accepted().empty());
+  EXPECT_EQ(agreement_.waiting(), 1U);
+}
+
+TEST_F(LoopAgreementTest, SeveralStopsThatAgreeAreAcceptedTogether) {
+  for (std::uint32_t i = 0; i < 3; ++i) add(i, 30 + i, 1.0);
+  EXPECT_TRUE(accepted().empty());
+  for (std::uint32_t i = 3; i < 6; ++i) add(i, 30 + i, 1.0);
+  EXPECT_EQ(accepted().size(), 6U);
+  EXPECT_TRUE(accepted().empty());  // each once
+}
+
+TEST_F(LoopAgreementTest, ManyMatchesOfOneStopAreOnePieceOfEvidence) {
+  for (std::uint32_t i = 0; i < 8; ++i) add(i, 30, 1.0);
+  EXPECT_TRUE(accepted().empty());
+}
+
+TEST_F(LoopAgreementTest, TwoPlacesThatLookAlikeAreLeftOpen) {
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    add(i, 30 + i, 1.0);
+    add(i, 29 - i, 3.0);  // another stretch of the same length, see below
+  }
+  LoopAgreement alike;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    alike.add(match(i, 30 + i, 1.0), path_m_);
+    alike.add(match(i + 1, 30 + i, -1.5), path_m_);
+  }
+  EXPECT_TRUE(alike.accepted(graph_, path_m_).empty());
+}
+
+TEST_F(LoopAgreementTest, AFewThatContradictAreOutvoted) {
+  add(2, 31, -1.5);
+  for (std::uint32_t i = 0; i < 7; ++i) add(i, 30 + i, 1.0);
+  const std::vector<StopMatch> all = accepted();
+  EXPECT_EQ(all.size(), 7U);
+  for (const StopMatch& one : all) EXPECT_EQ(one.edge.T_from_to.y_m, 1.0);
+  EXPECT_EQ(agreement_.waiting(), 7U);  // the accepted ones stay as support, the other is gone
+}
+
+TEST_F(LoopAgreementTest, AgainstAGoodPredictionMoreAreWanted) {
+  const auto surprising = [&](std::uint32_t i) {
+    StopMatch one = match(i, 30 + i, 1.0);
+    one.predicted = {{30.0, 0.0, 0.0}, spread_of(0.2, 0.02)};
+    return one;
+  };
+  for (std::uint32_t i = 0; i < 5; ++i) agreement_.add(surprising(i), path_m_);
+  EXPECT_TRUE(accepted().empty());
+  for (std::uint32_t i = 5; i < 10; ++i) agreement_.add(surprising(i), path_m_);
+  EXPECT_EQ(accepted().size(), 10U);
+}
+
+TEST_F(LoopAgreementTest, AcceptedLoopsSpeakForOthersAndAreNotReturned) {
+  for (std::uint32_t i = 0; i < 3; ++i) agreement_.add_accepted(match(i, 30 + i, 1.0), path_m_);
+  EXPECT_TRUE(accepted().empty());
+  add(3, 33, 1.0);
+  const std::vector<StopMatch> all = accepted();
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].edge.to, 33U);
+}
+
+}  // namespace
+}  // namespace topogeo::localization

@@ -1,0 +1,107 @@
+// A robot that drives along a corridor with niches and comes back to its beginning with a drifted
+// pose: is the place proposed?
+#include "topogeo/localization/places/place_recognition.hpp"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/localization/matching/match_features.hpp"
+
+namespace topogeo::localization {
+namespace {
+
+using geometry::Pose2;
+
+/// Rays against the corridor y = -1 ... 1 whose left wall has niches that are all different.
+topomap::LocalMap scan_at(const Pose2& T_world_robot) {
+  const auto left_m = [](double x_m) {
+    return std::fmod(std::fabs(x_m), 3.7) < 0.9 + 0.03 * x_m ? 1.6 : 1.0;
+  };
+  topomap::LocalMap map;
+  for (int i = 0; i < 360; ++i) {
+    const double angle = T_world_robot.theta_rad + i * M_PI / 180.0;
+    for (double r = 0.05; r < 12.0; r += 0.02) {
+      const double x = T_world_robot.x_m + r * std::cos(angle);
+      const double y = T_world_robot.y_m + r * std::sin(angle);
+      if (y > -1.0 && y < left_m(x) && x > -2.0 && x < 32.0) continue;
+      const Eigen::Vector2d p = geometry::inverse(T_world_robot) * Eigen::Vector2d(x, y);
+      map.points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y())});
+      break;
+    }
+  }
+  return map;
+}
+
+class PlaceRecognitionTest : public testing::Test {
+ protected:
+  /// The robot is at `truth`, the graph estimates it at `estimate`.
+  void stop(const Pose2& truth, const Pose2& estimate, double path_m) {
+    const topomap::LocalMap map = scan_at(truth);
+    places_.add(std::make_shared<const StopView>(
+                    view_of(extract_scan_features(map.points, map.T_robot_laser))),
+                path_m);
+    graph_.add_pose(estimate);
+    ++stops_;
+  }
+  std::vector<PlaceProposal> propose(double sigma_m) {
+    const std::uint32_t last = stops_ - 1;
+    std::vector<UncertainPose> relative(stops_);
+    for (std::uint32_t i = 0; i < stops_; ++i) {
+      relative[i].T_a_b = geometry::between(graph_.poses()[last], graph_.poses()[i]);
+      relative[i].covariance =
+          Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, 1e-4).asDiagonal();
+    }
+    return places_.propose(graph_, last, last - 8, relative, 0.25);
+  }
+
+  PlaceRecognition places_;
+  PoseGraph graph_;
+  std::uint32_t stops_ = 0;
+};
+
+// Out along the corridor to 25 m; from there it was carried back to `again_m`, unnoticed but for
+// the uncertainty, and drove on.
+TEST_F(PlaceRecognitionTest, ProposesTheStretchThatTheRobotIsBackOn) {
+  for (int i = 0; i <= 36; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
+  const double off_m = 2.0;
+  for (int i = 0; i < 9; ++i) {
+    const double x_m = 4.0 + 0.7 * i;
+    stop({x_m, 0.1, 0.0}, {x_m + off_m, 0.1, 0.0}, 25.9 + 0.7 * i);
+  }
+  const std::vector<PlaceProposal> found = propose(1.5);
+  ASSERT_FALSE(found.empty());
+  const PlaceProposal& best = found.front();
+  const Pose2 T_world_robot = graph_.poses()[best.anchor] * best.T_anchor_robot;
+  EXPECT_NEAR(T_world_robot.x_m, 9.6, 0.15);
+  EXPECT_NEAR(T_world_robot.y_m, 0.1, 0.1);
+  EXPECT_NEAR(T_world_robot.theta_rad, 0.0, 0.05);
+  EXPECT_GT(best.value, 0.88);
+  EXPECT_FALSE(best.aligned.covariance.isZero(0.0));
+}
+
+TEST_F(PlaceRecognitionTest, ProposesNothingWhereNoEarlierPlaceCanBe) {
+  for (int i = 0; i <= 36; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
+  for (int i = 0; i < 9; ++i) {
+    stop({4.0 + 0.7 * i, 0.1, 0.0}, {400.0 + 0.7 * i, 0.1, 0.0}, 25.9 + 0.7 * i);
+  }
+  EXPECT_TRUE(propose(1.5).empty());
+}
+
+TEST_F(PlaceRecognitionTest, AsksForNoPlaceThatIsKnownWell) {
+  for (int i = 0; i <= 36; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
+  for (int i = 0; i < 9; ++i) {
+    stop({4.0 + 0.7 * i, 0.1, 0.0}, {4.0 + 0.7 * i, 0.1, 0.0}, 25.9 + 0.7 * i);
+  }
+  EXPECT_TRUE(propose(0.1).empty());
+}
+
+TEST_F(PlaceRecognitionTest, AYoungMapHasNoPlaces) {
+  for (int i = 0; i <= 9; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
+  EXPECT_TRUE(propose(1.5).empty());
+}
+
+}  // namespace
+}  // namespace topogeo::localization
