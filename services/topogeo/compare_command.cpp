@@ -1,4 +1,4 @@
-// topogeo compare: how far a trajectory is from a reference.
+// topogeo compare: how far a trajectory is from a reference, and which revisits a map recognized.
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -20,6 +20,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
+#include "compare_loops.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -37,7 +38,13 @@ struct CompareOptions {
   std::optional<std::filesystem::path> relations;
   std::optional<std::filesystem::path> config;  ///< for the mounting of the laser
   double max_apart_s = 0.05;
+  bool loops = false;
+  std::optional<std::filesystem::path> report;  ///< of the loops
   bool json = false;
+
+  [[nodiscard]] std::int64_t max_apart_ns() const {
+    return static_cast<std::int64_t>(std::llround(max_apart_s * 1e9));
+  }
 };
 
 struct Figures {
@@ -74,8 +81,7 @@ Figures figures_of(const CompareOptions& options) {
       }
       relations = pipeline::relations_error(estimate, given);
     }
-    const auto max_apart_ns = static_cast<std::int64_t>(std::llround(options.max_apart_s * 1e9));
-    return {pipeline::trajectory_error(estimate, reference, max_apart_ns), relations};
+    return {pipeline::trajectory_error(estimate, reference, options.max_apart_ns()), relations};
   } catch (const std::invalid_argument& error) {  // of trajectory_error, which has no file names
     throw service::BadInputError(options.estimate.string() + " and " + options.reference.string() +
                                  ": " + error.what());
@@ -142,7 +148,27 @@ void print_errors_json(const Figures& figures) {
   std::cout << all.dump() << '\n';
 }
 
+void check_options(const CompareOptions& options) {
+  if (options.loops) {
+    if (options.relations) throw service::UsageError("--relations compares no --loops");
+    return;
+  }
+  if (options.report) throw service::UsageError("--report belongs to --loops");
+  if (options.estimate.extension() == ".pb") {
+    throw service::UsageError(fmt::format(
+        "{} is a map, expected a trajectory (TUM) such as trajectory.tum; --loops compares the "
+        "loops of a map",
+        options.estimate.string()));
+  }
+}
+
 int compare_files(const CompareOptions& options) {
+  check_options(options);
+  if (options.loops) {
+    print_loops({options.estimate, options.reference, options.report, laser_of(options.config),
+                 options.max_apart_ns(), options.json});
+    return service::kOk;
+  }
   const Figures figures = figures_of(options);
   if (options.json) {
     print_errors_json(figures);
@@ -155,10 +181,12 @@ int compare_files(const CompareOptions& options) {
 }  // namespace
 
 void add_compare_command(command_line::Command& app, int& exit_code) {
-  command_line::Command* command =
-      app.add_subcommand("compare", "Compare a trajectory with a reference trajectory");
+  command_line::Command* command = app.add_subcommand(
+      "compare", "Compare a trajectory, or the loops of a map, with a reference trajectory");
   auto options = std::make_shared<CompareOptions>();
-  command->add_option("ESTIMATE", options->estimate, "trajectory (TUM: t x y z qx qy qz qw)")
+  command
+      ->add_option("ESTIMATE", options->estimate,
+                   "trajectory (TUM: t x y z qx qy qz qw); with --loops a map (map.pb)")
       ->required()
       ->type_name("FILE");
   command->add_option("REFERENCE", options->reference, "trajectory to compare it with (TUM)")
@@ -179,6 +207,11 @@ void add_compare_command(command_line::Command& app, int& exit_code) {
           "--config", options->config,
           "configuration (YAML) with the place of the laser: the reference is of the laser")
       ->type_name("FILE");
+  command->add_flag("--loops", options->loops, "which revisits of the map ESTIMATE became loops");
+  command
+      ->add_option("--report", options->report,
+                   "report of the run that made the map; default: report.json beside it")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "print JSON, unrounded");
   command->footer(
       "Both trajectories must be of the same point of the robot. topogeo writes poses of the "
@@ -194,8 +227,20 @@ void add_compare_command(command_line::Command& app, int& exit_code) {
       "  end        distance of the last poses when the first ones coincide\n"
       "  relations  mean and standard deviation of the errors of the relations that the estimate\n"
       "             has poses for (within 1 ms): all, and far: over 30 s apart\n"
-      "Example:\n"
-      "  topogeo compare out/trajectory.tum truth.tum");
+      "With --loops:\n"
+      "  revisits   stops within 2 m and 57 degrees of a stop 30 or more stops older\n"
+      "  tried      revisits that were compared with at least one of these older stops\n"
+      "  accepted   revisits with at least one loop to them\n"
+      "  wrong      loops more than 0.6 m or 0.2 rad off the reference, whose scans have no more "
+      "in\n"
+      "             common than by the reference\n"
+      "  rejected   decisions within 0.25 m and 0.09 rad of the reference that gave no loop\n"
+      "and all decisions by source and outcome: right as rejected ones are, near (within 0.6 m "
+      "and\n"
+      "0.2 rad) or wrong.\n"
+      "Examples:\n"
+      "  topogeo compare out/trajectory.tum truth.tum\n"
+      "  topogeo compare out/map.pb truth.tum --loops");
   command->callback([options, &exit_code] { exit_code = compare_files(*options); });
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Maps every log of a data folder with one process and prints how far odometry and the corrected
-# trajectory are from the reference, as the accuracy table of RESULTS.md.
+# trajectory are from the reference, as the accuracy table of RESULTS.md, and how many places that
+# the robot came back to were recognized (topogeo compare --help).
 #   tests/bench/accuracy.sh [--mode graph|thesis] EVALUATION_TOOL [DATA_FOLDER]
 # --mode maps with localizer.mode set so; default: the default configuration.
 # EVALUATION_TOOL compares two TUM trajectories and prints JSON (evaluate_trajectory.py).
@@ -37,27 +38,29 @@ if [ -n "$mode" ]; then
   configuration=(--config "$out/config.yaml")
 fi
 
-# One row: log, which trajectory, then the figures of the tool's JSON.
+# One row: log, which trajectory, the figures of the tool's JSON, then those of the loops.
 row() {
-  local log=$1 which=$2 estimate=$3 seconds=$4
+  local log=$1 which=$2 estimate=$3 seconds=$4 loops=$5
   local reference=${log%.clf.gz}.ref.tum relations=${log%.clf.gz}.relations arguments=()
   [ ! -r "$relations" ] || arguments=(--relations "$relations")
   python3 "$tool" "$estimate" "$reference" "${arguments[@]}" --json |
     python3 -c '
 import json, sys
-log, which, seconds = sys.argv[1:]
+log, which, seconds, loops = sys.argv[1:]
 figures = json.load(sys.stdin)
 relations = figures.get("relations") or {}
 def metres(group, digits):
     return "-" if not group else "%.*f" % (digits, group["m"])
-print("| %s | %s | %.3f | %s | %.3f | %s | %s | %s |" % (
+recall = json.loads(loops)
+recall = [str(recall.get(key, "-")) for key in ("revisits", "tried", "accepted", "wrong")]
+print("| %s | %s | %.3f | %s | %.3f | %s | %s | %s | %s |" % (
     log, which, figures["ate"], metres(figures["loop"], 3), figures["end"],
-    metres(relations.get("all"), 4), metres(relations.get("far"), 4), seconds))
-' "$(basename "${log%.clf.gz}")" "$which" "$seconds"
+    metres(relations.get("all"), 4), metres(relations.get("far"), 4), " | ".join(recall), seconds))
+' "$(basename "${log%.clf.gz}")" "$which" "$seconds" "$loops"
 }
 
-printf '| log | trajectory | ate m | loop m | end m | relations, all m | relations, far m | wall / CPU s |\n'
-printf '|---|---|---|---|---|---|---|---|\n'
+printf '| log | trajectory | ate m | loop m | end m | relations, all m | relations, far m | revisits | tried | accepted | wrong | wall / CPU s |\n'
+printf '|---|---|---|---|---|---|---|---|---|---|---|---|\n'
 TIMEFORMAT='%1R / %1U'
 for log in "${logs[@]}"; do
   [ -r "${log%.clf.gz}.ref.tum" ] || continue
@@ -65,6 +68,7 @@ for log in "${logs[@]}"; do
   { time "$topogeo" map --log "$log" --out "$folder" "${configuration[@]}" \
     > "$out/said" 2>&1; } 2> "$out/time" ||
     { cat "$out/said" >&2; die "topogeo failed on '$log'"; }
-  row "$log" odometry "$folder/odometry.tum" -
-  row "$log" "${mode:-corrected}" "$folder/trajectory.tum" "$(tail -n 1 "$out/time")"
+  loops=$("$topogeo" compare "$folder/map.pb" "${log%.clf.gz}.ref.tum" --loops --json)
+  row "$log" odometry "$folder/odometry.tum" - '{}'
+  row "$log" "${mode:-corrected}" "$folder/trajectory.tum" "$(tail -n 1 "$out/time")" "$loops"
 done

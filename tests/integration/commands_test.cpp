@@ -254,7 +254,7 @@ TEST_F(CommandsTest, ReportOfRunAgreesWithThatOfMap) {
   const json of_map = json::parse(read_file(scratch_ / "map" / "report.json"));
   const json of_run = json::parse(read_file(scratch_ / "run" / "report.json"));
   for (const char* key : {"version", "log", "robot_id", "seed", "counts", "distance_m",
-                          "loop_closures", "configuration"}) {
+                          "loop_closures", "loop_candidates", "configuration"}) {
     EXPECT_EQ(of_run[key], of_map[key]) << key;
   }
   EXPECT_GT(of_map["counts"]["matches_tried"], 0);

@@ -134,6 +134,42 @@ TEST_F(CompareTest, UnusableFilesAreToldWithTheirLine) {
   EXPECT_EQ(compare({estimate_}), 2);
 }
 
+TEST_F(CompareTest, LoopsOfAMapAreCountedFromItsReport) {
+  const std::string log = scratch_ / "log.clf.gz";
+  const std::string truth = scratch_ / "truth.tum";
+  const std::filesystem::path out = scratch_ / "out";
+  write_log("floor", log, truth);
+  Program map(scratch_, "topogeo", {"map", "--log", log, "--out", out});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+
+  ASSERT_EQ(compare({out / "map.pb", truth, "--loops", "--json"}), 0) << err_;
+  const json loops = json::parse(out_);
+  EXPECT_GT(loops["revisits"], 0);
+  EXPECT_GT(loops["tried"], 0);
+  EXPECT_LE(loops["tried"], loops["revisits"]);
+  EXPECT_GT(loops["accepted"], 0);
+  EXPECT_LE(loops["accepted"], loops["tried"]);
+  EXPECT_EQ(loops["wrong"], 0);
+  EXPECT_TRUE(loops["rejected"].is_object());
+
+  std::filesystem::rename(out / "report.json", scratch_ / "other.json");
+  EXPECT_EQ(compare({out / "map.pb", truth, "--loops"}), 3);
+  EXPECT_THAT(err_, HasSubstr("report.json: does not exist"));
+  ASSERT_EQ(compare({out / "map.pb", truth, "--loops", "--report", scratch_ / "other.json"}), 0)
+      << err_;
+  EXPECT_THAT(out_, HasSubstr("accepted  " + loops["accepted"].dump() + "\n"));
+  EXPECT_THAT(out_, HasSubstr("prediction  accepted "));
+}
+
+TEST_F(CompareTest, AMapIsComparedByItsLoopsAlone) {
+  EXPECT_EQ(compare({"map.pb", reference_}), 2);
+  EXPECT_THAT(err_, HasSubstr("map.pb is a map, expected a trajectory (TUM)"));
+  EXPECT_EQ(compare({estimate_, reference_, "--report", "report.json"}), 2);
+  EXPECT_EQ(compare({"map.pb", reference_, "--loops", "--relations", relations_}), 2);
+  EXPECT_EQ(compare({estimate_, reference_, "--loops"}), 3);
+  EXPECT_THAT(err_, HasSubstr("estimate.tum: "));
+}
+
 TEST_F(CompareTest, AgreesWithTheFiguresOfMapWithAReference) {
   const std::string log = scratch_ / "log.clf.gz";
   const std::string truth = scratch_ / "truth.tum";

@@ -13,6 +13,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "loop_pairs.hpp"
+#include "nearest_pose.hpp"
 
 namespace topogeo::pipeline {
 namespace {
@@ -23,37 +24,6 @@ using topomap::StampedPose;
 // Relations over a longer time show whether loops were closed; their errors are also given by
 // themselves.
 constexpr std::int64_t kFarApart_ns = 30'000'000'000;
-
-std::vector<StampedPose> in_time_order(std::span<const StampedPose> poses) {
-  std::vector<StampedPose> sorted(poses.begin(), poses.end());
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
-  return sorted;
-}
-
-/// The double nearest to a time in seconds: what other tools compare. Rounded by up to a quarter of
-/// a microsecond, which decides whether a pose at the very limit has a partner.
-double seconds(std::int64_t stamp_ns) {
-  return static_cast<double>(static_cast<long double>(stamp_ns) / 1e9L);
-}
-
-double apart_s(const StampedPose& pose, std::int64_t stamp_ns) {
-  return std::fabs(seconds(pose.stamp_ns) - seconds(stamp_ns));
-}
-
-/// The pose nearest to a time if it is near enough, of two equally near ones the earlier.
-const StampedPose* pose_at(std::span<const StampedPose> poses, std::int64_t stamp_ns,
-                           std::int64_t max_apart_ns) {
-  if (poses.empty()) return nullptr;
-  const auto after = std::upper_bound(
-      poses.begin(), poses.end(), stamp_ns,
-      [](std::int64_t stamp, const StampedPose& pose) { return stamp < pose.stamp_ns; });
-  const bool take_before =
-      after == poses.end() ||
-      (after != poses.begin() && apart_s(*(after - 1), stamp_ns) <= apart_s(*after, stamp_ns));
-  const StampedPose& nearest = take_before ? *(after - 1) : *after;
-  return apart_s(nearest, stamp_ns) <= seconds(max_apart_ns) ? &nearest : nullptr;
-}
 
 std::string time_of(std::span<const StampedPose> poses) {
   if (poses.empty()) return "has no poses";
@@ -74,7 +44,7 @@ Paired pair_by_time(std::span<const StampedPose> unsorted_estimate,
   const std::vector<StampedPose> reference = in_time_order(unsorted_reference);
   Paired paired;
   for (const StampedPose& wanted : reference) {
-    const StampedPose* found = pose_at(estimate, wanted.stamp_ns, max_apart_ns);
+    const StampedPose* found = nearest_pose(estimate, wanted.stamp_ns, max_apart_ns);
     if (found == nullptr) continue;
     paired.estimate.push_back(found->pose);
     paired.reference.push_back(wanted.pose);
@@ -204,8 +174,8 @@ RelationsError relations_error(std::span<const StampedPose> estimate,
   std::vector<PoseError> all;
   std::vector<PoseError> far;
   for (const storage::Relation& relation : relations) {
-    const StampedPose* a = pose_at(poses, relation.stamp_a_ns, max_apart_ns);
-    const StampedPose* b = pose_at(poses, relation.stamp_b_ns, max_apart_ns);
+    const StampedPose* a = nearest_pose(poses, relation.stamp_a_ns, max_apart_ns);
+    const StampedPose* b = nearest_pose(poses, relation.stamp_b_ns, max_apart_ns);
     if (a == nullptr || b == nullptr) continue;
     all.push_back(pose_error(geometry::between(a->pose, b->pose), relation.T_a_b));
     if (std::abs(relation.stamp_b_ns - relation.stamp_a_ns) > kFarApart_ns) {

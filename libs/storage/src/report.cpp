@@ -1,5 +1,8 @@
 #include "topogeo/storage/report.hpp"
 
+#include <fstream>
+#include <stdexcept>
+
 #include <nlohmann/json.hpp>
 
 #include "topogeo/support/atomic_file.hpp"
@@ -49,9 +52,38 @@ Json loop_candidates(const std::vector<LoopCandidate>& candidates) {
                     {"theta_rad", c.T_earlier_later.theta_rad},
                     {"correction_m", c.correction_m},
                     {"correction_rad", c.correction_rad},
-                    {"fitness", c.fitness}});
+                    {"fitness", c.fitness},
+                    {"source", c.source},
+                    {"predicted_x_m", c.T_predicted.x_m},
+                    {"predicted_y_m", c.T_predicted.y_m},
+                    {"predicted_theta_rad", c.T_predicted.theta_rad},
+                    {"predicted_sigma_m", c.predicted_sigma_m},
+                    {"predicted_sigma_rad", c.predicted_sigma_rad}});
   }
   return json;
+}
+
+geometry::Pose2 pose_of(const Json& json, const std::string& prefix) {
+  return {json.at(prefix + "x_m").get<double>(), json.at(prefix + "y_m").get<double>(),
+          json.at(prefix + "theta_rad").get<double>()};
+}
+
+LoopCandidate loop_candidate(const Json& json) {
+  LoopCandidate c;
+  json.at("decided_at_stop").get_to(c.step);
+  json.at("earlier_stop").get_to(c.earlier_id);
+  json.at("later_stop").get_to(c.later_id);
+  json.at("outcome").get_to(c.outcome);
+  json.at("match").get_to(c.reason);
+  c.T_earlier_later = pose_of(json, "");
+  json.at("correction_m").get_to(c.correction_m);
+  json.at("correction_rad").get_to(c.correction_rad);
+  json.at("fitness").get_to(c.fitness);
+  json.at("source").get_to(c.source);
+  c.T_predicted = pose_of(json, "predicted_");
+  json.at("predicted_sigma_m").get_to(c.predicted_sigma_m);
+  json.at("predicted_sigma_rad").get_to(c.predicted_sigma_rad);
+  return c;
 }
 
 Json stages(const std::vector<support::StageTime>& times) {
@@ -93,6 +125,23 @@ std::string report_json(const Report& report) {
   json["configuration"] = configuration(report.configuration);
   // A file name need not be valid UTF-8: what is not is replaced rather than refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<LoopCandidate> read_loop_candidates(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(path.string() + ": cannot be opened");
+  std::string place = "the report";
+  try {
+    const Json report = Json::parse(file);
+    std::vector<LoopCandidate> candidates;
+    for (const Json& json : report.at("loop_candidates")) {
+      place = fmt::format("loop_candidates[{}]", candidates.size());
+      candidates.push_back(loop_candidate(json));
+    }
+    return candidates;
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(fmt::format("{}: {}: {}", path.string(), place, error.what()));
+  }
 }
 
 void write_report(const std::filesystem::path& path, const Report& report) {

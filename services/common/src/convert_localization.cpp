@@ -25,7 +25,10 @@ msg::LoopDecision to_wire(const LoopDecision& decision) {
   out.outcome(static_cast<msg::LoopOutcome>(decision.outcome));  // same values, see the IDL
   out.reason(static_cast<msg::MatchReason>(decision.reason));
   messaging::set_text_cut(out.explanation(), localization::explanation(decision));
+  out.source(static_cast<msg::ProposalSource>(decision.source));  // same values, see the IDL
   out.T_earlier_later(to_msg(decision.T_earlier_later));
+  out.T_predicted(to_msg(decision.predicted.T_a_b));
+  out.predicted_covariance(to_msg(decision.predicted.covariance));
   out.correction_m(decision.correction_m);
   out.correction_rad(decision.correction_rad);
   out.fitness(decision.fitness);
@@ -36,15 +39,20 @@ LoopDecision from_wire(const msg::LoopDecision& decision) {
   check(decision.earlier_id() < decision.later_id(), "decisions.earlier_id", "less than later_id");
   check(decision.outcome() <= msg::kLoopOutvoted, "decisions.outcome", "0 to 4");
   check(decision.reason() <= msg::kReasonSecondSolution, "decisions.reason", "0 to 6");
-  return {decision.step(),
-          decision.earlier_id(),
-          decision.later_id(),
-          static_cast<localization::LoopOutcome>(decision.outcome()),
-          static_cast<localization::Reason>(decision.reason()),
-          from_msg(decision.T_earlier_later()),
-          finite(decision.correction_m(), "decisions.correction_m"),
-          finite(decision.correction_rad(), "decisions.correction_rad"),
-          finite(decision.fitness(), "decisions.fitness")};
+  check(decision.source() <= msg::kSourceWindow, "decisions.source", "0 to 2");
+  LoopDecision out;
+  out.step = decision.step();
+  out.earlier_id = decision.earlier_id();
+  out.later_id = decision.later_id();
+  out.outcome = static_cast<localization::LoopOutcome>(decision.outcome());
+  out.reason = static_cast<localization::Reason>(decision.reason());
+  out.T_earlier_later = from_msg(decision.T_earlier_later());
+  out.predicted = {from_msg(decision.T_predicted()), from_msg(decision.predicted_covariance())};
+  out.correction_m = finite(decision.correction_m(), "decisions.correction_m");
+  out.correction_rad = finite(decision.correction_rad(), "decisions.correction_rad");
+  out.fitness = finite(decision.fitness(), "decisions.fitness");
+  out.source = static_cast<localization::ProposalSource>(decision.source());
+  return out;
 }
 
 }  // namespace

@@ -218,7 +218,10 @@ void fill(msg::LoopDecisions& decisions) {
   decision.outcome(msg::kLoopOutvoted);
   decision.reason(msg::kReasonFewInliers);
   set_text(decision.explanation(), "outvoted: few inliers", "explanation");
+  decision.source(msg::kSourceWindow);
   decision.T_earlier_later(pose(0.5));
+  decision.T_predicted(pose(0.25));
+  decision.predicted_covariance(matrix());
   decision.correction_m(0.75);
   decisions.decisions().assign(msg::kSegmentDecisions, decision);
 }

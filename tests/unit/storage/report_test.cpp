@@ -46,6 +46,42 @@ TEST_F(ReportFile, SaysWhatWasDoneInAFixedOrder) {
   EXPECT_EQ(content(directory_ / "report.json"), json);
 }
 
+TEST_F(ReportFile, LoopCandidatesReadBackExactly) {
+  Report report;
+  const LoopCandidate candidate{40,
+                                3,
+                                40,
+                                "match not accepted",
+                                "few inliers",
+                                {0.1, -0.2, 0.3},
+                                0.4,
+                                0.5,
+                                0.6,
+                                "window",
+                                {0.7, -0.8, 0.9},
+                                1.25,
+                                0.125};
+  report.loop_candidates = {candidate, candidate};
+  report.loop_candidates[1].source = "place";
+  EXPECT_THAT(report_json(report), HasSubstr("\"predicted_sigma_m\": 1.25"));
+  write_report(directory_ / "report.json", report);
+  const auto back = read_loop_candidates(directory_ / "report.json");
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(back[0], candidate);
+  EXPECT_EQ(back[1], report.loop_candidates[1]);
+}
+
+TEST_F(ReportFile, DamagedLoopCandidatesAreRefusedWithTheirPlace) {
+  const auto path = directory_ / "report.json";
+  const auto read = [&] { read_loop_candidates(path); };
+  EXPECT_THAT(error_of(read), HasSubstr("report.json: cannot be opened"));
+  std::ofstream(path) << "{";
+  EXPECT_THAT(error_of(read), HasSubstr("report.json: the report: "));
+  std::ofstream(path) << R"({"loop_candidates": [{"decided_at_stop": 3}]})";
+  EXPECT_THAT(error_of(read), HasSubstr("report.json: loop_candidates[0]: "));
+  EXPECT_THAT(error_of(read), HasSubstr("'earlier_stop' not found"));
+}
+
 TEST_F(ReportFile, TakesNamesThatAreNotUtf8AndRefusesAnImpossiblePath) {
   Report report;
   report.log = "caf\xe9.log";

@@ -172,6 +172,9 @@ TEST_P(Conversions, LoopDecisionsAreExactInSegments) {
         static_cast<localization::LoopOutcome>(random_.below(localization::kLoopOutcomes));
     decision.reason = static_cast<localization::Reason>(random_.below(localization::kReasons));
     decision.T_earlier_later = any_pose(random_);
+    decision.predicted.T_a_b = any_pose(random_);
+    for (double& value : decision.predicted.covariance.reshaped()) value = any_double(random_);
+    decision.source = static_cast<localization::ProposalSource>(random_.below(3));
     decision.correction_m = any_double(random_);
     decision.correction_rad = any_double(random_);
     decision.fitness = any_double(random_);
@@ -195,6 +198,9 @@ TEST_P(Conversions, LoopDecisionsAreExactInSegments) {
     EXPECT_EQ(back[i].outcome, decisions[i].outcome);
     EXPECT_EQ(back[i].reason, decisions[i].reason);
     EXPECT_EQ(back[i].T_earlier_later, decisions[i].T_earlier_later);
+    EXPECT_EQ(back[i].predicted.T_a_b, decisions[i].predicted.T_a_b);
+    EXPECT_EQ(back[i].predicted.covariance, decisions[i].predicted.covariance);
+    EXPECT_EQ(back[i].source, decisions[i].source);
     EXPECT_EQ(back[i].correction_m, decisions[i].correction_m);
     EXPECT_EQ(back[i].correction_rad, decisions[i].correction_rad);
     EXPECT_EQ(back[i].fitness, decisions[i].fitness);

@@ -27,7 +27,13 @@ struct LoopCandidate {
   geometry::Pose2 T_earlier_later;
   double correction_m = 0.0;  ///< how far the match moves the later stop
   double correction_rad = 0.0;
-  double fitness = 0.0;  ///< [0, 1]
+  double fitness = 0.0;            ///< [0, 1]
+  std::string source;              ///< why the two were compared: "prediction", "place" or "window"
+  geometry::Pose2 T_predicted;     ///< T_earlier_later as it was predicted before the match
+  double predicted_sigma_m = 0.0;  ///< standard deviation of its position, over both directions
+  double predicted_sigma_rad = 0.0;
+
+  friend bool operator==(const LoopCandidate&, const LoopCandidate&) = default;
 };
 
 struct Report {
@@ -59,6 +65,10 @@ struct Report {
 
 /// JSON text, keys always in the same order, with the version of the software.
 std::string report_json(const Report& report);
+
+/// `loop_candidates` of a report. Throws std::runtime_error naming the path and what is missing or
+/// damaged.
+std::vector<LoopCandidate> read_loop_candidates(const std::filesystem::path& path);
 
 /// Writes the file whole or not at all. Throws std::runtime_error naming the path.
 void write_report(const std::filesystem::path& path, const Report& report);

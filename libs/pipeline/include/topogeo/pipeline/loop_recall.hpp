@@ -1,0 +1,73 @@
+// Which stops come back to a place, by a reference trajectory, and which of these revisits became
+// loops of the map.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/storage/report.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/topomap/trajectory.hpp"
+
+namespace topogeo::pipeline {
+
+/// A stop within 2 m and 57 degrees (1 rad) of a stop 30 or more stops older.
+struct Revisit {
+  std::uint32_t stop = 0;  ///< local map id
+  bool tried = false;      ///< compared with at least one of the older stops that are so near
+  bool accepted = false;   ///< the map has a loop to at least one of them
+};
+
+/// A loop of the map that is more than 0.6 m or 0.2 rad off the reference.
+struct LoopOffReference {
+  storage::LoopCandidate loop;
+  double off_m = 0.0;
+  double off_rad = 0.0;
+  /// What the two scans have in common, overlap * (inliers - 2 violations) of
+  /// localization::PoseEvidence: at the match and at the relative pose of the reference.
+  double in_common = 0.0;
+  double in_common_by_reference = 0.0;
+
+  /// The scans fit no better than by the reference. Otherwise the reference itself is in doubt.
+  [[nodiscard]] bool wrong() const { return in_common <= in_common_by_reference; }
+};
+
+/// Decisions of one source with one outcome, by how far they are off the reference.
+struct LoopOutcomeCounts {
+  std::string source;     ///< LoopCandidate::source
+  std::string outcome;    ///< "accepted", "match not accepted: few inliers", ...
+  std::size_t right = 0;  ///< within 0.25 m and 0.09 rad
+  std::size_t near = 0;   ///< within 0.6 m and 0.2 rad
+  std::size_t wrong = 0;  ///< further off
+
+  friend bool operator==(const LoopOutcomeCounts&, const LoopOutcomeCounts&) = default;
+};
+
+struct LoopRecall {
+  std::size_t stops = 0;  ///< that the reference has a pose for; the others do not count
+  std::vector<Revisit> revisits;
+  std::vector<LoopOffReference> off_reference;  ///< in the order in which they were accepted
+  std::vector<LoopOutcomeCounts> outcomes;      ///< by source, then outcome
+
+  [[nodiscard]] std::size_t tried() const;     ///< of the revisits
+  [[nodiscard]] std::size_t accepted() const;  ///< of the revisits
+  [[nodiscard]] std::size_t wrong() const;     ///< of the loops
+  /// Decisions that were right and did not become loops, by outcome.
+  [[nodiscard]] std::map<std::string, std::size_t> rejected() const;
+};
+
+/// `maps[i]` is the local map of id i, `candidates` are the decisions in their order: a loop that
+/// was outvoted later is none. The reference pose of a stop is the one nearest in time, at most
+/// `max_apart_ns` away. Throws std::invalid_argument when a candidate is of a stop that does not
+/// exist, and when no stop has a reference pose.
+LoopRecall loop_recall(std::span<const topomap::LocalMap> maps,
+                       std::span<const topomap::StampedPose> T_reference_robot,
+                       std::span<const storage::LoopCandidate> candidates,
+                       std::int64_t max_apart_ns = 50'000'000);
+
+}  // namespace topogeo::pipeline
