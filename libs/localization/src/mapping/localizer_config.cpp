@@ -33,7 +33,8 @@ void describe_tasks(LocalizerConfig& l, support::ConfigSchema& schema) {
   schema.add("localizer.smallest_expected_overlap", &l.smallest_expected_overlap, 0.0, 1.0, "",
              "of two maps before a task is spent on them");
   schema.add("localizer.largest_half_width_m", &l.largest_half_width_m, 0.1, 100.0, "m",
-             "search spaces wider than this wait for a better prediction");
+             "a stop is matched directly where its predicted search space is no wider than this to "
+             "each side; elsewhere the place is looked for first");
   schema.add("localizer.largest_half_width_rad", &l.largest_half_width_rad, 0.05, 3.1416, "rad",
              "the same for the heading");
   schema.add("localizer.unaided_correction_m", &l.unaided_correction_m, 0.0, 100.0, "m",

@@ -91,7 +91,6 @@ class GlobalLocalizer {
   void find_free_cells();
   [[nodiscard]] std::vector<Seed> best_seeds(std::span<const Eigen::Vector2d> points_m) const;
   [[nodiscard]] geometry::Pose2 pose_of(const Seed& seed) const;
-  [[nodiscard]] GlobalPose examine(const MatchFeatures& query, const geometry::Pose2& T) const;
   [[nodiscard]] GlobalPose aligned(const MatchFeatures& query, const Climbed& place) const;
 
   std::span<const topomap::LocalMap> maps_;
