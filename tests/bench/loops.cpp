@@ -2,9 +2,9 @@
 //
 //   topogeo_loops [--config FILE] [--jobs J] [--data FOLDER] [--verbose] NAME[/N]...
 //
-// Maps NAME.clf.gz of the folder, NAME/N with every N-th scan alone, and prints one row of a table:
-// errors against NAME.ref.tum and NAME.relations, revisits (pipeline/loop_recall.hpp) and mean
-// squared Mahalanobis distances (covariance_checks.hpp).
+// Maps NAME.clf.gz of the folder, as topogeo map does, NAME/N with every N-th scan alone, and
+// prints one row of a table: errors against NAME.ref.tum and NAME.relations, revisits
+// (pipeline/loop_recall.hpp) and mean squared Mahalanobis distances (covariance_checks.hpp).
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -19,6 +19,8 @@
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/scan/laser_mounting.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "loop_figures.hpp"
@@ -54,15 +56,17 @@ LogName parse_log(const std::string& text) {
 }
 
 bench::LoopFigures measure(const std::string& text, const LoopOptions& options,
-                           const pipeline::Config& config) {
+                           pipeline::LoadedConfig config) {
   const LogName log = parse_log(text);
   const std::filesystem::path file = options.data / log.name;
+  const std::string scans = file.string() + ".clf.gz";
+  static_cast<void>(pipeline::choose_mounting(config, scan::mounting_in_log(scans)));
   bench::Recording recording =
-      bench::recorded(file.string() + ".clf.gz", file.string() + ".ref.tum", config.log);
+      bench::recorded(scans, file.string() + ".ref.tum", config.config.log);
   if (log.every > 1) recording = bench::thinned(recording, log.every);
   std::optional<std::filesystem::path> relations = file.string() + ".relations";
   if (!std::filesystem::exists(*relations)) relations.reset();
-  return bench::measure_loops(recording, config, relations);
+  return bench::measure_loops(recording, config.config, relations);
 }
 
 std::string metres(const std::optional<pipeline::RelationSpread>& relations) {
@@ -110,7 +114,7 @@ void print_details(const bench::LoopFigures& f) {
 }
 
 /// Each log as soon as it is done; returns whether all could be measured.
-bool print_logs(const LoopOptions& options, const pipeline::Config& config) {
+bool print_logs(const LoopOptions& options, const pipeline::LoadedConfig& config) {
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> all_measured = true;
   std::mutex printing;
@@ -156,7 +160,7 @@ int main(int argc, char** argv) {
                "decisions by source and outcome, loops off the reference, places not recognized");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
-    const pipeline::Config config = pipeline::load_config(options.config_file).config;
+    const pipeline::LoadedConfig config = pipeline::load_config(options.config_file);
     print_head();
     return print_logs(options, config) ? 0 : 1;
   } catch (const std::exception& error) {
