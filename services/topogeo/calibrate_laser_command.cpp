@@ -15,6 +15,7 @@
 #include "topogeo/localization/calibration/laser_calibration.hpp"
 #include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/format.hpp"
@@ -45,8 +46,7 @@ constexpr double kTurnShiftVariance = 0.02;  // m2/rad
 constexpr double kSidewaysVariance = 0.01;   // m2/m
 
 pipeline::Config searching_widely(pipeline::Config config, const Pose2& T_robot_laser) {
-  config.local_mapper.T_robot_laser = T_robot_laser;
-  config.local_mapper.voronoi.forward_rad = -T_robot_laser.theta_rad;
+  pipeline::mount_laser(config, T_robot_laser);
   for (auto* noise : {&config.localizer.odometry, &config.local_mapper.tracker.odometry,
                       &config.calibration.fallback}) {
     noise->translation_m2_per_rad = std::max(noise->translation_m2_per_rad, kTurnShiftVariance);
@@ -124,7 +124,8 @@ std::string laser_yaml(const LaserCalibration& laser) {
 }
 
 int calibrate_laser_log(const CalibrateLaserOptions& options) {
-  const pipeline::LoadedConfig config = load_for_calibration(options.config, options.out);
+  const pipeline::LoadedConfig config =
+      load_for_calibration(options.config, options.out, options.log);
   const Found found = calibrate_laser(options, config.config);
   const LaserCalibration& laser = found.laser;
   const std::string name = options.log.filename().string();
@@ -141,8 +142,8 @@ int calibrate_laser_log(const CalibrateLaserOptions& options) {
   std::cout << '\n' << block;
   if (options.out) {
     const std::string comment = "Laser of " + name + ", by topogeo calibrate-laser.";
-    support::write_file_atomically(*options.out,
-                                   configuration_with(block, comment, options.config));
+    support::write_file_atomically(
+        *options.out, configuration_with(block, comment, options.config, laser.T_robot_laser()));
     std::cout << "written to " << options.out->string() << '\n';
   }
   if (laser.x_m.known || laser.y_m.known || laser.yaw_rad.known) return service::kOk;
@@ -160,8 +161,9 @@ void add_calibrate_laser_command(command_line::Command& app, int& exit_code) {
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--config", options->config,
-                   "configuration (YAML); its laser section is where the search starts")
+      ->add_option(
+          "--config", options->config,
+          "configuration (YAML); its laser section, else the log, is where the search starts")
       ->type_name("FILE");
   command
       ->add_option("--out", options->out,

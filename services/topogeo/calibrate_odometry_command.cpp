@@ -58,7 +58,7 @@ std::vector<topomap::StampedPose> read_reference(const CalibrateOptions& options
 }
 
 CalibrationInputs read_inputs(const CalibrateOptions& options) {
-  pipeline::LoadedConfig config = load_for_calibration(options.config, options.out);
+  pipeline::LoadedConfig config = load_for_calibration(options.config, options.out, options.log);
   auto reference = read_reference(options);
   OpenLog log = open_log(options.log, config.config.log);
   return {std::move(config), std::move(log), std::move(reference)};
@@ -200,8 +200,9 @@ int calibrate_log(const CalibrateOptions& options) {
   std::cout << block;
   if (options.out) {
     const std::string comment = "Odometry of " + name + ", by topogeo calibrate-odometry.";
-    support::write_file_atomically(*options.out,
-                                   configuration_with(block, comment, options.config));
+    support::write_file_atomically(
+        *options.out, configuration_with(block, comment, options.config,
+                                         inputs.config.config.local_mapper.T_robot_laser));
     std::cout << "written to " << options.out->string() << '\n';
   }
   return service::kOk;

@@ -27,7 +27,8 @@ constexpr std::uint32_t kRecentMatches = 6;
 }  // namespace
 
 pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
-                                            const std::optional<std::filesystem::path>& out) {
+                                            const std::optional<std::filesystem::path>& out,
+                                            const std::filesystem::path& log) {
   pipeline::LoadedConfig loaded;
   try {
     loaded = pipeline::load_config(config);
@@ -41,6 +42,7 @@ pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem:
     }
     support::check_writable_directory(directory);
   }
+  choose_mounting(loaded, log);
   return loaded;
 }
 
@@ -126,11 +128,13 @@ std::string describe_matches(const pipeline::Config& config,
 }
 
 std::string configuration_with(const std::string& block, const std::string& comment,
-                               const std::optional<std::filesystem::path>& config) {
+                               const std::optional<std::filesystem::path>& config,
+                               const geometry::Pose2& T_robot_laser) {
   if (!config) return "# " + comment + "\n" + block;
   pipeline::Config values;
   const support::ConfigSchema schema = pipeline::describe(values);
   support::load_yaml_file(*config, schema);
+  values.local_mapper.T_robot_laser = T_robot_laser;  // of the log, if the file leaves it open
   support::load_yaml_text(block, "the values found", schema);
   std::ostringstream whole;
   support::write_yaml(schema, whole);

@@ -15,10 +15,12 @@
 
 namespace topogeo::cli {
 
-/// The configuration of the file or the defaults; tries out whether `out`, if any, can be written.
-/// Throws service::UsageError and std::runtime_error for these two.
+/// The configuration of the file or the defaults, with the laser where choose_mounting has it;
+/// tries out whether `out`, if any, can be written. Throws service::UsageError,
+/// service::BadInputError for the log and std::runtime_error for `out`.
 pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
-                                            const std::optional<std::filesystem::path>& out);
+                                            const std::optional<std::filesystem::path>& out,
+                                            const std::filesystem::path& log);
 
 /// A log before its first scan.
 struct OpenLog {
@@ -61,8 +63,10 @@ std::string describe_matches(const pipeline::Config& config,
                              const localization::MatchedMotions& matched);
 
 /// A configuration that `topogeo map` takes: the block alone after a comment, or with `config` all
-/// of its values with those of the block in place. Throws std::runtime_error naming file and line.
+/// of its values, the laser where it was, with those of the block in place. Throws
+/// std::runtime_error naming file and line.
 std::string configuration_with(const std::string& block, const std::string& comment,
-                               const std::optional<std::filesystem::path>& config);
+                               const std::optional<std::filesystem::path>& config,
+                               const geometry::Pose2& T_robot_laser);
 
 }  // namespace topogeo::cli

@@ -165,6 +165,7 @@ int draw(const DvlOptions& options) {
   } catch (const std::exception& error) {
     throw service::UsageError(error.what());
   }
+  choose_mounting(config, options.log);
   support::write_file_atomically(options.out, options.all
                                                   ? sheet_of_log(options, config.config)
                                                   : picture_of_scan(options, config.config));

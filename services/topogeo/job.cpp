@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/scan/laser_mounting.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -116,11 +118,21 @@ void add_map_options(command_line::Command& app, JobOptions& options, StoredMapU
       ->type_name("X,Y,DEG");
 }
 
+void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log) {
+  try {
+    const std::string message = pipeline::choose_mounting(config, scan::mounting_in_log(log));
+    if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
+  } catch (const std::runtime_error& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
 Inputs check_inputs(const JobOptions& options) {
   if (options.initial_pose && !options.map && !options.continued) {
     throw service::UsageError("--initial-pose: expected with a stored map, --map or --continue");
   }
   Inputs inputs{load(options.config), nullptr, nullptr};
+  if (!options.log.empty()) choose_mounting(inputs.config, options.log);
   const pipeline::Config& config = inputs.config.config;
   if (options.continued && config.localizer.mode != localization::LocalizerMode::kGraph) {
     throw service::UsageError("--continue: expected localizer.mode graph in the configuration");

@@ -50,8 +50,14 @@ struct Inputs {
   std::shared_ptr<const storage::MapDocument> continued;  ///< of JobOptions::continued
 };
 
+/// Takes the mounting of the laser from the log unless the configuration sets it, and reports on
+/// stderr what people should know of that. Throws service::BadInputError when the log cannot be
+/// opened.
+void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log);
+
 /// Finds out before the work starts whether configuration, stored map and reference can be used,
-/// wherever the scans come from. Throws service::UsageError for options and configuration,
+/// wherever the scans come from; where there is a log, with the laser where choose_mounting has it.
+/// Throws service::UsageError for options and configuration,
 /// service::BadInputError for the others.
 Inputs check_inputs(const JobOptions& options);
 

@@ -15,6 +15,7 @@
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
+#include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -36,11 +37,18 @@ struct RecordRequest {
   DomainView view;
   std::string robot_id = "robot";
   std::filesystem::path out;
+  std::optional<std::string> laser;  ///< see pipeline::parse_mounting
 };
 
-scan::CarmenLogWriter open(const std::filesystem::path& path) {
+scan::CarmenLogWriter open(const RecordRequest& request) {
+  geometry::Pose2 T_robot_laser;
   try {
-    return scan::CarmenLogWriter(path);
+    if (request.laser) T_robot_laser = pipeline::parse_mounting(*request.laser);
+  } catch (const std::invalid_argument& error) {
+    throw service::UsageError(std::string("--laser: ") + error.what());
+  }
+  try {
+    return scan::CarmenLogWriter(request.out, T_robot_laser);
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
@@ -50,7 +58,7 @@ class Recorder {
  public:
   explicit Recorder(const RecordRequest& request)
       : request_(request),
-        log_(open(request.out)),
+        log_(open(request)),
         participant_(join(request.view, "topogeo/record")),
         // Slows a replay down rather than lose scans.
         scans_(participant_, {std::string(messaging::kReplayRole), {}}),
@@ -133,6 +141,10 @@ void add_record_command(command_line::Command& app, int& exit_code) {
       ->type_name("FILE");
   command->add_option("--robot,--robot-id", request->robot_id, "whose scans")
       ->capture_default_str();
+  command
+      ->add_option("--laser", request->laser,
+                   "mounting of the laser, m and rad, which the log is to state (default: 0,0,0)")
+      ->type_name("X,Y,YAW");
   add_domain_options(*command, request->view);
   command->footer(
       "Ends with the stream of the gateway or with Ctrl-C. Numbers are written with every digit, "

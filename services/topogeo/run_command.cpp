@@ -136,7 +136,9 @@ void add_run_options(command_line::Command& app, RunOptions& options) {
 int run_log(const RunOptions& options) {
   const double start_s = support::monotonic_s();
   Job job = prepare(options.job);
-  const RunResult result = RunSupervisor(options, job.laser_lines).run();
+  RunOptions mounted = options;
+  mounted.laser = job.inputs.config.config.local_mapper.T_robot_laser;
+  const RunResult result = RunSupervisor(mounted, job.laser_lines).run();
   if (result.signal_number != 0) {
     std::cerr << "topogeo: stopped, no map was written\n";
     return kSignalBase + result.signal_number;

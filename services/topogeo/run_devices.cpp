@@ -129,6 +129,7 @@ void add_simulation_options(command_line::Command& app, SimulatorOptions& option
 int run_devices(RunOptions options) {
   const double start_s = support::monotonic_s();
   const Inputs inputs = check_inputs(options.job);
+  options.laser = inputs.config.config.local_mapper.T_robot_laser;  // for a recording
   if (options.simulation) {
     prepare_simulation(options);
   } else {

@@ -68,7 +68,7 @@ void print_arrival(const RunOptions& options, const GotoResult& result) {
 int run_goto(RunOptions options) {
   static_cast<void>(to_goal(*options.goal));
   check_picture(options.goal->picture);
-  static_cast<void>(check_inputs(options.job));
+  options.laser = check_inputs(options.job).config.config.local_mapper.T_robot_laser;
   if (!options.goal->picture) options.goal->picture = options.job.out / "route.png";
   prepare_simulation(options);
   const GotoResult result = GotoRun(options).run();

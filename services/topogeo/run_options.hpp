@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "topogeo/geometry/pose2.hpp"
+
 #include "goal_session.hpp"
 #include "job.hpp"
 
@@ -26,6 +28,7 @@ struct RunOptions {
   std::filesystem::path devices;               ///< file of the devices to use; empty: a log
   std::filesystem::path record;                ///< log to write of what is mapped; empty: none
   std::optional<SimulatorOptions> simulation;  ///< what is behind the ports of `devices`
+  std::optional<geometry::Pose2> laser;        ///< mounting in force; none: as configured
   std::uint32_t workers = 2;
   std::optional<std::uint32_t> wait_workers;  ///< before the first step; none: `workers`
   std::uint32_t domain = 0;

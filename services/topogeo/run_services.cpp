@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "topogeo/pipeline/laser_mounting.hpp"
+
 namespace topogeo::cli {
 namespace {
 
@@ -12,6 +14,17 @@ using supervision::ProcessGroup;
 using Arguments = std::vector<std::string>;
 
 constexpr std::string_view kWorker = "ga_worker";
+
+Arguments operator+(Arguments arguments, const Arguments& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+/// The mounting of the laser where it is not left to the configuration.
+Arguments laser_argument(const RunOptions& options) {
+  if (!options.laser) return {};
+  return {"--laser=" + pipeline::mounting_argument(*options.laser)};
+}
 
 /// Flags that all services have.
 Arguments common_arguments(const RunOptions& options, const std::string& partition) {
@@ -23,12 +36,7 @@ Arguments common_arguments(const RunOptions& options, const std::string& partiti
   if (!options.profiles_file.empty()) {
     arguments.insert(arguments.end(), {"--profiles", options.profiles_file.string()});
   }
-  return arguments;
-}
-
-Arguments operator+(Arguments arguments, const Arguments& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return arguments + laser_argument(options);
 }
 
 /// What a map store keeps, or the map that it shows as it is.
@@ -89,7 +97,7 @@ void start_recorder(ProcessGroup& processes, const RunOptions& options,
   if (!options.profiles_file.empty()) {
     arguments.insert(arguments.end(), {"--profiles", options.profiles_file.string()});
   }
-  processes.start("record", "topogeo", arguments, Importance::kMayFinish);
+  processes.start("record", "topogeo", arguments + laser_argument(options), Importance::kMayFinish);
 }
 
 }  // namespace

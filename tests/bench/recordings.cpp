@@ -41,4 +41,13 @@ Recording recorded(const std::string& log_file, const std::string& reference_fil
   return recording;
 }
 
+Recording thinned(const Recording& recording, std::size_t every) {
+  Recording kept{recording.name + "/" + std::to_string(every), {}, {}};
+  for (std::size_t i = 0; i < recording.scans.size(); i += every) {
+    kept.scans.push_back(recording.scans[i]);
+    kept.T_world_robot.push_back(recording.T_world_robot[i]);
+  }
+  return kept;
+}
+
 }  // namespace topogeo::bench

@@ -2,6 +2,7 @@
 // ones with their reference trajectory.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,5 +26,8 @@ Recording simulated(const std::string& world_file);
 /// A CARMEN log with its reference trajectory (TUM). Throws std::runtime_error naming the file.
 Recording recorded(const std::string& log_file, const std::string& reference_file,
                    const scan::CarmenLogOptions& options);
+
+/// The first scan and every `every`-th after it, named NAME/N; `every` > 0.
+Recording thinned(const Recording& recording, std::size_t every);
 
 }  // namespace topogeo::bench

@@ -186,10 +186,11 @@ void use_udp_only() {
 }
 
 void write_log(const std::string& world, const std::filesystem::path& log,
-               const std::filesystem::path& truth, const simulation::SimulationOptions& options) {
+               const std::filesystem::path& truth, const simulation::SimulationOptions& options,
+               const geometry::Pose2& stated) {
   const auto file = std::filesystem::path(TOPOGEO_TEST_DATA) / (world + ".world.yaml");
   const auto simulated = simulation::simulate_log(world::load_world(file), options);
-  scan::CarmenLogWriter writer(log);
+  scan::CarmenLogWriter writer(log, stated);
   std::vector<topomap::StampedPose> poses;
   for (std::size_t i = 0; i < simulated.scans.size(); ++i) {
     writer.write(simulated.scans[i]);

@@ -76,8 +76,10 @@ std::string own_domain();
 void use_udp_only();
 
 /// Writes the log of a drive through a world of tests/data, and its true poses if `truth` is named.
+/// The log states `stated` as the mounting of its laser, wherever options have the laser.
 void write_log(const std::string& world, const std::filesystem::path& log,
                const std::filesystem::path& truth = {},
-               const simulation::SimulationOptions& options = {});
+               const simulation::SimulationOptions& options = {},
+               const geometry::Pose2& stated = {});
 
 }  // namespace topogeo::test

@@ -2,15 +2,27 @@
 
 #include <stdexcept>
 
+#include "topogeo/pipeline/laser_mounting.hpp"
+
 namespace topogeo::pipeline {
 namespace {
 
 // Where one key stands for several variables.
 void share_values(Config& c) {
-  c.local_mapper.voronoi.forward_rad = -c.local_mapper.T_robot_laser.theta_rad;
+  mount_laser(c, c.local_mapper.T_robot_laser);
   c.local_mapper.tracker.odometry = c.localizer.odometry;
   c.calibration.fallback = c.localizer.odometry;
   c.calibration.seed = c.localizer.seed;
+}
+
+// A key that the file leaves out keeps what was there before, so it differs where that differs.
+bool sets_laser(const std::filesystem::path& file, const geometry::Pose2& read) {
+  Config other;
+  other.local_mapper.T_robot_laser = {1.0, 1.0, 1.0};
+  support::load_yaml_file(file, describe(other));
+  const geometry::Pose2& read_again = other.local_mapper.T_robot_laser;
+  return read.x_m == read_again.x_m || read.y_m == read_again.y_m ||
+         read.theta_rad == read_again.theta_rad;
 }
 
 // Values that must fit each other, which the ranges of the keys do not state.
@@ -54,7 +66,10 @@ support::ConfigSchema describe(Config& config) {
 LoadedConfig load_config(const std::optional<std::filesystem::path>& file) {
   LoadedConfig loaded;
   const support::ConfigSchema schema = describe(loaded.config);
-  if (file) support::load_yaml_file(*file, schema);
+  if (file) {
+    support::load_yaml_file(*file, schema);
+    loaded.laser_set = sets_laser(*file, loaded.config.local_mapper.T_robot_laser);
+  }
   loaded.effective = support::effective(schema);
   share_values(loaded.config);
   try {

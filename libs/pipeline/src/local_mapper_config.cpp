@@ -6,10 +6,12 @@ namespace topogeo::pipeline {
 
 void describe(LocalMapperConfig& config, support::ConfigSchema& schema) {
   constexpr std::uint32_t kLongestOnTheWire = 256;  // bound of the sequence in the interface file
-  schema.add("laser.x_m", &config.T_robot_laser.x_m, -5.0, 5.0, "m",
-             "mounting of the laser on the robot, forward of the point that odometry refers to");
+  schema.add(
+      "laser.x_m", &config.T_robot_laser.x_m, -5.0, 5.0, "m",
+      "mounting of the laser on the robot, forward of the point that odometry refers to; where no "
+      "key of this section is set, what a log states");
   schema.add("laser.y_m", &config.T_robot_laser.y_m, -5.0, 5.0, "m", "the same, to the left");
-  schema.add("laser.yaw_rad", &config.T_robot_laser.theta_rad, -3.1415, 3.1415, "rad",
+  schema.add("laser.yaw_rad", &config.T_robot_laser.theta_rad, -3.1416, 3.1416, "rad",
              "the same, counter-clockwise; 0: the laser looks forward");
   schema.add("stop.distance_m", &config.stop_distance_m, 0.1, 10.0, "m",
              "travelled distance after which a stop is made; shorter: more maps, more work, better "

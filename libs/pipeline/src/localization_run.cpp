@@ -10,31 +10,21 @@
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "pose_text.hpp"
+
 namespace topogeo::pipeline {
 
 geometry::Pose2 parse_pose(const std::string& text) {
-  std::array<double, 3> values{};
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t end = i + 1 < values.size() ? text.find(',', begin) : text.size();
-    std::size_t used = 0;
-    bool good = end != std::string::npos && end > begin;
-    try {
-      if (good) values.at(i) = std::stod(text.substr(begin, end - begin), &used);
-    } catch (const std::exception&) {
-      good = false;
-    }
-    if (!good || used != end - begin || !std::isfinite(values.at(i))) {
-      throw std::invalid_argument("pose '" + text +
-                                  "': expected x,y,degrees in metres and degrees");
-    }
-    begin = end + 1;
+  const auto values = parse_three_numbers(text);
+  if (!values) {
+    throw std::invalid_argument("pose '" + text + "': expected x,y,degrees in metres and degrees");
   }
+  const auto [x_m, y_m, degrees] = *values;
   constexpr double kMostDegrees = 36000.0;
-  if (std::fabs(values[2]) > kMostDegrees) {
+  if (std::fabs(degrees) > kMostDegrees) {
     throw std::invalid_argument("pose '" + text + "': expected at most 36000 degrees");
   }
-  return {values[0], values[1], geometry::wrap_angle(values[2] * std::numbers::pi / 180.0)};
+  return {x_m, y_m, geometry::wrap_angle(degrees * std::numbers::pi / 180.0)};
 }
 
 namespace {
@@ -84,7 +74,7 @@ std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::file
     if (map.T_robot_laser == expected) continue;
     throw std::runtime_error(fmt::format(
         "{}: made with the laser at {}, expected {} as in the configuration (laser.x_m, laser.y_m, "
-        "laser.yaw_rad)",
+        "laser.yaw_rad) or the log",
         file.string(), mounting_text(map.T_robot_laser), mounting_text(expected)));
   }
   return document;

@@ -13,6 +13,9 @@ namespace {
 constexpr double kMaxCoordinate_m = 1e6;
 constexpr double kMaxHeading_rad = 1e4;
 
+constexpr std::size_t kFlaserCount = 1;      // field with the number of ranges
+constexpr std::size_t kRobotlaserCount = 8;  // the same of a ROBOTLASER1 line
+
 // Thrown and caught inside this file only.
 struct Bad {
   LineError error;
@@ -107,26 +110,43 @@ std::variant<Scan, LineError> CarmenLineParser::parse(std::string_view line) {
   }
 }
 
-void CarmenLineParser::parse_flaser(Scan& scan) {
-  const std::size_t count = parse_count(1, "number of ranges");
-  const std::size_t expected = 2 + count + 9;
+std::optional<LinePoses> CarmenLineParser::parse_poses(std::string_view line) {
+  split(line, fields_);
+  try {
+    const std::size_t poses =
+        fields_.at(0) == "FLASER" ? find_flaser_poses() : find_robotlaser_poses();
+    return LinePoses{parse_pose(poses), parse_pose(poses + 3)};
+  } catch (const Bad&) {
+    return std::nullopt;
+  }
+}
+
+std::size_t CarmenLineParser::find_flaser_poses() const {
+  const std::size_t count = parse_count(kFlaserCount, "number of ranges");
+  const std::size_t poses = kFlaserCount + 1 + count;
+  const std::size_t expected = poses + 9;
   if (fields_.size() != expected) {
     fail(SkipReason::kFields,
          std::to_string(expected) + " fields (" + std::to_string(count) +
              " ranges, two poses, stamp, host, stamp)",
          std::to_string(fields_.size()), fields_.size() < expected);
   }
-  scan.angle_min_rad = -std::numbers::pi / 2.0;
-  scan.angle_step_rad = flaser_angle_step_rad(count);
-  parse_ranges(2, count, range_max_m_, scan);
-  scan.T_odom_robot = parse_pose(2 + count + 3);
-  scan.stamp_ns = stamp_or_fail(fields_[2 + count + 6]);
+  return poses;
 }
 
-void CarmenLineParser::parse_robotlaser(Scan& scan) {
-  constexpr std::size_t kCountField = 8;
-  const std::size_t count = parse_count(kCountField, "number of ranges");
-  const std::size_t remissions_field = kCountField + 1 + count;
+void CarmenLineParser::parse_flaser(Scan& scan) {
+  const std::size_t poses = find_flaser_poses();
+  const std::size_t count = poses - kFlaserCount - 1;
+  scan.angle_min_rad = -std::numbers::pi / 2.0;
+  scan.angle_step_rad = flaser_angle_step_rad(count);
+  parse_ranges(kFlaserCount + 1, count, range_max_m_, scan);
+  scan.T_odom_robot = parse_pose(poses + 3);
+  scan.stamp_ns = stamp_or_fail(fields_[poses + 6]);
+}
+
+std::size_t CarmenLineParser::find_robotlaser_poses() const {
+  const std::size_t count = parse_count(kRobotlaserCount, "number of ranges");
+  const std::size_t remissions_field = kRobotlaserCount + 1 + count;
   std::size_t remissions = 0;
   if (remissions_field >= fields_.size() || !from_text(fields_[remissions_field], remissions) ||
       remissions > CarmenLogReader::kMaxBeams) {
@@ -144,6 +164,12 @@ void CarmenLineParser::parse_robotlaser(Scan& scan) {
              std::to_string(remissions) + " remission values)",
          std::to_string(fields_.size()), fields_.size() < expected);
   }
+  return poses;
+}
+
+void CarmenLineParser::parse_robotlaser(Scan& scan) {
+  const std::size_t poses = find_robotlaser_poses();
+  const std::size_t count = parse_count(kRobotlaserCount, "number of ranges");
   scan.angle_min_rad = parse_number(2, SkipReason::kGeometry, "a start angle");
   scan.angle_step_rad = parse_number(4, SkipReason::kGeometry, "an angular resolution");
   // The tolerance lets a full turn through whose step was rounded in the log.
@@ -161,7 +187,7 @@ void CarmenLineParser::parse_robotlaser(Scan& scan) {
   if (!(sensor_max_m > 0.0)) {
     fail(SkipReason::kRange, "a positive maximum range", quoted(fields_[5]));
   }
-  parse_ranges(kCountField + 1, count, std::min(range_max_m_, sensor_max_m), scan);
+  parse_ranges(kRobotlaserCount + 1, count, std::min(range_max_m_, sensor_max_m), scan);
   scan.T_odom_robot = parse_pose(poses + 3);
   scan.stamp_ns = stamp_or_fail(fields_[poses + 11]);
 }

@@ -22,6 +22,12 @@ struct LineError {
   bool ends_early = false;  ///< there are fewer fields than the line itself asks for
 };
 
+/// The two poses of a laser line.
+struct LinePoses {
+  geometry::Pose2 T_odom_laser;
+  geometry::Pose2 T_odom_robot;
+};
+
 class CarmenLineParser {
  public:
   explicit CarmenLineParser(double range_max_m) : range_max_m_(range_max_m) {}
@@ -29,7 +35,13 @@ class CarmenLineParser {
   /// The scan of a laser line, its sequence still 0, or what is wrong with the line.
   std::variant<Scan, LineError> parse(std::string_view line);
 
+  /// The poses of a laser line alone; empty where it lacks fields or a pose is no pose.
+  std::optional<LinePoses> parse_poses(std::string_view line);
+
  private:
+  /// Field where the pose of the laser begins, which that of the robot follows.
+  [[nodiscard]] std::size_t find_flaser_poses() const;
+  [[nodiscard]] std::size_t find_robotlaser_poses() const;
   void parse_flaser(Scan& scan);
   void parse_robotlaser(Scan& scan);
   std::size_t parse_count(std::size_t field, const char* what) const;

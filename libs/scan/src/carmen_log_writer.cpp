@@ -26,6 +26,12 @@ void append(std::string& text, T value) {
   text.append(digits.data(), result.ptr);
 }
 
+void append_pose(std::string& text, const geometry::Pose2& pose) {
+  append(text, pose.x_m);
+  append(text, pose.y_m);
+  append(text, pose.theta_rad);
+}
+
 void append_stamp(std::string& text, std::int64_t stamp_ns) {
   const std::string nanoseconds = std::to_string(stamp_ns % 1'000'000'000);
   append(text, stamp_ns / 1'000'000'000);
@@ -80,7 +86,8 @@ double flaser_angle_step_rad(std::size_t beams) {
 }
 
 struct CarmenLogWriter::Impl {
-  Impl(std::string name, const char* mode) : path(std::move(name)) {
+  Impl(std::string name, const char* mode, const geometry::Pose2& mounting)
+      : path(std::move(name)), T_robot_laser(mounting) {
     errno = 0;
     file = gzopen(path.c_str(), mode);
     if (file == nullptr) fail(errno != 0 ? std::strerror(errno) : "no memory");
@@ -103,11 +110,14 @@ struct CarmenLogWriter::Impl {
   }
 
   std::string path;
+  geometry::Pose2 T_robot_laser;
   gzFile file = nullptr;
 };
 
-CarmenLogWriter::CarmenLogWriter(const std::filesystem::path& path)
-    : impl_(std::make_unique<Impl>(path.string(), path.extension() == ".gz" ? "wb" : "wbT")) {
+CarmenLogWriter::CarmenLogWriter(const std::filesystem::path& path,
+                                 const geometry::Pose2& T_robot_laser)
+    : impl_(std::make_unique<Impl>(path.string(), path.extension() == ".gz" ? "wb" : "wbT",
+                                   T_robot_laser)) {
   impl_->put(
       "# FLASER num_readings [range_readings] x y theta odom_x odom_y odom_theta ipc_timestamp "
       "ipc_hostname logger_timestamp\n");
@@ -133,12 +143,10 @@ void CarmenLogWriter::write(const Scan& scan) {
     append(line, range_m == Scan::kNoReturn ? kNoReturnWritten_m : range_m);
   }
   if (!flaser) line += " 0";  // remission values
-  // The laser's pose, then the robot's: the laser sits at the robot's origin.
-  for (int i = 0; i < 2; ++i) {
-    append(line, scan.T_odom_robot.x_m);
-    append(line, scan.T_odom_robot.y_m);
-    append(line, scan.T_odom_robot.theta_rad);
-  }
+  // Without a mounting the robot's pose as it is, as a product would wrap its heading.
+  const bool mounted = impl_->T_robot_laser != geometry::Pose2{};
+  append_pose(line, mounted ? scan.T_odom_robot * impl_->T_robot_laser : scan.T_odom_robot);
+  append_pose(line, scan.T_odom_robot);
   if (!flaser) line += " 0 0 0 0 0";  // speeds, distances of safety and turn axis: unknown
   append_stamp(line, scan.stamp_ns);
   line += " topogeo";

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/support/logging.hpp"
 #include "topogeo/support/version.hpp"
 
@@ -14,9 +15,13 @@ namespace {
 constexpr std::uint32_t kLargestDomain = 232;  // of DDS over UDP, whose ports follow from it
 constexpr std::size_t kLongestRobotId = 32;    // idl
 
-pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
+/// The fingerprint stays that of the file: search workers elsewhere have just that.
+pipeline::LoadedConfig load(const ServiceOptions& options) {
   try {
-    return pipeline::load_config(file);
+    pipeline::LoadedConfig loaded = pipeline::load_config(options.config);
+    if (options.laser)
+      pipeline::mount_laser(loaded.config, pipeline::parse_mounting(*options.laser));
+    return loaded;
   } catch (const std::exception& error) {
     throw UsageError(error.what());
   }
@@ -37,6 +42,9 @@ void add_service_options(command_line::Command& app, ServiceOptions& options) {
       })
       ->capture_default_str();
   app.add_option("--config", options.config, "configuration file (YAML)");
+  app.add_option("--laser", options.laser,
+                 "mounting of the laser, m and rad, in place of the configured one")
+      ->type_name("X,Y,YAW");
   app.add_option("--profiles", options.profiles_file, "file of QoS profiles, instead of built in");
   app.add_option("--log-level", options.log_level,
                  "least severe messages that are logged to stderr")
@@ -67,7 +75,7 @@ int run_service(int argc, const char* const* argv, const std::string& name,
     if (add_options) add_options(app);
     if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
     support::set_up_logging(name, setup.options.log_level);
-    setup.config = load(setup.options.config);
+    setup.config = load(setup.options);
     body(setup);
     return kOk;
   } catch (const UsageError& error) {

@@ -41,6 +41,7 @@ support::ConfigSchema describe(Config& config);
 struct LoadedConfig {
   Config config;
   support::EffectiveConfig effective;
+  bool laser_set = false;  ///< the file sets at least one key of section `laser`
 };
 LoadedConfig load_config(const std::optional<std::filesystem::path>& file);
 

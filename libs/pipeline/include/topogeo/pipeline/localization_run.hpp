@@ -28,7 +28,7 @@ std::shared_ptr<const localization::StoredMap> stored_map(const storage::MapDocu
 
 /// A map file that this robot is to continue. Throws std::runtime_error naming the file when it
 /// cannot be read, has no stop that saw anything or stops without a place, is of another robot, or
-/// was made with the laser elsewhere on the robot than configured.
+/// was made with the laser elsewhere on the robot than it is now.
 std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::filesystem::path& file,
                                                                  const Config& config,
                                                                  const std::string& robot_id);

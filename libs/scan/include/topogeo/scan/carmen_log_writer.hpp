@@ -14,9 +14,11 @@ class CarmenLogWriter {
   /// CARMEN program takes for "no return".
   static constexpr float kNoReturnWritten_m = 81.91F;
 
-  /// Creates or replaces the file; gzip when its name ends in .gz. Throws std::runtime_error when
-  /// it cannot be written.
-  explicit CarmenLogWriter(const std::filesystem::path& path);
+  /// Creates or replaces the file; gzip when its name ends in .gz. `T_robot_laser`: mounting of the
+  /// laser, which the two poses of each line state. Throws std::runtime_error when the file cannot
+  /// be written.
+  explicit CarmenLogWriter(const std::filesystem::path& path,
+                           const geometry::Pose2& T_robot_laser = {});
 
   /// Closes without reporting errors; call close() to hear of them.
   ~CarmenLogWriter();

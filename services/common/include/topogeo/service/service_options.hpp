@@ -36,6 +36,7 @@ struct ServiceOptions {
   std::string partition = messaging::kDefaultPartition;  ///< runs of different ones never meet
   std::string robot_id = "robot";                        ///< 1 to 32 bytes
   std::optional<std::filesystem::path> config;           ///< YAML; none: the defaults
+  std::optional<std::string> laser;                      ///< see pipeline::parse_mounting
   std::filesystem::path profiles_file;                   ///< QoS profiles; empty: built in
   std::string log_level = "info";
 };

@@ -1,0 +1,36 @@
+// Maps a recording and measures what became of its loops.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/pipeline/loop_recall.hpp"
+#include "topogeo/pipeline/trajectory_error.hpp"
+
+#include "covariance_checks.hpp"
+#include "recordings.hpp"
+
+namespace topogeo::bench {
+
+struct LoopFigures {
+  std::string name;
+  std::size_t stops = 0;
+  pipeline::TrajectoryError error;
+  std::optional<pipeline::RelationsError> relations;
+  pipeline::LoopRecall recall;
+  MeanSquaredDistance triangles;
+  MeanSquaredDistance predictions;
+  std::uint64_t match_tasks = 0;
+  double cpu_s = 0.0;
+};
+
+/// `relations`: the file of hand-checked relative poses, if there is one. Throws std::runtime_error
+/// and std::invalid_argument for files that cannot be used.
+LoopFigures measure_loops(const Recording& recording, const pipeline::Config& config,
+                          const std::optional<std::filesystem::path>& relations);
+
+}  // namespace topogeo::bench
