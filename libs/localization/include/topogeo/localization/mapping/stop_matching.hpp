@@ -132,7 +132,7 @@ class StopMatching {
   std::set<std::uint32_t> recognized_;  // stops that places were asked for, in this round
   std::optional<std::uint32_t> recognized_last_;
   std::vector<StopMatch> windows_;  // of the places of this round
-  std::uint32_t misfits_ = 0;  // stops in succession at which no match fitted its prediction
+  std::uint32_t misfits_ = 0;       // stops in succession at which no match fitted its prediction
   std::set<std::uint32_t> revisited_;  // stops that were matched where they were predicted
   StopComparisons comparisons_;
   CovarianceCalibration calibration_;

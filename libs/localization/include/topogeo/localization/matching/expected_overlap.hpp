@@ -21,9 +21,9 @@ std::vector<SurfacePoint> outline_of(std::span<const SurfacePoint> coarse);
 double expected_overlap(const RangeProfile& viewer, std::span<const SurfacePoint> outline,
                         const UncertainPose& T_viewer_outline, double least = 0.0);
 
-/// Share of the outline that lies about where the viewer saw a surface: what two maps can be matched
-/// by, as far as the prediction says. Never more than expected_overlap(), which counts what the
-/// viewer saw past, too.
+/// Share of the outline that lies about where the viewer saw a surface: what two maps can be
+/// matched by, as far as the prediction says. Never more than expected_overlap(), which counts what
+/// the viewer saw past, too.
 double expected_common(const RangeProfile& viewer, std::span<const SurfacePoint> outline,
                        const UncertainPose& T_viewer_outline);
 

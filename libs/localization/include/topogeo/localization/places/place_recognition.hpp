@@ -28,8 +28,8 @@ namespace topogeo::localization {
 /// What was seen from a stop, in the frame of the robot.
 struct StopView {
   RangeProfile profile;
-  std::vector<SurfacePoint> outline;    ///< some of its points, to foresee overlap
-  std::vector<SurfacePoint> near;  ///< points within kNear_m, about 0.2 m apart
+  std::vector<SurfacePoint> outline;  ///< some of its points, to foresee overlap
+  std::vector<SurfacePoint> near;     ///< points within kNear_m, about 0.2 m apart
 
   static constexpr double kNear_m = 15.0;
 };
@@ -46,8 +46,9 @@ struct PlaceProposal {
   /// T_anchor_robot after both were aligned as a whole, with the covariance of match_covariance();
   /// zero where too little is in common.
   UncertainPose aligned;
-  double value = 0.0;  ///< after that: share of the points in view of the submap that it has too, [0, 1]
-  double seen = 0.0;   ///< share of the points in view of the submap, [0, 1]
+  double value =
+      0.0;  ///< after that: share of the points in view of the submap that it has too, [0, 1]
+  double seen = 0.0;  ///< share of the points in view of the submap, [0, 1]
 };
 
 /// The covariance within which a place is looked for, from that of its prediction.
@@ -63,8 +64,7 @@ class PlaceRecognition {
   /// stop is known better than `least_sigma_m` on both axes its submap is left out.
   std::vector<PlaceProposal> propose(const PoseGraph& graph, std::uint32_t stop,
                                      std::uint32_t first_recent,
-                                     std::span<const UncertainPose> relative,
-                                     double least_sigma_m);
+                                     std::span<const UncertainPose> relative, double least_sigma_m);
 
  private:
   struct Submap {
@@ -81,8 +81,7 @@ class PlaceRecognition {
 
   void cut(const PoseGraph& graph, std::uint32_t first_recent);
   [[nodiscard]] std::vector<SurfacePoint> points_of(const Submap& submap) const;
-  [[nodiscard]] std::vector<SurfacePoint> query(const PoseGraph& graph,
-                                                   std::uint32_t stop) const;
+  [[nodiscard]] std::vector<SurfacePoint> query(const PoseGraph& graph, std::uint32_t stop) const;
   CachedMap& map_of(std::size_t submap);
   void compare(const Submap& submap, CachedMap& cached, const MatchFeatures& query,
                PlaceProposal& proposal) const;
