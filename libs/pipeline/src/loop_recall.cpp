@@ -136,6 +136,7 @@ std::vector<LoopOutcomeCounts> count_outcomes(const ReferencePoses& poses,
     ++(right ? of.right : near ? of.near : of.wrong);
   }
   std::vector<LoopOutcomeCounts> list;
+  list.reserve(counts.size());
   for (auto& [key, of] : counts) {
     list.push_back({key.first, key.second, of.right, of.near, of.wrong});
   }

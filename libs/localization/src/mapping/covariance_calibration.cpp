@@ -14,13 +14,13 @@ namespace {
 // once (tests/bench/RESULTS.md, "Covariances").
 constexpr double kUsualShare = 0.06;
 // Of the variance: errors along a path have a part in common, which no triangle shows.
-constexpr double kMargin = 1.5;
+constexpr double kCommonErrors = 1.5;
 constexpr double kFloor_m = 0.002;
 constexpr double kFloor_rad = 0.0005;
 // A triangle further off has a wrong match, which says nothing of the others.
 constexpr double kLargestSquare = 30.0;
-constexpr double kLeastFactor = 0.3;
-constexpr double kLargestFactor = 6.0;
+constexpr double kLeastOfTriangles = 0.3;
+constexpr double kMostOfTriangles = 6.0;
 
 Eigen::Matrix3d usual(const Eigen::Matrix3d& covariance, double factor) {
   Eigen::Matrix3d c = kUsualShare * factor * (covariance - match_covariance_floor());
@@ -45,11 +45,11 @@ void CovarianceCalibration::add_triangle(const UncertainPose& direct, const Unce
 }
 
 double CovarianceCalibration::factor() const {
-  return std::clamp(sum_ / weight_, kLeastFactor, kLargestFactor);
+  return std::clamp(sum_ / weight_, kLeastOfTriangles, kMostOfTriangles);
 }
 
 Eigen::Matrix3d CovarianceCalibration::of_match(const Eigen::Matrix3d& covariance) const {
-  return usual(covariance, kMargin * factor());
+  return usual(covariance, kCommonErrors * factor());
 }
 
 }  // namespace topogeo::localization

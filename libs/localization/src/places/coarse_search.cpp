@@ -19,7 +19,7 @@ namespace {
 // away between two headings.
 constexpr double kKernel_m = 0.60;
 constexpr double kHeadingStep_rad = 0.05;
-constexpr double kWidest_m = 250.0;
+constexpr double kWidestMap_m = 250.0;
 // A place with a lower share of the best one's score is no rival of it.
 constexpr double kOfBest = 0.85;
 constexpr double kApart_m = 0.75;
@@ -89,7 +89,8 @@ class Search {
  private:
   [[nodiscard]] Node bounded(int level, int heading, int column, int row) const {
     std::uint32_t sum = 0;
-    for (const Cell& cell : cells_[static_cast<std::size_t>(heading + headings_)]) {
+    const auto turned = static_cast<std::size_t>(heading) + static_cast<std::size_t>(headings_);
+    for (const Cell& cell : cells_[turned]) {
       sum += map_.at(level, cell.column + column, cell.row + row);
     }
     return {sum, heading, column, row};
@@ -152,7 +153,7 @@ CoarseMap::CoarseMap(std::span<const Eigen::Vector2d> points_m) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  if (!((high - low).maxCoeff() <= kWidest_m)) {
+  if (!((high - low).maxCoeff() <= kWidestMap_m)) {
     throw std::invalid_argument("coarse map: points spread over " +
                                 std::to_string((high - low).maxCoeff()) + " m, at most 250");
   }

@@ -27,7 +27,7 @@ Points room() {
 }
 
 /// The points as they are seen from a pose of the map.
-Points seen_from(const Pose2& T_map_robot, const Points& points_m) {
+Points points_seen_from(const Pose2& T_map_robot, const Points& points_m) {
   const Pose2 T_robot_map = geometry::inverse(T_map_robot);
   Points seen;
   for (const Eigen::Vector2d& p : points_m) seen.push_back(T_robot_map * p);
@@ -71,7 +71,7 @@ TEST(CoarseSearchTest, FindsWhereThePointsWereSeenFrom) {
   const CoarseMap map(room());
   const CoarseWindow window{{3.0, 1.0, 0.0}, {4.0, 4.0, M_PI}};
   for (const Pose2& truth : {Pose2{3.3, 1.1, 0.4}, Pose2{1.0, -1.2, -2.9}, Pose2{5.0, 2.0, 1.7}}) {
-    const auto found = search_coarsely(map, seen_from(truth, room()), window, 0.3, 3);
+    const auto found = search_coarsely(map, points_seen_from(truth, room()), window, 0.3, 3);
     ASSERT_FALSE(found.empty());
     EXPECT_LT((found[0].T_map_points.position_m() - truth.position_m()).norm(), 0.4);
     EXPECT_LT(std::fabs(geometry::wrap_angle(found[0].T_map_points.theta_rad - truth.theta_rad)),
@@ -81,7 +81,7 @@ TEST(CoarseSearchTest, FindsWhereThePointsWereSeenFrom) {
 
 TEST(CoarseSearchTest, MissesNothingThatTryingAllFinds) {
   const CoarseMap map(room());
-  const Points points_m = seen_from({3.3, 1.1, 0.4}, room());
+  const Points points_m = points_seen_from({3.3, 1.1, 0.4}, room());
   const CoarseWindow window{{3.0, 1.0, 0.5}, {2.0, 1.5, 0.3}};
   double best = 0.0;
   for (int h = -6; h <= 6; ++h) {
@@ -112,7 +112,7 @@ TEST(CoarseSearchTest, BothEndsOfASymmetricCorridorAreFound) {
     corridor.emplace_back(0.1 * i, 2.0);
   }
   const CoarseMap map(corridor);
-  const auto found = search_coarsely(map, seen_from({4.0, 1.0, 0.0}, corridor),
+  const auto found = search_coarsely(map, points_seen_from({4.0, 1.0, 0.0}, corridor),
                                      {{4.0, 1.0, 0.0}, {1.0, 1.0, M_PI}}, 0.5, 20);
   const auto heading = [&](double theta_rad) {
     return std::any_of(found.begin(), found.end(), [&](const CoarseMatch& match) {
