@@ -26,6 +26,7 @@ using testing::Pair;
 const std::vector<Pose2>& path() {
   static const std::vector<Pose2> kPath = [] {
     std::vector<Pose2> poses;
+    poses.reserve(35);
     for (int i = 0; i < 30; ++i) poses.push_back({3.0 * i, 0.0, 0.0});
     poses.insert(poses.end(), {{0, 0, 0}, {4.9, 0, 0}, {6, 0, 0.9}, {9, 0, 1.1}, {12, 2.1, 0}});
     return poses;

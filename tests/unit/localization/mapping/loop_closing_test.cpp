@@ -2,6 +2,7 @@
 // drifts sideways, so the stops back lie beside those out.
 #include "topogeo/localization/mapping/loop_closing.hpp"
 
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -119,8 +120,8 @@ TEST(LoopClosing, AMatchFarFromItsPredictionNeedsOthersHoweverSmallTheCorrection
 
 TEST(LoopClosing, DoubtfulMatchesThatAgreeAreAcceptedTogether) {
   const PoseGraph graph = straight(40);
-  std::vector<double> path_m;
-  for (int i = 0; i < 40; ++i) path_m.push_back(i);
+  std::vector<double> path_m(40);
+  std::iota(path_m.begin(), path_m.end(), 0.0);
   LoopClosing loops({});
   for (std::uint32_t i = 0; i < 6; ++i) {
     StopMatch doubtful = loop(i, 30 + i, 1.0);
