@@ -4,9 +4,9 @@
 //   topogeo_kidnapped [--runs N] [--first-seed S] [--fit]
 //
 // Each run draws a floor, maps it in one drive, and drives it again with other noise; on the way
-// the robot is put down elsewhere on its tour. The tables also say how often a stop that is
-// believed is right (0.3 m, 5 degrees; the truth relative to the nearest stop of the map), by the
-// confidence that was told. --fit prints the logistic functions of state_monitor.cpp that explain
+// the robot is put down elsewhere on its tour. The tables also say how often a TRACKING
+// stop is right (0.3 m, 5 degrees; the truth relative to the nearest stop of the map), by its
+// confidence. --fit prints the logistic functions of state_monitor.cpp that explain
 // the matches and the predictions of these runs best; fit and table want different seeds.
 #include <algorithm>
 #include <array>

@@ -17,7 +17,7 @@ void match(benchmark::State& state, std::uint32_t individuals, std::uint32_t gen
   localization::Matcher matcher;
   matcher.add_map(reference);
   matcher.add_map(query);
-  // What odometry is believed to know after a way of 0.5 m and a turn of 0.3 rad.
+  // What odometry is taken to know after a path of 0.5 m and a turn of 0.3 rad.
   localization::MatchTask task =
       localization::test::task_between(reference, query, {0.6, 0.05, 0.25}, 0.10, 0.18);
   task.genetic.individuals = individuals;

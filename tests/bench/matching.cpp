@@ -1,4 +1,4 @@
-// How right matches of two local maps are, and whether their verdicts can be believed.
+// How right matches of two local maps are, and whether their verdicts can be trusted.
 //
 //   topogeo_matching [--world FILE]... [--log FILE --reference FILE.tum]... [--config FILE]
 //

@@ -50,7 +50,7 @@ std::vector<MatchTask> TaskSource::next(std::size_t count, std::uint64_t differe
     task.query_hash = hashes_[query];
     task.T_reference_query =
         geometry::between(maps_[reference]->T_odom_robot, maps_[query]->T_odom_robot);
-    // What odometry is believed to know after half a metre; 95 % of it and two deviations.
+    // What odometry is taken to know after half a metre; 95 % of it and two deviations.
     task.covariance = Eigen::Vector3d(0.01, 0.01, 0.0324).asDiagonal();
     task.half_width = localization::search_half_width(task.covariance, 0.95, 2.0);
   }

@@ -139,7 +139,7 @@ TEST(SickDecoder, GivesSingleBytesOnlyBetweenTelegrams) {
   EXPECT_THAT(all(scan), ElementsAre(scan));
   scan.erase(scan.begin());
   EXPECT_THAT(all(scan), IsEmpty());
-  // After a silence they are believed again.
+  // After a silence they count again.
   SickDecoder decoder = host();
   EXPECT_THAT(decode(decoder, scan, 100), IsEmpty());
   EXPECT_THAT(decode(decoder, Bytes{kSickAck}, 1, kByteGap_ns), ElementsAre(kAck));

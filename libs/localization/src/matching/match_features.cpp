@@ -19,7 +19,7 @@ using topomap::ScanPoint;
 // Fixed: features depend on them, and tasks do not carry them.
 constexpr double kNeighbourhood_m =
     0.30;  // wide enough for a normal in spite of centimetres of range noise
-constexpr int kFewestNeighbours = 4;
+constexpr std::size_t kFewestNeighbours = 4;
 constexpr double kLargestThickness_m = 0.05;
 
 std::vector<Eigen::Vector2d> to_vectors(std::span<const ScanPoint> points) {
@@ -29,11 +29,37 @@ std::vector<Eigen::Vector2d> to_vectors(std::span<const ScanPoint> points) {
   return out;
 }
 
-// Successive beams on one surface: the gap that a wall seen at a flat angle leaves grows with
-// range.
-bool contiguous(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double range_m) {
-  const double gap_m = std::max(0.15, 0.07 * range_m);
-  return (a - b).squaredNorm() <= gap_m * gap_m;
+// Gap between two beams on one surface, as a share of the range: beams one degree apart on a wall
+// that is seen at 75 degrees from its normal. Where that gives too few neighbours, along corridors
+// seen by coarse lasers, at 85 degrees; not at once, because wider neighbourhoods round off
+// corners.
+constexpr double kUsualGap = 0.07;
+constexpr double kFlatGap = 0.21;
+
+struct Neighbourhood {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  [[nodiscard]] bool few() const { return last - first + 1 < kFewestNeighbours; }
+};
+
+// Successive points around point i with gaps of at most this share of its range, as far as two of
+// these gaps.
+Neighbourhood neighbourhood(const std::vector<Eigen::Vector2d>& points, std::size_t i,
+                            double range_m, double gap_share) {
+  const double gap_m = std::max(0.15, gap_share * range_m);
+  const double reach_m = std::max(kNeighbourhood_m, gap_share * range_m * 2.0);
+  const auto within = [&](std::size_t a, std::size_t b, double distance_m) {
+    return (points[a] - points[b]).squaredNorm() <= distance_m * distance_m;
+  };
+  Neighbourhood n{i, i};
+  while (n.first > 0 && within(n.first - 1, i, reach_m) && within(n.first - 1, n.first, gap_m)) {
+    --n.first;
+  }
+  while (n.last + 1 < points.size() && within(n.last + 1, i, reach_m) &&
+         within(n.last + 1, n.last, gap_m)) {
+    ++n.last;
+  }
+  return n;
 }
 
 // Line through the neighbours of point i by principal components, in closed form.
@@ -41,18 +67,9 @@ SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t
                          const Eigen::Vector2d& laser_m) {
   const Eigen::Vector2d& centre = points[i];
   const double range_m = std::sqrt((centre - laser_m).squaredNorm());
-  const double reach_m = std::max(kNeighbourhood_m, 0.07 * range_m * 2.0);
-  const auto close = [&](std::size_t k) {
-    return (points[k] - centre).squaredNorm() <= reach_m * reach_m;
-  };
-  std::size_t first = i;
-  while (first > 0 && close(first - 1) && contiguous(points[first - 1], points[first], range_m))
-    --first;
-  std::size_t last = i;
-  while (last + 1 < points.size() && close(last + 1) &&
-         contiguous(points[last + 1], points[last], range_m)) {
-    ++last;
-  }
+  Neighbourhood around = neighbourhood(points, i, range_m, kUsualGap);
+  if (around.few()) around = neighbourhood(points, i, range_m, kFlatGap);
+  const auto [first, last] = around;
   const auto count = static_cast<double>(last - first + 1);
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (std::size_t k = first; k <= last; ++k) mean += points[k];
@@ -76,7 +93,7 @@ SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t
                                      ? Eigen::Vector2d(-xy, xx - smallest)
                                      : Eigen::Vector2d(yy - smallest, -xy);
   const double length = std::sqrt(normal.squaredNorm());
-  const bool on_line = count >= kFewestNeighbours && length > 0.0 && smallest < 0.1 * largest &&
+  const bool on_line = !around.few() && length > 0.0 && smallest < 0.1 * largest &&
                        smallest <= count * kLargestThickness_m * kLargestThickness_m;
   if (!on_line) return {centre};
   const bool seen_from_behind = normal.dot(laser_m - centre) < 0.0;

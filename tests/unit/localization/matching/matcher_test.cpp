@@ -77,9 +77,9 @@ TEST_P(TrueRelativePoseTest, IsFoundFromAPredictionThatIsOff) {
     EXPECT_EQ(result.status, MatchStatus::kSolved);
     EXPECT_LT(test::distance_m(result.T_reference_query, truth), pair.error_m);
     EXPECT_LT(test::turn_rad(result.T_reference_query, truth), 0.6 * kDegree);
-    const bool believed = result.verdict == Verdict::kAccepted ||
+    const bool accepted = result.verdict == Verdict::kAccepted ||
                           (pair.bare && result.verdict == Verdict::kAmbiguous);
-    EXPECT_TRUE(believed) << to_string(result.reason) << " " << doubt(result);
+    EXPECT_TRUE(accepted) << to_string(result.reason) << " " << doubt(result);
     const Pose2& T = result.T_reference_query;
     const Eigen::Vector3d error(T.x_m - truth.x_m, T.y_m - truth.y_m,
                                 geometry::wrap_angle(T.theta_rad - truth.theta_rad));

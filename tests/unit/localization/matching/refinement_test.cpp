@@ -174,7 +174,7 @@ TEST(RefinementTest, WithoutPriorComesBackToWhatTheScansSay) {
             0.5 * test::distance_m(pulled.T_reference_query, truth));
 }
 
-// Along a corridor the scans say next to nothing: what they "want" there is not to be believed.
+// Along a corridor the scans say next to nothing: what they "want" there must not count.
 TEST(RefinementTest, WithoutPriorStaysAlongWhatTheScansHardlyKnow) {
   // Along a corridor that runs at 30 degrees the scans know the way to 1 m, across to 2 cm.
   const double angle = 30.0 * kDegree;
