@@ -45,7 +45,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   if (has_pose_) {
     accepted = track(stop);
   } else {
-    search_.move(stop.odometry, stop.distance_m);
+    if (stop.follows) search_.move(stop.step.T_before_now, stop.step.distance_m);
     look_around(stop);
     accepted = decide();
   }
@@ -58,15 +58,19 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
 // Where the robot should be, what it should see there, and where that puts it. Returns how many
 // matches were accepted.
 std::uint32_t MapLocalizer::track(const DriveStop& stop) {
-  const Pose2 T_map_last = pose_.T_a_b;
-  if (stop.follows) pose_ = compose(pose_, stop.odometry);
+  if (stop.follows) pose_ = compose(pose_, stop.step.T_before_now);
   const std::vector<MatchCandidate> stored = matching_.candidates(stop, pose_, kTrackingMatches);
-  const std::vector<MatchTask> tasks = tracking_tasks(stop, stored, T_map_last);
+  const std::vector<MatchTask> tasks = tracking_tasks(stop, stored);
   const std::vector<MatchResult> results = matching_.run(tasks);
   TrackedStep& step = last_step_.emplace();
   step.predicted = pose_;
   step.evidence.points = stop.features.coarse.size();
-  step.evidence.distance_m = stop.distance_m;
+  step.evidence.distance_m = stop.step.distance_m;
+  if (stop.step.match && monitored_) {
+    const auto& [task, result] = *stop.step.match;
+    // What the two have in common is foreseen, because they follow each other.
+    step.evidence.matches.push_back(step_match(task, result, 0.0, monitor_.steps() - 1));
+  }
   bool sure = false;
   std::vector<UncertainPose> accepted{pose_};
   std::vector<UncertainPose> uncertain{pose_};
@@ -90,6 +94,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   step.evidence.covariance = pose_.covariance;
   if (!sure) step.evidence.better_elsewhere = better_elsewhere(stop);
   status_ = monitor_.add(step.evidence);
+  monitored_ = true;
   if (status_.state == LocalizationState::kLost) {
     begin_search();
     look_around(stop);
@@ -98,17 +103,10 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
 }
 
 std::vector<MatchTask> MapLocalizer::tracking_tasks(const DriveStop& stop,
-                                                    std::span<const MatchCandidate> stored,
-                                                    const Pose2& T_map_last) {
+                                                    std::span<const MatchCandidate> stored) {
   std::vector<MatchTask> tasks;
   for (const MatchCandidate& candidate : stored) {
-    MatchTask task = matching_.task(stop, candidate.id, pose_);
-    if (stop.follows) {
-      const Pose2 T_map_tracked = T_map_last * stop.tracked;
-      task.initial_individuals.push_back(
-          geometry::between(T_map_tracked, matching_.places().stops()[candidate.id].T_map_robot));
-    }
-    tasks.push_back(std::move(task));
+    tasks.push_back(matching_.task(stop, candidate.id, pose_));
   }
   return tasks;
 }
@@ -130,6 +128,7 @@ double MapLocalizer::better_elsewhere(const DriveStop& stop) const {
 
 void MapLocalizer::begin_search() {
   has_pose_ = false;
+  monitored_ = false;
   search_.begin();
   ++searches_;
 }
@@ -197,6 +196,7 @@ std::uint32_t MapLocalizer::decide() {
   evidence.covariance = pose_.covariance;
   monitor_.restart(best->weight);
   status_ = monitor_.add(evidence);
+  monitored_ = true;
   search_.begin();
   return accepted;
 }
@@ -206,6 +206,7 @@ std::uint32_t MapLocalizer::decide() {
 void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& covariance) {
   pose_ = {T_map_robot, invertible(covariance)};
   has_pose_ = true;
+  monitored_ = false;
   search_.begin();
   monitor_.restart(kGivenPoseRight);
   status_ = {LocalizationState::kAmbiguous,

@@ -20,7 +20,8 @@ StoredMapMatching::StoredMapMatching(const LocalizerConfig& config,
     : config_(config),
       map_(std::move(map)),
       places_(map_->maps, map_->trajectory),
-      requests_(config, pool) {
+      requests_(config, pool),
+      window_(config, requests_) {
   for (const topomap::LocalMap& local_map : map_->maps) {
     requests_.add_map(std::shared_ptr<const topomap::LocalMap>(map_, &local_map));
   }
@@ -34,13 +35,13 @@ DriveStop StoredMapMatching::add(const topomap::LocalMap& map, std::uint32_t num
   stop.map = renumbered;
   requests_.add_map(stop.map);
   stop.features = extract_scan_features(map.points, map.T_robot_laser);
+  std::optional<UncertainPose> odometry;
   if (T_odom_last) {
-    stop.odometry = odometry_between_stops(*T_odom_last, map, config_.odometry);
-    stop.tracked = map.T_previous_robot;
+    odometry = odometry_between_stops(*T_odom_last, map, config_.odometry);
     stop.follows = true;
   }
-  stop.odometry.covariance = invertible(stop.odometry.covariance);
-  stop.distance_m = std::sqrt(stop.odometry.T_a_b.position_m().squaredNorm());
+  stop.step =
+      window_.add(stop.map, std::make_shared<const StopView>(view_of(stop.features)), odometry);
   return stop;
 }
 

@@ -36,8 +36,8 @@ TEST_F(StoredMapMatchingTest, NumbersTheDriveOnFromTheStoredStops) {
   const DriveStop first = matching_.add(map, 0, std::nullopt);
   EXPECT_EQ(first.map->id, 2U);
   EXPECT_FALSE(first.follows);
-  EXPECT_EQ(first.distance_m, 0.0);
-  EXPECT_GT(first.odometry.covariance.diagonal().minCoeff(), 0.0);
+  EXPECT_EQ(first.step.distance_m, 0.0);
+  EXPECT_GT(first.step.T_before_now.covariance.diagonal().minCoeff(), 0.0);
   const DriveStop second = matching_.add(map, 1, Pose2{1.2, 1.0, 0.0});
   EXPECT_EQ(second.map->id, 3U);
   EXPECT_TRUE(second.follows);

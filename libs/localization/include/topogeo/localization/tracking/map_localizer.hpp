@@ -100,8 +100,7 @@ class MapLocalizer : public Slam {
  private:
   std::uint32_t track(const DriveStop& stop);
   std::vector<MatchTask> tracking_tasks(const DriveStop& stop,
-                                        std::span<const MatchCandidate> stored,
-                                        const geometry::Pose2& T_map_last);
+                                        std::span<const MatchCandidate> stored);
   [[nodiscard]] double better_elsewhere(const DriveStop& stop) const;
   void begin_search();
   void look_around(const DriveStop& stop);
@@ -114,6 +113,7 @@ class MapLocalizer : public Slam {
   StateMonitor monitor_;
   UncertainPose pose_;  // T_map_robot at the last stop
   bool has_pose_ = false;
+  bool monitored_ = false;                      // the last stop was, by what its pose is judged
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
   std::vector<LocalizedStop> stops_;
   std::optional<TrackedStep> last_step_;

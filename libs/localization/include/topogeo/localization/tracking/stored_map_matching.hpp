@@ -16,6 +16,7 @@
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/tracking/drive_window.hpp"
 #include "topogeo/localization/tracking/global_localization.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
@@ -25,10 +26,8 @@ namespace topogeo::localization {
 struct DriveStop {
   std::shared_ptr<const topomap::LocalMap> map;  ///< with its id in the pool
   MatchFeatures features;                        ///< of the scan
-  UncertainPose odometry;                        ///< since the last stop; invertible
-  geometry::Pose2 tracked;                       ///< the same by the scan tracker
   bool follows = false;                          ///< there was a stop before
-  double distance_m = 0.0;                       ///< to it
+  DriveStep step;                                ///< since then
 };
 
 class StoredMapMatching {
@@ -38,7 +37,8 @@ class StoredMapMatching {
                     MatchPool& pool);
 
   /// Makes a stop of the drive known to the pool: the `number`th, under the id that follows those
-  /// of the stored maps. `T_odom_last`: the odometry at the stop before, if there is one.
+  /// of the stored maps. Matches it with the stops before. `T_odom_last`: the odometry at the stop
+  /// before, if there is one.
   DriveStop add(const topomap::LocalMap& map, std::uint32_t number,
                 const std::optional<geometry::Pose2>& T_odom_last);
 
@@ -54,6 +54,8 @@ class StoredMapMatching {
   /// T_map_robot by a match with a stored stop.
   [[nodiscard]] UncertainPose measured(std::size_t stored, const MatchResult& result) const;
 
+  /// The last metres of the drive.
+  [[nodiscard]] const DriveWindow& window() const { return window_; }
   [[nodiscard]] std::size_t stored_stops() const { return map_->maps.size(); }
   [[nodiscard]] const GlobalLocalizer& places() const { return places_; }
   [[nodiscard]] MatchRequests& requests() { return requests_; }
@@ -64,6 +66,7 @@ class StoredMapMatching {
   std::shared_ptr<const StoredMap> map_;
   GlobalLocalizer places_;
   MatchRequests requests_;
+  DriveWindow window_;
 };
 
 }  // namespace topogeo::localization

@@ -1,0 +1,102 @@
+#include "topogeo/localization/tracking/drive_window.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/tracking/pose_fusion.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+// The one before and another that shows whether it was right: more hardly ever change the step.
+constexpr std::size_t kStepMatches = 2;
+constexpr double kStepWidening = 3.0;  // of the deviations, when nothing was found as predicted
+
+}  // namespace
+
+DriveWindow::DriveWindow(const LocalizerConfig& config, MatchRequests& requests)
+    : config_(config), requests_(requests) {}
+
+DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
+                           std::shared_ptr<const StopView> view,
+                           const std::optional<UncertainPose>& odometry) {
+  DriveStep step;
+  step.T_before_now.covariance = invertible(step.T_before_now.covariance);
+  if (!odometry) stops_.clear();
+  if (stops_.empty()) {
+    if (odometry) {  // since a stop that is none of this drive
+      step.T_before_now = {odometry->T_a_b, invertible(odometry->covariance)};
+      step.distance_m = std::sqrt(odometry->T_a_b.position_m().squaredNorm());
+    }
+    stops_.push_back({std::move(map), std::move(view), Pose2{}, 0.0});
+    return step;
+  }
+  const UncertainPose predicted{odometry->T_a_b,
+                                invertible(monitor_.widened(odometry->covariance))};
+  std::optional<UncertainPose> matched = match(*map, predicted, 1.0, step);
+  if (!matched) matched = match(*map, predicted, kStepWidening, step);
+  if (matched) {
+    monitor_.add(*odometry, *matched);
+    step.T_before_now = *matched;
+    step.matched = true;
+  } else {
+    step.T_before_now = {odometry->T_a_b, invertible(monitor_.expected(odometry->covariance))};
+  }
+  step.distance_m = std::sqrt(step.T_before_now.T_a_b.position_m().squaredNorm());
+  const Stop& before = stops_.back();
+  stops_.push_back({std::move(map), std::move(view),
+                    before.T_window_robot * step.T_before_now.T_a_b,
+                    before.path_m + step.distance_m});
+  while (stops_.back().path_m - stops_.front().path_m > kKept_m) stops_.pop_front();
+  return step;
+}
+
+// T_before_now by the accepted matches with the last stops.
+std::optional<UncertainPose> DriveWindow::match(const topomap::LocalMap& map,
+                                                const UncertainPose& odometry, double widening,
+                                                DriveStep& step) {
+  std::vector<MatchTask> tasks;
+  std::vector<Pose2> T_before_earlier;
+  for (std::size_t i = stops_.size(); i-- > 0 && tasks.size() < kStepMatches;) {
+    const Pose2 T_earlier_before =
+        geometry::between(stops_[i].T_window_robot, stops_.back().T_window_robot);
+    T_before_earlier.push_back(geometry::inverse(T_earlier_before));
+    UncertainPose T_earlier_now = compose({T_earlier_before, Eigen::Matrix3d::Zero()}, odometry);
+    T_earlier_now.covariance *= widening * widening;
+    MatchTask task = requests_.make(map.id, stops_[i].map->id, inverse(T_earlier_now));
+    task.initial_individuals.push_back(geometry::inverse(T_earlier_before * map.T_previous_robot));
+    tasks.push_back(std::move(task));
+  }
+  const std::vector<MatchResult> results = requests_.run(tasks);
+  std::vector<UncertainPose> measured;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (i == 0) step.match.emplace(tasks[i], results[i]);
+    if (results[i].verdict != Verdict::kAccepted) continue;
+    measured.push_back(
+        compose({T_before_earlier[i], Eigen::Matrix3d::Zero()},
+                inverse(UncertainPose{results[i].T_reference_query, results[i].covariance})));
+  }
+  if (measured.empty()) return std::nullopt;
+  return fused(measured);
+}
+
+std::vector<SurfacePoint> DriveWindow::seen(double length_m) const {
+  std::vector<SurfacePoint> points;
+  for (std::size_t i = stops_.size(); i-- > 0;) {
+    if (stops_.back().path_m - stops_[i].path_m > length_m) break;
+    const Pose2 T = geometry::between(stops_.back().T_window_robot, stops_[i].T_window_robot);
+    const geometry::SinCos r = geometry::sincos(T.theta_rad);
+    for (const SurfacePoint& point : stops_[i].view->near) points.push_back(moved(point, T, r));
+  }
+  return points;
+}
+
+double DriveWindow::length_m() const {
+  return stops_.empty() ? 0.0 : stops_.back().path_m - stops_.front().path_m;
+}
+
+}  // namespace topogeo::localization
