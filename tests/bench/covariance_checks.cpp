@@ -21,14 +21,6 @@ constexpr std::uint32_t kRevisitStops = 30;
 
 using EdgesByStops = std::map<std::pair<std::uint32_t, std::uint32_t>, const PoseGraphEdge*>;
 
-double squared_distance(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
-  return error.dot(covariance.inverse() * error);
-}
-
-const Eigen::Matrix3d& calibrated(const PoseGraphEdge& edge) {
-  return edge.calibrated.isZero(0.0) ? edge.covariance : edge.calibrated;
-}
-
 EdgesByStops matches_of(const localization::PoseGraph& graph) {
   EdgesByStops matches;
   for (const PoseGraphEdge& edge : graph.edges()) {
@@ -39,10 +31,11 @@ EdgesByStops matches_of(const localization::PoseGraph& graph) {
 
 double triangle(const PoseGraphEdge& ij, const PoseGraphEdge& jk, const PoseGraphEdge& ik) {
   const Eigen::Matrix3d covariance =
-      geometry::compose_covariance(ij.T_from_to, calibrated(ij), jk.T_from_to, calibrated(jk)) +
-      calibrated(ik);
-  return squared_distance(geometry::difference(ij.T_from_to * jk.T_from_to, ik.T_from_to),
-                          covariance);
+      geometry::compose_covariance(ij.T_from_to, ij.for_predictions(), jk.T_from_to,
+                                   jk.for_predictions()) +
+      ik.for_predictions();
+  return geometry::squared_mahalanobis(
+      geometry::difference(ij.T_from_to * jk.T_from_to, ik.T_from_to), covariance);
 }
 
 bool was_predicted(const LoopDecision& decision) {
@@ -86,8 +79,8 @@ MeanSquaredDistance revisit_predictions(std::span<const LoopDecision> decisions,
     if (!earlier || !later || !was_predicted(decision)) continue;
     const Eigen::Vector3d error =
         geometry::difference(decision.predicted.T_a_b, geometry::between(*earlier, *later));
-    distance.add(
-        std::min(kLargestSquaredDistance, squared_distance(error, decision.predicted.covariance)));
+    distance.add(std::min(kLargestSquaredDistance,
+                          geometry::squared_mahalanobis(error, decision.predicted.covariance)));
   }
   return distance;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/LU>
+
 #include "topogeo/geometry/portable_math.hpp"
 
 namespace topogeo::geometry {
@@ -64,6 +66,10 @@ Eigen::Matrix3d inverse_covariance(const Pose2& T_a_b, const Eigen::Matrix3d& co
   Eigen::Matrix3d jacobian;
   jacobian << -r.cos, -r.sin, T_b_a.y_m, r.sin, -r.cos, -T_b_a.x_m, 0.0, 0.0, -1.0;
   return jacobian * cov_a_b * jacobian.transpose();
+}
+
+double squared_mahalanobis(const Eigen::Vector3d& difference, const Eigen::Matrix3d& covariance) {
+  return difference.dot(covariance.inverse() * difference);
 }
 
 }  // namespace topogeo::geometry

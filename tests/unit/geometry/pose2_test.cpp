@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 namespace topogeo::geometry {
@@ -182,6 +183,28 @@ TEST(Covariance, OfACompositionAgreesWithSampling) {
   const Eigen::Matrix3d expected =
       compose_covariance(a, sigma_a.cwiseAbs2().asDiagonal(), b, sigma_b.cwiseAbs2().asDiagonal());
   EXPECT_LT((sampled - expected).norm(), 0.03 * expected.norm());
+}
+
+TEST(Mahalanobis, IsTheSquaredLengthAfterWhitening) {
+  RandomPoses random;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Matrix3d cov = random_covariance(random);
+    const Eigen::Vector3d d(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d white = Eigen::LLT<Eigen::Matrix3d>(cov).matrixL().solve(d);
+    EXPECT_NEAR(squared_mahalanobis(d, cov), white.squaredNorm(), 1e-9 * white.squaredNorm());
+  }
+}
+
+TEST(Mahalanobis, NinetyNinePercentStayBelowTheirLimit) {
+  RandomPoses random;
+  constexpr int kSamples = 20000;
+  int above = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector3d d(0.1 * random.normal(), 0.2 * random.normal(), 0.03 * random.normal());
+    const Eigen::Matrix3d cov = Eigen::Vector3d(0.01, 0.04, 0.0009).asDiagonal();
+    if (squared_mahalanobis(d, cov) > kMahalanobis2Of99Percent) ++above;
+  }
+  EXPECT_NEAR(above, 0.01 * kSamples, 50);
 }
 
 }  // namespace

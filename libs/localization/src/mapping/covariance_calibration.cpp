@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/LU>
-
 #include "topogeo/localization/matching/match_gate.hpp"
 
 namespace topogeo::localization {
@@ -32,13 +30,20 @@ Eigen::Matrix3d usual(const Eigen::Matrix3d& covariance, double factor) {
 
 }  // namespace
 
+Eigen::Matrix3d map_noise() {
+  constexpr double kNoise_m = 0.1;
+  constexpr double kNoise_rad = 0.015;
+  return Eigen::Vector3d(kNoise_m * kNoise_m, kNoise_m * kNoise_m, kNoise_rad * kNoise_rad)
+      .asDiagonal();
+}
+
 void CovarianceCalibration::add_triangle(const UncertainPose& direct, const UncertainPose& first,
                                          const UncertainPose& second) {
   const UncertainPose around = compose({first.T_a_b, usual(first.covariance, 1.0)},
                                        {second.T_a_b, usual(second.covariance, 1.0)});
-  const Eigen::Vector3d error = geometry::difference(around.T_a_b, direct.T_a_b);
-  const Eigen::Matrix3d covariance = around.covariance + usual(direct.covariance, 1.0);
-  const double square = error.dot(covariance.inverse() * error);
+  const double square =
+      geometry::squared_mahalanobis(geometry::difference(around.T_a_b, direct.T_a_b),
+                                    around.covariance + usual(direct.covariance, 1.0));
   if (!(square <= kLargestSquare)) return;
   sum_ += square / 3.0;
   weight_ += 1.0;

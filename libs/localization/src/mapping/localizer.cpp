@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "topogeo/localization/mapping/drive_join.hpp"
 
 namespace topogeo::localization {
@@ -97,12 +95,14 @@ void Localizer::append(MapPointer map) {
   check_next(*map, matching_.size(), first ? nullptr : &matching_.map(0));
   if (first) {
     graph_.add_pose(Pose2{});
+    odometry_steps_.emplace_back();
     matching_.add(std::move(map), 0.0);
   } else {
     const std::optional<UncertainPose> gap = std::exchange(gap_, std::nullopt);
     const UncertainPose step =
         gap ? *gap
             : odometry_between_stops(matching_.map(last()).T_odom_robot, *map, config_.odometry);
+    odometry_steps_.push_back(step);
     const std::uint32_t stop = graph_.add_pose(graph_.poses().back() * step.T_a_b);
     // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
     graph_.add_edge({stop - 1, stop, EdgeKind::kOdometry, step.T_a_b,
@@ -132,7 +132,9 @@ std::vector<StepMatch> Localizer::match_recent() {
     if (match.accepted() || (!any && match.uncertain() && as_odometry_says(match.edge))) {
       graph_.add_edge(match.edge);
     }
-    if (match.accepted() && match.edge.from + 1 == last()) watch_odometry(match.edge);
+    if (match.accepted() && match.edge.from + 1 == last()) {
+      odometry_.add(odometry_steps_.back(), {match.edge.T_from_to, match.edge.covariance});
+    }
   }
   return evidence;
 }
@@ -140,31 +142,23 @@ std::vector<StepMatch> Localizer::match_recent() {
 // Whether a match lies where odometry, as good as it was over the last steps, may have brought the
 // robot: a doubtful one elsewhere is a look-alike.
 bool Localizer::as_odometry_says(const PoseGraphEdge& match) const {
-  constexpr double kFarthest2 = 11.3;  // 99 % of right ones (chi-square, three degrees of freedom)
   UncertainPose odometry;
   for (std::uint32_t stop = match.from + 1; stop <= match.to; ++stop) {
-    const UncertainPose step = odometry_between_stops(matching_.map(stop - 1).T_odom_robot,
-                                                      matching_.map(stop), config_.odometry);
+    const UncertainPose& step = odometry_steps_[stop];
     odometry = compose(odometry, {step.T_a_b, invertible(odometry_.expected(step.covariance))});
   }
-  const Eigen::Vector3d error = geometry::difference(match.T_from_to, odometry.T_a_b);
-  return error.dot((odometry.covariance + match.covariance).inverse() * error) <= kFarthest2;
+  return geometry::squared_mahalanobis(geometry::difference(match.T_from_to, odometry.T_a_b),
+                                       odometry.covariance + match.covariance) <=
+         geometry::kMahalanobis2Of99Percent;
 }
 
 // Where no match is beyond doubt odometry counts as much as it was right over the last steps.
 void Localizer::rely_on_odometry() {
-  const UncertainPose step = odometry_between_stops(matching_.map(last() - 1).T_odom_robot,
-                                                    matching_.map(last()), config_.odometry);
+  const UncertainPose& step = odometry_steps_.back();
   // Of systematic errors the last steps show little.
   constexpr double kLessWeight = 3.0;
   const Eigen::Matrix3d expected = kLessWeight * invertible(odometry_.expected(step.covariance));
   graph_.add_edge({last() - 1, last(), EdgeKind::kOdometry, step.T_a_b, expected, expected});
-}
-
-void Localizer::watch_odometry(const PoseGraphEdge& match) {
-  const UncertainPose odometry = odometry_between_stops(matching_.map(match.from).T_odom_robot,
-                                                        matching_.map(match.to), config_.odometry);
-  odometry_.add(odometry, {match.T_from_to, match.covariance});
 }
 
 // Closes the loops of stops with earlier places.
@@ -292,6 +286,7 @@ void Localizer::restore(MapPointer map, const topomap::StopPose& pose) {
     distance_m = std::sqrt(step.position_m().squaredNorm());
   }
   matching_.add(std::move(map), distance_m);
+  odometry_steps_.emplace_back();
   graph_.add_pose(pose.T_map_robot);
   covariances_.push_back(pose.covariance);
   monitor_.restart(1.0);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include <Eigen/LU>
+#include "topogeo/localization/mapping/covariance_calibration.hpp"
 
 namespace topogeo::localization {
 
@@ -32,9 +32,6 @@ constexpr double kLeastSpread_m = 2.0;
 constexpr std::size_t kRivalSeeds = 8;
 // Older ones have had their chance: bounds the work of a step.
 constexpr double kForgotten_m = 60.0;
-// What an optimisation leaves of the errors within a stretch, besides the covariances of its steps.
-constexpr double kNoise_m = 0.10;
-constexpr double kNoise_rad = 0.015;
 
 }  // namespace
 
@@ -51,19 +48,12 @@ double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGr
   if ((T_around.position_m() - b.T_from_to.position_m()).squaredNorm() > kFarOff_m * kFarOff_m) {
     return std::numeric_limits<double>::infinity();
   }
-  const auto calibrated = [](const PoseGraphEdge& edge) {
-    return edge.calibrated.isZero(0.0) ? edge.covariance : edge.calibrated;
-  };
   // b by way of a: b.from -> a.from -> a.to -> b.to.
   const UncertainPose by_a =
-      compose(compose(graph.along_path(b.from, a.from), {a.T_from_to, calibrated(a)}),
+      compose(compose(graph.along_path(b.from, a.from), {a.T_from_to, a.for_predictions()}),
               graph.along_path(a.to, b.to));
-  Eigen::Matrix3d covariance = by_a.covariance + calibrated(b);
-  covariance(0, 0) += kNoise_m * kNoise_m;
-  covariance(1, 1) += kNoise_m * kNoise_m;
-  covariance(2, 2) += kNoise_rad * kNoise_rad;
-  const Eigen::Vector3d error = geometry::difference(by_a.T_a_b, b.T_from_to);
-  return error.dot(covariance.inverse() * error);
+  return geometry::squared_mahalanobis(geometry::difference(by_a.T_a_b, b.T_from_to),
+                                       by_a.covariance + b.for_predictions() + map_noise());
 }
 
 void LoopAgreement::add(const StopMatch& match, std::span<const double> path_m) {

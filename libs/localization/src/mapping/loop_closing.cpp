@@ -13,9 +13,6 @@ namespace {
 
 // Two cells of a 5 cm grid: a smaller correction needs no optimisation of its own.
 constexpr double kNoticeable_m = 0.1;
-// Squared Mahalanobis distance from the prediction that a right match exceeds once in a hundred
-// (chi-square, three degrees of freedom): only many that agree are accepted against it.
-constexpr double kSurprising = 11.3;
 // Stops until a pending loop is dropped: by then odometry has drifted too far for two to agree.
 constexpr std::uint32_t kLongestWait = 12;
 
@@ -62,7 +59,8 @@ bool LoopClosing::far(const Correction& correction) const {
 
 LoopClosing::Verdict LoopClosing::consider(const PoseGraph& graph, const StopMatch& loop) {
   const Correction correction = correction_of(graph, loop.edge);
-  if (loop.surprise() > kSurprising) {
+  // Against its prediction a match is accepted only with many that agree.
+  if (loop.surprise() > geometry::kMahalanobis2Of99Percent) {
     decide(graph, loop, LoopOutcome::kUnconfirmed, Reason::kNone);
     ++unconfirmed_;
     return Verdict::kPending;

@@ -293,7 +293,7 @@ void LoopSearch::collect(LoopSearchResult& result) const {
     double best = 0.0;
     for (const RelativeSolution& step : poses_[1].steps) {
       const Eigen::Vector3d off = geometry::difference(node.T_first_pose, step.T_earlier_later);
-      const double distance2 = off.dot(step.covariance.inverse() * off);
+      const double distance2 = geometry::squared_mahalanobis(off, step.covariance);
       best = std::max(best, step.fitness * geometry::exp(-0.5 * distance2));
     }
     ends.push_back({node.fitness + best, &node});

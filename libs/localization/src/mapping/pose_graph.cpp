@@ -17,10 +17,6 @@ using geometry::Pose2;
 // moves it.
 constexpr double kLeverArm_m = 5.0;
 
-const Eigen::Matrix3d& calibrated(const PoseGraphEdge& edge) {
-  return edge.calibrated.isZero(0.0) ? edge.covariance : edge.calibrated;
-}
-
 }  // namespace
 
 PoseGraph::PoseGraph()
@@ -53,13 +49,12 @@ void PoseGraph::add_edge(const PoseGraphEdge& edge) {
   edges_.push_back(edge);
   if (edge.from + 1 == edge.to && step_sums_.size() > edge.to) step_sums_.resize(edge.to);
   links_->add(edge, edge.covariance);
-  calibrated_links_->add(edge, calibrated(edge));
+  calibrated_links_->add(edge, edge.for_predictions());
 }
 
 double PoseGraph::disagreement(const PoseGraphEdge& edge) const {
   const Pose2 now = geometry::between(poses_[edge.from], poses_[edge.to]);
-  const Eigen::Vector3d error = geometry::difference(now, edge.T_from_to);
-  return error.dot(edge.covariance.inverse() * error);
+  return geometry::squared_mahalanobis(geometry::difference(now, edge.T_from_to), edge.covariance);
 }
 
 void PoseGraph::place_last_pose() {
@@ -114,7 +109,7 @@ void PoseGraph::rebuild_links() {
   for (const PoseGraphEdge& edge : edges_) {
     if (edge.from + 1 == edge.to && step_sums_.size() > edge.to) step_sums_.resize(edge.to);
     links_->add(edge, edge.covariance);
-    calibrated_links_->add(edge, calibrated(edge));
+    calibrated_links_->add(edge, edge.for_predictions());
   }
 }
 

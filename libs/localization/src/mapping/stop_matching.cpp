@@ -25,15 +25,6 @@ constexpr double kFarthestCompared_m = 20.0;
 constexpr double kWidening =
     3.0;  // of the deviations, when nothing was found where odometry predicts
 
-// Deviation of a prediction however short the path: what an optimisation leaves of the errors in a
-// map, which are not independent from stop to stop.
-constexpr double kMapNoise_m = 0.1;
-constexpr double kMapNoise_rad = 0.015;
-const Eigen::Matrix3d kMapNoise =
-    Eigen::Vector3d(kMapNoise_m * kMapNoise_m, kMapNoise_m* kMapNoise_m,
-                    kMapNoise_rad* kMapNoise_rad)
-        .asDiagonal();
-
 // Of path between two queries for places.
 constexpr double kBetweenQueries_m = 1.0;
 // Of path after a match by prediction: there the predictions are right.
@@ -69,8 +60,8 @@ bool any_accepted(std::span<const StopMatch> matches) {
 
 double StopMatch::surprise() const {
   if (predicted.covariance.isZero(0.0)) return 0.0;
-  const Eigen::Vector3d moved = geometry::difference(predicted.T_a_b, edge.T_from_to);
-  return moved.dot(predicted.covariance.inverse() * moved);
+  return geometry::squared_mahalanobis(geometry::difference(predicted.T_a_b, edge.T_from_to),
+                                       predicted.covariance);
 }
 
 bool StopMatch::plausible() const {
@@ -81,11 +72,11 @@ bool StopMatch::plausible() const {
   constexpr double kLeastOverlap = 0.3;
   constexpr double kMostViolations = 0.3;
   // Further from the prediction no place is looked for either.
-  constexpr double kFarthest2 = 11.3;
-  if (!predicted.covariance.isZero(0.0)) {
-    const Eigen::Vector3d moved = geometry::difference(predicted.T_a_b, edge.T_from_to);
-    const Eigen::Matrix3d covariance = widened_for_places(predicted.covariance);
-    if (moved.dot(covariance.inverse() * moved) > kFarthest2) return false;
+  if (!predicted.covariance.isZero(0.0) &&
+      geometry::squared_mahalanobis(geometry::difference(predicted.T_a_b, edge.T_from_to),
+                                    widened_for_places(predicted.covariance)) >
+          geometry::kMahalanobis2Of99Percent) {
+    return false;
   }
   // Along a bare corridor the scans allow any place: what odometry says there is no evidence.
   constexpr double kLeastKnown_m = 0.2;
@@ -244,7 +235,7 @@ std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
   for (const std::uint32_t stop : stops) {
     const bool ask = wants_places(stop);
     std::vector<UncertainPose> relative = graph.predict_from(stop, ask ? PoseGraph::Reach{} : near);
-    for (UncertainPose& T_stop_earlier : relative) T_stop_earlier.covariance += kMapNoise;
+    for (UncertainPose& T_stop_earlier : relative) T_stop_earlier.covariance += map_noise();
     for (const MatchCandidate& candidate : revisited_candidates(graph, stop, relative)) {
       const UncertainPose& T_stop_earlier = relative[candidate.id];
       comparisons.push_back({requests_.make(stop, candidate.id, T_stop_earlier), T_stop_earlier,

@@ -81,7 +81,7 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
   }
   const Eigen::Vector3d error =
       geometry::difference(result.T_reference_query, task.T_reference_query);
-  if (error.dot(task.covariance.inverse() * error) > gate.largest_mahalanobis2) {
+  if (geometry::squared_mahalanobis(error, task.covariance) > gate.largest_mahalanobis2) {
     return rejected(Reason::kImplausible);
   }
   if (rival > gate.largest_ambiguity) return {Verdict::kAmbiguous, Reason::kSecondSolution};

@@ -48,4 +48,11 @@ Eigen::Matrix3d compose_covariance(const Pose2& T_a_b, const Eigen::Matrix3d& co
 /// Covariance of T_b_a, in b, from that of T_a_b, in a, to first order.
 Eigen::Matrix3d inverse_covariance(const Pose2& T_a_b, const Eigen::Matrix3d& cov_a_b);
 
+/// Squared Mahalanobis distance of a difference() from zero. The covariance can be inverted.
+double squared_mahalanobis(const Eigen::Vector3d& difference, const Eigen::Matrix3d& covariance);
+
+/// What 99 % of squared_mahalanobis() stay below where the covariance is right (chi-square, three
+/// degrees of freedom).
+inline constexpr double kMahalanobis2Of99Percent = 11.3;
+
 }  // namespace topogeo::geometry

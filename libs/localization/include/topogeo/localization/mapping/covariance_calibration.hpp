@@ -12,6 +12,10 @@
 
 namespace topogeo::localization {
 
+/// Of the relative pose of two stops however short the path: what an optimisation leaves of the
+/// errors in a map, which are not independent from stop to stop.
+Eigen::Matrix3d map_noise();
+
 class CovarianceCalibration {
  public:
   /// A match as measured, with the covariance of match_covariance(), and the same way over a third

@@ -89,7 +89,6 @@ class Localizer : public Slam {
   std::vector<StepMatch> match_revisited(std::span<const std::uint32_t> stops);
   [[nodiscard]] bool as_odometry_says(const PoseGraphEdge& match) const;
   void rely_on_odometry();
-  void watch_odometry(const PoseGraphEdge& match);
   void judge_state(std::vector<StepMatch> evidence);
 
   bool apply(const std::optional<OptimizationSchedule::Finished>& finished);
@@ -104,6 +103,8 @@ class Localizer : public Slam {
   OptimizationSchedule schedule_;
   OdometryMonitor odometry_;
   StateMonitor monitor_;
+  /// To each stop from the one before, as configured; nothing for the first and for stored ones.
+  std::vector<UncertainPose> odometry_steps_;
   std::size_t stored_stops_ = 0;      // that were there before the first own one
   std::optional<UncertainPose> gap_;  // to the next stop, where no odometry leads to it
   std::uint64_t version_ = 0;

@@ -34,6 +34,10 @@ struct PoseGraphEdge {
   /// The same as errors were measured to be (CovarianceCalibration), for predictions; zero: as
   /// `covariance`.
   Eigen::Matrix3d calibrated = Eigen::Matrix3d::Zero();
+
+  [[nodiscard]] const Eigen::Matrix3d& for_predictions() const {
+    return calibrated.isZero(0.0) ? covariance : calibrated;
+  }
 };
 
 struct OptimizationSummary {
