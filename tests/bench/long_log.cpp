@@ -1,4 +1,4 @@
-// Maps a long drive through a large synthetic floor and tells what each step costs against the
+// Maps a long drive through a large synthetic floor and reports what each step costs against the
 // length of the log: a CSV file, a picture and a summary.
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,7 @@
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
+#include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/simulation/random_floors.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -32,8 +33,10 @@ using namespace topogeo;
 
 struct LongLogOptions {
   double path_m = 2000.0;
+  std::size_t blocks = 4;
   std::uint64_t seed = 1;
   std::filesystem::path out;
+  std::filesystem::path log;
   std::string config_file;
 };
 
@@ -44,8 +47,8 @@ simulation::SimulatedLog drive(const LongLogOptions& options) {
   simulation.scan_step_m = 0.5;
   simulation.scan_step_rad = 45.0 * std::numbers::pi / 180.0;
   simulation.odometry = simulation::b21_odometry(options.seed);
-  return simulation::simulate_log(simulation::large_floor(options.seed, options.path_m),
-                                  simulation);
+  return simulation::simulate_log(
+      simulation::large_floor(options.seed, options.path_m, options.blocks), simulation);
 }
 
 double peak_memory_mb() {
@@ -59,17 +62,36 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-void tell(const char* what, const std::vector<bench::StepCost>& steps, std::size_t from,
-          std::size_t to) {
+void write_log(const std::filesystem::path& file, const simulation::SimulatedLog& log) {
+  scan::CarmenLogWriter writer(file);
+  for (const scan::Scan& scan : log.scans) writer.write(scan);
+  writer.close();
+}
+
+void report(const std::string& what, const std::vector<bench::StepCost>& steps, std::size_t from,
+            std::size_t to) {
   std::vector<double> costs_ms;
   double sum_ms = 0.0;
   for (std::size_t i = from; i < to; ++i) {
     costs_ms.push_back(steps[i].cpu_ms);
     sum_ms += steps[i].cpu_ms;
   }
-  std::printf("%s: mean %.2f ms, median %.2f, 95 %% %.2f, 99 %% %.2f, most %.1f\n", what,
+  if (costs_ms.empty()) return;
+  std::printf("%s: mean %.2f ms, median %.2f, 95 %% %.2f, 99 %% %.2f, most %.1f\n", what.c_str(),
               sum_ms / static_cast<double>(costs_ms.size()), quantile(costs_ms, 0.5),
               quantile(costs_ms, 0.95), quantile(costs_ms, 0.99), quantile(costs_ms, 1.0));
+}
+
+// The steps over the kilometre that ends here.
+void report_last_kilometre(double at_m, const std::vector<bench::StepCost>& steps) {
+  const auto first_after = [&](double path_m) {
+    const auto found = std::find_if(steps.begin(), steps.end(), [&](const bench::StepCost& step) {
+      return step.path_m > path_m;
+    });
+    return static_cast<std::size_t>(found - steps.begin());
+  };
+  report("steps up to " + std::to_string(static_cast<int>(at_m / 1e3)) + " km", steps,
+         first_after(at_m - 1e3), first_after(at_m));
 }
 
 void write_csv(const std::filesystem::path& file, const std::vector<bench::StepCost>& steps) {
@@ -90,6 +112,7 @@ void run_log(const LongLogOptions& options) {
                                 : std::optional<std::filesystem::path>(options.config_file))
           .config;
   const simulation::SimulatedLog log = drive(options);
+  if (!options.log.empty()) write_log(options.log, log);
   const double memory_before_mb = peak_memory_mb();
   pipeline::MappingRun mapping(config, "robot");
   std::vector<bench::StepCost> steps;  // of the scans at which a stop was made and matched
@@ -122,8 +145,11 @@ void run_log(const LongLogOptions& options) {
     std::printf("  %s: %.1f s\n", stage.stage.c_str(), stage.cpu_s);
   }
   const std::size_t quarter = steps.size() / 4;
-  tell("steps in the first quarter", steps, 0, quarter);
-  tell("steps in the last quarter", steps, steps.size() - quarter, steps.size());
+  report("steps in the first quarter", steps, 0, quarter);
+  report("steps in the last quarter", steps, steps.size() - quarter, steps.size());
+  for (const double at_m : {1e3, 2e3, 5e3, 10e3, 20e3}) {
+    if (at_m < 1.1 * path_m) report_last_kilometre(at_m, steps);
+  }
   std::printf("rms error %.3f m corrected, %.1f m by odometry\n",
               pipeline::trajectory_error(corrected, truth).rms_m,
               pipeline::trajectory_error(odometry, truth).rms_m);
@@ -142,6 +168,10 @@ int main(int argc, char** argv) {
   app.add_option("--way", options.path_m, "metres to drive")
       ->capture_default_str()
       ->check(command_line::range(50.0, 20'000.0));
+  app.add_option("--blocks", options.blocks, "of the floor along each side")
+      ->capture_default_str()
+      ->check(command_line::range(1, 40));
+  app.add_option("--log", options.log, "write the scans as a CARMEN log too");
   app.add_option("--seed", options.seed, "of the floor, the drive and the noise")
       ->capture_default_str();
   app.add_option("--config", options.config_file, "configuration file")

@@ -1,6 +1,5 @@
 #include "topogeo/simulation/random_floors.hpp"
 
-#include <array>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -165,29 +164,32 @@ world::World symmetric_building(std::uint64_t seed) {
   return world;
 }
 
-world::World large_floor(std::uint64_t seed, double path_m) {
+world::World large_floor(std::uint64_t seed, double path_m, std::size_t blocks) {
   if (!(path_m >= 50.0 && path_m <= 20'000.0)) {
     throw std::invalid_argument("path_m: expected a number in [50, 20000], got " +
                                 std::to_string(path_m));
   }
-  constexpr std::size_t kBlocks = 4;
+  if (blocks < 1 || blocks > 40) {
+    throw std::invalid_argument("blocks: expected a number in [1, 40], got " +
+                                std::to_string(blocks));
+  }
   support::Random random = random_of("large floor", seed);
   world::World world;
   world.name = "large floor";
   const double half_m = 1.2;
-  std::array<double, kBlocks + 1> x_m{};  // middle lines of the streets
-  std::array<double, kBlocks + 1> y_m{};
-  for (std::size_t i = 0; i < kBlocks; ++i) {
+  std::vector<double> x_m(blocks + 1);  // middle lines of the streets
+  std::vector<double> y_m(blocks + 1);
+  for (std::size_t i = 0; i < blocks; ++i) {
     x_m[i + 1] = x_m[i] + random.uniform(16.0, 22.0);
     y_m[i + 1] = y_m[i] + random.uniform(12.0, 16.0);
   }
   const FloorPlan plan(world);
-  for (std::size_t i = 0; i < kBlocks; ++i) {
-    for (std::size_t k = 0; k < kBlocks; ++k) {
+  for (std::size_t i = 0; i < blocks; ++i) {
+    for (std::size_t k = 0; k < blocks; ++k) {
       add_block(plan, Rectangle{{x_m[i], y_m[k]}, {x_m[i + 1], y_m[k + 1]}}.grown(-half_m), random);
     }
   }
-  add_surroundings(plan, Rectangle{{0.0, 0.0}, {x_m[kBlocks], y_m[kBlocks]}}.grown(half_m), random);
+  add_surroundings(plan, Rectangle{{0.0, 0.0}, {x_m[blocks], y_m[blocks]}}.grown(half_m), random);
 
   using Crossing = std::pair<std::size_t, std::size_t>;
   Crossing before{0, 0};
@@ -198,9 +200,9 @@ world::World large_floor(std::uint64_t seed, double path_m) {
   while (driven_m < path_m) {
     std::vector<Crossing> ways;
     if (here.first > 0) ways.emplace_back(here.first - 1, here.second);
-    if (here.first < kBlocks) ways.emplace_back(here.first + 1, here.second);
+    if (here.first < blocks) ways.emplace_back(here.first + 1, here.second);
     if (here.second > 0) ways.emplace_back(here.first, here.second - 1);
-    if (here.second < kBlocks) ways.emplace_back(here.first, here.second + 1);
+    if (here.second < blocks) ways.emplace_back(here.first, here.second + 1);
     std::erase(ways, before);
     const Crossing next = ways[random.below(ways.size())];
     driven_m += (place_m(next) - place_m(here)).norm();

@@ -107,6 +107,8 @@ TEST(BareCorridor, NothingStandsOnItsWalls) {
 TEST(LargeFloor, AWayOutOfRangeIsAnError) {
   EXPECT_THROW(large_floor(1, 49.0), std::invalid_argument);
   EXPECT_THROW(large_floor(1, std::nan("")), std::invalid_argument);
+  EXPECT_THROW(large_floor(1, 100.0, 0), std::invalid_argument);
+  EXPECT_THROW(large_floor(1, 100.0, 41), std::invalid_argument);
 }
 
 TEST(B21Odometry, SystematicErrorsDifferBySeedAndStayWithinTheirBounds) {

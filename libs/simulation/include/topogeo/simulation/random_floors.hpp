@@ -3,6 +3,7 @@
 // every point is at least 0.3 m from anything.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "topogeo/simulation/odometry.hpp"
@@ -29,10 +30,10 @@ world::World bare_corridor(std::uint64_t seed);
 /// the corridor before them is the same as well.
 world::World symmetric_building(std::uint64_t seed);
 
-/// Four by four blocks with streets of corridor round them; the tour goes about `path_m` metres
-/// through them, at each crossing another path than the one it came. `path_m` in [50, 20000];
-/// throws std::invalid_argument otherwise.
-world::World large_floor(std::uint64_t seed, double path_m);
+/// Blocks, so many along each side, with streets of corridor round them; the tour goes about
+/// `path_m` metres through them, at each crossing another path than the one it came. `path_m` in
+/// [50, 20000], `blocks` in [1, 40]; throws std::invalid_argument otherwise.
+world::World large_floor(std::uint64_t seed, double path_m, std::size_t blocks = 4);
 
 /// Odometry that errs like that of the B21 of a recorded log, whose steps were compared with those
 /// of its reference trajectory: random 5.7 cm along and 3.7 cm across for the root of each metre,
