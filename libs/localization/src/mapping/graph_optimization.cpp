@@ -1,31 +1,66 @@
 #include "topogeo/localization/mapping/graph_optimization.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "least_squares.hpp"
+
 namespace topogeo::localization {
+
+using geometry::Pose2;
+
 namespace {
 
 // Squared Mahalanobis distance of a loop after optimisation: a right loop comes this far once in a
 // million (chi-square, three degrees of freedom).
 constexpr double kOutvoted = 30.0;
+// Less than half a cell of a 5 cm grid, also of what is seen 5 m away: such a strain can wait for
+// the optimisation of all stops.
+constexpr double kStrain_m = 0.02;
+constexpr double kStrain_rad = 0.004;
+
+bool is_outvoted(const PoseGraphEdge& edge, std::span<const Pose2> poses) {
+  if (edge.kind != EdgeKind::kRevisit) return false;
+  const Pose2 now = geometry::between(poses[edge.from], poses[edge.to]);
+  return geometry::squared_mahalanobis(geometry::difference(now, edge.T_from_to), edge.covariance) >
+         kOutvoted;
+}
+
+bool moved_noticeably(const Pose2& before, const Pose2& after) {
+  return (after.position_m() - before.position_m()).squaredNorm() > kStrain_m * kStrain_m ||
+         std::fabs(geometry::wrap_angle(after.theta_rad - before.theta_rad)) > kStrain_rad;
+}
 
 }  // namespace
 
 GraphSolution solve(const GraphProblem& problem) {
-  PoseGraph graph;
-  for (const geometry::Pose2& pose : problem.T_map_robot) graph.add_pose(pose);
-  for (const PoseGraphEdge& edge : problem.edges) graph.add_edge(edge);
   GraphSolution solution;
-  solution.summary = graph.optimize();
-  if (solution.summary.usable) {
-    solution.outvoted = graph.remove_edges(EdgeKind::kRevisit, kOutvoted);
-    if (!solution.outvoted.empty()) solution.summary = graph.optimize();
+  solution.stops = problem.stops;
+  solution.T_map_robot = problem.T_map_robot;
+  solution.whole = problem.whole;
+  std::vector<Pose2>& poses = solution.T_map_robot;
+  solution.summary = least_squares(poses, problem.held, problem.edges);
+  if (!solution.summary.usable) return solution;
+  std::vector<PoseGraphEdge> kept;
+  for (const PoseGraphEdge& edge : problem.edges) {
+    (is_outvoted(edge, poses) ? solution.outvoted : kept).push_back(edge);
   }
-  solution.T_map_robot = graph.poses();
-  for (const UncertainPose& pose : graph.relative_to(0)) {
-    solution.covariance.push_back(pose.covariance);
+  if (!solution.outvoted.empty()) {
+    solution.summary = least_squares(poses, problem.held, kept);
+    for (PoseGraphEdge& edge : solution.outvoted) {
+      edge.from = problem.stops[edge.from];
+      edge.to = problem.stops[edge.to];
+    }
   }
+  // The first stop of the map stays where it is for ever: no strain on it.
+  const auto held = [&](std::uint32_t i) { return problem.held[i] != 0 && problem.stops[i] != 0; };
+  solution.strained = std::any_of(kept.begin(), kept.end(), [&](const PoseGraphEdge& edge) {
+    if (held(edge.from) == held(edge.to)) return false;
+    const std::uint32_t free = held(edge.from) ? edge.to : edge.from;
+    return moved_noticeably(problem.T_map_robot[free], poses[free]);
+  });
   return solution;
 }
 

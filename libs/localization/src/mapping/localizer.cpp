@@ -187,7 +187,7 @@ std::vector<StepMatch> Localizer::match_revisited(std::span<const std::uint32_t>
       case LoopClosing::Verdict::kAgrees:
         loops_.support(match, matching_.path_m());
         graph_.add_edge(match.edge);
-        schedule_.count_loop();
+        schedule_.count_loop(match.edge);
         break;
     }
   }
@@ -215,21 +215,33 @@ bool Localizer::apply(const std::optional<OptimizationSchedule::Finished>& finis
   for (const PoseGraphEdge& loop : loops_.release(finished->loops)) graph_.add_edge(loop);
   const GraphSolution& solution = finished->solution;
   if (!solution.summary.usable) return true;
-  graph_.move(solution.T_map_robot);
+  graph_.move(solution.stops, solution.T_map_robot);
   graph_.remove_edges(solution.outvoted);
   loops_.outvote(graph_, solution.outvoted);
-  const std::size_t solved = solution.covariance.size();
-  std::copy(solution.covariance.begin(), solution.covariance.end(), covariances_.begin());
-  for (std::size_t i = std::max<std::size_t>(1, solved); i < covariances_.size(); ++i) {
-    covariances_[i] = covariance_in_map(graph_, covariances_, static_cast<std::uint32_t>(i));
-  }
+  update_covariances(solution);
   ++version_;
   return true;
 }
 
+// All of them by an optimisation of all stops; else those of its stops and of all after them, from
+// the earlier ones that they were matched with.
+void Localizer::update_covariances(const GraphSolution& solution) {
+  if (solution.whole) {
+    const std::vector<UncertainPose> T_map_stop = graph_.relative_to(0);
+    for (std::size_t i = 0; i < T_map_stop.size(); ++i) covariances_[i] = T_map_stop[i].covariance;
+    return;
+  }
+  for (const std::uint32_t stop : solution.stops) {
+    if (stop > 0) covariances_[stop] = covariance_in_map(graph_, covariances_, stop);
+  }
+  for (std::uint32_t stop = solution.stops.back() + 1; stop < covariances_.size(); ++stop) {
+    covariances_[stop] = covariance_in_map(graph_, covariances_, stop);
+  }
+}
+
 void Localizer::optimize_now() {
   apply(schedule_.fetch_now());
-  schedule_.want();
+  schedule_.want_whole();
   schedule_.start(last(), graph_, loops_.waiting());
   apply(schedule_.fetch_now());
 }

@@ -1,5 +1,6 @@
 #include "topogeo/localization/mapping/optimization_schedule.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace topogeo::localization {
@@ -7,25 +8,25 @@ namespace topogeo::localization {
 namespace {
 
 // So many small corrections can add up to one that is worth an optimisation.
-constexpr std::uint32_t kLoopsBetweenOptimizations = 10;
+constexpr std::size_t kLoopsBetweenOptimizations = 10;
 
 }  // namespace
 
-void OptimizationSchedule::count_loop() {
-  ++loops_since_;
-  if (loops_since_ >= kLoopsBetweenOptimizations) wanted_ = true;
+void OptimizationSchedule::count_loop(const PoseGraphEdge& loop) {
+  fresh_.push_back({loop.from, loop.to});
+  if (fresh_.size() >= kLoopsBetweenOptimizations) wanted_ = true;
 }
 
 void OptimizationSchedule::start(std::uint32_t step, const PoseGraph& graph,
                                  std::span<const PoseGraphEdge> loops) {
   if (!wanted_ || due_) return;
-  GraphProblem problem{graph.poses(), graph.edges()};
-  problem.edges.insert(problem.edges.end(), loops.begin(), loops.end());
+  optimizer().start(whole_ ? whole_problem(graph, loops)
+                           : window_problem(graph, loops, fresh_, least_stops_));
+  started_ = std::exchange(fresh_, {});
+  for (const PoseGraphEdge& loop : loops) started_.push_back({loop.from, loop.to});
   started_loops_ = loops.size();
-  optimizer().start(std::move(problem));
   due_ = step + delay_;
-  wanted_ = false;
-  loops_since_ = 0;
+  wanted_ = whole_ = false;
 }
 
 std::optional<OptimizationSchedule::Finished> OptimizationSchedule::fetch(std::uint32_t step) {
@@ -37,6 +38,13 @@ std::optional<OptimizationSchedule::Finished> OptimizationSchedule::fetch_now() 
   if (!due_) return std::nullopt;
   due_.reset();
   Finished finished{optimizer().fetch(), std::exchange(started_loops_, 0)};
+  if (finished.solution.strained) {
+    wanted_ = true;
+    least_stops_ = kGrowth * std::max(kLeastStops, finished.solution.stops.size());
+    fresh_.insert(fresh_.begin(), started_.begin(), started_.end());
+  } else {
+    least_stops_ = kLeastStops;
+  }
   ++optimizations_;
   if (!finished.solution.summary.usable) ++failed_;
   return finished;

@@ -6,7 +6,9 @@
 
 #include <Eigen/LU>
 
+#include "least_squares.hpp"
 #include "pose_links.hpp"
+#include "step_sums.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -20,13 +22,16 @@ constexpr double kLeverArm_m = 5.0;
 }  // namespace
 
 PoseGraph::PoseGraph()
-    : links_(std::make_unique<PoseLinks>()), calibrated_links_(std::make_unique<PoseLinks>()) {}
+    : links_(std::make_unique<PoseLinks>()),
+      calibrated_links_(std::make_unique<PoseLinks>()),
+      step_sums_(std::make_unique<StepSums>()) {}
 PoseGraph::PoseGraph(const PoseGraph& other)
     : poses_(other.poses_),
       edges_(other.edges_),
+      edges_at_(other.edges_at_),
       links_(std::make_unique<PoseLinks>(*other.links_)),
       calibrated_links_(std::make_unique<PoseLinks>(*other.calibrated_links_)),
-      step_sums_(other.step_sums_) {}
+      step_sums_(std::make_unique<StepSums>()) {}
 PoseGraph::PoseGraph(PoseGraph&&) noexcept = default;
 PoseGraph& PoseGraph::operator=(const PoseGraph& other) {
   return *this = PoseGraph(other);
@@ -36,6 +41,7 @@ PoseGraph::~PoseGraph() = default;
 
 std::uint32_t PoseGraph::add_pose(const Pose2& T_map_robot) {
   poses_.push_back(T_map_robot);
+  edges_at_.emplace_back();
   links_->add_stop();
   calibrated_links_->add_stop();
   return static_cast<std::uint32_t>(poses_.size() - 1);
@@ -46,8 +52,15 @@ void PoseGraph::add_edge(const PoseGraphEdge& edge) {
     throw std::invalid_argument(
         "pose graph: an edge must lead from an earlier stop to a later one");
   }
+  const auto index = static_cast<std::uint32_t>(edges_.size());
   edges_.push_back(edge);
-  if (edge.from + 1 == edge.to && step_sums_.size() > edge.to) step_sums_.resize(edge.to);
+  edges_at_[edge.from].push_back(index);
+  edges_at_[edge.to].push_back(index);
+  link(edge);
+}
+
+void PoseGraph::link(const PoseGraphEdge& edge) {
+  if (edge.from + 1 == edge.to) step_sums_->changed(edge.to);
   links_->add(edge, edge.covariance);
   calibrated_links_->add(edge, edge.for_predictions());
 }
@@ -59,7 +72,7 @@ double PoseGraph::disagreement(const PoseGraphEdge& edge) const {
 
 void PoseGraph::place_last_pose() {
   const auto last = static_cast<std::uint32_t>(poses_.size() - 1);
-  if (step_sums_.size() > last) step_sums_.resize(last);
+  step_sums_->changed(last);
   constexpr int kIterations = 5;
   for (int k = 0; k < kIterations; ++k) {
     Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
@@ -82,48 +95,53 @@ void PoseGraph::place_last_pose() {
   }
 }
 
-std::vector<PoseGraphEdge> PoseGraph::remove_edges(EdgeKind kind, double largest_disagreement) {
-  const auto kept =
-      std::stable_partition(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) {
-        return edge.kind != kind || disagreement(edge) <= largest_disagreement;
-      });
-  std::vector<PoseGraphEdge> removed(kept, edges_.end());
-  edges_.erase(kept, edges_.end());
-  if (!removed.empty()) rebuild_links();
-  return removed;
+OptimizationSummary PoseGraph::optimize() {
+  step_sums_->all_changed();
+  std::vector<std::uint8_t> held(poses_.size(), 0);
+  if (!held.empty()) held.front() = 1;
+  return least_squares(poses_, held, edges_);
 }
 
 void PoseGraph::remove_edges(std::span<const PoseGraphEdge> like) {
-  const std::size_t removed = std::erase_if(edges_, [&](const PoseGraphEdge& edge) {
-    return std::any_of(like.begin(), like.end(), [&](const PoseGraphEdge& other) {
-      return edge.kind == other.kind && edge.from == other.from && edge.to == other.to;
-    });
-  });
-  if (removed > 0) rebuild_links();
-}
-
-void PoseGraph::rebuild_links() {
-  step_sums_.clear();
-  links_->clear();
-  calibrated_links_->clear();
-  for (const PoseGraphEdge& edge : edges_) {
-    if (edge.from + 1 == edge.to && step_sums_.size() > edge.to) step_sums_.resize(edge.to);
-    links_->add(edge, edge.covariance);
-    calibrated_links_->add(edge, edge.for_predictions());
+  const auto removed =
+      std::stable_partition(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) {
+        return std::none_of(like.begin(), like.end(), [&](const PoseGraphEdge& other) {
+          return edge.kind == other.kind && edge.from == other.from && edge.to == other.to;
+        });
+      });
+  if (removed == edges_.end()) return;
+  edges_.erase(removed, edges_.end());
+  for (std::vector<std::uint32_t>& at : edges_at_) at.clear();
+  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    edges_at_[edges_[i].from].push_back(i);
+    edges_at_[edges_[i].to].push_back(i);
+  }
+  for (const PoseGraphEdge& gone : like) {
+    step_sums_->changed(gone.to);
+    links_->remove(gone.from, gone.to);
+    calibrated_links_->remove(gone.from, gone.to);
+    for (const std::uint32_t i : edges_at_[gone.from]) {
+      if (edges_[i].from == gone.from && edges_[i].to == gone.to) link(edges_[i]);
+    }
   }
 }
 
-void PoseGraph::move(std::span<const Pose2> T_map_robot) {
-  if (T_map_robot.empty() || T_map_robot.size() > poses_.size()) {
+void PoseGraph::move(std::span<const std::uint32_t> stops, std::span<const Pose2> T_map_robot) {
+  if (stops.empty() || stops.back() >= poses_.size() || stops.size() != T_map_robot.size()) {
     throw std::invalid_argument("pose graph: " + std::to_string(T_map_robot.size()) +
-                                " poses for " + std::to_string(poses_.size()) + " stops");
+                                " poses for " + std::to_string(stops.size()) + " of " +
+                                std::to_string(poses_.size()) + " stops");
   }
-  step_sums_.clear();
-  const std::size_t last = T_map_robot.size() - 1;
+  const std::uint32_t last = stops.back();
   const Pose2 T_last_map = geometry::inverse(poses_[last]);
-  std::copy(T_map_robot.begin(), T_map_robot.end(), poses_.begin());
-  for (std::size_t i = last + 1; i < poses_.size(); ++i) {
-    poses_[i] = poses_[last] * (T_last_map * poses_[i]);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (poses_[stops[i]] == T_map_robot[i]) continue;
+    poses_[stops[i]] = T_map_robot[i];
+    step_sums_->changed(stops[i]);
+  }
+  for (std::uint32_t stop = last + 1; stop < poses_.size(); ++stop) {
+    poses_[stop] = poses_[last] * (T_last_map * poses_[stop]);
+    step_sums_->changed(stop);
   }
 }
 
@@ -136,39 +154,39 @@ std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseGraph::links_to(
   return links_->links_to(stop);
 }
 
-std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin, const Reach& reach) const {
+RelativePoses PoseGraph::relative_to(std::uint32_t origin, const Reach& reach) const {
   return links_->relative_to(poses_, origin, reach);
+}
+
+std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin) const {
+  std::vector<UncertainPose> relative;
+  relative.reserve(poses_.size());
+  for (const Pose2& pose : poses_) {
+    relative.push_back(
+        {geometry::between(poses_[origin], pose), Eigen::Matrix3d::Identity() * kUnreached_m2});
+  }
+  const RelativePoses reached = relative_to(origin, Reach{});
+  for (const RelativePoses::Stop& stop : reached.stops()) {
+    relative[stop.id] = stop.T_origin_stop;
+  }
+  return relative;
+}
+
+RelativePoses PoseGraph::predict_from(std::uint32_t origin, const Reach& reach) const {
+  return calibrated_links_->relative_to(poses_, origin, reach);
+}
+
+void PoseGraph::visit_nearest(std::span<const std::uint32_t> origins,
+                              const std::function<bool(std::uint32_t, double)>& visit) const {
+  links_->visit_nearest(origins, visit);
 }
 
 UncertainPose PoseGraph::along_path(std::uint32_t from, std::uint32_t to) const {
   if (from > to) return inverse(along_path(to, from));
-  if (step_sums_.empty()) step_sums_.emplace_back(Eigen::Matrix3d::Zero());
-  while (step_sums_.size() <= to) {
-    const auto stop = static_cast<std::uint32_t>(step_sums_.size());
-    const Pose2& before = poses_[stop - 1];
-    const Pose2& at = poses_[stop];
-    // The error of the step, in the frame of the stop before, turned into the map and moved to its
-    // origin: whatever turns at the stop shifts the origin.
-    const geometry::SinCos r = geometry::sincos(before.theta_rad);
-    Eigen::Matrix3d to_origin;
-    to_origin << r.cos, -r.sin, at.y_m, r.sin, r.cos, -at.x_m, 0.0, 0.0, 1.0;
-    step_sums_.emplace_back(step_sums_.back() + to_origin *
-                                                    calibrated_links_->covariance(stop - 1, stop) *
-                                                    to_origin.transpose());
-  }
-  const geometry::SinCos r = geometry::sincos(poses_[from].theta_rad);
-  Eigen::Matrix3d turn;
-  turn << r.cos, r.sin, 0.0, -r.sin, r.cos, 0.0, 0.0, 0.0, 1.0;
-  Eigen::Matrix3d at_stop = Eigen::Matrix3d::Identity();
-  at_stop(0, 2) = -poses_[to].y_m;
-  at_stop(1, 2) = poses_[to].x_m;
-  const Eigen::Matrix3d from_origin = turn * at_stop;
-  return {geometry::between(poses_[from], poses_[to]),
-          from_origin * (step_sums_[to] - step_sums_[from]) * from_origin.transpose()};
-}
-
-std::vector<UncertainPose> PoseGraph::predict_from(std::uint32_t origin, const Reach& reach) const {
-  return calibrated_links_->relative_to(poses_, origin, reach);
+  const auto step = [this](std::uint32_t stop) -> const Eigen::Matrix3d& {
+    return calibrated_links_->covariance(stop - 1, stop);
+  };
+  return step_sums_->along(poses_, step, from, to);
 }
 
 }  // namespace topogeo::localization

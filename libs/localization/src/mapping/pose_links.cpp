@@ -1,7 +1,9 @@
 #include "pose_links.hpp"
 
-#include <functional>
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include <Eigen/LU>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
@@ -16,40 +18,47 @@ namespace {
 // Ends a search when all that was asked for has been reached.
 struct Enough {};
 
-class ReachVisitor : public boost::default_dijkstra_visitor {
- public:
-  ReachVisitor(const std::vector<double>& cost, const PoseGraph::Reach& reach,
-               std::vector<std::uint32_t>& order, std::vector<std::uint32_t>& link_to)
-      : cost_(&cost),
-        reach_(reach),
-        order_(&order),
-        link_to_(&link_to),
-        wanted_(cost.size() - reach.first_stop) {}
-
-  template <class Edge, class Graph>
-  void edge_relaxed(const Edge& edge, const Graph& graph) {
-    (*link_to_)[boost::target(edge, graph)] = graph[edge].value;
-  }
-
-  template <class Graph>
-  void examine_vertex(std::size_t stop, const Graph& /*graph*/) {
-    if ((*cost_)[stop] > reach_.largest_cost) throw Enough();
-    order_->push_back(static_cast<std::uint32_t>(stop));
-    if (stop >= reach_.first_stop && --wanted_ == 0) throw Enough();
-  }
-
- private:
-  const std::vector<double>* cost_;
-  PoseGraph::Reach reach_;
-  std::vector<std::uint32_t>* order_;    // of the stops reached, nearest first
-  std::vector<std::uint32_t>* link_to_;  // by which each is reached
-  std::size_t wanted_;
-};
+constexpr double kFarAway = std::numeric_limits<double>::max();
 
 }  // namespace
 
+const UncertainPose& RelativePoses::at(std::uint32_t id) const {
+  const UncertainPose* found = find(id);
+  if (found == nullptr) {
+    throw std::out_of_range("relative poses: stop " + std::to_string(id) + " was not reached");
+  }
+  return *found;
+}
+
+class PoseLinks::Visitor : public boost::default_dijkstra_visitor {
+ public:
+  Visitor(Marks& marks, const std::function<bool(std::uint32_t, double)>& visit)
+      : marks_(&marks), visit_(&visit) {}
+
+  template <class Graph>
+  void discover_vertex(std::size_t stop, const Graph& /*graph*/) {
+    marks_->touched.push_back(static_cast<std::uint32_t>(stop));
+  }
+  template <class Edge, class Graph>
+  void edge_relaxed(const Edge& edge, const Graph& graph) {
+    marks_->link_to[boost::target(edge, graph)] = graph[edge].value;
+  }
+  template <class Graph>
+  void examine_vertex(std::size_t stop, const Graph& /*graph*/) {
+    if (!(*visit_)(static_cast<std::uint32_t>(stop), marks_->cost[stop])) throw Enough();
+  }
+
+ private:
+  Marks* marks_;
+  const std::function<bool(std::uint32_t, double)>* visit_;
+};
+
 void PoseLinks::add_stop() {
   boost::add_vertex(network_);
+  marks_.cost.push_back(kFarAway);
+  marks_.colour.push_back(boost::white_color);
+  marks_.link_to.push_back(0);
+  marks_.position.push_back(0);
 }
 
 void PoseLinks::add(const PoseGraphEdge& edge, const Eigen::Matrix3d& covariance) {
@@ -67,12 +76,11 @@ void PoseLinks::add(const PoseGraphEdge& edge, const Eigen::Matrix3d& covariance
   link.cost = PoseGraph::path_cost(link.covariance);
 }
 
-void PoseLinks::clear() {
-  const std::size_t stops = boost::num_vertices(network_);
-  links_.clear();
-  link_of_.clear();
-  network_.clear();
-  for (std::size_t i = 0; i < stops; ++i) boost::add_vertex(network_);
+void PoseLinks::remove(std::uint32_t from, std::uint32_t to) {
+  const auto found = link_of_.find({from, to});
+  if (found == link_of_.end()) return;
+  boost::remove_edge(from, to, network_);
+  link_of_.erase(found);  // the link itself stays behind unused: removals are rare
 }
 
 std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseLinks::links_to(
@@ -86,51 +94,56 @@ std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseLinks::links_to(
   return found;
 }
 
-std::vector<UncertainPose> PoseLinks::relative_to(std::span<const Pose2> poses,
-                                                  std::uint32_t origin,
-                                                  const PoseGraph::Reach& reach) const {
-  std::vector<std::uint32_t> link_to(poses.size());
-  std::vector<double> cost(poses.size(), std::numeric_limits<double>::max());
-  std::vector<boost::default_color_type> colour(poses.size(), boost::white_color);
+void PoseLinks::visit_nearest(std::span<const std::uint32_t> origins,
+                              const std::function<bool(std::uint32_t, double)>& visit) const {
+  for (const std::uint32_t stop : marks_.touched) {
+    marks_.cost[stop] = kFarAway;
+    marks_.colour[stop] = boost::white_color;
+  }
+  marks_.touched.clear();
   const auto index = boost::get(boost::vertex_index, network_);
   const auto cost_of = [this](const Network::edge_descriptor& edge) {
     return links_[network_[edge].value].cost;
   };
-  cost[origin] = 0.0;
-  std::vector<std::uint32_t> order;
+  for (const std::uint32_t origin : origins) marks_.cost[origin] = 0.0;
   try {
     boost::dijkstra_shortest_paths_no_init(
-        network_, origin, boost::dummy_property_map(),
-        boost::make_iterator_property_map(cost.begin(), index),
+        network_, origins.begin(), origins.end(), boost::dummy_property_map(),
+        boost::make_iterator_property_map(marks_.cost.begin(), index),
         boost::make_function_property_map<Network::edge_descriptor>(cost_of), index, std::less<>(),
-        boost::closed_plus<double>(), 0.0, ReachVisitor(cost, reach, order, link_to),
-        boost::make_iterator_property_map(colour.begin(), index));
+        boost::closed_plus<double>(), 0.0, Visitor(marks_, visit),
+        boost::make_iterator_property_map(marks_.colour.begin(), index));
   } catch (const Enough&) {
   }
-  std::vector<UncertainPose> relative(poses.size());
-  for (std::uint32_t stop = 0; stop < poses.size(); ++stop) {
-    relative[stop].covariance = Eigen::Matrix3d::Identity() * PoseGraph::kUnreached_m2;
-    if (stop < reach.first_stop) continue;
-    relative[stop].T_a_b = geometry::between(poses[origin], poses[stop]);
-  }
-  // Every stop comes after the one before it on its path.
-  for (const std::uint32_t stop : order) {
-    relative[stop].T_a_b = geometry::between(poses[origin], poses[stop]);
-    if (stop == origin) {
-      relative[stop].covariance.setZero();
-      continue;
+}
+
+RelativePoses PoseLinks::relative_to(std::span<const Pose2> poses, std::uint32_t origin,
+                                     const PoseGraph::Reach& reach) const {
+  std::vector<RelativePoses::Stop> reached;
+  std::size_t wanted = poses.size() - reach.first_stop;
+  const auto visit = [&](std::uint32_t stop, double cost) {
+    if (cost > reach.largest_cost) return false;
+    UncertainPose relative{geometry::between(poses[origin], poses[stop]), Eigen::Matrix3d::Zero()};
+    if (stop != origin) {
+      const Link& link = links_[marks_.link_to[stop]];
+      const std::uint32_t previous = link.from == stop ? link.to : link.from;
+      const Pose2 T_previous_stop = geometry::between(poses[previous], poses[stop]);
+      const Eigen::Matrix3d covariance =
+          link.from == previous
+              ? link.covariance
+              : geometry::inverse_covariance(geometry::inverse(T_previous_stop), link.covariance);
+      const UncertainPose& before = reached[marks_.position[previous]].T_origin_stop;
+      relative.covariance = geometry::compose_covariance(before.T_a_b, before.covariance,
+                                                         T_previous_stop, covariance);
     }
-    const Link& link = links_[link_to[stop]];
-    const std::uint32_t previous = link.from == stop ? link.to : link.from;
-    const Pose2 T_previous_stop = geometry::between(poses[previous], poses[stop]);
-    const Eigen::Matrix3d covariance =
-        link.from == previous
-            ? link.covariance
-            : geometry::inverse_covariance(geometry::inverse(T_previous_stop), link.covariance);
-    relative[stop].covariance = geometry::compose_covariance(
-        relative[previous].T_a_b, relative[previous].covariance, T_previous_stop, covariance);
-  }
-  return relative;
+    marks_.position[stop] = static_cast<std::uint32_t>(reached.size());
+    reached.push_back({stop, relative});
+    return !(stop >= reach.first_stop && --wanted == 0);
+  };
+  visit_nearest({&origin, 1}, visit);
+  std::sort(reached.begin(), reached.end(),
+            [](const auto& a, const auto& b) { return a.id < b.id; });
+  return RelativePoses(std::move(reached));
 }
 
 }  // namespace topogeo::localization

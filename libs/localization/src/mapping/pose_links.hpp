@@ -1,8 +1,10 @@
 // The network of stops and the edges between them: all edges of one pair of stops count together,
-// and searches follow the paths on which the variance grows least.
+// and searches follow the paths on which the variance grows least. A search costs what it reaches,
+// not what the network has.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <utility>
@@ -21,8 +23,8 @@ class PoseLinks {
   void add_stop();
   /// `covariance` of T_from_to, in the frame of `from`.
   void add(const PoseGraphEdge& edge, const Eigen::Matrix3d& covariance);
-  /// The same number of stops without edges.
-  void clear();
+  /// Forgets all edges between two stops.
+  void remove(std::uint32_t from, std::uint32_t to);
 
   /// Of the link between two stops, which must be there.
   [[nodiscard]] const Eigen::Matrix3d& covariance(std::uint32_t from, std::uint32_t to) const {
@@ -32,9 +34,12 @@ class PoseLinks {
   [[nodiscard]] std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> links_to(
       std::uint32_t stop) const;
   /// See PoseGraph::relative_to; `poses` are those of all stops.
-  [[nodiscard]] std::vector<UncertainPose> relative_to(std::span<const geometry::Pose2> poses,
-                                                       std::uint32_t origin,
-                                                       const PoseGraph::Reach& reach) const;
+  [[nodiscard]] RelativePoses relative_to(std::span<const geometry::Pose2> poses,
+                                          std::uint32_t origin,
+                                          const PoseGraph::Reach& reach) const;
+  /// See PoseGraph::visit_nearest.
+  void visit_nearest(std::span<const std::uint32_t> origins,
+                     const std::function<bool(std::uint32_t, double)>& visit) const;
 
  private:
   /// All edges between one pair of stops taken together.
@@ -50,10 +55,20 @@ class PoseLinks {
   };
   using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS,
                                         boost::no_property, LinkIndex>;
+  class Visitor;
+  /// What a search writes on each stop, as between two searches: none reached.
+  struct Marks {
+    std::vector<double> cost;
+    std::vector<boost::default_color_type> colour;
+    std::vector<std::uint32_t> link_to;   // by which it was reached
+    std::vector<std::uint32_t> position;  // in the order of those reached
+    std::vector<std::uint32_t> touched;
+  };
 
   std::vector<Link> links_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> link_of_;  // index into links_
   Network network_;
+  mutable Marks marks_;
 };
 
 }  // namespace topogeo::localization

@@ -51,6 +51,14 @@ double weakest_sigma_m(const Eigen::Matrix3d& c) {
   return std::sqrt(mean + std::sqrt(half_difference * half_difference + c(0, 1) * c(0, 1)));
 }
 
+// One that was not reached may be anywhere.
+std::vector<UncertainPose> of_all(const PoseGraph& graph, const RelativePoses& relative) {
+  std::vector<UncertainPose> all(graph.poses().size(),
+                                 {Pose2{}, Eigen::Matrix3d::Identity() * PoseGraph::kUnreached_m2});
+  for (const RelativePoses::Stop& stop : relative.stops()) all[stop.id] = stop.T_origin_stop;
+  return all;
+}
+
 bool any_accepted(std::span<const StopMatch> matches) {
   return std::any_of(matches.begin(), matches.end(),
                      [](const StopMatch& match) { return match.accepted(); });
@@ -130,13 +138,13 @@ void StopMatching::consider(CandidateChoice& choice, const PoseGraph& graph, std
   }
 }
 
-std::vector<MatchCandidate> StopMatching::recent_candidates(
-    const PoseGraph& graph, std::span<const UncertainPose> relative) const {
+std::vector<MatchCandidate> StopMatching::recent_candidates(const PoseGraph& graph,
+                                                            const RelativePoses& relative) const {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   const std::uint32_t first = first_recent(stop);
   CandidateChoice choice(config_.smallest_expected_overlap);
   for (std::uint32_t i = first; i + 1 < stop; ++i) {
-    consider(choice, graph, i, stop, relative[i], false);
+    consider(choice, graph, i, stop, relative.at(i), false);
   }
   // The stop just before is worth a task in any case, however bad odometry is by now.
   if (first < stop) choice.take(stop - 1);
@@ -144,18 +152,19 @@ std::vector<MatchCandidate> StopMatching::recent_candidates(
 }
 
 std::vector<MatchCandidate> StopMatching::revisited_candidates(
-    const PoseGraph& graph, std::uint32_t stop, std::span<const UncertainPose> relative) const {
+    const PoseGraph& graph, std::uint32_t stop, const RelativePoses& relative) const {
   const std::uint32_t first = first_recent(stop);
   CandidateChoice choice(config_.smallest_expected_overlap);
-  for (std::uint32_t i = 0; i < first; ++i) {
-    consider(choice, graph, i, stop, relative[i], true);
+  for (const RelativePoses::Stop& earlier : relative.stops()) {
+    if (earlier.id >= first) break;
+    consider(choice, graph, earlier.id, stop, earlier.T_origin_stop, true);
   }
   return choice.best_apart(config_.revisit_matches);
 }
 
 std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
-  const std::vector<UncertainPose> relative =
+  const RelativePoses relative =
       graph.relative_to(stop, {first_recent(stop), PoseGraph::kUnlimited});
   std::map<std::uint32_t, std::vector<MatchSolution>> solutions;
   const auto matches_within = [&](double widening) {
@@ -193,13 +202,12 @@ void StopMatching::calibrate(std::span<const StopMatch> matches) {
 }
 
 std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
-                                                  std::span<const UncertainPose> relative,
-                                                  double widening) {
+                                                  const RelativePoses& relative, double widening) {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   const Pose2 T_previous_robot = stops_[stop].map->T_previous_robot;
   std::vector<MatchTask> tasks;
   for (const MatchCandidate& candidate : recent_candidates(graph, relative)) {
-    UncertainPose prior = relative[candidate.id];
+    UncertainPose prior = relative.at(candidate.id);
     prior.covariance *= widening * widening;
     MatchTask task = requests_.make(stop, candidate.id, prior);
     const Pose2 T_candidate_previous =
@@ -234,17 +242,17 @@ std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
   if (stops.size() == 1 && recognized_last_) recognized_.insert(*recognized_last_);
   for (const std::uint32_t stop : stops) {
     const bool ask = wants_places(stop);
-    std::vector<UncertainPose> relative = graph.predict_from(stop, ask ? PoseGraph::Reach{} : near);
-    for (UncertainPose& T_stop_earlier : relative) T_stop_earlier.covariance += map_noise();
+    RelativePoses relative = graph.predict_from(stop, ask ? PoseGraph::Reach{} : near);
+    relative.widen(map_noise());
     for (const MatchCandidate& candidate : revisited_candidates(graph, stop, relative)) {
-      const UncertainPose& T_stop_earlier = relative[candidate.id];
+      const UncertainPose& T_stop_earlier = relative.at(candidate.id);
       comparisons.push_back({requests_.make(stop, candidate.id, T_stop_earlier), T_stop_earlier,
                              ProposalSource::kPrediction});
     }
     if (!ask) continue;
     recognized_.insert(stop);
     recognized_last_ = stop;
-    for (Comparison& comparison : comparisons_with_places(graph, stop, relative)) {
+    for (Comparison& comparison : comparisons_with_places(graph, stop, of_all(graph, relative))) {
       comparisons.push_back(std::move(comparison));
     }
   }

@@ -17,11 +17,14 @@ class FakeOptimizer : public GraphOptimizer {
     ++fetched;
     GraphSolution solution;
     solution.summary.usable = usable;
+    solution.strained = strained;
+    solution.stops = problems.back().stops;
     return solution;
   }
   std::vector<GraphProblem> problems;
   int fetched = 0;
   bool usable = true;
+  bool strained = false;
 };
 
 PoseGraph two_stops() {
@@ -81,14 +84,14 @@ TEST(OptimizationSchedule, OneAtATimeAndTheNextWhenItHasEnded) {
 TEST(OptimizationSchedule, TenSmallLoopsAreWorthOne) {
   FakeOptimizer optimizer;
   OptimizationSchedule schedule(&optimizer, 0);
-  for (int i = 0; i < 9; ++i) schedule.count_loop();
+  for (int i = 0; i < 9; ++i) schedule.count_loop(kLoop);
   schedule.start(0, two_stops(), {});
   EXPECT_TRUE(optimizer.problems.empty());
-  schedule.count_loop();
+  schedule.count_loop(kLoop);
   schedule.start(1, two_stops(), {});
   EXPECT_EQ(optimizer.problems.size(), 1U);
   EXPECT_TRUE(schedule.fetch(1));
-  schedule.count_loop();  // counted anew
+  schedule.count_loop(kLoop);  // counted anew
   schedule.start(2, two_stops(), {});
   EXPECT_EQ(optimizer.problems.size(), 1U);
 }
@@ -111,6 +114,47 @@ TEST(OptimizationSchedule, WithoutAnOptimizerItDoesTheWorkItself) {
   ASSERT_TRUE(finished);
   ASSERT_TRUE(finished->solution.summary.usable);
   EXPECT_NEAR(finished->solution.T_map_robot[1].x_m, 1.0, 1e-9);
+}
+
+TEST(OptimizationSchedule, AfterAStrainedResultMoreStopsAreFree) {
+  PoseGraph graph;
+  graph.add_pose({});
+  for (std::uint32_t i = 1; i < 2000; ++i) {
+    graph.add_pose({1.0 * i, 0.0, 0.0});
+    graph.add_edge({i - 1, i, EdgeKind::kOdometry, {1.0, 0.0, 0.0}});
+  }
+  const PoseGraphEdge loop{1990, 1999, EdgeKind::kRevisit, {9.1, 0.0, 0.0}};
+  FakeOptimizer optimizer;
+  optimizer.strained = true;
+  OptimizationSchedule schedule(&optimizer, 0);
+  schedule.want();
+  schedule.start(0, graph, {&loop, 1});
+  const std::size_t first = optimizer.problems.back().stops.size();
+  EXPECT_LT(first, 300U);
+  optimizer.strained = false;
+  schedule.fetch(0);
+  schedule.start(1, graph, {});
+  ASSERT_EQ(optimizer.problems.size(), 1U);  // not strained: nothing more is wanted
+  optimizer.strained = true;
+  schedule.want();
+  schedule.start(2, graph, {&loop, 1});
+  schedule.fetch(2);
+  schedule.start(3, graph, {});
+  ASSERT_EQ(optimizer.problems.size(), 3U);
+  EXPECT_GT(optimizer.problems.back().stops.size(), 2 * first);
+  schedule.fetch(3);
+  schedule.start(4, graph, {});
+  EXPECT_TRUE(optimizer.problems.back().whole);
+  optimizer.strained = false;
+  schedule.fetch(4);
+  // The next loop begins with few again.
+  schedule.want();
+  schedule.start(5, graph, {&loop, 1});
+  EXPECT_EQ(optimizer.problems.back().stops.size(), first);
+  schedule.fetch(5);
+  schedule.want_whole();
+  schedule.start(6, graph, {});
+  EXPECT_TRUE(optimizer.problems.back().whole);
 }
 
 }  // namespace

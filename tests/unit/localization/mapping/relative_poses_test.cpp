@@ -1,4 +1,8 @@
 // PoseGraph::relative_to: what one stop knows of all others.
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <Eigen/LU>
@@ -102,7 +106,7 @@ TEST(RelativePoses, PredictionsUseCalibratedCovariances) {
                   variances_of_edge(0.01, 0.02, 0.003)});
   EXPECT_TRUE(graph.relative_to(0)[1].covariance.isApprox(variances_of_edge(0.09, 0.09, 0.01)));
   EXPECT_TRUE(
-      graph.predict_from(0, {})[1].covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003)));
+      graph.predict_from(0, {}).at(1).covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003)));
 }
 
 TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
@@ -118,10 +122,92 @@ TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
   }
   // Also after the poses have moved, and for a stop that came later.
   const std::vector<geometry::Pose2> moved{{0, 0, 0}, {2, 1, 0.5}};
-  graph.move(moved);
+  graph.move(std::vector<std::uint32_t>{0, 1}, moved);
   const UncertainPose first = graph.along_path(0, 1);
   EXPECT_NEAR(first.T_a_b.x_m, 2.0, 1e-12);
   EXPECT_TRUE(first.covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003), 1e-9));
+}
+
+// A path of 100 stops on a circle, the last of which were matched with the first.
+PoseGraph circle() {
+  PoseGraph graph;
+  const Pose2 step{0.5, 0.01, 0.0628};
+  graph.add_pose({});
+  for (std::uint32_t i = 1; i < 100; ++i) {
+    graph.add_pose(graph.poses().back() * step);
+    graph.add_edge(
+        {i - 1, i, EdgeKind::kSequential, step, variances_of_edge(1e-4 * (1 + i % 3), 1e-4, 1e-5)});
+  }
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    const Pose2 T = geometry::between(graph.poses()[i], graph.poses()[90 + i]);
+    graph.add_edge({i, 90 + i, EdgeKind::kRevisit, T, variances_of_edge(4e-4, 4e-4, 4e-5)});
+  }
+  return graph;
+}
+
+TEST(RelativePoses, ABoundedSearchFindsWhatTheUnboundedDoes) {
+  const PoseGraph graph = circle();
+  for (const std::uint32_t origin : {0U, 47U, 99U}) {
+    const std::vector<UncertainPose> all = graph.relative_to(origin);
+    const double limit = 0.01;
+    const RelativePoses near = graph.relative_to(origin, {0, limit});
+    EXPECT_GT(near.stops().size(), 3U);
+    EXPECT_LT(near.stops().size(), all.size());
+    std::uint32_t before = 0;
+    for (const RelativePoses::Stop& stop : near.stops()) {
+      EXPECT_TRUE(stop.id == 0 || stop.id > before);
+      before = stop.id;
+      EXPECT_TRUE(stop.T_origin_stop.covariance.isApprox(all[stop.id].covariance, 1e-12) ||
+                  stop.id == origin);
+      EXPECT_EQ(stop.T_origin_stop.T_a_b, all[stop.id].T_a_b);
+    }
+    // Those after a stop alone: as far as the last of them.
+    const RelativePoses late = graph.relative_to(99, {95, PoseGraph::kUnlimited});
+    for (std::uint32_t id = 95; id < 100; ++id) EXPECT_NE(late.find(id), nullptr);
+    EXPECT_LT(late.stops().size(), 50U);
+    EXPECT_THROW(static_cast<void>(late.at(50)), std::out_of_range);
+  }
+}
+
+TEST(RelativePoses, StopsAreVisitedByThePathFromTheNearestOrigin) {
+  const PoseGraph graph = circle();
+  const std::vector<std::uint32_t> origins{20, 60};
+  std::vector<std::uint32_t> visited;
+  double last = 0.0;
+  graph.visit_nearest(origins, [&](std::uint32_t stop, double cost) {
+    EXPECT_GE(cost, last);
+    last = cost;
+    visited.push_back(stop);
+    return visited.size() < 10;
+  });
+  std::sort(visited.begin(), visited.end());
+  EXPECT_EQ(visited, (std::vector<std::uint32_t>{18, 19, 20, 21, 22, 58, 59, 60, 61, 62}));
+}
+
+TEST(RelativePoses, AlongThePathHoldsOverBlocksOfStopsAndAfterChanges) {
+  PoseGraph graph = circle();
+  const auto check = [&](std::uint32_t from, std::uint32_t to) {
+    UncertainPose composed;
+    for (std::uint32_t stop = from + 1; stop <= to; ++stop) {
+      const Eigen::Matrix3d step = graph.links_to(stop).front().second;
+      composed = compose(composed,
+                         {geometry::between(graph.poses()[stop - 1], graph.poses()[stop]), step});
+    }
+    const UncertainPose path = graph.along_path(from, to);
+    EXPECT_TRUE(path.covariance.isApprox(composed.covariance, 1e-9)) << from << " " << to;
+  };
+  for (const auto& [from, to] :
+       {std::pair{0U, 31U}, std::pair{31U, 32U}, std::pair{5U, 89U}, std::pair{40U, 64U}}) {
+    check(from, to);
+    EXPECT_TRUE(graph.along_path(from, from).covariance.isZero(1e-12));
+  }
+  // A stop at the border of two blocks moves, and a step becomes better known.
+  graph.move(std::vector<std::uint32_t>{31, 98}, std::vector<Pose2>{{3, 4, 1}, graph.poses()[98]});
+  check(5, 89);
+  check(30, 40);
+  graph.add_edge(
+      {63, 64, EdgeKind::kOdometry, {0.5, 0.01, 0.0628}, variances_of_edge(1e-5, 1e-5, 1e-6)});
+  check(5, 89);
 }
 
 }  // namespace

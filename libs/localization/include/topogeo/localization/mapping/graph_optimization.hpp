@@ -1,11 +1,10 @@
-// Least squares over a pose graph as a job apart, so that it need not hold up the robot.
+// Least squares over a pose graph, or a part of it, as a job apart, so that it need not hold up the
+// robot.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
@@ -14,15 +13,21 @@ namespace topogeo::localization {
 
 /// What a job needs; a copy, so that the graph can grow meanwhile.
 struct GraphProblem {
-  std::vector<geometry::Pose2> T_map_robot;  ///< index: stop
-  std::vector<PoseGraphEdge> edges;
+  std::vector<std::uint32_t> stops;          ///< of the graph, ascending
+  std::vector<geometry::Pose2> T_map_robot;  ///< of these
+  std::vector<std::uint8_t> held;            ///< which of these keep their pose
+  std::vector<PoseGraphEdge> edges;          ///< `from` and `to` are indices of `stops`
+  bool whole = false;                        ///< all stops of the graph
 };
 
 struct GraphSolution {
-  OptimizationSummary summary;               ///< of the last optimisation
-  std::vector<geometry::Pose2> T_map_robot;  ///< of the stops of the problem
-  std::vector<PoseGraphEdge> outvoted;       ///< loops that the rest contradicts: left out
-  std::vector<Eigen::Matrix3d> covariance;   ///< of each pose in the map frame
+  OptimizationSummary summary;       ///< of the last optimisation
+  std::vector<std::uint32_t> stops;  ///< of the problem, with their poses
+  std::vector<geometry::Pose2> T_map_robot;
+  std::vector<PoseGraphEdge> outvoted;  ///< loops that the rest contradicts: left out
+  bool whole = false;
+  /// A stop next to one that was held has moved noticeably: more stops should have been free.
+  bool strained = false;
 };
 
 /// Optimises, leaves out the loops that are outvoted by then and optimises again without them. The

@@ -92,6 +92,7 @@ class Localizer : public Slam {
   void judge_state(std::vector<StepMatch> evidence);
 
   bool apply(const std::optional<OptimizationSchedule::Finished>& finished);
+  void update_covariances(const GraphSolution& solution);
   void optimize_now();
   std::size_t close_more_loops(std::span<const std::uint32_t> stops);
 

@@ -1,15 +1,18 @@
 // When the pose graph is optimised: wanted, started, and taken over a fixed number of steps later.
 //
 // A result takes effect at its step, whenever it was ready: a log gives the same poses however long
-// the optimisation took.
+// the optimisation took. It covers the stops that the new loops can move, more of them after a
+// result that was strained.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "topogeo/localization/mapping/graph_optimization.hpp"
+#include "topogeo/localization/mapping/optimization_window.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 
 namespace topogeo::localization {
@@ -23,8 +26,11 @@ class OptimizationSchedule {
 
   /// An optimisation is wanted at the next opportunity.
   void want() { wanted_ = true; }
-  /// A loop was closed that alone needs none; after some of them one is wanted all the same.
-  void count_loop();
+  /// One of all stops is.
+  void want_whole() { wanted_ = whole_ = true; }
+  /// A loop became part of the graph that alone needs none; after some of them one is wanted all
+  /// the same.
+  void count_loop(const PoseGraphEdge& loop);
 
   /// Starts one of the graph and the loops that wait to become part of it, if one is wanted and
   /// none is running.
@@ -43,13 +49,20 @@ class OptimizationSchedule {
   [[nodiscard]] std::uint64_t failed() const { return failed_; }
 
  private:
+  /// Optimised in a few milliseconds, some 30 m of path where each place was driven thrice.
+  static constexpr std::size_t kLeastStops = 150;
+  static constexpr std::size_t kGrowth = 4;  // of the next window, after a strained one
+
   [[nodiscard]] GraphOptimizer& optimizer() { return optimizer_ ? *optimizer_ : in_place_; }
 
   GraphOptimizer* optimizer_;
   InPlaceOptimizer in_place_;
   std::uint32_t delay_;
   bool wanted_ = false;
-  std::uint32_t loops_since_ = 0;     // the last start
+  bool whole_ = false;
+  std::size_t least_stops_ = kLeastStops;
+  std::vector<LoopEnds> fresh_;       // counted since the last start
+  std::vector<LoopEnds> started_;     // those of the running one, the waiting loops among them
   std::optional<std::uint32_t> due_;  // step at which the running one takes effect
   std::size_t started_loops_ = 0;     // waiting ones in it
   std::uint64_t optimizations_ = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -12,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/relative_poses.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
@@ -49,6 +51,7 @@ struct OptimizationSummary {
 };
 
 class PoseLinks;
+class StepSums;
 
 class PoseGraph {
  public:
@@ -67,9 +70,15 @@ class PoseGraph {
   [[nodiscard]] const std::vector<geometry::Pose2>& poses() const { return poses_; }
   [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const { return edges_; }
 
-  /// Puts the first poses where an optimisation wants them, and moves those after them rigidly with
-  /// the last of them. Throws std::invalid_argument without any or with too many.
-  void move(std::span<const geometry::Pose2> T_map_robot);
+  /// Indices of the edges that begin or end at a stop, ascending.
+  [[nodiscard]] std::span<const std::uint32_t> edges_at(std::uint32_t stop) const {
+    return edges_at_[stop];
+  }
+
+  /// Puts these stops (ascending) where an optimisation wants them, and moves those after the last
+  /// of them rigidly with it. Throws std::invalid_argument without any, for an unknown one or when
+  /// the numbers differ.
+  void move(std::span<const std::uint32_t> stops, std::span<const geometry::Pose2> T_map_robot);
 
   /// Squared Mahalanobis distance between an edge and the poses as they are.
   [[nodiscard]] double disagreement(const PoseGraphEdge& edge) const;
@@ -87,8 +96,6 @@ class PoseGraph {
   /// results repeat.
   OptimizationSummary optimize();
 
-  /// Removes edges of a kind whose disagreement exceeds the limit; returns them.
-  std::vector<PoseGraphEdge> remove_edges(EdgeKind kind, double largest_disagreement);
   /// Removes all edges that are of the same kind between the same stops as one of these.
   void remove_edges(std::span<const PoseGraphEdge> like);
 
@@ -102,22 +109,25 @@ class PoseGraph {
   /// Relative pose of the stops seen from `origin` with its covariance, each along the path on
   /// which the variance grows least. All edges between two stops count together: along a
   /// bare corridor a match knows only the position across, odometry the one along. Stops that
-  /// `reach` leaves out or that are not connected may have a covariance of kUnreached_m2.
-  [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin,
-                                                       const Reach& reach) const;
-  [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const {
-    return relative_to(origin, Reach{});
-  }
+  /// `reach` leaves out may be missing; the work is that of the stops that are reached.
+  [[nodiscard]] RelativePoses relative_to(std::uint32_t origin, const Reach& reach) const;
+  /// The same of all stops, by their ids. One that is not connected has a covariance of
+  /// kUnreached_m2.
+  [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const;
   static constexpr double kUnreached_m2 = 1e6;
 
   /// The same by the calibrated covariances of the edges: where a stop is to be expected. Matches
   /// of one place share errors that do not grow along a path, so this is too sure for weighing
   /// measurements against each other.
-  [[nodiscard]] std::vector<UncertainPose> predict_from(std::uint32_t origin,
-                                                        const Reach& reach) const;
+  [[nodiscard]] RelativePoses predict_from(std::uint32_t origin, const Reach& reach) const;
+
+  /// Visits stops in the order of the path_cost() from the nearest of the origins, which are
+  /// different stops, until `visit` (stop, cost) returns false.
+  void visit_nearest(std::span<const std::uint32_t> origins,
+                     const std::function<bool(std::uint32_t, double)>& visit) const;
 
   /// From one stop to another by the steps between them alone, whatever else is known; calibrated
-  /// covariances, to first order. Constant time, once the sums up to the later stop are there.
+  /// covariances, to first order. Constant time for each 32 stops.
   [[nodiscard]] UncertainPose along_path(std::uint32_t from, std::uint32_t to) const;
 
   /// Length of a path with this covariance at its end, m^2: the variance of where things are that
@@ -125,15 +135,14 @@ class PoseGraph {
   static double path_cost(const Eigen::Matrix3d& covariance);
 
  private:
-  void rebuild_links();
+  void link(const PoseGraphEdge& edge);
 
   std::vector<geometry::Pose2> poses_;
   std::vector<PoseGraphEdge> edges_;
+  std::vector<std::vector<std::uint32_t>> edges_at_;
   std::unique_ptr<PoseLinks> links_;
   std::unique_ptr<PoseLinks> calibrated_links_;
-  /// Summed covariance of the steps up to each stop, as a small motion of the whole map about its
-  /// origin; filled as far as it was asked for.
-  mutable std::vector<Eigen::Matrix3d> step_sums_;
+  std::unique_ptr<StepSums> step_sums_;  // filled as far as it was asked for
 };
 
 }  // namespace topogeo::localization

@@ -107,14 +107,14 @@ class StopMatching {
   };
 
   [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
-  [[nodiscard]] std::vector<MatchCandidate> recent_candidates(
-      const PoseGraph& graph, std::span<const UncertainPose> relative) const;
+  [[nodiscard]] std::vector<MatchCandidate> recent_candidates(const PoseGraph& graph,
+                                                              const RelativePoses& relative) const;
   [[nodiscard]] std::vector<MatchCandidate> revisited_candidates(
-      const PoseGraph& graph, std::uint32_t stop, std::span<const UncertainPose> relative) const;
+      const PoseGraph& graph, std::uint32_t stop, const RelativePoses& relative) const;
   void consider(CandidateChoice& choice, const PoseGraph& graph, std::uint32_t earlier,
                 std::uint32_t stop, const UncertainPose& T_stop_earlier, bool common) const;
-  std::vector<MatchTask> recent_tasks(const PoseGraph& graph,
-                                      std::span<const UncertainPose> relative, double widening);
+  std::vector<MatchTask> recent_tasks(const PoseGraph& graph, const RelativePoses& relative,
+                                      double widening);
   std::vector<StopMatch> run(std::span<const MatchTask> tasks, EdgeKind kind);
   void calibrate(std::span<const StopMatch> matches);
   [[nodiscard]] bool wants_places(std::uint32_t stop) const;

@@ -1,4 +1,5 @@
-// PoseGraph::optimize, apart from the rest because Ceres is slow to compile.
+#include "least_squares.hpp"
+
 #include <array>
 #include <cmath>
 
@@ -7,7 +8,6 @@
 #include <ceres/ceres.h>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/mapping/pose_graph.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -55,22 +55,26 @@ class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
 
 }  // namespace
 
-OptimizationSummary PoseGraph::optimize() {
-  step_sums_.clear();
-  if (poses_.size() < 2 || edges_.empty()) return {true, true, 0.0, 0.0, 0};
+OptimizationSummary least_squares(std::span<Pose2> poses, std::span<const std::uint8_t> held,
+                                  std::span<const PoseGraphEdge> edges) {
+  if (poses.size() < 2 || edges.empty()) return {true, true, 0.0, 0.0, 0};
   std::vector<std::array<double, 3>> values;
-  values.reserve(poses_.size());
-  for (const Pose2& pose : poses_) values.push_back({pose.x_m, pose.y_m, pose.theta_rad});
+  values.reserve(poses.size());
+  for (const Pose2& pose : poses) values.push_back({pose.x_m, pose.y_m, pose.theta_rad});
 
   ceres::Problem problem;
-  for (const PoseGraphEdge& edge : edges_) {
+  for (const PoseGraphEdge& edge : edges) {
     ceres::LossFunction* loss = nullptr;
     if (edge.kind == EdgeKind::kSequential) loss = new ceres::CauchyLoss(3.0);
     if (edge.kind == EdgeKind::kRevisit) loss = new ceres::CauchyLoss(2.0);
     problem.AddResidualBlock(new RelativePoseCost(edge), loss, values[edge.from].data(),
                              values[edge.to].data());
   }
-  problem.SetParameterBlockConstant(values.front().data());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (held[i] != 0 && problem.HasParameterBlock(values[i].data())) {
+      problem.SetParameterBlockConstant(values[i].data());
+    }
+  }
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -84,8 +88,8 @@ OptimizationSummary PoseGraph::optimize() {
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 
-  for (std::size_t i = 0; summary.IsSolutionUsable() && i < poses_.size(); ++i) {
-    poses_[i] = {values[i][0], values[i][1], geometry::wrap_angle(values[i][2])};
+  for (std::size_t i = 0; summary.IsSolutionUsable() && i < poses.size(); ++i) {
+    poses[i] = {values[i][0], values[i][1], geometry::wrap_angle(values[i][2])};
   }
   return {summary.IsSolutionUsable(), summary.termination_type == ceres::CONVERGENCE,
           summary.initial_cost, summary.final_cost, static_cast<int>(summary.iterations.size())};

@@ -1,0 +1,19 @@
+// Robust least squares over relative poses, apart from the rest because Ceres is slow to compile.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/pose_graph.hpp"
+
+namespace topogeo::localization {
+
+/// Moves the poses that are not held to where the edges, whose stops are indices of `poses`, agree
+/// best. Matches have a Cauchy loss, so that a wrong one bends the map a little instead of folding
+/// it. Single-threaded, so that results repeat.
+OptimizationSummary least_squares(std::span<geometry::Pose2> poses,
+                                  std::span<const std::uint8_t> held,
+                                  std::span<const PoseGraphEdge> edges);
+
+}  // namespace topogeo::localization
