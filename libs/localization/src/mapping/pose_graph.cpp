@@ -1,6 +1,7 @@
 #include "topogeo/localization/mapping/pose_graph.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -154,8 +155,28 @@ std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> PoseGraph::links_to(
   return links_->links_to(stop);
 }
 
-RelativePoses PoseGraph::relative_to(std::uint32_t origin, const Reach& reach) const {
-  return links_->relative_to(poses_, origin, reach);
+std::vector<std::uint32_t> PoseGraph::stops_near(const Eigen::Vector2d& place_m, double radius_m,
+                                                 std::size_t most, std::uint32_t end) const {
+  std::vector<std::pair<double, std::uint32_t>> near;
+  // A nanosecond for each stop: no index is worth its upkeep while poses move.
+  for (std::uint32_t stop = 0; stop < end; ++stop) {
+    const double square_m2 = (poses_[stop].position_m() - place_m).squaredNorm();
+    if (square_m2 <= radius_m * radius_m) near.emplace_back(square_m2, stop);
+  }
+  if (near.size() > most) {
+    std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(most), near.end());
+    near.resize(most);
+  }
+  std::vector<std::uint32_t> stops;
+  stops.reserve(near.size());
+  for (const auto& [square_m2, stop] : near) stops.push_back(stop);
+  std::sort(stops.begin(), stops.end());
+  return stops;
+}
+
+RelativePoses PoseGraph::relative_to(std::uint32_t origin, std::span<const std::uint32_t> wanted,
+                                     double largest_cost) const {
+  return links_->relative_to(poses_, origin, wanted, largest_cost);
 }
 
 std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin) const {
@@ -165,15 +186,18 @@ std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin) const {
     relative.push_back(
         {geometry::between(poses_[origin], pose), Eigen::Matrix3d::Identity() * kUnreached_m2});
   }
-  const RelativePoses reached = relative_to(origin, Reach{});
+  std::vector<std::uint32_t> all(poses_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const RelativePoses reached = relative_to(origin, all);
   for (const RelativePoses::Stop& stop : reached.stops()) {
     relative[stop.id] = stop.T_origin_stop;
   }
   return relative;
 }
 
-RelativePoses PoseGraph::predict_from(std::uint32_t origin, const Reach& reach) const {
-  return calibrated_links_->relative_to(poses_, origin, reach);
+RelativePoses PoseGraph::predict_from(std::uint32_t origin, std::span<const std::uint32_t> wanted,
+                                      double largest_cost) const {
+  return calibrated_links_->relative_to(poses_, origin, wanted, largest_cost);
 }
 
 void PoseGraph::visit_nearest(std::span<const std::uint32_t> origins,

@@ -1,9 +1,6 @@
 #include "pose_links.hpp"
 
-#include <algorithm>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 #include <Eigen/LU>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
@@ -21,14 +18,6 @@ struct Enough {};
 constexpr double kFarAway = std::numeric_limits<double>::max();
 
 }  // namespace
-
-const UncertainPose& RelativePoses::at(std::uint32_t id) const {
-  const UncertainPose* found = find(id);
-  if (found == nullptr) {
-    throw std::out_of_range("relative poses: stop " + std::to_string(id) + " was not reached");
-  }
-  return *found;
-}
 
 class PoseLinks::Visitor : public boost::default_dijkstra_visitor {
  public:
@@ -59,6 +48,7 @@ void PoseLinks::add_stop() {
   marks_.colour.push_back(boost::white_color);
   marks_.link_to.push_back(0);
   marks_.position.push_back(0);
+  marks_.wanted.push_back(0);
 }
 
 void PoseLinks::add(const PoseGraphEdge& edge, const Eigen::Matrix3d& covariance) {
@@ -118,32 +108,57 @@ void PoseLinks::visit_nearest(std::span<const std::uint32_t> origins,
 }
 
 RelativePoses PoseLinks::relative_to(std::span<const Pose2> poses, std::uint32_t origin,
-                                     const PoseGraph::Reach& reach) const {
-  std::vector<RelativePoses::Stop> reached;
-  std::size_t wanted = poses.size() - reach.first_stop;
-  const auto visit = [&](std::uint32_t stop, double cost) {
-    if (cost > reach.largest_cost) return false;
-    UncertainPose relative{geometry::between(poses[origin], poses[stop]), Eigen::Matrix3d::Zero()};
-    if (stop != origin) {
-      const Link& link = links_[marks_.link_to[stop]];
-      const std::uint32_t previous = link.from == stop ? link.to : link.from;
-      const Pose2 T_previous_stop = geometry::between(poses[previous], poses[stop]);
-      const Eigen::Matrix3d covariance =
-          link.from == previous
-              ? link.covariance
-              : geometry::inverse_covariance(geometry::inverse(T_previous_stop), link.covariance);
-      const UncertainPose& before = reached[marks_.position[previous]].T_origin_stop;
-      relative.covariance = geometry::compose_covariance(before.T_a_b, before.covariance,
-                                                         T_previous_stop, covariance);
-    }
+                                     std::span<const std::uint32_t> wanted,
+                                     double largest_cost) const {
+  if (wanted.empty()) return {};
+  for (const std::uint32_t stop : wanted) marks_.wanted[stop] = 1;
+  std::vector<std::uint32_t> reached;  // nearest first, so that each follows the one before it
+  std::size_t left = wanted.size();
+  visit_nearest({&origin, 1}, [&](std::uint32_t stop, double cost) {
+    if (cost > largest_cost) return false;
     marks_.position[stop] = static_cast<std::uint32_t>(reached.size());
-    reached.push_back({stop, relative});
-    return !(stop >= reach.first_stop && --wanted == 0);
+    reached.push_back(stop);
+    return !(marks_.wanted[stop] != 0 && --left == 0);
+  });
+  for (const std::uint32_t stop : wanted) marks_.wanted[stop] = 0;
+
+  const auto previous_of = [&](std::uint32_t stop) {
+    const Link& link = links_[marks_.link_to[stop]];
+    return link.from == stop ? link.to : link.from;
   };
-  visit_nearest({&origin, 1}, visit);
-  std::sort(reached.begin(), reached.end(),
-            [](const auto& a, const auto& b) { return a.id < b.id; });
-  return RelativePoses(std::move(reached));
+  std::vector<std::uint8_t> needed(reached.size(), 0);  // on the path to a wanted one
+  const auto is_reached = [&](std::uint32_t stop) {
+    const std::uint32_t position = marks_.position[stop];
+    return position < reached.size() && reached[position] == stop;
+  };
+  for (const std::uint32_t stop : wanted) {
+    if (is_reached(stop)) needed[marks_.position[stop]] = 1;
+  }
+  for (std::size_t i = reached.size(); i-- > 1;) {
+    if (needed[i] != 0) needed[marks_.position[previous_of(reached[i])]] = 1;
+  }
+  std::vector<UncertainPose> relative(reached.size());
+  for (std::size_t i = 1; i < reached.size(); ++i) {
+    if (needed[i] == 0) continue;
+    const std::uint32_t stop = reached[i];
+    const Link& link = links_[marks_.link_to[stop]];
+    const std::uint32_t previous = previous_of(stop);
+    const Pose2 T_previous_stop = geometry::between(poses[previous], poses[stop]);
+    const Eigen::Matrix3d covariance =
+        link.from == previous
+            ? link.covariance
+            : geometry::inverse_covariance(geometry::inverse(T_previous_stop), link.covariance);
+    const UncertainPose& before = relative[marks_.position[previous]];
+    relative[i] = {
+        geometry::between(poses[origin], poses[stop]),
+        geometry::compose_covariance(before.T_a_b, before.covariance, T_previous_stop, covariance)};
+  }
+  std::vector<RelativePoses::Stop> stops;
+  stops.reserve(wanted.size());
+  for (const std::uint32_t stop : wanted) {
+    if (is_reached(stop)) stops.push_back({stop, relative[marks_.position[stop]]});
+  }
+  return RelativePoses(std::move(stops));
 }
 
 }  // namespace topogeo::localization

@@ -36,7 +36,8 @@ class PoseLinks {
   /// See PoseGraph::relative_to; `poses` are those of all stops.
   [[nodiscard]] RelativePoses relative_to(std::span<const geometry::Pose2> poses,
                                           std::uint32_t origin,
-                                          const PoseGraph::Reach& reach) const;
+                                          std::span<const std::uint32_t> wanted,
+                                          double largest_cost) const;
   /// See PoseGraph::visit_nearest.
   void visit_nearest(std::span<const std::uint32_t> origins,
                      const std::function<bool(std::uint32_t, double)>& visit) const;
@@ -62,6 +63,7 @@ class PoseLinks {
     std::vector<boost::default_color_type> colour;
     std::vector<std::uint32_t> link_to;   // by which it was reached
     std::vector<std::uint32_t> position;  // in the order of those reached
+    std::vector<std::uint8_t> wanted;
     std::vector<std::uint32_t> touched;
   };
 

@@ -18,8 +18,8 @@ void StepSums::changed(std::uint32_t stop) {
   }
 }
 
-const Eigen::Matrix3d& StepSums::sum_to(std::span<const Pose2> T_map_stop,
-                                        const StepCovariance& step, std::uint32_t stop) {
+Eigen::Matrix3d StepSums::sum_to(std::span<const Pose2> T_map_stop, const StepCovariance& step,
+                                 std::uint32_t stop) {
   const std::uint32_t block = stop / kBlock;
   if (block >= blocks_.size()) blocks_.resize(block + 1);
   std::vector<Eigen::Matrix3d>& sums = blocks_[block].sums;
@@ -49,7 +49,8 @@ UncertainPose StepSums::along(std::span<const Pose2> T_map_stop, const StepCovar
   for (std::uint32_t block = first; block < last; ++block) {
     sum += sum_to(T_map_stop, step, (block + 1) * kBlock - 1);
   }
-  sum += sum_to(T_map_stop, step, to) - sum_to(T_map_stop, step, from);
+  sum += sum_to(T_map_stop, step, to);
+  sum -= sum_to(T_map_stop, step, from);
   const geometry::SinCos r = geometry::sincos(T_map_stop[from].theta_rad);
   Eigen::Matrix3d turn;
   turn << r.cos, r.sin, 0.0, -r.sin, r.cos, 0.0, 0.0, 0.0, 1.0;

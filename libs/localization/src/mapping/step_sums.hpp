@@ -34,8 +34,8 @@ class StepSums {
   struct Block {
     std::vector<Eigen::Matrix3d> sums;
   };
-  [[nodiscard]] const Eigen::Matrix3d& sum_to(std::span<const geometry::Pose2> T_map_stop,
-                                              const StepCovariance& step, std::uint32_t stop);
+  [[nodiscard]] Eigen::Matrix3d sum_to(std::span<const geometry::Pose2> T_map_stop,
+                                       const StepCovariance& step, std::uint32_t stop);
 
   std::vector<Block> blocks_;
 };

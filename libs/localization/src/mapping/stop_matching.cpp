@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -22,6 +23,10 @@ namespace {
 // Further apart, two stops hardly see anything in common. Checked first, because most stops of a
 // long log are far away.
 constexpr double kFarthestCompared_m = 20.0;
+// The nearest ones show a place well enough, however often it was passed.
+constexpr std::size_t kMostConsidered = 100;
+// No drift between two closed loops is larger: places further off are not looked for.
+constexpr double kFarthestPlace_m = 100.0;
 constexpr double kWidening =
     3.0;  // of the deviations, when nothing was found where odometry predicts
 
@@ -49,14 +54,6 @@ double weakest_sigma_m(const Eigen::Matrix3d& c) {
   const double mean = 0.5 * (c(0, 0) + c(1, 1));
   const double half_difference = 0.5 * (c(0, 0) - c(1, 1));
   return std::sqrt(mean + std::sqrt(half_difference * half_difference + c(0, 1) * c(0, 1)));
-}
-
-// One that was not reached may be anywhere.
-std::vector<UncertainPose> of_all(const PoseGraph& graph, const RelativePoses& relative) {
-  std::vector<UncertainPose> all(graph.poses().size(),
-                                 {Pose2{}, Eigen::Matrix3d::Identity() * PoseGraph::kUnreached_m2});
-  for (const RelativePoses::Stop& stop : relative.stops()) all[stop.id] = stop.T_origin_stop;
-  return all;
 }
 
 bool any_accepted(std::span<const StopMatch> matches) {
@@ -152,20 +149,21 @@ std::vector<MatchCandidate> StopMatching::recent_candidates(const PoseGraph& gra
 }
 
 std::vector<MatchCandidate> StopMatching::revisited_candidates(
-    const PoseGraph& graph, std::uint32_t stop, const RelativePoses& relative) const {
-  const std::uint32_t first = first_recent(stop);
+    const PoseGraph& graph, std::uint32_t stop, std::span<const std::uint32_t> candidates,
+    const RelativePoses& relative) const {
   CandidateChoice choice(config_.smallest_expected_overlap);
-  for (const RelativePoses::Stop& earlier : relative.stops()) {
-    if (earlier.id >= first) break;
-    consider(choice, graph, earlier.id, stop, earlier.T_origin_stop, true);
+  for (const std::uint32_t earlier : candidates) {
+    const UncertainPose* T_stop_earlier = relative.find(earlier);
+    if (T_stop_earlier != nullptr) consider(choice, graph, earlier, stop, *T_stop_earlier, true);
   }
   return choice.best_apart(config_.revisit_matches);
 }
 
 std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
-  const RelativePoses relative =
-      graph.relative_to(stop, {first_recent(stop), PoseGraph::kUnlimited});
+  std::vector<std::uint32_t> recent(stop - first_recent(stop));
+  std::iota(recent.begin(), recent.end(), first_recent(stop));
+  const RelativePoses relative = graph.relative_to(stop, recent);
   std::map<std::uint32_t, std::vector<MatchSolution>> solutions;
   const auto matches_within = [&](double widening) {
     std::vector<StopMatch> found =
@@ -236,15 +234,19 @@ bool StopMatching::wants_places(std::uint32_t stop) const {
 
 std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
                                                      std::span<const std::uint32_t> stops) {
-  const PoseGraph::Reach near{0, largest_searchable_cost(config_)};
   std::vector<Comparison> comparisons;
   recognized_.clear();
   if (stops.size() == 1 && recognized_last_) recognized_.insert(*recognized_last_);
   for (const std::uint32_t stop : stops) {
     const bool ask = wants_places(stop);
-    RelativePoses relative = graph.predict_from(stop, ask ? PoseGraph::Reach{} : near);
+    const Eigen::Vector2d place_m = graph.poses()[stop].position_m();
+    const std::vector<std::uint32_t> near =
+        graph.stops_near(place_m, kFarthestCompared_m, kMostConsidered, first_recent(stop));
+    RelativePoses relative =
+        ask ? graph.predict_from(stop, graph.stops_near(place_m, kFarthestPlace_m, stop, stop))
+            : graph.predict_from(stop, near, largest_searchable_cost(config_));
     relative.widen(map_noise());
-    for (const MatchCandidate& candidate : revisited_candidates(graph, stop, relative)) {
+    for (const MatchCandidate& candidate : revisited_candidates(graph, stop, near, relative)) {
       const UncertainPose& T_stop_earlier = relative.at(candidate.id);
       comparisons.push_back({requests_.make(stop, candidate.id, T_stop_earlier), T_stop_earlier,
                              ProposalSource::kPrediction});
@@ -252,12 +254,12 @@ std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
     if (!ask) continue;
     recognized_.insert(stop);
     recognized_last_ = stop;
-    for (Comparison& comparison : comparisons_with_places(graph, stop, of_all(graph, relative))) {
+    for (Comparison& comparison :
+         comparisons_with_places(graph, stop, relative.by_id(graph.poses().size()))) {
       comparisons.push_back(std::move(comparison));
     }
   }
   std::vector<MatchTask> tasks;
-  tasks.reserve(comparisons.size());
   for (const Comparison& comparison : comparisons) tasks.push_back(comparison.task);
   std::vector<StopMatch> matches = run(tasks, EdgeKind::kRevisit);
   bool any_predicted = false;
@@ -353,7 +355,6 @@ StopMatch StopMatching::window_match(std::uint32_t stop, const PlaceProposal& pl
 std::vector<StopMatch> StopMatching::run(std::span<const MatchTask> tasks, EdgeKind kind) {
   const std::vector<MatchResult> results = requests_.run(tasks);
   std::vector<StopMatch> matches;
-  matches.reserve(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     matches.push_back(judged(tasks[i], results[i], kind));
     comparisons_.record(tasks[i].query_map_id, tasks[i].reference_map_id,

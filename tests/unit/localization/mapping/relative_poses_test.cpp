@@ -1,6 +1,7 @@
 // PoseGraph::relative_to: what one stop knows of all others.
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -105,8 +106,9 @@ TEST(RelativePoses, PredictionsUseCalibratedCovariances) {
   graph.add_edge({0, 1, EdgeKind::kOdometry, kFirstStep, variances_of_edge(0.09, 0.09, 0.01),
                   variances_of_edge(0.01, 0.02, 0.003)});
   EXPECT_TRUE(graph.relative_to(0)[1].covariance.isApprox(variances_of_edge(0.09, 0.09, 0.01)));
-  EXPECT_TRUE(
-      graph.predict_from(0, {}).at(1).covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003)));
+  EXPECT_TRUE(graph.predict_from(0, std::vector<std::uint32_t>{1})
+                  .at(1)
+                  .covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003)));
 }
 
 TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
@@ -149,8 +151,9 @@ TEST(RelativePoses, ABoundedSearchFindsWhatTheUnboundedDoes) {
   const PoseGraph graph = circle();
   for (const std::uint32_t origin : {0U, 47U, 99U}) {
     const std::vector<UncertainPose> all = graph.relative_to(origin);
-    const double limit = 0.01;
-    const RelativePoses near = graph.relative_to(origin, {0, limit});
+    std::vector<std::uint32_t> ids(100);
+    std::iota(ids.begin(), ids.end(), 0U);
+    const RelativePoses near = graph.relative_to(origin, ids, 0.01);
     EXPECT_GT(near.stops().size(), 3U);
     EXPECT_LT(near.stops().size(), all.size());
     std::uint32_t before = 0;
@@ -161,11 +164,34 @@ TEST(RelativePoses, ABoundedSearchFindsWhatTheUnboundedDoes) {
                   stop.id == origin);
       EXPECT_EQ(stop.T_origin_stop.T_a_b, all[stop.id].T_a_b);
     }
-    // Those after a stop alone: as far as the last of them.
-    const RelativePoses late = graph.relative_to(99, {95, PoseGraph::kUnlimited});
-    for (std::uint32_t id = 95; id < 100; ++id) EXPECT_NE(late.find(id), nullptr);
-    EXPECT_LT(late.stops().size(), 50U);
-    EXPECT_THROW(static_cast<void>(late.at(50)), std::out_of_range);
+    const std::vector<std::uint32_t> wanted{3, 50, 95};
+    const RelativePoses some = graph.relative_to(origin, wanted);
+    ASSERT_EQ(some.stops().size(), 3U);
+    for (const std::uint32_t id : wanted) {
+      EXPECT_TRUE(some.at(id).covariance.isApprox(all[id].covariance, 1e-12));
+      EXPECT_EQ(some.at(id).T_a_b, all[id].T_a_b);
+    }
+    EXPECT_THROW(static_cast<void>(some.at(51)), std::out_of_range);
+  }
+}
+
+TEST(RelativePoses, StopsNearAPlaceAreThoseOfASearchOverAll) {
+  const PoseGraph graph = circle();
+  const Eigen::Vector2d place_m(3.0, 4.0);
+  std::vector<std::pair<double, std::uint32_t>> by_distance;
+  for (std::uint32_t i = 0; i < 90; ++i) {
+    by_distance.emplace_back((graph.poses()[i].position_m() - place_m).norm(), i);
+  }
+  std::sort(by_distance.begin(), by_distance.end());
+  for (const std::size_t most : {std::size_t{5}, std::size_t{200}}) {
+    const double radius_m = by_distance[20].first + 1e-9;
+    const std::vector<std::uint32_t> near = graph.stops_near(place_m, radius_m, most, 90);
+    std::vector<std::uint32_t> expected;
+    for (std::size_t i = 0; i < std::min<std::size_t>(most, 21); ++i) {
+      expected.push_back(by_distance[i].second);
+    }
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(near, expected);
   }
 }
 

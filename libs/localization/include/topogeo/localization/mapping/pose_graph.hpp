@@ -99,18 +99,20 @@ class PoseGraph {
   /// Removes all edges that are of the same kind between the same stops as one of these.
   void remove_edges(std::span<const PoseGraphEdge> like);
 
-  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-  /// How far a search along the graph goes.
-  struct Reach {
-    std::uint32_t first_stop = 0;      ///< only this stop and those after it are asked for
-    double largest_cost = kUnlimited;  ///< see path_cost()
-  };
+  /// Of the stops before `end` the nearest to a place, within a radius, at most so many; ascending.
+  [[nodiscard]] std::vector<std::uint32_t> stops_near(const Eigen::Vector2d& place_m,
+                                                      double radius_m, std::size_t most,
+                                                      std::uint32_t end) const;
 
-  /// Relative pose of the stops seen from `origin` with its covariance, each along the path on
-  /// which the variance grows least. All edges between two stops count together: along a
-  /// bare corridor a match knows only the position across, odometry the one along. Stops that
-  /// `reach` leaves out may be missing; the work is that of the stops that are reached.
-  [[nodiscard]] RelativePoses relative_to(std::uint32_t origin, const Reach& reach) const;
+  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+  /// Relative poses of the wanted stops (ascending) seen from `origin` with their covariances, each
+  /// along the path on which the variance grows least. All edges between two stops count together:
+  /// along a bare corridor a match knows only the position across, odometry the one along. A stop
+  /// is missing where it is not connected or its path_cost() is larger than `largest_cost`. The
+  /// work is that of the stops that are no further away, by cost, than those wanted.
+  [[nodiscard]] RelativePoses relative_to(std::uint32_t origin,
+                                          std::span<const std::uint32_t> wanted,
+                                          double largest_cost = kUnlimited) const;
   /// The same of all stops, by their ids. One that is not connected has a covariance of
   /// kUnreached_m2.
   [[nodiscard]] std::vector<UncertainPose> relative_to(std::uint32_t origin) const;
@@ -119,7 +121,9 @@ class PoseGraph {
   /// The same by the calibrated covariances of the edges: where a stop is to be expected. Matches
   /// of one place share errors that do not grow along a path, so this is too sure for weighing
   /// measurements against each other.
-  [[nodiscard]] RelativePoses predict_from(std::uint32_t origin, const Reach& reach) const;
+  [[nodiscard]] RelativePoses predict_from(std::uint32_t origin,
+                                           std::span<const std::uint32_t> wanted,
+                                           double largest_cost = kUnlimited) const;
 
   /// Visits stops in the order of the path_cost() from the nearest of the origins, which are
   /// different stops, until `visit` (stop, cost) returns false.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -32,6 +33,9 @@ class RelativePoses {
   }
   /// Throws std::out_of_range for a stop that was not reached.
   [[nodiscard]] const UncertainPose& at(std::uint32_t id) const;
+
+  /// Of so many stops, by their ids; one that was not reached is a thousand kilometres away.
+  [[nodiscard]] std::vector<UncertainPose> by_id(std::size_t count) const;
 
   /// Adds to every covariance.
   void widen(const Eigen::Matrix3d& covariance) {

@@ -110,7 +110,8 @@ class StopMatching {
   [[nodiscard]] std::vector<MatchCandidate> recent_candidates(const PoseGraph& graph,
                                                               const RelativePoses& relative) const;
   [[nodiscard]] std::vector<MatchCandidate> revisited_candidates(
-      const PoseGraph& graph, std::uint32_t stop, const RelativePoses& relative) const;
+      const PoseGraph& graph, std::uint32_t stop, std::span<const std::uint32_t> candidates,
+      const RelativePoses& relative) const;
   void consider(CandidateChoice& choice, const PoseGraph& graph, std::uint32_t earlier,
                 std::uint32_t stop, const UncertainPose& T_stop_earlier, bool common) const;
   std::vector<MatchTask> recent_tasks(const PoseGraph& graph, const RelativePoses& relative,
