@@ -301,7 +301,7 @@ std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
                                                     misfits_ < kMisfits ? kWellKnown_m : 0.0)) {
     if (place.value < kLeastPlaceValue || places == kPlacesCompared) break;
     bool any = false;
-    if (!place.aligned.covariance.isZero(0.0)) windows_.push_back(window_match(stop, place));
+    if (!place.aligned.covariance.isZero(0.0)) windows_.push_back(window_match(graph, stop, place));
     for (const std::uint32_t query : later) {
       CandidateChoice choice(config_.smallest_expected_overlap);
       const Pose2 T_query_anchor =
@@ -335,20 +335,26 @@ std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
   return found;
 }
 
-StopMatch StopMatching::window_match(std::uint32_t stop, const PlaceProposal& place) const {
+StopMatch StopMatching::window_match(const PoseGraph& graph, std::uint32_t stop,
+                                     const PlaceProposal& place) const {
+  // All that was seen lies there, and the stop with it as well as it is known relative to the first
+  // stop that was searched with.
+  const UncertainPose T_first_stop = graph.along_path(place.first_of_query, stop);
+  const Eigen::Matrix3d within =
+      compose({place.aligned.T_a_b * geometry::inverse(T_first_stop.T_a_b)}, T_first_stop)
+          .covariance;
+  const Eigen::Matrix3d covariance = place.aligned.covariance + within;
   StopMatch match;
-  const UncertainPose calibrated{place.aligned.T_a_b,
-                                 calibration_.of_match(place.aligned.covariance)};
-  match.edge = {
-      place.anchor,         stop, EdgeKind::kRevisit, place.aligned.T_a_b, place.aligned.covariance,
-      calibrated.covariance};
-  match.T_later_earlier = inverse(place.aligned);
+  match.edge = {place.anchor,       stop,
+                EdgeKind::kRevisit, place.aligned.T_a_b,
+                covariance,         calibration_.of_match(place.aligned.covariance) + within};
+  match.T_later_earlier = inverse({place.aligned.T_a_b, covariance});
   match.predicted = place.predicted;
   match.source = ProposalSource::kWindow;
   match.reason = Reason::kDoubtful;
   match.fitness = place.value;
   match.overlap = place.seen;
-  match.weakest_sigma_m = weakest_sigma_m(place.aligned.covariance);
+  match.weakest_sigma_m = weakest_sigma_m(covariance);
   return match;
 }
 

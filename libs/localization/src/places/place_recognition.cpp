@@ -72,6 +72,12 @@ void add_moved(std::span<const SurfacePoint> points, const Pose2& T,
   for (const SurfacePoint& p : points) out.push_back(moved(p, T, r));
 }
 
+bool well_known(const Eigen::Matrix3d& covariance) {
+  constexpr double kKnown2_m2 = 0.3 * 0.3;
+  constexpr double kKnown2_rad2 = 0.1 * 0.1;
+  return covariance(0, 0) + covariance(1, 1) <= kKnown2_m2 && covariance(2, 2) <= kKnown2_rad2;
+}
+
 std::vector<Eigen::Vector2d> positions(std::span<const SurfacePoint> points) {
   std::vector<Eigen::Vector2d> out;
   for (const SurfacePoint& p : points) out.push_back(p.position_m);
@@ -126,15 +132,18 @@ std::vector<SurfacePoint> PlaceRecognition::points_of(const Submap& submap) cons
   return thinned(std::move(points), kSubmapSpacing_m, kSubmapPoints);
 }
 
-// What was seen over the last metres up to a stop, in its frame.
-std::vector<SurfacePoint> PlaceRecognition::query(const PoseGraph& graph,
-                                                  std::uint32_t stop) const {
-  std::vector<SurfacePoint> points;
+// What was seen over the last metres up to a stop, in its frame. Behind a step that is hardly known
+// nothing is taken: it would be found where it was, and say nothing of the stop.
+PlaceRecognition::Query PlaceRecognition::query(const PoseGraph& graph, std::uint32_t stop) const {
+  Query query;
   for (std::uint32_t i = stop + 1; i-- > 0;) {
     if (path_m_[stop] - path_m_[i] > kQuery_m) break;
-    add_moved(views_[i]->near, geometry::between(graph.poses()[stop], graph.poses()[i]), points);
+    const UncertainPose T_stop_i = graph.along_path(stop, i);
+    if (!well_known(T_stop_i.covariance)) break;
+    add_moved(views_[i]->near, T_stop_i.T_a_b, query.points);
+    query.first_stop = i;
   }
-  return points;
+  return query;
 }
 
 PlaceRecognition::CachedMap& PlaceRecognition::map_of(std::size_t submap) {
@@ -237,7 +246,8 @@ std::vector<PlaceProposal> PlaceRecognition::propose(const PoseGraph& graph, std
                    [](const Target& a, const Target& b) { return a.distance < b.distance; });
   if (targets.size() > kMostSubmaps) targets.resize(kMostSubmaps);
   MatchFeatures whole;
-  whole.surface = thinned(query(graph, stop), kAlignedSpacing_m, kAlignedPoints);
+  const Query seen = query(graph, stop);
+  whole.surface = thinned(seen.points, kAlignedSpacing_m, kAlignedPoints);
   const std::vector<Eigen::Vector2d> points_m =
       positions(thinned(whole.surface, kQuerySpacing_m, kQueryPoints));
   for (const Target& target : targets) {
@@ -252,6 +262,7 @@ std::vector<PlaceProposal> PlaceRecognition::propose(const PoseGraph& graph, std
       proposal.last_stop = submap.last;
       proposal.T_anchor_robot = match.T_map_points;
       proposal.predicted = target.predicted;
+      proposal.first_of_query = seen.first_stop;
       compare(submap, cached, whole, proposal);
       if (proposal.seen < kLeastSeen) continue;
       if (!best || proposal.value * proposal.seen > best->value * best->seen) best = proposal;

@@ -37,13 +37,19 @@ topomap::LocalMap scan_at(const Pose2& T_world_robot) {
 
 class PlaceRecognitionTest : public testing::Test {
  protected:
-  /// The robot is at `truth`, the graph estimates it at `estimate`.
-  void stop(const Pose2& truth, const Pose2& estimate, double path_m) {
+  /// The robot is at `truth`, the graph estimates it at `estimate`; the step there is known that
+  /// well.
+  void stop(const Pose2& truth, const Pose2& estimate, double path_m, double step_sigma = 0.01) {
     const topomap::LocalMap map = scan_at(truth);
     places_.add(std::make_shared<const StopView>(
                     view_of(extract_scan_features(map.points, map.T_robot_laser))),
                 path_m);
     graph_.add_pose(estimate);
+    if (stops_ > 0) {
+      graph_.add_edge({stops_ - 1, stops_, EdgeKind::kOdometry,
+                       geometry::between(graph_.poses()[stops_ - 1], estimate),
+                       Eigen::Matrix3d::Identity() * step_sigma * step_sigma});
+    }
     ++stops_;
   }
   std::vector<PlaceProposal> propose(double sigma_m) {
@@ -80,6 +86,22 @@ TEST_F(PlaceRecognitionTest, ProposesTheStretchThatTheRobotIsBackOn) {
   EXPECT_NEAR(T_world_robot.theta_rad, 0.0, 0.05);
   EXPECT_GT(best.value, 0.88);
   EXPECT_FALSE(best.aligned.covariance.isZero(0.0));
+}
+
+// What was seen before a step that is hardly known would be found where it was, whatever the robot
+// did then.
+TEST_F(PlaceRecognitionTest, SearchesWithNothingFromBeforeAStepThatIsHardlyKnown) {
+  for (int i = 0; i <= 36; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
+  for (int i = 0; i < 9; ++i) {
+    const double wrong_m = i < 7 ? 0.0 : 0.8;
+    stop({4.0 + 0.7 * i, 0.1, 0.0}, {4.0 + wrong_m + 0.7 * i, 0.1, 0.0}, 25.9 + 0.7 * i,
+         i == 7 ? 0.5 : 0.01);
+  }
+  const std::vector<PlaceProposal> found = propose(1.5);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().first_of_query, stops_ - 2);
+  const Pose2 T_world_robot = graph_.poses()[found.front().anchor] * found.front().T_anchor_robot;
+  EXPECT_NEAR(T_world_robot.x_m, 9.6, 0.15);
 }
 
 TEST_F(PlaceRecognitionTest, ProposesNothingWhereNoEarlierPlaceCanBe) {

@@ -41,8 +41,9 @@ struct PlaceProposal {
   std::uint32_t anchor = 0;      ///< stop in whose frame the poses are
   std::uint32_t first_stop = 0;  ///< of the submap
   std::uint32_t last_stop = 0;
-  geometry::Pose2 T_anchor_robot;  ///< as found
-  UncertainPose predicted;         ///< the same as predicted
+  geometry::Pose2 T_anchor_robot;    ///< as found
+  UncertainPose predicted;           ///< the same as predicted
+  std::uint32_t first_of_query = 0;  ///< stop from which on all was searched with
   /// T_anchor_robot after both were aligned as a whole, with the covariance of match_covariance();
   /// zero where too little is in common.
   UncertainPose aligned;
@@ -73,6 +74,10 @@ class PlaceRecognition {
     std::uint32_t anchor = 0;
     std::vector<geometry::Pose2> T_anchor_stop;  // of first to last
   };
+  struct Query {
+    std::vector<SurfacePoint> points;  // in the frame of the last stop
+    std::uint32_t first_stop = 0;
+  };
   struct CachedMap {
     std::size_t submap;
     CoarseMap map;
@@ -81,7 +86,7 @@ class PlaceRecognition {
 
   void cut(const PoseGraph& graph, std::uint32_t first_recent);
   [[nodiscard]] std::vector<SurfacePoint> points_of(const Submap& submap) const;
-  [[nodiscard]] std::vector<SurfacePoint> query(const PoseGraph& graph, std::uint32_t stop) const;
+  [[nodiscard]] Query query(const PoseGraph& graph, std::uint32_t stop) const;
   CachedMap& map_of(std::size_t submap);
   void compare(const Submap& submap, CachedMap& cached, const MatchFeatures& query,
                PlaceProposal& proposal) const;
