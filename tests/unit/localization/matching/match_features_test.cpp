@@ -72,6 +72,22 @@ TEST(MatchFeaturesTest, NormalsOfASlantingWall) {
   }
 }
 
+// One side of a corridor by beams one degree apart: gaps grow to a fifth of the range.
+TEST(MatchFeaturesTest, AWallThatACoarseLaserSeesAtAFlatAngleIsALine) {
+  std::vector<topomap::ScanPoint> points;
+  for (int degree = 90; degree >= 7; --degree) {
+    points.push_back({static_cast<float>(1.0 / std::tan(degree * kDegree)), 1.0F});
+  }
+  const MatchFeatures features = extract_scan_features(points, {});
+  double farthest_m = 0.0;
+  for (const SurfacePoint& point : features.surface) {
+    if (!point.on_line) continue;
+    EXPECT_NEAR(point.normal.y(), -1.0, 1e-6);
+    farthest_m = std::max(farthest_m, point.position_m.x());
+  }
+  EXPECT_GT(farthest_m, 7.0);
+}
+
 TEST(MatchFeaturesTest, LonelyPointsAreOnNoLine) {
   const std::vector<topomap::ScanPoint> points{{2, -2}, {2, 0}, {2, 0.05F}, {2, 2}};
   const MatchFeatures features = extract_scan_features(points, {});
