@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 
@@ -21,9 +22,12 @@ constexpr double kAgree = 7.8;     // 95 % of right pairs (chi-square, three deg
 // how much heavier than its rivals that has to be.
 constexpr double kPassed = 1.5;
 constexpr double kDoubtful = 1.0;
-// A match where the coarse search found the place says less than one where it was predicted.
-constexpr double kOfPlace = 0.75;
 constexpr double kLeastWeight = 4.0;
+// Of path between two stops that count once each: nearer ones see much the same, of sparse ones
+// each sees more that is new.
+constexpr double kBetweenStops_m = 0.75;
+constexpr double kLeastShare = 0.6;
+constexpr double kMostShare = 1.5;
 // More is wanted of a set that the prediction speaks against: per logarithm of the squared
 // Mahalanobis distance, because a prediction is wrong by far more often than a Gaussian says.
 constexpr double kPerSurprise = 0.75;
@@ -48,18 +52,20 @@ double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGr
   if ((T_around.position_m() - b.T_from_to.position_m()).squaredNorm() > kFarOff_m * kFarOff_m) {
     return std::numeric_limits<double>::infinity();
   }
+  return disagreement(graph, a, b, graph.along_path(b.from, a.from));
+}
+
+double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b,
+                    const UncertainPose& T_from_b_from_a) {
   // b by way of a: b.from -> a.from -> a.to -> b.to.
-  const UncertainPose by_a =
-      compose(compose(graph.along_path(b.from, a.from), {a.T_from_to, a.for_predictions()}),
-              graph.along_path(a.to, b.to));
+  const UncertainPose by_a = compose(compose(T_from_b_from_a, {a.T_from_to, a.for_predictions()}),
+                                     graph.along_path(a.to, b.to));
   return geometry::squared_mahalanobis(geometry::difference(by_a.T_a_b, b.T_from_to),
                                        by_a.covariance + b.for_predictions() + map_noise());
 }
 
 void LoopAgreement::add(const StopMatch& match, std::span<const double> path_m) {
-  const double weight = match.accepted() ? kPassed : kDoubtful;
-  keep({match, match.source == ProposalSource::kPlace ? kOfPlace * weight : weight, true, false},
-       path_m);
+  keep({match, match.accepted() ? kPassed : kDoubtful, true, false}, path_m);
 }
 
 void LoopAgreement::add_accepted(const StopMatch& match, std::span<const double> path_m) {
@@ -107,16 +113,29 @@ LoopAgreement::Set LoopAgreement::set_around(std::size_t seed, std::span<const s
   return set;
 }
 
-// The best of each later stop: what one stop sees is one piece of evidence.
-double LoopAgreement::weight_of(const Set& set) const {
+// The best of each later stop, by how far it is from the one before: what one stop sees is one
+// piece of evidence.
+double LoopAgreement::weight_of(const Set& set, std::span<const double> path_m) const {
   std::map<std::uint32_t, double> of_stop;
   for (const std::size_t i : set) {
     double& weight = of_stop[hypotheses_[i].match.edge.to];
     weight = std::max(weight, hypotheses_[i].weight);
   }
   double sum = 0.0;
-  for (const auto& [stop, weight] : of_stop) sum += weight;
+  std::optional<double> before_m;
+  for (const auto& [stop, weight] : of_stop) {
+    const double apart_m = before_m ? path_m[stop] - *before_m : kBetweenStops_m;
+    before_m = path_m[stop];
+    sum += weight * std::clamp(apart_m / kBetweenStops_m, kLeastShare, kMostShare);
+  }
   return sum;
+}
+
+// That of the match which the prediction speaks against least: all of a set say the same.
+double LoopAgreement::surprise_of(const Set& set) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t i : set) least = std::min(least, hypotheses_[i].match.surprise());
+  return least;
 }
 
 bool LoopAgreement::spread(const Set& set, std::span<const double> path_m) const {
@@ -127,6 +146,43 @@ bool LoopAgreement::spread(const Set& set, std::span<const double> path_m) const
     high_m = std::max(high_m, path_m[hypotheses_[i].match.edge.to]);
   }
   return high_m - low_m >= kLeastSpread_m;
+}
+
+// Those of the same later stretch that put the robot elsewhere. Loops with another earlier visit of
+// the same place do not: where that lies is what the graph predicts.
+LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
+                                            const PoseGraph& graph,
+                                            std::span<const double> path_m) const {
+  const PoseGraphEdge& seed_edge = hypotheses_[seed].match.edge;
+  std::optional<std::vector<UncertainPose>> T_seed_stop;  // seen from its earlier end
+  const auto elsewhere = [&](const PoseGraphEdge& edge) {
+    if (std::fabs(path_m[edge.from] - path_m[seed_edge.from]) <= kFarthest_m) return true;
+    if (!T_seed_stop) T_seed_stop = graph.predict_from(seed_edge.from, {});
+    const auto distance_m = [&](std::size_t i) {
+      return std::fabs(path_m[hypotheses_[i].match.edge.to] - path_m[edge.to]);
+    };
+    const PoseGraphEdge& other =
+        hypotheses_[*std::min_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
+          return distance_m(a) < distance_m(b);
+        })].match.edge;
+    const UncertainPose T_from_other =
+        compose(inverse((*T_seed_stop)[edge.from]), graph.along_path(seed_edge.from, other.from));
+    return disagreement(graph, other, edge, T_from_other) > kAgree;
+  };
+  Set rivals;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    const PoseGraphEdge& edge = hypotheses_[i].match.edge;
+    if (std::binary_search(set.begin(), set.end(), i) ||
+        std::fabs(path_m[edge.to] - path_m[seed_edge.to]) > kFarthest_m) {
+      continue;
+    }
+    const bool agrees = std::any_of(set.begin(), set.end(), [&](std::size_t other) {
+      return disagreement(graph, edge, hypotheses_[other].match.edge, path_m, kFarthest_m) <=
+             kAgree;
+    });
+    if (!agrees && elsewhere(edge)) rivals.push_back(i);
+  }
+  return rivals;
 }
 
 std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
@@ -140,30 +196,16 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       std::vector<std::size_t> all(hypotheses_.size());
       for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
       const Set set = set_around(seed, all, graph, path_m);
-      const double weight = weight_of(set);
-      const double wanted =
-          kLeastWeight + kPerSurprise * std::log1p(hypotheses_[seed].match.surprise());
+      const double weight = weight_of(set, path_m);
+      const double wanted = kLeastWeight + kPerSurprise * std::log1p(surprise_of(set));
       if (weight < wanted || !spread(set, path_m)) continue;
-      // Those of the same stretch that say something else.
-      const double at_m = path_m[hypotheses_[seed].match.edge.to];
-      std::vector<std::size_t> rivals;
-      for (const std::size_t i : all) {
-        if (std::binary_search(set.begin(), set.end(), i) ||
-            std::fabs(path_m[hypotheses_[i].match.edge.to] - at_m) > kFarthest_m) {
-          continue;
-        }
-        const bool agrees = std::any_of(set.begin(), set.end(), [&](std::size_t other) {
-          return disagreement(graph, hypotheses_[i].match.edge, hypotheses_[other].match.edge,
-                              path_m, kFarthest_m) <= kAgree;
-        });
-        if (!agrees) rivals.push_back(i);
-      }
+      std::vector<std::size_t> rivals = rivals_of(seed, set, graph, path_m);
       double rival = 0.0;
       std::stable_sort(rivals.begin(), rivals.end(), [&](std::size_t a, std::size_t b) {
         return hypotheses_[a].weight > hypotheses_[b].weight;
       });
       for (std::size_t k = 0; k < std::min(kRivalSeeds, rivals.size()); ++k) {
-        rival = std::max(rival, weight_of(set_around(rivals[k], rivals, graph, path_m)));
+        rival = std::max(rival, weight_of(set_around(rivals[k], rivals, graph, path_m), path_m));
       }
       if (weight < kOverRival * rival) continue;
       for (const std::size_t i : set) {

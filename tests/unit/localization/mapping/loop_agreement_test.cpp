@@ -88,6 +88,36 @@ TEST_F(LoopAgreementTest, TwoPlacesThatLookAlikeAreLeftOpen) {
   EXPECT_TRUE(alike.accepted(graph_, path_m_).empty());
 }
 
+// Earlier ends 35 m of path apart, which the graph knows to decimetres.
+TEST_F(LoopAgreementTest, LoopsWithAnotherVisitOfThePlaceAreNoRivals) {
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    add(i, 70 + i, 1.0);
+    add(35 + i, 70 + i, 1.0);
+  }
+  EXPECT_EQ(accepted().size(), 12U);
+}
+
+TEST_F(LoopAgreementTest, LoopsWithALookAlikeFarAwayAreRivals) {
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    add(i, 70 + i, 1.0);
+    add(35 + i, 70 + i, -1.5);
+  }
+  EXPECT_TRUE(accepted().empty());
+}
+
+// Four stops of a sparse log see as much as six of a dense one.
+TEST_F(LoopAgreementTest, StopsFarApartCountMore) {
+  LoopAgreement dense;
+  std::vector<double> half_m = path_m_;
+  for (double& at_m : half_m) at_m *= 0.5;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    add(i, 30 + i, 1.0);
+    dense.add(match(i, 30 + i, 1.0), half_m);
+  }
+  EXPECT_EQ(accepted().size(), 4U);
+  EXPECT_TRUE(dense.accepted(graph_, half_m).empty());
+}
+
 TEST_F(LoopAgreementTest, AFewThatContradictAreOutvoted) {
   add(2, 31, -1.5);
   for (std::uint32_t i = 0; i < 7; ++i) add(i, 30 + i, 1.0);

@@ -45,7 +45,10 @@ class LoopAgreement {
 
   [[nodiscard]] Set set_around(std::size_t seed, std::span<const std::size_t> among,
                                const PoseGraph& graph, std::span<const double> path_m) const;
-  [[nodiscard]] double weight_of(const Set& set) const;
+  [[nodiscard]] Set rivals_of(std::size_t seed, const Set& set, const PoseGraph& graph,
+                              std::span<const double> path_m) const;
+  [[nodiscard]] double weight_of(const Set& set, std::span<const double> path_m) const;
+  [[nodiscard]] double surprise_of(const Set& set) const;
   [[nodiscard]] bool spread(const Set& set, std::span<const double> path_m) const;
 
   std::vector<Hypothesis> hypotheses_;
@@ -55,5 +58,8 @@ class LoopAgreement {
 /// earlier ends are each at most `farthest_m` of path apart, otherwise infinite.
 double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b,
                     std::span<const double> path_m, double farthest_m);
+/// The same for any two, whose earlier ends lie like that: T_b.from_a.from.
+double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b,
+                    const UncertainPose& T_from_b_from_a);
 
 }  // namespace topogeo::localization
