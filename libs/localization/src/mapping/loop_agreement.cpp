@@ -154,10 +154,10 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
                                             const PoseGraph& graph,
                                             std::span<const double> path_m) const {
   const PoseGraphEdge& seed_edge = hypotheses_[seed].match.edge;
-  std::optional<std::vector<UncertainPose>> T_seed_stop;  // seen from its earlier end
+  std::optional<RelativePoses> T_seed_stop;  // seen from its earlier end
   const auto elsewhere = [&](const PoseGraphEdge& edge) {
     if (std::fabs(path_m[edge.from] - path_m[seed_edge.from]) <= kFarthest_m) return true;
-    if (!T_seed_stop) T_seed_stop = graph.predict_from(seed_edge.from, {});
+    if (!T_seed_stop) T_seed_stop.emplace(graph.predict_from(seed_edge.from, {}));
     const auto distance_m = [&](std::size_t i) {
       return std::fabs(path_m[hypotheses_[i].match.edge.to] - path_m[edge.to]);
     };
@@ -166,7 +166,7 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
           return distance_m(a) < distance_m(b);
         })].match.edge;
     const UncertainPose T_from_other =
-        compose(inverse((*T_seed_stop)[edge.from]), graph.along_path(seed_edge.from, other.from));
+        compose(inverse(T_seed_stop->at(edge.from)), graph.along_path(seed_edge.from, other.from));
     return disagreement(graph, other, edge, T_from_other) > kAgree;
   };
   Set rivals;
