@@ -16,10 +16,10 @@ namespace {
 // Squared Mahalanobis distance of a loop after optimisation: a right loop comes this far once in a
 // million (chi-square, three degrees of freedom).
 constexpr double kOutvoted = 30.0;
-// Less than half a cell of a 5 cm grid, also of what is seen 5 m away: such a strain can wait for
-// the optimisation of all stops.
-constexpr double kStrain_m = 0.02;
-constexpr double kStrain_rad = 0.004;
+// A stop that should move less than this sees the same places: such a strain can wait for the
+// optimisation of all stops.
+constexpr double kStrain_m = 0.1;
+constexpr double kStrain_rad = 0.02;
 
 bool is_outvoted(const PoseGraphEdge& edge, std::span<const Pose2> poses) {
   if (edge.kind != EdgeKind::kRevisit) return false;
