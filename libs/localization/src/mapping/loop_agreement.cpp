@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 
@@ -154,35 +155,43 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
                                             const PoseGraph& graph,
                                             std::span<const double> path_m) const {
   const PoseGraphEdge& seed_edge = hypotheses_[seed].match.edge;
-  std::optional<RelativePoses> T_seed_stop;  // seen from its earlier end
-  const auto elsewhere = [&](const PoseGraphEdge& edge) {
-    if (std::fabs(path_m[edge.from] - path_m[seed_edge.from]) <= kFarthest_m) return true;
-    if (!T_seed_stop) T_seed_stop.emplace(graph.predict_from(seed_edge.from, {}));
-    const auto distance_m = [&](std::size_t i) {
-      return std::fabs(path_m[hypotheses_[i].match.edge.to] - path_m[edge.to]);
-    };
-    const PoseGraphEdge& other =
-        hypotheses_[*std::min_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
-          return distance_m(a) < distance_m(b);
-        })].match.edge;
-    const UncertainPose T_from_other =
-        compose(inverse(T_seed_stop->at(edge.from)), graph.along_path(seed_edge.from, other.from));
-    return disagreement(graph, other, edge, T_from_other) > kAgree;
+  const auto edge_of = [this](std::size_t i) -> const PoseGraphEdge& {
+    return hypotheses_[i].match.edge;
   };
-  Set rivals;
+  const auto of_one_visit = [&](std::size_t i) {
+    return std::fabs(path_m[edge_of(i).from] - path_m[seed_edge.from]) <= kFarthest_m;
+  };
+  Set others;
+  std::set<std::uint32_t> of_other_visits;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
-    const PoseGraphEdge& edge = hypotheses_[i].match.edge;
     if (std::binary_search(set.begin(), set.end(), i) ||
-        std::fabs(path_m[edge.to] - path_m[seed_edge.to]) > kFarthest_m) {
+        std::fabs(path_m[edge_of(i).to] - path_m[seed_edge.to]) > kFarthest_m) {
       continue;
     }
     const bool agrees = std::any_of(set.begin(), set.end(), [&](std::size_t other) {
-      return disagreement(graph, edge, hypotheses_[other].match.edge, path_m, kFarthest_m) <=
-             kAgree;
+      return disagreement(graph, edge_of(i), edge_of(other), path_m, kFarthest_m) <= kAgree;
     });
-    if (!agrees && elsewhere(edge)) rivals.push_back(i);
+    if (agrees) continue;
+    others.push_back(i);
+    if (!of_one_visit(i)) of_other_visits.insert(edge_of(i).from);
   }
-  return rivals;
+  const RelativePoses T_seed_stop = graph.predict_from(
+      seed_edge.from, std::vector<std::uint32_t>(of_other_visits.begin(), of_other_visits.end()));
+  const auto elsewhere = [&](std::size_t i) {
+    if (of_one_visit(i)) return true;
+    const auto later_apart_m = [&](std::size_t other) {
+      return std::fabs(path_m[edge_of(other).to] - path_m[edge_of(i).to]);
+    };
+    const PoseGraphEdge& nearest =
+        edge_of(*std::min_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
+          return later_apart_m(a) < later_apart_m(b);
+        }));
+    const UncertainPose T_from_nearest = compose(inverse(T_seed_stop.at(edge_of(i).from)),
+                                                 graph.along_path(seed_edge.from, nearest.from));
+    return disagreement(graph, nearest, edge_of(i), T_from_nearest) > kAgree;
+  };
+  std::erase_if(others, [&](std::size_t i) { return !elsewhere(i); });
+  return others;
 }
 
 std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
