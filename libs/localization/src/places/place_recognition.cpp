@@ -18,7 +18,6 @@ using geometry::Pose2;
 namespace {
 
 constexpr double kSubmap_m = 8.0;  // of path; each begins half of it after the one before
-constexpr double kQuery_m = 5.0;   // of path
 constexpr double kQueryLeast_m = 2.5;
 constexpr std::size_t kQueryPoints = 120;
 constexpr double kQuerySpacing_m = 0.20;
@@ -31,7 +30,6 @@ constexpr double kWidestWindow_m = 12.0;  // searched to each side at most, howe
 constexpr double kFootprint_m = 10.0;     // from the anchor of a submap to where a robot can see it
 // Bounds the time of a step, however large the map is: the most likely submaps are searched.
 constexpr std::size_t kMostSubmaps = 40;
-constexpr std::size_t kCached = 64;  // coarse maps of about 60 kB
 constexpr double kLeastScore = 0.30;
 constexpr std::size_t kPlacesOfSubmap = 3;  // compared; the best one is proposed
 // Of the comparison as a whole: points this far apart; one is there when the submap has one this
@@ -84,7 +82,16 @@ std::vector<Eigen::Vector2d> positions(std::span<const SurfacePoint> points) {
   return out;
 }
 
+bool better(const PlaceProposal& a, const PlaceProposal& b) {
+  return a.value * a.seen > b.value * b.seen;
+}
+
 }  // namespace
+
+PlaceQuery::PlaceQuery(std::vector<SurfacePoint> seen) {
+  whole.surface = thinned(std::move(seen), kAlignedSpacing_m, kAlignedPoints);
+  coarse_m = positions(thinned(whole.surface, kQuerySpacing_m, kQueryPoints));
+}
 
 Eigen::Matrix3d widened_for_places(const Eigen::Matrix3d& predicted) {
   return predicted * (kWider * kWider) + kSurprise;
@@ -107,20 +114,25 @@ void PlaceRecognition::add(std::shared_ptr<const StopView> view, double path_m) 
   path_m_.push_back(path_m);
 }
 
+void PlaceRecognition::add_submap(std::span<const Pose2> T_map_stop, std::uint32_t first,
+                                  std::uint32_t last) {
+  Submap submap{first, last, (first + last) / 2, {}, {}};
+  for (std::uint32_t stop = first; stop <= last; ++stop) {
+    submap.T_anchor_stop.push_back(geometry::between(T_map_stop[submap.anchor], T_map_stop[stop]));
+    submap.T_stop_anchor.push_back(geometry::inverse(submap.T_anchor_stop.back()));
+  }
+  submaps_.push_back(std::move(submap));
+}
+
 // Completes submaps whose stops are all older than the recent ones.
-void PlaceRecognition::cut(const PoseGraph& graph, std::uint32_t first_recent) {
+void PlaceRecognition::cut(std::span<const Pose2> T_map_stop, std::uint32_t first_recent) {
   while (true) {
     std::uint32_t last = next_first_;
     while (last + 1 < first_recent && path_m_[last] - path_m_[next_first_] < kSubmap_m) ++last;
     if (last >= first_recent || path_m_[last] - path_m_[next_first_] < kSubmap_m) return;
-    Submap submap{next_first_, last, (next_first_ + last) / 2, {}};
-    for (std::uint32_t stop = submap.first; stop <= submap.last; ++stop) {
-      submap.T_anchor_stop.push_back(
-          geometry::between(graph.poses()[submap.anchor], graph.poses()[stop]));
-    }
+    add_submap(T_map_stop, next_first_, last);
     const double begin_m = path_m_[next_first_];
     while (next_first_ < last && path_m_[next_first_] - begin_m < 0.5 * kSubmap_m) ++next_first_;
-    submaps_.push_back(std::move(submap));
   }
 }
 
@@ -146,31 +158,39 @@ PlaceRecognition::Query PlaceRecognition::query(const PoseGraph& graph, std::uin
   return query;
 }
 
-PlaceRecognition::CachedMap& PlaceRecognition::map_of(std::size_t submap) {
-  const auto found = std::find_if(cache_.begin(), cache_.end(),
-                                  [&](const CachedMap& cached) { return cached.submap == submap; });
-  if (found != cache_.end()) {
-    cache_.splice(cache_.begin(), cache_, found);
-  } else {
-    cache_.push_front({submap, CoarseMap(positions(points_of(submaps_[submap]))), std::nullopt});
-    if (cache_.size() > kCached) cache_.pop_back();
-  }
-  return cache_.front();
+const CoarseMap& PlaceRecognition::map_of(std::size_t submap) {
+  return maps_.get(submap, [&] { return CoarseMap(positions(points_of(submaps_[submap]))); });
 }
 
-// Aligns all that was seen over the last metres with the submap, and counts how many of the points
-// the submap has, of those that its stops could see.
-void PlaceRecognition::compare(const Submap& submap, CachedMap& cached, const MatchFeatures& query,
-                               PlaceProposal& proposal) const {
-  if (!cached.reference) {
+const Reference& PlaceRecognition::reference_of(std::size_t submap) {
+  return references_.get(submap, [&] {
     MatchFeatures features;
-    features.surface = points_of(submap);
-    cached.reference = make_reference(std::move(features));
-  }
-  const Reference& reference = *cached.reference;
+    features.surface = points_of(submaps_[submap]);
+    return make_reference(std::move(features));
+  });
+}
+
+// Aligns all that was seen over the last metres with the submap.
+void PlaceRecognition::align_with(std::size_t submap, const MatchFeatures& query,
+                                  PlaceProposal& proposal) {
+  const Reference& reference = reference_of(submap);
   const PosePrior weak{proposal.T_anchor_robot, kWeak};
-  const Alignment aligned = align(reference, query, proposal.T_anchor_robot, weak);
-  const Pose2& T = aligned.T_reference_query;
+  proposal.T_anchor_robot =
+      align(reference, query, proposal.T_anchor_robot, weak).T_reference_query;
+  count_seen(submaps_[submap], reference, query, proposal);
+  const Pose2& T = proposal.T_anchor_robot;
+  const Eigen::Matrix3d information = information_at(reference, query, T);
+  if (!information.isZero(0.0)) proposal.aligned = {T, match_covariance(information, kUsualDoubt)};
+}
+
+// Counts how many of the points the submap has, of those that its stops could see.
+void PlaceRecognition::count_seen(const Submap& submap, const Reference& reference,
+                                  const MatchFeatures& query, PlaceProposal& proposal) const {
+  std::vector<geometry::SinCos> turns;
+  for (const Pose2& T_stop_anchor : submap.T_stop_anchor) {
+    turns.push_back(geometry::sincos(T_stop_anchor.theta_rad));
+  }
+  const Pose2& T = proposal.T_anchor_robot;
   const geometry::SinCos heading = geometry::sincos(T.theta_rad);
   std::size_t there = 0;
   std::size_t contradicted = 0;
@@ -183,38 +203,32 @@ void PlaceRecognition::compare(const Submap& submap, CachedMap& cached, const Ma
       ++there;
       continue;
     }
-    for (std::uint32_t stop = submap.first; stop <= submap.last; ++stop) {
-      const Pose2 T_stop_anchor = geometry::inverse(submap.T_anchor_stop[stop - submap.first]);
-      const geometry::SinCos r = geometry::sincos(T_stop_anchor.theta_rad);
-      const SurfacePoint q = moved(p, T_stop_anchor, r);
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      const SurfacePoint q = moved(p, submap.T_stop_anchor[i], turns[i]);
       const auto view =
-          views_[stop]->profile.view_of_face(q.position_m, q.normal, kPlaceTolerance_m);
+          views_[submap.first + i]->profile.view_of_face(q.position_m, q.normal, kPlaceTolerance_m);
       if (view != RangeProfile::View::kFree) continue;
       ++contradicted;
       break;
     }
   }
   const auto seen = static_cast<double>(there + contradicted);
-  proposal.seen = seen / static_cast<double>(query.surface.size());
+  proposal.seen = seen / static_cast<double>(std::max<std::size_t>(1, query.surface.size()));
   proposal.value = seen > 0.0 ? static_cast<double>(there) / seen : 0.0;
-  const Eigen::Matrix3d information = information_at(reference, query, T);
-  if (!information.isZero(0.0)) proposal.aligned = {T, match_covariance(information, kUsualDoubt)};
-  proposal.T_anchor_robot = T;
 }
 
-std::vector<PlaceProposal> PlaceRecognition::propose(const PoseGraph& graph, std::uint32_t stop,
-                                                     std::uint32_t first_recent,
-                                                     std::span<const UncertainPose> relative,
-                                                     double least_sigma_m) {
-  cut(graph, first_recent);
-  std::vector<PlaceProposal> found;
-  if (path_m_[stop] - path_m_.front() < kQueryLeast_m) return found;
-  struct Target {
-    std::size_t submap;
-    CoarseWindow window;
-    UncertainPose predicted;
-    double distance;  // in deviations, beyond the footprint
-  };
+/// A submap that the robot may be in.
+struct PlaceRecognition::Target {
+  std::size_t submap = 0;
+  CoarseWindow window;
+  UncertainPose predicted;
+  double distance = 0.0;  // in deviations, beyond the footprint
+};
+
+// The most likely submaps first.
+std::vector<PlaceRecognition::Target> PlaceRecognition::targets(
+    std::uint32_t first_recent, std::span<const UncertainPose> relative,
+    double least_sigma_m) const {
   std::vector<Target> targets;
   for (std::size_t i = 0; i < submaps_.size(); ++i) {
     const Submap& submap = submaps_[i];
@@ -241,37 +255,53 @@ std::vector<PlaceProposal> PlaceRecognition::propose(const PoseGraph& graph, std
     window.half_width.z() = std::min(half.z(), std::numbers::pi);
     targets.push_back({i, window, T_anchor_robot, distance});
   }
-  if (targets.empty()) return found;
   std::stable_sort(targets.begin(), targets.end(),
                    [](const Target& a, const Target& b) { return a.distance < b.distance; });
   if (targets.size() > kMostSubmaps) targets.resize(kMostSubmaps);
-  MatchFeatures whole;
-  const Query seen = query(graph, stop);
-  whole.surface = thinned(seen.points, kAlignedSpacing_m, kAlignedPoints);
-  const std::vector<Eigen::Vector2d> points_m =
-      positions(thinned(whole.surface, kQuerySpacing_m, kQueryPoints));
-  for (const Target& target : targets) {
-    const Submap& submap = submaps_[target.submap];
-    CachedMap& cached = map_of(target.submap);
-    std::optional<PlaceProposal> best;
-    for (const CoarseMatch& match :
-         search_coarsely(cached.map, points_m, target.window, kLeastScore, kPlacesOfSubmap)) {
-      PlaceProposal proposal;
-      proposal.anchor = submap.anchor;
-      proposal.first_stop = submap.first;
-      proposal.last_stop = submap.last;
-      proposal.T_anchor_robot = match.T_map_points;
-      proposal.predicted = target.predicted;
-      proposal.first_of_query = seen.first_stop;
-      compare(submap, cached, whole, proposal);
-      if (proposal.seen < kLeastSeen) continue;
-      if (!best || proposal.value * proposal.seen > best->value * best->seen) best = proposal;
-    }
-    if (best) found.push_back(*best);
+  return targets;
+}
+
+std::optional<PlaceProposal> PlaceRecognition::best_of(const Target& target,
+                                                       const PlaceQuery& query) {
+  std::optional<PlaceProposal> best;
+  for (const CoarseMatch& match : search_coarsely(map_of(target.submap), query.coarse_m,
+                                                  target.window, kLeastScore, kPlacesOfSubmap)) {
+    PlaceProposal proposal = proposal_in(target.submap, match.T_map_points);
+    proposal.predicted = target.predicted;
+    align_with(target.submap, query.whole, proposal);
+    if (proposal.seen < kLeastSeen) continue;
+    if (!best || better(proposal, *best)) best = proposal;
   }
-  std::stable_sort(found.begin(), found.end(), [](const PlaceProposal& a, const PlaceProposal& b) {
-    return a.value * a.seen > b.value * b.seen;
-  });
+  return best;
+}
+
+PlaceProposal PlaceRecognition::proposal_in(std::size_t submap, const Pose2& T_anchor_robot) const {
+  PlaceProposal proposal;
+  proposal.anchor = submaps_[submap].anchor;
+  proposal.first_stop = submaps_[submap].first;
+  proposal.last_stop = submaps_[submap].last;
+  proposal.T_anchor_robot = T_anchor_robot;
+  return proposal;
+}
+
+std::vector<PlaceProposal> PlaceRecognition::propose(const PoseGraph& graph, std::uint32_t stop,
+                                                     std::uint32_t first_recent,
+                                                     std::span<const UncertainPose> relative,
+                                                     double least_sigma_m) {
+  cut(graph.poses(), first_recent);
+  std::vector<PlaceProposal> found;
+  if (path_m_[stop] - path_m_.front() < kQueryLeast_m) return found;
+  const std::vector<Target> likely = targets(first_recent, relative, least_sigma_m);
+  if (likely.empty()) return found;
+  const Query seen = query(graph, stop);
+  const PlaceQuery asked(seen.points);
+  for (const Target& target : likely) {
+    std::optional<PlaceProposal> best = best_of(target, asked);
+    if (!best) continue;
+    best->first_of_query = seen.first_stop;
+    found.push_back(*best);
+  }
+  std::stable_sort(found.begin(), found.end(), better);
   return found;
 }
 

@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +21,7 @@
 #include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 #include "topogeo/localization/places/coarse_search.hpp"
+#include "topogeo/localization/places/recently_used.hpp"
 
 namespace topogeo::localization {
 
@@ -55,8 +55,21 @@ struct PlaceProposal {
 /// The covariance within which a place is looked for, from that of its prediction.
 Eigen::Matrix3d widened_for_places(const Eigen::Matrix3d& predicted);
 
+/// What was seen over the last metres, thinned.
+struct PlaceQuery {
+  PlaceQuery() = default;
+  /// Points in the frame of the robot.
+  explicit PlaceQuery(std::vector<SurfacePoint> seen);
+
+  MatchFeatures whole;                    ///< compared; surface alone
+  std::vector<Eigen::Vector2d> coarse_m;  ///< searched
+};
+
 class PlaceRecognition {
  public:
+  /// What is asked for: all that was seen over so much of path.
+  static constexpr double kQuery_m = 5.0;
+
   /// Appends a stop, whose number is its index; `path_m` to it from the first.
   void add(std::shared_ptr<const StopView> view, double path_m);
 
@@ -73,29 +86,37 @@ class PlaceRecognition {
     std::uint32_t last = 0;
     std::uint32_t anchor = 0;
     std::vector<geometry::Pose2> T_anchor_stop;  // of first to last
+    std::vector<geometry::Pose2> T_stop_anchor;
   };
   struct Query {
     std::vector<SurfacePoint> points;  // in the frame of the last stop
     std::uint32_t first_stop = 0;
   };
-  struct CachedMap {
-    std::size_t submap;
-    CoarseMap map;
-    std::optional<Reference> reference;  // made when it is needed
-  };
+  struct Target;
 
-  void cut(const PoseGraph& graph, std::uint32_t first_recent);
+  void cut(std::span<const geometry::Pose2> T_map_stop, std::uint32_t first_recent);
+  void add_submap(std::span<const geometry::Pose2> T_map_stop, std::uint32_t first,
+                  std::uint32_t last);
   [[nodiscard]] std::vector<SurfacePoint> points_of(const Submap& submap) const;
   [[nodiscard]] Query query(const PoseGraph& graph, std::uint32_t stop) const;
-  CachedMap& map_of(std::size_t submap);
-  void compare(const Submap& submap, CachedMap& cached, const MatchFeatures& query,
-               PlaceProposal& proposal) const;
+  const CoarseMap& map_of(std::size_t submap);
+  const Reference& reference_of(std::size_t submap);
+  [[nodiscard]] PlaceProposal proposal_in(std::size_t submap,
+                                          const geometry::Pose2& T_anchor_robot) const;
+  [[nodiscard]] std::vector<Target> targets(std::uint32_t first_recent,
+                                            std::span<const UncertainPose> relative,
+                                            double least_sigma_m) const;
+  std::optional<PlaceProposal> best_of(const Target& target, const PlaceQuery& query);
+  void align_with(std::size_t submap, const MatchFeatures& query, PlaceProposal& proposal);
+  void count_seen(const Submap& submap, const Reference& reference, const MatchFeatures& query,
+                  PlaceProposal& proposal) const;
 
   std::vector<std::shared_ptr<const StopView>> views_;
   std::vector<double> path_m_;
   std::vector<Submap> submaps_;
-  std::uint32_t next_first_ = 0;  // of the next submap
-  std::list<CachedMap> cache_;    // the one used last first
+  std::uint32_t next_first_ = 0;            // of the next submap
+  RecentlyUsed<CoarseMap> maps_{64};        // of about 60 kB
+  RecentlyUsed<Reference> references_{32};  // of about 1 MB
 };
 
 }  // namespace topogeo::localization
