@@ -156,8 +156,8 @@ std::vector<std::size_t> revisits_of(const Recording& recording, const RevisitOp
   std::vector<std::size_t> found;
   const std::size_t count = recording.scans.size();
   for (std::size_t i = kFirst; i + options.scans < count;) {
-    if (was_here(recording, i, i - kOlder) &&
-        was_here(recording, i + options.scans - 1, i - kOlder)) {
+    const std::size_t last = i + options.scans - 1;
+    if (was_here(recording, i, i - kOlder) && was_here(recording, last, i - kOlder)) {
       found.push_back(i);
       i += options.scans;
     } else {

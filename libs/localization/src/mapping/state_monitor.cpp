@@ -34,7 +34,10 @@ constexpr double kLostBelow = 0.25;
 constexpr double kTrackingFrom = 0.5;   // right more probably than not
 constexpr double kFirmer = 0.05;        // the few matches between two stops cost no more than this
 constexpr double kDoubtfulShare = 0.3;  // matches that are not accepted err together
-constexpr double kElsewhere = 30.0;     // weight of a place that fits better, for each 1 of fitness
+// Of what contradicts a pose by odometry, against one by a match with a stop just before: the map
+// may have changed there, but not for long.
+constexpr double kAgainstOwnStep = 0.25;
+constexpr double kElsewhere = 30.0;  // weight of a place that fits better, for each 1 of fitness
 constexpr double kMostConfident = 0.996;    // matches err together, however many agree
 constexpr std::uint32_t kOftenDoubted = 2;  // one stop may be doubted for what stands in view
 
@@ -131,6 +134,9 @@ LocalizationStatus StateMonitor::add(const StepEvidence& evidence) {
   const auto before_of = [this](const StepMatch& match) {
     return match.matched_step ? confidence_[*match.matched_step] : 1.0;
   };
+  // In a finished map, where the robot can be followed by its own stops out of what is mapped.
+  const double against_map = mean_contradiction(
+      evidence.matches, [](const StepMatch& match) { return !match.matched_step; });
   std::vector<Support> supports;
   bool any_accepted_match = false;
   for (const StepMatch& match : evidence.matches) {
@@ -142,8 +148,9 @@ LocalizationStatus StateMonitor::add(const StepEvidence& evidence) {
     if (match.verdict != Verdict::kAccepted && !is_doubtful(match)) continue;
     any_accepted_match |= match.verdict == Verdict::kAccepted;
     const bool accepted = match.verdict == Verdict::kAccepted;
-    supports.push_back(
-        {before_of(match), (accepted ? 1.0 : kDoubtfulShare) * match_confidence(match)});
+    double right = (accepted ? 1.0 : kDoubtfulShare) * match_confidence(match);
+    if (match.matched_step) right = lowered(right, kAgainstOwnStep * against_map);
+    supports.push_back({before_of(match), right});
   }
   if (restarted_) {
     supports.push_back({1.0, lowered(*restarted_, contradiction(evidence))});

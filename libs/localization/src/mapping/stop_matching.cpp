@@ -49,13 +49,6 @@ constexpr std::size_t kStopsOfQuery = 3;
 constexpr double kBetweenStops_m = 1.5;
 constexpr double kQueryLength_m = 5.0;
 
-// Square root of the larger eigenvalue of the position's covariance.
-double weakest_sigma_m(const Eigen::Matrix3d& c) {
-  const double mean = 0.5 * (c(0, 0) + c(1, 1));
-  const double half_difference = 0.5 * (c(0, 0) - c(1, 1));
-  return std::sqrt(mean + std::sqrt(half_difference * half_difference + c(0, 1) * c(0, 1)));
-}
-
 bool any_accepted(std::span<const StopMatch> matches) {
   return std::any_of(matches.begin(), matches.end(),
                      [](const StopMatch& match) { return match.accepted(); });
@@ -70,12 +63,6 @@ double StopMatch::surprise() const {
 }
 
 bool StopMatch::plausible() const {
-  // Wider than the gate: doubt 4.5 is that of right matches in clutter, and more than any set of
-  // wrong ones agrees on (tests/bench/RESULTS.md, "Loops").
-  constexpr double kMostDoubt = 4.5;
-  constexpr double kLeastInliers = 0.6;
-  constexpr double kLeastOverlap = 0.3;
-  constexpr double kMostViolations = 0.3;
   // Further from the prediction no place is looked for either.
   if (!predicted.covariance.isZero(0.0) &&
       geometry::squared_mahalanobis(geometry::difference(predicted.T_a_b, edge.T_from_to),
@@ -83,16 +70,15 @@ bool StopMatch::plausible() const {
           geometry::kMahalanobis2Of99Percent) {
     return false;
   }
-  // Along a bare corridor the scans allow any place: what odometry says there is no evidence.
-  constexpr double kLeastKnown_m = 0.2;
-  constexpr double kMostRivalry = 0.9;
   constexpr double kLeastOfWindow = 0.88;
-  if (weakest_sigma_m > kLeastKnown_m || rivalry > kMostRivalry) return false;
+  using Limits = PlausibleMatch;
+  if (weakest_sigma_m > Limits::kLeastKnown_m || rivalry > Limits::kMostRivalry) return false;
   if (source == ProposalSource::kWindow) {
-    return fitness >= kLeastOfWindow && overlap >= kLeastOverlap;
+    return fitness >= kLeastOfWindow && overlap >= Limits::kLeastOverlap;
   }
-  return accepted() || (uncertain() && doubt <= kMostDoubt && inliers >= kLeastInliers &&
-                        overlap >= kLeastOverlap && violations <= kMostViolations);
+  return accepted() ||
+         (uncertain() && doubt <= Limits::kMostDoubt && inliers >= Limits::kLeastInliers &&
+          overlap >= Limits::kLeastOverlap && violations <= Limits::kMostViolations);
 }
 
 StopMatching::StopMatching(const LocalizerConfig& config, MatchPool& pool)
@@ -354,7 +340,7 @@ StopMatch StopMatching::window_match(const PoseGraph& graph, std::uint32_t stop,
   match.reason = Reason::kDoubtful;
   match.fitness = place.value;
   match.overlap = place.seen;
-  match.weakest_sigma_m = weakest_sigma_m(covariance);
+  match.weakest_sigma_m = localization::weakest_sigma_m(covariance);
   return match;
 }
 
@@ -397,7 +383,7 @@ StopMatch StopMatching::judged(const MatchTask& task, const MatchResult& result,
   match.inliers = result.inliers;
   match.violations = result.violations;
   match.rivalry = rivalry(task, result);
-  match.weakest_sigma_m = weakest_sigma_m(data_covariance(result));
+  match.weakest_sigma_m = localization::weakest_sigma_m(data_covariance(result));
   match.evidence = step_match(task, result, foreseen, task.query_map_id);
   match.solutions = result.solutions;
   return match;

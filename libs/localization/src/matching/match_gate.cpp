@@ -1,6 +1,7 @@
 #include "topogeo/localization/matching/match_gate.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/LU>
 
@@ -86,6 +87,27 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
   }
   if (rival > gate.largest_ambiguity) return {Verdict::kAmbiguous, Reason::kSecondSolution};
   return {Verdict::kAccepted, Reason::kNone};
+}
+
+bool plausible(const MatchTask& task, const MatchResult& result) {
+  const bool doubted =
+      result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution;
+  if (result.verdict != Verdict::kAccepted && !doubted) return false;
+  if (weakest_sigma_m(data_covariance(result)) > PlausibleMatch::kLeastKnown_m ||
+      rivalry(task, result) > PlausibleMatch::kMostRivalry) {
+    return false;
+  }
+  return result.verdict == Verdict::kAccepted ||
+         (doubt(result) <= PlausibleMatch::kMostDoubt &&
+          result.inliers >= PlausibleMatch::kLeastInliers &&
+          result.overlap >= PlausibleMatch::kLeastOverlap &&
+          result.violations <= PlausibleMatch::kMostViolations);
+}
+
+double weakest_sigma_m(const Eigen::Matrix3d& c) {
+  const double mean = 0.5 * (c(0, 0) + c(1, 1));
+  const double half_difference = 0.5 * (c(0, 0) - c(1, 1));
+  return std::sqrt(mean + std::sqrt(half_difference * half_difference + c(0, 1) * c(0, 1)));
 }
 
 Eigen::Matrix3d match_covariance_floor() {

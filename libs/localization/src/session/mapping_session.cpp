@@ -14,7 +14,10 @@ namespace {
 // In succession, after a search, before a drive joins the map. A room that is taken for another one
 // is tracked while the robot turns in it, but not much further (continue_test).
 constexpr std::uint32_t kTrackedStops = 3;
-constexpr double kTrackedDistance_m = 2.5;
+constexpr double kTrackedDistance_m = 4.0;
+// Of what should look alike (contradiction()), where doors have changed and people are about; a
+// corridor that is taken for another one differs more.
+constexpr double kContradicted = 0.5;
 
 void add_to(SlamCounts& sum, const SlamCounts& more) {
   sum.tasks += more.tasks;
@@ -77,8 +80,8 @@ bool MappingSession::follow(const MapPointer& map) {
 // place was found by a search: in one look a room of another building can look like one of the map.
 bool MappingSession::confirmed() {
   const std::optional<TrackedStep>& step = follower_->last_step();
-  const bool tracked =
-      follower_->status().state == LocalizationState::kTracking && step && !step->accepted.empty();
+  const bool tracked = follower_->status().state == LocalizationState::kTracking && step &&
+                       !step->accepted.empty() && contradiction(step->evidence) <= kContradicted;
   if (!step) searched_ = true;
   tracked_stops_ = tracked ? tracked_stops_ + 1 : 0;
   tracked_distance_m_ = tracked ? tracked_distance_m_ + step->evidence.distance_m : 0.0;

@@ -47,7 +47,10 @@ DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
     step.T_before_now = {odometry->T_a_b, invertible(monitor_.expected(odometry->covariance))};
   }
   step.distance_m = std::sqrt(step.T_before_now.T_a_b.position_m().squaredNorm());
-  const Stop& before = stops_.back();
+  const Stop before = stops_.back();
+  // By odometry alone it is not certain that the robot was not carried away: what was seen before
+  // is of no use.
+  if (!matched) stops_.clear();
   stops_.push_back({std::move(map), std::move(view),
                     before.T_window_robot * step.T_before_now.T_a_b,
                     before.path_m + step.distance_m});

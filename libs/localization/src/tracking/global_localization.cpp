@@ -247,9 +247,10 @@ std::vector<GlobalLocalizer::Seed> GlobalLocalizer::best_seeds(
   return seeds;
 }
 
-std::vector<Climbed> GlobalLocalizer::places(const MatchFeatures& query, std::size_t count) const {
-  const std::vector<Eigen::Vector2d> coarse = positions_of(spread(query.coarse, kCoarsePoints));
-  const std::vector<Eigen::Vector2d> fine = positions_of(spread(query.coarse, kFinePoints));
+std::vector<Climbed> GlobalLocalizer::places(const std::vector<SurfacePoint>& seen,
+                                             std::size_t count) const {
+  const std::vector<Eigen::Vector2d> coarse = positions_of(spread(seen, kCoarsePoints));
+  const std::vector<Eigen::Vector2d> fine = positions_of(spread(seen, kFinePoints));
   std::vector<Climbed> climbed;
   for (const Seed& seed : best_seeds(coarse)) {
     if (seed.score > 0) climbed.push_back(climb(fine_, fine, pose_of(seed)));
@@ -347,7 +348,8 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
   const MatchFeatures query = extract_scan_features(points, T_robot_laser);
   if (query.coarse.size() < kFewestQueryPoints) return answer;
   std::vector<GlobalPose> found;
-  for (const Climbed& place : places(query, kAligned)) found.push_back(aligned(query, place));
+  for (const Climbed& place : places(query.coarse, kAligned))
+    found.push_back(aligned(query, place));
   const auto value = [](const GlobalPose& p) {
     return p.fitness * std::max(0.1, 1.0 - p.violations);
   };

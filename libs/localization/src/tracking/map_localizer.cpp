@@ -21,6 +21,13 @@ constexpr std::size_t kPlaces = 8;           // compared at one stop; each costs
 constexpr std::size_t kFewestSearched = 25;  // thinned points of a scan; fewer prove nothing
 constexpr double kLeastConformity = 0.3;  // a share of points through walls is no proof of a place
 
+// Whether a match lies where it was expected.
+bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
+  constexpr double kFarthest2 = 11.3;  // 99 % of right ones (chi-square, three degrees of freedom)
+  return geometry::squared_mahalanobis(geometry::difference(measured.T_a_b, predicted.T_a_b),
+                                       predicted.covariance + measured.covariance) <= kFarthest2;
+}
+
 topomap::StopPose pose_of(const LocalizedStop& stop) {
   return {stop.id,         stop.stamp_ns, stop.T_map_robot,
           stop.covariance, stop.id,       located(stop.status.state)};
@@ -58,7 +65,11 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
 // Where the robot should be, what it should see there, and where that puts it. Returns how many
 // matches were accepted.
 std::uint32_t MapLocalizer::track(const DriveStop& stop) {
-  if (stop.follows) pose_ = compose(pose_, stop.step.T_before_now);
+  if (stop.follows) {
+    pose_ = compose(pose_, stop.step.T_before_now);
+    agreement_.move(stop.step.distance_m);
+    if (!stop.step.matched) agreement_ = {};
+  }
   const std::vector<MatchCandidate> stored = matching_.candidates(stop, pose_, kTrackingMatches);
   const std::vector<MatchTask> tasks = tracking_tasks(stop, stored);
   const std::vector<MatchResult> results = matching_.run(tasks);
@@ -71,6 +82,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
     // What the two have in common is foreseen, because they follow each other.
     step.evidence.matches.push_back(step_match(task, result, 0.0, monitor_.steps() - 1));
   }
+  const std::vector<bool> believed = agreeing(tasks, results, stored);
   bool sure = false;
   std::vector<UncertainPose> accepted{pose_};
   std::vector<UncertainPose> uncertain{pose_};
@@ -79,8 +91,10 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
     const UncertainPose measured = matching_.measured(stored[i].id, result);
     step.evidence.matches.push_back(step_match(tasks[i], result, stored[i].overlap, std::nullopt));
     step.measured.push_back(measured.T_a_b);
-    if (result.verdict == Verdict::kAccepted) {
-      sure |= doubt(result) < kHardlyDoubtful;
+    if (believed[i]) {
+      step.evidence.matches.back().verdict = Verdict::kAccepted;
+      step.evidence.matches.back().reason = Reason::kNone;
+      sure |= doubt(result) < kHardlyDoubtful || result.verdict != Verdict::kAccepted;
       accepted.push_back(measured);
       step.accepted.push_back({stored[i].id,
                                inverse(UncertainPose{result.T_reference_query, result.covariance}),
@@ -100,6 +114,34 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
     look_around(stop);
   }
   return static_cast<std::uint32_t>(step.accepted.size());
+}
+
+// Which of the matches with stored stops are accepted: by their gate, or because this and the stops
+// before lie in the map as they lie to each other.
+std::vector<bool> MapLocalizer::agreeing(std::span<const MatchTask> tasks,
+                                         std::span<const MatchResult> results,
+                                         std::span<const MatchCandidate> stored) {
+  std::vector<bool> believed(results.size());
+  std::vector<bool> agreed(results.size());
+  bool any_accepted = false;
+  double agreeing = 0.0;  // the most confident one
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    believed[i] = results[i].verdict == Verdict::kAccepted;
+    agreed[i] = plausible(tasks[i], results[i]) &&
+                agree(pose_, matching_.measured(stored[i].id, results[i]));
+    any_accepted |= believed[i] && agreed[i];
+    if (!agreed[i]) continue;
+    const StepMatch match = step_match(tasks[i], results[i], 0.0, std::nullopt);
+    agreeing = std::max(agreeing, match_confidence(match));
+  }
+  if (agreeing > 0.0) {
+    agreement_.add(any_accepted, agreeing);
+  } else if (!results.empty()) {
+    agreement_.contradict();
+  }
+  if (!agreement_.enough()) return believed;
+  for (std::size_t i = 0; i < results.size(); ++i) believed[i] = believed[i] || agreed[i];
+  return believed;
 }
 
 std::vector<MatchTask> MapLocalizer::tracking_tasks(const DriveStop& stop,
@@ -138,11 +180,12 @@ void MapLocalizer::search() {
   status_ = {LocalizationState::kSearching, 0.0};
 }
 
-// Adds the places of the whole map that fit this stop, and weighs all by it.
+// Adds the places of the whole map that fit the last metres, and weighs all by this stop.
 void MapLocalizer::look_around(const DriveStop& stop) {
   if (stop.features.coarse.size() >= kFewestSearched) {
     std::vector<Pose2> T_map_places;
-    for (const Climbed& place : matching_.places().places(stop.features, kPlaces)) {
+    for (const Climbed& place :
+         matching_.places().places(matching_.query().whole.surface, kPlaces)) {
       T_map_places.push_back(place.T_map_robot);
     }
     search_.propose(T_map_places);
@@ -165,9 +208,14 @@ void MapLocalizer::match_hypotheses(const DriveStop& stop) {
   std::vector<double> fitness;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const MatchResult& result = results[i];
-    std::optional<UncertainPose> measured;
-    if (result.verdict == Verdict::kAccepted || result.reason == Reason::kSecondSolution) {
-      measured = matching_.measured(stored[i], result);
+    const bool accepted =
+        result.verdict == Verdict::kAccepted || result.reason == Reason::kSecondSolution;
+    const UncertainPose& predicted = search_.hypotheses()[i].pose;
+    std::optional<PlaceSearch::Observation> measured;
+    if (accepted || plausible(tasks[i], result)) {
+      measured = {matching_.measured(stored[i], result), accepted,
+                  match_confidence(step_match(tasks[i], result, 0.0, std::nullopt))};
+      if (!agree(predicted, measured->T_map_robot)) measured.reset();
     }
     search_.observe(i, measured);
     fitness.push_back(places.fitness(stop.features, search_.hypotheses()[i].pose.T_a_b) *
@@ -194,6 +242,7 @@ std::uint32_t MapLocalizer::decide() {
   StepEvidence evidence;
   evidence.points = kFewestSearched;
   evidence.covariance = pose_.covariance;
+  agreement_ = best->agreement;
   monitor_.restart(best->weight);
   status_ = monitor_.add(evidence);
   monitored_ = true;
@@ -208,6 +257,7 @@ void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& cov
   has_pose_ = true;
   monitored_ = false;
   search_.begin();
+  agreement_ = {};
   monitor_.restart(kGivenPoseRight);
   status_ = {LocalizationState::kAmbiguous,
              kGivenPoseRight * covariance_confidence(pose_.covariance)};

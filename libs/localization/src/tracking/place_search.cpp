@@ -21,11 +21,16 @@ constexpr std::size_t kMostHypotheses = 16;
 constexpr double kProposed_m = 0.25;  // deviation of a proposed place: the cells of the search
 constexpr double kProposed_rad = 0.08;
 constexpr double kSharpness = 25.0;         // of the weights in the fitness: e^2.5 for each 0.1
+constexpr double kIndependent_m = 1.0;      // between two stops that see the world anew
 constexpr double kElsewhereFitness = 0.60;  // of the best place if the robot is somewhere else
 constexpr double kElsewhereWeight = 0.5;    // weight of that before anything was seen
 constexpr double kNewWeight = 0.05;         // of a place that nothing before spoke for
 constexpr double kForgotten = 1e-4;
 constexpr double kSure = 0.95;
+constexpr double kSurer = 0.99;  // of a place that only the agreement of its stops proves
+// Mean fitness of that: where another building or a piece of corridor looks like the place, about
+// 0.6 of what is seen is there.
+constexpr double kSurelyThere = 0.70;
 constexpr std::uint32_t kSeenOften = 2;  // accepted stops before a place is taken
 // More of them for a place that the stops of this search before did not speak for.
 constexpr std::uint32_t kSeenMoreOften = 4;
@@ -46,6 +51,7 @@ bool same_hypothesis(const Pose2& a, const Pose2& b) {
 void PlaceSearch::begin() {
   hypotheses_.clear();
   stops_ = 0;
+  moved_m_ = kIndependent_m;
 }
 
 void PlaceSearch::move(const UncertainPose& odometry, double distance_m) {
@@ -55,7 +61,9 @@ void PlaceSearch::move(const UncertainPose& odometry, double distance_m) {
         geometry::compose_covariance(hypothesis.pose.T_a_b, hypothesis.pose.covariance,
                                      odometry.T_a_b, odometry.covariance)};
     hypothesis.distance_m += distance_m;
+    hypothesis.agreement.move(distance_m);
   }
+  moved_m_ += distance_m;
 }
 
 void PlaceSearch::propose(std::span<const Pose2> T_map_robot) {
@@ -74,15 +82,19 @@ void PlaceSearch::propose(std::span<const Pose2> T_map_robot) {
   }
 }
 
-void PlaceSearch::observe(std::size_t index, const std::optional<UncertainPose>& measured) {
+void PlaceSearch::observe(std::size_t index, const std::optional<Observation>& measured) {
   PlaceHypothesis& hypothesis = hypotheses_.at(index);
   if (!measured) {
     ++hypothesis.missed;
+    hypothesis.agreement.contradict();
     return;
   }
-  hypothesis.pose = hypothesis.seen == 0 ? *measured : fused({hypothesis.pose, *measured});
+  const UncertainPose& pose = measured->T_map_robot;
+  hypothesis.pose = hypothesis.seen == 0 ? pose : fused({hypothesis.pose, pose});
   if (hypothesis.seen == 0) hypothesis.distance_m = 0.0;
   ++hypothesis.seen;
+  if (measured->accepted) ++hypothesis.accepted;
+  hypothesis.agreement.add(measured->accepted, measured->confidence);
   hypothesis.missed = 0;
 }
 
@@ -96,8 +108,14 @@ void PlaceSearch::weigh(std::span<const double> fitness) {
   for (const PlaceHypothesis& hypothesis : hypotheses_) elsewhere -= hypothesis.weight;
   elsewhere = std::max(kNewWeight, elsewhere);
   double sum = elsewhere;
+  const double sharpness = kSharpness * std::min(1.0, moved_m_ / kIndependent_m);
+  moved_m_ = 0.0;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
-    hypotheses_[i].weight *= geometry::exp(kSharpness * (fitness[i] - kElsewhereFitness));
+    PlaceHypothesis& hypothesis = hypotheses_[i];
+    if (hypothesis.missed == 0 && hypothesis.seen > 0) {
+      hypothesis.fitness += (fitness[i] - hypothesis.fitness) / hypothesis.seen;
+    }
+    hypothesis.weight *= geometry::exp(sharpness * (fitness[i] - kElsewhereFitness));
     sum += hypotheses_[i].weight;
   }
   for (PlaceHypothesis& hypothesis : hypotheses_) hypothesis.weight /= sum;
@@ -118,6 +136,9 @@ void PlaceSearch::merge() {
       same->weight += hypothesis.weight;
       if (hypothesis.seen > same->seen) {
         same->seen = hypothesis.seen;
+        same->accepted = hypothesis.accepted;
+        same->agreement = hypothesis.agreement;
+        same->fitness = hypothesis.fitness;
         same->distance_m = hypothesis.distance_m;
       }
       same->wanted = std::min(same->wanted, hypothesis.wanted);
@@ -138,8 +159,11 @@ std::optional<PlaceHypothesis> PlaceSearch::best() const {
 }
 
 bool PlaceSearch::found(const PlaceHypothesis& hypothesis) {
-  return hypothesis.weight >= kSure && hypothesis.seen >= hypothesis.wanted &&
-         hypothesis.missed == 0 && hypothesis.distance_m >= kLeastDistance_m;
+  if (hypothesis.missed > 0) return false;
+  const bool accepted = hypothesis.weight >= kSure && hypothesis.accepted >= hypothesis.wanted &&
+                        hypothesis.distance_m >= kLeastDistance_m;
+  return accepted || (hypothesis.weight >= kSurer && hypothesis.fitness >= kSurelyThere &&
+                      hypothesis.agreement.enough());
 }
 
 }  // namespace topogeo::localization

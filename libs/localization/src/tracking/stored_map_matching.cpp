@@ -42,6 +42,7 @@ DriveStop StoredMapMatching::add(const topomap::LocalMap& map, std::uint32_t num
   }
   stop.step =
       window_.add(stop.map, std::make_shared<const StopView>(view_of(stop.features)), odometry);
+  query_ = PlaceQuery(window_.seen(PlaceRecognition::kQuery_m));
   return stop;
 }
 

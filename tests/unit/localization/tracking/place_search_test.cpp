@@ -21,8 +21,8 @@ void stop(PlaceSearch& search, const std::vector<Pose2>& places, const std::vect
   search.propose(places);
   ASSERT_EQ(search.hypotheses().size(), seen.size());
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    std::optional<UncertainPose> measured;
-    if (seen[i]) measured = UncertainPose{search.hypotheses()[i].pose.T_a_b, kSharp};
+    std::optional<PlaceSearch::Observation> measured;
+    if (seen[i]) measured = {{search.hypotheses()[i].pose.T_a_b, kSharp}, true};
     search.observe(i, measured);
   }
   search.weigh(fitness);
@@ -83,7 +83,7 @@ TEST(PlaceSearch, IsDoneWhenOnePlaceIsSeenOftenEnoughAndFarEnoughApart) {
   stop(standing, {}, {true}, {0.9}, 0.1);
   EXPECT_FALSE(PlaceSearch::found(*standing.best()));  // nor two from the same place
   stop(search, {}, {true}, {0.9});
-  EXPECT_EQ(search.best()->seen, 2U);
+  EXPECT_EQ(search.best()->accepted, 2U);
   EXPECT_TRUE(PlaceSearch::found(*search.best()));
 }
 
@@ -111,8 +111,8 @@ TEST(PlaceSearch, HopelessPlacesAreDropped) {
 TEST(PlaceSearch, TwoThatComeToTheSamePlaceAreOne) {
   PlaceSearch search;
   search.propose(std::vector<Pose2>{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
-  search.observe(0, UncertainPose{{0.5, 0.0, 0.0}, kSharp});
-  search.observe(1, UncertainPose{{0.6, 0.0, 0.0}, kSharp});
+  search.observe(0, PlaceSearch::Observation{{{0.5, 0.0, 0.0}, kSharp}, true});
+  search.observe(1, PlaceSearch::Observation{{{0.6, 0.0, 0.0}, kSharp}, true});
   search.weigh(std::vector{0.8, 0.8});
   EXPECT_EQ(search.hypotheses().size(), 1U);
   EXPECT_LE(sum_of_weights(search), 1.0);

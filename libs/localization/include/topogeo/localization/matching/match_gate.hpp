@@ -34,6 +34,27 @@ struct Judgement {
 /// What the evidence in `result` comes to by the gate of `task`; its own verdict is not read.
 Judgement judge(const MatchTask& task, const MatchResult& result);
 
+/// Whether a match may be right together with others that agree with it: its gate let it pass, or
+/// doubted it for no more than clutter and people bring about, and the scans know the position in
+/// every direction. Its distance from the prediction is not judged.
+bool plausible(const MatchTask& task, const MatchResult& result);
+
+/// What plausible() allows.
+struct PlausibleMatch {
+  /// Wider than the gate: doubt 4.5 is that of right matches in clutter, and more than any set of
+  /// wrong ones agrees on (tests/bench/RESULTS.md, "Loops").
+  static constexpr double kMostDoubt = 4.5;
+  static constexpr double kLeastInliers = 0.6;
+  static constexpr double kLeastOverlap = 0.3;
+  static constexpr double kMostViolations = 0.3;
+  /// Along a bare corridor the scans allow any place: what odometry says there is no evidence.
+  static constexpr double kLeastKnown_m = 0.2;
+  static constexpr double kMostRivalry = 0.9;
+};
+
+/// Deviation of the position along the direction in which a covariance knows it least.
+double weakest_sigma_m(const Eigen::Matrix3d& covariance);
+
 /// Covariance of T_reference_query from the Hessian of the data term, in the reference frame, wider
 /// the more doubtful the match, with a floor for what the least squares does not know (correlated
 /// beams, thick walls): 2 cm and 0.3 degrees.

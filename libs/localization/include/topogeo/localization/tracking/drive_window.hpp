@@ -34,7 +34,8 @@ class DriveWindow {
   DriveWindow(const LocalizerConfig& config, MatchRequests& requests);
 
   /// The next stop, known to the requests under the id of `map`; `odometry` from the stop before,
-  /// nothing at the first one or after a gap, which forgets the stops before.
+  /// nothing at the first one or after a gap. A gap, and a step by odometry alone, forgets the
+  /// stops before.
   DriveStep add(std::shared_ptr<const topomap::LocalMap> map, std::shared_ptr<const StopView> view,
                 const std::optional<UncertainPose>& odometry);
 

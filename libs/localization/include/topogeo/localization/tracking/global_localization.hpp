@@ -61,8 +61,10 @@ class GlobalLocalizer {
                                   const geometry::Pose2& T_robot_laser) const;
 
   /// The places that find() would compare more closely: the `count` best distinct ones by the fine
-  /// field alone, not aligned. For those who match them with stored maps themselves.
-  [[nodiscard]] std::vector<Climbed> places(const MatchFeatures& query, std::size_t count) const;
+  /// field alone, not aligned. For those who match them with stored maps themselves. `seen`: points
+  /// in the robot frame, of one scan or of several metres of path.
+  [[nodiscard]] std::vector<Climbed> places(const std::vector<SurfacePoint>& seen,
+                                            std::size_t count) const;
 
   /// Index of the stored stop from which most of a scan is seen; nothing is seen from any: the
   /// nearest one. `share` takes how much, [0, 1].

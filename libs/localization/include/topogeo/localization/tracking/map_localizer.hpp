@@ -101,6 +101,8 @@ class MapLocalizer : public Slam {
   std::uint32_t track(const DriveStop& stop);
   std::vector<MatchTask> tracking_tasks(const DriveStop& stop,
                                         std::span<const MatchCandidate> stored);
+  std::vector<bool> agreeing(std::span<const MatchTask> tasks, std::span<const MatchResult> results,
+                             std::span<const MatchCandidate> stored);
   [[nodiscard]] double better_elsewhere(const DriveStop& stop) const;
   void begin_search();
   void look_around(const DriveStop& stop);
@@ -111,7 +113,8 @@ class MapLocalizer : public Slam {
   StoredMapMatching matching_;
   PlaceSearch search_;
   StateMonitor monitor_;
-  UncertainPose pose_;  // T_map_robot at the last stop
+  DriveAgreement agreement_;  // of the stops that are tracked
+  UncertainPose pose_;        // T_map_robot at the last stop
   bool has_pose_ = false;
   bool monitored_ = false;                      // the last stop was, by what its pose is judged
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop

@@ -14,17 +14,21 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/tracking/drive_agreement.hpp"
 
 namespace topogeo::localization {
 
 /// A place where the robot may be.
 struct PlaceHypothesis {
-  UncertainPose pose;        ///< T_map_robot
-  double weight = 0.0;       ///< probability; together with the others and "elsewhere" 1
-  std::uint32_t seen = 0;    ///< stops whose match there was accepted
-  std::uint32_t wanted = 0;  ///< as many before the place is taken
-  double distance_m = 0.0;   ///< driven since the first of them
-  std::uint32_t missed = 0;  ///< stops in succession whose match there was not accepted
+  UncertainPose pose;          ///< T_map_robot
+  double weight = 0.0;         ///< probability; together with the others and "elsewhere" 1
+  std::uint32_t seen = 0;      ///< stops that were matched there
+  std::uint32_t accepted = 0;  ///< of them, those whose match passed its gate
+  DriveAgreement agreement;    ///< of all of them
+  std::uint32_t wanted = 0;    ///< as many accepted before the place is taken
+  double distance_m = 0.0;     ///< driven since the first of them
+  double fitness = 0.0;        ///< mean over the stops that were seen there
+  std::uint32_t missed = 0;    ///< stops in succession that were not matched there
 };
 
 class PlaceSearch {
@@ -36,8 +40,14 @@ class PlaceSearch {
   void move(const UncertainPose& odometry, double distance_m);
   /// Adds the places that fit the stop and are near no hypothesis.
   void propose(std::span<const geometry::Pose2> T_map_robot);
-  /// What matching the stop at a hypothesis gave: T_map_robot of an accepted match, or nothing.
-  void observe(std::size_t hypothesis, const std::optional<UncertainPose>& measured);
+  /// What matching the stop at a hypothesis gave: T_map_robot of a plausible match (see
+  /// plausible()), or nothing.
+  struct Observation {
+    UncertainPose T_map_robot;
+    bool accepted = true;
+    double confidence = 1.0;  ///< that it is right, see match_confidence()
+  };
+  void observe(std::size_t hypothesis, const std::optional<Observation>& measured);
   /// Weighs the hypotheses by how well the stop fits there, in [0, 1], one number for each; those
   /// that have come to the same place become one, hopeless ones are dropped. Throws
   /// std::invalid_argument unless there are as many numbers as hypotheses.
@@ -56,6 +66,7 @@ class PlaceSearch {
 
   std::vector<PlaceHypothesis> hypotheses_;
   std::uint32_t stops_ = 0;  // of this search
+  double moved_m_ = 0.0;     // since the last weighing
 };
 
 }  // namespace topogeo::localization

@@ -56,6 +56,7 @@ class StoredMapMatching {
 
   /// The last metres of the drive.
   [[nodiscard]] const DriveWindow& window() const { return window_; }
+  [[nodiscard]] const PlaceQuery& query() const { return query_; }
   [[nodiscard]] std::size_t stored_stops() const { return map_->maps.size(); }
   [[nodiscard]] const GlobalLocalizer& places() const { return places_; }
   [[nodiscard]] MatchRequests& requests() { return requests_; }
@@ -65,6 +66,7 @@ class StoredMapMatching {
   LocalizerConfig config_;
   std::shared_ptr<const StoredMap> map_;
   GlobalLocalizer places_;
+  PlaceQuery query_;  // of the last metres
   MatchRequests requests_;
   DriveWindow window_;
 };

@@ -1,0 +1,39 @@
+#include "topogeo/localization/tracking/drive_agreement.hpp"
+
+namespace topogeo::localization {
+
+namespace {
+
+// As for sets of loops (LoopAgreement).
+constexpr double kAcceptedWeight = 1.5;
+constexpr double kDoubtfulWeight = 1.0;
+constexpr double kWeightWanted = 4.0;
+constexpr double kSpreadWanted_m = 2.0;
+// Stops from before this path are no longer known well enough relative to the last one.
+constexpr double kRemembered_m = 8.0;
+
+}  // namespace
+
+void DriveAgreement::add(bool accepted, double confidence) {
+  agreed_.push_back({path_m_, accepted ? kAcceptedWeight : kDoubtfulWeight * confidence});
+  while (path_m_ - agreed_.front().path_m > kRemembered_m) agreed_.pop_front();
+}
+
+void DriveAgreement::contradict() {
+  if (!agreed_.empty()) agreed_.pop_front();
+}
+
+bool DriveAgreement::enough() const {
+  return weight() >= kWeightWanted &&
+         agreed_.back().path_m - agreed_.front().path_m >= kSpreadWanted_m;
+}
+
+double DriveAgreement::weight() const {
+  double sum = 0.0;
+  for (const Agreed& agreed : agreed_) {
+    if (path_m_ - agreed.path_m <= kRemembered_m) sum += agreed.weight;
+  }
+  return sum;
+}
+
+}  // namespace topogeo::localization
