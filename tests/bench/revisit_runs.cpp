@@ -22,8 +22,9 @@ namespace {
 constexpr std::size_t kFirst = 60;
 constexpr std::size_t kOlder = 40;
 constexpr std::size_t kLeftOut = 30;  // scans between the map and the drive
-constexpr double kSamePlace_m = 1.5;
-constexpr double kSameView_rad = 0.8;
+constexpr double kSamePlace_m = 2.0;
+constexpr double kSameView_rad = 1.0;
+constexpr double kGoesOn = 0.5;  // of the scans of the drive that are in a known place
 
 bool was_here(const Recording& recording, std::size_t scan, std::size_t end) {
   const std::optional<Pose2>& here = recording.T_world_robot[scan];
@@ -114,8 +115,7 @@ RevisitRun drive(const Recording& recording, const pipeline::Config& config,
     run.stops.push_back({scan, path_m, last.status.state, last.T_map_robot, truth,
                          (last.T_map_robot.position_m() - truth.position_m()).norm(), step_ms});
   };
-  while (end < recording.scans.size() &&
-         (end < first + options.scans || path_m < options.least_m)) {
+  while (end < std::min(recording.scans.size(), first + options.scans)) {
     if (end > first) {
       path_m += (recording.scans[end].T_odom_robot.position_m() -
                  recording.scans[end - 1].T_odom_robot.position_m())
@@ -156,13 +156,20 @@ std::vector<std::size_t> revisits_of(const Recording& recording, const RevisitOp
   std::vector<std::size_t> found;
   const std::size_t count = recording.scans.size();
   for (std::size_t i = kFirst; i + options.scans < count;) {
-    const std::size_t last = i + options.scans - 1;
-    if (was_here(recording, i, i - kOlder) && was_here(recording, last, i - kOlder)) {
-      found.push_back(i);
-      i += options.scans;
-    } else {
+    if (!was_here(recording, i, i - kOlder)) {
       ++i;
+      continue;
     }
+    std::size_t known = 0;
+    for (std::size_t k = i; k < i + options.scans; ++k) {
+      known += was_here(recording, k, i - kOlder) ? 1 : 0;
+    }
+    if (static_cast<double>(known) < kGoesOn * static_cast<double>(options.scans)) {
+      ++i;
+      continue;
+    }
+    found.push_back(i);
+    i += options.scans;
   }
   return found;
 }

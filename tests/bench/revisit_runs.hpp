@@ -17,7 +17,6 @@ namespace topogeo::bench {
 struct RevisitOptions {
   std::size_t most = 12;   ///< revisits of a log that are run, spread over it
   std::size_t scans = 40;  ///< of the drive that is localized
-  double least_m = 0.0;    ///< of its path, longer drives have more scans
 };
 
 /// What was reported at a stop of the second drive.
@@ -43,8 +42,8 @@ struct RevisitRun {
   [[nodiscard]] std::size_t wrong() const;
 };
 
-/// Scans at which a revisit begins: within 1.5 m and 0.8 rad of one 40 or more older, and so is the
-/// last of the `scans` that follow.
+/// Scans at which a revisit begins: within 2 m and 57 degrees of one 40 or more older, and so are
+/// half of the `scans` that follow.
 std::vector<std::size_t> revisits_of(const Recording& recording, const RevisitOptions& options);
 
 /// The map is made of the scans up to 30 before the revisit, with the reference as odometry.

@@ -175,5 +175,24 @@ TEST(CovarianceConfidence, IsTheShareWithinTheLimits) {
   EXPECT_NEAR(covariance_confidence(Eigen::Matrix3d::Zero()), 1.0, 1e-3);
 }
 
+// Its own stops hand on where it is, the map says something else: that outweighs them in a few
+// stops, a changed corner of the map does not.
+TEST(StateMonitor, AMapThatContradictsOutweighsTheStopsOfADrive) {
+  StateMonitor monitor;
+  monitor.add(step({good(std::nullopt)}));
+  const auto follow = [&](const StepMatch& with_map) {
+    StepMatch own = good(monitor.steps() - 1);
+    own.expected_overlap = 0.0;  // foreseen in any case
+    monitor.add(step({own, with_map}));
+  };
+  follow(refuted(std::nullopt));
+  EXPECT_GT(monitor.status().confidence, 0.5);
+  StateMonitor corner = monitor;
+  corner.add(step({good(corner.steps() - 1), good(std::nullopt)}));
+  EXPECT_EQ(corner.status().state, LocalizationState::kTracking);
+  for (int i = 0; i < 6; ++i) follow(refuted(std::nullopt));
+  EXPECT_EQ(monitor.status().state, LocalizationState::kLost);
+}
+
 }  // namespace
 }  // namespace topogeo::localization

@@ -1,6 +1,7 @@
 #include "topogeo/localization/session/mapping_session.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -128,6 +129,53 @@ TEST_F(MappingSessionTest, FindsItselfInAStoredMapAndExtendsItBackToItsFirstStop
   EXPECT_TRUE(std::any_of(loops.begin(), loops.end(), [](const topomap::LoopClosure& loop) {
     return loop.earlier_id < kFirst && loop.later_id >= kFirst;
   }));
+}
+
+/// The floor on another day: cupboards of the south corridor are gone, three of its doors are shut,
+/// and people stand about.
+world::World floor_on_another_day() {
+  world::World world = test::world("floor");
+  std::erase_if(world.segments, [](const world::Segment& segment) {
+    const auto at_south_wall = [](const Eigen::Vector2d& p) {
+      return p.x() > 4.0 && p.x() < 20.0 && p.y() > 0.05 && p.y() < 0.6;
+    };
+    return at_south_wall(segment.a_m) && at_south_wall(segment.b_m);
+  });
+  for (const double door_m : {11.9, 15.0, 18.7}) {
+    world.segments.push_back({{door_m - 0.8, 2.2}, {door_m + 0.8, 2.2}});
+  }
+  for (const Eigen::Vector2d& person : {Eigen::Vector2d(14.0, 1.7), Eigen::Vector2d(17.5, 0.5),
+                                        Eigen::Vector2d(22.0, 1.8), Eigen::Vector2d(28.4, 6.0)}) {
+    world.circles.push_back({person, 0.2});
+  }
+  return world;
+}
+
+TEST_F(MappingSessionTest, JoinsTheMapOfADayWithOtherDoorsAndPeople) {
+  const test::DrivenMaps& before = test::round_trip();
+  MappingSession first({}, pool_);
+  for (const auto& map : before.maps) first.add(map);
+  first.finish();
+  auto stored = std::make_shared<StoredMap>();
+  for (const auto& map : first.maps()) stored->maps.push_back(*map);
+  stored->trajectory = first.trajectory();
+  stored->loop_closures = first.loop_closures();
+
+  const test::DrivenMaps after =
+      test::drive(floor_on_another_day(), {{12.0, 1.15}, {28.9, 1.2}, {28.9, 15.0}});
+  InProcessPool pool;
+  MappingSession session({}, pool, nullptr, stored, std::nullopt);
+  for (const auto& map : after.maps) session.add(map);
+  session.finish();
+  ASSERT_EQ(session.maps().size(), before.maps.size() + after.maps.size());
+  const topomap::Trajectory trajectory = session.trajectory();
+  for (std::size_t i = 0; i < after.maps.size(); ++i) {
+    const Pose2 truth = geometry::between(before.T_world_robot[0], after.T_world_robot[i]);
+    const Pose2 error =
+        geometry::between(truth, trajectory.stops[before.maps.size() + i].T_map_robot);
+    EXPECT_LT(error.position_m().norm(), 0.3) << i;
+    EXPECT_LT(std::fabs(error.theta_rad), 0.05) << i;
+  }
 }
 
 TEST_F(MappingSessionTest, AnInitialPoseSparesTheSearch) {

@@ -87,6 +87,39 @@ TEST(PlaceSearch, IsDoneWhenOnePlaceIsSeenOftenEnoughAndFarEnoughApart) {
   EXPECT_TRUE(PlaceSearch::found(*search.best()));
 }
 
+// No match passes its gate, but stop after stop lies where it should.
+TEST(PlaceSearch, StopsThatAgreeProveAPlaceThatNoneProvesAlone) {
+  const auto search_with = [](double fitness) {
+    PlaceSearch search;
+    search.begin();
+    search.propose(std::vector<Pose2>{{0.0, 0.0, 0.0}});
+    for (int i = 0; i < 4; ++i) {
+      if (i > 0) search.move({{1.0, 0.0, 0.0}, 1e-4 * Eigen::Matrix3d::Identity()}, 1.0);
+      const Pose2 here = search.hypotheses()[0].pose.T_a_b;
+      search.observe(0, PlaceSearch::Observation{{here, kSharp}, false, 1.0});
+      search.weigh(std::vector{fitness});
+      EXPECT_EQ(PlaceSearch::found(*search.best()), i == 3 && fitness > 0.8);
+    }
+    return search;
+  };
+  EXPECT_EQ(search_with(0.85).best()->accepted, 0U);
+  // Too little of what is seen is there: a look-alike, however often it is seen.
+  EXPECT_FALSE(PlaceSearch::found(*search_with(0.66).best()));
+}
+
+// A robot that stands sees the same again: that is no further evidence.
+TEST(PlaceSearch, StandingStillSharpensNothing) {
+  PlaceSearch search;
+  search.begin();
+  stop(search, {{0.0, 0.0, 0.0}, {10.0, 0.0, 0.0}}, {true, true}, {0.7, 0.65});
+  const auto ratio = [&] { return search.hypotheses()[0].weight / search.hypotheses()[1].weight; };
+  const double before = ratio();
+  for (int i = 0; i < 10; ++i) stop(search, {}, {true, true}, {0.7, 0.65}, 0.0);
+  EXPECT_NEAR(ratio(), before, 1e-9);
+  stop(search, {}, {true, true}, {0.7, 0.65});
+  EXPECT_GT(ratio(), 2.0 * before);
+}
+
 TEST(PlaceSearch, APlaceThatComesUpLateMustBeSeenMoreOften) {
   PlaceSearch search;
   stop(search, {{0.0, 0.0, 0.0}}, {false}, {0.1});

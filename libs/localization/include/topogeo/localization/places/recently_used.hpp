@@ -11,10 +11,8 @@ namespace topogeo::localization {
 template <typename Value>
 class RecentlyUsed {
  public:
-  explicit RecentlyUsed(std::size_t capacity) : capacity_(capacity) {}
-
   /// At least one is kept.
-  void resize(std::size_t capacity) { capacity_ = std::max<std::size_t>(1, capacity); }
+  explicit RecentlyUsed(std::size_t capacity) : capacity_(std::max<std::size_t>(1, capacity)) {}
 
   /// The value of a key, made by make() unless it is there. Valid until the next call.
   template <typename Make>
