@@ -232,6 +232,8 @@ void add_compare_command(command_line::Command& app, int& exit_code) {
       "  revisits   stops within 2 m and 57 degrees of a stop 30 or more stops older\n"
       "  tried      revisits that were compared with at least one of these older stops\n"
       "  accepted   revisits with at least one loop to them\n"
+      "  in view    revisits that see the same as one of them: half of the points are in its view,\n"
+      "             and within 0.2 m of its points or outline, when the reference places both\n"
       "  wrong      loops more than 0.6 m or 0.2 rad off the reference, whose scans have no more "
       "in\n"
       "             common than by the reference\n"

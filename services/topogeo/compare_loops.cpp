@@ -56,6 +56,8 @@ void print_text(const LoopRecall& recall) {
             << fmt::format("revisits  {}\n", recall.revisits.size())
             << fmt::format("tried     {}\n", recall.tried())
             << fmt::format("accepted  {}\n", recall.accepted())
+            << fmt::format("in view   {}, of them accepted {}\n", recall.in_view(),
+                           recall.accepted_in_view())
             << fmt::format("wrong     {}\n", recall.wrong())
             << fmt::format("rejected  {} right decisions\n", rejected);
   if (recall.outcomes.empty()) return;
@@ -79,9 +81,10 @@ void print_json(const LoopRecall& recall) {
                         {"wrong", of.wrong}});
   }
   const nlohmann::ordered_json all = {
-      {"stops", recall.stops},   {"revisits", recall.revisits.size()},
-      {"tried", recall.tried()}, {"accepted", recall.accepted()},
-      {"wrong", recall.wrong()}, {"rejected", rejected},
+      {"stops", recall.stops},       {"revisits", recall.revisits.size()},
+      {"tried", recall.tried()},     {"accepted", recall.accepted()},
+      {"in_view", recall.in_view()}, {"accepted_in_view", recall.accepted_in_view()},
+      {"wrong", recall.wrong()},     {"rejected", rejected},
       {"outcomes", outcomes}};
   std::cout << all.dump() << '\n';
 }

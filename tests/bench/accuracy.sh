@@ -52,15 +52,15 @@ relations = figures.get("relations") or {}
 def metres(group, digits):
     return "-" if not group else "%.*f" % (digits, group["m"])
 recall = json.loads(loops)
-recall = [str(recall.get(key, "-")) for key in ("revisits", "tried", "accepted", "wrong")]
+recall = [str(recall.get(key, "-")) for key in ("revisits", "tried", "accepted", "in_view", "accepted_in_view", "wrong")]
 print("| %s | %s | %.3f | %s | %.3f | %s | %s | %s | %s |" % (
     log, which, figures["ate"], metres(figures["loop"], 3), figures["end"],
     metres(relations.get("all"), 4), metres(relations.get("far"), 4), " | ".join(recall), seconds))
 ' "$(basename "${log%.clf.gz}")" "$which" "$seconds" "$loops"
 }
 
-printf '| log | trajectory | ate m | loop m | end m | relations, all m | relations, far m | revisits | tried | accepted | wrong | wall / CPU s |\n'
-printf '|---|---|---|---|---|---|---|---|---|---|---|---|\n'
+printf '| log | trajectory | ate m | loop m | end m | relations, all m | relations, far m | revisits | tried | accepted | in view | of them accepted | wrong | wall / CPU s |\n'
+printf '|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n'
 TIMEFORMAT='%1R / %1U'
 for log in "${logs[@]}"; do
   [ -r "${log%.clf.gz}.ref.tum" ] || continue

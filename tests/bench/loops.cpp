@@ -75,8 +75,9 @@ std::string metres(const std::optional<pipeline::RelationSpread>& relations) {
 
 void print_head() {
   std::cout << "| log | ate m | loop m | relations, all m | relations, far m | revisits | tried | "
-               "accepted | wrong | triangles | predictions | stops | tasks | CPU s |\n"
-               "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+               "accepted | in view | of them accepted | wrong | triangles | predictions | stops | "
+               "tasks | CPU s |\n"
+               "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
             << std::flush;
 }
 
@@ -85,8 +86,9 @@ void print_row(const bench::LoopFigures& f) {
   const auto relations = f.relations.value_or(pipeline::RelationsError{});
   std::cout << fmt::format("| {} | {:.3f} | {} | {} | {} ", f.name, f.error.rms_m, loop,
                            metres(relations.all), metres(relations.far))
-            << fmt::format("| {} | {} | {} | {} ", f.recall.revisits.size(), f.recall.tried(),
-                           f.recall.accepted(), f.recall.wrong())
+            << fmt::format("| {} | {} | {} | {} | {} | {} ", f.recall.revisits.size(),
+                           f.recall.tried(), f.recall.accepted(), f.recall.in_view(),
+                           f.recall.accepted_in_view(), f.recall.wrong())
             << fmt::format("| {:.2f} ({}) | {:.2f} ({}) ", f.triangles.mean(), f.triangles.count,
                            f.predictions.mean(), f.predictions.count)
             << fmt::format("| {} | {} | {:.1f} |\n", f.stops, f.match_tasks, f.cpu_s) << std::flush;
@@ -108,8 +110,9 @@ void print_details(const bench::LoopFigures& f) {
   }
   for (const pipeline::Revisit& revisit : f.recall.revisits) {
     if (revisit.accepted) continue;
-    std::cerr << fmt::format("{}: stop {} not recognized ({})\n", f.name, revisit.stop,
-                             revisit.tried ? "tried" : "not tried");
+    std::cerr << fmt::format("{}: stop {} not recognized ({}{})\n", f.name, revisit.stop,
+                             revisit.tried ? "tried" : "not tried",
+                             revisit.in_view ? ", in view" : "");
   }
 }
 

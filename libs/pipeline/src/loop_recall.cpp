@@ -35,6 +35,12 @@ constexpr double kRightMatch_rad = 0.09;
 constexpr double kNearMatch_m = 0.6;
 constexpr double kNearMatch_rad = 0.2;
 
+// Of the later scan's points, seen by the older stop too.
+constexpr double kLeastInView = 0.5;
+constexpr double kSame_m = 0.2;       // from its points, or across the outline between them
+constexpr double kOutline_m = 0.6;    // between two points of an outline at most
+constexpr double kSeenThere_m = 0.3;  // half-thickness of what a laser saw
+
 struct LoopOffset {
   double distance_m = 0.0;
   double angle_rad = 0.0;
@@ -143,7 +149,33 @@ std::vector<LoopOutcomeCounts> count_outcomes(const ReferencePoses& poses,
   return list;
 }
 
-std::vector<Revisit> find_revisits(const ReferencePoses& poses, const std::set<StopPair>& tried,
+/// Whether half of what the later stop sees is in view of the older one, and there.
+bool in_view(const topomap::LocalMap& earlier, const topomap::LocalMap& later,
+             const Pose2& T_earlier_later) {
+  if (later.points.empty()) return false;
+  const localization::Reference older =
+      localization::make_reference(localization::extract_features(earlier));
+  const auto there = [&](const topomap::ScanPoint& point) {
+    const Eigen::Vector2d p = T_earlier_later * Eigen::Vector2d(point.x_m, point.y_m);
+    const auto view = older.features.profile.view(p, kSeenThere_m);
+    if (view != localization::RangeProfile::View::kFree &&
+        view != localization::RangeProfile::View::kSurface) {
+      return false;
+    }
+    const std::int32_t found = older.surface_grid.find(p.x(), p.y());
+    if (found == localization::NearestPointGrid::kNone) return false;
+    const localization::SurfacePoint& nearest =
+        older.features.surface[static_cast<std::size_t>(found)];
+    const Eigen::Vector2d off_m = p - nearest.position_m;
+    return off_m.norm() <= kSame_m || (nearest.on_line && off_m.norm() <= kOutline_m &&
+                                       std::fabs(off_m.dot(nearest.normal)) <= kSame_m);
+  };
+  const auto seen = std::ranges::count_if(later.points, there);
+  return static_cast<double>(seen) >= kLeastInView * static_cast<double>(later.points.size());
+}
+
+std::vector<Revisit> find_revisits(std::span<const topomap::LocalMap> maps,
+                                   const ReferencePoses& poses, const std::set<StopPair>& tried,
                                    const std::set<StopPair>& accepted) {
   std::vector<Revisit> revisits;
   const auto count = static_cast<std::uint32_t>(poses.size());
@@ -158,6 +190,7 @@ std::vector<Revisit> find_revisits(const ReferencePoses& poses, const std::set<S
       near = true;
       revisit.tried |= tried.contains({earlier, later});
       revisit.accepted |= accepted.contains({earlier, later});
+      if (!revisit.in_view) revisit.in_view = in_view(maps[earlier], maps[later], *T);
     }
     if (near) revisits.push_back(revisit);
   }
@@ -194,7 +227,7 @@ LoopRecall loop_recall(std::span<const topomap::LocalMap> maps,
   std::set<StopPair> accepted;
   for (const LoopCandidate& candidate : candidates) tried.insert(pair_of(candidate));
   for (const LoopCandidate* loop : loops) accepted.insert(pair_of(*loop));
-  recall.revisits = find_revisits(poses, tried, accepted);
+  recall.revisits = find_revisits(maps, poses, tried, accepted);
   recall.off_reference = loops_off_reference(maps, poses, loops);
   recall.outcomes = count_outcomes(poses, candidates);
   return recall;
@@ -206,6 +239,15 @@ std::size_t LoopRecall::tried() const {
 
 std::size_t LoopRecall::accepted() const {
   return static_cast<std::size_t>(std::ranges::count_if(revisits, &Revisit::accepted));
+}
+
+std::size_t LoopRecall::in_view() const {
+  return static_cast<std::size_t>(std::ranges::count_if(revisits, &Revisit::in_view));
+}
+
+std::size_t LoopRecall::accepted_in_view() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      revisits, [](const Revisit& revisit) { return revisit.in_view && revisit.accepted; }));
 }
 
 std::size_t LoopRecall::wrong() const {

@@ -152,6 +152,22 @@ TEST(LoopRecallTest, ALoopOffTheReferenceIsWrongUnlessTheScansFitBetter) {
   EXPECT_EQ(by_wrong_reference.wrong(), 0U);
 }
 
+// A wall beside stops 0 and 30, and one elsewhere for stop 31 of the same place as stop 1.
+TEST(LoopRecallTest, ARevisitIsInViewWhenHalfOfItsPointsAreThereForTheOlderStop) {
+  std::vector<topomap::LocalMap> maps = maps_of(path().size());
+  for (int i = 0; i < 40; ++i) {
+    const float x_m = -1.0F + 0.05F * static_cast<float>(i);
+    for (const std::size_t stop : {0U, 30U, 1U}) maps[stop].points.push_back({x_m, 1.0F});
+    maps[31].points.push_back({x_m, -2.0F});
+  }
+  const LoopRecall recall =
+      loop_recall(maps, reference_of(path()), std::vector{decision(0, 30, "accepted")});
+  EXPECT_TRUE(recall.revisits[0].in_view);
+  EXPECT_FALSE(recall.revisits[1].in_view);
+  EXPECT_EQ(recall.in_view(), 1U);
+  EXPECT_EQ(recall.accepted_in_view(), 1U);
+}
+
 TEST(LoopRecallTest, StopsWithoutAReferencePoseDoNotCount) {
   std::vector<topomap::StampedPose> reference = reference_of(path());
   reference.erase(reference.begin() + 30);   // the first revisit

@@ -21,6 +21,9 @@ struct Revisit {
   std::uint32_t stop = 0;  ///< local map id
   bool tried = false;      ///< compared with at least one of the older stops that are so near
   bool accepted = false;   ///< the map has a loop to at least one of them
+  /// Placed by the reference, half of the stop's points are in view of one of them and within 0.2 m
+  /// of its points or outline: the two scans alone can be matched.
+  bool in_view = false;
 };
 
 /// A loop of the map that is more than 0.6 m or 0.2 rad off the reference.
@@ -54,9 +57,11 @@ struct LoopRecall {
   std::vector<LoopOffReference> off_reference;  ///< in the order in which they were accepted
   std::vector<LoopOutcomeCounts> outcomes;      ///< by source, then outcome
 
-  [[nodiscard]] std::size_t tried() const;     ///< of the revisits
-  [[nodiscard]] std::size_t accepted() const;  ///< of the revisits
-  [[nodiscard]] std::size_t wrong() const;     ///< of the loops
+  [[nodiscard]] std::size_t tried() const;             ///< of the revisits
+  [[nodiscard]] std::size_t accepted() const;          ///< of the revisits
+  [[nodiscard]] std::size_t in_view() const;           ///< of the revisits
+  [[nodiscard]] std::size_t accepted_in_view() const;  ///< of those in view
+  [[nodiscard]] std::size_t wrong() const;             ///< of the loops
   /// Decisions that were right and did not become loops, by outcome.
   [[nodiscard]] std::map<std::string, std::size_t> rejected() const;
 };
