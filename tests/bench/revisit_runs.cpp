@@ -164,7 +164,9 @@ std::vector<std::size_t> revisits_of(const Recording& recording, const RevisitOp
     for (std::size_t k = i; k < i + options.scans; ++k) {
       known += was_here(recording, k, i - kOlder) ? 1 : 0;
     }
-    if (static_cast<double>(known) < kGoesOn * static_cast<double>(options.scans)) {
+    const bool goes_on = was_here(recording, i + options.scans - 1, i - kOlder) ||
+                         static_cast<double>(known) >= kGoesOn * static_cast<double>(options.scans);
+    if (!goes_on) {
       ++i;
       continue;
     }

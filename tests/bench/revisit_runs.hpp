@@ -42,8 +42,8 @@ struct RevisitRun {
   [[nodiscard]] std::size_t wrong() const;
 };
 
-/// Scans at which a revisit begins: within 2 m and 57 degrees of one 40 or more older, and so are
-/// half of the `scans` that follow.
+/// Scans at which a revisit begins: within 2 m and 57 degrees of one 40 or more older, and so is
+/// the last of the `scans` that follow, or half of them.
 std::vector<std::size_t> revisits_of(const Recording& recording, const RevisitOptions& options);
 
 /// The map is made of the scans up to 30 before the revisit, with the reference as odometry.
