@@ -159,11 +159,10 @@ std::optional<PlaceHypothesis> PlaceSearch::best() const {
 }
 
 bool PlaceSearch::found(const PlaceHypothesis& hypothesis) {
-  if (hypothesis.missed > 0) return false;
+  if (hypothesis.missed > 0 || hypothesis.fitness < kSurelyThere) return false;
   const bool accepted = hypothesis.weight >= kSure && hypothesis.accepted >= hypothesis.wanted &&
                         hypothesis.distance_m >= kLeastDistance_m;
-  return accepted || (hypothesis.weight >= kSurer && hypothesis.fitness >= kSurelyThere &&
-                      hypothesis.agreement.enough());
+  return accepted || (hypothesis.weight >= kSurer && hypothesis.agreement.enough());
 }
 
 }  // namespace topogeo::localization
