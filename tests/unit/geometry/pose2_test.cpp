@@ -188,7 +188,8 @@ TEST(Covariance, OfACompositionAgreesWithSampling) {
 TEST(Mahalanobis, IsTheSquaredLengthAfterWhitening) {
   RandomPoses random;
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Matrix3d cov = random_covariance(random);
+    // Not nearly singular: there neither of the two is exact.
+    const Eigen::Matrix3d cov = random_covariance(random) + 0.01 * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d d(random.normal(), random.normal(), random.normal());
     const Eigen::Vector3d white = Eigen::LLT<Eigen::Matrix3d>(cov).matrixL().solve(d);
     EXPECT_NEAR(squared_mahalanobis(d, cov), white.squaredNorm(), 1e-9 * white.squaredNorm());

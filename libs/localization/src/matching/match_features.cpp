@@ -31,10 +31,10 @@ std::vector<Eigen::Vector2d> to_vectors(std::span<const ScanPoint> points) {
 
 // Gap between two beams on one surface, as a share of the range: beams one degree apart on a wall
 // that is seen at 75 degrees from its normal. Where that gives too few neighbours, along corridors
-// seen by coarse lasers, at 85 degrees; not at once, because wider neighbourhoods round off
-// corners.
+// seen by coarse lasers, at 82 degrees; not at once, because wider neighbourhoods round off
+// corners, and not more, because a wall of a few points far apart is a poor line.
 constexpr double kUsualGap = 0.07;
-constexpr double kFlatGap = 0.21;
+constexpr double kFlatGap = 0.14;
 
 struct Neighbourhood {
   std::size_t first = 0;

@@ -72,7 +72,7 @@ TEST(MatchFeaturesTest, NormalsOfASlantingWall) {
   }
 }
 
-// One side of a corridor by beams one degree apart: gaps grow to a fifth of the range.
+// One side of a corridor by beams one degree apart: gaps grow with the range.
 TEST(MatchFeaturesTest, AWallThatACoarseLaserSeesAtAFlatAngleIsALine) {
   std::vector<topomap::ScanPoint> points;
   for (int degree = 90; degree >= 7; --degree) {
