@@ -41,9 +41,9 @@ bool was_here(const Recording& recording, std::size_t scan, std::size_t end) {
 }
 
 /// The map that grows by the scans before each revisit.
-class GrowingMap {
+class GrowingStoredMap {
  public:
-  GrowingMap(const Recording& recording, const pipeline::Config& config)
+  GrowingStoredMap(const Recording& recording, const pipeline::Config& config)
       : recording_(recording), run_(config, "robot") {}
 
   void grow(std::size_t end) {
@@ -77,7 +77,7 @@ class GrowingMap {
 };
 
 /// By the stop of the map that is nearest in truth.
-Pose2 truth_in(const localization::StoredMap& map, const GrowingMap& made,
+Pose2 truth_in(const localization::StoredMap& map, const GrowingStoredMap& made,
                const Pose2& T_world_robot) {
   std::size_t best = 0;
   double best_m = std::numeric_limits<double>::infinity();
@@ -93,7 +93,7 @@ Pose2 truth_in(const localization::StoredMap& map, const GrowingMap& made,
 }
 
 RevisitRun drive(const Recording& recording, const pipeline::Config& config,
-                 const RevisitOptions& options, const GrowingMap& made, std::size_t first) {
+                 const RevisitOptions& options, const GrowingStoredMap& made, std::size_t first) {
   const std::shared_ptr<const localization::StoredMap> map = made.stored();
   RevisitRun run;
   run.first_scan = first;
@@ -181,7 +181,7 @@ std::vector<RevisitRun> run_revisits(const Recording& recording, const pipeline:
   const std::vector<std::size_t> revisits = revisits_of(recording, options);
   const std::size_t count = std::min(options.most, revisits.size());
   std::vector<RevisitRun> runs;
-  GrowingMap map(recording, config);
+  GrowingStoredMap map(recording, config);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t first = revisits[i * revisits.size() / count];
     map.grow(first - kLeftOut);

@@ -36,7 +36,7 @@ namespace {
 
 using namespace topogeo;
 
-struct Options {
+struct RevisitCommand {
   std::vector<std::string> logs;
   bool sessions = false;
   std::filesystem::path data = "../shared/data";
@@ -88,7 +88,7 @@ struct RevisitRow {
   }
 };
 
-RevisitRow measure(const std::string& text, const Options& options) {
+RevisitRow measure(const std::string& text, const RevisitCommand& options) {
   const std::size_t slash = text.find('/');
   const std::string name = text.substr(0, slash);
   const std::size_t every = slash == std::string::npos ? 1 : std::stoul(text.substr(slash + 1));
@@ -138,7 +138,7 @@ void print_details(const RevisitRow& row) {
   }
 }
 
-nlohmann::json run_logs(const Options& options) {
+nlohmann::json run_logs(const RevisitCommand& options) {
   std::cout << "| log | revisits | found | after m, median | TRACKING stops | wrong | step ms, p99 "
                "|\n|---|---|---|---|---|---|---|\n"
             << std::flush;
@@ -171,7 +171,7 @@ nlohmann::json run_logs(const Options& options) {
 
 // --- sessions
 
-nlohmann::json run_sessions(const Options& options) {
+nlohmann::json run_sessions(const RevisitCommand& options) {
   std::vector<bench::SessionDrive> drives(options.logs.size());
   in_parallel(drives.size(), options.jobs, [&](std::size_t i) {
     drives[i] = bench::session_drive((options.data / (options.logs[i] + ".clf.gz")).string(),
@@ -229,7 +229,7 @@ nlohmann::json run_sessions(const Options& options) {
 
 int main(int argc, char** argv) {
   command_line::Command app{"whether a robot finds its place where it has been before"};
-  Options options;
+  RevisitCommand options;
   app.add_option("log", options.logs, "NAME, or NAME/N: every N-th scan of it alone")
       ->required()
       ->type_name("NAME");

@@ -26,7 +26,7 @@ constexpr double kDoubtful = 1.0;
 constexpr double kLeastWeight = 4.0;
 // Of path between two stops that count once each: nearer ones see much the same, of sparse ones
 // each sees more that is new.
-constexpr double kBetweenStops_m = 0.75;
+constexpr double kCountedApart_m = 0.75;
 constexpr double kLeastShare = 0.6;
 constexpr double kMostShare = 1.5;
 // More is wanted of a set that the prediction speaks against: per logarithm of the squared
@@ -125,9 +125,9 @@ double LoopAgreement::weight_of(const Set& set, std::span<const double> path_m) 
   double sum = 0.0;
   std::optional<double> before_m;
   for (const auto& [stop, weight] : of_stop) {
-    const double apart_m = before_m ? path_m[stop] - *before_m : kBetweenStops_m;
+    const double apart_m = before_m ? path_m[stop] - *before_m : kCountedApart_m;
     before_m = path_m[stop];
-    sum += weight * std::clamp(apart_m / kBetweenStops_m, kLeastShare, kMostShare);
+    sum += weight * std::clamp(apart_m / kCountedApart_m, kLeastShare, kMostShare);
   }
   return sum;
 }

@@ -24,7 +24,7 @@ Eigen::Matrix3d StepSums::sum_to(std::span<const Pose2> T_map_stop, const StepCo
   if (block >= blocks_.size()) blocks_.resize(block + 1);
   std::vector<Eigen::Matrix3d>& sums = blocks_[block].sums;
   while (sums.size() <= stop % kBlock) {
-    const auto at = static_cast<std::uint32_t>(block * kBlock + sums.size());
+    const auto at = block * kBlock + static_cast<std::uint32_t>(sums.size());
     Eigen::Matrix3d sum = sums.empty() ? Eigen::Matrix3d::Zero().eval() : sums.back();
     if (at > 0) {
       const Pose2& before = T_map_stop[at - 1];

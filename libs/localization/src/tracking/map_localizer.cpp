@@ -82,7 +82,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
     // What the two have in common is foreseen, because they follow each other.
     step.evidence.matches.push_back(step_match(task, result, 0.0, monitor_.steps() - 1));
   }
-  const std::vector<bool> believed = agreeing(tasks, results, stored);
+  const std::vector<bool> right = agreeing(tasks, results, stored);
   bool sure = false;
   std::vector<UncertainPose> accepted{pose_};
   std::vector<UncertainPose> uncertain{pose_};
@@ -91,7 +91,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
     const UncertainPose measured = matching_.measured(stored[i].id, result);
     step.evidence.matches.push_back(step_match(tasks[i], result, stored[i].overlap, std::nullopt));
     step.measured.push_back(measured.T_a_b);
-    if (believed[i]) {
+    if (right[i]) {
       step.evidence.matches.back().verdict = Verdict::kAccepted;
       step.evidence.matches.back().reason = Reason::kNone;
       sure |= doubt(result) < kHardlyDoubtful || result.verdict != Verdict::kAccepted;
@@ -121,15 +121,15 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
 std::vector<bool> MapLocalizer::agreeing(std::span<const MatchTask> tasks,
                                          std::span<const MatchResult> results,
                                          std::span<const MatchCandidate> stored) {
-  std::vector<bool> believed(results.size());
+  std::vector<bool> right(results.size());
   std::vector<bool> agreed(results.size());
   bool any_accepted = false;
   double agreeing = 0.0;  // the most confident one
   for (std::size_t i = 0; i < results.size(); ++i) {
-    believed[i] = results[i].verdict == Verdict::kAccepted;
+    right[i] = results[i].verdict == Verdict::kAccepted;
     agreed[i] = plausible(tasks[i], results[i]) &&
                 agree(pose_, matching_.measured(stored[i].id, results[i]));
-    any_accepted |= believed[i] && agreed[i];
+    any_accepted |= right[i] && agreed[i];
     if (!agreed[i]) continue;
     const StepMatch match = step_match(tasks[i], results[i], 0.0, std::nullopt);
     agreeing = std::max(agreeing, match_confidence(match));
@@ -139,9 +139,9 @@ std::vector<bool> MapLocalizer::agreeing(std::span<const MatchTask> tasks,
   } else if (!results.empty()) {
     agreement_.contradict();
   }
-  if (!agreement_.enough()) return believed;
-  for (std::size_t i = 0; i < results.size(); ++i) believed[i] = believed[i] || agreed[i];
-  return believed;
+  if (!agreement_.enough()) return right;
+  for (std::size_t i = 0; i < results.size(); ++i) right[i] = right[i] || agreed[i];
+  return right;
 }
 
 std::vector<MatchTask> MapLocalizer::tracking_tasks(const DriveStop& stop,
