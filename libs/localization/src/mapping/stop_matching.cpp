@@ -246,6 +246,7 @@ std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
     }
   }
   std::vector<MatchTask> tasks;
+  tasks.reserve(comparisons.size());
   for (const Comparison& comparison : comparisons) tasks.push_back(comparison.task);
   std::vector<StopMatch> matches = run(tasks, EdgeKind::kRevisit);
   bool any_predicted = false;
