@@ -17,7 +17,7 @@ constexpr std::uint32_t kTrackedStops = 3;
 constexpr double kTrackedDistance_m = 4.0;
 // Of what should look alike (contradiction()), where doors have changed and people are about; a
 // corridor that is taken for another one differs more.
-constexpr double kContradicted = 0.5;
+constexpr double kContradicted = 0.3;
 
 void add_to(SlamCounts& sum, const SlamCounts& more) {
   sum.tasks += more.tasks;
