@@ -8,6 +8,7 @@
 #include <set>
 
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 
@@ -19,11 +20,6 @@ namespace {
 constexpr double kFarthest_m = 25.0;
 constexpr double kFarOff_m = 5.0;  // ways round two loops that agree end nearer to each other
 constexpr double kAgree = 7.8;     // 95 % of right pairs (chi-square, three degrees of freedom)
-// Weights: of a match that passed its gate and of a doubtful one; of a set that is accepted, and
-// how much heavier than its rivals that has to be.
-constexpr double kPassed = 1.5;
-constexpr double kDoubtful = 1.0;
-constexpr double kLeastWeight = 4.0;
 // Of path between two stops that count once each: nearer ones see much the same, of sparse ones
 // each sees more that is new.
 constexpr double kCountedApart_m = 0.75;
@@ -32,8 +28,7 @@ constexpr double kMostShare = 1.5;
 // More is wanted of a set that the prediction speaks against: per logarithm of the squared
 // Mahalanobis distance, because a prediction is wrong by far more often than a Gaussian says.
 constexpr double kPerSurprise = 0.75;
-constexpr double kOverRival = 2.0;
-constexpr double kLeastSpread_m = 2.0;
+constexpr double kOverRival = 2.0;  // how much heavier than its rivals an accepted set is
 constexpr std::size_t kRivalSeeds = 8;
 // Older ones have had their chance: bounds the work of a step.
 constexpr double kForgotten_m = 60.0;
@@ -66,11 +61,13 @@ double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGr
 }
 
 void LoopAgreement::add(const StopMatch& match, std::span<const double> path_m) {
-  keep({match, match.accepted() ? kPassed : kDoubtful, true, false}, path_m);
+  keep({match, match.accepted() ? AgreementWeights::kPassed : AgreementWeights::kDoubtful, true,
+        false},
+       path_m);
 }
 
 void LoopAgreement::add_accepted(const StopMatch& match, std::span<const double> path_m) {
-  keep({match, kPassed, false, true}, path_m);
+  keep({match, AgreementWeights::kPassed, false, true}, path_m);
 }
 
 void LoopAgreement::keep(Hypothesis hypothesis, std::span<const double> path_m) {
@@ -146,7 +143,7 @@ bool LoopAgreement::spread(const Set& set, std::span<const double> path_m) const
     low_m = std::min(low_m, path_m[hypotheses_[i].match.edge.to]);
     high_m = std::max(high_m, path_m[hypotheses_[i].match.edge.to]);
   }
-  return high_m - low_m >= kLeastSpread_m;
+  return high_m - low_m >= AgreementWeights::kLeastSpread_m;
 }
 
 // Those of the same later stretch that put the robot elsewhere. Loops with another earlier visit of
@@ -206,7 +203,7 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
       const Set set = set_around(seed, all, graph, path_m);
       const double weight = weight_of(set, path_m);
-      const double wanted = kLeastWeight + kPerSurprise * std::log1p(surprise_of(set));
+      const double wanted = AgreementWeights::kWanted + kPerSurprise * std::log1p(surprise_of(set));
       if (weight < wanted || !spread(set, path_m)) continue;
       std::vector<std::size_t> rivals = rivals_of(seed, set, graph, path_m);
       double rival = 0.0;
@@ -220,7 +217,7 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       for (const std::size_t i : set) {
         if (!hypotheses_[i].accepted) out.push_back(hypotheses_[i].match);
         hypotheses_[i].accepted = true;
-        hypotheses_[i].weight = kPassed;
+        hypotheses_[i].weight = AgreementWeights::kPassed;
       }
       std::vector<std::size_t> gone;
       for (const std::size_t i : rivals) {

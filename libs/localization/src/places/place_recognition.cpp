@@ -64,12 +64,6 @@ std::vector<SurfacePoint> thinned(std::vector<SurfacePoint> points, double spaci
   return some;
 }
 
-void add_moved(std::span<const SurfacePoint> points, const Pose2& T,
-               std::vector<SurfacePoint>& out) {
-  const geometry::SinCos r = geometry::sincos(T.theta_rad);
-  for (const SurfacePoint& p : points) out.push_back(moved(p, T, r));
-}
-
 bool well_known(const Eigen::Matrix3d& covariance) {
   constexpr double kKnown2_m2 = 0.3 * 0.3;
   constexpr double kKnown2_rad2 = 0.1 * 0.1;

@@ -1,21 +1,19 @@
 #include "topogeo/localization/tracking/drive_agreement.hpp"
 
+#include "topogeo/localization/matching/match_gate.hpp"
+
 namespace topogeo::localization {
 
 namespace {
 
-// As for sets of loops (LoopAgreement).
-constexpr double kAcceptedWeight = 1.5;
-constexpr double kDoubtfulWeight = 1.0;
-constexpr double kWeightWanted = 4.0;
-constexpr double kSpreadWanted_m = 2.0;
 // Stops from before this path are no longer known well enough relative to the last one.
 constexpr double kRemembered_m = 8.0;
 
 }  // namespace
 
 void DriveAgreement::add(bool accepted, double confidence) {
-  agreed_.push_back({path_m_, accepted ? kAcceptedWeight : kDoubtfulWeight * confidence});
+  agreed_.push_back(
+      {path_m_, accepted ? AgreementWeights::kPassed : AgreementWeights::kDoubtful * confidence});
   while (path_m_ - agreed_.front().path_m > kRemembered_m) agreed_.pop_front();
 }
 
@@ -24,8 +22,8 @@ void DriveAgreement::contradict() {
 }
 
 bool DriveAgreement::enough() const {
-  return weight() >= kWeightWanted &&
-         agreed_.back().path_m - agreed_.front().path_m >= kSpreadWanted_m;
+  return weight() >= AgreementWeights::kWanted &&
+         agreed_.back().path_m - agreed_.front().path_m >= AgreementWeights::kLeastSpread_m;
 }
 
 double DriveAgreement::weight() const {

@@ -18,8 +18,7 @@ constexpr double kStepWidening = 3.0;  // of the deviations, when nothing was fo
 
 }  // namespace
 
-DriveWindow::DriveWindow(const LocalizerConfig& config, MatchRequests& requests)
-    : config_(config), requests_(requests) {}
+DriveWindow::DriveWindow(MatchRequests& requests) : requests_(requests) {}
 
 DriveStep DriveWindow::add(std::shared_ptr<const topomap::LocalMap> map,
                            std::shared_ptr<const StopView> view,
@@ -91,9 +90,8 @@ std::vector<SurfacePoint> DriveWindow::seen(double length_m) const {
   std::vector<SurfacePoint> points;
   for (std::size_t i = stops_.size(); i-- > 0;) {
     if (stops_.back().path_m - stops_[i].path_m > length_m) break;
-    const Pose2 T = geometry::between(stops_.back().T_window_robot, stops_[i].T_window_robot);
-    const geometry::SinCos r = geometry::sincos(T.theta_rad);
-    for (const SurfacePoint& point : stops_[i].view->near) points.push_back(moved(point, T, r));
+    add_moved(stops_[i].view->near,
+              geometry::between(stops_.back().T_window_robot, stops_[i].T_window_robot), points);
   }
   return points;
 }

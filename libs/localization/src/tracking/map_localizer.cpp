@@ -23,9 +23,9 @@ constexpr double kLeastConformity = 0.3;  // a share of points through walls is 
 
 // Whether a match lies where it was expected.
 bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
-  constexpr double kFarthest2 = 11.3;  // 99 % of right ones (chi-square, three degrees of freedom)
   return geometry::squared_mahalanobis(geometry::difference(measured.T_a_b, predicted.T_a_b),
-                                       predicted.covariance + measured.covariance) <= kFarthest2;
+                                       predicted.covariance + measured.covariance) <=
+         geometry::kMahalanobis2Of99Percent;
 }
 
 topomap::StopPose pose_of(const LocalizedStop& stop) {

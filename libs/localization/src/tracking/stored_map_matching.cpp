@@ -21,7 +21,7 @@ StoredMapMatching::StoredMapMatching(const LocalizerConfig& config,
       map_(std::move(map)),
       places_(map_->maps, map_->trajectory),
       requests_(config, pool),
-      window_(config, requests_) {
+      window_(requests_) {
   for (const topomap::LocalMap& local_map : map_->maps) {
     requests_.add_map(std::shared_ptr<const topomap::LocalMap>(map_, &local_map));
   }

@@ -34,7 +34,7 @@ class DriveWindowTest : public ::testing::Test {
   InProcessPool pool_;
   LocalizerConfig config_;
   MatchRequests requests_{config_, pool_};
-  DriveWindow window_{config_, requests_};
+  DriveWindow window_{requests_};
   std::uint32_t next_ = 0;
 };
 

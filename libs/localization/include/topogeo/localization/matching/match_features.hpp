@@ -34,6 +34,12 @@ inline SurfacePoint moved(const SurfacePoint& point, const geometry::Pose2& T_a_
   };
   return {T_a_b.position_m() + turned(point.position_m), turned(point.normal), point.on_line};
 }
+/// Appends points that are given in frame b, in frame a.
+inline void add_moved(std::span<const SurfacePoint> points, const geometry::Pose2& T_a_b,
+                      std::vector<SurfacePoint>& out) {
+  const geometry::SinCos r = geometry::sincos(T_a_b.theta_rad);
+  for (const SurfacePoint& point : points) out.push_back(moved(point, T_a_b, r));
+}
 
 /// How far the laser saw in each direction.
 class RangeProfile {

@@ -52,6 +52,14 @@ struct PlausibleMatch {
   static constexpr double kMostRivalry = 0.9;
 };
 
+/// What stops whose matches agree are worth together (LoopAgreement, DriveAgreement).
+struct AgreementWeights {
+  static constexpr double kPassed = 1.5;  ///< a stop with a match that passed its gate
+  static constexpr double kDoubtful = 1.0;
+  static constexpr double kWanted = 4.0;         ///< before they are right together
+  static constexpr double kLeastSpread_m = 2.0;  ///< of path between the first and the last
+};
+
 /// Deviation of the position along the direction in which a covariance knows it least.
 double weakest_sigma_m(const Eigen::Matrix3d& covariance);
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/match_requests.hpp"
 #include "topogeo/localization/mapping/odometry_monitor.hpp"
 #include "topogeo/localization/matching/match.hpp"
@@ -31,7 +30,7 @@ struct DriveStep {
 class DriveWindow {
  public:
   /// The requests must outlive this.
-  DriveWindow(const LocalizerConfig& config, MatchRequests& requests);
+  explicit DriveWindow(MatchRequests& requests);
 
   /// The next stop, known to the requests under the id of `map`; `odometry` from the stop before,
   /// nothing at the first one or after a gap. A gap, and a step by odometry alone, forgets the
@@ -56,7 +55,6 @@ class DriveWindow {
   std::optional<UncertainPose> match(const topomap::LocalMap& map, const UncertainPose& odometry,
                                      double widening, DriveStep& step);
 
-  LocalizerConfig config_;
   MatchRequests& requests_;
   OdometryMonitor monitor_;
   std::deque<Stop> stops_;

@@ -54,8 +54,7 @@ class StoredMapMatching {
   /// T_map_robot by a match with a stored stop.
   [[nodiscard]] UncertainPose measured(std::size_t stored, const MatchResult& result) const;
 
-  /// The last metres of the drive.
-  [[nodiscard]] const DriveWindow& window() const { return window_; }
+  /// What was seen over the last metres of the drive.
   [[nodiscard]] const PlaceQuery& query() const { return query_; }
   [[nodiscard]] std::size_t stored_stops() const { return map_->maps.size(); }
   [[nodiscard]] const GlobalLocalizer& places() const { return places_; }
