@@ -9,7 +9,7 @@
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
-#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/atomic_file.hpp"
 
 #include "drawing_options.hpp"
@@ -75,7 +75,7 @@ void serve(const service::Setup& setup, const StoreOptions& options) {
   storage::MapDocument document;
   const auto hybrid = [&] {
     try {
-      if (options.map) document = storage::read_map_file(*options.map);
+      if (options.map) document = storage::read_map(*options.map);
       pipeline::lay_over(document.drawing, std::move(drawing));
       return pipeline::make_hybrid_map(pipeline::parts_of(document), config);
     } catch (const std::exception& error) {

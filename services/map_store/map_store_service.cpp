@@ -92,7 +92,10 @@ void MapStoreService::on_local_map(const msg::LocalMap& message) {
 bool MapStoreService::store() {
   try {
     for (std::size_t i = database_.local_map_count(); i < input_.local_maps().size(); ++i) {
-      database_.put_local_map(input_.local_maps()[i]);
+      const storage::SessionStop stop{1, 0, input_.local_maps()[i]};
+      static_cast<void>(database_.put_stops({&stop, 1}));
+      const storage::JoinedStop joined{stop.source(), false};
+      database_.join({&joined, 1});
     }
     const topomap::Trajectory trajectory = input_.newest_trajectory();
     if (trajectory.version != stored_version_ || trajectory.stops.size() != stored_stops_) {

@@ -9,7 +9,7 @@
 
 #include "topogeo/pipeline/loop_recall.hpp"
 #include "topogeo/service/service_options.hpp"
-#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
 #include "topogeo/storage/report.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/format.hpp"
@@ -34,7 +34,7 @@ std::vector<storage::LoopCandidate> read_candidates(const LoopComparison& compar
 
 LoopRecall recall_of(const LoopComparison& comparison) {
   try {
-    const storage::MapDocument map = storage::read_map_file(comparison.map);
+    const storage::MapDocument map = storage::read_map(comparison.map);
     const std::vector<storage::LoopCandidate> candidates = read_candidates(comparison);
     std::vector<topomap::StampedPose> reference =
         storage::read_trajectory_tum(comparison.reference);

@@ -12,7 +12,7 @@
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/planning/route_planner.hpp"
 #include "topogeo/service/service_options.hpp"
-#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
@@ -39,7 +39,7 @@ pipeline::LoadedConfig load_map(const std::optional<std::filesystem::path>& file
 
 storage::MapDocument read_map(const std::filesystem::path& path) {
   try {
-    return storage::read_map_file(path);
+    return storage::read_map(path);
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }

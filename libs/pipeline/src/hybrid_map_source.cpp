@@ -8,7 +8,7 @@
 
 #include "topogeo/pipeline/world_grid.hpp"
 #include "topogeo/planning/grid_file.hpp"
-#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
 
 namespace topogeo::pipeline {
 
@@ -23,9 +23,10 @@ planning::OccupancyGrid make_grid(const HybridMapParts& parts, const HybridMapCo
 
 planning::ZoneMap make_zones(const planning::FreeSpace& space, const HybridMapParts& parts,
                              const planning::ZoneConfig& config) {
-  if (parts.drawing != nullptr && !parts.drawing->zones.empty()) {
-    return planning::drawn_zones(space, parts.drawing->zones, config);
-  }
+  std::vector<planning::DrawnZone> rooms;
+  if (parts.drawing != nullptr) rooms = parts.drawing->zones;
+  std::erase_if(rooms, [](const auto& zone) { return zone.kind != planning::ZoneKind::kRoom; });
+  if (!rooms.empty()) return planning::drawn_zones(space, rooms, config);
   std::vector<planning::Passage> passages;
   if (parts.global_map != nullptr) passages = planning::passages_of(*parts.global_map);
   if (!passages.empty()) return planning::zones_between(space, passages, config);
@@ -46,6 +47,9 @@ void move(storage::MapDrawing& drawing, const geometry::Pose2& T) {
   for (planning::Place& place : drawing.places) place.position_m = T * place.position_m;
   for (planning::DrawnZone& zone : drawing.zones) {
     for (Eigen::Vector2d& corner : zone.polygon_m) corner = T * corner;
+    if (zone.kind == planning::ZoneKind::kOneWay) {
+      zone.value = geometry::wrap_angle(zone.value + T.theta_rad);
+    }
   }
   if (drawing.grid) drawing.grid = moved(*drawing.grid, T);
 }
@@ -158,7 +162,7 @@ storage::MapDocument read_floor(const std::filesystem::path& file,
     document.drawing = read_drawing(file, zones, resolution_m);
     return document;
   }
-  document = storage::read_map_file(file);
+  document = storage::read_map(file);
   if (zones) lay_over(document.drawing, read_zones_and_places(*zones));
   return document;
 }

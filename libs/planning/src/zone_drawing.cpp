@@ -1,4 +1,6 @@
 // The YAML file of drawn zones and named places.
+#include <array>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -38,7 +40,36 @@ std::vector<Eigen::Vector2d> polygon_of(const YamlNode& node) {
   return corners;
 }
 
+constexpr std::array<const char*, kZoneKinds> kKindNames{"room", "no_go", "slow", "one_way"};
+
+ZoneKind kind_of(const YamlNode& node) {
+  if (!node.exists()) return ZoneKind::kRoom;
+  const std::optional<ZoneKind> kind = zone_kind_of(node.text());
+  if (!kind) node.fail("room, no_go, slow or one_way");
+  return *kind;
+}
+
+double value_of(const YamlNode& node, ZoneKind kind) {
+  constexpr double kLeastSpeed_mps = 0.01;  // slower than that is standing: draw a no_go zone
+  constexpr double kMostSpeed_mps = 10.0;
+  if (kind == ZoneKind::kSlow) return node.number(kLeastSpeed_mps, kMostSpeed_mps, "m/s");
+  if (kind == ZoneKind::kOneWay) return node.number(-std::numbers::pi, std::numbers::pi, "rad");
+  if (node.exists()) node.fail("no value: only slow and one_way zones have one");
+  return 0.0;
+}
+
 }  // namespace
+
+const char* to_string(ZoneKind kind) {
+  return kKindNames.at(static_cast<std::size_t>(kind));
+}
+
+std::optional<ZoneKind> zone_kind_of(std::string_view name) {
+  for (std::size_t i = 0; i < kKindNames.size(); ++i) {
+    if (name == kKindNames[i]) return static_cast<ZoneKind>(i);
+  }
+  return std::nullopt;
+}
 
 ZoneDrawing read_zone_drawing(const std::filesystem::path& path) {
   return parse_zone_drawing(read_text_file(path), path.string());
@@ -50,9 +81,10 @@ ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& sourc
   ZoneDrawing drawing;
   std::set<std::string> zone_names;
   for (const YamlNode& node : root.at("zones").items("a zone")) {
-    node.allow_keys({"name", "polygon"});
-    drawing.zones.push_back(
-        {new_name(node.at("name"), zone_names), polygon_of(node.at("polygon"))});
+    node.allow_keys({"name", "polygon", "kind", "value"});
+    const ZoneKind kind = kind_of(node.at("kind"));
+    drawing.zones.push_back({new_name(node.at("name"), zone_names), polygon_of(node.at("polygon")),
+                             kind, value_of(node.at("value"), kind)});
   }
   std::set<std::string> place_names;
   for (const YamlNode& node : root.at("places").items("a place")) {

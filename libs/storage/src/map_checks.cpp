@@ -1,5 +1,6 @@
 // Whether the parts of a map fit together.
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "topogeo/support/format.hpp"
@@ -23,6 +24,18 @@ void check_ascending(const std::vector<Element>& elements, const char* what) {
   }
 }
 
+void check_sources(const std::vector<StopSource>& sources, std::size_t map_count) {
+  if (!sources.empty() && sources.size() != map_count) {
+    fail("{} sources of stops: expected one for each of the {} local maps or none", sources.size(),
+         map_count);
+  }
+  std::set<StopSource> taken;
+  for (const StopSource& source : sources) {
+    if (taken.insert(source).second) continue;
+    fail("stop {} of session {:016x} is in the map twice", source.number, source.session);
+  }
+}
+
 }  // namespace
 
 void check_global_map(const topomap::GlobalMap& map) {
@@ -35,6 +48,14 @@ void check_global_map(const topomap::GlobalMap& map) {
     for (const std::uint32_t node : {branch.node_a, branch.node_b}) {
       if (!is_known(node)) fail("branch {} ends at node {}, which is not there", branch.id, node);
     }
+  }
+}
+
+void check_edges(const std::vector<MapEdge>& edges, std::size_t map_count) {
+  for (const MapEdge& edge : edges) {
+    if (edge.earlier_id < edge.later_id && edge.later_id < map_count) continue;
+    fail("edge from {} to {}: expected ascending ids below {}", edge.earlier_id, edge.later_id,
+         map_count);
   }
 }
 
@@ -60,6 +81,8 @@ void check_document(const MapDocument& document) {
            closure.later_id, map_count);
     }
   }
+  check_edges(document.edges, map_count);
+  check_sources(document.sources, map_count);
   check_global_map(document.global_map);
   check(document.drawing);
 }

@@ -108,6 +108,19 @@ topomap::LocalBranch local_branch_from_proto(const proto::LocalBranch& in, std::
   return branch;
 }
 
+void to_proto(const Eigen::Matrix3d& covariance, PackedDoubles* out) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) out->Add(covariance(row, column));
+  }
+}
+
+Eigen::Matrix3d covariance_from_proto(const PackedDoubles& in, const char* what) {
+  require(in.size() == 9, "covariance with {} numbers: expected 9", in.size());
+  Eigen::Matrix3d covariance;
+  for (int i = 0; i < 9; ++i) covariance(i / 3, i % 3) = finite(in[i], what);
+  return covariance;
+}
+
 topomap::TrackedScan tracked_scan_from_proto(const proto::TrackedScan& in) {
   return {in.sequence(), in.stamp_ns(), from_proto(in.t_odom_robot(), "T_odom_robot of a scan"),
           from_proto(in.t_stop_robot(), "T_stop_robot of a scan"), in.matched()};
@@ -185,9 +198,7 @@ void to_proto(const topomap::StopPose& stop, proto::StopPose* out) {
   out->set_local_map_id(stop.local_map_id);
   out->set_stamp_ns(stop.stamp_ns);
   to_proto(stop.T_map_robot, out->mutable_t_map_robot());
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) out->add_covariance(stop.covariance(row, column));
-  }
+  to_proto(stop.covariance, out->mutable_covariance());
   out->set_not_located(!stop.located);
 }
 
@@ -196,11 +207,7 @@ topomap::StopPose from_proto(const proto::StopPose& in) {
   stop.local_map_id = in.local_map_id();
   stop.stamp_ns = in.stamp_ns();
   stop.T_map_robot = from_proto(in.t_map_robot(), "pose of a stop");
-  require(in.covariance_size() == 9, "covariance with {} numbers: expected 9",
-          in.covariance_size());
-  for (int i = 0; i < 9; ++i) {
-    stop.covariance(i / 3, i % 3) = finite(in.covariance(i), "covariance of a stop");
-  }
+  stop.covariance = covariance_from_proto(in.covariance(), "covariance of a stop");
   stop.located = !in.not_located();
   return stop;
 }
@@ -213,6 +220,18 @@ void to_proto(const topomap::LoopClosure& closure, proto::LoopClosure* out) {
 
 topomap::LoopClosure from_proto(const proto::LoopClosure& in) {
   return {in.earlier_id(), in.later_id(), from_proto(in.t_earlier_later(), "loop closure")};
+}
+
+void to_proto(const MapEdge& edge, proto::MapEdge* out) {
+  out->set_earlier_id(edge.earlier_id);
+  out->set_later_id(edge.later_id);
+  to_proto(edge.T_earlier_later, out->mutable_t_earlier_later());
+  to_proto(edge.covariance, out->mutable_covariance());
+}
+
+MapEdge from_proto(const proto::MapEdge& in) {
+  return {in.earlier_id(), in.later_id(), from_proto(in.t_earlier_later(), "edge"),
+          covariance_from_proto(in.covariance(), "covariance of an edge")};
 }
 
 void to_proto(const topomap::MapNode& node, proto::MapNode* out) {

@@ -4,8 +4,10 @@
 // out of range later on: each from_proto throws std::runtime_error naming the field and the cause.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "topogeo/storage/map_document.hpp"
 
@@ -16,23 +18,32 @@ namespace topogeo::storage {
 void to_proto(const topomap::LocalMap& map, proto::LocalMap* out);
 void to_proto(const topomap::StopPose& stop, proto::StopPose* out);
 void to_proto(const topomap::LoopClosure& closure, proto::LoopClosure* out);
+void to_proto(const MapEdge& edge, proto::MapEdge* out);
 void to_proto(const topomap::MapNode& node, proto::MapNode* out);
 void to_proto(const topomap::MapBranch& branch, proto::MapBranch* out);
 void to_proto(const geometry::Pose2& pose, proto::Pose2* out);
+void to_proto(const planning::Place& place, proto::Place* out);
+void to_proto(const planning::DrawnZone& zone, proto::DrawnZone* out);
+void to_proto(const planning::OccupancyGrid& grid, proto::DrawnGrid* out);
 /// What is drawn must have passed check(MapDrawing).
 void to_proto(const MapDrawing& drawing, proto::Drawing* out);
 
 topomap::LocalMap from_proto(const proto::LocalMap& in);
 topomap::StopPose from_proto(const proto::StopPose& in);
 topomap::LoopClosure from_proto(const proto::LoopClosure& in);
+MapEdge from_proto(const proto::MapEdge& in);
 topomap::MapNode from_proto(const proto::MapNode& in);
 topomap::MapBranch from_proto(const proto::MapBranch& in);
 geometry::Pose2 from_proto(const proto::Pose2& in, const char* what);
-MapDrawing from_proto(const proto::Drawing& in);
+planning::Place from_proto(const proto::Place& in);
+planning::DrawnZone from_proto(const proto::DrawnZone& in);
+planning::OccupancyGrid from_proto(const proto::DrawnGrid& in);
+MapDrawing from_proto(const proto::Drawing& in);  ///< checked with check(MapDrawing)
 
 /// Throws std::runtime_error unless ids, robot ids and references between the parts fit together.
 void check_document(const MapDocument& document);
 void check_global_map(const topomap::GlobalMap& map);
+void check_edges(const std::vector<MapEdge>& edges, std::size_t map_count);
 
 /// The same bytes for the same message everywhere. Throws std::runtime_error above 2 GB.
 std::string deterministic_bytes(const google::protobuf::MessageLite& message);

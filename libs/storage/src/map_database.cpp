@@ -1,8 +1,7 @@
 #include "topogeo/storage/map_database.hpp"
 
-#include <fstream>
+#include <algorithm>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include <SQLiteCpp/Database.h>
@@ -10,101 +9,24 @@
 #include <SQLiteCpp/Transaction.h>
 
 #include "topogeo/support/format.hpp"
-#include "topogeo/support/hash.hpp"
 
 #include "map_conversions.hpp"
+#include "map_rows.hpp"
+#include "map_schema.hpp"
 #include "meta_table.hpp"
 #include "sqlite_rows.hpp"
+#include "stop_tables.hpp"
 #include "table_writer.hpp"
 
 namespace topogeo::storage {
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x54474D50;  // "TGMP": marks the file for `file` and us
-constexpr std::int64_t kSchemaVersion = 1;
-constexpr int kBusyTimeout_ms = 5000;  // for another program to finish its transaction
-
-// One file is one robot's run, so the robot id stands once in meta. Every blob has the hash of its
-// bytes beside it, because SQLite itself does not notice a changed byte inside a blob.
-constexpr const char* kSchema = R"(
-  CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-  CREATE TABLE local_map(
-    id INTEGER PRIMARY KEY, stamp_ns INTEGER NOT NULL, content_hash INTEGER NOT NULL,
-    blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
-  CREATE TABLE stop_pose(
-    id INTEGER PRIMARY KEY REFERENCES local_map(id),
-    blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
-  CREATE TABLE loop_closure(
-    id INTEGER PRIMARY KEY,
-    earlier_id INTEGER NOT NULL REFERENCES local_map(id),
-    later_id INTEGER NOT NULL REFERENCES local_map(id),
-    blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
-  CREATE TABLE map_node(id INTEGER PRIMARY KEY, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
-  CREATE TABLE map_branch(
-    id INTEGER PRIMARY KEY,
-    node_a INTEGER NOT NULL REFERENCES map_node(id) DEFERRABLE INITIALLY DEFERRED,
-    node_b INTEGER NOT NULL REFERENCES map_node(id) DEFERRABLE INITIALLY DEFERRED,
-    blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
-  CREATE INDEX map_branch_node_a ON map_branch(node_a);
-  CREATE INDEX map_branch_node_b ON map_branch(node_b);
-)";
-
-// Made with the first drawing: databases without one do not have it.
-constexpr const char* kDrawingSchema =
-    "CREATE TABLE IF NOT EXISTS drawing("
-    "id INTEGER PRIMARY KEY, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL)";
-
-std::int64_t pragma(SQLite::Database& database, const char* name) {
-  const SQLite::Column value = database.execAndGet(fmt::format("PRAGMA {}", name));
-  return value.getInt64();
-}
-
-/// Throws unless the file is missing, empty or starts like an SQLite file. SQLite itself takes a
-/// file shorter than its smallest page for an empty one and would overwrite it.
-void check_file_start(const std::filesystem::path& path) {
-  constexpr std::string_view kStart("SQLite format 3\0", 16);
-  constexpr std::uintmax_t kSmallestFile = 512;
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size == 0) return;  // opening the file reports the error
-  std::string start(kStart.size(), '\0');
-  std::ifstream(path, std::ios::binary)
-      .read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (start != kStart) {
-    throw std::runtime_error(path.string() + ": not a map database (no SQLite file)");
-  }
-  if (size < kSmallestFile) {
-    throw std::runtime_error(fmt::format("{}: cut short to {} bytes", path.string(), size));
-  }
-}
-
-/// Parses the blob of the statement's row: columns id, blob_hash, blob.
-template <typename Message>
-auto parse_row(const SQLite::Statement& row, const std::string& name, const char* table) {
-  const std::string_view blob = blob_at(row, 2);
-  const auto fail = [&](const std::string& why) {
-    throw std::runtime_error(
-        fmt::format("{}: {} {} is damaged ({})", name, table, integer_at(row, 0), why));
-  };
-  if (as_unsigned(integer_at(row, 1)) != support::fnv1a(blob)) fail("its hash is wrong");
-  Message message;
-  if (!message.ParseFromArray(blob.data(), static_cast<int>(blob.size()))) {
-    fail("no valid Protobuf message");
-  }
+template <typename Check>
+void require_valid(const std::string& file, const char* what, const Check& check) {
   try {
-    return from_proto(message);
+    check();
   } catch (const std::runtime_error& error) {
-    fail(error.what());
-    throw;
-  }
-}
-
-template <typename Message, typename Value>
-void read_table(SQLite::Database& database, const char* table, std::vector<Value>& values) {
-  SQLite::Statement row(database,
-                        fmt::format("SELECT id, blob_hash, blob FROM {} ORDER BY id", table));
-  while (row.executeStep()) {
-    values.push_back(parse_row<Message>(row, database.getFilename(), table));
+    throw std::invalid_argument(fmt::format("{}: {}{}", file, what, error.what()));
   }
 }
 
@@ -114,32 +36,17 @@ MapDatabase::MapDatabase(MapDatabase&&) noexcept = default;
 MapDatabase& MapDatabase::operator=(MapDatabase&&) noexcept = default;
 MapDatabase::~MapDatabase() = default;
 
-MapDatabase::MapDatabase(const std::filesystem::path& path, bool may_create)
-    : name_(path.string()) {
-  check_file_start(path);
-  const int flags = SQLite::OPEN_READWRITE | (may_create ? SQLite::OPEN_CREATE : 0);
-  database_ = std::make_unique<SQLite::Database>(name_, flags, kBusyTimeout_ms);
-  // The first read finds out whether this is an SQLite file at all.
-  const std::int64_t application_id = pragma(*database_, "application_id");
-  const std::int64_t version = pragma(*database_, "user_version");
-  const bool is_new = pragma(*database_, "schema_version") == 0;
-  if (is_new ? !may_create : application_id != kApplicationId) {
-    throw std::runtime_error(name_ + (is_new ? ": empty, expected a topogeo map database"
-                                             : ": an SQLite file, but no topogeo map database"));
-  }
-  if (!is_new && version != kSchemaVersion) {
-    throw std::runtime_error(fmt::format("{}: map database version {}, this program reads {}",
-                                         name_, version, kSchemaVersion));
-  }
-  database_->exec("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; PRAGMA foreign_keys=ON");
-}
+MapDatabase::MapDatabase(const std::filesystem::path& path,
+                         std::unique_ptr<SQLite::Database> database)
+    : name_(path.string()),
+      database_(std::move(database)),
+      stops_(std::make_unique<StopTables>(*database_, name_)) {}
 
 MapDatabase MapDatabase::open_or_create(const std::filesystem::path& path,
                                         const std::string& robot_id, std::uint64_t seed) try {
-  MapDatabase database(path, true);
-  if (pragma(*database.database_, "schema_version") == 0) {
-    database.create_schema(robot_id, seed);
-  }
+  MapDatabase database(path, open_map_database(path, Access::kCreate));
+  if (!has_content(*database.database_)) database.create(robot_id, seed);
+  database.migrate();
   database.read_state();
   if (database.robot_id_ != robot_id || database.seed_ != seed) {
     throw std::runtime_error(
@@ -152,7 +59,19 @@ MapDatabase MapDatabase::open_or_create(const std::filesystem::path& path,
 }
 
 MapDatabase MapDatabase::open_existing(const std::filesystem::path& path) try {
-  MapDatabase database(path, false);
+  MapDatabase database(path, open_map_database(path, Access::kExisting));
+  database.migrate();
+  database.read_state();
+  return database;
+} catch (const SQLite::Exception& error) {
+  throw_named(path.string(), error);
+}
+
+MapDatabase MapDatabase::open_read_only(const std::filesystem::path& path) try {
+  auto file = open_map_database(path, Access::kReadOnly);
+  if (stored_version(*file) != kSchemaVersion) file = copy_in_memory(*file);
+  MapDatabase database(path, std::move(file));
+  database.migrate();
   database.read_state();
   return database;
 } catch (const SQLite::Exception& error) {
@@ -160,25 +79,39 @@ MapDatabase MapDatabase::open_existing(const std::filesystem::path& path) try {
 }
 
 void MapDatabase::check_replaceable(const std::filesystem::path& path) try {
-  static_cast<void>(MapDatabase(path, true));
+  static_cast<void>(open_map_database(path, Access::kCreate));
 } catch (const SQLite::Exception& error) {
   throw_named(path.string(), error);
 }
 
-void MapDatabase::create_schema(const std::string& robot_id, std::uint64_t seed) {
+void MapDatabase::set_patience(std::chrono::milliseconds patience) {
+  database_->setBusyTimeout(static_cast<int>(patience.count()));
+}
+
+void MapDatabase::create(const std::string& robot_id, std::uint64_t seed) {
   SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-  database_->exec(kSchema);
-  database_->exec(fmt::format("PRAGMA application_id={}; PRAGMA user_version={}", kApplicationId,
-                              kSchemaVersion)
-                      .c_str());
-  write_meta(*database_, "robot_id", robot_id);
-  write_meta(*database_, "seed", std::to_string(seed));
-  write_meta(*database_, "trajectory_version", "0");
-  write_meta(*database_, "global_map_version", "0");
+  create_tables(*database_, robot_id, seed);
   transaction.commit();
 }
 
+void MapDatabase::migrate() {
+  if (stored_version(*database_) == kSchemaVersion) return;
+  database_->exec("PRAGMA foreign_keys=OFF");  // which changes nothing inside of a transaction
+  SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
+  // Another program may have done it meanwhile.
+  if (stored_version(*database_) != kSchemaVersion) {
+    MapDocument document = take_version_1(*database_);
+    require_valid(name_, "damaged: ", [&] { check_document(document); });
+    create_tables(*database_, document.robot_id, document.seed);
+    robot_id_ = document.robot_id;
+    write_document(identified(std::move(document)));
+    transaction.commit();
+  }
+  database_->exec("PRAGMA foreign_keys=ON");
+}
+
 void MapDatabase::read_hashes(const char* table, BlobHashes& hashes) {
+  hashes.clear();
   SQLite::Statement row(*database_, fmt::format("SELECT id, blob_hash FROM {}", table));
   while (row.executeStep()) {
     hashes[static_cast<std::uint32_t>(integer_at(row, 0))] = as_unsigned(integer_at(row, 1));
@@ -194,135 +127,209 @@ void MapDatabase::read_state() {
   }
   robot_id_ = read_meta(*database_, "robot_id");
   seed_ = read_meta_number(*database_, "seed");
-  trajectory_version_ = read_meta_number(*database_, "trajectory_version");
-  SQLite::Statement count(*database_, "SELECT count(*) FROM local_map");
-  count.executeStep();
-  local_map_count_ = static_cast<std::uint32_t>(integer_at(count, 0));
-  read_hashes("stop_pose", stop_hashes_);
-  read_hashes("loop_closure", closure_hashes_);
-  read_hashes("map_node", node_hashes_);
-  read_hashes("map_branch", branch_hashes_);
+  read_tables();
 }
 
-void MapDatabase::put_local_map(const topomap::LocalMap& map) try {
-  if (map.robot_id != robot_id_ || map.id > local_map_count_) {
-    throw std::invalid_argument(
-        fmt::format("{}: local map {} of robot '{}', expected at most {} of robot '{}'", name_,
-                    map.id, map.robot_id, local_map_count_, robot_id_));
+void MapDatabase::read_tables() {
+  tables_are_known_ = false;
+  map_id_ = read_meta_number(*database_, "map_id");
+  trajectory_version_ = read_meta_number(*database_, "trajectory_version");
+  stops_->read();
+  read_hashes("stop_pose", hashes_.poses);
+  read_hashes("loop_closure", hashes_.closures);
+  read_hashes("edge", hashes_.edges);
+  read_hashes("map_node", hashes_.nodes);
+  read_hashes("map_branch", hashes_.branches);
+  tables_are_known_ = true;
+}
+
+template <typename Work>
+void MapDatabase::change(const Work& work) try {
+  try {
+    SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
+    if (!tables_are_known_) read_tables();
+    tables_are_known_ = false;
+    work();
+    transaction.commit();
+    tables_are_known_ = true;
+  } catch (...) {
+    try {
+      if (!tables_are_known_) read_tables();
+    } catch (const std::exception&) {  // the error that counts is the first one
+      stops_->forget();
+    }
+    throw;
   }
-  const std::string blob = to_blob<proto::LocalMap>(map);
-  const std::int64_t blob_hash = as_signed(support::fnv1a(blob));
-  if (map.id < local_map_count_) {
-    SQLite::Statement stored(*database_, "SELECT blob_hash FROM local_map WHERE id = ?");
-    stored.bind(1, map.id);
-    if (stored.executeStep() && integer_at(stored, 0) == blob_hash) return;
-    throw std::invalid_argument(
-        fmt::format("{}: already holds another local map {}", name_, map.id));
-  }
-  SQLite::Statement insert(*database_,
-                           "INSERT INTO local_map(id, stamp_ns, content_hash, blob_hash, blob) "
-                           "VALUES(?, ?, ?, ?, ?)");
-  insert.bind(1, map.id);
-  insert.bind(2, map.stamp_ns);
-  insert.bind(3, as_signed(topomap::content_hash(map)));
-  insert.bind(4, blob_hash);
-  bind_blob(insert, 5, blob);
-  insert.exec();
-  ++local_map_count_;
 } catch (const SQLite::Exception& error) {
   throw_named(name_, error);
 }
 
+std::vector<StopSource> MapDatabase::put_stops(std::span<const SessionStop> stops) {
+  std::vector<StopSource> different;
+  change([&] { different = write_stops(stops); });
+  return different;
+}
+
+std::vector<StopSource> MapDatabase::write_stops(std::span<const SessionStop> stops) {
+  for (const SessionStop& stop : stops) {
+    if (stop.map.robot_id == robot_id_) continue;
+    throw std::invalid_argument(fmt::format("{}: stop {} of robot '{}', expected '{}'", name_,
+                                            stop.map.id, stop.map.robot_id, robot_id_));
+  }
+  std::vector<StopSource> different = stops_->put(stops);
+  if (map_id_ == 0 && !stops.empty()) write_map_id(map_id_of(stops.front().session));
+  return different;
+}
+
+void MapDatabase::write_map_id(std::uint64_t map_id) {
+  write_meta(*database_, "map_id", std::to_string(map_id));
+  map_id_ = map_id;
+}
+
+void MapDatabase::join(std::span<const JoinedStop> stops) {
+  change([&] { stops_->join(stops); });
+}
+
+std::size_t MapDatabase::drop_waiting(std::size_t most) {
+  std::size_t dropped = 0;
+  change([&] { dropped = stops_->drop_waiting(most); });
+  return dropped;
+}
+
 void MapDatabase::put_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
-                                 std::span<const topomap::LoopClosure> closures) try {
+                                 std::span<const topomap::LoopClosure> closures) {
+  change([&] { write_trajectory(version, changed, closures); });
+}
+
+void MapDatabase::write_trajectory(std::uint64_t version,
+                                   std::span<const topomap::StopPose> changed,
+                                   std::span<const topomap::LoopClosure> closures) {
   if (version < trajectory_version_) {
     throw std::invalid_argument(
         fmt::format("{}: trajectory version {} after {}", name_, version, trajectory_version_));
   }
+  const std::uint32_t count = stops_->joined();
   for (const topomap::StopPose& stop : changed) {
-    if (stop.local_map_id >= local_map_count_) {
-      throw std::invalid_argument(
-          fmt::format("{}: stop {} has no local map yet", name_, stop.local_map_id));
-    }
+    if (stop.local_map_id < count) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: stop {} has no local map yet", name_, stop.local_map_id));
   }
   for (const topomap::LoopClosure& c : closures) {
-    if (c.earlier_id >= c.later_id || c.later_id >= local_map_count_) {
-      throw std::invalid_argument(
-          fmt::format("{}: loop closure from {} to {}: expected ids below {}", name_, c.earlier_id,
-                      c.later_id, local_map_count_));
-    }
+    if (c.earlier_id < c.later_id && c.later_id < count) continue;
+    throw std::invalid_argument(fmt::format("{}: loop closure from {} to {}: expected ids below {}",
+                                            name_, c.earlier_id, c.later_id, count));
   }
-  BlobHashes stop_hashes = stop_hashes_;
-  BlobHashes closure_hashes = closure_hashes_;
-  SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-  TableWriter stop_writer(*database_, "stop_pose");
+  TableWriter pose_writer(*database_, "stop_pose", ", version", ", ?");
   for (const topomap::StopPose& stop : changed) {
-    stop_writer.put(stop_hashes, stop.local_map_id, to_blob<proto::StopPose>(stop));
+    pose_writer.put(hashes_.poses, stop.local_map_id, to_blob<proto::StopPose>(stop),
+                    {as_signed(version)});
   }
   // The place in the list is the id, so that reading gives back the caller's order.
   TableWriter closure_writer(*database_, "loop_closure", ", earlier_id, later_id", ", ?, ?");
   for (std::size_t i = 0; i < closures.size(); ++i) {
-    closure_writer.put(closure_hashes, static_cast<std::uint32_t>(i),
+    closure_writer.put(hashes_.closures, static_cast<std::uint32_t>(i),
                        to_blob<proto::LoopClosure>(closures[i]),
                        {closures[i].earlier_id, closures[i].later_id});
   }
-  closure_writer.remove_others(closure_hashes,
+  closure_writer.remove_others(hashes_.closures,
                                [&](std::uint32_t id) { return id < closures.size(); });
   write_meta(*database_, "trajectory_version", std::to_string(version));
-  transaction.commit();
   trajectory_version_ = version;
-  stop_hashes_ = std::move(stop_hashes);
-  closure_hashes_ = std::move(closure_hashes);
-} catch (const SQLite::Exception& error) {
-  throw_named(name_, error);
 }
 
-void MapDatabase::put_global_map(const topomap::GlobalMap& map) try {
-  try {
-    check_global_map(map);
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(fmt::format("{}: global map: {}", name_, error.what()));
+void MapDatabase::put_edges(const std::vector<MapEdge>& edges) {
+  change([&] { write_edges(edges); });
+}
+
+void MapDatabase::write_edges(const std::vector<MapEdge>& edges) {
+  require_valid(name_, "", [&] { check_edges(edges, stops_->joined()); });
+  TableWriter writer(*database_, "edge", ", earlier_id, later_id", ", ?, ?");
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    writer.put(hashes_.edges, static_cast<std::uint32_t>(i), to_blob<proto::MapEdge>(edges[i]),
+               {edges[i].earlier_id, edges[i].later_id});
   }
-  BlobHashes node_hashes = node_hashes_;
-  BlobHashes branch_hashes = branch_hashes_;
-  SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
+  writer.remove_others(hashes_.edges, [&](std::uint32_t id) { return id < edges.size(); });
+}
+
+void MapDatabase::put_global_map(const topomap::GlobalMap& map) {
+  change([&] { write_global_map(map); });
+}
+
+void MapDatabase::write_global_map(const topomap::GlobalMap& map) {
+  require_valid(name_, "global map: ", [&] { check_global_map(map); });
   TableWriter node_writer(*database_, "map_node");
-  std::map<std::uint32_t, bool> kept;
+  std::vector<std::uint32_t> kept;  // ascending, as the check has found
+  const auto is_kept = [&](std::uint32_t id) { return std::ranges::binary_search(kept, id); };
   for (const topomap::MapNode& node : map.nodes) {
-    node_writer.put(node_hashes, node.id, to_blob<proto::MapNode>(node));
-    kept[node.id] = true;
+    node_writer.put(hashes_.nodes, node.id, to_blob<proto::MapNode>(node));
+    kept.push_back(node.id);
   }
-  node_writer.remove_others(node_hashes, [&](std::uint32_t id) { return kept.contains(id); });
+  node_writer.remove_others(hashes_.nodes, is_kept);
   TableWriter branch_writer(*database_, "map_branch", ", node_a, node_b", ", ?, ?");
   kept.clear();
   for (const topomap::MapBranch& branch : map.branches) {
-    branch_writer.put(branch_hashes, branch.id, to_blob<proto::MapBranch>(branch),
+    branch_writer.put(hashes_.branches, branch.id, to_blob<proto::MapBranch>(branch),
                       {branch.node_a, branch.node_b});
-    kept[branch.id] = true;
+    kept.push_back(branch.id);
   }
-  branch_writer.remove_others(branch_hashes, [&](std::uint32_t id) { return kept.contains(id); });
+  branch_writer.remove_others(hashes_.branches, is_kept);
   write_meta(*database_, "global_map_version", std::to_string(map.version));
-  transaction.commit();
-  node_hashes_ = std::move(node_hashes);
-  branch_hashes_ = std::move(branch_hashes);
-} catch (const SQLite::Exception& error) {
-  throw_named(name_, error);
 }
 
-void MapDatabase::put_drawing(const MapDrawing& drawing) try {
-  try {
-    check(drawing);
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(fmt::format("{}: {}", name_, error.what()));
+void MapDatabase::put_drawing(const MapDrawing& drawing) {
+  change([&] { write_drawing(drawing); });
+}
+
+void MapDatabase::write_drawing(const MapDrawing& drawing) {
+  require_valid(name_, "", [&] { check(drawing); });
+  for (const char* table : {"place", "zone", "drawn_grid"}) {
+    database_->exec(fmt::format("DELETE FROM {}", table));
   }
-  const std::string blob = to_blob<proto::Drawing>(drawing);
-  SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-  database_->exec(kDrawingSchema);
   BlobHashes none_stored;
-  TableWriter(*database_, "drawing").put(none_stored, 0, blob);
-  transaction.commit();
-} catch (const SQLite::Exception& error) {
-  throw_named(name_, error);
+  TableWriter place_writer(*database_, "place", ", name", ", ?");
+  for (const planning::Place& place : drawing.places) {
+    place_writer.put(none_stored, static_cast<std::uint32_t>(none_stored.size()),
+                     to_blob<proto::Place>(place), {}, {place.name});
+  }
+  none_stored.clear();
+  TableWriter zone_writer(*database_, "zone", ", name, kind", ", ?, ?");
+  for (const planning::DrawnZone& zone : drawing.zones) {
+    zone_writer.put(none_stored, static_cast<std::uint32_t>(none_stored.size()),
+                    to_blob<proto::DrawnZone>(zone), {},
+                    {zone.name, planning::to_string(zone.kind)});
+  }
+  none_stored.clear();
+  if (drawing.grid) {
+    TableWriter(*database_, "drawn_grid")
+        .put(none_stored, 0, to_blob<proto::DrawnGrid>(*drawing.grid));
+  }
+}
+
+void MapDatabase::put_document(const MapDocument& document) {
+  require_valid(name_, "map to be stored: ", [&] { check_document(document); });
+  change([&] { write_document(identified(document)); });
+}
+
+void MapDatabase::write_document(const MapDocument& document) {
+  if (document.robot_id != robot_id_ || !stops_->sessions().empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: expected no stops and the map of robot '{}', got that of robot '{}'",
+                    name_, robot_id_, document.robot_id));
+  }
+  std::vector<JoinedStop> joined;
+  for (std::size_t i = 0; i < document.local_maps.size(); ++i) {
+    const StopSource& source = document.sources[i];
+    const SessionStop stop{source.session, 0,
+                           topomap::numbered(document.local_maps[i], source.number, false)};
+    stops_->put({&stop, 1});
+    joined.push_back({source, false});
+  }
+  stops_->join(joined);
+  if (document.map_id != 0) write_map_id(document.map_id);
+  write_trajectory(document.trajectory.version, document.trajectory.stops, document.loop_closures);
+  write_edges(document.edges);
+  write_global_map(document.global_map);
+  write_drawing(document.drawing);
 }
 
 MapDocument MapDatabase::load() const try {
@@ -330,18 +337,20 @@ MapDocument MapDatabase::load() const try {
   MapDocument document;
   document.robot_id = robot_id_;
   document.seed = seed_;
-  read_table<proto::LocalMap>(*database_, "local_map", document.local_maps);
+  document.map_id = read_meta_number(*database_, "map_id");
+  stops_->load(document);
   document.trajectory.version = read_meta_number(*database_, "trajectory_version");
-  read_table<proto::StopPose>(*database_, "stop_pose", document.trajectory.stops);
-  read_table<proto::LoopClosure>(*database_, "loop_closure", document.loop_closures);
+  read_table<proto::StopPose>(*database_, name_, "stop_pose", document.trajectory.stops);
+  read_table<proto::LoopClosure>(*database_, name_, "loop_closure", document.loop_closures);
+  read_table<proto::MapEdge>(*database_, name_, "edge", document.edges);
   document.global_map.version = read_meta_number(*database_, "global_map_version");
-  read_table<proto::MapNode>(*database_, "map_node", document.global_map.nodes);
-  read_table<proto::MapBranch>(*database_, "map_branch", document.global_map.branches);
-  if (database_->tableExists("drawing")) {
-    std::vector<MapDrawing> drawings;
-    read_table<proto::Drawing>(*database_, "drawing", drawings);
-    if (!drawings.empty()) document.drawing = std::move(drawings.front());
-  }
+  read_table<proto::MapNode>(*database_, name_, "map_node", document.global_map.nodes);
+  read_table<proto::MapBranch>(*database_, name_, "map_branch", document.global_map.branches);
+  read_table<proto::Place>(*database_, name_, "place", document.drawing.places);
+  read_table<proto::DrawnZone>(*database_, name_, "zone", document.drawing.zones);
+  std::vector<planning::OccupancyGrid> grids;
+  read_table<proto::DrawnGrid>(*database_, name_, "drawn_grid", grids);
+  if (!grids.empty()) document.drawing.grid = std::move(grids.front());
   try {
     check_document(document);
   } catch (const std::runtime_error& error) {
@@ -350,6 +359,32 @@ MapDocument MapDatabase::load() const try {
   return document;
 } catch (const SQLite::Exception& error) {
   throw_named(name_, error);
+}
+
+std::optional<SessionStop> MapDatabase::stop(const StopSource& source) const try {
+  return stops_->stop(source);
+} catch (const SQLite::Exception& error) {
+  throw_named(name_, error);
+}
+
+std::vector<StopSource> MapDatabase::waiting_stops() const {
+  return stops_->waiting();
+}
+
+std::vector<SessionState> MapDatabase::sessions() const {
+  return stops_->sessions();
+}
+
+std::uint32_t MapDatabase::local_map_count() const {
+  return stops_->joined();
+}
+
+void MapDatabase::copy_to(const std::filesystem::path& path) const try {
+  SQLite::Statement copy(*database_, "VACUUM INTO ?");
+  copy.bind(1, path.string());
+  copy.exec();
+} catch (const SQLite::Exception& error) {
+  throw_named(path.string(), error);
 }
 
 }  // namespace topogeo::storage

@@ -124,51 +124,69 @@ void check(const MapDrawing& drawing) {
                     "zone '{}': {} corners, allowed are {} to {}", zone.name, zone.polygon_m.size(),
                     kLeastCorners, kMaxCorners);
     for (const Eigen::Vector2d& corner : zone.polygon_m) check_point("zone", zone.name, corner);
+    require_drawing(std::isfinite(zone.value), "zone '{}': its value is not a finite number",
+                    zone.name);
   }
 }
 
+void to_proto(const planning::Place& place, proto::Place* out) {
+  out->set_name(place.name);
+  out->set_x_m(place.position_m.x());
+  out->set_y_m(place.position_m.y());
+}
+
+planning::Place from_proto(const proto::Place& in) {
+  return {in.name(), {in.x_m(), in.y_m()}};
+}
+
+void to_proto(const planning::DrawnZone& zone, proto::DrawnZone* out) {
+  out->set_name(zone.name);
+  for (const Eigen::Vector2d& corner : zone.polygon_m) {
+    out->add_corners(corner.x());
+    out->add_corners(corner.y());
+  }
+  out->set_kind(static_cast<proto::ZoneKind>(zone.kind));
+  out->set_value(zone.value);
+}
+
+planning::DrawnZone from_proto(const proto::DrawnZone& in) {
+  require_drawing(in.corners_size() % 2 == 0, "zone '{}' with {} numbers: expected two per corner",
+                  in.name(), in.corners_size());
+  require_drawing(in.kind() >= 0 && static_cast<std::size_t>(in.kind()) < planning::kZoneKinds,
+                  "zone '{}' of kind {}: expected 0 to {}", in.name(), static_cast<int>(in.kind()),
+                  planning::kZoneKinds - 1);
+  planning::DrawnZone zone{in.name(), {}, static_cast<planning::ZoneKind>(in.kind()), in.value()};
+  for (int i = 0; i < in.corners_size(); i += 2) {
+    zone.polygon_m.emplace_back(in.corners(i), in.corners(i + 1));
+  }
+  return zone;
+}
+
+void to_proto(const planning::OccupancyGrid& grid, proto::DrawnGrid* out) {
+  const planning::GridFrame& frame = grid.frame();
+  out->set_columns(static_cast<std::uint32_t>(frame.columns));
+  out->set_rows(static_cast<std::uint32_t>(frame.rows));
+  out->set_resolution_m(frame.resolution_m);
+  to_proto(frame.T_map_grid, out->mutable_t_map_grid());
+  out->set_cells(compressed(grid.cells()));
+}
+
+planning::OccupancyGrid from_proto(const proto::DrawnGrid& in) {
+  return grid_from_proto(in);
+}
+
 void to_proto(const MapDrawing& drawing, proto::Drawing* out) {
-  for (const planning::Place& place : drawing.places) {
-    proto::Place* entry = out->add_places();
-    entry->set_name(place.name);
-    entry->set_x_m(place.position_m.x());
-    entry->set_y_m(place.position_m.y());
-  }
-  for (const planning::DrawnZone& zone : drawing.zones) {
-    proto::DrawnZone* entry = out->add_zones();
-    entry->set_name(zone.name);
-    for (const Eigen::Vector2d& corner : zone.polygon_m) {
-      entry->add_corners(corner.x());
-      entry->add_corners(corner.y());
-    }
-  }
-  if (!drawing.grid) return;
-  const planning::GridFrame& frame = drawing.grid->frame();
-  proto::DrawnGrid* grid = out->mutable_grid();
-  grid->set_columns(static_cast<std::uint32_t>(frame.columns));
-  grid->set_rows(static_cast<std::uint32_t>(frame.rows));
-  grid->set_resolution_m(frame.resolution_m);
-  to_proto(frame.T_map_grid, grid->mutable_t_map_grid());
-  grid->set_cells(compressed(drawing.grid->cells()));
+  for (const planning::Place& place : drawing.places) to_proto(place, out->add_places());
+  for (const planning::DrawnZone& zone : drawing.zones) to_proto(zone, out->add_zones());
+  if (drawing.grid) to_proto(*drawing.grid, out->mutable_grid());
 }
 
 MapDrawing from_proto(const proto::Drawing& in) {
   MapDrawing drawing;
-  for (const proto::Place& place : in.places()) {
-    drawing.places.push_back({place.name(), {place.x_m(), place.y_m()}});
-  }
-  for (const proto::DrawnZone& zone : in.zones()) {
-    require_drawing(zone.corners_size() % 2 == 0,
-                    "zone '{}' with {} numbers: expected two per corner", zone.name(),
-                    zone.corners_size());
-    planning::DrawnZone& entry = drawing.zones.emplace_back();
-    entry.name = zone.name();
-    for (int i = 0; i < zone.corners_size(); i += 2) {
-      entry.polygon_m.emplace_back(zone.corners(i), zone.corners(i + 1));
-    }
-  }
+  for (const proto::Place& place : in.places()) drawing.places.push_back(from_proto(place));
+  for (const proto::DrawnZone& zone : in.zones()) drawing.zones.push_back(from_proto(zone));
   check(drawing);
-  if (in.has_grid()) drawing.grid = grid_from_proto(in.grid());
+  if (in.has_grid()) drawing.grid = from_proto(in.grid());
   return drawing;
 }
 

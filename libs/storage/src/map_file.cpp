@@ -85,6 +85,11 @@ MapDocument document_from_proto(const proto::MapFile& in) {
     document.global_map.branches.push_back(from_proto(branch));
   }
   if (in.has_drawing()) document.drawing = from_proto(in.drawing());
+  document.map_id = in.map_id();
+  for (const auto& source : in.sources()) {
+    document.sources.push_back({source.session(), source.number()});
+  }
+  for (const auto& edge : in.edges()) document.edges.push_back(from_proto(edge));
   check_document(document);
   return document;
 }
@@ -116,6 +121,13 @@ std::string map_file_bytes(const MapDocument& document) {
     to_proto(branch, file.mutable_global_map()->add_branches());
   }
   if (!document.drawing.empty()) to_proto(document.drawing, file.mutable_drawing());
+  file.set_map_id(document.map_id);
+  for (const StopSource& source : document.sources) {
+    proto::StopSource* entry = file.add_sources();
+    entry->set_session(source.session);
+    entry->set_number(source.number);
+  }
+  for (const MapEdge& edge : document.edges) to_proto(edge, file.add_edges());
   std::string bytes = deterministic_bytes(file);
   // Fields are serialized by number, so the checksum, which has the largest, is what comes last. It
   // is written by hand because Protobuf would leave out a checksum of zero.

@@ -17,7 +17,8 @@ TableWriter::TableWriter(SQLite::Database& database, const std::string& table,
       remove_(database, fmt::format("DELETE FROM {} WHERE id = ?", table)) {}
 
 void TableWriter::put(BlobHashes& hashes, std::uint32_t id, const std::string& blob,
-                      std::initializer_list<std::int64_t> extra) {
+                      std::initializer_list<std::int64_t> numbers,
+                      std::initializer_list<std::string> texts) {
   const std::uint64_t hash = support::fnv1a(blob);
   const auto [entry, is_new] = hashes.try_emplace(id, hash);
   if (!is_new && entry->second == hash) return;
@@ -27,7 +28,8 @@ void TableWriter::put(BlobHashes& hashes, std::uint32_t id, const std::string& b
   upsert_.bind(2, as_signed(hash));
   bind_blob(upsert_, 3, blob);
   int index = 4;
-  for (const std::int64_t value : extra) upsert_.bind(index++, value);
+  for (const std::int64_t value : numbers) upsert_.bind(index++, value);
+  for (const std::string& value : texts) upsert_.bind(index++, value);
   upsert_.exec();
 }
 

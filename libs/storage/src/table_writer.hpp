@@ -34,9 +34,10 @@ class TableWriter {
   TableWriter(SQLite::Database& database, const std::string& table,
               const std::string& extra_columns = "", const std::string& extra_parameters = "");
 
-  /// `extra` are the values of the extra columns.
+  /// `numbers` and then `texts` are the values of the extra columns.
   void put(BlobHashes& hashes, std::uint32_t id, const std::string& blob,
-           std::initializer_list<std::int64_t> extra = {});
+           std::initializer_list<std::int64_t> numbers = {},
+           std::initializer_list<std::string> texts = {});
 
   void remove_others(BlobHashes& hashes, const std::function<bool(std::uint32_t)>& is_kept);
 

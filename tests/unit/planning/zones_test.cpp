@@ -173,6 +173,23 @@ TEST(ZoneDrawing, ReadsZonesAndPlaces) {
   EXPECT_EQ(drawing.places[0].position_m, Eigen::Vector2d(1.5, 2.0));
 }
 
+TEST(ZoneDrawing, ReadsWhatAZoneIsFor) {
+  const ZoneDrawing drawing = parse_zone_drawing(
+      "zones:\n"
+      "  - {name: a, polygon: [[0, 0], [4, 0], [4, 3]]}\n"
+      "  - {name: b, kind: no_go, polygon: [[0, 0], [4, 0], [4, 3]]}\n"
+      "  - {name: c, kind: slow, value: 0.3, polygon: [[0, 0], [4, 0], [4, 3]]}\n"
+      "  - {name: d, kind: one_way, value: -1.5, polygon: [[0, 0], [4, 0], [4, 3]]}\n",
+      "floor");
+  ASSERT_EQ(drawing.zones.size(), 4U);
+  EXPECT_EQ(drawing.zones[0].kind, ZoneKind::kRoom);
+  EXPECT_EQ(drawing.zones[1].kind, ZoneKind::kNoGo);
+  EXPECT_EQ(drawing.zones[2].kind, ZoneKind::kSlow);
+  EXPECT_EQ(drawing.zones[2].value, 0.3);
+  EXPECT_EQ(drawing.zones[3].kind, ZoneKind::kOneWay);
+  EXPECT_EQ(drawing.zones[3].value, -1.5);
+}
+
 TEST(ZoneDrawing, NamesTheLineOfWhatIsWrong) {
   const auto expect = [](const std::string& text, const std::string& where,
                          const std::string& what) {
@@ -189,6 +206,11 @@ TEST(ZoneDrawing, NamesTheLineOfWhatIsWrong) {
          "each name once");
   expect("zones:\n  - {name: a, polygon: [[1, 2], [3, 4]]}", "f.yaml:2: polygon", "three corners");
   expect("zones:\n  - {name: a, color: red}", "f.yaml:2: a zone", "'color'");
+  const std::string corners = "polygon: [[0, 0], [4, 0], [4, 3]]}";
+  expect("zones:\n  - {name: a, kind: lava, " + corners, "f.yaml:2: kind", "one_way");
+  expect("zones:\n  - {name: a, kind: slow, " + corners, "value", "m/s");
+  expect("zones:\n  - {name: a, kind: slow, value: 0, " + corners, "f.yaml:2: value", "0.01");
+  expect("zones:\n  - {name: a, kind: no_go, value: 1, " + corners, "f.yaml:2: value", "no value");
   expect("zones: 3", "f.yaml:1: zones", "a list");
   expect("zones: [", "f.yaml:1", "");
 }

@@ -8,13 +8,16 @@
 #include <unistd.h>
 
 #include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
 
 #include "sample_map.hpp"
 
 namespace topogeo::storage {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 class MapDatabaseFile : public ScratchDirectory {
  protected:
@@ -26,13 +29,7 @@ class MapDatabaseFile : public ScratchDirectory {
     return error_of([&] { static_cast<void>(open().load()); });
   }
   /// Writes a whole document and closes the database, which empties the write-ahead log.
-  void store(const MapDocument& document) const {
-    MapDatabase database = open();
-    for (const auto& map : document.local_maps) database.put_local_map(map);
-    database.put_trajectory(document.trajectory.version, document.trajectory.stops,
-                            document.loop_closures);
-    database.put_global_map(document.global_map);
-  }
+  void store(const MapDocument& document) const { open().put_document(document); }
   void execute(const char* sql) const {
     sqlite3* handle = nullptr;
     ASSERT_EQ(sqlite3_open(path().c_str(), &handle), SQLITE_OK);
@@ -45,22 +42,27 @@ class MapDatabaseFile : public ScratchDirectory {
 };
 
 TEST_F(MapDatabaseFile, GivesBackTheSameMapFile) {
-  const MapDocument document = sample_document(5);
+  const MapDocument document = identified(sample_document(5));
   store(document);
   EXPECT_EQ(map_file_bytes(open().load()), map_file_bytes(document));
   EXPECT_EQ(map_file_bytes(MapDatabase::open_existing(path()).load()), map_file_bytes(document));
+  EXPECT_EQ(map_file_bytes(read_map(path())), map_file_bytes(document));
 }
 
 TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
-  MapDocument document = sample_document(3);
+  MapDocument document = identified(sample_document(3));
   store(document);
   MapDatabase database = open();
   EXPECT_EQ(database.local_map_count(), 3U);
   EXPECT_EQ(database.trajectory_version(), 9U);
 
   document.local_maps.push_back(sample_local_map(3));
-  database.put_local_map(document.local_maps[3]);
-  database.put_local_map(document.local_maps[1]);  // again, the same
+  document.sources.push_back({document.sources[0].session, 3});
+  const std::vector<SessionStop> stops{{document.sources[3].session, 0, document.local_maps[3]},
+                                       {document.sources[1].session, 0, document.local_maps[1]}};
+  EXPECT_THAT(database.put_stops(stops), IsEmpty()) << "the second is there already";
+  const JoinedStop joined{document.sources[3], false};
+  database.join({&joined, 1});
   document.trajectory.stops[1] = sample_stop(1, 77.0);
   document.trajectory.stops.push_back(sample_stop(3, 3.0));
   document.loop_closures = {{0, 3, {1.0, 2.0, 3.0}}};
@@ -79,17 +81,20 @@ TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
 }
 
 TEST_F(MapDatabaseFile, RefusesWhatDoesNotFitAndStaysAsItWas) {
-  const MapDocument document = sample_document(3);
+  const MapDocument document = identified(sample_document(3));
   store(document);
   MapDatabase database = open();
-  topomap::LocalMap other = sample_local_map(1);
-  other.stamp_ns += 1;
-  EXPECT_THAT(error_of([&] { database.put_local_map(other); }),
-              HasSubstr("already holds another local map 1"));
-  EXPECT_THROW(database.put_local_map(sample_local_map(4)), std::invalid_argument);
-  other = sample_local_map(3);
-  other.robot_id = "robot-2";
-  EXPECT_THROW(database.put_local_map(other), std::invalid_argument);
+  SessionStop other{document.sources[1].session, 0, sample_local_map(1)};
+  other.map.stamp_ns += 1;
+  EXPECT_THAT(database.put_stops({&other, 1}), ElementsAre(document.sources[1]));
+  JoinedStop joined{document.sources[1], false};
+  EXPECT_THAT(error_of([&] { database.join({&joined, 1}); }), HasSubstr("it is not stored, or"));
+  joined.source.number = 3;
+  EXPECT_THROW(database.join({&joined, 1}), std::invalid_argument);
+  other.map = sample_local_map(3);
+  other.map.robot_id = "robot-2";
+  EXPECT_THROW(database.put_stops({&other, 1}), std::invalid_argument);
+  EXPECT_THROW(database.put_document(document), std::invalid_argument) << "it has stops";
 
   const std::vector<topomap::StopPose> stops{sample_stop(0, 55.0), sample_stop(3, 0.0)};
   EXPECT_THAT(error_of([&] { database.put_trajectory(10, stops, {}); }),
@@ -110,9 +115,10 @@ TEST_F(MapDatabaseFile, RefusesAnotherRobotSeedVersionOrProgram) {
               HasSubstr("map.db: holds the map of robot 'robot-1'"));
   EXPECT_THAT(error_of([&] { MapDatabase::open_or_create(path(), "robot-1", 3); }),
               HasSubstr("expected 'robot-1' with seed 3"));
-  execute("PRAGMA user_version=2");
-  EXPECT_THAT(opening_error(), HasSubstr("map database version 2, this program reads 1"));
-  execute("PRAGMA user_version=1; PRAGMA application_id=5");
+  execute("PRAGMA user_version=3");
+  EXPECT_THAT(opening_error(), HasSubstr("map database version 3, this program reads 1 to 2"));
+  EXPECT_THAT(error_of([&] { read_map(path()); }), HasSubstr("map database version 3"));
+  execute("PRAGMA user_version=2; PRAGMA application_id=5");
   EXPECT_THAT(opening_error(), HasSubstr("no topogeo map database"));
 }
 
@@ -163,9 +169,12 @@ TEST_F(MapDatabaseFile, RefusesDamagedContent) {
   store(sample_document(3));
   const std::string good = content(path());
   for (const auto& [sql, message] : std::vector<std::pair<const char*, const char*>>{
-           {"UPDATE local_map SET blob = zeroblob(length(blob)) WHERE id = 1",
-            "local_map 1 is damaged (its hash is wrong)"},
-           {"DELETE FROM local_map WHERE id = 1", "damaged (local map 2 stands at place 1)"},
+           {"UPDATE stop SET blob = zeroblob(length(blob)) WHERE number = 1",
+            "stop 1 is damaged (its hash is wrong)"},
+           {"DELETE FROM stop WHERE number = 1", "is missing)"},
+           {"DELETE FROM map_stop WHERE id = 1", "damaged (local map 2 stands at place 1)"},
+           {"DELETE FROM session", "a stop of a session that is not there"},
+           {"UPDATE stop SET number = -1 WHERE number = 1", "damaged (stop number -1)"},
            {"DELETE FROM map_node WHERE id = 7", "ends at node 7, which is not there"},
            {"UPDATE map_node SET blob = 'text'", "column blob has the wrong type"},
            {"UPDATE meta SET value = '12x' WHERE key = 'seed'", "seed is '12x'"},
@@ -184,7 +193,10 @@ TEST_F(MapDatabaseFile, RefusesDamagedContent) {
   try {
     MapDatabase database = MapDatabase::open_or_create(path, "robot-1", seed);
     for (std::uint32_t id = 0;; ++id) {
-      database.put_local_map(sample_local_map(id));
+      const SessionStop stop{7, 0, sample_local_map(id)};
+      static_cast<void>(database.put_stops({&stop, 1}));
+      const JoinedStop joined{stop.source(), false};
+      database.join({&joined, 1});
       std::vector<topomap::StopPose> stops;
       for (std::uint32_t i = 0; i <= id; ++i) stops.push_back(sample_stop(i, i + 100.0 * id));
       database.put_trajectory(id, stops, {});
@@ -231,7 +243,10 @@ TEST_F(MapDatabaseFile, KeepsAConsistentPrefixWhenItsProcessIsKilled) {
     }
     ASSERT_EQ(document.global_map.nodes.size(), 2U);
     EXPECT_EQ(document.global_map.nodes[1].id, 10 + document.global_map.version);
-    database.put_local_map(sample_local_map(database.local_map_count()));  // and goes on
+    ASSERT_EQ(database.sessions().size(), 1U);
+    const SessionStop next{7, 0, sample_local_map(database.sessions()[0].stops)};
+    EXPECT_THAT(database.put_stops({&next, 1}), IsEmpty()) << "it goes on";
+    EXPECT_EQ(database.sessions()[0].stops, next.map.id + 1);
   }
 }
 

@@ -35,7 +35,10 @@ MapDrawing sample_drawing() {
   MapDrawing drawing;
   drawing.places = {{"room B", {1.0 / 3.0, -2.0}}, {"Küche", {-0.0, 1e6}}};
   drawing.zones = {{"hall", {{0, 0}, {4, 0}, {4, 0.1}}},
-                   {"room B", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}}};
+                   {"room B", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}},
+                   {"stairs", {{5, 0}, {6, 0}, {6, 1}}, planning::ZoneKind::kNoGo},
+                   {"ramp", {{7, 0}, {8, 0}, {8, 1}}, planning::ZoneKind::kSlow, 0.3},
+                   {"lane", {{9, 0}, {10, 0}, {10, 1}}, planning::ZoneKind::kOneWay, -1.5}};
   drawing.grid = sample_grid();
   return drawing;
 }
@@ -48,6 +51,8 @@ void expect_equal(const MapDrawing& a, const MapDrawing& b) {
   }
   ASSERT_EQ(a.zones.size(), b.zones.size());
   for (std::size_t i = 0; i < a.zones.size(); ++i) {
+    EXPECT_EQ(a.zones[i].kind, b.zones[i].kind);
+    EXPECT_EQ(a.zones[i].value, b.zones[i].value);
     EXPECT_EQ(a.zones[i].name, b.zones[i].name);
     EXPECT_EQ(a.zones[i].polygon_m, b.zones[i].polygon_m);
   }
@@ -121,6 +126,8 @@ TEST(MapDrawingFile, RefusesWhatIsNoDrawing) {
               HasSubstr("place 'room B': coordinate nan"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.zones[1].polygon_m[0].y() = 2e6; }),
               HasSubstr("zone 'room B': coordinate 2000000"));
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.zones[3].value = kNan; }),
+              HasSubstr("zone 'ramp': its value is not a finite number"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.zones[0].polygon_m.pop_back(); }),
               HasSubstr("zone 'hall': 2 corners, allowed are 3 to"));
   EXPECT_THAT(refusal([](MapDrawing& d) {
@@ -210,13 +217,6 @@ TEST_F(MapDrawingDatabase, KeepsTheNewest) {
   changed.places[0].name.clear();
   EXPECT_THROW(database.put_drawing(changed), std::invalid_argument);
   EXPECT_EQ(database.load().drawing.places.size(), 1U);
-}
-
-TEST_F(MapDrawingDatabase, OneThatWasMadeBeforeThereWereDrawingsIsRead) {
-  MapDatabase database = open();  // it has no table for them yet
-  database.put_local_map(sample_local_map(0));
-  EXPECT_TRUE(database.load().drawing.empty());
-  EXPECT_EQ(database.load().local_maps.size(), 1U);
 }
 
 }  // namespace

@@ -36,9 +36,10 @@ topomap::LocalMap first_map() {
 }
 
 TEST_F(Files, DatabaseOfAnEarlierRunIsReplaced) {
-  fresh_database(database_, "robot", 1).put_local_map(first_map());
+  const storage::SessionStop stop{5, 0, first_map()};
+  EXPECT_TRUE(fresh_database(database_, "robot", 1).put_stops({&stop, 1}).empty());
   const storage::MapDatabase fresh = fresh_database(database_, "other", 2);
-  EXPECT_EQ(fresh.local_map_count(), 0U);
+  EXPECT_TRUE(fresh.sessions().empty());
   EXPECT_EQ(fresh.robot_id(), "other");
 }
 

@@ -6,10 +6,13 @@
 // a robot gets from each of its cells to each other without leaving it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -56,10 +59,26 @@ ZoneMap zones_between(const FreeSpace& space, std::span<const Passage> passages,
 /// narrow passages that is nearer to it.
 ZoneMap zones_by_width(const FreeSpace& space, const ZoneConfig& config = {});
 
-/// A zone as it is drawn. Of several that overlap the first counts.
+/// What a drawn zone is for. The values are those of proto/map.proto.
+enum class ZoneKind : std::uint8_t {
+  kRoom = 0,    ///< a part of the floor with a name
+  kNoGo = 1,    ///< to be kept out of
+  kSlow = 2,    ///< value: largest speed in m/s
+  kOneWay = 3,  ///< value: heading in rad of those who drive through it, map frame
+};
+inline constexpr std::size_t kZoneKinds = 4;
+
+/// As files name them: "room", "no_go", "slow", "one_way".
+const char* to_string(ZoneKind kind);
+/// Empty when there is no such kind.
+std::optional<ZoneKind> zone_kind_of(std::string_view name);
+
+/// A zone as it is drawn. Of several rooms that overlap the first counts.
 struct DrawnZone {
   std::string name;
   std::vector<Eigen::Vector2d> polygon_m;  ///< corners in order, map frame
+  ZoneKind kind = ZoneKind::kRoom;
+  double value = 0.0;  ///< as its kind says; else 0
 };
 
 /// A zone for each polygon; when walls separate it into parts, the largest has the name and the
@@ -82,11 +101,12 @@ struct ZoneDrawing {
 /// Reads zones and places:
 ///   zones:
 ///     - {name: hall, polygon: [[0, 0], [4, 0], [4, 3], [0, 3]]}
+///     - {name: ramp, kind: slow, value: 0.3, polygon: [[4, 0], [6, 0], [6, 1]]}
 ///   places:
 ///     - {name: room A, at: [1.5, 2.0]}
 /// Throws std::runtime_error naming file, line and what was expected: an unreadable file, broken
-/// YAML, an unknown key, an empty or repeated name, a polygon of less than three corners, a
-/// coordinate out of range.
+/// YAML, an unknown key or kind, an empty or repeated name, a polygon of less than three corners, a
+/// coordinate or value out of range.
 ZoneDrawing read_zone_drawing(const std::filesystem::path& path);
 
 /// The same from text; `source` stands for the file in messages.

@@ -1,18 +1,22 @@
-// The map of one robot in an SQLite file, written while the robot drives.
+// A map in an SQLite file, written while the robot drives; it lives longer than any process.
 //
-// Write-ahead log with synchronous=NORMAL: whatever a call here returned from survives the death of
-// the process at any moment. A power cut may take the last transactions but leaves a consistent
-// earlier state; forcing each transaction to disk would cost a disk flush for each stop, and the
-// localizer re-sends what is missing. Every put is one transaction, so a reader never sees a half.
-// Elements are Protobuf blobs as in proto/map.proto; only what has changed is written.
+// A stop is known by its session and its number there, as its local mapper sent it; the map numbers
+// the stops that joined it by itself. Write-ahead log with synchronous=FULL: whatever a call here
+// returned from survives the death of the process and the loss of power at any moment. Every call
+// is one transaction, so a reader never sees a half. Elements are Protobuf blobs as in
+// proto/map.proto; only what has changed is written.
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "topogeo/storage/map_document.hpp"
 
@@ -22,19 +26,48 @@ class Database;
 
 namespace topogeo::storage {
 
+class StopTables;
+
+/// A local map as it was sent: `map.id` is its number in the session.
+struct SessionStop {
+  std::uint64_t session = 0;
+  std::uint64_t odometry_epoch = 0;  ///< odometry of other epochs has another origin
+  topomap::LocalMap map;
+
+  [[nodiscard]] StopSource source() const { return {session, map.id}; }
+};
+
+/// A stop that joins the map.
+struct JoinedStop {
+  StopSource source;
+  bool starts_drive = false;  ///< see topomap::numbered
+};
+
+/// What is stored of a session.
+struct SessionState {
+  std::uint64_t id = 0;
+  std::uint32_t stops = 0;  ///< all below this number came, those of no use were dropped since
+};
+
 /// For one thread. Every call throws std::runtime_error naming the file and the cause when the file
-/// is damaged, the disk is full or another program holds the lock for more than five seconds; the
+/// is damaged, the disk is full or another program holds the lock for longer than the patience; the
 /// database is then as before the call.
 class MapDatabase {
  public:
-  /// Opens the database of a robot's run, or creates it (an empty file counts as none). Throws
-  /// std::runtime_error when the file is no topogeo map database, is of a newer version or of
-  /// another robot or seed, or is damaged.
+  static constexpr std::int64_t kSchemaVersion = 2;
+
+  /// Opens the map of a robot, or creates it (an empty file counts as none). A file of an older
+  /// version is changed to this one. Throws std::runtime_error when the file is no topogeo map
+  /// database, is of a newer version or of another robot or seed, or is damaged.
   static MapDatabase open_or_create(const std::filesystem::path& path, const std::string& robot_id,
                                     std::uint64_t seed);
 
   /// Opens an existing database of any robot. Throws as above, also when there is none.
   static MapDatabase open_existing(const std::filesystem::path& path);
+
+  /// The same for reading alone: the file and its directory need not be writable and stay as they
+  /// are, also when the file is of an older version or another program writes it.
+  static MapDatabase open_read_only(const std::filesystem::path& path);
 
   /// Throws std::runtime_error when the file is neither a map database, of whatever robot, nor an
   /// SQLite file without content, as a program leaves that was stopped while it created one.
@@ -44,16 +77,31 @@ class MapDatabase {
   MapDatabase& operator=(MapDatabase&&) noexcept;
   ~MapDatabase();
 
-  /// Stores the map of the next stop. Storing a map again changes nothing. Throws
-  /// std::invalid_argument when the map is of another robot, leaves out a stop or differs from the
-  /// one stored under its id.
-  void put_local_map(const topomap::LocalMap& map);
+  /// How long a call waits for another program to finish its transaction; 5 s at first.
+  void set_patience(std::chrono::milliseconds patience);
 
-  /// Stores corrected poses of stops whose maps are stored, and the whole list of loop closures.
-  /// Stops that are not in `changed` keep their pose. Throws std::invalid_argument when `version`
-  /// is older than the stored one or a stop has no local map.
+  /// Stores stops in any order. Those that are stored already, or were dropped, change nothing.
+  /// Returns those that differ from the one stored under their number, which stays. Throws
+  /// std::invalid_argument when a stop is of another robot; nothing is stored then.
+  std::vector<StopSource> put_stops(std::span<const SessionStop> stops);
+
+  /// Gives the next numbers of the map to these stops. Throws std::invalid_argument when one is not
+  /// stored or has a number.
+  void join(std::span<const JoinedStop> stops);
+
+  /// Drops stops that have not joined the map, the oldest first, until at most `most` are left.
+  /// They are not taken in again. Returns how many were dropped.
+  std::size_t drop_waiting(std::size_t most);
+
+  /// Stores corrected poses of stops of the map, and the whole list of loop closures. Stops that
+  /// are not in `changed` keep their pose. Throws std::invalid_argument when `version` is older
+  /// than the stored one or a stop is not in the map.
   void put_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
                       std::span<const topomap::LoopClosure> closures);
+
+  /// Makes these the edges that the trajectory was made of. Throws std::invalid_argument when a
+  /// stop is not in the map.
+  void put_edges(const std::vector<MapEdge>& edges);
 
   /// Makes the stored global map this one. Throws std::invalid_argument when ids do not ascend or a
   /// branch ends at a node that is not in the map.
@@ -62,33 +110,73 @@ class MapDatabase {
   /// Makes this the drawing of the map. Throws std::invalid_argument where check(MapDrawing) does.
   void put_drawing(const MapDrawing& drawing);
 
-  /// Everything stored, checked.
+  /// Puts a whole map into a database without stops, identified() first. Throws
+  /// std::invalid_argument when there are stops or the map contradicts itself.
+  void put_document(const MapDocument& document);
+
+  /// Everything that is in the map, checked.
   [[nodiscard]] MapDocument load() const;
 
-  /// Stops stored, the id that the next local map must have.
-  [[nodiscard]] std::uint32_t local_map_count() const { return local_map_count_; }
+  /// A stop as it was sent; empty when it is not stored.
+  [[nodiscard]] std::optional<SessionStop> stop(const StopSource& source) const;
+  /// Stops that are stored and have not joined the map, by order of the sessions and number.
+  [[nodiscard]] std::vector<StopSource> waiting_stops() const;
+  /// In the order in which they came.
+  [[nodiscard]] std::vector<SessionState> sessions() const;
+
+  /// Stops in the map, the number that the next one gets.
+  [[nodiscard]] std::uint32_t local_map_count() const;
   [[nodiscard]] std::uint64_t trajectory_version() const { return trajectory_version_; }
   [[nodiscard]] const std::string& robot_id() const { return robot_id_; }
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  /// 0 until there is a stop.
+  [[nodiscard]] std::uint64_t map_id() const { return map_id_; }
+
+  /// Copies the database to `path`, which must not exist, whatever became of its own file since.
+  void copy_to(const std::filesystem::path& path) const;
 
  private:
   /// Hash of each stored blob of a table by id, to write only what has changed.
   using BlobHashes = std::map<std::uint32_t, std::uint64_t>;
 
-  MapDatabase(const std::filesystem::path& path, bool may_create);
-  void create_schema(const std::string& robot_id, std::uint64_t seed);
+  /// Blob hashes of all tables with ids.
+  struct Hashes {
+    BlobHashes poses;
+    BlobHashes closures;
+    BlobHashes edges;
+    BlobHashes nodes;
+    BlobHashes branches;
+  };
+
+  MapDatabase(const std::filesystem::path& path, std::unique_ptr<SQLite::Database> database);
+  void create(const std::string& robot_id, std::uint64_t seed);
+  void migrate();
   void read_state();
+  /// What is remembered of the tables.
+  void read_tables();
   void read_hashes(const char* table, BlobHashes& hashes);
+  /// Does `work` as one transaction: when it throws nothing has happened.
+  template <typename Work>
+  void change(const Work& work);
+  // Parts of a transaction.
+  std::vector<StopSource> write_stops(std::span<const SessionStop> stops);
+  void write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
+                        std::span<const topomap::LoopClosure> closures);
+  void write_edges(const std::vector<MapEdge>& edges);
+  void write_global_map(const topomap::GlobalMap& map);
+  void write_drawing(const MapDrawing& drawing);
+  void write_document(const MapDocument& document);
+  void write_map_id(std::uint64_t map_id);
 
   std::string name_;
   std::unique_ptr<SQLite::Database> database_;
+  std::unique_ptr<StopTables> stops_;
+  bool tables_are_known_ = false;  // false: what is remembered of them is not what is stored
   std::string robot_id_;
   std::uint64_t seed_ = 0;
+  std::uint64_t map_id_ = 0;
   std::uint64_t trajectory_version_ = 0;
-  std::uint32_t local_map_count_ = 0;
-  BlobHashes stop_hashes_;
-  BlobHashes closure_hashes_;
-  BlobHashes node_hashes_;
-  BlobHashes branch_hashes_;
+  Hashes hashes_;
 };
 
 }  // namespace topogeo::storage

@@ -1,9 +1,13 @@
-// The whole map of one robot, as map.pb and the map database hold it.
+// The whole map of one robot, as map.pb and the map database hold it, and where its stops come
+// from.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "topogeo/storage/map_drawing.hpp"
 #include "topogeo/topomap/global_map.hpp"
@@ -11,6 +15,22 @@
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::storage {
+
+/// Where a stop comes from: its local mapper numbers the stops of each session from 0.
+struct StopSource {
+  std::uint64_t session = 0;
+  std::uint32_t number = 0;
+
+  friend auto operator<=>(const StopSource&, const StopSource&) = default;
+};
+
+/// A measured pose of one stop seen from another, by a match or by scan tracking.
+struct MapEdge {
+  std::uint32_t earlier_id = 0;  ///< local map ids
+  std::uint32_t later_id = 0;
+  geometry::Pose2 T_earlier_later;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the frame of the earlier stop
+};
 
 struct MapDocument {
   std::string robot_id;
@@ -20,6 +40,16 @@ struct MapDocument {
   std::vector<topomap::LoopClosure> loop_closures;
   topomap::GlobalMap global_map;
   MapDrawing drawing;
+  std::uint64_t map_id = 0;         ///< the same in all states of a map; 0: it has none
+  std::vector<StopSource> sources;  ///< of each local map; empty: not known
+  std::vector<MapEdge> edges;       ///< that the trajectory was made of; empty: not known
 };
+
+/// The document with a source for each local map and a map id: those that it lacks follow from its
+/// content, so that the same file is always the same session. Without local maps it stays as it is.
+MapDocument identified(MapDocument document);
+
+/// The id of the map that a session begins; never 0.
+std::uint64_t map_id_of(std::uint64_t first_session);
 
 }  // namespace topogeo::storage

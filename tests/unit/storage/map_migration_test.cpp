@@ -1,0 +1,108 @@
+// Files that programs of earlier versions wrote, kept as they were then.
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include "topogeo/storage/map_database.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
+
+#include "sample_map.hpp"
+
+namespace topogeo::storage {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// What the golden files hold.
+MapDocument golden_document() {
+  MapDocument document = sample_document(5);
+  document.local_maps[3].starts_drive = true;
+  document.trajectory.stops[4].located = false;
+  document.drawing.places = {{"room A", {1.5, 2.0}}};
+  document.drawing.zones = {{"hall", {{0.0, 0.0}, {4.0, 0.0}, {4.0, 3.0}}}};
+  planning::GridFrame frame;
+  frame.columns = 3;
+  frame.rows = 2;
+  frame.resolution_m = 0.5;
+  frame.T_map_grid = {1.0, 2.0, 0.5};
+  planning::OccupancyGrid grid(frame);
+  grid.set({1, 1}, planning::CellState::kOccupied);
+  grid.set({0, 0}, planning::CellState::kFree);
+  document.drawing.grid = grid;
+  return document;
+}
+
+class GoldenFile : public ScratchDirectory {
+ protected:
+  [[nodiscard]] std::filesystem::path path() const { return directory_ / "map.sqlite"; }
+  void execute(const std::string& sql) const {
+    sqlite3* handle = nullptr;
+    ASSERT_EQ(sqlite3_open(path().c_str(), &handle), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(handle);
+    sqlite3_close(handle);
+  }
+  void make(const std::string& name) const { execute(content(golden(name))); }
+  static std::filesystem::path golden(const std::string& name) {
+    return std::filesystem::path(TOPOGEO_TEST_DATA) / name;
+  }
+};
+
+TEST_F(GoldenFile, MapFileOfBeforeIsRead) {
+  EXPECT_EQ(map_file_bytes(read_map(golden("map_v1.pb"))), map_file_bytes(golden_document()));
+}
+
+TEST_F(GoldenFile, DatabaseOfVersion1IsMigrated) {
+  make("map_v1.sql");
+  const MapDocument expected = identified(golden_document());
+  EXPECT_EQ(map_file_bytes(MapDatabase::open_existing(path()).load()), map_file_bytes(expected));
+  // Once for all, and the map goes on.
+  MapDatabase database = MapDatabase::open_or_create(path(), "robot-1", expected.seed);
+  EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(expected));
+  EXPECT_EQ(database.map_id(), expected.map_id);
+  const SessionStop next{99, 1, sample_local_map(0)};
+  EXPECT_TRUE(database.put_stops({&next, 1}).empty());
+  const JoinedStop joined{next.source(), true};
+  database.join({&joined, 1});
+  EXPECT_EQ(database.load().local_maps.size(), 6U);
+}
+
+TEST_F(GoldenFile, DatabaseOfVersion1IsReadWithoutAChange) {
+  make("map_v1.sql");
+  const std::string before = content(path());
+  EXPECT_EQ(map_file_bytes(read_map(path())), map_file_bytes(identified(golden_document())));
+  EXPECT_EQ(content(path()), before);
+  for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
+    EXPECT_EQ(entry.path(), path());
+  }
+}
+
+TEST_F(GoldenFile, DamagedDatabaseOfVersion1StaysAsItWas) {
+  make("map_v1.sql");
+  execute("UPDATE local_map SET blob = zeroblob(length(blob)) WHERE id = 2");
+  EXPECT_THAT(error_of([&] { MapDatabase::open_existing(path()); }),
+              HasSubstr("local_map 2 is damaged (its hash is wrong)"));
+  execute("SELECT count(*) FROM local_map");  // still there
+}
+
+TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
+  make("map_v2.sql");
+  MapDocument expected = golden_document();
+  for (std::uint32_t i = 0; i < 3; ++i) expected.sources.push_back({0xfedcba9876543210U, i});
+  for (std::uint32_t i = 0; i < 2; ++i) expected.sources.push_back({7, i + 1});
+  expected.map_id = map_id_of(expected.sources[0].session);
+  expected.edges = {{0, 1, {1.0, 0.5, 0.25}, Eigen::Matrix3d::Identity()}};
+  expected.drawing.zones.push_back(
+      {"ramp", {{0.0, 0.0}, {4.0, 0.0}, {4.0, 3.0}}, planning::ZoneKind::kSlow, 0.3});
+  EXPECT_EQ(map_file_bytes(read_map(path())), map_file_bytes(expected));
+  const MapDatabase database = MapDatabase::open_existing(path());
+  EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(expected));
+  const auto waiting = database.stop({7, 3});
+  ASSERT_TRUE(waiting);
+  EXPECT_EQ(waiting->odometry_epoch, 12U);
+  ASSERT_EQ(database.sessions().size(), 2U);
+  EXPECT_EQ(database.sessions()[1].stops, 4U) << "stop 0 was dropped";
+}
+
+}  // namespace
+}  // namespace topogeo::storage
