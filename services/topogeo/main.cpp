@@ -43,6 +43,7 @@ int run(int argc, const char* const* argv) {
   cli::add_calibrate_laser_command(app, exit_code);
   cli::add_calibrate_odometry_command(app, exit_code);
   cli::add_compare_command(app, exit_code);
+  cli::add_store_command(app, exit_code);
   if (const auto exit_now = app.parse(argc, argv)) return *exit_now;
   return exit_code;
 }

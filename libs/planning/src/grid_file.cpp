@@ -8,10 +8,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "topogeo/planning/pgm_image.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/yaml_reader.hpp"
 
-#include "pgm_image.hpp"
 #include "text_file.hpp"
 
 namespace topogeo::planning {

@@ -1,4 +1,4 @@
-#include "pgm_image.hpp"
+#include "topogeo/planning/pgm_image.hpp"
 
 #include <cctype>
 #include <stdexcept>

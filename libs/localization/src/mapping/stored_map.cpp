@@ -7,19 +7,18 @@ namespace topogeo::localization {
 
 namespace {
 
-// A stored map does not keep the covariances of its matches: a usual one is about that good.
 constexpr double kMatchSigma_m = 0.02;
 constexpr double kMatchSigma_rad = 0.008;
 // Of the variance of the step from one drive to the next: drives hang together by their loops.
 constexpr double kWeakerBetweenDrives = 100.0;
 
-Eigen::Matrix3d usual_covariance() {
+}  // namespace
+
+Eigen::Matrix3d usual_match_covariance() {
   return Eigen::Vector3d(kMatchSigma_m * kMatchSigma_m, kMatchSigma_m * kMatchSigma_m,
                          kMatchSigma_rad * kMatchSigma_rad)
       .asDiagonal();
 }
-
-}  // namespace
 
 void check(const StoredMap& map) {
   if (!map.maps.empty() && map.maps.size() == map.trajectory.stops.size()) return;
@@ -35,11 +34,11 @@ std::vector<PoseGraphEdge> edges_of(const StoredMap& map) {
     const double weaker = map.maps[i].starts_drive ? kWeakerBetweenDrives : 1.0;
     edges.push_back({i - 1, i, EdgeKind::kSequential,
                      geometry::between(stops[i - 1].T_map_robot, stops[i].T_map_robot),
-                     weaker * usual_covariance()});
+                     weaker * usual_match_covariance()});
   }
   for (const topomap::LoopClosure& loop : map.loop_closures) {
     edges.push_back({loop.earlier_id, loop.later_id, EdgeKind::kRevisit, loop.T_earlier_later,
-                     usual_covariance()});
+                     usual_match_covariance()});
   }
   return edges;
 }

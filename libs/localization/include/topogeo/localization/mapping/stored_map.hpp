@@ -28,6 +28,9 @@ struct StoredMatch {
 /// Throws std::invalid_argument unless there are as many stops as local maps, at least one.
 void check(const StoredMap& map);
 
+/// Of a usual match, in the frame of its first stop: a stored map does not keep those of its own.
+Eigen::Matrix3d usual_match_covariance();
+
 /// The measurements that hold the poses of a stored map together: one between each stop and the
 /// next, as far apart as the poses are, and its loops as they were matched. Their
 /// covariances are those of usual matches, so later ones can bend the map as if they had been there

@@ -1,0 +1,16 @@
+// What graph formats bring: nodes, branches, places and zones.
+#pragma once
+
+#include "topogeo/exchange/output_file.hpp"
+#include "topogeo/storage/map_drawing.hpp"
+#include "topogeo/topomap/global_map.hpp"
+
+namespace topogeo::exchange {
+
+struct MapGraph {
+  topomap::GlobalMap map;
+  storage::MapDrawing drawing;  ///< without a grid
+  Notes notes;
+};
+
+}  // namespace topogeo::exchange

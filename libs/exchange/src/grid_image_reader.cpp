@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <stdexcept>
+
+#include "topogeo/exchange/grid_image.hpp"
+#include "topogeo/exchange/read_text.hpp"
+#include "topogeo/planning/pgm_image.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/yaml_reader.hpp"
+
+namespace topogeo::exchange {
+namespace {
+
+using support::YamlNode;
+
+struct ImageYaml {
+  std::filesystem::path image;
+  planning::GridFrame frame;  // without columns and rows
+  bool negate = false;
+  // map_server compares in 32 bits.
+  float occupied = 0.0F;
+  float free = 0.0F;
+  ImageMode mode = ImageMode::kTrinary;
+};
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool negate_of(const YamlNode& node) {
+  const std::string word = lower_case(node.text());
+  if (word == "1" || word == "true") return true;
+  if (word == "0" || word == "false") return false;
+  node.fail("0, 1, true or false");
+}
+
+ImageMode mode_of(const YamlNode& node) {
+  if (!node.exists()) return ImageMode::kTrinary;
+  const std::string word = lower_case(node.text());
+  if (word == "trinary") return ImageMode::kTrinary;
+  if (word == "scale") return ImageMode::kScale;
+  if (word == "raw") return ImageMode::kRaw;
+  node.fail("trinary, scale or raw");
+}
+
+void note_unknown_keys(const YamlNode& root, Notes& notes) {
+  constexpr std::array<std::string_view, 7> kKnown = {
+      "image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"};
+  for (const support::YamlEntry& entry : root.entries()) {
+    const std::string key = entry.key.text();
+    if (std::ranges::find(kKnown, key) == kKnown.end()) {
+      notes.push_back(
+          fmt::format("line {}: key '{}' is not known, ignored", entry.key.line(), key));
+    }
+  }
+}
+
+ImageYaml read_image_yaml(const YamlNode& root) {
+  constexpr double kFarthest_m = 1e6;  // 1,000 km: beyond it a number is a slip
+  constexpr double kMostTurn_rad = 7.0;
+  ImageYaml yaml;
+  yaml.image = root.required("image").text();
+  if (yaml.image.empty()) root.at("image").fail("the name of a PGM file");
+  yaml.frame.resolution_m = root.required("resolution").number(0.01, 1.0, "m");
+  const std::vector<YamlNode> origin = root.required("origin").tuple(3, "[x, y, yaw]");
+  yaml.frame.T_map_grid = {
+      origin[0].named("origin x").number(-kFarthest_m, kFarthest_m, "m"),
+      origin[1].named("origin y").number(-kFarthest_m, kFarthest_m, "m"),
+      origin[2].named("origin yaw").number(-kMostTurn_rad, kMostTurn_rad, "rad")};
+  yaml.negate = negate_of(root.required("negate"));
+  yaml.occupied = static_cast<float>(root.required("occupied_thresh").number(0.0, 1.0, ""));
+  yaml.free = static_cast<float>(root.required("free_thresh").number(0.0, 1.0, ""));
+  yaml.mode = mode_of(root.at("mode"));
+  return yaml;
+}
+
+std::int8_t value_of(std::uint8_t pixel, int depth, const ImageYaml& yaml) {
+  if (yaml.mode == ImageMode::kRaw) {
+    const long value = std::lround(255.0 * pixel / depth);
+    return value <= 100 ? static_cast<std::int8_t>(value) : std::int8_t{-1};
+  }
+  const float light = static_cast<float>(pixel) / static_cast<float>(depth);
+  const float occupied = yaml.negate ? light : 1.0F - light;
+  // Where both hold, free wins.
+  if (occupied <= yaml.free) return 0;
+  if (occupied >= yaml.occupied) return 100;
+  if (yaml.mode == ImageMode::kTrinary) return -1;
+  return static_cast<std::int8_t>(
+      std::lround((occupied - yaml.free) / (yaml.occupied - yaml.free) * 100.0F));
+}
+
+void note_thresholds(const ImageYaml& yaml, const planning::PgmImage& image, Notes& notes) {
+  constexpr std::uint8_t kUnknownPixel = 205;
+  if (yaml.mode == ImageMode::kRaw || yaml.negate || image.depth != 255) return;
+  if (std::ranges::find(image.pixels, kUnknownPixel) == image.pixels.end()) return;
+  if (value_of(kUnknownPixel, image.depth, yaml) == 0) {
+    notes.push_back(fmt::format(
+        "free_thresh {:g} makes free what map_saver writes as unknown (205); 0.196 would not",
+        yaml.free));
+  }
+}
+
+}  // namespace
+
+GridImage read_grid_image(const std::filesystem::path& yaml_path) {
+  const YamlNode root = support::parse_yaml(read_text(yaml_path), yaml_path.string(), "keys");
+  const ImageYaml yaml = read_image_yaml(root);
+  GridImage grid;
+  note_unknown_keys(root, grid.notes);
+  const std::filesystem::path image_path = yaml_path.parent_path() / yaml.image;
+  const planning::PgmImage image = planning::parse_pgm(read_text(image_path), image_path.string());
+  note_thresholds(yaml, image, grid.notes);
+  grid.mode = yaml.mode;
+  grid.frame = yaml.frame;
+  grid.frame.columns = image.width;
+  grid.frame.rows = image.height;
+  grid.values.reserve(grid.frame.size());
+  for (std::int32_t row = grid.frame.rows - 1; row >= 0; --row) {
+    for (std::int32_t column = 0; column < grid.frame.columns; ++column) {
+      grid.values.push_back(
+          value_of(image.pixels[grid.frame.index({column, row})], image.depth, yaml));
+    }
+  }
+  return grid;
+}
+
+planning::OccupancyGrid occupancy_of(const GridImage& image) {
+  constexpr std::int8_t kFreeTo = 19;
+  constexpr std::int8_t kOccupiedFrom = 65;
+  planning::OccupancyGrid grid(image.frame);
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const std::int8_t value = image.values[i];
+    if (value < 0) continue;
+    const planning::Cell cell = image.frame.cell_at(i);
+    if (value >= kOccupiedFrom) grid.set(cell, planning::CellState::kOccupied);
+    if (value <= kFreeTo) grid.set(cell, planning::CellState::kFree);
+  }
+  return grid;
+}
+
+}  // namespace topogeo::exchange

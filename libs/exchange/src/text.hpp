@@ -1,0 +1,24 @@
+// Numbers and words as the text formats have them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::exchange {
+
+/// The shortest text that reads back to the same value.
+std::string number_text(double value);
+
+/// A finite number that takes up the whole text; nothing for any other text.
+std::optional<double> number_of(std::string_view text);
+std::optional<std::uint64_t> whole_number_of(std::string_view text);
+
+/// "real", "fictitious", "virtual", "door", "narrowing", "hall_corridor".
+std::string_view name_of(topomap::NodeKind kind);
+std::optional<topomap::NodeKind> node_kind_of(std::string_view name);
+
+}  // namespace topogeo::exchange

@@ -1,0 +1,11 @@
+// The subcommands of `topogeo store`; each function adds some, as those of commands.hpp do.
+#pragma once
+
+#include "topogeo/command_line/command_line.hpp"
+
+namespace topogeo::cli {
+
+void add_store_inspect_commands(command_line::Command& store, int& exit_code);
+void add_store_export_command(command_line::Command& store, int& exit_code);
+
+}  // namespace topogeo::cli

@@ -1,0 +1,54 @@
+#include "store_files.hpp"
+
+#include <array>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <string_view>
+
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/read_map.hpp"
+
+namespace topogeo::cli {
+
+namespace {
+
+constexpr std::string_view kDatabaseStart = "SQLite format 3";
+// A Protobuf text field of eleven bytes, then its text.
+constexpr std::string_view kMapFileStart = "\x0a\x0btopogeo-map";
+
+std::string start_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, 16> start{};
+  in.read(start.data(), start.size());
+  return {start.data(), static_cast<std::size_t>(in.gcount())};
+}
+
+}  // namespace
+
+storage::MapDocument read_any_map(const std::filesystem::path& file) {
+  try {
+    return storage::read_map(file);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+bool looks_like_map(const std::filesystem::path& file) {
+  const std::string start = start_of(file);
+  return start.starts_with(kDatabaseStart) || start.starts_with(kMapFileStart);
+}
+
+pipeline::Config read_config(const std::optional<std::filesystem::path>& file) {
+  try {
+    return pipeline::load_config(file).config;
+  } catch (const std::exception& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
+void print_notes(const exchange::Notes& notes) {
+  for (const std::string& note : notes) std::cerr << "topogeo: " << note << '\n';
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,27 @@
+// Map files on the command line of `topogeo store`.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "topogeo/exchange/output_file.hpp"
+#include "topogeo/pipeline/config.hpp"
+#include "topogeo/storage/map_document.hpp"
+
+namespace topogeo::cli {
+
+/// A map file (map.pb) or map database, by its content. Throws service::BadInputError naming the
+/// file and the cause.
+storage::MapDocument read_any_map(const std::filesystem::path& file);
+
+/// Whether the file begins as a map file or a map database does.
+bool looks_like_map(const std::filesystem::path& file);
+
+/// Throws service::UsageError naming file and key.
+pipeline::Config read_config(const std::optional<std::filesystem::path>& file);
+
+/// Each on stderr in a line of its own.
+void print_notes(const exchange::Notes& notes);
+
+}  // namespace topogeo::cli

@@ -1,0 +1,100 @@
+// topogeo store info, check and list.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/exchange/inspect.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/format.hpp"
+
+#include "store_commands.hpp"
+#include "store_files.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct InspectOptions {
+  fs::path file;
+  bool json = false;
+};
+
+int store_info(const InspectOptions& options) {
+  const exchange::MapSummary summary = exchange::summarize(read_any_map(options.file));
+  const std::uint64_t bytes = fs::file_size(options.file);
+  std::cout << (options.json ? exchange::summary_json(summary, bytes)
+                             : exchange::summary_text(summary, bytes));
+  return service::kOk;
+}
+
+int store_check(const InspectOptions& options) {
+  // Reading checks blobs, hashes and references.
+  const std::vector<std::string> found = exchange::contradictions(read_any_map(options.file));
+  for (const std::string& line : found) {
+    std::cout << options.file.string() << ": " << line << '\n';
+  }
+  if (found.empty()) std::cout << options.file.string() << ": no fault found\n";
+  return found.empty() ? service::kOk : service::kFailure;
+}
+
+std::string list_line(const fs::path& file) {
+  try {
+    const exchange::MapSummary s = exchange::summarize(read_any_map(file));
+    return fmt::format(
+        "{:16} {:3} sessions {:5} stops {:8.1f} m {:5} nodes {:5} branches {:4} "
+        "loops {:10} bytes",
+        s.robot_id, s.sessions, s.stops, s.driven_m, s.node_count(), s.branches, s.loops,
+        fs::file_size(file));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+int store_list(const fs::path& directory) {
+  std::vector<fs::path> files;
+  try {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory)) {
+      if (entry.is_regular_file() && looks_like_map(entry.path())) files.push_back(entry.path());
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw service::BadInputError(error.what());
+  }
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    std::cout << fmt::format("{:32} {}\n", fs::relative(file, directory).string(), list_line(file));
+  }
+  if (files.empty()) std::cerr << "topogeo: no map in " << directory.string() << '\n';
+  return service::kOk;
+}
+
+}  // namespace
+
+void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
+  command_line::Command* info = store.add_subcommand("info", "What is in a map");
+  auto shown = std::make_shared<InspectOptions>();
+  info->add_option("file", shown->file, "map file or database")->required()->type_name("FILE");
+  info->add_flag("--json", shown->json, "print all numbers as JSON");
+  info->callback([shown, &exit_code] { exit_code = store_info(*shown); });
+
+  command_line::Command* check =
+      store.add_subcommand("check", "Find damage and contradictions in a map");
+  auto checked = std::make_shared<InspectOptions>();
+  check->add_option("file", checked->file, "map file or database")->required()->type_name("FILE");
+  check->footer(
+      "Reads all of it: checksums and hashes, every element, every reference; then stamps, poses,\n"
+      "covariances and the ends of branches.\n"
+      "Exit codes: 0 no fault, 1 contradictions, 3 damaged or no map.");
+  check->callback([checked, &exit_code] { exit_code = store_check(*checked); });
+
+  command_line::Command* list = store.add_subcommand("list", "The maps in a folder and below");
+  auto directory = std::make_shared<fs::path>(".");
+  list->add_option("directory", *directory, "folder")->capture_default_str()->type_name("DIR");
+  list->callback([directory, &exit_code] { exit_code = store_list(*directory); });
+}
+
+}  // namespace topogeo::cli

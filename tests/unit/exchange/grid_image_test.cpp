@@ -1,0 +1,145 @@
+#include "topogeo/exchange/grid_image.hpp"
+
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/exchange/read_text.hpp"
+#include "topogeo/planning/grid_file.hpp"
+
+#include "readers.hpp"
+#include "sample_floor.hpp"
+
+namespace topogeo::exchange {
+namespace {
+
+using planning::CellState;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class GridImageFiles : public ScratchTest {
+ protected:
+  /// Three by two cells of 0.05 m.
+  static planning::OccupancyGrid small_grid() {
+    planning::GridFrame frame;
+    frame.columns = 3;
+    frame.rows = 2;
+    frame.resolution_m = 0.05;
+    frame.T_map_grid = {-1.25, 2.0 / 3.0, 0.0};
+    planning::OccupancyGrid grid(frame);
+    grid.set({0, 0}, CellState::kFree);
+    grid.set({1, 0}, CellState::kOccupied);
+    grid.set({2, 1}, CellState::kFree);
+    return grid;
+  }
+
+  GridImage read(const std::string& yaml, const std::string& pgm = "P2 2 2 255 254 0 205 100") {
+    static_cast<void>(write("a.pgm", pgm));
+    return read_grid_image(write("a.yaml", yaml));
+  }
+  std::string error(const std::string& yaml, const std::string& pgm = "P2 1 1 255 0") {
+    return error_of([&] { read(yaml, pgm); });
+  }
+};
+
+constexpr const char* kHead = "image: a.pgm\nresolution: 0.05\norigin: [-1.0, -2.0, 0.0]\n";
+constexpr const char* kTail = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+TEST_F(GridImageFiles, AreReadByTheRulesOfHumbleAndJazzy) {
+  write_files(grid_files(directory_ / "floor.yaml", small_grid()));
+  EXPECT_EQ(run_reader({"grid", directory_ / "floor.yaml"}),
+            "3 2 0.05 -1.25 0.6666666666666666\n0 100 -1 -1 -1 0\n");
+}
+
+TEST_F(GridImageFiles, ReadBackByUsAndAsDrawings) {
+  write_files(grid_files(directory_ / "floor", small_grid()));
+  const GridImage image = read_grid_image(directory_ / "floor.yaml");
+  EXPECT_THAT(image.notes, IsEmpty());
+  EXPECT_EQ(image.frame.T_map_grid, small_grid().frame().T_map_grid);
+  EXPECT_TRUE(std::ranges::equal(occupancy_of(image).cells(), small_grid().cells()));
+  const planning::OccupancyGrid drawn = planning::read_grid(directory_ / "floor.yaml");
+  EXPECT_TRUE(std::ranges::equal(drawn.cells(), small_grid().cells()));
+}
+
+TEST_F(GridImageFiles, ATurnedGridIsSampledOnStraightAxes) {
+  planning::GridFrame frame;
+  frame.columns = 40;
+  frame.rows = 20;
+  frame.resolution_m = 0.1;
+  frame.T_map_grid = {1.0, 2.0, 0.5};
+  planning::OccupancyGrid turned(frame, CellState::kFree);
+  for (std::int32_t column = 0; column < 40; ++column) {
+    turned.set({column, 10}, CellState::kOccupied);
+  }
+  const planning::OccupancyGrid straight = without_turn(turned);
+  EXPECT_EQ(straight.frame().T_map_grid.theta_rad, 0.0);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < straight.frame().size(); ++i) {
+    const planning::Cell cell = straight.frame().cell_at(i);
+    const auto source = frame.cell_of(straight.frame().center_m(cell));
+    EXPECT_EQ(straight.at(cell), source ? turned.at(*source) : CellState::kUnknown);
+    inside += source.has_value();
+  }
+  EXPECT_NEAR(static_cast<double>(inside), 800.0, 30.0);
+  const auto files = grid_files("f", turned);
+  EXPECT_THAT(files[1].bytes, HasSubstr(", 0]\nnegate"));
+}
+
+TEST_F(GridImageFiles, TrinaryAsInTheSpecification) {
+  // Bottom row first: 205, 100; top row: 254, 0.
+  const GridImage image = read(std::string(kHead) + "negate: 0\n" + kTail);
+  EXPECT_THAT(image.values, ElementsAre(-1, -1, 0, 100));
+  EXPECT_THAT(image.notes, IsEmpty());
+  EXPECT_EQ(image.mode, ImageMode::kTrinary);
+}
+
+TEST_F(GridImageFiles, NegateIsANumberOrAWord) {
+  for (const char* word : {"1", "true", "True"}) {
+    const GridImage image = read(std::string(kHead) + "negate: " + word + "\n" + kTail);
+    EXPECT_THAT(image.values, ElementsAre(100, -1, 100, 0)) << word;
+  }
+  EXPECT_THAT(read(std::string(kHead) + "negate: false\n" + kTail).values,
+              ElementsAre(-1, -1, 0, 100));
+  EXPECT_THAT(error(std::string(kHead) + "negate: maybe\n" + kTail),
+              HasSubstr("a.yaml:4: negate: expected 0, 1, true or false"));
+}
+
+TEST_F(GridImageFiles, RawPixelsAreValues) {
+  const GridImage image =
+      read(std::string(kHead) + "negate: 1\nmode: RAW\n" + kTail, "P2 3 1 255 0 100 101");
+  EXPECT_THAT(image.values, ElementsAre(0, 100, -1));
+}
+
+TEST_F(GridImageFiles, ScaleGradesBetweenTheThresholds) {
+  const std::string yaml =
+      std::string(kHead) + "negate: 0\nmode: scale\noccupied_thresh: 1.0\nfree_thresh: 0.0\n";
+  // 255 is free, 0 occupied, 128 is (255 - 128) / 255 = 49.8 %.
+  EXPECT_THAT(read(yaml, "P2 3 1 255 255 0 128").values, ElementsAre(0, 100, 50));
+}
+
+TEST_F(GridImageFiles, UnknownKeysAndFreeUnknownsAreNoted) {
+  const GridImage image =
+      read(std::string(kHead) + "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\nfloor: 3\n");
+  EXPECT_THAT(image.notes, Contains("line 7: key 'floor' is not known, ignored"));
+  EXPECT_THAT(image.notes, Contains(HasSubstr("free_thresh 0.25 makes free")));
+  EXPECT_THAT(image.values, ElementsAre(0, -1, 0, 100));
+}
+
+TEST_F(GridImageFiles, NamesWhatIsWrong) {
+  const std::string good = std::string(kHead) + "negate: 0\n" + kTail;
+  EXPECT_THAT(error("resolution: 0.05\n" + std::string(kTail)), HasSubstr("a.yaml:"));
+  EXPECT_THAT(error(std::string(kHead) + "negate: 0\nmode: grey\n" + kTail),
+              HasSubstr("a.yaml:5: mode: expected trinary, scale or raw"));
+  EXPECT_THAT(
+      error("image: a.pgm\nresolution: 0.05\norigin: [0, 0]\nnegate: 0\n" + std::string(kTail)),
+      HasSubstr("origin: expected [x, y, yaw]"));
+  EXPECT_THAT(error(good, "P6 1 1 255 abc"), HasSubstr("a.pgm: not a PGM image"));
+  EXPECT_THAT(error_of([&] { read_grid_image(directory_ / "none.yaml"); }),
+              HasSubstr("none.yaml: cannot be opened"));
+}
+
+}  // namespace
+}  // namespace topogeo::exchange
