@@ -19,6 +19,7 @@ namespace {
 
 using pipeline::LoopOutcomeCounts;
 using pipeline::LoopRecall;
+using pipeline::Reliability;
 
 std::vector<storage::LoopCandidate> read_candidates(const LoopComparison& comparison) {
   if (comparison.report) return storage::read_loop_candidates(*comparison.report);
@@ -49,6 +50,19 @@ LoopRecall recall_of(const LoopComparison& comparison) {
   }
 }
 
+void print_text(const Reliability& reliability) {
+  std::cout << fmt::format("\n{:<11} {:>10} {:>7} {:>6}\n", "probability", "decisions", "stated",
+                           "right");
+  for (std::size_t i = 0; i < Reliability::kTenths; ++i) {
+    const Reliability::Tenth& tenth = reliability.tenths()[i];
+    if (tenth.count == 0) continue;
+    std::cout << fmt::format("{:.1f} to {:.1f}  {:>10} {:>7.3f} {:>6.3f}\n",
+                             0.1 * static_cast<double>(i), 0.1 * static_cast<double>(i + 1),
+                             tenth.count, tenth.mean_stated(), tenth.share_right());
+  }
+  std::cout << fmt::format("Brier score {:.4f}\n", reliability.brier());
+}
+
 void print_text(const LoopRecall& recall) {
   std::size_t rejected = 0;
   for (const auto& [reason, count] : recall.rejected()) rejected += count;
@@ -67,6 +81,19 @@ void print_text(const LoopRecall& recall) {
     std::cout << fmt::format("{:<10}  {:<44} {:>6} {:>6} {:>6}\n", of.source, of.outcome, of.right,
                              of.near, of.wrong);
   }
+  print_text(recall.reliability);
+}
+
+nlohmann::ordered_json json_of(const Reliability& reliability) {
+  nlohmann::ordered_json tenths = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < Reliability::kTenths; ++i) {
+    const Reliability::Tenth& tenth = reliability.tenths()[i];
+    tenths.push_back({{"from", static_cast<double>(i) / static_cast<double>(Reliability::kTenths)},
+                      {"decisions", tenth.count},
+                      {"stated", tenth.mean_stated()},
+                      {"right", tenth.right}});
+  }
+  return {{"brier_score", reliability.brier()}, {"tenths", tenths}};
 }
 
 void print_json(const LoopRecall& recall) {
@@ -85,7 +112,7 @@ void print_json(const LoopRecall& recall) {
       {"tried", recall.tried()},     {"accepted", recall.accepted()},
       {"in_view", recall.in_view()}, {"accepted_in_view", recall.accepted_in_view()},
       {"wrong", recall.wrong()},     {"rejected", rejected},
-      {"outcomes", outcomes}};
+      {"outcomes", outcomes},        {"reliability", json_of(recall.reliability)}};
   std::cout << all.dump() << '\n';
 }
 

@@ -94,8 +94,9 @@ LoopFigures measure_loops(const Recording& recording, const pipeline::Config& co
   figures.recall =
       pipeline::loop_recall(maps, reference, candidates_of(localizer), kReferenceApart_ns);
   figures.triangles = match_triangles(localizer.graph());
-  figures.predictions =
-      revisit_predictions(localizer.loop_decisions(), reference_of_stops(maps, reference));
+  const std::vector<std::optional<Pose2>> T_world_stop = reference_of_stops(maps, reference);
+  figures.predictions = revisit_predictions(localizer.loop_decisions(), T_world_stop);
+  figures.decisions = judged_decisions(localizer.loop_decisions(), T_world_stop);
   figures.match_tasks = localizer.counts().tasks;
   figures.cpu_s = times.stages().front().cpu_s;
   return figures;

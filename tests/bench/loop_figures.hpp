@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/loop_recall.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
 
 #include "covariance_checks.hpp"
+#include "loop_reliability.hpp"
 #include "recordings.hpp"
 
 namespace topogeo::bench {
@@ -24,6 +26,7 @@ struct LoopFigures {
   pipeline::LoopRecall recall;
   MeanSquaredDistance triangles;
   MeanSquaredDistance predictions;
+  std::vector<JudgedDecision> decisions;
   std::uint64_t match_tasks = 0;
   double cpu_s = 0.0;
 };

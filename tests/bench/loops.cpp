@@ -1,16 +1,21 @@
 // Which places of recorded logs are recognized, and whether covariances fit the errors.
 //
-//   topogeo_loops [--config FILE] [--jobs J] [--data FOLDER] [--verbose] NAME[/N]...
+//   topogeo_loops [--config FILE] [--jobs J] [--data FOLDER] [--verbose] [--floors N]
+//                 [--reliability] [--decisions FILE] NAME[/N]...
 //
 // Maps NAME.clf.gz of the folder, as topogeo map does, NAME/N with every N-th scan alone, and
 // prints one row of a table: errors against NAME.ref.tum and NAME.relations, revisits
 // (pipeline/loop_recall.hpp) and mean squared Mahalanobis distances (covariance_checks.hpp).
+// --floors adds drives through synthetic floors, --reliability says whether the probabilities of
+// the decisions are right (loop_reliability.hpp).
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -24,6 +29,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "loop_figures.hpp"
+#include "synthetic_run.hpp"
 
 namespace {
 
@@ -34,6 +40,9 @@ struct LoopOptions {
   std::filesystem::path data = "../shared/data";
   std::optional<std::filesystem::path> config_file;
   std::size_t jobs = 2;
+  std::uint64_t floors = 0;  // seeds of each synthetic floor
+  bool reliability = false;
+  std::optional<std::filesystem::path> decisions;
   bool verbose = false;
 };
 
@@ -55,8 +64,35 @@ LogName parse_log(const std::string& text) {
   return {text.substr(0, slash), std::stoul(every)};
 }
 
+/// NAME/floor/SEED of each synthetic drive, for instance "cyclic floor/floor/3".
+constexpr const char* kFloor = "/floor/";
+
+std::vector<std::string> synthetic_drives(std::uint64_t seeds) {
+  std::vector<std::string> names;
+  for (const bench::SyntheticFloor& floor : bench::synthetic_floors()) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      names.push_back(floor.name + kFloor + std::to_string(seed));
+    }
+  }
+  return names;
+}
+
+bench::LoopFigures measure_floor(const std::string& text, const pipeline::Config& config) {
+  const std::size_t end = text.find(kFloor);
+  const std::uint64_t seed = std::stoull(text.substr(end + std::string(kFloor).size()));
+  for (const bench::SyntheticFloor& floor : bench::synthetic_floors()) {
+    if (floor.name != text.substr(0, end)) continue;
+    simulation::SimulatedLog log = bench::synthetic_drive(floor.draw(seed), seed);
+    bench::Recording recording{text, std::move(log.scans), {}};
+    recording.T_world_robot.assign(log.T_world_robot.begin(), log.T_world_robot.end());
+    return bench::measure_loops(recording, config, std::nullopt);
+  }
+  throw std::runtime_error("no such floor");
+}
+
 bench::LoopFigures measure(const std::string& text, const LoopOptions& options,
                            pipeline::LoadedConfig config) {
+  if (text.find(kFloor) != std::string::npos) return measure_floor(text, config.config);
   const LogName log = parse_log(text);
   const std::filesystem::path file = options.data / log.name;
   const std::string scans = file.string() + ".clf.gz";
@@ -116,18 +152,41 @@ void print_details(const bench::LoopFigures& f) {
   }
 }
 
+/// The drives through one synthetic floor together as one log.
+void print_judged(const LoopOptions& options, std::map<std::size_t, bench::JudgedLog> judged) {
+  std::vector<bench::JudgedLog> logs;
+  for (auto& [index, log] : judged) {
+    const bool floor = log.name.find(kFloor) != std::string::npos;
+    if (!floor) {
+      logs.push_back(std::move(log));
+      continue;
+    }
+    const std::string name = log.name.substr(0, log.name.find(kFloor));
+    if (logs.empty() || logs.back().name != name) logs.push_back({name, false, {}});
+    std::vector<bench::JudgedDecision>& all = logs.back().decisions;
+    all.insert(all.end(), log.decisions.begin(), log.decisions.end());
+  }
+  if (options.reliability) bench::print_reliability(std::cout, logs);
+  if (options.decisions) {
+    std::ofstream out(*options.decisions);
+    bench::write_decisions(out, logs);
+  }
+}
+
 /// Each log as soon as it is done; returns whether all could be measured.
 bool print_logs(const LoopOptions& options, const pipeline::LoadedConfig& config) {
+  std::map<std::size_t, bench::JudgedLog> judged;
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> all_measured = true;
   std::mutex printing;
   const auto work = [&] {
     for (std::size_t i = next++; i < options.logs.size(); i = next++) {
       try {
-        const bench::LoopFigures figures = measure(options.logs[i], options, config);
+        bench::LoopFigures figures = measure(options.logs[i], options, config);
         const std::scoped_lock lock(printing);
         print_row(figures);
         if (options.verbose) print_details(figures);
+        judged[i] = {options.logs[i], true, std::move(figures.decisions)};
       } catch (const std::exception& error) {
         const std::scoped_lock lock(printing);
         std::cerr << fmt::format("topogeo_loops: {}: {}\n", options.logs[i], error.what());
@@ -140,6 +199,7 @@ bool print_logs(const LoopOptions& options, const pipeline::LoadedConfig& config
     threads.emplace_back(work);
   }
   for (std::thread& thread : threads) thread.join();
+  print_judged(options, std::move(judged));
   return all_measured;
 }
 
@@ -150,8 +210,13 @@ int main(int argc, char** argv) {
       "which places of recorded logs are recognized, and whether covariances fit the errors"};
   LoopOptions options;
   app.add_option("log", options.logs, "NAME, or NAME/N: every N-th scan of it alone")
-      ->required()
       ->type_name("NAME");
+  app.add_option("--floors", options.floors, "drives through each synthetic floor as well")
+      ->check(command_line::range(0.0, 1000.0));
+  app.add_flag("--reliability", options.reliability,
+               "whether the probabilities of the decisions are right");
+  app.add_option("--decisions", options.decisions, "write what each decision was made of")
+      ->type_name("FILE");
   app.add_option("--data", options.data, "folder of NAME.clf.gz, NAME.ref.tum, NAME.relations")
       ->type_name("FOLDER")
       ->capture_default_str();
@@ -162,6 +227,7 @@ int main(int argc, char** argv) {
   app.add_flag("--verbose", options.verbose,
                "decisions by source and outcome, loops off the reference, places not recognized");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
+  for (const std::string& drive : synthetic_drives(options.floors)) options.logs.push_back(drive);
   try {
     const pipeline::LoadedConfig config = pipeline::load_config(options.config_file);
     print_head();

@@ -151,6 +151,12 @@ TEST_F(CompareTest, LoopsOfAMapAreCountedFromItsReport) {
   EXPECT_LE(loops["accepted"], loops["tried"]);
   EXPECT_EQ(loops["wrong"], 0);
   EXPECT_TRUE(loops["rejected"].is_object());
+  const json& tenths = loops["reliability"]["tenths"];
+  ASSERT_EQ(tenths.size(), 10U);
+  EXPECT_GT(tenths[9]["decisions"], 0);
+  EXPECT_GT(tenths[9]["stated"], 0.9);
+  EXPECT_LE(tenths[9]["right"], tenths[9]["decisions"]);
+  EXPECT_LT(loops["reliability"]["brier_score"], 0.1);
 
   std::filesystem::rename(out / "report.json", scratch_ / "other.json");
   EXPECT_EQ(compare({out / "map.pb", truth, "--loops"}), 3);
@@ -159,6 +165,7 @@ TEST_F(CompareTest, LoopsOfAMapAreCountedFromItsReport) {
       << err_;
   EXPECT_THAT(out_, HasSubstr("accepted  " + loops["accepted"].dump() + "\n"));
   EXPECT_THAT(out_, HasSubstr("prediction  accepted "));
+  EXPECT_THAT(out_, HasSubstr("\n0.9 to 1.0 "));
 }
 
 TEST_F(CompareTest, AMapIsComparedByItsLoopsAlone) {

@@ -34,6 +34,9 @@ constexpr double kRightMatch_m = 0.25;
 constexpr double kRightMatch_rad = 0.09;
 constexpr double kNearMatch_m = 0.6;
 constexpr double kNearMatch_rad = 0.2;
+// What LoopCandidate::probability promises.
+constexpr double kProbable_m = 0.5;
+constexpr double kProbable_rad = 0.174532925;
 
 // Of the later scan's points, seen by the older stop too.
 constexpr double kLeastInView = 0.5;
@@ -149,6 +152,18 @@ std::vector<LoopOutcomeCounts> count_outcomes(const ReferencePoses& poses,
   return list;
 }
 
+Reliability reliability_of(const ReferencePoses& poses, std::span<const LoopCandidate> candidates) {
+  const std::string unmatched = localization::to_string(localization::Reason::kNothingInCommon);
+  Reliability reliability;
+  for (const LoopCandidate& candidate : candidates) {
+    const std::optional<Pose2> T = between_stops(poses, pair_of(candidate));
+    if (!T || candidate.reason == unmatched) continue;
+    reliability.add(candidate.probability,
+                    offset_of(candidate, *T).within(kProbable_m, kProbable_rad));
+  }
+  return reliability;
+}
+
 /// Whether half of what the later stop sees is in view of the older one, and there.
 bool in_view(const topomap::LocalMap& earlier, const topomap::LocalMap& later,
              const Pose2& T_earlier_later) {
@@ -230,6 +245,7 @@ LoopRecall loop_recall(std::span<const topomap::LocalMap> maps,
   recall.revisits = find_revisits(maps, poses, tried, accepted);
   recall.off_reference = loops_off_reference(maps, poses, loops);
   recall.outcomes = count_outcomes(poses, candidates);
+  recall.reliability = reliability_of(poses, candidates);
   return recall;
 }
 

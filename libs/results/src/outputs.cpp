@@ -82,7 +82,8 @@ void add_loop_candidates(storage::Report& report,
         {d.step, d.earlier_id, d.later_id, localization::to_string(d.outcome),
          localization::to_string(d.reason), d.T_earlier_later, d.correction_m, d.correction_rad,
          d.fitness, localization::to_string(d.source), d.predicted.T_a_b,
-         std::sqrt(covariance(0, 0) + covariance(1, 1)), std::sqrt(covariance(2, 2))});
+         std::sqrt(covariance(0, 0) + covariance(1, 1)), std::sqrt(covariance(2, 2)),
+         d.probability});
   }
 }
 

@@ -58,7 +58,8 @@ Json loop_candidates(const std::vector<LoopCandidate>& candidates) {
                     {"predicted_y_m", c.T_predicted.y_m},
                     {"predicted_theta_rad", c.T_predicted.theta_rad},
                     {"predicted_sigma_m", c.predicted_sigma_m},
-                    {"predicted_sigma_rad", c.predicted_sigma_rad}});
+                    {"predicted_sigma_rad", c.predicted_sigma_rad},
+                    {"probability", c.probability}});
   }
   return json;
 }
@@ -83,6 +84,7 @@ LoopCandidate loop_candidate(const Json& json) {
   c.T_predicted = pose_of(json, "predicted_");
   json.at("predicted_sigma_m").get_to(c.predicted_sigma_m);
   json.at("predicted_sigma_rad").get_to(c.predicted_sigma_rad);
+  json.at("probability").get_to(c.probability);
   return c;
 }
 

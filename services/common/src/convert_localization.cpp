@@ -32,6 +32,7 @@ msg::LoopDecision to_wire(const LoopDecision& decision) {
   out.correction_m(decision.correction_m);
   out.correction_rad(decision.correction_rad);
   out.fitness(decision.fitness);
+  out.probability(decision.probability);
   return out;
 }
 
@@ -51,6 +52,7 @@ LoopDecision from_wire(const msg::LoopDecision& decision) {
   out.correction_m = finite(decision.correction_m(), "decisions.correction_m");
   out.correction_rad = finite(decision.correction_rad(), "decisions.correction_rad");
   out.fitness = finite(decision.fitness(), "decisions.fitness");
+  out.probability = finite(decision.probability(), "decisions.probability");
   out.source = static_cast<localization::ProposalSource>(decision.source());
   return out;
 }

@@ -223,6 +223,7 @@ void fill(msg::LoopDecisions& decisions) {
   decision.T_predicted(pose(0.25));
   decision.predicted_covariance(matrix());
   decision.correction_m(0.75);
+  decision.probability(0.875);
   decisions.decisions().assign(msg::kSegmentDecisions, decision);
 }
 

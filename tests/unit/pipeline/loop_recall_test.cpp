@@ -125,6 +125,23 @@ TEST(LoopRecallTest, DecisionsAreCountedBySourceOutcomeAndOffset) {
               ElementsAre(Pair("match not accepted: few inliers", 1), Pair("unconfirmed", 2)));
 }
 
+TEST(LoopRecallTest, ProbabilitiesOfAllMatchesAreComparedWithTheReference) {
+  std::vector<LoopCandidate> candidates{
+      decision(0, 30, "match not accepted", "doubtful", {0.4, 0.0, 0.17}),  // right
+      decision(0, 30, "match not accepted", "doubtful", {0.6, 0.0, 0.0}),
+      decision(1, 31, "accepted", "accepted", {0.0, 0.0, 0.18}),
+      decision(2, 32, "accepted"),  // right
+      decision(2, 32, "match not accepted", "nothing in common")};
+  for (LoopCandidate& candidate : candidates) candidate.probability = 0.75;
+  candidates[2].probability = 0.25;
+  const Reliability reliability = recall_of(candidates).reliability;
+  EXPECT_EQ(reliability.count(), 4U);
+  EXPECT_EQ(reliability.tenths()[7].count, 3U);
+  EXPECT_EQ(reliability.tenths()[7].right, 2U);
+  EXPECT_EQ(reliability.tenths()[2].count, 1U);
+  EXPECT_EQ(reliability.tenths()[2].right, 0U);
+}
+
 TEST(LoopRecallTest, ALoopOffTheReferenceIsWrongUnlessTheScansFitBetter) {
   namespace scenes = localization::test;
   // Stops 0 and 30 are in one room, half a metre apart. The reference is right in the first case;

@@ -63,6 +63,7 @@ TEST_F(ReportFile, LoopCandidatesReadBackExactly) {
                                 0.125};
   report.loop_candidates = {candidate, candidate};
   report.loop_candidates[1].source = "place";
+  report.loop_candidates[1].probability = 0.75;
   EXPECT_THAT(report_json(report), HasSubstr("\"predicted_sigma_m\": 1.25"));
   write_report(directory_ / "report.json", report);
   const auto back = read_loop_candidates(directory_ / "report.json");

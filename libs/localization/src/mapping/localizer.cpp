@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "topogeo/localization/mapping/drive_join.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
 
 namespace topogeo::localization {
 
@@ -319,7 +320,10 @@ void Localizer::join(std::span<const MapPointer> drive,
     if (contains_like(graph_.edges(), loop) || contains_like(loops_.waiting(), loop)) continue;
     StopMatch known;
     known.edge = loop;
+    known.verdict = Verdict::kAccepted;
+    known.reason = Reason::kNone;
     known.fitness = match.fitness;
+    known.agreement = AgreementWeights::kWanted;  // with the stops that were tracked before
     loops_.accept(graph_, known);
     matching_.skip(loop);
   }

@@ -215,7 +215,11 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       }
       if (weight < kOverRival * rival) continue;
       for (const std::size_t i : set) {
-        if (!hypotheses_[i].accepted) out.push_back(hypotheses_[i].match);
+        if (!hypotheses_[i].accepted) {
+          out.push_back(hypotheses_[i].match);
+          out.back().agreement = weight;
+          out.back().rival_agreement = rival;
+        }
         hypotheses_[i].accepted = true;
         hypotheses_[i].weight = AgreementWeights::kPassed;
       }

@@ -136,9 +136,22 @@ void LoopClosing::accept(const PoseGraph& graph, const StopMatch& loop) {
 
 void LoopClosing::outvote(const PoseGraph& graph, std::span<const PoseGraphEdge> loops) {
   for (const PoseGraphEdge& loop : loops) {
+    const auto before =
+        std::find_if(decisions_.rbegin(), decisions_.rend(), [&](const LoopDecision& decision) {
+          return decision.outcome == LoopOutcome::kAccepted && decision.earlier_id == loop.from &&
+                 decision.later_id == loop.to;
+        });
     StopMatch match;
     match.edge = loop;
-    decide(graph, match, LoopOutcome::kOutvoted, Reason::kNone);
+    LoopEvidence evidence;
+    if (before != decisions_.rend()) {
+      match.predicted = before->predicted;
+      match.fitness = before->fitness;
+      match.source = before->source;
+      evidence = before->evidence;
+    }
+    evidence.contradicted = true;
+    decide(graph, match, LoopOutcome::kOutvoted, Reason::kNone, evidence);
     ++outvoted_;
   }
 }
@@ -152,10 +165,18 @@ std::vector<PoseGraphEdge> LoopClosing::release(std::size_t count) {
 
 void LoopClosing::decide(const PoseGraph& graph, const StopMatch& loop, LoopOutcome outcome,
                          Reason reason) {
+  LoopEvidence evidence = loop.loop_evidence();
+  evidence.contradicted = outcome == LoopOutcome::kNoClosing;
+  decide(graph, loop, outcome, reason, evidence);
+}
+
+void LoopClosing::decide(const PoseGraph& graph, const StopMatch& loop, LoopOutcome outcome,
+                         Reason reason, const LoopEvidence& evidence) {
   const Correction correction = correction_of(graph, loop.edge);
   decisions_.push_back({static_cast<std::uint32_t>(graph.poses().size() - 1), loop.edge.from,
                         loop.edge.to, outcome, reason, loop.edge.T_from_to, loop.predicted,
-                        correction.distance_m(), correction.turn_rad(), loop.fitness, loop.source});
+                        correction.distance_m(), correction.turn_rad(), loop.fitness, loop.source,
+                        loop_probability(evidence), evidence});
 }
 
 }  // namespace topogeo::localization

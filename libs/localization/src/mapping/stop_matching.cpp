@@ -81,6 +81,25 @@ bool StopMatch::plausible() const {
           overlap >= Limits::kLeastOverlap && violations <= Limits::kMostViolations);
 }
 
+LoopEvidence StopMatch::loop_evidence() const {
+  LoopEvidence known;
+  known.kind = source == ProposalSource::kWindow    ? LoopEvidence::Kind::kWindow
+               : accepted()                         ? LoopEvidence::Kind::kPassed
+               : uncertain()                        ? LoopEvidence::Kind::kDoubtful
+               : reason == Reason::kNothingInCommon ? LoopEvidence::Kind::kNone
+                                                    : LoopEvidence::Kind::kRefused;
+  known.fitness = fitness;
+  known.doubt = doubt;
+  known.overlap = overlap;
+  known.inliers = inliers;
+  known.rivalry = rivalry;
+  known.weakest_sigma_m = weakest_sigma_m;
+  known.surprise = surprise();
+  known.agreement = agreement;
+  known.rival_agreement = rival_agreement;
+  return known;
+}
+
 StopMatching::StopMatching(const LocalizerConfig& config, MatchPool& pool)
     : config_(config), requests_(config, pool) {}
 

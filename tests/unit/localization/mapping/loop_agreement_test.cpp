@@ -125,6 +125,8 @@ TEST_F(LoopAgreementTest, AFewThatContradictAreOutvoted) {
   EXPECT_EQ(all.size(), 7U);
   for (const StopMatch& one : all) EXPECT_EQ(one.edge.T_from_to.y_m, 1.0);
   EXPECT_EQ(agreement_.waiting(), 7U);  // the accepted ones stay as support, the other is gone
+  EXPECT_GE(all.front().agreement, 2.0 * all.front().rival_agreement);
+  EXPECT_EQ(all.front().rival_agreement, 1.0);  // one doubtful match
 }
 
 TEST_F(LoopAgreementTest, AgainstAGoodPredictionMoreAreWanted) {

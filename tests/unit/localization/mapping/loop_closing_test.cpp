@@ -61,6 +61,8 @@ TEST(LoopClosing, ASmallCorrectionIsAcceptedAtOnce) {
   EXPECT_NEAR(decision.correction_m, 0.3, 1e-12);
   EXPECT_NEAR(decision.correction_rad, 0.0, 1e-12);
   EXPECT_EQ(decision.fitness, 0.8);
+  EXPECT_EQ(decision.evidence.kind, LoopEvidence::Kind::kPassed);
+  EXPECT_EQ(decision.probability, loop_probability(decision.evidence));
 }
 
 TEST(LoopClosing, AFarCorrectionWaitsForAnotherStopThatAgrees) {
@@ -107,6 +109,7 @@ TEST(LoopClosing, StepsThatCannotBeBentRefuseALoop) {
   EXPECT_EQ(loops.consider(graph, loop(0, 4, 6.0)), LoopVerdict::kRefused);
   ASSERT_EQ(loops.decisions().size(), 1U);
   EXPECT_EQ(loops.decisions()[0].outcome, LoopOutcome::kNoClosing);
+  EXPECT_TRUE(loops.decisions()[0].evidence.contradicted);
   EXPECT_TRUE(loops.waiting().empty());
 }
 
@@ -132,7 +135,24 @@ TEST(LoopClosing, DoubtfulMatchesThatAgreeAreAcceptedTogether) {
   EXPECT_GE(loops.accept_agreed(graph, path_m), 4U);
   EXPECT_EQ(loops.waiting().size(), loops.decisions().size());
   EXPECT_EQ(loops.decisions().front().outcome, LoopOutcome::kAccepted);
+  EXPECT_GE(loops.decisions().front().evidence.agreement, 4.0);
+  EXPECT_EQ(loops.decisions().front().evidence.rival_agreement, 0.0);
   EXPECT_EQ(loops.accept_agreed(graph, path_m), 0U);
+}
+
+TEST(LoopClosing, ALoopThatIsOutvotedIsLessProbableThanBefore) {
+  const PoseGraph graph = straight(12);
+  LoopClosing loops({});
+  loops.accept(graph, loop(0, 11, 0.3));
+  loops.outvote(graph, loops.waiting());
+  ASSERT_EQ(loops.decisions().size(), 2U);
+  const LoopDecision& accepted = loops.decisions()[0];
+  const LoopDecision& outvoted = loops.decisions()[1];
+  EXPECT_EQ(outvoted.outcome, LoopOutcome::kOutvoted);
+  EXPECT_EQ(outvoted.evidence.kind, accepted.evidence.kind);
+  EXPECT_TRUE(outvoted.evidence.contradicted);
+  EXPECT_LT(outvoted.probability, accepted.probability);
+  EXPECT_EQ(outvoted.fitness, accepted.fitness);
 }
 
 TEST(LoopClosing, GivesWaitingLoopsAwayInTheirOrder) {

@@ -178,6 +178,7 @@ TEST_P(Conversions, LoopDecisionsAreExactInSegments) {
     decision.correction_m = any_double(random_);
     decision.correction_rad = any_double(random_);
     decision.fitness = any_double(random_);
+    decision.probability = any_double(random_);
     decisions.push_back(decision);
   }
   ASSERT_EQ(decision_segment_count(decisions.size()), 3U);
@@ -204,6 +205,7 @@ TEST_P(Conversions, LoopDecisionsAreExactInSegments) {
     EXPECT_EQ(back[i].correction_m, decisions[i].correction_m);
     EXPECT_EQ(back[i].correction_rad, decisions[i].correction_rad);
     EXPECT_EQ(back[i].fitness, decisions[i].fitness);
+    EXPECT_EQ(back[i].probability, decisions[i].probability);
   }
   EXPECT_THROW(to_segment(decisions, 3, "robot", 6, 0), std::invalid_argument);
   msg::LoopDecisions cut = to_segment(decisions, 0, "robot", 6, 0);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/pipeline/reliability.hpp"
 #include "topogeo/storage/report.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -56,6 +57,8 @@ struct LoopRecall {
   std::vector<Revisit> revisits;
   std::vector<LoopOffReference> off_reference;  ///< in the order in which they were accepted
   std::vector<LoopOutcomeCounts> outcomes;      ///< by source, then outcome
+  /// Of the probabilities of all decisions on matches, which are right within 0.5 m and 10 degrees.
+  Reliability reliability;
 
   [[nodiscard]] std::size_t tried() const;             ///< of the revisits
   [[nodiscard]] std::size_t accepted() const;          ///< of the revisits

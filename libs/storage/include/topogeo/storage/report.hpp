@@ -32,6 +32,7 @@ struct LoopCandidate {
   geometry::Pose2 T_predicted;     ///< T_earlier_later as it was predicted before the match
   double predicted_sigma_m = 0.0;  ///< standard deviation of its position, over both directions
   double predicted_sigma_rad = 0.0;
+  double probability = 0.0;  ///< that the match is right, [0, 1]; 0: nothing was in common
 
   friend bool operator==(const LoopCandidate&, const LoopCandidate&) = default;
 };

@@ -81,6 +81,8 @@ class LoopClosing {
   [[nodiscard]] bool far(const Correction& correction) const;
   bool confirm(const PoseGraph& graph, const StopMatch& loop, const Correction& correction);
   void decide(const PoseGraph& graph, const StopMatch& loop, LoopOutcome outcome, Reason reason);
+  void decide(const PoseGraph& graph, const StopMatch& loop, LoopOutcome outcome, Reason reason,
+              const LoopEvidence& evidence);
 
   double unaided_correction_m_;
   double unaided_correction_rad_;

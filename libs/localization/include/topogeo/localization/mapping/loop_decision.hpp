@@ -6,6 +6,7 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/loop_probability.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 
@@ -47,6 +48,8 @@ struct LoopDecision {
   double correction_rad = 0.0;
   double fitness = 0.0;  ///< of the match, [0, 1]
   ProposalSource source = ProposalSource::kPrediction;
+  double probability = 0.0;  ///< that the match is right, by all that was known; see LoopEvidence
+  LoopEvidence evidence;     ///< what that was computed from; stays in this process
 };
 
 /// Outcome and reason in words, as in reports: "accepted", "match not accepted: few inliers", ...

@@ -18,6 +18,7 @@
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
+#include "topogeo/localization/mapping/loop_probability.hpp"
 #include "topogeo/localization/mapping/match_requests.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/state_monitor.hpp"
@@ -45,6 +46,10 @@ struct StopMatch {
   double rivalry = 0.0;  ///< see rivalry()
   /// Deviation of the position along the direction in which the scans alone know it least, metres.
   double weakest_sigma_m = 0.0;
+  /// Weight of the set with which it was accepted and of the heaviest one that contradicts that
+  /// (LoopAgreement); 0: it was not accepted with others.
+  double agreement = 0.0;
+  double rival_agreement = 0.0;
   StepMatch evidence;  ///< of the pose of the later stop
   std::vector<MatchSolution> solutions;
 
@@ -57,6 +62,8 @@ struct StopMatch {
   [[nodiscard]] double surprise() const;
   /// Whether it may be right together with others that agree with it (LoopAgreement).
   [[nodiscard]] bool plausible() const;
+  /// What the probability that it is right follows from.
+  [[nodiscard]] LoopEvidence loop_evidence() const;
 };
 
 class StopMatching {
