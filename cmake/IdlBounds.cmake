@@ -3,9 +3,9 @@
 #
 #   template <class Check> void visit_bounds(const LocalMap& message, Check& check);
 #
-# calls check.schema(version) for a top-level message, check.size(field, size, bound) for each sequence and
-# check.value(field, value, last) for each enumeration, inside check.inside(field, body) for those of
-# members. Files come after those that they include; a member stands on one line.
+# calls check.schema(version) for a top-level message, check.size(field, size, bound) for each sequence,
+# check.value(field, value, last) for each enumeration and check.key(field, key, text) for each <text>_key
+# after a string <text> or <text>_id, inside check.inside(field, body) for those of members. Files come after those that they include; a member stands on one line.
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -38,6 +38,14 @@ macro(add_member file struct line)
     set(name "${CMAKE_MATCH_2}")
     if(name STREQUAL "schema_version")
       string(APPEND code "  check.schema(message.schema_version());\n")
+    elseif(name MATCHES "^(.+)_key$")
+      set(text "${CMAKE_MATCH_1}")
+      if("${text}_id" IN_LIST names)
+        set(text "${text}_id")
+      elseif(NOT text IN_LIST names)
+        fail("${file}" "${struct}" "${line}")
+      endif()
+      string(APPEND code "  check.key(\"${name}\", message.${name}(), message.${text}());\n")
     elseif(type IN_LIST enums)
       string(APPEND code "  check.value(\"${name}\", message.${name}(), ${last_of_${type}});\n")
     elseif(type IN_LIST structs_to_visit)
@@ -45,6 +53,7 @@ macro(add_member file struct line)
     elseif(NOT type IN_LIST structs AND NOT type IN_LIST typedefs AND NOT type MATCHES "^(${plain_type})$")
       fail("${file}" "${struct}" "${line}")
     endif()
+    list(APPEND names ${name})
   else()
     fail("${file}" "${struct}" "${line}")
   endif()
@@ -66,6 +75,7 @@ foreach(file IN LISTS FILES)
     set(struct ${CMAKE_MATCH_2})
     string(REGEX MATCHALL "[^\n]+" lines "${CMAKE_MATCH_3}")
     set(code "")
+    set(names "")
     foreach(line IN LISTS lines)
       string(STRIP "${line}" line)
       string(REGEX REPLACE "^@key +" "" line "${line}")

@@ -69,7 +69,7 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
 
 void GaWorkerService::fill_status() {
   messaging::set_header(status_, "", 0, 0);  // of no robot: it works for any
-  messaging::set_text(status_.worker_id(), options_.worker_id, "worker_id");
+  messaging::set_worker_id(status_, options_.worker_id);
   messaging::set_text(status_.name(), options_.name, "name");
   messaging::set_text_cut(status_.host(), support::host_name());
   messaging::set_text(status_.version(), support::kVersion, "version");
@@ -128,8 +128,8 @@ void GaWorkerService::request_missing_maps() {
 void GaWorkerService::request(const search_pool::TaskIntake::Request& request) {
   msg::MapRequest message;
   messaging::set_header(message, request.robot_id, request.stamp_ns, maps_requested_);
-  messaging::set_text(message.client_id(), request.client_id, "client_id");
-  messaging::set_text(message.worker_id(), options_.worker_id, "worker_id");
+  messaging::set_client_id(message, request.client_id);
+  messaging::set_worker_id(message, options_.worker_id);
   message.map_id(request.map_id);
   message.content_hash(request.content_hash);
   // One that cannot be sent now is sent again with the next period.
@@ -273,10 +273,10 @@ void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entr
     });
     // The writers have room for a limited number of instances, and a client is one.
     msg::MatchResult result;
-    messaging::set_text(result.client_id(), client_id, "client_id");
+    messaging::set_client_id(result, client_id);
     results_.dispose(result);
     msg::MapRequest request;
-    messaging::set_text(request.client_id(), client_id, "client_id");
+    messaging::set_client_id(request, client_id);
     requests_.dispose(request);
   }
 }

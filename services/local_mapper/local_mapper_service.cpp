@@ -102,15 +102,14 @@ void LocalMapperService::publish(const topomap::LocalMap& map) {
 // One that cannot be sent now is old by the time it could.
 void LocalMapperService::publish_tracked() {
   const topomap::TrackedScan* scan = mapper_.last_tracked();
-  if (scan == nullptr || maps_ == 0) return;
-  const auto stop = static_cast<std::uint32_t>(maps_ - 1);
-  if (!tracked_poses_.write(service::to_msg(*scan, stop, service_.robot_id()))) {
+  if (scan == nullptr) return;
+  if (!tracked_poses_.write(service::to_msg(*scan, mapper_.last_stop(), service_.robot_id()))) {
     service_.status().add_to_counter("tracked_poses_not_sent");
   }
 }
 
 void LocalMapperService::on_stream_end(const msg::StreamEnd& message) {
-  if (message.stage() != "gateway") return;
+  if (message.stage() != msg::kStageGateway) return;
   scans_in_stream_ = message.count();
   finish_if_complete();
 }
@@ -121,7 +120,7 @@ void LocalMapperService::finish_if_complete() {
   if (const std::optional<topomap::LocalMap> map = mapper_.finish()) publish(*map);
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
-  messaging::set_text(end.stage(), "local_mapper", "stage");
+  end.stage(msg::kStageLocalMapper);
   end.count(maps_);
   end.last_id(maps_ == 0 ? 0 : maps_ - 1);
   if (!service_.send(ends_out_, end, "stream end")) return;

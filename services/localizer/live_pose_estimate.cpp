@@ -13,8 +13,8 @@ void LivePoseEstimate::set_odometry(std::int64_t stamp_ns, std::uint64_t sequenc
   T_odom_robot_ = T_odom_robot;
 }
 
-void LivePoseEstimate::set_tracked(std::uint32_t local_map_id, const topomap::TrackedScan& scan) {
-  tracked_ = {local_map_id, scan};
+void LivePoseEstimate::set_tracked(const topomap::StopId& stop, const topomap::TrackedScan& scan) {
+  tracked_ = {stop, scan};
 }
 
 void LivePoseEstimate::set_stop(std::shared_ptr<const topomap::LocalMap> map) {
@@ -34,7 +34,7 @@ geometry::Pose2 LivePoseEstimate::T_stop_robot() const {
 
 std::optional<PoseOfNow> LivePoseEstimate::now() const {
   if (!map_) return std::nullopt;
-  const bool tracked = tracked_ && tracked_->local_map_id == map_->id;
+  const bool tracked = tracked_ && tracked_->stop == map_->stop;
   return PoseOfNow{
       stamp_ns_, sequence_,
       localization::live_pose({stop_pose_.T_map_robot, stop_pose_.covariance}, map_->T_odom_robot,

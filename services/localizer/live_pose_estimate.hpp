@@ -29,8 +29,8 @@ class LivePoseEstimate {
   /// The newest reading of the odometry.
   void set_odometry(std::int64_t stamp_ns, std::uint64_t sequence,
                     const geometry::Pose2& T_odom_robot);
-  /// The newest scan after the stop of that local map; counts while that is the last stop.
-  void set_tracked(std::uint32_t local_map_id, const topomap::TrackedScan& scan);
+  /// The newest scan after that stop; counts while it is the last one.
+  void set_tracked(const topomap::StopId& stop, const topomap::TrackedScan& scan);
   /// The robot has made a stop. Its odometry counts unless a newer one has come.
   void set_stop(std::shared_ptr<const topomap::LocalMap> map);
   /// The pose of the last stop, as it is corrected now.
@@ -48,7 +48,7 @@ class LivePoseEstimate {
 
  private:
   struct Tracked {
-    std::uint32_t local_map_id = 0;
+    topomap::StopId stop;
     topomap::TrackedScan scan;
   };
 

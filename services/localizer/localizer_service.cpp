@@ -83,7 +83,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
   service.subscribe<msg::Odometry>(
       [this](const msg::Odometry& odometry) { on_odometry(odometry); });
   service.subscribe<msg::TrackedPose>([this](const msg::TrackedPose& pose) {
-    live_.set_tracked(pose.local_map_id(), service::from_msg(pose));
+    live_.set_tracked(service::from_msg(pose.stop()), service::from_msg(pose));
   });
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
   service.loop().add_timer(kCountPeriod, [this] { set_pool_counters(pool_, service_.status()); });
@@ -108,7 +108,7 @@ void LocalizerService::on_map(const msg::LocalMap& message) {
 }
 
 void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
-  if (message.stage() != "local_mapper") return;
+  if (message.stage() != msg::kStageLocalMapper) return;
   queue_.end_at(message.count());
   schedule();
 }
@@ -129,7 +129,7 @@ void LocalizerService::send_pose() {
   live.mode = slam_.mapping() ? msg::kModeMapping : msg::kModeLocalization;
   live.T_map_robot = now->T_map_robot.T_a_b;
   live.covariance = now->T_map_robot.covariance;
-  live.local_map_id = live_.stop_pose().source_id;
+  live.last_stop = live_.stop_pose().stop;
   live.trajectory_version = trajectory_.version();
   // One that cannot be sent now is old by the time it could.
   if (!poses_.write(service::to_msg(live, service_.robot_id()))) {
@@ -213,7 +213,7 @@ void LocalizerService::finish() {
   if (!service_.send(summaries_, summary, "run summary")) return;
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), live_.stop_pose().stamp_ns, 0);
-  messaging::set_text(end.stage(), "localizer", "stage");
+  end.stage(msg::kStageLocalizer);
   const std::size_t stops = stops_in_map();
   end.count(stops);
   end.last_id(stops == 0 ? 0 : stops - 1);

@@ -62,7 +62,7 @@ bool MapSender::answer(const Pending& pending) {
   if (!copies_.connected(pending.participant)) return false;
   msg::MapCopy copy;
   messaging::set_header(copy, map->robot_id, map->stamp_ns, sequence_);
-  copy.worker_id(request.worker_id());
+  messaging::set_worker_id(copy, request.worker_id().c_str());
   copy.local_map(service::to_msg(*map));
   if (!copies_.write(copy, pending.participant)) return false;
   ++sequence_;

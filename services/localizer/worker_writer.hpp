@@ -7,6 +7,7 @@
 #include <string>
 
 #include "topogeo/messaging/events.hpp"
+#include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/messaging/writer.hpp"
@@ -59,7 +60,7 @@ class WorkerWriter {
     if (found == addressed_.end()) return;
     for (const std::string& worker_id : found->second) {
       T message;
-      message.worker_id(worker_id);
+      messaging::set_worker_id(message, worker_id);
       writer_.dispose(message);
     }
     addressed_.erase(found);

@@ -13,12 +13,14 @@ MapInput::MapInput(std::vector<topomap::LocalMap> stored)
     : local_maps_(std::move(stored)), stored_(local_maps_.size()) {}
 
 MapInput::Arrival MapInput::add(topomap::LocalMap map) {
-  if (map.id < first_kept_ && !arrived_.contains(map.id)) return Arrival::kKnown;
+  const topomap::StopId stop = map.stop;
+  if (dropped(stop) && !arrived_.contains(stop)) return Arrival::kKnown;
   const Arrived arrived{map.sequence, topomap::content_hash(map)};
-  const auto [held, fresh] = arrived_.try_emplace(map.id, arrived);
+  const auto [held, fresh] = arrived_.try_emplace(stop, arrived);
   if (!fresh) return held->second == arrived ? Arrival::kKnown : Arrival::kDifferent;
-  const std::uint32_t id = map.id;
-  waiting_.emplace(id, std::move(map));
+  if (std::ranges::find(sessions_, stop.session) == sessions_.end())
+    sessions_.push_back(stop.session);
+  waiting_.emplace(stop, std::move(map));
   extend();
   drop_old();
   return Arrival::kNew;
@@ -33,10 +35,10 @@ void MapInput::add(const msg::TrajectorySegment& message) {
 
 void MapInput::check_sources(const msg::TrajectorySegment& message) const {
   for (const msg::StopPose& stop : message.stops()) {
-    const bool stored = stop.source_id() == topomap::kStoredSource;
-    if (stored == (stop.local_map_id() < stored_)) continue;
-    throw std::invalid_argument("stop " + std::to_string(stop.local_map_id()) + " is " +
-                                (stored ? "" : "not ") + "of a stored map, expected the first " +
+    if (stop.local_map_id() >= stored_) continue;
+    if (service::from_msg(stop.stop()) == local_maps_[stop.local_map_id()].stop) continue;
+    throw std::invalid_argument("stop " + std::to_string(stop.local_map_id()) +
+                                " is not that of the stored map, expected the first " +
                                 std::to_string(stored_) +
                                 " to be: localizer and map store need the same --continue");
   }
@@ -44,36 +46,51 @@ void MapInput::check_sources(const msg::TrajectorySegment& message) const {
 
 void MapInput::extend() {
   while (const topomap::StopPose* stop = trajectory_.stop(local_maps_.size())) {
-    const auto found = waiting_.find(stop->source_id);
+    const auto found = waiting_.find(stop->stop);
     if (found == waiting_.end()) return;
     const auto id = static_cast<std::uint32_t>(local_maps_.size());
-    const bool follows = last_source_ ? *last_source_ + 1 == stop->source_id : stored_ == 0;
-    last_source_ = stop->source_id;
+    const bool follows = id == 0 || local_maps_.back().stop ==
+                                        topomap::StopId{stop->stop.session, stop->stop.number - 1};
     local_maps_.push_back(
-        topomap::numbered(std::move(waiting_.extract(found).mapped()), id, id > 0 && !follows));
+        topomap::numbered(std::move(waiting_.extract(found).mapped()), id, !follows));
   }
 }
 
-// The trajectory names its stops in the order of their ids.
+// The trajectory names the stops of a session in the order of their numbers.
 void MapInput::drop_old() {
-  while (!waiting_.empty() && last_source_ && waiting_.begin()->first < *last_source_) {
-    drop_oldest();
+  if (!local_maps_.empty()) {
+    const topomap::StopId last = local_maps_.back().stop;
+    auto old = waiting_.lower_bound({last.session, 0});
+    while (old != waiting_.end() && old->first < last) drop(old++);
   }
-  while (waiting_.size() > kMostWaiting) drop_oldest();
+  // Of the oldest session that has any.
+  for (std::size_t i = 0; waiting_.size() > kMostWaiting && i < sessions_.size();) {
+    const auto oldest = waiting_.lower_bound({sessions_[i], 0});
+    if (oldest == waiting_.end() || oldest->first.session != sessions_[i]) {
+      ++i;
+    } else {
+      drop(oldest);
+    }
+  }
 }
 
-void MapInput::drop_oldest() {
-  const std::uint32_t id = waiting_.begin()->first;
-  waiting_.erase(waiting_.begin());
-  arrived_.erase(id);
-  first_kept_ = id + 1;
+void MapInput::drop(Waiting::iterator map) {
+  const topomap::StopId stop = map->first;
+  waiting_.erase(map);
+  arrived_.erase(stop);
+  first_kept_[stop.session] = stop.number + 1;
   ++dropped_;
 }
 
-std::optional<std::uint32_t> MapInput::lost() const {
+bool MapInput::dropped(const topomap::StopId& stop) const {
+  const auto first = first_kept_.find(stop.session);
+  return first != first_kept_.end() && stop.number < first->second;
+}
+
+std::optional<topomap::StopId> MapInput::lost() const {
   const topomap::StopPose* const next = trajectory_.stop(local_maps_.size());
-  if (next == nullptr || next->source_id >= first_kept_) return std::nullopt;
-  return next->source_id;
+  if (next == nullptr || !dropped(next->stop)) return std::nullopt;
+  return next->stop;
 }
 
 void MapInput::add(const msg::LoopClosures& message) {

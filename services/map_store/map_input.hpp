@@ -46,9 +46,8 @@ class MapInput {
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   /// Maps that were dropped: the trajectory went on without them, or too many waited for it.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
-  /// The id as sent of a map that the trajectory names although it was dropped: the local maps end
-  /// before it.
-  [[nodiscard]] std::optional<std::uint32_t> lost() const;
+  /// A stop that the trajectory names although its map was dropped: the local maps end before it.
+  [[nodiscard]] std::optional<topomap::StopId> lost() const;
   /// The newest trajectory, as far as it can be used: stops without gaps whose maps are here.
   [[nodiscard]] topomap::Trajectory newest_trajectory() const;
   /// The newest closures between stops whose maps are here.
@@ -71,14 +70,16 @@ class MapInput {
   void extend();
   /// Forgets the maps that cannot be used any more.
   void drop_old();
-  void drop_oldest();
+  using Waiting = std::map<topomap::StopId, topomap::LocalMap>;
+  void drop(Waiting::iterator map);
+  [[nodiscard]] bool dropped(const topomap::StopId& stop) const;
 
   std::vector<topomap::LocalMap> local_maps_;
-  std::size_t stored_ = 0;                              // of them, from the stored map
-  std::optional<std::uint32_t> last_source_;            // of the last of them that is not
-  std::map<std::uint32_t, Arrived> arrived_;            // by id as sent
-  std::map<std::uint32_t, topomap::LocalMap> waiting_;  // by id as sent
-  std::uint32_t first_kept_ = 0;                        // ids as sent below are dropped
+  std::size_t stored_ = 0;  // of them, from the stored map
+  std::map<topomap::StopId, Arrived> arrived_;
+  Waiting waiting_;
+  std::map<std::uint64_t, std::uint32_t> first_kept_;  // by session: numbers below are dropped
+  std::vector<std::uint64_t> sessions_;                // in the order in which they came
   std::uint64_t dropped_ = 0;
   service::TrajectoryAssembly trajectory_;
   std::vector<topomap::LoopClosure> closures_;

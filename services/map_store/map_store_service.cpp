@@ -49,7 +49,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       [this](const msg::TrajectorySegment& segment) { input_.add(segment); });
   listen<msg::LoopClosures>([this](const msg::LoopClosures& closures) { input_.add(closures); });
   listen<msg::StreamEnd>([this](const msg::StreamEnd& end) {
-    if (end.stage() == "localizer") input_.set_end(end);
+    if (end.stage() == msg::kStageLocalizer) input_.set_end(end);
   });
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
@@ -201,7 +201,7 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
 
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), trajectory.stops.back().stamp_ns, 0);
-  messaging::set_text(end.stage(), "map_store", "stage");
+  end.stage(msg::kStageMapStore);
   end.count(document.global_map.nodes.size() + document.global_map.branches.size());
   end.version(trajectory.version);
   if (!service_.send(ends_out_, end, "stream end")) return;
@@ -219,9 +219,9 @@ void MapStoreService::report_losses() {
     reported_drops_ = true;
     spdlog::warn("local maps that have joined no map are dropped, see local_maps_dropped");
   }
-  const std::optional<std::uint32_t> lost = input_.lost();
+  const std::optional<topomap::StopId> lost = input_.lost();
   if (!lost || service_.status().state() == msg::kServiceFailed) return;
-  const std::string what = "local map " + std::to_string(*lost) +
+  const std::string what = "local map " + std::to_string(lost->number) +
                            " had to be dropped before the trajectory named it: the map ends there";
   service_.status().fault("local map lost", what);
   service_.status().set_state(msg::kServiceFailed, what);

@@ -126,7 +126,7 @@ void DeviceGateway::finish() {
   }
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
-  messaging::set_text(end.stage(), "gateway", "stage");
+  end.stage(msg::kStageGateway);
   end.count(gate_.scans());
   end.last_id(gate_.scans() == 0 ? 0 : gate_.scans() - 1);
   if (!stream_end_.write(end) || !stream_end_.wait_for_acknowledgments(kLastDelivery)) {

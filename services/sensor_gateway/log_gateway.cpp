@@ -138,7 +138,7 @@ void LogGateway::finish() {
   if (!end_sent_) {
     msg::StreamEnd end;
     messaging::set_header(end, service_.robot_id(), last_odometry_.stamp_ns(), 0);
-    messaging::set_text(end.stage(), "gateway", "stage");
+    end.stage(msg::kStageGateway);
     end.count(sent_);
     end.last_id(sent_ == 0 ? 0 : sent_ - 1);
     if (!service_.send(stream_end_, end, "stream end")) return;

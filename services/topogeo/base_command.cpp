@@ -107,7 +107,7 @@ int send_base_command(BaseRequest request) {
     throw std::runtime_error(nothing_alive(request.view, "base"));
   }
   messaging::set_header(request.command, request.robot_id, 0, 0);
-  messaging::set_text(request.command.client_id(), support::process_name(), "client_id");
+  messaging::set_client_id(request.command, support::process_name());
   if (!writer.write(request.command) || !writer.wait_for_acknowledgments(patience)) {
     throw std::runtime_error("the command could not be sent");
   }

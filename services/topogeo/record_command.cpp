@@ -68,7 +68,8 @@ class Recorder {
     });
     loop_.add<msg::StreamEnd>(
         ends_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
-          if (end.robot_id() != request_.robot_id.c_str() || end.stage() != "gateway") return;
+          if (end.robot_id() != request_.robot_id.c_str() || end.stage() != msg::kStageGateway)
+            return;
           expected_ = end.count();
           last_news_ = Clock::now();
         });

@@ -39,7 +39,8 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       });
   loop.add<msg::StreamEnd>(
       end_reader_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
-        if (end.stage() != "map_store" || end.robot_id() != options_.job.robot_id.c_str()) return;
+        if (end.stage() != msg::kStageMapStore || end.robot_id() != options_.job.robot_id.c_str())
+          return;
         result_.finished = true;
         run_.loop().stop();
       });

@@ -53,7 +53,7 @@ int send_simulator_command(const SimulatorRequest& request) {
   }
   msg::SimulatorCommand command;
   messaging::set_header(command, request.robot_id, 0, 0);
-  messaging::set_text(command.client_id(), support::process_name(), "client_id");
+  messaging::set_client_id(command, support::process_name());
   command.fault(static_cast<msg::SimulatedFault>(request.fault));
   command.device(request.base ? msg::kSimulatedBase : msg::kSimulatedLaser);
   command.duration_s(request.duration_s);

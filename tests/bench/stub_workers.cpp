@@ -53,7 +53,7 @@ class StubWorker {
     loop.add<msg::MatchTask>(
         tasks_, [this](const msg::MatchTask& task, const messaging::SampleInfo&) { answer(task); });
     messaging::set_header(status_, "", 0, 0);
-    messaging::set_text(status_.worker_id(), worker_id, "worker_id");
+    messaging::set_worker_id(status_, worker_id);
     messaging::set_text(status_.name(), "stub", "name");
     messaging::set_text(status_.version(), support::kVersion, "version");
     status_.process_id(static_cast<std::uint32_t>(::getpid()));

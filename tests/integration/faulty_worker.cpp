@@ -112,7 +112,7 @@ class FaultyWorker {
       answer_waiting();
     });
     messaging::set_header(status_, "", 0, 0);
-    messaging::set_text(status_.worker_id(), worker_id, "worker_id");
+    messaging::set_worker_id(status_, worker_id);
     messaging::set_text(status_.name(), "faulty", "name");
     messaging::set_text(status_.host(), "nowhere", "host");
     messaging::set_text(status_.version(),

@@ -96,7 +96,7 @@ void GatewayOnDevices::command(double linear_mps, double angular_radps) {
 void GatewayOnDevices::tell_base(msg::BaseCommandKind kind) {
   msg::BaseCommand message;
   messaging::set_header(message, "robot", 0, commands_++);
-  messaging::set_text(message.client_id(), "test", "client_id");
+  messaging::set_client_id(message, "test");
   message.kind(kind);
   ASSERT_TRUE(base_.write(message));
 }
@@ -105,7 +105,7 @@ void GatewayOnDevices::strike(msg::SimulatedFault fault, msg::SimulatedDevice de
                               double duration_s) {
   msg::SimulatorCommand message;
   messaging::set_header(message, "robot", 0, commands_++);
-  messaging::set_text(message.client_id(), "test", "client_id");
+  messaging::set_client_id(message, "test");
   message.fault(fault);
   message.device(device);
   message.duration_s(duration_s);

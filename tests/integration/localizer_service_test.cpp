@@ -26,7 +26,7 @@ class LocalizerTest : public ::testing::Test {
     loop_.add<msg::LivePose>(poses_,
                              [this](const auto& message, const auto&) { last_pose_ = message; });
     loop_.add<msg::StreamEnd>(ends_in_, [this](const auto& message, const auto&) {
-      if (message.stage() == "localizer") end_ = message;
+      if (message.stage() == msg::kStageLocalizer) end_ = message;
     });
     loop_.add<msg::ServiceStatus>(
         statuses_, [this](const auto& message, const auto&) { last_status_ = message; });
@@ -42,7 +42,7 @@ class LocalizerTest : public ::testing::Test {
   void end_stream() {
     msg::StreamEnd end;
     messaging::set_header(end, "robot", maps_.back()->stamp_ns, 0);
-    messaging::set_text(end.stage(), "local_mapper", "stage");
+    end.stage(msg::kStageLocalMapper);
     end.count(maps_.size());
     ASSERT_TRUE(ends_out_.write(end));
   }
@@ -152,7 +152,7 @@ TEST_F(LocalizerTest, TheLivePoseFollowsTheOdometryBetweenStops) {
   const service::LivePose pose = service::from_msg(*last_pose_);
   EXPECT_EQ(pose.status.state, localization::LocalizationState::kTracking);
   EXPECT_EQ(pose.mode, msg::kModeMapping);
-  EXPECT_EQ(pose.local_map_id, 0U);
+  EXPECT_EQ(pose.last_stop.number, 0U);
   EXPECT_NEAR(pose.T_map_robot.x_m, 0.4, 1e-12);
   EXPECT_NEAR(pose.T_map_robot.y_m, -0.1, 1e-12);
   EXPECT_NEAR(pose.T_map_robot.theta_rad, 0.2, 1e-12);

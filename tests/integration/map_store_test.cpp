@@ -217,7 +217,7 @@ TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
 
   msg::StreamEnd end;
   messaging::set_header(end, "robot", expected.local_maps.back().stamp_ns, 0);
-  messaging::set_text(end.stage(), "localizer", "stage");
+  end.stage(msg::kStageLocalizer);
   end.count(expected.trajectory.stops.size());
   end.version(expected.trajectory.version);
   ASSERT_TRUE(ends.write(end));

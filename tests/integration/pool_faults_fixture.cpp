@@ -81,7 +81,7 @@ ServiceRun::ServiceRun(const Scratch& scratch, const Drive& drive, const std::st
     stops_ = std::max(stops_, std::size_t{segment.total_stops()});
   });
   loop_.add<msg::StreamEnd>(ends_in_, [this](const msg::StreamEnd& end, const auto&) {
-    ended_ = ended_ || end.stage() == "map_store";
+    ended_ = ended_ || end.stage() == msg::kStageMapStore;
   });
   loop_.add<msg::ServiceStatus>(statuses_in_, [this](const auto& status, const auto&) {
     if (status.service() == "localizer") status_ = status;
@@ -154,7 +154,7 @@ bool ServiceRun::finish() {
   if (!all_sent || !scan_writer_.wait_for_acknowledgments(kFaultPatience)) return false;
   msg::StreamEnd end;
   messaging::set_header(end, "robot", drive_.scans().back().stamp_ns, 0);
-  messaging::set_text(end.stage(), "gateway", "stage");
+  end.stage(msg::kStageGateway);
   end.count(next_scan_);
   end.last_id(next_scan_ - 1);
   if (!end_writer_.write(end)) return false;

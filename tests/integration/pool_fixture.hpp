@@ -112,7 +112,7 @@ class FakeWorker {
       on_task(*this, task);
     });
     messaging::set_header(status_, "", 0, 0);
-    messaging::set_text(status_.worker_id(), worker_id, "worker_id");
+    messaging::set_worker_id(status_, worker_id);
     messaging::set_text(status_.host(), "here", "host");
     messaging::set_text(status_.version(), support::kVersion, "version");
     status_.matcher_fingerprint(localization::matcher_fingerprint());
@@ -149,8 +149,8 @@ class FakeWorker {
   void request_map(const msg::MatchTask& task, std::uint32_t map_id, std::uint64_t hash) {
     msg::MapRequest request;
     messaging::set_header(request, "robot", 0, 0);
-    request.client_id(task.client_id());
-    request.worker_id(task.worker_id());
+    messaging::set_client_id(request, task.client_id().c_str());
+    messaging::set_worker_id(request, task.worker_id().c_str());
     request.map_id(map_id);
     request.content_hash(hash);
     EXPECT_TRUE(requests_.wait_for_matched(1, kPatience));

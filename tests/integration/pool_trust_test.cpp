@@ -156,8 +156,8 @@ TEST_F(PoolTrustTest, AnAnswerOfAnotherSchemaIsRefused) {
     ASSERT_TRUE(writer->wait_for_matched(1, kPatience));
     msg::MatchResult result;
     result.schema_version(1);
-    result.client_id(task.client_id());
-    result.worker_id(task.worker_id());
+    messaging::set_client_id(result, task.client_id().c_str());
+    messaging::set_worker_id(result, task.worker_id().c_str());
     result.task_id(task.task_id());
     ASSERT_TRUE(writer->write(&result));
   };

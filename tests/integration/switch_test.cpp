@@ -25,7 +25,7 @@ class SwitchTest : public ::testing::Test {
     loop_.add<msg::LocalizationReply>(
         replies_, [this](const auto& message, const auto&) { last_reply_ = message; });
     loop_.add<msg::StreamEnd>(ends_in_, [this](const auto& message, const auto&) {
-      if (message.stage() == "localizer") end_ = message;
+      if (message.stage() == msg::kStageLocalizer) end_ = message;
     });
   }
 
@@ -45,7 +45,7 @@ class SwitchTest : public ::testing::Test {
     for (std::size_t i = from; i < to; ++i) {
       ASSERT_TRUE(map_writer_.write(service::to_msg(*maps_.at(i))));
       ASSERT_TRUE(wait_until([&] {
-        return last_pose_ && last_pose_->local_map_id() == i &&
+        return last_pose_ && last_pose_->last_stop().number() == i &&
                last_pose_->stamp_ns() == maps_[i]->stamp_ns;
       })) << i;
     }
@@ -63,7 +63,7 @@ class SwitchTest : public ::testing::Test {
   void end_stream(std::size_t count) {
     msg::StreamEnd end;
     messaging::set_header(end, "robot", maps_.back()->stamp_ns, 0);
-    messaging::set_text(end.stage(), "local_mapper", "stage");
+    end.stage(msg::kStageLocalMapper);
     end.count(count);
     ASSERT_TRUE(ends_out_.write(end));
     ASSERT_TRUE(wait_until([&] { return end_.has_value(); }));
@@ -134,7 +134,7 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   ASSERT_EQ(got->stops.size(), expected.stops.size());
   for (std::size_t i = 0; i < expected.stops.size(); ++i) {
     EXPECT_EQ(got->stops[i].T_map_robot, expected.stops[i].T_map_robot) << i;
-    EXPECT_EQ(got->stops[i].source_id, i < leave ? i : i - leave + resume) << i;
+    EXPECT_EQ(got->stops[i].stop.number, i < leave ? i : i - leave + resume) << i;
   }
   localizer_->send_signal(SIGTERM);
   EXPECT_EQ(localizer_->wait(), 0) << localizer_->err();

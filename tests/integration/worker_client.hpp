@@ -107,7 +107,7 @@ class WorkerClient {
   void send_copy(const std::string& worker_id, msg::LocalMap map) {
     msg::MapCopy copy;
     messaging::set_header(copy, "robot", 0, 0);
-    messaging::set_text(copy.worker_id(), worker_id, "worker_id");
+    messaging::set_worker_id(copy, worker_id);
     copy.local_map(std::move(map));
     EXPECT_TRUE(copies_.write(copy));
   }

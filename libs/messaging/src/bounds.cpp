@@ -1,5 +1,7 @@
 #include "bounds.hpp"
 
+#include "topogeo/messaging/message.hpp"
+
 namespace topogeo::messaging {
 
 void BoundsCheck::schema(std::uint32_t version) {
@@ -18,6 +20,11 @@ void BoundsCheck::value(const char* field, std::uint32_t value, std::uint32_t la
   if (defect_ || value <= last) return;
   defect_ =
       path_ + field + " is " + std::to_string(value) + ", allowed is 0 to " + std::to_string(last);
+}
+
+void BoundsCheck::key(const char* field, std::uint64_t key, std::string_view text) {
+  if (defect_ || key == key_of(text)) return;
+  defect_ = path_ + field + " is not that of '" + std::string(text) + "'";
 }
 
 }  // namespace topogeo::messaging

@@ -1,11 +1,13 @@
 // Checks that the generated code leaves out: schema version, bounds of sequences, values of
-// enumerations. Which fields have them comes from the IDL (cmake/IdlBounds.cmake).
+// enumerations, keys that stand for texts. Which fields have them comes from the IDL
+// (cmake/IdlBounds.cmake).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "topogeo/msg/bounds.h"
 
@@ -20,6 +22,12 @@ class BoundsCheck {
   void size(const char* field, std::size_t size, std::size_t bound);
   /// An enumeration, which a peer may have filled with any number.
   void value(const char* field, std::uint32_t value, std::uint32_t last);
+  /// The number that stands for a text in the key of the topic.
+  template <class BoundedString>
+  void key(const char* field, std::uint64_t key, const BoundedString& text) {
+    this->key(field, key, std::string_view(text.c_str(), text.size()));
+  }
+  void key(const char* field, std::uint64_t key, std::string_view text);
   /// The checks of `body` are about members of `field`.
   template <class Body>
   void inside(const char* field, const Body& body) {

@@ -44,8 +44,7 @@ StatusPublisher::StatusPublisher(const Participant& participant, EventLoop& loop
                                    ? host.substr(0, 48) + "-" + std::to_string(::getpid())
                                    : identity.instance;
   set_header(status_, identity.robot_id, 0, 0);
-  set_text(status_.service(), identity.service, "service");
-  set_text(status_.instance(), instance, "instance");
+  set_service(status_, identity.service, instance);
   set_text(status_.version(), identity.version, "version");
   set_text(status_.host(), host, "host");
   status_.process_id(static_cast<std::uint32_t>(::getpid()));

@@ -1,7 +1,11 @@
 #include "topogeo/pipeline/local_mapper.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
+
+#include "topogeo/support/hash.hpp"
 
 namespace topogeo::pipeline {
 
@@ -16,17 +20,32 @@ namespace {
 constexpr double kLostStop_m = 0.1;
 constexpr double kLostStop_rad = 0.05;
 
+// Never 0, which stands for no session.
+std::uint64_t session_of(const scan::Scan& scan, const std::string& robot_id, std::uint64_t salt) {
+  support::Fnv1a hash;
+  hash.add(robot_id);
+  hash.add(salt);
+  hash.add(static_cast<std::uint64_t>(scan.stamp_ns));
+  for (const float range_m : scan.ranges_m) hash.add(std::bit_cast<std::uint32_t>(range_m));
+  return std::max<std::uint64_t>(hash.value(), 1);
+}
+
 }  // namespace
 
-LocalMapper::LocalMapper(const LocalMapperConfig& config, std::string robot_id)
+LocalMapper::LocalMapper(const LocalMapperConfig& config, std::string robot_id,
+                         std::uint64_t session_salt)
     : config_(config),
       robot_id_(std::move(robot_id)),
       tracker_(config.tracker),
       diagram_maker_(config.voronoi),
-      map_builder_(config.local_map) {}
+      map_builder_(config.local_map),
+      session_salt_(session_salt) {}
 
 std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
-  if (next_id_ == 0) return make_stop(scan, Pose2{});
+  if (next_.number == 0) {
+    next_.session = session_of(scan, robot_id_, session_salt_);
+    return make_stop(scan, Pose2{});
+  }
   const localization::TrackedPose pose = tracker_.track(points_of(scan), scan.T_odom_robot);
   const Pose2& T = pose.T_stop_robot;
   // A scan that cannot be placed against the stop needs the wider search that only stops get, but a
@@ -58,10 +77,13 @@ std::optional<LocalMap> LocalMapper::finish() {
 LocalMap LocalMapper::make_stop(const scan::Scan& scan, const Pose2& T_stop_robot) {
   LocalMap map;
   map.robot_id = robot_id_;
-  map.id = next_id_++;
+  map.id = next_.number;
+  map.stop = next_;
+  ++next_.number;
   map.sequence = scan.sequence;
   map.stamp_ns = scan.stamp_ns;
   map.T_odom_robot = scan.T_odom_robot;
+  map.odometry_epoch = scan.odometry_epoch;
   map.T_previous_robot = T_stop_robot;
   map.track = std::exchange(track_, {});
   diagram_maker_.compute(scan, diagram_);

@@ -101,11 +101,11 @@ std::string localization_csv(std::span<const localization::LocalizedStop> stops)
       "accepted_matches\n";
   for (const localization::LocalizedStop& s : stops) {
     const Eigen::Matrix3d& c = s.covariance;
-    text += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", s.id,
-                        storage::stamp_text(s.stamp_ns), s.T_map_robot.x_m, s.T_map_robot.y_m,
-                        s.T_map_robot.theta_rad, localization::to_string(s.status.state),
-                        s.status.confidence, std::sqrt(c(0, 0)), std::sqrt(c(1, 1)),
-                        std::sqrt(c(2, 2)), s.accepted_matches);
+    text += fmt::format(
+        "{},{},{:.6f},{:.6f},{:.6f},{},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", s.stop.number,
+        storage::stamp_text(s.stamp_ns), s.T_map_robot.x_m, s.T_map_robot.y_m,
+        s.T_map_robot.theta_rad, localization::to_string(s.status.state), s.status.confidence,
+        std::sqrt(c(0, 0)), std::sqrt(c(1, 1)), std::sqrt(c(2, 2)), s.accepted_matches);
   }
   return text;
 }

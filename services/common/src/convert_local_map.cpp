@@ -97,6 +97,17 @@ topomap::TrackedScan from_tracked(const msg::TrackedScan& scan) {
 
 }  // namespace
 
+msg::StopId to_msg(const topomap::StopId& stop) {
+  msg::StopId out;
+  out.session(stop.session);
+  out.number(stop.number);
+  return out;
+}
+
+topomap::StopId from_msg(const msg::StopId& stop) {
+  return {stop.session(), stop.number()};
+}
+
 msg::LocalMap to_msg(const topomap::LocalMap& map) {
   check_bound("nodes", map.nodes.size(), msg::kMaxLocalNodes);
   check_bound("branches", map.branches.size(), msg::kMaxLocalBranches);
@@ -104,7 +115,9 @@ msg::LocalMap to_msg(const topomap::LocalMap& map) {
   check_bound("track", map.track.size(), msg::kMaxTrackedScans);
   msg::LocalMap out;
   messaging::set_header(out, map.robot_id, map.stamp_ns, map.sequence);
+  out.session(map.stop.session);
   out.id(map.id);
+  out.odometry_epoch(map.odometry_epoch);
   out.content_hash(topomap::content_hash(map));
   out.T_odom_robot(to_msg(map.T_odom_robot));
   out.T_previous_robot(to_msg(map.T_previous_robot));
@@ -120,6 +133,8 @@ topomap::LocalMap from_msg(const msg::LocalMap& message) {
   topomap::LocalMap out;
   out.robot_id = message.robot_id().to_string();
   out.id = message.id();
+  out.stop = {message.session(), message.id()};
+  out.odometry_epoch = message.odometry_epoch();
   out.sequence = message.sequence_number();
   out.stamp_ns = message.stamp_ns();
   out.T_odom_robot = from_msg(message.T_odom_robot());
@@ -136,11 +151,11 @@ topomap::LocalMap from_msg(const msg::LocalMap& message) {
   return out;
 }
 
-msg::TrackedPose to_msg(const topomap::TrackedScan& scan, std::uint32_t local_map_id,
+msg::TrackedPose to_msg(const topomap::TrackedScan& scan, const topomap::StopId& stop,
                         std::string_view robot_id) {
   msg::TrackedPose out;
   messaging::set_header(out, robot_id, scan.stamp_ns, scan.sequence);
-  out.local_map_id(local_map_id);
+  out.stop(to_msg(stop));
   out.scan(to_tracked(scan));
   return out;
 }

@@ -97,7 +97,7 @@ msg::LocalizationCommand to_msg(const LocalizationCommand& command, std::string_
   msg::LocalizationCommand out;
   messaging::set_header(out, robot_id, stamp_ns, sequence_number);
   out.request_id(command.request_id);
-  messaging::set_text(out.client_id(), command.client_id, "client_id");
+  messaging::set_client_id(out, command.client_id);
   out.kind(command.kind);
   out.T_map_robot(to_msg(command.T_map_robot));
   out.covariance(to_msg(command.covariance));

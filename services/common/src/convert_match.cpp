@@ -76,8 +76,8 @@ msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& a
   check_bound("initial_individuals", task.initial_individuals.size(), msg::kMaxInitialIndividuals);
   msg::MatchTask out;
   messaging::set_header(out, address.robot_id, address.stamp_ns, address.sequence_number);
-  messaging::set_text(out.worker_id(), address.worker_id, "worker_id");
-  messaging::set_text(out.client_id(), address.client_id, "client_id");
+  messaging::set_worker_id(out, address.worker_id);
+  messaging::set_client_id(out, address.client_id);
   messaging::set_text(out.version(), address.version, "version");
   out.config_fingerprint(address.config_fingerprint);
   out.matcher_fingerprint(address.matcher_fingerprint);
@@ -132,8 +132,8 @@ msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddr
   check_bound("solutions", result.solutions.size(), msg::kMaxSolutions);
   msg::MatchResult out;
   messaging::set_header(out, address.robot_id, address.stamp_ns, address.sequence_number);
-  messaging::set_text(out.client_id(), address.client_id, "client_id");
-  messaging::set_text(out.worker_id(), address.worker_id, "worker_id");
+  messaging::set_client_id(out, address.client_id);
+  messaging::set_worker_id(out, address.worker_id);
   out.task_id(result.task_id);
   out.status(static_cast<msg::MatchStatus>(result.status));
   for (const localization::MatchSolution& solution : result.solutions) {

@@ -28,7 +28,7 @@ msg::Goal to_msg(const Goal& goal, std::string_view robot_id, std::int64_t stamp
   msg::Goal out;
   messaging::set_header(out, robot_id, stamp_ns, sequence_number);
   out.goal_id(goal.goal_id);
-  messaging::set_text(out.client_id(), goal.client_id, "client_id");
+  messaging::set_client_id(out, goal.client_id);
   out.kind(goal.kind);
   if (goal.kind == msg::kGoalPosition) {
     out.target(to_point(target_as<Eigen::Vector2d>(goal, "a point")));

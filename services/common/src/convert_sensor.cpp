@@ -47,6 +47,7 @@ msg::Scan to_msg(const scan::Scan& scan, std::string_view robot_id) {
   out.angle_step_rad(scan.angle_step_rad);
   out.ranges_m(scan.ranges_m);
   out.T_odom_robot(to_msg(scan.T_odom_robot));
+  out.odometry_epoch(scan.odometry_epoch);
   return out;
 }
 
@@ -64,6 +65,7 @@ scan::Scan from_msg(const msg::Scan& message) {
   }
   out.ranges_m = message.ranges_m();
   out.T_odom_robot = from_msg(message.T_odom_robot());
+  out.odometry_epoch = message.odometry_epoch();
   return out;
 }
 

@@ -30,7 +30,7 @@ msg::TrajectorySegment to_segment(const topomap::Trajectory& trajectory, std::ui
     check(stop.local_map_id == i, "stops.local_map_id", "the index in the trajectory");
     msg::StopPose pose;
     pose.local_map_id(stop.local_map_id);
-    pose.source_id(stop.source_id);
+    pose.stop(to_msg(stop.stop));
     pose.located(stop.located);
     pose.stamp_ns(stop.stamp_ns);
     pose.T_map_robot(to_msg(stop.T_map_robot));
@@ -60,7 +60,7 @@ std::vector<topomap::StopPose> from_msg(const msg::TrajectorySegment& message) {
   for (const msg::StopPose& pose : message.stops()) {
     check(pose.local_map_id() == begin + out.size(), "stops.local_map_id", "consecutive ids");
     out.push_back({pose.local_map_id(), pose.stamp_ns(), from_msg(pose.T_map_robot()),
-                   from_msg(pose.covariance()), pose.source_id(), pose.located()});
+                   from_msg(pose.covariance()), from_msg(pose.stop()), pose.located()});
   }
   return out;
 }
@@ -99,7 +99,7 @@ msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id) {
   out.mode(pose.mode);
   out.T_map_robot(to_msg(pose.T_map_robot));
   out.covariance(to_msg(pose.covariance));
-  out.local_map_id(pose.local_map_id);
+  out.last_stop(to_msg(pose.last_stop));
   out.trajectory_version(pose.trajectory_version);
   return out;
 }
@@ -114,7 +114,7 @@ LivePose from_msg(const msg::LivePose& message) {
           message.mode(),
           from_msg(message.T_map_robot()),
           from_msg(message.covariance()),
-          message.local_map_id(),
+          from_msg(message.last_stop()),
           message.trajectory_version()};
 }
 

@@ -48,6 +48,7 @@ inline topomap::LocalMap map_at(const world::World& world, const geometry::Pose2
   topomap::LocalMap map;
   map.robot_id = "robot";
   map.id = id;
+  map.stop = {1, id};
   map.stamp_ns = 1'000'000'000LL * (id + 1);
   map.T_odom_robot = T_world_robot;
   topomap::build_local_map(diagram, scan, {}, topomap::LocalMapConfig{}, map);

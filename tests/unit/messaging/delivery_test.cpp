@@ -195,7 +195,7 @@ TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   for (std::uint64_t i = 0; i < 30; ++i) {
     auto task = message<msg::MatchTask>(i);
     task.task_id(i);
-    set_text(task.worker_id(), i % 3 == 0 ? "one" : "two", "worker_id");
+    set_worker_id(task, i % 3 == 0 ? "one" : "two");
     ASSERT_TRUE(writer.write(task));
   }
   std::vector<std::uint64_t> ids_one;
@@ -243,12 +243,8 @@ void expect_addressed(const Participant& sender, const Participant& receiver,
 }
 
 TEST_F(Delivery, EveryAddressedTopicReachesTheAddresseeAlone) {
-  const auto set_worker = [](auto& message, const char* who) {
-    set_text(message.worker_id(), who, "worker_id");
-  };
-  const auto set_client = [](auto& message, const char* who) {
-    set_text(message.client_id(), who, "client_id");
-  };
+  const auto set_worker = [](auto& message, const char* who) { set_worker_id(message, who); };
+  const auto set_client = [](auto& message, const char* who) { set_client_id(message, who); };
   expect_addressed<msg::MatchTask>(sender_, receiver_, set_worker);
   expect_addressed<msg::MapCopy>(sender_, receiver_, [&](auto& message, auto who) {
     set_worker(message, who);
@@ -264,7 +260,7 @@ TEST_F(Delivery, AddresseeMayHaveQuotes) {
   Reader<msg::MatchTask> reader(receiver_, {.addressee = name});
   ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
   auto task = message<msg::MatchTask>();
-  set_text(task.worker_id(), name, "worker_id");
+  set_worker_id(task, name);
   ASSERT_TRUE(writer.write(task));
   EXPECT_TRUE(reader.wait_for_data(kPatience));
 }

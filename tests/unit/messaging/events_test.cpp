@@ -42,7 +42,7 @@ TEST_F(Events, WriterThatLeavesLeavesItsInstancesWithoutWriters) {
   {
     Writer<msg::WorkerStatus> writer(sender_);
     auto status = message<msg::WorkerStatus>();
-    set_text(status.worker_id(), "one", "worker_id");
+    set_worker_id(status, "one");
     ASSERT_TRUE(writer.write(status));
     ASSERT_TRUE(eventually([&] {
       reader.take([&](const msg::WorkerStatus&, const SampleInfo& info) {
@@ -98,7 +98,7 @@ TEST(WorkerProcess, DISABLED_Main) {
   const Participant participant(options_in(partition));
   Writer<msg::WorkerStatus> writer(participant);
   auto status = message<msg::WorkerStatus>();
-  set_text(status.worker_id(), "killed", "worker_id");
+  set_worker_id(status, "killed");
   ASSERT_TRUE(writer.write(status));
   while (true) ::pause();
 }

@@ -77,11 +77,11 @@ void fill(msg::SimulatorCommand& command) {
   command.fault(msg::kSimulatedJoystick);
   command.device(msg::kSimulatedBase);
   command.duration_s(2.5);
-  set_text(command.client_id(), "tester", "client_id");
+  set_client_id(command, "tester");
 }
 
 void fill(msg::StreamEnd& end) {
-  set_text(end.stage(), "local_mapper", "stage");
+  end.stage(msg::kStageLocalMapper);
   end.count(17);
   end.last_id(16);
   end.version(5);
@@ -129,8 +129,8 @@ void fill(msg::LocalMap& map) {
 }
 
 void fill(msg::MatchTask& task) {
-  set_text(task.worker_id(), "pc1-42", "worker_id");
-  set_text(task.client_id(), "localizer-1", "client_id");
+  set_worker_id(task, "pc1-42");
+  set_client_id(task, "localizer-1");
   task.task_id(99);
   task.reference_map_id(3);
   task.query_hash(~0ULL);
@@ -142,7 +142,7 @@ void fill(msg::MatchTask& task) {
 }
 
 void fill(msg::MatchResult& result) {
-  set_text(result.client_id(), "localizer-1", "client_id");
+  set_client_id(result, "localizer-1");
   result.task_id(99);
   result.status(msg::kMatchMapMissing);
   msg::MatchSolution solution;
@@ -154,15 +154,14 @@ void fill(msg::MatchResult& result) {
 }
 
 void fill(msg::WorkerStatus& status) {
-  set_text(status.worker_id(), "pc1-42", "worker_id");
+  set_worker_id(status, "pc1-42");
   status.slots(4);
   status.tasks_per_s(512.5);
   status.config_fingerprint(0x123456789ABCDEF0ULL);
 }
 
 void fill(msg::ServiceStatus& status) {
-  set_text(status.service(), "localizer", "service");
-  set_text(status.instance(), "host-1", "instance");
+  set_service(status, "localizer", "host-1");
   status.state(msg::kServiceRunning);
   set_text(status.input(), "local_map", "input");
   status.inputs(345);
@@ -229,7 +228,7 @@ void fill(msg::LoopDecisions& decisions) {
 
 void fill(msg::LocalizationCommand& command) {
   command.request_id(7);
-  set_text(command.client_id(), "operator-1", "client_id");
+  set_client_id(command, "operator-1");
   command.kind(msg::kCommandSetPose);
   command.T_map_robot(pose(2.0));
   command.covariance(matrix());
@@ -237,7 +236,7 @@ void fill(msg::LocalizationCommand& command) {
 
 void fill(msg::LocalizationReply& reply) {
   reply.request_id(7);
-  set_text(reply.client_id(), "operator-1", "client_id");
+  set_client_id(reply, "operator-1");
   reply.accepted(true);
   set_text(reply.message(), "searching", "message");
 }
@@ -252,7 +251,8 @@ void fill(msg::MapElement& element) {
 }
 
 void fill(msg::TrackedPose& tracked) {
-  tracked.local_map_id(7);
+  tracked.stop().session(0xfedcba9876543210ULL);
+  tracked.stop().number(7);
   tracked.scan().T_odom_robot(pose(1.5));
   tracked.scan().T_stop_robot(pose(0.5));
   tracked.scan().matched(true);
@@ -323,18 +323,18 @@ void fill(msg::BaseCommand& command) {
   command.kind(msg::kBaseSetLimits);
   command.largest_linear_mps(0.5);
   command.angular_acceleration_radps2(1.5);
-  set_text(command.client_id(), "operator", "client_id");
+  set_client_id(command, "operator");
 }
 
 void fill(msg::MapRequest& request) {
-  set_text(request.client_id(), "localizer-1", "client_id");
-  set_text(request.worker_id(), "pc1-42", "worker_id");
+  set_client_id(request, "localizer-1");
+  set_worker_id(request, "pc1-42");
   request.map_id(3);
   request.content_hash(~0ULL);
 }
 
 void fill(msg::MapCopy& copy) {
-  set_text(copy.worker_id(), "pc1-42", "worker_id");
+  set_worker_id(copy, "pc1-42");
   copy.local_map(message<msg::LocalMap>());
   fill(copy.local_map());
 }
@@ -413,19 +413,24 @@ TEST_F(TwoParticipants, WriteChecksEnumerationsAndMembers) {
   copy.local_map().nodes().back().kind(msg::kNodeHallCorridor);
   EXPECT_TRUE(copies.write(copy));
 
+  copy.worker_key(key_of("another"));
+  expect_refused(copies, copy, ": worker_key is not that of ''");
+
   Writer<msg::Goal> goals(sender_);
   auto goal = message<msg::Goal>();
+  goal.robot_key(0);
+  expect_refused(goals, goal, ": robot_key is not that of '");
+  set_robot_id(goal, "robot");
   goal.kind(static_cast<msg::GoalKind>(msg::kGoalResume + 1));
   expect_refused(goals, goal, ": kind is ");
 }
 
 TEST(Message, TextOverItsBoundIsAnErrorOrCutAtACharacter) {
   msg::Scan scan;
-  EXPECT_NO_THROW(set_text(scan.robot_id(), std::string(32, 'a'), "robot_id"));
+  EXPECT_NO_THROW(set_robot_id(scan, std::string(32, 'a')));
   EXPECT_EQ(scan.robot_id().to_string(), std::string(32, 'a'));
-  EXPECT_THROW(set_text(scan.robot_id(), std::string(33, 'a'), "robot_id"), std::invalid_argument);
-  EXPECT_THROW(set_text(scan.robot_id(), std::string_view("a\0b", 3), "robot_id"),
-               std::invalid_argument);
+  EXPECT_THROW(set_robot_id(scan, std::string(33, 'a')), std::invalid_argument);
+  EXPECT_THROW(set_robot_id(scan, std::string_view("a\0b", 3)), std::invalid_argument);
   set_text_cut(scan.robot_id(), std::string(31, 'a') + "\u00e4");  // two bytes: 31 + 2 > 32
   EXPECT_EQ(scan.robot_id().to_string(), std::string(31, 'a'));
 }

@@ -25,7 +25,7 @@ TEST(ParsePose, RefusesAnythingElse) {
 
 TEST(LocalizationCsv, HasALineForEachStop) {
   localization::LocalizedStop stop;
-  stop.id = 3;
+  stop.stop.number = 3;
   stop.stamp_ns = 1'500'000'000;
   stop.T_map_robot = {1.0, -2.0, 0.5};
   stop.covariance = Eigen::Vector3d(0.01, 0.04, 0.0001).asDiagonal();

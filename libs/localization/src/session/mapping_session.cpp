@@ -47,23 +47,54 @@ MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
   stored_stops_ = map->maps.size();
   for (const topomap::LocalMap& stored : map->maps) {
     maps_.push_back(MapPointer(map, &stored));
-    sources_.push_back(topomap::kStoredSource);
   }
   start_following(std::move(map));
   if (initial) follower_->set_pose(initial->T_a_b, initial->covariance);
 }
 
 bool MappingSession::add(MapPointer map) {
-  check_next(*map, next_id_, maps_.empty() ? nullptr : maps_.front().get());
-  ++next_id_;
+  const bool same_session = last_id_ && last_id_->session == map->stop.session;
+  if (same_session && last_id_->number + 1 != map->stop.number) {
+    throw std::invalid_argument("localizer: stop " + std::to_string(map->stop.number) +
+                                " came, expected " + std::to_string(last_id_->number + 1));
+  }
+  if (!maps_.empty() && map->robot_id != maps_.front()->robot_id) {
+    throw std::invalid_argument("localizer: stop " + std::to_string(map->stop.number) +
+                                " is of robot '" + map->robot_id + "', expected '" +
+                                maps_.front()->robot_id + "'");
+  }
+  if (last_id_ && !same_session) begin_drive(*map);
+  last_id_ = map->stop;
+  ++stops_;
   return follower_ ? follow(map) : map_stop(map);
+}
+
+// The follower finds out by itself that the robot may be anywhere.
+void MappingSession::begin_drive(const topomap::LocalMap& map) {
+  waiting_.clear();
+  searched_ = false;
+  tracked_stops_ = 0;
+  tracked_distance_m_ = 0.0;
+  if (follower_ || maps_.empty()) return;
+  if (localizer_ == nullptr) {
+    throw std::invalid_argument("localizer: stop " + std::to_string(map.stop.number) +
+                                " is of another drive, which mode thesis cannot join to its map");
+  }
+  start_following(map_so_far());
+}
+
+std::shared_ptr<const StoredMap> MappingSession::map_so_far() const {
+  auto stored = std::make_shared<StoredMap>();
+  stored->trajectory = mapper_->trajectory();
+  stored->loop_closures = mapper_->loop_closures();
+  for (const MapPointer& map : maps_) stored->maps.push_back(*map);
+  return stored;
 }
 
 bool MappingSession::map_stop(const MapPointer& map) {
   const MapPointer own = numbered(map, false);
   const bool moved = mapper_->add(own);
   maps_.push_back(own);
-  sources_.push_back(map->id);
   return moved;
 }
 
@@ -96,7 +127,6 @@ void MappingSession::join() {
   for (const MapPointer& map : std::exchange(waiting_, {})) {
     drive.push_back(numbered(map, drive.empty()));
     maps_.push_back(drive.back());
-    sources_.push_back(map->id);
   }
   end_following();
   localizer_->join(drive, matches, confidence);
@@ -121,9 +151,7 @@ void MappingSession::stop_mapping() {
   if (!mapping_) throw std::logic_error("the map stays as it is already");
   if (maps_.empty()) throw std::logic_error("there is no map yet");
   if (!follower_) {
-    auto stored = std::make_shared<StoredMap>();
-    stored->trajectory = mapper_->trajectory();
-    for (const MapPointer& map : maps_) stored->maps.push_back(*map);
+    std::shared_ptr<const StoredMap> stored = map_so_far();
     const geometry::Pose2 T_map_last = stored->trajectory.stops.back().T_map_robot;
     start_following(std::move(stored));
     follower_->start_after(*maps_.back(), T_map_last);
@@ -142,7 +170,7 @@ void MappingSession::resume_mapping() {
 
 void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
   const std::uint64_t next_task = localizer_ != nullptr ? localizer_->next_task() : counts().tasks;
-  follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_, next_id_);
+  follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_);
   follower_->number_tasks_from(next_task);
   searched_ = false;
   tracked_stops_ = 0;
@@ -160,16 +188,16 @@ void MappingSession::end_following() {
 topomap::Trajectory MappingSession::trajectory() const {
   topomap::Trajectory trajectory = mapper_->trajectory();
   for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
-    trajectory.stops[i].source_id = sources_[i];
+    trajectory.stops[i].stop = maps_[i]->stop;
   }
   return trajectory;
 }
 
 std::optional<topomap::StopPose> MappingSession::last_stop() const {
-  if (next_id_ == 0) return std::nullopt;
+  if (stops_ == 0) return std::nullopt;
   if (follower_ && !follower_->stops().empty()) return follower_->last_stop();
   std::optional<topomap::StopPose> stop = mapper_->last_stop();
-  stop->source_id = sources_.back();  // mapped, or right after stop_mapping()
+  stop->stop = maps_.back()->stop;  // mapped, or right after stop_mapping()
   return stop;
 }
 

@@ -29,22 +29,28 @@ bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
 }
 
 topomap::StopPose pose_of(const LocalizedStop& stop) {
-  return {stop.id,         stop.stamp_ns, stop.T_map_robot,
-          stop.covariance, stop.id,       located(stop.status.state)};
+  return {stop.stop.number, stop.stamp_ns, stop.T_map_robot,
+          stop.covariance,  stop.stop,     located(stop.status.state)};
 }
 
 }  // namespace
 
 MapLocalizer::MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
-                           MatchPool& pool, std::uint32_t first_drive_id)
-    : config_(config), matching_(config, std::move(map), pool), first_drive_id_(first_drive_id) {}
+                           MatchPool& pool)
+    : config_(config), matching_(config, std::move(map), pool) {}
 
 bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   const auto number = static_cast<std::uint32_t>(stops_.size());
-  if (map->id != first_drive_id_ + number) {
-    throw std::invalid_argument("map localizer: local map " + std::to_string(map->id) +
-                                " came, expected " + std::to_string(first_drive_id_ + number));
+  if (last_id_ && last_id_->session == map->stop.session &&
+      last_id_->number + 1 != map->stop.number) {
+    throw std::invalid_argument("map localizer: stop " + std::to_string(map->stop.number) +
+                                " came, expected " + std::to_string(last_id_->number + 1));
   }
+  if (last_id_ && last_id_->session != map->stop.session) {
+    T_odom_last_.reset();
+    search();
+  }
+  last_id_ = map->stop;
   const DriveStop stop = matching_.add(*map, number, T_odom_last_);
   T_odom_last_ = map->T_odom_robot;
   last_step_.reset();
@@ -56,7 +62,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
     look_around(stop);
     accepted = decide();
   }
-  stops_.push_back({map->id, map->stamp_ns, pose_.T_a_b, pose_.covariance, status_, accepted});
+  stops_.push_back({map->stop, map->stamp_ns, pose_.T_a_b, pose_.covariance, status_, accepted});
   return false;
 }
 

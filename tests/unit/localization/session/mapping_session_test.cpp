@@ -22,6 +22,7 @@ Maps part(const Maps& maps, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
     topomap::LocalMap map = *maps[i];
     map.id = static_cast<std::uint32_t>(out.size());
+    map.stop = {2, map.id};
     map.T_odom_robot = Pose2{100.0, 50.0, 2.0} * map.T_odom_robot;
     if (out.empty()) {
       map.track.clear();
@@ -122,7 +123,7 @@ TEST_F(MappingSessionTest, FindsItselfInAStoredMapAndExtendsItBackToItsFirstStop
     EXPECT_EQ(session.maps()[i]->id, i);
     EXPECT_EQ(trajectory.stops[i].local_map_id, i);
     EXPECT_EQ(session.maps()[i]->starts_drive, i == kFirst);
-    EXPECT_EQ(trajectory.stops[i].source_id, i < kFirst ? topomap::kStoredSource : i - kFirst);
+    EXPECT_EQ(trajectory.stops[i].stop.number, i < kFirst ? i : i - kFirst);
   }
   EXPECT_TRUE(session.maps()[kFirst]->track.empty());
   const auto loops = session.loop_closures();
@@ -224,8 +225,8 @@ TEST_F(MappingSessionTest, StopsAndResumesMapping) {
   EXPECT_EQ(session.maps().size(), 54U);
   EXPECT_EQ(session.unmapped_stops(), 6U);
   const topomap::Trajectory after = session.trajectory();
-  EXPECT_EQ(after.stops[29].source_id, 29U);
-  EXPECT_EQ(after.stops[30].source_id, 36U);
+  EXPECT_EQ(after.stops[29].stop.number, 29U);
+  EXPECT_EQ(after.stops[30].stop.number, 36U);
   EXPECT_TRUE(session.maps()[30]->starts_drive);
   const Pose2 truth = geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[59]);
   EXPECT_LT(geometry::between(truth, after.stops.back().T_map_robot).position_m().norm(), 0.25);
@@ -234,9 +235,11 @@ TEST_F(MappingSessionTest, StopsAndResumesMapping) {
 TEST_F(MappingSessionTest, RefusesAnotherRobotAStopOutOfTurnAndTheAlgorithmThatCannot) {
   MappingSession session({}, pool_, nullptr, stored_, std::nullopt);
   topomap::LocalMap map = *driven_->maps[0];
-  map.id = 1;
+  session.add(std::make_shared<const topomap::LocalMap>(map));
   EXPECT_THROW(session.add(std::make_shared<const topomap::LocalMap>(map)), std::invalid_argument);
-  map.id = 0;
+  map = *driven_->maps[2];
+  EXPECT_THROW(session.add(std::make_shared<const topomap::LocalMap>(map)), std::invalid_argument);
+  map = *driven_->maps[1];
   map.robot_id = "another";
   EXPECT_THROW(session.add(std::make_shared<const topomap::LocalMap>(map)), std::invalid_argument);
   LocalizerConfig thesis;

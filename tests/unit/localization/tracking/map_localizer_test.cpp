@@ -42,6 +42,7 @@ class MapLocalizerTest : public ::testing::Test {
   void add(MapLocalizer& localizer, std::size_t stop, const Pose2& T_step) {
     topomap::LocalMap map = *drive_->maps[stop];
     map.id = static_cast<std::uint32_t>(localizer.stops().size());
+    map.stop = {2, map.id};
     T_odom_ = T_odom_ * T_step;
     map.T_odom_robot = T_odom_;
     map.T_previous_robot = T_step;
@@ -120,6 +121,7 @@ TEST_F(MapLocalizerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
     topomap::LocalMap blind;
     blind.robot_id = "robot";
     blind.id = static_cast<std::uint32_t>(localizer.stops().size());
+    blind.stop = {2, blind.id};
     T_odom_ = T_odom_ * Pose2{0.1, 0.0, 0.0};
     blind.T_odom_robot = T_odom_;
     localizer.add(std::make_shared<const topomap::LocalMap>(blind));
@@ -164,7 +166,23 @@ TEST_F(MapLocalizerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
 
 TEST_F(MapLocalizerTest, AMapOutOfTurnIsAnError) {
   MapLocalizer localizer = make();
+  localizer.add(drive_->maps[1]);
   EXPECT_THROW(localizer.add(drive_->maps[1]), std::invalid_argument);
+  EXPECT_THROW(localizer.add(drive_->maps[3]), std::invalid_argument);
+}
+
+TEST_F(MapLocalizerTest, AnotherSessionIsSearchedFor) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(localizer, 0, 8);
+  ASSERT_EQ(localizer.status().state, LocalizationState::kTracking);
+  topomap::LocalMap elsewhere = *drive_->maps[30];
+  elsewhere.stop = {99, 0};
+  elsewhere.T_odom_robot = {};
+  localizer.add(std::make_shared<const topomap::LocalMap>(elsewhere));
+  EXPECT_EQ(localizer.searches(), 1U);
+  EXPECT_FALSE(localizer.status().state == LocalizationState::kTracking && !right(localizer, 30))
+      << "the odometry of one session says nothing of another";
 }
 
 }  // namespace

@@ -145,10 +145,14 @@ TEST_P(Conversions, LoopClosuresAreExact) {
 }
 
 TEST_P(Conversions, LivePoseIsExact) {
-  const LivePose pose{
-      any_i64(random_),       random_.next_u64(), {localization::LocalizationState::kLost, 0.375},
-      msg::kModeLocalization, any_pose(random_),  any_matrix(random_),
-      any_u32(random_),       random_.next_u64()};
+  const LivePose pose{any_i64(random_),
+                      random_.next_u64(),
+                      {localization::LocalizationState::kLost, 0.375},
+                      msg::kModeLocalization,
+                      any_pose(random_),
+                      any_matrix(random_),
+                      {random_.next_u64(), any_u32(random_)},
+                      random_.next_u64()};
   const LivePose back = from_msg(to_msg(pose, "robot"));
   EXPECT_EQ(back.stamp_ns, pose.stamp_ns);
   EXPECT_EQ(back.sequence, pose.sequence);
@@ -157,7 +161,7 @@ TEST_P(Conversions, LivePoseIsExact) {
   EXPECT_EQ(back.mode, pose.mode);
   EXPECT_EQ(back.T_map_robot, pose.T_map_robot);
   EXPECT_EQ(back.covariance, pose.covariance);
-  EXPECT_EQ(back.local_map_id, pose.local_map_id);
+  EXPECT_EQ(back.last_stop, pose.last_stop);
   EXPECT_EQ(back.trajectory_version, pose.trajectory_version);
 }
 

@@ -80,6 +80,8 @@ inline topomap::LocalMap any_local_map(support::Random& random) {
   topomap::LocalMap out;
   out.robot_id = "robot";
   out.id = any_u32(random);
+  out.stop = {0x0123456789abcdefULL, out.id};
+  out.odometry_epoch = 17;
   out.sequence = random.next_u64();
   out.stamp_ns = any_i64(random);
   out.T_odom_robot = any_pose(random);
@@ -115,8 +117,11 @@ inline topomap::Trajectory any_trajectory(support::Random& random, std::uint32_t
   topomap::Trajectory out;
   out.version = random.next_u64();
   for (std::uint32_t i = 0; i < stops; ++i) {
-    out.stops.push_back({i, any_i64(random), any_pose(random), any_matrix(random),
-                         static_cast<std::uint32_t>(random.next_u64()),
+    out.stops.push_back({i,
+                         any_i64(random),
+                         any_pose(random),
+                         any_matrix(random),
+                         {random.next_u64(), any_u32(random)},
                          random.next_u64() % 2 == 0});
   }
   return out;
@@ -166,16 +171,16 @@ inline bool operator==(const TrackedScan& a, const TrackedScan& b) {
          a.T_stop_robot == b.T_stop_robot && a.matched == b.matched;
 }
 inline bool operator==(const LocalMap& a, const LocalMap& b) {
-  return a.robot_id == b.robot_id && a.id == b.id && a.sequence == b.sequence &&
-         a.stamp_ns == b.stamp_ns && a.T_odom_robot == b.T_odom_robot &&
-         a.T_previous_robot == b.T_previous_robot && a.T_robot_laser == b.T_robot_laser &&
-         a.nodes == b.nodes && a.branches == b.branches && a.points == b.points &&
-         a.track == b.track && a.starts_drive == b.starts_drive;
+  return a.robot_id == b.robot_id && a.id == b.id && a.stop == b.stop && a.sequence == b.sequence &&
+         a.odometry_epoch == b.odometry_epoch && a.stamp_ns == b.stamp_ns &&
+         a.T_odom_robot == b.T_odom_robot && a.T_previous_robot == b.T_previous_robot &&
+         a.T_robot_laser == b.T_robot_laser && a.nodes == b.nodes && a.branches == b.branches &&
+         a.points == b.points && a.track == b.track && a.starts_drive == b.starts_drive;
 }
 inline bool operator==(const StopPose& a, const StopPose& b) {
   return a.local_map_id == b.local_map_id && a.stamp_ns == b.stamp_ns &&
-         a.T_map_robot == b.T_map_robot && a.covariance == b.covariance &&
-         a.source_id == b.source_id && a.located == b.located;
+         a.T_map_robot == b.T_map_robot && a.covariance == b.covariance && a.stop == b.stop &&
+         a.located == b.located;
 }
 inline bool operator==(const Trajectory& a, const Trajectory& b) {
   return a.version == b.version && a.stops == b.stops;

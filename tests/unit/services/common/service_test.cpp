@@ -138,7 +138,7 @@ TEST_F(ServiceTest, AddresseeAndRoleAreThoseOfTheSubscription) {
   ASSERT_TRUE(scan_writer.wait_for_matched(1, kPatience));
   for (const auto& [who, id] : {std::pair{"you", 1U}, std::pair{"me", 2U}}) {
     auto task = message_of<msg::MatchTask>("any");
-    messaging::set_text(task.worker_id(), who, "worker_id");
+    messaging::set_worker_id(task, who);
     task.task_id(id);
     ASSERT_TRUE(task_writer.write(task));
   }

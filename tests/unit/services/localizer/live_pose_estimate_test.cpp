@@ -15,6 +15,7 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 std::shared_ptr<const topomap::LocalMap> stop_at_10_m(std::uint32_t id) {
   auto map = std::make_shared<topomap::LocalMap>();
   map->id = id;
+  map->stop = {1, id};
   map->sequence = 7;
   map->stamp_ns = kSecond_ns;
   map->T_odom_robot = {10.0, 0.0, 0.0};
@@ -75,9 +76,9 @@ TEST_F(LivePose, AScanMatchedWithTheLastStopReplacesItsOdometry) {
   scan.T_stop_robot = {0.4, 0.0, 0.0};  // the odometry was 0.1 m off
   scan.matched = true;
   live_.set_odometry(2 * kSecond_ns, 9, {10.6, 0.0, 0.0});
-  live_.set_tracked(3, scan);  // of the stop before
+  live_.set_tracked({1, 3}, scan);  // of the stop before
   expect_at(2.0, 3.6);
-  live_.set_tracked(4, scan);
+  live_.set_tracked({1, 4}, scan);
   expect_at(2.0, 3.5);
 }
 

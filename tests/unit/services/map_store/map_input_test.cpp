@@ -12,16 +12,20 @@ namespace {
 
 using Arrival = MapInput::Arrival;
 
+constexpr std::uint64_t kSession = 11;
+constexpr std::uint64_t kOther = 5;  // came later, though its number is smaller
+
 class Input : public testing::Test {
  protected:
   Input() {
     for (std::uint32_t i = 0; i < 3; ++i) {
       maps_.push_back(any_local_map(random_));
       maps_.back().id = i;
+      maps_.back().stop = {kSession, i};
     }
     trajectory_ = any_trajectory(random_, 3);
     trajectory_.version = 8;
-    for (topomap::StopPose& stop : trajectory_.stops) stop.source_id = stop.local_map_id;
+    for (topomap::StopPose& stop : trajectory_.stops) stop.stop = {kSession, stop.local_map_id};
     end_.count(3);
     end_.version(8);
   }
@@ -62,7 +66,7 @@ TEST_F(Input, SecondMapOfAnIdIsKnownOrDifferent) {
 
 TEST_F(Input, TakesInWhatTheTrajectoryNamesAndNumbersItAsThatDoes) {
   trajectory_.stops.resize(2);
-  trajectory_.stops[1].source_id = 2;  // the stop between is in no map
+  trajectory_.stops[1].stop = {kSession, 2};  // the stop between is in no map
   for (const auto& map : maps_) input_.add(map);
   EXPECT_TRUE(input_.local_maps().empty());
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
@@ -80,12 +84,14 @@ TEST_F(Input, TakesInWhatTheTrajectoryNamesAndNumbersItAsThatDoes) {
 TEST_F(Input, SoManyMapsWaitAndNoMore) {
   const auto most = static_cast<std::uint32_t>(MapInput::kMostWaiting);
   topomap::LocalMap map = maps_[0];
-  for (map.id = 0; map.id < most + 2; ++map.id) EXPECT_EQ(input_.add(map), Arrival::kNew);
+  for (map.stop.number = 0; map.stop.number < most + 2; ++map.stop.number) {
+    EXPECT_EQ(input_.add(map), Arrival::kNew);
+  }
   EXPECT_EQ(input_.waiting(), most);
   EXPECT_EQ(input_.dropped(), 2U);
   // Later ones join the map.
   trajectory_.stops.resize(1);
-  trajectory_.stops[0].source_id = most + 1;
+  trajectory_.stops[0].stop = {kSession, most + 1};
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   EXPECT_EQ(input_.local_maps().size(), 1U);
   EXPECT_EQ(input_.waiting(), 0U);
@@ -96,22 +102,21 @@ TEST_F(Input, SoManyMapsWaitAndNoMore) {
 TEST_F(Input, ADroppedMapThatTheTrajectoryNamesIsLost) {
   const auto most = static_cast<std::uint32_t>(MapInput::kMostWaiting);
   topomap::LocalMap map = maps_[0];
-  for (map.id = 0; map.id < most + 2; ++map.id) input_.add(map);
+  for (map.stop.number = 0; map.stop.number < most + 2; ++map.stop.number) input_.add(map);
   trajectory_.stops.resize(1);
-  trajectory_.stops[0].source_id = 1;
+  trajectory_.stops[0].stop = {kSession, 1};
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   EXPECT_TRUE(input_.local_maps().empty());
-  EXPECT_EQ(input_.lost(), 1U);
+  EXPECT_EQ(input_.lost(), (topomap::StopId{kSession, 1}));
 }
 
 TEST_F(Input, ExtendsAStoredMap) {
   input_ = MapInput({maps_[0], maps_[1]});
-  trajectory_.stops[0].source_id = topomap::kStoredSource;
-  trajectory_.stops[1].source_id = topomap::kStoredSource;
-  trajectory_.stops[2].source_id = 0;
-  topomap::LocalMap first = maps_[2];
-  first.id = 0;
-  input_.add(first);
+  trajectory_.stops[0].stop = {kSession, 0};
+  trajectory_.stops[1].stop = {kSession, 1};
+  trajectory_.stops[2].stop = {kOther, 0};
+  maps_[2].stop = {kOther, 0};
+  input_.add(maps_[2]);
   EXPECT_EQ(input_.local_maps().size(), 2U);
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   ASSERT_EQ(input_.local_maps().size(), 3U);
@@ -119,9 +124,8 @@ TEST_F(Input, ExtendsAStoredMap) {
 }
 
 TEST_F(Input, RefusesATrajectoryOfAnotherStoredMap) {
-  trajectory_.stops[0].source_id = topomap::kStoredSource;
+  trajectory_.stops[1].stop = {kOther, 1};
   const msg::TrajectorySegment segment = service::to_segment(trajectory_, 0, "robot", 0);
-  EXPECT_THROW(input_.add(segment), std::invalid_argument);
   input_ = MapInput({maps_[0], maps_[1]});
   EXPECT_THROW(input_.add(segment), std::invalid_argument);
 }

@@ -29,8 +29,7 @@ msg::ServiceStatus status_of(const std::string& service, msg::ServiceState state
                              const std::string& message = {}) {
   msg::ServiceStatus status;
   messaging::set_header(status, "robot", 0, 0);
-  messaging::set_text(status.service(), service, "service");
-  messaging::set_text(status.instance(), service + "-1", "instance");
+  messaging::set_service(status, service, service + "-1");
   messaging::set_text(status.host(), "pc", "host");
   messaging::set_text(status.version(), "1.2", "version");
   messaging::set_text(status.message(), message, "message");
@@ -79,14 +78,14 @@ TEST(StatusTable, StaysWithinEightyColumnsWhateverTheNames) {
                                " is on a disk that is full, and it will be tried again soon";
   for (int i = 0; i < 2; ++i) {
     msg::ServiceStatus status = status_of("calibration_gateway", msg::kServiceFailed, text_255);
-    messaging::set_text(status.instance(), "instance-" + std::to_string(i), "instance");
+    messaging::set_service(status, "calibration_gateway", "instance-" + std::to_string(i));
     status.process_id(4'000'000 + static_cast<std::uint32_t>(i));
     status.fault_count(99'999);
     table.update(fed(status, "scan", 1234.5, 7300.0), info_of(static_cast<std::uint8_t>(i)), kNow);
   }
   msg::ServiceStatus other = status_of("map_store", msg::kServiceRunning);
   messaging::set_text(other.host(), std::string(60, 'h'), "host");
-  messaging::set_text(other.robot_id(), std::string(32, 'r'), "robot_id");
+  messaging::set_robot_id(other, std::string(32, 'r'));
   table.update(other, info_of(9), kNow);
   const std::string text = table.text(kNow);
   EXPECT_LE(widest_line(text), 80U) << text;
@@ -103,7 +102,7 @@ TEST(StatusTable, LeavesOutWhatIsTheSameEverywhere) {
   EXPECT_THAT(table.text(kNow), Not(HasSubstr("ROBOT")));
   EXPECT_THAT(table.text(kNow), Not(HasSubstr("PID")));
   msg::ServiceStatus of_any = status_of("ga_worker", msg::kServiceRunning);
-  messaging::set_text(of_any.robot_id(), "", "robot_id");
+  messaging::set_robot_id(of_any, "");
   table.update(of_any, info_of(2), kNow);
   EXPECT_THAT(table.text(kNow), Not(HasSubstr("ROBOT"))) << "a service of every robot is of none";
 }

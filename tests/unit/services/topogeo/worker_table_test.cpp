@@ -23,7 +23,7 @@ constexpr std::uint64_t kFingerprint = 77;
 
 msg::WorkerStatus worker(const std::string& id, const std::string& name) {
   msg::WorkerStatus status;
-  messaging::set_text(status.worker_id(), id, "worker_id");
+  messaging::set_worker_id(status, id);
   messaging::set_text(status.name(), name, "name");
   messaging::set_text(status.host(), "pc1", "host");
   messaging::set_text(status.version(), "1.2.3", "version");
@@ -84,7 +84,7 @@ TEST_F(WorkerTableTest, FitsIntoATerminalWhateverItsNames) {
   messaging::set_text(other.host(), "pc1", "host");
   messaging::set_text(other.version(), "0.9", "version");
   table_.update(other, instance(2), start_);
-  messaging::set_text(other.worker_id(), "a#2", "worker_id");
+  messaging::set_worker_id(other, "a#2");
   table_.update(other, instance(3), start_);
   std::istringstream lines(table_.text(start_));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), kColumns) << line;

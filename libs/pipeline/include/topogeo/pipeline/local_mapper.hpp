@@ -19,8 +19,11 @@ namespace topogeo::pipeline {
 
 class LocalMapper {
  public:
-  /// Throws std::invalid_argument when a field of the configuration is outside its range.
-  LocalMapper(const LocalMapperConfig& config, std::string robot_id);
+  /// The number of its session follows from the robot, the first scan and `session_salt`: a replay
+  /// gives 0 to have the same one each time, a robot something random. Throws std::invalid_argument
+  /// when a field of the configuration is outside its range.
+  LocalMapper(const LocalMapperConfig& config, std::string robot_id,
+              std::uint64_t session_salt = 0);
 
   /// Takes the next scan, in time order; gives a local map when the robot is at a stop. The first
   /// scan is one.
@@ -30,6 +33,9 @@ class LocalMapper {
   [[nodiscard]] const topomap::TrackedScan* last_tracked() const {
     return track_.empty() ? nullptr : &track_.back();
   }
+
+  /// After the first scan.
+  [[nodiscard]] topomap::StopId last_stop() const { return {next_.session, next_.number - 1}; }
 
   /// At the end of a log: makes a stop of the last scan, if it was none, so that the scans since
   /// the stop before are not lost.
@@ -45,7 +51,8 @@ class LocalMapper {
   voronoi::LocalVoronoi diagram_maker_;
   voronoi::LocalVoronoiDiagram diagram_;
   topomap::LocalMapBuilder map_builder_;
-  std::uint32_t next_id_ = 0;
+  std::uint64_t session_salt_ = 0;
+  topomap::StopId next_;
   std::vector<topomap::TrackedScan> track_;  // since the last stop
   std::optional<scan::Scan> last_;           // the last scan, if it was no stop
 };

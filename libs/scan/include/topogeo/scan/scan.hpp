@@ -16,6 +16,8 @@ struct Scan {
   double angle_step_rad = 0.0;   ///< from one beam to the next, counter-clockwise, > 0
   std::vector<float> ranges_m;   ///< one per beam; kNoReturn where the beam met nothing
   geometry::Pose2 T_odom_robot;  ///< odometry pose at the time of the scan
+  /// Odometry poses of different epochs have nothing in common. 0 in logs.
+  std::uint64_t odometry_epoch = 0;
 
   /// Range of a beam without an echo. Readers of logs and devices put it for every reading at or
   /// above the sensor's maximum and for every reading of zero or less.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -65,12 +66,22 @@ struct TrackedScan {
   bool matched = false;          ///< false: T_stop_robot is odometry alone
 };
 
+/// A stop by its origin, which it keeps for good whatever map it becomes part of. A session is a
+/// time in which one local mapper numbers the stops of one robot.
+struct StopId {
+  std::uint64_t session = 0;
+  std::uint32_t number = 0;  ///< counts the stops of the session from 0
+  friend auto operator<=>(const StopId&, const StopId&) = default;
+};
+
 struct LocalMap {
   std::string robot_id;
-  std::uint32_t id = 0;        ///< counts the stops of a robot from 0
+  std::uint32_t id = 0;  ///< number of the stop in its map; before it is in one, in its session
+  StopId stop{};
   std::uint64_t sequence = 0;  ///< of the scan taken at the stop
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_odom_robot;      ///< odometry at the stop
+  std::uint64_t odometry_epoch = 0;  ///< of T_odom_robot, as in scan::Scan
   geometry::Pose2 T_previous_robot;  ///< pose in the frame of the previous stop by scan tracking;
                                      ///< identity at id 0
   geometry::Pose2 T_robot_laser;     ///< mounting of the laser

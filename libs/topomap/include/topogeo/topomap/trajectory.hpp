@@ -19,13 +19,9 @@ struct StopPose {
   geometry::Pose2 T_map_robot;
   Eigen::Matrix3d covariance =
       Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the map frame, m and rad
-  /// While the robot drives: the id that its local mapper gave the local map. Not stored.
-  std::uint32_t source_id = 0;
+  StopId stop{};
   bool located = true;  ///< false: the robot was not located, the pose means nothing
 };
-
-/// Source of a stop that was in the map before this drive.
-inline constexpr std::uint32_t kStoredSource = 0xffffffffU;
 
 struct Trajectory {
   std::uint64_t version = 0;    ///< grows with every change

@@ -45,6 +45,9 @@ msg::Scan to_msg(const scan::Scan& scan, std::string_view robot_id);
 /// Refuses ranges that are negative, infinite or no numbers and beams that do not ascend.
 scan::Scan from_msg(const msg::Scan& message);
 
+msg::StopId to_msg(const topomap::StopId& stop);
+topomap::StopId from_msg(const msg::StopId& stop);
+
 /// Fills content_hash.
 msg::LocalMap to_msg(const topomap::LocalMap& map);
 /// Checks content_hash, too.
@@ -109,8 +112,8 @@ msg::LocalizationCommand to_msg(const LocalizationCommand& command, std::string_
 /// Refuses a covariance that is not symmetric and positive definite where a pose is set.
 LocalizationCommand from_msg(const msg::LocalizationCommand& message);
 
-/// A scan after the stop of that number of a local map.
-msg::TrackedPose to_msg(const topomap::TrackedScan& scan, std::uint32_t local_map_id,
+/// A scan after that stop.
+msg::TrackedPose to_msg(const topomap::TrackedScan& scan, const topomap::StopId& stop,
                         std::string_view robot_id);
 /// The scan alone.
 topomap::TrackedScan from_msg(const msg::TrackedPose& message);
@@ -123,8 +126,8 @@ struct LivePose {
   msg::LocalizerMode mode = msg::kModeMapping;
   geometry::Pose2 T_map_robot;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
-  std::uint32_t local_map_id = 0;                        ///< last stop
-  std::uint64_t trajectory_version = 0;                  ///< that the pose belongs to
+  topomap::StopId last_stop;
+  std::uint64_t trajectory_version = 0;  ///< that the pose belongs to
 };
 
 msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id);

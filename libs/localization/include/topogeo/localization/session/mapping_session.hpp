@@ -35,8 +35,10 @@ class MappingSession : public Slam {
   MappingSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
                  std::shared_ptr<const StoredMap> map, const std::optional<UncertainPose>& initial);
 
-  /// The next stop of the drive. Its id counts the stops of the drive from 0, whatever becomes of
-  /// them; throws std::invalid_argument otherwise, or when it is of another robot than the map.
+  /// The next stop of the drive. The numbers of a session count on from the first that comes,
+  /// whatever becomes of its stops; throws std::invalid_argument otherwise, or when it is of
+  /// another robot than the map. Another session is another drive, whose place in the map is
+  /// searched for; stops of the one before that have not joined the map by then never will.
   bool add(MapPointer map) override;
   /// Leaves a map alone to which nothing was added.
   void finish() override;
@@ -55,14 +57,14 @@ class MappingSession : public Slam {
 
   /// The map: its local maps, numbered on from 0, ...
   [[nodiscard]] const std::vector<MapPointer>& maps() const { return maps_; }
-  /// ... their poses, each with the id that its local map came with ...
+  /// ... their poses, each with the stop that its local map came as ...
   [[nodiscard]] topomap::Trajectory trajectory() const override;
   /// ... and how many of them were there before this drive.
   [[nodiscard]] std::size_t stored_stops() const { return stored_stops_; }
 
   /// Stops of the drive that are not in the map: not wanted, or their place was not found.
   [[nodiscard]] std::size_t unmapped_stops() const {
-    return next_id_ - (maps_.size() - stored_stops_);
+    return stops_ - (maps_.size() - stored_stops_);
   }
   /// Of those, the ones that join it if the robot finds its place.
   [[nodiscard]] std::size_t waiting_stops() const { return waiting_.size(); }
@@ -80,6 +82,8 @@ class MappingSession : public Slam {
   [[nodiscard]] SlamCounts counts() const override;
 
  private:
+  void begin_drive(const topomap::LocalMap& map);
+  [[nodiscard]] std::shared_ptr<const StoredMap> map_so_far() const;
   bool map_stop(const MapPointer& map);
   bool follow(const MapPointer& map);
   bool confirmed();
@@ -94,9 +98,9 @@ class MappingSession : public Slam {
   Localizer* localizer_ = nullptr;  // mapper_, unless that is the algorithm of the Thesis
   std::unique_ptr<MapLocalizer> follower_;
   bool mapping_ = true;
-  std::uint32_t next_id_ = 0;  // of the drive's local maps
+  std::optional<topomap::StopId> last_id_;  // of the drive
+  std::size_t stops_ = 0;                   // that came
   std::vector<MapPointer> maps_;
-  std::vector<std::uint32_t> sources_;  // of maps_: ids in the drive
   std::size_t stored_stops_ = 0;
   bool searched_ = false;            // the place is known by a search
   std::uint32_t tracked_stops_ = 0;  // in succession, the last one included

@@ -33,7 +33,7 @@ namespace topogeo::localization {
 
 /// The state at one stop of the drive.
 struct LocalizedStop {
-  std::uint32_t id = 0;  ///< of the drive's local map
+  topomap::StopId stop;
   std::int64_t stamp_ns = 0;
   geometry::Pose2 T_map_robot;                           ///< means nothing when searching or lost
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the map frame
@@ -51,14 +51,14 @@ struct TrackedStep {
 
 class MapLocalizer : public Slam {
  public:
-  /// Starts without a pose. The pool must outlive the localizer. `first_drive_id` is the id of the
-  /// first local map of the drive. Throws like GlobalLocalizer.
-  MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map, MatchPool& pool,
-               std::uint32_t first_drive_id = 0);
+  /// Starts without a pose. The pool must outlive the localizer. Throws like GlobalLocalizer.
+  MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
+               MatchPool& pool);
 
-  /// The next stop of the drive; ids count on from the first. Throws std::invalid_argument
-  /// otherwise. In the pool and in tasks the map has the id that follows those of the stored maps.
-  /// False: no earlier pose moves.
+  /// The next stop of the drive: the numbers of a session count on from the first that comes.
+  /// Throws std::invalid_argument otherwise. Another session is another drive: the pose is
+  /// forgotten and searched for. In the pool and in tasks the map has the id that follows those of
+  /// the stored maps. False: no earlier pose moves.
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
   /// Nothing is left to be done after the last map.
   void finish() override {}
@@ -122,7 +122,7 @@ class MapLocalizer : public Slam {
   std::optional<TrackedStep> last_step_;
   LocalizationStatus status_;
   std::size_t searches_ = 0;
-  std::uint32_t first_drive_id_ = 0;
+  std::optional<topomap::StopId> last_id_;  // of the last stop
   std::uint64_t steps_in_doubt_ = 0;
 };
 
