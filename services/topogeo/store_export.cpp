@@ -1,5 +1,5 @@
 // topogeo store export: a map in the form of another program.
-#include <cmath>
+#include <chrono>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -15,8 +15,13 @@
 #include "topogeo/exchange/geojson.hpp"
 #include "topogeo/exchange/graphml.hpp"
 #include "topogeo/exchange/grid_image.hpp"
+#include "topogeo/exchange/lif.hpp"
+#include "topogeo/exchange/masks.hpp"
+#include "topogeo/exchange/rmf.hpp"
 #include "topogeo/exchange/route_network.hpp"
+#include "topogeo/exchange/zone_set.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
+#include "topogeo/results/outputs.hpp"
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -39,6 +44,7 @@ struct ExportOptions {
   std::optional<fs::path> config;
   std::optional<double> robot_radius_m;
   exchange::NetworkSettings network;
+  exchange::ExportHeader header;
 };
 
 /// The map and what is made of it when a format needs it.
@@ -59,15 +65,28 @@ class ExportSource {
     }
   }
 
-  exchange::RouteNetwork network() const {
+  [[nodiscard]] exchange::NetworkSettings settings() const {
     exchange::NetworkSettings settings = options_.network;
     const pipeline::HybridMapConfig& grid = config_.hybrid_map;
     settings.robot_radius_m =
         options_.robot_radius_m.value_or(grid.inflation.forbidden_cells * grid.grid.resolution_m);
+    return settings;
+  }
+
+  [[nodiscard]] exchange::ExportHeader header() const {
+    exchange::ExportHeader header = options_.header;
+    header.robot_id = document_.robot_id;
+    header.stamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                          std::chrono::system_clock::now().time_since_epoch())
+                          .count();
+    return header;
+  }
+
+  [[nodiscard]] exchange::RouteNetwork network() const {
     std::optional<planning::HybridMap> map;
     if (pipeline::has_grid(pipeline::parts_of(document_))) map = hybrid_map();
     exchange::RouteNetwork network = exchange::route_network(
-        document_.global_map, document_.drawing.places, map ? &map->space() : nullptr, settings);
+        document_.global_map, document_.drawing, map ? &map->space() : nullptr, settings());
     print_notes(network.notes);
     return network;
   }
@@ -110,6 +129,28 @@ std::vector<exchange::OutputFile> files_of(const ExportOptions& options,
   if (format == "graphml") {
     return {{options.out, exchange::graphml_text(map.global_map, map.drawing.places)}};
   }
+  if (format == "lif") {
+    exchange::LifText lif =
+        exchange::lif_text(map.global_map, map.drawing, source.settings(), source.header());
+    print_notes(lif.notes);
+    return {{options.out, std::move(lif.text)}};
+  }
+  if (format == "zones") {
+    return {{options.out, exchange::zone_set_text(map.drawing.zones, source.header())}};
+  }
+  if (format == "rmf") {
+    return {{options.out, exchange::rmf_text(source.network(), map.drawing.places,
+                                             options.header.map_id, options.header.level)}};
+  }
+  if (format == "masks") {
+    exchange::MaskFiles masks =
+        exchange::mask_files(options.out, source.hybrid_map().frame(), map.drawing.zones);
+    print_notes(masks.notes);
+    return std::move(masks.files);
+  }
+  const std::string title = options.file.filename().string();
+  if (format == "svg") return {{options.out, results::map_svg(map, title)}};
+  if (format == "png") return {{options.out, results::map_png(map, title)}};
   if (format == "g2o") return {{options.out, exchange::g2o_text(map)}};
   if (format == "tum") {
     return {{options.out,
@@ -142,7 +183,8 @@ void add_store_export_command(command_line::Command& store, int& exit_code) {
   command->add_option("file", options->file, "map file or database")->required()->type_name("FILE");
   command->add_option("--format", options->format, "what to write, see below")
       ->required()
-      ->check(command_line::one_of({"pgm", "geojson", "graphml", "g2o", "tum", "carmen", "pb"}))
+      ->check(command_line::one_of({"pgm", "masks", "geojson", "lif", "zones", "rmf", "graphml",
+                                    "svg", "png", "g2o", "tum", "carmen", "pb"}))
       ->type_name("FORMAT");
   command->add_option("--out", options->out, "file to write, or the name that several begin with")
       ->required()
@@ -167,9 +209,26 @@ void add_store_export_command(command_line::Command& store, int& exit_code) {
                     "of graphs: also branches that no scan has seen");
   command->add_flag("--only-free", options->network.only_free,
                     "of graphs: leave out edges that the grid forbids");
+  command
+      ->add_option("--map-id", options->header.map_id,
+                   "of lif, zones and rmf: how robots and fleet managers call the map")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command->add_option("--level", options->header.level, "of lif and rmf: level of the building")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command
+      ->add_option("--manufacturer", options->header.manufacturer, "of lif and zones: who made it")
+      ->capture_default_str()
+      ->type_name("NAME");
   command->footer(
       "pgm      grid as PATH.pgm and PATH.yaml, for map_server of ROS\n"
       "geojson  graph, places and zones, for the route server of Nav2\n"
+      "masks    PATH_keepout and PATH_speed, zones for costmap filters of Nav2\n"
+      "lif      graph and places in the Layout Interchange Format 1.0.0 of the VDMA\n"
+      "zones    zones as a zone set of VDA 5050 3.0\n"
+      "rmf      graph as a navigation graph of Open-RMF (YAML)\n"
+      "svg, png the picture of the map\n"
       "graphml  the graph without loss, for graph programs\n"
       "g2o      pose graph of the stops\n"
       "tum      corrected pose of each scan\n"

@@ -112,6 +112,12 @@ class GeojsonReader {
     planning::DrawnZone zone;
     zone.name =
         properties.at("name").text_or(fmt::format("zone {}", graph_.drawing.zones.size() + 1));
+    // A kind of others is one of theirs.
+    const JsonValue kind = properties.at("kind");
+    if (kind.is_text()) {
+      zone.kind = planning::zone_kind_of(kind.text()).value_or(planning::ZoneKind::kRoom);
+    }
+    if (zone.kind != planning::ZoneKind::kRoom) zone.value = properties.at("value").number_or(0.0);
     for (const JsonValue& corner : items.front().items()) {
       zone.polygon_m.push_back(geojson_position(corner));
     }

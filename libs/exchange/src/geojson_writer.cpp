@@ -58,8 +58,9 @@ class GeojsonWriter {
     for (std::size_t i = 0; i < network_.nodes.size(); ++i) top["features"].push_back(node(i));
     std::uint64_t id = first_edge_;
     for (const NetworkPiece& piece : network_.pieces) {
-      top["features"].push_back(edge(piece, id++, true));
-      top["features"].push_back(edge(piece, id++, false));
+      if (piece.rule.forward) top["features"].push_back(edge(piece, id, true));
+      if (piece.rule.backward) top["features"].push_back(edge(piece, id + 1, false));
+      id += 2;
     }
     for (const topomap::MapBranch& branch : map_.branches) {
       top["features"].push_back(whole_branch(branch));
@@ -97,6 +98,8 @@ class GeojsonWriter {
     const std::uint32_t to = forward ? piece.to : piece.from;
     Json metadata = {{"clearance", piece.clearance_m}};
     if (piece.branch) metadata["branch"] = *piece.branch;
+    // Of TimeScorer, which takes edges without it for as fast as the robot.
+    if (piece.rule.speed_mps) metadata["abs_speed_limit"] = *piece.rule.speed_mps;
     return geojson_feature({{"id", id},
                             {"startid", ids_[from]},
                             {"endid", ids_[to]},
@@ -130,7 +133,10 @@ class GeojsonWriter {
     Json ring = Json::array();
     for (const Eigen::Vector2d& corner : zone.polygon_m) ring.push_back(coordinates(corner));
     ring.push_back(ring.front());
-    return geojson_feature({{"topogeo", "zone"}, {"name", zone.name}},
+    return geojson_feature({{"topogeo", "zone"},
+                            {"name", zone.name},
+                            {"kind", planning::to_string(zone.kind)},
+                            {"value", zone.value}},
                            {{"type", "Polygon"}, {"coordinates", Json::array({std::move(ring)})}});
   }
 

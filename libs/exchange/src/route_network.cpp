@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "topogeo/support/check_range.hpp"
 #include "topogeo/support/format.hpp"
@@ -45,7 +46,7 @@ class Builder {
     }
   }
 
-  RouteNetwork build(std::span<const planning::Place> places) {
+  RouteNetwork build(const storage::MapDrawing& drawing) {
     for (const topomap::MapBranch& branch : map_.branches) {
       if (branch.is_virtual && !settings_.with_virtual) {
         ++virtual_;
@@ -53,10 +54,11 @@ class Builder {
         add_branch(branch);
       }
     }
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      add_place(places[i], static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < drawing.places.size(); ++i) {
+      add_place(drawing.places[i], static_cast<std::uint32_t>(i));
     }
     add_notes();
+    keep_rules(drawing.zones);
     check_on_grid();
     return std::move(network_);
   }
@@ -81,8 +83,9 @@ class Builder {
       for (const std::size_t bend : bends(points, begin, end)) {
         const std::uint32_t to = node_at(branch, bend);
         const std::span<const BranchPoint> piece(&points[begin], bend - begin + 1);
-        network_.pieces.push_back(
-            {from, to, least_clearance(piece) - deviation(piece).second, branch.id});
+        const double clearance_m = least_clearance(piece) - deviation(piece).second;
+        // A branch that comes back to its node within the tolerance leads nowhere.
+        if (from != to) network_.pieces.push_back({from, to, clearance_m, branch.id, {}});
         from = to;
         begin = bend;
       }
@@ -186,8 +189,11 @@ class Builder {
     }
     const double clearance_m = clearance_at(place.position_m);
     const std::uint32_t node = add_node({place.position_m, clearance_m, std::nullopt, index});
-    network_.pieces.push_back(
-        {access, node, std::min(clearance_m, network_.nodes[access].clearance_m), std::nullopt});
+    network_.pieces.push_back({access,
+                               node,
+                               std::min(clearance_m, network_.nodes[access].clearance_m),
+                               std::nullopt,
+                               {}});
   }
 
   [[nodiscard]] double clearance_at(const Eigen::Vector2d& position_m) const {
@@ -214,6 +220,17 @@ class Builder {
           fmt::format("{} branches are narrower than the robot in places ({:g} m on each side), "
                       "left out there",
                       narrow_.size(), settings_.robot_radius_m));
+    }
+  }
+
+  void keep_rules(std::span<const planning::DrawnZone> zones) {
+    for (std::size_t i = 0; i < network_.pieces.size(); ++i) {
+      network_.pieces[i].rule = rule_between(zones, end_of(i, true), end_of(i, false));
+    }
+    const auto forbidden = std::erase_if(
+        network_.pieces, [](const NetworkPiece& piece) { return piece.rule.forbidden(); });
+    if (forbidden > 0) {
+      network_.notes.push_back(fmt::format("{} edges left out, zones forbid them", forbidden));
     }
   }
 
@@ -245,12 +262,12 @@ class Builder {
 
 }  // namespace
 
-RouteNetwork route_network(const topomap::GlobalMap& map, std::span<const planning::Place> places,
+RouteNetwork route_network(const topomap::GlobalMap& map, const storage::MapDrawing& drawing,
                            const planning::FreeSpace* space, const NetworkSettings& settings) {
   constexpr double kWidest_m = 100.0;  // beyond it nothing passes anywhere
   support::check_range("radius of the robot", settings.robot_radius_m, 0.0, kWidest_m, "m");
   support::check_range("tolerance of edges", settings.tolerance_m, 0.0, 1.0, "m");
-  return Builder(map, space, settings).build(places);
+  return Builder(map, space, settings).build(drawing);
 }
 
 }  // namespace topogeo::exchange

@@ -29,21 +29,43 @@ LocatedStops located_stops(const storage::MapDocument& document) {
   return out;
 }
 
+/// What a picture of the map shows.
+struct Drawn {
+  explicit Drawn(const storage::MapDocument& map)
+      : document(map),
+        located(located_stops(map)),
+        odometry(topomap::expand_odometry(map.trajectory, map.local_maps)),
+        corrected(topomap::expand_trajectory(map.trajectory, map.local_maps)) {}
+
+  [[nodiscard]] render::MapPicture picture(const std::string& title) const {
+    return {located.maps,           located.stops,        odometry, corrected,
+            document.loop_closures, &document.global_map, title};
+  }
+
+  const storage::MapDocument& document;
+  LocatedStops located;
+  std::vector<topomap::StampedPose> odometry;
+  std::vector<topomap::StampedPose> corrected;
+};
+
 }  // namespace
 
 void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
                        const std::string& title) {
-  const auto corrected = topomap::expand_trajectory(document.trajectory, document.local_maps);
-  const auto odometry = topomap::expand_odometry(document.trajectory, document.local_maps);
-  storage::write_trajectory_tum(directory / "trajectory.tum", corrected);
-  storage::write_trajectory_tum(directory / "odometry.tum", odometry);
+  const Drawn drawn(document);
+  storage::write_trajectory_tum(directory / "trajectory.tum", drawn.corrected);
+  storage::write_trajectory_tum(directory / "odometry.tum", drawn.odometry);
   storage::write_map_file(directory / "map.pb", document);
-  const LocatedStops located = located_stops(document);
-  const render::MapPicture picture{located.maps, located.stops,          odometry,
-                                   corrected,    document.loop_closures, &document.global_map,
-                                   title};
-  render::draw_map_svg(directory / "map.svg", picture);
-  render::draw_map_png(directory / "map.png", picture);
+  render::draw_map_svg(directory / "map.svg", drawn.picture(title));
+  render::draw_map_png(directory / "map.png", drawn.picture(title));
+}
+
+std::string map_svg(const storage::MapDocument& document, const std::string& title) {
+  return render::map_svg(Drawn(document).picture(title));
+}
+
+std::string map_png(const storage::MapDocument& document, const std::string& title) {
+  return render::map_png(Drawn(document).picture(title));
 }
 
 void add_map(storage::Report& report, const storage::MapDocument& document) {

@@ -18,7 +18,7 @@ class Geojson : public ScratchTest {
     const planning::FreeSpace space = sample_space();
     const storage::MapDrawing drawing = sample_drawing();
     const topomap::GlobalMap map = sample_graph();
-    return geojson_text(map, drawing, route_network(map, drawing.places, &space, {}));
+    return geojson_text(map, drawing, route_network(map, drawing, &space, {}));
   }
 };
 
@@ -34,10 +34,16 @@ TEST_F(Geojson, IsTheSameTextAgain) {
 }
 
 TEST_F(Geojson, IsReadByTheRulesOfNav2) {
-  const RouteNetwork network = route_network(sample_graph(), sample_drawing().places, nullptr, {});
+  const RouteNetwork network = route_network(sample_graph(), sample_drawing(), nullptr, {});
+  std::size_t edges = 0;
+  for (const NetworkPiece& piece : network.pieces) {
+    edges += piece.rule.forward;
+    edges += piece.rule.backward;
+  }
+  EXPECT_EQ(edges, 2 * network.pieces.size() - 2);  // the lane
   EXPECT_EQ(run_reader({"geojson", write("map.geojson", sample_text())}),
-            std::to_string(network.nodes.size()) + " " + std::to_string(2 * network.pieces.size()) +
-                "\n");
+            std::to_string(network.nodes.size()) + " " + std::to_string(edges) + "\n");
+  EXPECT_THAT(sample_text(), HasSubstr("\"abs_speed_limit\":0.35"));
 }
 
 TEST_F(Geojson, TheReaderOfTheTestsRefusesWhatNav2Does) {

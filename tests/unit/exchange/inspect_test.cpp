@@ -28,7 +28,7 @@ TEST(Inspect, CountsWhatIsThere) {
   EXPECT_EQ(s.branches, 5U);
   EXPECT_EQ(s.virtual_branches, 1U);
   EXPECT_EQ(s.places, 2U);
-  EXPECT_EQ(s.zones, 2U);
+  EXPECT_EQ(s.zones, 4U);
   // Three steps of 1 m in the first drive; the second has one stop with a pose, and the jump to it
   // was not driven.
   EXPECT_NEAR(s.driven_m, 3.0, 1e-9);

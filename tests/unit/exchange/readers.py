@@ -119,6 +119,143 @@ def grid(path):
     print(" ".join(str(c) for c in cells))
 
 
+# ---- VDMA LIF and VDA 5050 ------------------------------------------------------------------------
+
+POSITION = {"type": "object", "required": ["x", "y"],
+            "properties": {"x": {"type": "number"}, "y": {"type": "number"}}}
+TEXT = {"type": "string", "minLength": 1}
+
+
+def rows(item, least=0):
+    return {"type": "array", "items": item, "minItems": least}
+
+
+def fields(needed, **optional):
+    return {"type": "object", "required": list(needed), "properties": {**needed, **optional}}
+
+
+LIF = fields({
+    "metaInformation": fields({"projectIdentification": TEXT, "creator": TEXT,
+                               "exportTimestamp": {"type": "string", "pattern": "^[0-9]{4}-[0-9]{2}-"
+                                                   "[0-9]{2}T[0-9:]{8}[.][0-9]{2,}Z$"},
+                               "lifVersion": {"const": "1.0.0"}}),
+    "layouts": rows(fields({
+        "layoutId": TEXT, "layoutVersion": {"type": "string", "pattern": "^[1-9][0-9]*$"},
+        "nodes": rows(fields({"nodeId": TEXT, "mapId": TEXT, "nodePosition": POSITION,
+                              "vehicleTypeNodeProperties": rows(fields({"vehicleTypeId": TEXT}), 1)})),
+        "edges": rows(fields({
+            "edgeId": TEXT, "startNodeId": TEXT, "endNodeId": TEXT,
+            "vehicleTypeEdgeProperties": rows(fields(
+                {"vehicleTypeId": TEXT, "rotationAllowed": {"type": "boolean"}},
+                maxSpeed={"type": "number", "exclusiveMinimum": 0},
+                trajectory=fields({"knotVector": rows({"type": "number", "minimum": 0, "maximum": 1}),
+                                   "controlPoints": rows(POSITION, 2)},
+                                  degree={"type": "integer", "minimum": 1})), 1)})),
+        "stations": rows(fields({"stationId": TEXT, "interactionNodeIds": rows(TEXT, 1)},
+                                stationPosition=POSITION)),
+    }), 1)})
+
+
+def conforms(value, schema):
+    import jsonschema
+    try:
+        jsonschema.validate(value, schema)
+    except jsonschema.ValidationError as error:
+        sys.exit(f"{list(error.absolute_path)}: {error.message}")
+
+
+def unique(values, what):
+    values = list(values)
+    need(len(values) == len(set(values)), f"{what}: an id twice")
+    return set(values)
+
+
+def lif(path):
+    top = json.load(open(path))
+    conforms(top, LIF)
+    layout = top["layouts"][0]
+    nodes = unique((n["nodeId"] for n in layout["nodes"]), "nodes")
+    places = {n["nodeId"]: n["nodePosition"] for n in layout["nodes"]}
+    unique((e["edgeId"] for e in layout["edges"]), "edges")
+    unique((s["stationId"] for s in layout["stations"]), "stations")
+    for edge in layout["edges"]:
+        for end in (edge["startNodeId"], edge["endNodeId"]):
+            need(end in nodes, f"edge {edge['edgeId']}: node {end}")
+        for properties in edge["vehicleTypeEdgeProperties"]:
+            curve = properties["trajectory"]
+            points, knots = curve["controlPoints"], curve["knotVector"]
+            need(len(knots) == len(points) + curve["degree"] + 1, "number of knots")
+            need(knots == sorted(knots) and knots[0] == 0 and knots[-1] == 1, "knots")
+            need(points[0] == places[edge["startNodeId"]], f"{edge['edgeId']} starts elsewhere")
+            need(points[-1] == places[edge["endNodeId"]], f"{edge['edgeId']} ends elsewhere")
+    for station in layout["stations"]:
+        need(nodes.issuperset(station["interactionNodeIds"]), "station at no node")
+    print(len(nodes), len(layout["edges"]), len(layout["stations"]))
+
+
+ID = {"type": "string", "pattern": "^[A-Za-z0-9_.:-]+$"}
+LIMITATION = {"enum": ["SOFT", "RESTRICTED", "STRICT"]}
+ACTIONS = rows({"type": "object"})
+ZONE_FIELDS = {
+    "BLOCKED": {}, "SPEED_LIMIT": {"maximumSpeed": {"type": "number", "exclusiveMinimum": 0}},
+    "DIRECTED": {"direction": {"type": "number"}, "directedLimitation": LIMITATION,
+                 "limitation": LIMITATION},  # text and schema of 3.0.0
+    "ACTION": {"entryActions": ACTIONS, "duringActions": ACTIONS, "exitActions": ACTIONS}}
+
+
+def zones(path):
+    top = json.load(open(path))
+    conforms(top, fields({
+        "headerId": {"type": "integer", "minimum": 0, "maximum": 2**32 - 1},
+        "timestamp": {"type": "string", "pattern": "^[0-9-]{10}T[0-9:]{8}[.][0-9]{3}Z$"},
+        "version": {"const": "3.0.0"}, "manufacturer": ID, "serialNumber": ID,
+        "zoneSet": fields({"mapId": ID, "zoneSetId": ID, "zones": rows(fields(
+            {"zoneId": ID, "zoneType": {"enum": list(ZONE_FIELDS)}, "vertices": rows(POSITION, 3)},
+            zoneDescriptor={"type": "string"}))})}))
+    unique((z["zoneId"] for z in top["zoneSet"]["zones"]), "zones")
+    for zone in top["zoneSet"]["zones"]:
+        conforms(zone, fields(ZONE_FIELDS[zone["zoneType"]]))
+        corners = [(v["x"], v["y"]) for v in zone["vertices"]]
+        area = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, corners[1:] + corners[:1]))
+        need(area > 0, f"{zone['zoneId']} goes round clockwise")
+    print(top["zoneSet"]["mapId"], *(z["zoneType"] for z in top["zoneSet"]["zones"]))
+
+
+# ---- Open-RMF fleet adapter ----------------------------------------------------------------------
+
+def rmf(path):
+    import yaml
+    top = yaml.safe_load(open(path))
+    need(isinstance(top["levels"], dict), "levels is no map")
+    names, limits = [], 0
+    for level, content in top["levels"].items():
+        for vertex in content["vertices"]:
+            need(len(vertex) == 3 and isinstance(vertex[2], dict), f"vertex {vertex}")
+            need(all(isinstance(c, (int, float)) for c in vertex[:2]), f"vertex {vertex}")
+            if vertex[2]["name"]:
+                names.append(vertex[2]["name"])
+        for lane in content["lanes"]:
+            need(len(lane) == 3 and isinstance(lane[2], dict), f"lane {lane}")
+            need(0 <= lane[0] < len(content["vertices"]), f"lane {lane}")
+            need(0 <= lane[1] < len(content["vertices"]) and lane[0] != lane[1], f"lane {lane}")
+            limits += "speed_limit" in lane[2]
+        print(level, len(content["vertices"]), len(content["lanes"]), limits)
+    unique(names, "names")
+    need(top["lifts"] == {} and top["doors"] == {}, "lifts, doors")
+    for name in sorted(names):
+        print(name)
+
+
+# ---- pictures ------------------------------------------------------------------------------------
+
+def picture(path):
+    from PIL import Image
+    image = Image.open(path)
+    image.load()
+    need(len(image.convert("L").getcolors()) > 3, "nothing is drawn")
+    print(*image.size)
+
+
 # ---- g2o -----------------------------------------------------------------------------------------
 
 def g2o(path):
@@ -147,4 +284,5 @@ def g2o(path):
 
 
 if __name__ == "__main__":
-    {"geojson": geojson, "graphml": graphml, "grid": grid, "g2o": g2o}[sys.argv[1]](sys.argv[2])
+    FORMATS = [geojson, graphml, grid, g2o, lif, zones, rmf, picture]
+    {f.__name__: f for f in FORMATS}[sys.argv[1]](sys.argv[2])

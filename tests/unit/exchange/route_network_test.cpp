@@ -92,8 +92,10 @@ TEST(RouteNetwork, VirtualBranchesComeOnRequest) {
 
 TEST(RouteNetwork, PlacesHangOnTheNearestBranch) {
   const planning::FreeSpace space = sample_space();
-  const auto places = sample_drawing().places;
-  const RouteNetwork network = route_network(sample_graph(), places, &space, {});
+  storage::MapDrawing drawing;
+  drawing.places = sample_drawing().places;
+  const auto& places = drawing.places;
+  const RouteNetwork network = route_network(sample_graph(), drawing, &space, {});
   // The kitchen is node 9 itself; the room is joined to the node at (0, 0).
   EXPECT_EQ(network.nodes[2].place, 1U);
   const NetworkPiece& way = network.pieces.back();
@@ -104,8 +106,9 @@ TEST(RouteNetwork, PlacesHangOnTheNearestBranch) {
 }
 
 TEST(RouteNetwork, APlaceBesideAnEdgeSplitsIt) {
-  const std::vector<planning::Place> places = {{"middle", {8.5, 1.2}}};
-  const RouteNetwork network = route_network(sample_graph(), places, nullptr, {});
+  storage::MapDrawing drawing;
+  drawing.places = {{"middle", {8.5, 1.2}}};
+  const RouteNetwork network = route_network(sample_graph(), drawing, nullptr, {});
   const NetworkPiece& way = network.pieces.back();
   const Eigen::Vector2d at = network.nodes[way.from].position_m;
   EXPECT_NEAR(at.x(), 8.0, 1e-12);
@@ -125,8 +128,9 @@ TEST(RouteNetwork, APlaceBehindAWallHasNoEdges) {
     grid.set({column, 12}, planning::CellState::kOccupied);
   }
   const planning::FreeSpace space(std::move(grid));
-  const std::vector<planning::Place> places = {{"cellar", {0.0, -2.6}}};
-  const RouteNetwork network = route_network(sample_graph(), places, &space, {});
+  storage::MapDrawing drawing;
+  drawing.places = {{"cellar", {0.0, -2.6}}};
+  const RouteNetwork network = route_network(sample_graph(), drawing, &space, {});
   EXPECT_THAT(network.notes, Contains(HasSubstr("place 'cellar': no way")));
   EXPECT_EQ(network.nodes.back().place, 0U);
   for (const NetworkPiece& piece : network.pieces) {
@@ -145,6 +149,54 @@ TEST(RouteNetwork, WhatTheGridForbidsIsCountedOrLeftOut) {
   const RouteNetwork free = route_network(sample_graph(), {}, &space, {.only_free = true});
   EXPECT_THAT(free.notes, Contains(HasSubstr("left out")));
   EXPECT_EQ(free.pieces.size(), 7U);
+}
+
+TEST(RouteNetwork, ZonesCloseLimitAndDirect) {
+  storage::MapDrawing drawing;
+  drawing.zones = sample_drawing().zones;
+  // Across the first branch, beyond its bend.
+  drawing.zones.push_back(
+      {"barrier", {{3.0, -1.0}, {3.1, -1.0}, {3.1, 1.5}}, planning::ZoneKind::kNoGo, 0.0});
+  const RouteNetwork network = route_network(sample_graph(), drawing, nullptr, {});
+  EXPECT_THAT(network.notes, Contains(HasSubstr("1 edges left out, zones forbid them")));
+  std::size_t of_one = 0;
+  for (const NetworkPiece& piece : network.pieces) {
+    of_one += piece.branch == 1U;
+    if (piece.branch == 3U) {
+      EXPECT_EQ(piece.rule.speed_mps, 0.35);
+      EXPECT_TRUE(piece.rule.forward && piece.rule.backward);
+    }
+    if (piece.branch == 4U) {
+      EXPECT_FALSE(piece.rule.forward);
+      EXPECT_TRUE(piece.rule.backward);
+      EXPECT_FALSE(piece.rule.speed_mps);
+    }
+  }
+  EXPECT_EQ(of_one, 1U);
+}
+
+TEST(RouteNetwork, AOneWayZoneCanBeCrossed) {
+  const std::vector<planning::DrawnZone> lane = {
+      {"lane", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, planning::ZoneKind::kOneWay, 0.0}};
+  const DrivingRule across = rule_between(lane, {0, -2}, {0, 2});
+  EXPECT_TRUE(across.forward && across.backward);
+  const DrivingRule against = rule_between(lane, {2, 0}, {-2, 0});
+  EXPECT_FALSE(against.forward);
+  EXPECT_TRUE(against.backward);
+  EXPECT_TRUE(rule_between(lane, {3, -2}, {3, 2}).forward);
+}
+
+TEST(RouteNetwork, LoopsAreKeptUnlessTheyAreSmallerThanTheTolerance) {
+  topomap::GlobalMap map = sample_graph();
+  // Around a pillar, and a curl of some centimetres.
+  map.branches = {{1, 2, 2, false, 1, {{{0, 0}, 1}, {{1, 0}, 1}, {{1, 1}, 1}, {{0, 0}, 1}}},
+                  {2, 7, 7, false, 1, {{{4, 0.5}, 1}, {{4.05, 0.5}, 1}, {{4, 0.5}, 1}}}};
+  const RouteNetwork network = route_network(map, {}, nullptr, {});
+  ASSERT_EQ(network.pieces.size(), 3U);
+  for (const NetworkPiece& piece : network.pieces) {
+    EXPECT_EQ(piece.branch, 1U);
+    EXPECT_NE(piece.from, piece.to);
+  }
 }
 
 TEST(RouteNetwork, RefusesSettingsOutOfRange) {

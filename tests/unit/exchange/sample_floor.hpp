@@ -46,8 +46,13 @@ inline topomap::GlobalMap sample_graph() {
 inline storage::MapDrawing sample_drawing() {
   storage::MapDrawing drawing;
   drawing.places = {{"room <A> & \"B\"", {0.0, -0.6}}, {"Küche", {8.0, 1.0 / 3.0}}};
-  drawing.zones = {{"stairs", {{1.0, 1.0}, {3.0, 1.0}, {3.0, 2.0 / 3.0 + 2.0}}},
-                   {"hall", {{4.5, -2.0}, {4.5, 2.0}, {9.5, 2.0}, {9.5, -2.0}}}};
+  // The last two lie on the two parallel branches; the hall goes round clockwise.
+  using planning::ZoneKind;
+  drawing.zones = {
+      {"stairs", {{1.0, 1.0}, {3.0, 1.0}, {3.0, 2.0 / 3.0 + 2.0}}, ZoneKind::kNoGo, 0.0},
+      {"hall", {{4.5, -2.0}, {4.5, 2.0}, {9.5, 2.0}, {9.5, -2.0}}, ZoneKind::kRoom, 0.0},
+      {"ramp \"A\"", {{5.5, 1.25}, {6.5, 1.25}, {6.5, 2.0}}, ZoneKind::kSlow, 0.35},
+      {"lane", {{5.0, -2.0}, {7.0, -2.0}, {7.0, -1.0}, {5.0, -1.0}}, ZoneKind::kOneWay, 3.0}};
   return drawing;
 }
 
@@ -90,6 +95,8 @@ inline void expect_same_zones(const storage::MapDrawing& a, const storage::MapDr
   for (std::size_t i = 0; i < a.zones.size(); ++i) {
     EXPECT_EQ(a.zones[i].name, b.zones[i].name);
     EXPECT_EQ(a.zones[i].polygon_m, b.zones[i].polygon_m);
+    EXPECT_EQ(a.zones[i].kind, b.zones[i].kind);
+    EXPECT_EQ(a.zones[i].value, b.zones[i].value);
   }
 }
 

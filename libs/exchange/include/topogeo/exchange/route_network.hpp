@@ -9,13 +9,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "topogeo/exchange/output_file.hpp"
+#include "topogeo/exchange/zone_rules.hpp"
 #include "topogeo/planning/free_space.hpp"
 #include "topogeo/storage/map_drawing.hpp"
 #include "topogeo/topomap/global_map.hpp"
@@ -36,12 +36,13 @@ struct NetworkNode {
   std::optional<std::uint32_t> place;     ///< index of the place that it is
 };
 
-/// A straight piece that can be driven both ways. Its ends are indices of RouteNetwork::nodes.
+/// A straight piece. Its ends are indices of RouteNetwork::nodes.
 struct NetworkPiece {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
   double clearance_m = 0.0;             ///< least along it
   std::optional<std::uint32_t> branch;  ///< MapBranch::id; none of the way to a place
+  DrivingRule rule;                     ///< never forbidden
 };
 
 struct RouteNetwork {
@@ -50,10 +51,10 @@ struct RouteNetwork {
   Notes notes;
 };
 
-/// Leaves out what the robot is too wide for. A place becomes a node with a piece to the nearest
-/// point of the branches that is free on `space`; without one there is a note. Throws
-/// std::invalid_argument for settings out of range.
-RouteNetwork route_network(const topomap::GlobalMap& map, std::span<const planning::Place> places,
+/// Leaves out what the robot is too wide for and what the zones of the drawing forbid. A place
+/// becomes a node with a piece to the nearest point of the branches that is free on `space` (null:
+/// anywhere); without one there is a note. Throws std::invalid_argument for settings out of range.
+RouteNetwork route_network(const topomap::GlobalMap& map, const storage::MapDrawing& drawing,
                            const planning::FreeSpace* space, const NetworkSettings& settings);
 
 }  // namespace topogeo::exchange

@@ -20,6 +20,10 @@ namespace topogeo::results {
 void write_map_outputs(const std::filesystem::path& directory, const storage::MapDocument& document,
                        const std::string& title);
 
+/// The picture of a map as in these files; stops that are not located are left out.
+std::string map_svg(const storage::MapDocument& document, const std::string& title);
+std::string map_png(const storage::MapDocument& document, const std::string& title);
+
 /// Fills robot, seed, scans, stops, nodes, branches, loop closures and distance of a report.
 void add_map(storage::Report& report, const storage::MapDocument& document);
 
