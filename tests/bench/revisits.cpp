@@ -202,6 +202,17 @@ nlohmann::json run_sessions(const RevisitCommand& options) {
                              {"x_m", pair.T_stored_later.x_m},
                              {"y_m", pair.T_stored_later.y_m},
                              {"heading_rad", pair.T_stored_later.theta_rad}});
+    if (options.verbose) {
+      std::cerr << fmt::format("{} in {}:", later, stored);
+      for (const bench::FollowedStop& stop : pair.followed) {
+        std::cerr << fmt::format(
+            " {}{:.1f}{}({:.2f} {:.2f} {:.0f})", "TASL"[static_cast<std::size_t>(stop.state)],
+            stop.path_m, stop.contradicted ? fmt::format("/{:.2f}", *stop.contradicted) : "",
+            stop.T_stored_later.x_m, stop.T_stored_later.y_m,
+            stop.T_stored_later.theta_rad / kDegree);
+      }
+      std::cerr << '\n';
+    }
     if (!pair.joined_after_m) {
       std::cout << fmt::format("| {} | {} | 0 of {} | - | - | - | - | - |\n", stored, later,
                                pair.stops);
@@ -247,7 +258,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--verbose", options.verbose,
                "of each revisit the state (tracking, ambiguous, lost, searching) and the error in "
-               "metres at its stops");
+               "metres at its stops; of each session the state and where its map would lie");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {
     const nlohmann::json json = options.sessions ? run_sessions(options) : run_logs(options);

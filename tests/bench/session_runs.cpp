@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "topogeo/localization/session/mapping_session.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
@@ -58,6 +59,23 @@ void relate(const storage::MapDocument& own, const storage::MapDocument& joint,
   pair.spread_m = std::sqrt(sum / static_cast<double>(in_own.size()));
 }
 
+void note_followed(const pipeline::MappingRun& run, const topomap::Trajectory& own, double path_m,
+                   SessionPair& pair) {
+  const localization::MapLocalizer* follower =
+      run.session() == nullptr ? nullptr : run.session()->follower();
+  if (follower == nullptr) return;
+  for (std::size_t i = pair.followed.size(); i < follower->stops().size(); ++i) {
+    const localization::LocalizedStop& stop = follower->stops()[i];
+    pair.followed.push_back({stop.status.state,
+                             stop.T_map_robot * geometry::inverse(own.stops[i].T_map_robot), path_m,
+                             std::nullopt});
+    if (follower->last_step()) {
+      pair.followed.back().contradicted =
+          localization::contradiction(follower->last_step()->evidence);
+    }
+  }
+}
+
 }  // namespace
 
 SessionDrive session_drive(const std::string& log_file, const std::string& name,
@@ -90,6 +108,7 @@ SessionPair run_pair(const std::vector<SessionDrive>& drives, std::size_t stored
               .norm();
     }
     run.add(after.scans[i]);
+    note_followed(run, after.map.trajectory, path_m, pair);
     if (!pair.joined_after_m && run.session()->follower() == nullptr) pair.joined_after_m = path_m;
   }
   const storage::MapDocument joint = run.finish();

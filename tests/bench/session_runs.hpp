@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/storage/map_document.hpp"
@@ -21,6 +22,15 @@ struct SessionDrive {
   storage::MapDocument map;
 };
 
+/// A stop of a drive before it joined a map.
+struct FollowedStop {
+  localization::LocalizationState state = localization::LocalizationState::kSearching;
+  geometry::Pose2 T_stored_later;  ///< of the frames of the two maps, if its pose is right
+  double path_m = 0.0;
+  /// Of what it should have seen (localization::contradiction()); nothing unless it was tracked.
+  std::optional<double> contradicted;
+};
+
 /// A drive that was to continue the map of another one.
 struct SessionPair {
   std::size_t stored = 0;  ///< index of the drives
@@ -30,7 +40,8 @@ struct SessionPair {
   /// By the first stop that joined them, metres after the first one; none: it did not join.
   std::optional<double> joined_after_m;
   geometry::Pose2 T_stored_later;  ///< of the frames of the two maps, by the stops of the later one
-  double spread_m = 0.0;           ///< rms of what this leaves between its stops in both maps
+  std::vector<FollowedStop> followed;
+  double spread_m = 0.0;  ///< rms of what this leaves between its stops in both maps
 };
 
 /// Going round three drives by their pairs.

@@ -164,7 +164,8 @@ const std::vector<SyntheticFloor>& synthetic_floors() {
       {"corridor there and back", simulation::corridor_there_and_back},
       {"two loops", simulation::two_loops},
       {"bare corridor", simulation::bare_corridor},
-      {"symmetric building", simulation::symmetric_building}};
+      {"symmetric building", simulation::symmetric_building},
+      {"long corridors", simulation::long_corridors, true}};
   return kFloors;
 }
 

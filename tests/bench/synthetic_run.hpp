@@ -18,9 +18,10 @@ namespace topogeo::bench {
 struct SyntheticFloor {
   std::string name;
   std::function<world::World(std::uint64_t seed)> draw;
+  bool large = false;  ///< hundreds of metres to drive, others about a hundred
 };
 
-/// The five floors of the synthetic table, in its order.
+/// The floors of the synthetic table, in its order.
 const std::vector<SyntheticFloor>& synthetic_floors();
 
 /// The drive of a seed through a floor: a scan each 0.35 m or 10 degrees, odometry as of

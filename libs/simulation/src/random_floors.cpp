@@ -164,6 +164,26 @@ world::World symmetric_building(std::uint64_t seed) {
   return world;
 }
 
+world::World long_corridors(std::uint64_t seed) {
+  support::Random random = random_of("long corridors", seed);
+  world::World world;
+  world.name = "long corridors";
+  const double around_m = random.uniform(100.0, 500.0);
+  const double high_m = random.uniform(0.06, 0.1) * around_m + random.uniform(6.0, 10.0);
+  const double wide_m = 0.5 * around_m - high_m;
+  const double middle_m = random.uniform(0.35, 0.65) * wide_m;
+  const double half_m = random.uniform(1.0, 1.3);
+  const FloorPlan plan(world);
+  add_block(plan, Rectangle{{0.0, 0.0}, {middle_m, high_m}}.grown(-half_m), random);
+  add_block(plan, Rectangle{{middle_m, 0.0}, {wide_m, high_m}}.grown(-half_m), random);
+  add_surroundings(plan, Rectangle{{0.0, 0.0}, {wide_m, high_m}}.grown(half_m), random);
+  const double start_m = random.uniform(4.0, 0.5 * middle_m);
+  world.tour_m = {{start_m, 0.0},  {wide_m, 0.0},      {wide_m, high_m}, {0.0, high_m},  {0.0, 0.0},
+                  {middle_m, 0.0}, {middle_m, high_m}, {wide_m, high_m}, {wide_m, 0.0},  {0.0, 0.0},
+                  {0.0, high_m},   {wide_m, high_m},   {wide_m, 0.0},    {middle_m, 0.0}};
+  return world;
+}
+
 world::World large_floor(std::uint64_t seed, double path_m, std::size_t blocks) {
   if (!(path_m >= 50.0 && path_m <= 20'000.0)) {
     throw std::invalid_argument("path_m: expected a number in [50, 20000], got " +

@@ -80,6 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Floor{"two_loops", two_loops, 110.0, 190.0},
                       Floor{"bare_corridor", bare_corridor, 80.0, 110.0},
                       Floor{"symmetric", symmetric_building, 85.0, 120.0},
+                      Floor{"long_corridors", long_corridors, 230.0, 1600.0},
                       Floor{"large", [](std::uint64_t seed) { return large_floor(seed, 300.0); },
                             300.0, 325.0}),
     [](const auto& tested) { return std::string(tested.param.name); });

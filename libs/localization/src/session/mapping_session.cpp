@@ -17,7 +17,8 @@ constexpr std::uint32_t kTrackedStops = 3;
 constexpr double kTrackedDistance_m = 4.0;
 // Of what should look alike (contradiction()), where doors have changed and people are about; a
 // corridor that is taken for another one differs more.
-constexpr double kContradicted = 0.3;
+constexpr double kContradicted = 0.3;      // in the mean over that distance
+constexpr double kContradictedOnce = 0.5;  // by one stop
 
 void add_to(SlamCounts& sum, const SlamCounts& more) {
   sum.tasks += more.tasks;
@@ -73,8 +74,7 @@ bool MappingSession::add(MapPointer map) {
 void MappingSession::begin_drive(const topomap::LocalMap& map) {
   waiting_.clear();
   searched_ = false;
-  tracked_stops_ = 0;
-  tracked_distance_m_ = 0.0;
+  tracked_ = {};
   if (follower_ || maps_.empty()) return;
   if (localizer_ == nullptr) {
     throw std::invalid_argument("localizer: stop " + std::to_string(map.stop.number) +
@@ -112,12 +112,19 @@ bool MappingSession::follow(const MapPointer& map) {
 bool MappingSession::confirmed() {
   const std::optional<TrackedStep>& step = follower_->last_step();
   const bool tracked = follower_->status().state == LocalizationState::kTracking && step &&
-                       !step->accepted.empty() && contradiction(step->evidence) <= kContradicted;
+                       !step->accepted.empty() &&
+                       contradiction(step->evidence) <= kContradictedOnce;
   if (!step) searched_ = true;
-  tracked_stops_ = tracked ? tracked_stops_ + 1 : 0;
-  tracked_distance_m_ = tracked ? tracked_distance_m_ + step->evidence.distance_m : 0.0;
-  return tracked && (!searched_ || (tracked_stops_ >= kTrackedStops &&
-                                    tracked_distance_m_ >= kTrackedDistance_m));
+  if (!tracked) {
+    tracked_ = {};
+    return false;
+  }
+  ++tracked_.stops;
+  tracked_.distance_m += step->evidence.distance_m;
+  tracked_.contradiction += contradiction(step->evidence);
+  const bool alike = tracked_.contradiction <= kContradicted * tracked_.stops;
+  return alike && (!searched_ ||
+                   (tracked_.stops >= kTrackedStops && tracked_.distance_m >= kTrackedDistance_m));
 }
 
 void MappingSession::join() {
@@ -173,8 +180,7 @@ void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
   follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_);
   follower_->number_tasks_from(next_task);
   searched_ = false;
-  tracked_stops_ = 0;
-  tracked_distance_m_ = 0.0;
+  tracked_ = {};
 }
 
 void MappingSession::end_following() {

@@ -52,6 +52,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   }
   last_id_ = map->stop;
   const DriveStop stop = matching_.add(*map, number, T_odom_last_);
+  if (stop.follows) continued_.move(stop.step);
   T_odom_last_ = map->T_odom_robot;
   last_step_.reset();
   std::uint32_t accepted = 0;
@@ -115,6 +116,9 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   if (!sure) step.evidence.better_elsewhere = better_elsewhere(stop);
   status_ = monitor_.add(step.evidence);
   monitored_ = true;
+  if (status_.state == LocalizationState::kTracking && !step.accepted.empty()) {
+    continued_.track(pose_);
+  }
   if (status_.state == LocalizationState::kLost) {
     begin_search();
     look_around(stop);
@@ -183,12 +187,14 @@ void MapLocalizer::begin_search() {
 
 void MapLocalizer::search() {
   begin_search();
+  continued_.forget();
   status_ = {LocalizationState::kSearching, 0.0};
 }
 
 // Adds the places of the whole map that fit the last metres, and weighs all by this stop.
 void MapLocalizer::look_around(const DriveStop& stop) {
   if (stop.features.coarse.size() >= kFewestSearched) {
+    if (continued_.pose()) search_.expect(continued_.pose()->T_a_b);
     std::vector<Pose2> T_map_places;
     for (const Climbed& place :
          matching_.places().places(matching_.query().whole.surface, kPlaces)) {
@@ -243,7 +249,9 @@ std::uint32_t MapLocalizer::decide() {
     status_.state = LocalizationState::kAmbiguous;
     accepted = best->missed == 0 ? 1 : 0;
   }
-  if (!PlaceSearch::found(*best)) return accepted;
+  const bool carried = !continued_.leads_to(best->pose);
+  if (!PlaceSearch::found(*best, carried)) return accepted;
+  if (carried) continued_.forget();
   has_pose_ = true;
   StepEvidence evidence;
   evidence.points = kFewestSearched;
@@ -263,6 +271,7 @@ void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& cov
   has_pose_ = true;
   monitored_ = false;
   search_.begin();
+  continued_.forget();
   agreement_ = {};
   monitor_.restart(kGivenPoseRight);
   status_ = {LocalizationState::kAmbiguous,

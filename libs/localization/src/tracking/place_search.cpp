@@ -36,6 +36,10 @@ constexpr std::uint32_t kSeenOften = 2;  // accepted stops before a place is tak
 constexpr std::uint32_t kSeenMoreOften = 4;
 constexpr double kLeastDistance_m = 0.3;  // between the first and the last of them
 constexpr std::uint32_t kMissedOften = 3;
+// Of a place to which the drive does not lead: longer than the look-alikes are in which robots that
+// had left their map were tracked.
+constexpr std::uint32_t kCarriedAccepted = 10;
+constexpr double kCarried_m = 15.0;
 // Nearer to each other, two poses are one hypothesis.
 constexpr double kHypothesesApart_m = 0.6;
 constexpr double kHypothesesApart_rad = 0.3;
@@ -79,6 +83,13 @@ void PlaceSearch::propose(std::span<const Pose2> T_map_robot) {
     hypothesis.weight = kNewWeight;
     hypothesis.wanted = std::min(kSeenMoreOften, kSeenOften + stops_);
     hypotheses_.push_back(hypothesis);
+  }
+}
+
+void PlaceSearch::expect(const Pose2& T_map_robot) {
+  propose({&T_map_robot, 1});
+  for (PlaceHypothesis& h : hypotheses_) {
+    if (same_hypothesis(h.pose.T_a_b, T_map_robot)) h.wanted = kSeenOften;
   }
 }
 
@@ -158,8 +169,11 @@ std::optional<PlaceHypothesis> PlaceSearch::best() const {
   return *best;
 }
 
-bool PlaceSearch::found(const PlaceHypothesis& hypothesis) {
+bool PlaceSearch::found(const PlaceHypothesis& hypothesis, bool carried) {
   if (hypothesis.missed > 0 || hypothesis.fitness < kSurelyThere) return false;
+  if (carried && (hypothesis.accepted < kCarriedAccepted || hypothesis.distance_m < kCarried_m)) {
+    return false;
+  }
   const bool accepted = hypothesis.weight >= kSure && hypothesis.accepted >= hypothesis.wanted &&
                         hypothesis.distance_m >= kLeastDistance_m;
   return accepted || (hypothesis.weight >= kSurer && hypothesis.agreement.enough());

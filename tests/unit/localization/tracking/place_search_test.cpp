@@ -87,6 +87,31 @@ TEST(PlaceSearch, IsDoneWhenOnePlaceIsSeenOftenEnoughAndFarEnoughApart) {
   EXPECT_TRUE(PlaceSearch::found(*search.best()));
 }
 
+// Two looks are enough where the robot can be; where something would have had to carry it there,
+// ten over 15 m.
+TEST(PlaceSearch, APlaceToWhichTheDriveDoesNotLeadMustBeSeenOverALongPath) {
+  PlaceSearch search;
+  stop(search, {{0.0, 0.0, 0.0}}, {true}, {0.9});
+  for (int i = 1; i < 10; ++i) stop(search, {}, {true}, {0.9}, 1.5);
+  EXPECT_EQ(search.best()->accepted, 10U);
+  EXPECT_TRUE(PlaceSearch::found(*search.best()));
+  EXPECT_FALSE(PlaceSearch::found(*search.best(), true));  // 13.5 m
+  stop(search, {}, {true}, {0.9}, 1.5);
+  EXPECT_TRUE(PlaceSearch::found(*search.best(), true));
+}
+
+TEST(PlaceSearch, TheExpectedPlaceNeedsTwoLooksWheneverItComesUp) {
+  PlaceSearch search;
+  for (int i = 0; i < 5; ++i) search.end_stop();
+  search.propose(std::vector<Pose2>{{0.0, 0.0, 0.0}, {20.0, 0.0, 0.0}});
+  search.expect({20.2, 0.0, 0.0});
+  search.expect({40.0, 0.0, 0.0});
+  ASSERT_EQ(search.hypotheses().size(), 3U);
+  EXPECT_EQ(search.hypotheses()[0].wanted, 4U);
+  EXPECT_EQ(search.hypotheses()[1].wanted, 2U);
+  EXPECT_EQ(search.hypotheses()[2].wanted, 2U);
+}
+
 // No match passes its gate, but stop after stop lies where it should.
 TEST(PlaceSearch, StopsThatAgreeProveAPlaceThatNoneProvesAlone) {
   const auto search_with = [](double fitness) {

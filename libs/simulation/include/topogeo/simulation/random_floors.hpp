@@ -30,6 +30,11 @@ world::World bare_corridor(std::uint64_t seed);
 /// the corridor before them is the same as well.
 world::World symmetric_building(std::uint64_t seed);
 
+/// Two long corridors with rooms on both sides, cross corridors at their ends and between; the ring
+/// is 100 to 500 m round. It is driven round, then through the cross corridor and half of it, then
+/// all round the other way: about 2.8 times the ring.
+world::World long_corridors(std::uint64_t seed);
+
 /// Blocks, so many along each side, with streets of corridor round them; the tour goes about
 /// `path_m` metres through them, at each crossing another path than the one it came. `path_m` in
 /// [50, 20000], `blocks` in [1, 40]; throws std::invalid_argument otherwise.

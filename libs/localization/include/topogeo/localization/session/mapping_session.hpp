@@ -102,9 +102,13 @@ class MappingSession : public Slam {
   std::size_t stops_ = 0;                   // that came
   std::vector<MapPointer> maps_;
   std::size_t stored_stops_ = 0;
-  bool searched_ = false;            // the place is known by a search
-  std::uint32_t tracked_stops_ = 0;  // in succession, the last one included
-  double tracked_distance_m_ = 0.0;  // driven to them
+  bool searched_ = false;  // the place is known by a search
+  struct Tracked {
+    std::uint32_t stops = 0;     // in succession, the last one included
+    double distance_m = 0.0;     // driven to them
+    double contradiction = 0.0;  // sum over them
+  };
+  Tracked tracked_;
   std::vector<MapPointer> waiting_;  // to join the map, as they came
   SlamCounts counts_before_;         // of followers that have gone
 };

@@ -24,6 +24,7 @@
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/tracking/continued_place.hpp"
 #include "topogeo/localization/tracking/place_search.hpp"
 #include "topogeo/localization/tracking/stored_map_matching.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -113,6 +114,7 @@ class MapLocalizer : public Slam {
   StoredMapMatching matching_;
   PlaceSearch search_;
   StateMonitor monitor_;
+  ContinuedPlace continued_;
   DriveAgreement agreement_;  // of the stops that are tracked
   UncertainPose pose_;        // T_map_robot at the last stop
   bool has_pose_ = false;

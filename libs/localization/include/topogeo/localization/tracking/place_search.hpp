@@ -40,6 +40,8 @@ class PlaceSearch {
   void move(const UncertainPose& odometry, double distance_m);
   /// Adds the places that fit the stop and are near no hypothesis.
   void propose(std::span<const geometry::Pose2> T_map_robot);
+  /// The same of the place to which the drive leads, whenever that comes up.
+  void expect(const geometry::Pose2& T_map_robot);
   /// What matching the stop at a hypothesis gave: T_map_robot of a plausible match (see
   /// plausible()), or nothing.
   struct Observation {
@@ -58,8 +60,9 @@ class PlaceSearch {
   [[nodiscard]] const std::vector<PlaceHypothesis>& hypotheses() const { return hypotheses_; }
   /// The one of largest weight; nothing without any.
   [[nodiscard]] std::optional<PlaceHypothesis> best() const;
-  /// Whether it is the place: beyond doubt, and seen from often and far enough apart.
-  static bool found(const PlaceHypothesis& hypothesis);
+  /// Whether it is the place: beyond doubt, and seen from often and far enough apart. `carried`:
+  /// the robot can be there only if something carried it unnoticed.
+  static bool found(const PlaceHypothesis& hypothesis, bool carried = false);
 
  private:
   void merge();

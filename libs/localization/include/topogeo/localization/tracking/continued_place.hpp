@@ -1,0 +1,35 @@
+// Where a robot that is lost must be unless it was carried: the last place that was certain, and
+// the steps from there on by stops that were matched with each other.
+//
+// A robot that leaves the map is lost, and what it sees there may look like a piece of the map. A
+// step that was matched shows that nothing carried it, so a place that its own stops contradict
+// needs far more evidence than one that they lead to.
+#pragma once
+
+#include <optional>
+
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/localization/tracking/drive_window.hpp"
+
+namespace topogeo::localization {
+
+class ContinuedPlace {
+ public:
+  /// The robot went on to its next stop.
+  void move(const DriveStep& step);
+  /// At this stop it was tracked and matched with the map.
+  void track(const UncertainPose& T_map_robot) { pose_ = T_map_robot; }
+  /// Nothing is known.
+  void forget() { pose_.reset(); }
+
+  /// T_map_robot by the stops of the drive; nothing where none was certain since the robot may have
+  /// been carried.
+  [[nodiscard]] const std::optional<UncertainPose>& pose() const { return pose_; }
+  /// Whether the robot may be there without having been carried; true where nothing is known.
+  [[nodiscard]] bool leads_to(const UncertainPose& T_map_robot) const;
+
+ private:
+  std::optional<UncertainPose> pose_;
+};
+
+}  // namespace topogeo::localization
