@@ -14,6 +14,7 @@ void add_store_command(command_line::Command& app, int& exit_code) {
       "A FILE is a map file (map.pb) or a map database (map.sqlite); the content decides.");
   add_store_inspect_commands(*store, exit_code);
   add_store_export_command(*store, exit_code);
+  add_store_import_command(*store, exit_code);
 }
 
 }  // namespace topogeo::cli

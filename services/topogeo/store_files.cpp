@@ -39,6 +39,10 @@ bool looks_like_map(const std::filesystem::path& file) {
   return start.starts_with(kDatabaseStart) || start.starts_with(kMapFileStart);
 }
 
+bool looks_like_database(const std::filesystem::path& file) {
+  return start_of(file).starts_with(kDatabaseStart);
+}
+
 pipeline::Config read_config(const std::optional<std::filesystem::path>& file) {
   try {
     return pipeline::load_config(file).config;

@@ -18,6 +18,9 @@ storage::MapDocument read_any_map(const std::filesystem::path& file);
 /// Whether the file begins as a map file or a map database does.
 bool looks_like_map(const std::filesystem::path& file);
 
+/// Whether it begins as an SQLite file does.
+bool looks_like_database(const std::filesystem::path& file);
+
 /// Throws service::UsageError naming file and key.
 pipeline::Config read_config(const std::optional<std::filesystem::path>& file);
 

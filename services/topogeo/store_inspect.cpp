@@ -1,4 +1,4 @@
-// topogeo store info, check and list.
+// topogeo store info, check, repair and list.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -8,7 +8,10 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/exchange/inspect.hpp"
+#include "topogeo/exchange/read_text.hpp"
+#include "topogeo/exchange/repair.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "store_commands.hpp"
@@ -72,6 +75,38 @@ int store_list(const fs::path& directory) {
   return service::kOk;
 }
 
+struct RepairOptions {
+  fs::path file;
+  fs::path out;
+  std::optional<fs::path> config;
+};
+
+int store_repair(const RepairOptions& options) {
+  const pipeline::Config config = read_config(options.config);
+  exchange::RepairedMap repaired;
+  try {
+    const std::string name = options.file.string();
+    const exchange::StoredPieces pieces =
+        looks_like_database(options.file)
+            ? exchange::pieces_of_database(options.file)
+            : exchange::pieces_of_map_file(exchange::read_text(options.file), name);
+    repaired = exchange::assemble(pieces, config.global_map, name);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+  storage::write_map_file(options.out, repaired.document);
+  for (const std::string& line : repaired.lost) std::cout << line << '\n';
+  for (const std::string& line : exchange::contradictions(repaired.document)) {
+    std::cout << "still: " << line << '\n';
+  }
+  std::cout << fmt::format(
+      "{}: {} stops, {} nodes, {} branches, {} places, {} zones{}\n", options.out.string(),
+      repaired.document.local_maps.size(), repaired.document.global_map.nodes.size(),
+      repaired.document.global_map.branches.size(), repaired.document.drawing.places.size(),
+      repaired.document.drawing.zones.size(), repaired.lost.empty() ? ", nothing was lost" : "");
+  return service::kOk;
+}
+
 }  // namespace
 
 void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
@@ -90,6 +125,24 @@ void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
       "covariances and the ends of branches.\n"
       "Exit codes: 0 no fault, 1 contradictions, 3 damaged or no map.");
   check->callback([checked, &exit_code] { exit_code = store_check(*checked); });
+
+  command_line::Command* repair =
+      store.add_subcommand("repair", "Save what can be read of a damaged map");
+  auto damaged = std::make_shared<RepairOptions>();
+  repair->add_option("file", damaged->file, "damaged map file or database")
+      ->required()
+      ->type_name("FILE");
+  repair->add_option("--out", damaged->out, "map file to write (map.pb)")
+      ->required()
+      ->type_name("MAP");
+  repair
+      ->add_option("--config", damaged->config, "configuration (YAML), for its global_map section")
+      ->type_name("FILE");
+  repair->footer(
+      "Prints what was lost. FILE stays as it is. A local map, pose or loop that cannot be read\n"
+      "costs itself alone; poses that are missing follow from scan tracking, nodes and branches\n"
+      "are made anew from the stops.");
+  repair->callback([damaged, &exit_code] { exit_code = store_repair(*damaged); });
 
   command_line::Command* list = store.add_subcommand("list", "The maps in a folder and below");
   auto directory = std::make_shared<fs::path>(".");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -66,13 +67,20 @@ double driven_distance(const storage::MapDocument& document) {
 void add_stops(MapSummary& summary, const storage::MapDocument& document) {
   Extent extent(summary);
   summary.stops = document.local_maps.size();
+  std::set<std::uint64_t> sessions;
   for (const topomap::LocalMap& map : document.local_maps) {
-    if (map.id == 0 || map.starts_drive) ++summary.sessions;
+    // Files of before do not name the session: each drive is one.
+    if (map.stop.session != 0) {
+      sessions.insert(map.stop.session);
+    } else if (map.id == 0 || map.starts_drive) {
+      ++summary.sessions;
+    }
     summary.points += map.points.size();
     if (map.id == 0) summary.first_stamp_ns = summary.last_stamp_ns = map.stamp_ns;
     summary.first_stamp_ns = std::min(summary.first_stamp_ns, map.stamp_ns);
     summary.last_stamp_ns = std::max(summary.last_stamp_ns, map.stamp_ns);
   }
+  summary.sessions += sessions.size();
   for (const topomap::StopPose& stop : document.trajectory.stops) {
     if (!stop.located) continue;
     ++summary.located_stops;

@@ -1,0 +1,194 @@
+#include "topogeo/exchange/grid_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/scan/scan.hpp"
+#include "topogeo/support/check_range.hpp"
+#include "topogeo/support/hash.hpp"
+#include "topogeo/topomap/local_map_builder.hpp"
+#include "topogeo/voronoi/local_voronoi.hpp"
+
+namespace topogeo::exchange {
+namespace {
+
+using planning::Cell;
+using planning::CellState;
+
+constexpr int kBeams = 720;  // all around in steps of half a degree, as of most logs
+constexpr std::int64_t kBetweenStops_ns = 1'000'000'000;
+// Of the poses, which are those of the grid: a tenth of a usual cell.
+constexpr double kSigma_m = 0.01;
+constexpr double kSigma_rad = 0.002;
+
+/// Cells of parts of the free space that are large enough, widest first.
+std::vector<std::size_t> cells_by_width(const planning::FreeSpace& space, double least_area_m2) {
+  const planning::GridFrame& frame = space.frame();
+  const double least_cells = least_area_m2 / (frame.resolution_m * frame.resolution_m);
+  std::vector<std::uint8_t> seen(frame.size(), 0);
+  std::vector<std::size_t> cells;
+  std::vector<std::size_t> part;
+  for (std::size_t first = 0; first < frame.size(); ++first) {
+    if (seen[first] != 0 || !space.passable(first)) continue;
+    part.assign(1, first);
+    seen[first] = 1;
+    for (std::size_t next = 0; next < part.size(); ++next) {
+      const Cell cell = frame.cell_at(part[next]);
+      for (const Cell& beside :
+           {Cell{cell.column + 1, cell.row}, Cell{cell.column - 1, cell.row},
+            Cell{cell.column, cell.row + 1}, Cell{cell.column, cell.row - 1}}) {
+        if (!space.passable(beside)) continue;
+        const std::size_t index = frame.index(beside);
+        if (seen[index] != 0) continue;
+        seen[index] = 1;
+        part.push_back(index);
+      }
+    }
+    if (static_cast<double>(part.size()) >= least_cells) {
+      cells.insert(cells.end(), part.begin(), part.end());
+    }
+  }
+  std::ranges::sort(cells, [&](std::size_t a, std::size_t b) {
+    const std::int32_t wide_a = space.squared_cells(a);
+    const std::int32_t wide_b = space.squared_cells(b);
+    return wide_a != wide_b ? wide_a > wide_b : a < b;
+  });
+  return cells;
+}
+
+/// Of the widest places, each at least `spacing_m` from those before.
+std::vector<Eigen::Vector2d> places_of_stops(const planning::FreeSpace& space,
+                                             const GridMapSettings& settings) {
+  const planning::GridFrame& frame = space.frame();
+  const double spacing_cells = settings.spacing_m / frame.resolution_m;
+  const auto reach = static_cast<std::int32_t>(std::ceil(spacing_cells));
+  std::vector<std::uint8_t> taken(frame.size(), 0);
+  std::vector<Eigen::Vector2d> places;
+  for (const std::size_t index : cells_by_width(space, settings.least_area_m2)) {
+    if (taken[index] != 0) continue;
+    const Cell at = frame.cell_at(index);
+    places.push_back(frame.center_m(at));
+    for (std::int32_t row = at.row - reach; row <= at.row + reach; ++row) {
+      for (std::int32_t column = at.column - reach; column <= at.column + reach; ++column) {
+        const double squared =
+            (row - at.row) * (row - at.row) + (column - at.column) * (column - at.column);
+        if (frame.contains({column, row}) && squared < spacing_cells * spacing_cells) {
+          taken[frame.index({column, row})] = 1;
+        }
+      }
+    }
+  }
+  return places;
+}
+
+scan::Scan scan_at(const planning::OccupancyGrid& grid, const geometry::Pose2& T_map_laser,
+                   double range_m) {
+  scan::Scan scan;
+  scan.angle_step_rad = 2.0 * std::numbers::pi / kBeams;
+  scan.angle_min_rad = -std::numbers::pi + 0.5 * scan.angle_step_rad;
+  for (int i = 0; i < kBeams; ++i) {
+    const double angle_rad = scan.angle_min_rad + i * scan.angle_step_rad;
+    scan.ranges_m.push_back(
+        cast_beam(grid, T_map_laser.position_m(), T_map_laser.theta_rad + angle_rad, range_m));
+  }
+  return scan;
+}
+
+std::uint64_t session_of_grid(const planning::OccupancyGrid& grid, const std::string& robot_id) {
+  support::Fnv1a hash;
+  hash.add(robot_id);
+  for (const CellState state : grid.cells()) hash.add(static_cast<std::uint64_t>(state));
+  return std::max<std::uint64_t>(hash.value(), 1);
+}
+
+}  // namespace
+
+float cast_beam(const planning::OccupancyGrid& grid, const Eigen::Vector2d& from_m,
+                double heading_rad, double range_m) {
+  // From cell to cell along the beam (Amanatides and Woo, "A fast voxel traversal algorithm for ray
+  // tracing", 1987), all in cells.
+  const planning::GridFrame& frame = grid.frame();
+  const Eigen::Vector2d from = frame.in_cells(from_m);
+  const auto [sin, cos] = geometry::sincos(heading_rad - frame.T_map_grid.theta_rad);
+  const std::array<double, 2> direction{cos, sin};
+  std::array<std::int32_t, 2> cell{};
+  std::array<std::int32_t, 2> step{};
+  std::array<double, 2> next{};   // where along the beam the next border is
+  std::array<double, 2> width{};  // between two of them
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double at = from[static_cast<Eigen::Index>(i)];
+    cell[i] = static_cast<std::int32_t>(std::floor(at));
+    step[i] = direction[i] > 0.0 ? 1 : -1;
+    const double border = cell[i] + (direction[i] > 0.0 ? 1.0 : 0.0);
+    const bool moves = std::fabs(direction[i]) > 1e-12;
+    next[i] = moves ? (border - at) / direction[i] : std::numeric_limits<double>::infinity();
+    width[i] = moves ? 1.0 / std::fabs(direction[i]) : std::numeric_limits<double>::infinity();
+  }
+  const double most = range_m / frame.resolution_m;
+  for (double along = 0.0; along < most;) {
+    const Cell here{cell[0], cell[1]};
+    if (!frame.contains(here)) break;
+    const CellState state = grid.at(here);
+    if (state == CellState::kUnknown) break;
+    if (state == CellState::kOccupied) {
+      const double to_middle = (cell[0] + 0.5 - from.x()) * cos + (cell[1] + 0.5 - from.y()) * sin;
+      return static_cast<float>(std::max(to_middle, 0.01) * frame.resolution_m);
+    }
+    const std::size_t nearer = next[0] < next[1] ? 0 : 1;
+    along = next[nearer];
+    next[nearer] += width[nearer];
+    cell[nearer] += step[nearer];
+  }
+  return scan::Scan::kNoReturn;
+}
+
+storage::MapDocument map_of_grid(const planning::FreeSpace& space,
+                                 const pipeline::LocalMapperConfig& mapper,
+                                 const topomap::GlobalMapConfig& global_map,
+                                 const std::string& robot_id, const GridMapSettings& settings) {
+  support::check_range("spacing of stops", settings.spacing_m, 0.2, 100.0, "m");
+  support::check_range("range of the laser", settings.range_m, 1.0, 100.0, "m");
+  storage::MapDocument document;
+  document.robot_id = robot_id;
+  document.drawing.grid = space.grid();
+  const std::uint64_t session = session_of_grid(space.grid(), robot_id);
+  voronoi::LocalVoronoi diagram_maker(mapper.voronoi);
+  voronoi::LocalVoronoiDiagram diagram;
+  topomap::LocalMapBuilder builder(mapper.local_map);
+  for (const Eigen::Vector2d& place_m : places_of_stops(space, settings)) {
+    const geometry::Pose2 T_map_robot{place_m.x(), place_m.y(), 0.0};
+    scan::Scan scan = scan_at(space.grid(), T_map_robot * mapper.T_robot_laser, settings.range_m);
+    topomap::LocalMap map;
+    map.robot_id = robot_id;
+    map.id = static_cast<std::uint32_t>(document.local_maps.size());
+    map.stop = {session, map.id};
+    map.sequence = scan.sequence = map.id;
+    map.stamp_ns = scan.stamp_ns = kBetweenStops_ns * (map.id + 1);
+    map.T_odom_robot = scan.T_odom_robot = T_map_robot;
+    map.starts_drive = map.id > 0;  // nothing was driven
+    diagram_maker.compute(scan, diagram);
+    builder.build(diagram, scan, mapper.T_robot_laser, map);
+    topomap::StopPose stop;
+    stop.local_map_id = map.id;
+    stop.stamp_ns = map.stamp_ns;
+    stop.stop = map.stop;
+    stop.T_map_robot = T_map_robot;
+    stop.covariance =
+        Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
+            .asDiagonal();
+    document.trajectory.stops.push_back(stop);
+    document.local_maps.push_back(std::move(map));
+  }
+  document.trajectory.version = 1;
+  if (document.local_maps.empty()) return document;
+  document.global_map = pipeline::fuse(global_map, document.local_maps, document.trajectory);
+  return storage::identified(std::move(document));
+}
+
+}  // namespace topogeo::exchange

@@ -1,0 +1,157 @@
+// A map file followed from field to field, also where it is damaged.
+#include <stdexcept>
+
+#include "topogeo/exchange/repair.hpp"
+#include "topogeo/support/format.hpp"
+
+#include "map_fields.hpp"
+#include "wire.hpp"
+
+namespace topogeo::exchange {
+namespace {
+
+using Type = WireField::Type;
+
+/// Of the top level of a map file. Fields to come are messages.
+Type type_of(std::uint32_t number) {
+  if (number == MapFields::kVersion || number == MapFields::kSeed) return Type::kVarint;
+  if (number == MapFields::kMapId || number == MapFields::kChecksum) return Type::kFixed64;
+  return Type::kBytes;
+}
+
+class MapFileReader {
+ public:
+  explicit MapFileReader(std::string_view bytes) : bytes_(bytes) {}
+
+  StoredPieces read() {
+    std::size_t at = 0;
+    while (at < bytes_.size()) {
+      const std::size_t before = at;
+      const auto field = next_field(at, last_);
+      if (field) {
+        take(*field);
+        last_ = field->number;
+        continue;
+      }
+      at = resume_after(before);
+      pieces_.damage.push_back(fmt::format("bytes {} to {} cannot be read: {}", before, at - 1,
+                                           at == bytes_.size()
+                                               ? "the file is cut short or damaged to its end"
+                                               : "what they hold is lost"));
+    }
+    return std::move(pieces_);
+  }
+
+ private:
+  /// A field as it may follow one of number `last`: files have them in ascending order.
+  [[nodiscard]] std::optional<WireField> next_field(std::size_t& at, std::uint32_t last) const {
+    std::size_t next = at;
+    auto field = read_field(bytes_, next);
+    if (!field || field->number < last || field->number > MapFields::kChecksum) return std::nullopt;
+    if (field->type != type_of(field->number)) return std::nullopt;
+    at = next;
+    return field;
+  }
+
+  /// Where reading can go on: at the next local map of this robot, or from where all fits together
+  /// up to the checksum at the end.
+  [[nodiscard]] std::size_t resume_after(std::size_t damaged) const {
+    const std::string robot =
+        pieces_.robot_id.empty() ? "" : bytes_field(MapFields::kRobotOfLocalMap, pieces_.robot_id);
+    for (std::size_t start = damaged + 1; start < bytes_.size(); ++start) {
+      std::size_t at = start;
+      auto field = next_field(at, last_);
+      if (!field) continue;
+      if (field->number == MapFields::kLocalMap && !robot.empty() &&
+          field->payload.starts_with(robot)) {
+        return start;
+      }
+      std::uint32_t last = field->number;
+      while (at < bytes_.size() && (field = next_field(at, last))) last = field->number;
+      if (at == bytes_.size() && last == MapFields::kChecksum) return start;
+    }
+    return bytes_.size();
+  }
+
+  void take(const WireField& field) {
+    const std::string payload(field.payload);
+    switch (field.number) {
+      case MapFields::kRobot:
+        pieces_.robot_id = payload;
+        break;
+      case MapFields::kSeed:
+        pieces_.seed = field.value;
+        break;
+      case MapFields::kMapId:
+        pieces_.map_id = field.value;
+        break;
+      case MapFields::kLocalMap:
+        take_local_map(payload);
+        break;
+      case MapFields::kTrajectory:
+        take_parts(field.payload, pieces_.trajectory_version, {nullptr, nullptr, &pieces_.poses});
+        break;
+      case MapFields::kLoop:
+        pieces_.loops.push_back(payload);
+        break;
+      case MapFields::kGlobalMap:
+        take_parts(field.payload, pieces_.map_version,
+                   {nullptr, nullptr, &pieces_.nodes, &pieces_.branches});
+        break;
+      case MapFields::kDrawing:
+        take_parts(field.payload, ignored_, {nullptr, &pieces_.places, &pieces_.zones, &grids_});
+        if (!grids_.empty()) pieces_.grid = grids_.back();
+        break;
+      case MapFields::kEdge:
+        pieces_.edges.push_back(payload);
+        break;
+      default:
+        break;
+    }
+  }
+
+  void take_local_map(const std::string& payload) {
+    const auto id = number_in(payload, MapFields::kIdOfLocalMap);
+    // Where the message cannot be followed the place in the file tells.
+    const std::uint32_t next = pieces_.stops.empty() ? 0 : pieces_.stops.back().id + 1;
+    constexpr std::uint32_t kLongestGap = 10'000;  // a larger one is a damaged number
+    const bool plausible = id && *id >= next && *id - next < kLongestGap;
+    pieces_.stops.push_back({plausible ? static_cast<std::uint32_t>(*id) : next, payload, {}});
+  }
+
+  /// The parts of a message, by their field numbers; field 1 is its version where none is for it.
+  void take_parts(std::string_view message, std::uint64_t& version,
+                  const std::vector<std::vector<std::string>*>& lists) {
+    for (std::size_t at = 0; at < message.size();) {
+      const auto field = read_field(message, at);
+      if (!field) {
+        pieces_.damage.push_back("a list of poses, nodes or drawn things ends early");
+        return;
+      }
+      if (field->type == Type::kVarint && field->number == 1) version = field->value;
+      if (field->type == Type::kBytes && field->number < lists.size() &&
+          lists[field->number] != nullptr) {
+        lists[field->number]->emplace_back(field->payload);
+      }
+    }
+  }
+
+  std::string_view bytes_;
+  StoredPieces pieces_;
+  std::uint32_t last_ = 0;  // number of the last field
+  std::uint64_t ignored_ = 0;
+  std::vector<std::string> grids_;
+};
+
+}  // namespace
+
+StoredPieces pieces_of_map_file(std::string_view bytes, const std::string& name) {
+  constexpr std::string_view kFormat = "topogeo-map";
+  // The first bytes may be damaged as well.
+  if (bytes.substr(0, 64).find(kFormat) == std::string_view::npos) {
+    throw std::runtime_error(name + ": not a topogeo map (no 'topogeo-map' at its beginning)");
+  }
+  return MapFileReader(bytes).read();
+}
+
+}  // namespace topogeo::exchange

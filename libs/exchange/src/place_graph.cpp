@@ -1,0 +1,65 @@
+#include "topogeo/exchange/place_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "topogeo/pipeline/hybrid_map_source.hpp"
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::exchange {
+
+void move(MapGraph& graph, const geometry::Pose2& T_map_graph) {
+  if (T_map_graph == geometry::Pose2{}) return;  // keeps every bit
+  for (topomap::MapNode& node : graph.map.nodes) node.position_m = T_map_graph * node.position_m;
+  for (topomap::MapBranch& branch : graph.map.branches) {
+    for (topomap::BranchPoint& p : branch.points) p.position_m = T_map_graph * p.position_m;
+  }
+  for (planning::Place& place : graph.drawing.places) {
+    place.position_m = T_map_graph * place.position_m;
+  }
+  for (planning::DrawnZone& zone : graph.drawing.zones) {
+    for (Eigen::Vector2d& corner : zone.polygon_m) corner = T_map_graph * corner;
+    if (zone.kind == planning::ZoneKind::kOneWay) {
+      zone.value = geometry::wrap_angle(zone.value + T_map_graph.theta_rad);
+    }
+  }
+  if (!graph.drawing.grid) return;
+  planning::GridFrame frame = graph.drawing.grid->frame();
+  frame.T_map_grid = T_map_graph * frame.T_map_grid;
+  planning::OccupancyGrid moved(frame);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    moved.set(frame.cell_at(i), graph.drawing.grid->cells()[i]);
+  }
+  graph.drawing.grid = std::move(moved);
+}
+
+void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space) {
+  const auto at = [&](const Eigen::Vector2d& position_m) {
+    const auto cell = space.frame().cell_of(position_m);
+    const double clearance_m = cell ? space.clearance_m(*cell) : 0.0;
+    return std::isfinite(clearance_m) ? clearance_m : 0.0;
+  };
+  for (topomap::MapNode& node : map.nodes) {
+    if (node.clearance_m == 0.0) node.clearance_m = at(node.position_m);
+  }
+  for (topomap::MapBranch& branch : map.branches) {
+    const auto known = [](const topomap::BranchPoint& p) { return p.clearance_m != 0.0; };
+    if (std::ranges::any_of(branch.points, known)) continue;
+    for (topomap::BranchPoint& p : branch.points) p.clearance_m = at(p.position_m);
+  }
+}
+
+void lay_over(storage::MapDocument& document, MapGraph graph, Notes& notes) {
+  pipeline::lay_over(document.drawing, std::move(graph.drawing));
+  if (graph.map.nodes.empty()) return;
+  if (document.global_map.nodes.empty()) {
+    // A map is not newer than the trajectory that it was made with.
+    document.trajectory.version = std::max(document.trajectory.version, graph.map.version);
+    document.global_map = std::move(graph.map);
+    return;
+  }
+  notes.push_back(fmt::format("{} nodes and {} branches left out: the map has nodes of its own",
+                              graph.map.nodes.size(), graph.map.branches.size()));
+}
+
+}  // namespace topogeo::exchange

@@ -1,0 +1,332 @@
+#include "topogeo/exchange/repair.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <stdexcept>
+
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/hash.hpp"
+
+#include "map_fields.hpp"
+#include "wire.hpp"
+
+namespace topogeo::exchange {
+namespace {
+
+using F = MapFields;
+
+/// A map file of these fields; the reader of map files then checks what is in them. A number that
+/// comes twice in a message counts as it comes last, so `bytes` may correct ids.
+storage::MapDocument read_alone(const std::string& robot_id, const std::string& fields) {
+  std::string bytes = bytes_field(F::kFormat, "topogeo-map") +
+                      varint_field(F::kVersion, storage::kMapFormatVersion) +
+                      bytes_field(F::kRobot, robot_id) + fields;
+  const std::uint64_t checksum = support::fnv1a(bytes);
+  bytes += static_cast<char>((F::kChecksum << 3U) | 1U);
+  for (unsigned shift = 0; shift < 64; shift += 8) {
+    bytes += std::bit_cast<char>(static_cast<unsigned char>((checksum >> shift) & 0xffU));
+  }
+  return storage::parse_map_file(bytes, "element");
+}
+
+std::string with_id(std::string message, std::uint32_t field, std::uint64_t id) {
+  return std::move(message) + varint_field(field, id);
+}
+
+/// Local maps without content, for what refers to stops.
+std::string empty_stops(const std::string& robot_id, std::uint32_t count) {
+  std::string fields;
+  for (std::uint32_t id = 0; id < count; ++id) {
+    fields += bytes_field(
+        F::kLocalMap, with_id(bytes_field(F::kRobotOfLocalMap, robot_id), F::kIdOfLocalMap, id));
+  }
+  return fields;
+}
+
+class Assembler {
+ public:
+  Assembler(const StoredPieces& pieces, const topomap::GlobalMapConfig& config)
+      : pieces_(pieces), config_(config), robot_(robot_of(pieces)) {
+    out_.lost = pieces.damage;
+    out_.document.robot_id = robot_;
+    out_.document.seed = pieces.seed;
+    out_.document.map_id = pieces.map_id;
+  }
+
+  RepairedMap assemble(const std::string& name) {
+    take_stops();
+    take_poses();
+    take_pairs();
+    take_drawing();
+    take_graph();
+    if (out_.document.local_maps.empty() && out_.document.drawing.empty() &&
+        out_.document.global_map.nodes.empty()) {
+      throw std::runtime_error(name + ": nothing in it can be saved");
+    }
+    return std::move(out_);
+  }
+
+ private:
+  static std::string robot_of(const StoredPieces& pieces) {
+    if (!pieces.robot_id.empty()) return pieces.robot_id;
+    // The first field of each local map, should the one of the file be damaged.
+    for (const StoredPieces::StoredStop& stop : pieces.stops) {
+      std::size_t at = 0;
+      const auto field = read_field(stop.local_map, at);
+      if (field && field->number == F::kRobotOfLocalMap && !field->payload.empty()) {
+        return std::string(field->payload);
+      }
+    }
+    return "robot";
+  }
+
+  template <typename... Args>
+  void lose(fmt::format_string<Args...> format, Args&&... args) {
+    out_.lost.push_back(fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  /// What `take` makes of the elements that can be read; counts the others.
+  template <typename Take>
+  void take_each(const std::vector<std::string>& elements, const char* what, const Take& take) {
+    std::size_t lost = 0;
+    for (const std::string& element : elements) {
+      try {
+        take(element);
+      } catch (const std::exception&) {
+        ++lost;
+      }
+    }
+    if (lost > 0) lose("{} of {} {} cannot be read", lost, elements.size(), what);
+  }
+
+  void take_stops() {
+    std::map<std::uint32_t, topomap::LocalMap> found;
+    std::size_t unreadable = 0;
+    for (const StoredPieces::StoredStop& stop : pieces_.stops) {
+      try {
+        storage::MapDocument alone = read_alone(
+            robot_, bytes_field(F::kLocalMap,
+                                with_id(stop.local_map + bytes_field(F::kRobotOfLocalMap, robot_),
+                                        F::kIdOfLocalMap, 0)));
+        topomap::LocalMap map = std::move(alone.local_maps.at(0));
+        map.id = stop.id;
+        if (stop.starts_drive) map.starts_drive = *stop.starts_drive;
+        found[stop.id] = std::move(map);
+      } catch (const std::exception&) {
+        ++unreadable;
+      }
+    }
+    if (unreadable > 0) lose("{} local maps cannot be read", unreadable);
+    if (found.empty()) return;
+    const std::uint32_t count = found.rbegin()->first + 1;
+    for (std::uint32_t id = 0; id < count; ++id) {
+      const auto at = found.find(id);
+      if (at != found.end()) {
+        out_.document.local_maps.push_back(std::move(at->second));
+      } else {
+        out_.document.local_maps.push_back(empty_stop(id));
+        missing_.push_back(id);
+      }
+    }
+    if (!missing_.empty()) {
+      lose("{} stops have nothing of what they saw, the first of them {}", missing_.size(),
+           missing_.front());
+    }
+  }
+
+  [[nodiscard]] topomap::LocalMap empty_stop(std::uint32_t id) const {
+    topomap::LocalMap map;
+    map.robot_id = robot_;
+    map.id = id;
+    if (id > 0) map.stamp_ns = out_.document.local_maps[id - 1].stamp_ns + 1;
+    return map;
+  }
+
+  void take_poses() {
+    storage::MapDocument& document = out_.document;
+    std::map<std::uint32_t, topomap::StopPose> found;
+    take_each(pieces_.poses, "poses", [&](const std::string& element) {
+      const auto id = number_in(element, F::kIdOfPose);
+      if (!id || *id >= document.local_maps.size()) throw std::runtime_error("id");
+      const auto alone = read_alone(
+          robot_, empty_stops(robot_, 1) +
+                      bytes_field(F::kTrajectory, bytes_field(F::kStopsOfTrajectory,
+                                                              with_id(element, F::kIdOfPose, 0))));
+      topomap::StopPose stop = alone.trajectory.stops.at(0);
+      stop.local_map_id = static_cast<std::uint32_t>(*id);
+      found[stop.local_map_id] = stop;
+    });
+    std::size_t followed = 0;
+    std::size_t unknown = 0;
+    for (const topomap::LocalMap& map : document.local_maps) {
+      const auto at = found.find(map.id);
+      topomap::StopPose stop = at != found.end() ? at->second : pose_after(map, followed, unknown);
+      stop.stop = map.stop;
+      document.trajectory.stops.push_back(stop);
+    }
+    for (const std::uint32_t id : missing_) {
+      // Its stamp is that of its pose, where there is one.
+      if (found.contains(id)) document.local_maps[id].stamp_ns = found[id].stamp_ns;
+      document.trajectory.stops[id].stamp_ns = document.local_maps[id].stamp_ns;
+      if (id == 0) continue;
+      const auto& stops = document.trajectory.stops;
+      document.local_maps[id].T_previous_robot =
+          geometry::between(stops[id - 1].T_map_robot, stops[id].T_map_robot);
+    }
+    if (followed > 0) lose("{} stops have poses by scan tracking alone", followed);
+    if (unknown > 0) lose("{} stops have no pose", unknown);
+    document.trajectory.version = std::max<std::uint64_t>(
+        {pieces_.trajectory_version, pieces_.map_version, document.local_maps.empty() ? 0U : 1U});
+  }
+
+  /// The pose of a stop that has none, from the stop before.
+  topomap::StopPose pose_after(const topomap::LocalMap& map, std::size_t& followed,
+                               std::size_t& unknown) const {
+    topomap::StopPose stop;
+    stop.local_map_id = map.id;
+    stop.stamp_ns = map.stamp_ns;
+    const auto& before = out_.document.trajectory.stops;
+    const bool is_missing = std::ranges::binary_search(missing_, map.id);
+    if (map.id == 0 && !is_missing) return stop;  // the origin of the map
+    stop.located = map.id > 0 && !map.starts_drive && !is_missing && before.back().located;
+    ++(stop.located ? followed : unknown);
+    if (!stop.located) return stop;
+    stop.T_map_robot = before.back().T_map_robot * map.T_previous_robot;
+    // A twentieth of the way, and three degrees, a step: what tracking does at worst.
+    const double step_m = map.T_previous_robot.position_m().norm();
+    stop.covariance = before.back().covariance;
+    stop.covariance.diagonal() +=
+        Eigen::Vector3d(0.0025 * step_m * step_m, 0.0025 * step_m * step_m, 0.0027);
+    return stop;
+  }
+
+  void take_pairs() {
+    storage::MapDocument& document = out_.document;
+    // A pair with its ids, 0 and 1 while it is read.
+    const auto alone = [&](const std::string& element, std::uint32_t field, auto use) {
+      const auto first = number_in(element, F::kFirstOfPair);
+      const auto second = number_in(element, F::kSecondOfPair);
+      if (!first || !second || *first >= *second || *second >= document.local_maps.size()) {
+        throw std::runtime_error("ids");
+      }
+      const std::string corrected =
+          with_id(with_id(element, F::kFirstOfPair, 0), F::kSecondOfPair, 1);
+      use(read_alone(robot_, empty_stops(robot_, 2) + bytes_field(field, corrected)),
+          static_cast<std::uint32_t>(*first), static_cast<std::uint32_t>(*second));
+    };
+    take_each(pieces_.loops, "loops", [&](const std::string& element) {
+      alone(element, F::kLoop, [&](const storage::MapDocument& read, auto first, auto second) {
+        topomap::LoopClosure loop = read.loop_closures.at(0);
+        loop.earlier_id = first;
+        loop.later_id = second;
+        document.loop_closures.push_back(loop);
+      });
+    });
+    take_each(pieces_.edges, "measurements", [&](const std::string& element) {
+      alone(element, F::kEdge, [&](const storage::MapDocument& read, auto first, auto second) {
+        storage::MapEdge edge = read.edges.at(0);
+        edge.earlier_id = first;
+        edge.later_id = second;
+        document.edges.push_back(edge);
+      });
+    });
+  }
+
+  void take_drawing() {
+    storage::MapDrawing& drawing = out_.document.drawing;
+    const auto alone = [&](std::uint32_t field, const std::string& element) {
+      return read_alone(robot_, bytes_field(F::kDrawing, bytes_field(field, element))).drawing;
+    };
+    take_each(pieces_.places, "places", [&](const std::string& element) {
+      drawing.places.push_back(alone(F::kPlaces, element).places.at(0));
+      drop_if_bad(drawing, drawing.places);
+    });
+    take_each(pieces_.zones, "zones", [&](const std::string& element) {
+      drawing.zones.push_back(alone(F::kZones, element).zones.at(0));
+      drop_if_bad(drawing, drawing.zones);
+    });
+    if (pieces_.grid.empty()) return;
+    take_each({pieces_.grid}, "grids",
+              [&](const std::string& element) { drawing.grid = alone(F::kGrid, element).grid; });
+  }
+
+  /// A name that is taken, for instance.
+  template <typename Entry>
+  static void drop_if_bad(const storage::MapDrawing& drawing, std::vector<Entry>& entries) {
+    try {
+      storage::check(drawing);
+    } catch (const std::exception&) {
+      entries.pop_back();
+      throw;
+    }
+  }
+
+  void take_graph() {
+    topomap::GlobalMap& map = out_.document.global_map;
+    map.version = pieces_.map_version;
+    const std::size_t before = out_.lost.size();
+    const auto alone = [&](const std::string& parts) {
+      return read_alone(robot_, bytes_field(F::kGlobalMap, parts)).global_map;
+    };
+    take_each(pieces_.nodes, "nodes", [&](const std::string& element) {
+      map.nodes.push_back(alone(bytes_field(F::kNodes, element)).nodes.at(0));
+    });
+    std::ranges::stable_sort(map.nodes, {}, &topomap::MapNode::id);
+    const std::string node_zero = bytes_field(F::kNodes, "");
+    take_each(pieces_.branches, "branches", [&](const std::string& element) {
+      const auto a = number_in(element, F::kNodeA);
+      const auto b = number_in(element, F::kNodeB);
+      const std::string corrected = with_id(with_id(element, F::kNodeA, 0), F::kNodeB, 0);
+      topomap::MapBranch branch =
+          alone(node_zero + bytes_field(F::kBranches, corrected)).branches.at(0);
+      branch.node_a = static_cast<std::uint32_t>(a.value());
+      branch.node_b = static_cast<std::uint32_t>(b.value());
+      for (const std::uint32_t id : {branch.node_a, branch.node_b}) {
+        if (!std::ranges::binary_search(map.nodes, id, {}, &topomap::MapNode::id)) {
+          throw std::runtime_error("end");
+        }
+      }
+      map.branches.push_back(std::move(branch));
+    });
+    std::ranges::stable_sort(map.branches, {}, &topomap::MapBranch::id);
+    remove_repeated(map.nodes);
+    remove_repeated(map.branches);
+    const bool damaged = out_.lost.size() > before || !pieces_.damage.empty();
+    if (!damaged && !map.nodes.empty()) return;
+    if (pieces_.map_version == 0 && !damaged) return;  // it had none
+    make_graph();
+  }
+
+  template <typename Element>
+  static void remove_repeated(std::vector<Element>& elements) {
+    const auto [first, last] = std::ranges::unique(elements, {}, &Element::id);
+    elements.erase(first, last);
+  }
+
+  /// From the stops, when those have seen something.
+  void make_graph() {
+    const storage::MapDocument& document = out_.document;
+    const auto located = [](const topomap::StopPose& stop) { return stop.located; };
+    if (!std::ranges::any_of(document.trajectory.stops, located)) return;
+    out_.document.global_map = pipeline::fuse(config_, document.local_maps, document.trajectory);
+    lose("nodes and branches are made anew, with ids of their own");
+  }
+
+  const StoredPieces& pieces_;
+  const topomap::GlobalMapConfig& config_;
+  std::string robot_;
+  std::vector<std::uint32_t> missing_;  // ids of stops without content, ascending
+  RepairedMap out_;
+};
+
+}  // namespace
+
+RepairedMap assemble(const StoredPieces& pieces, const topomap::GlobalMapConfig& config,
+                     const std::string& name) {
+  return Assembler(pieces, config).assemble(name);
+}
+
+}  // namespace topogeo::exchange

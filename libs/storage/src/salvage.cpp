@@ -1,0 +1,145 @@
+#include "topogeo/storage/salvage.hpp"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+
+#include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
+#include <unistd.h>
+
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/hash.hpp"
+
+#include "table_writer.hpp"
+
+namespace topogeo::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The file and its write-ahead log in a folder of their own, which goes with the object.
+class SalvageCopy {
+ public:
+  explicit SalvageCopy(const fs::path& path) {
+    std::string name = (fs::temp_directory_path() / "topogeo-repair-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("no folder for a copy of " + path.string());
+    }
+    folder_ = name;
+    try {
+      fs::copy_file(path, file());
+      const fs::path log = path.string() + "-wal";
+      if (fs::exists(log)) fs::copy_file(log, file().string() + "-wal");
+    } catch (...) {
+      remove();
+      throw;
+    }
+  }
+  SalvageCopy(const SalvageCopy&) = delete;
+  SalvageCopy& operator=(const SalvageCopy&) = delete;
+  ~SalvageCopy() { remove(); }
+
+  [[nodiscard]] fs::path file() const { return folder_ / "map.sqlite"; }
+
+ private:
+  void remove() const {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  fs::path folder_;
+};
+
+SalvagedRow row_of(SQLite::Statement& statement) {
+  SalvagedRow row;
+  for (int i = 0; i < statement.getColumnCount(); ++i) {
+    const SQLite::Column column = statement.getColumn(i);
+    const std::string name = statement.getColumnName(i);
+    if (column.isInteger()) {
+      row.numbers[name] = column.getInt64();
+    } else if (column.isText() || column.isBlob()) {
+      row.texts[name] = column.getString();
+    }
+  }
+  return row;
+}
+
+bool is_sound(const SalvagedRow& row) {
+  const auto hash = row.numbers.find("blob_hash");
+  if (hash == row.numbers.end()) return true;
+  const auto blob = row.texts.find("blob");
+  const std::string_view bytes = blob == row.texts.end() ? "" : std::string_view(blob->second);
+  return as_unsigned(hash->second) == support::fnv1a(bytes);
+}
+
+/// Rows in one direction up to the first that cannot be read, or up to one of `known`; false where
+/// they end that way.
+bool read_rows(SQLite::Database& database, const std::string& table, const char* order,
+               std::set<std::int64_t>& known, SalvagedTable& out) {
+  std::vector<SalvagedRow> rows;
+  bool complete = true;
+  try {
+    SQLite::Statement statement(
+        database,
+        fmt::format("SELECT rowid AS row_number, * FROM \"{}\" ORDER BY rowid {}", table, order));
+    while (statement.executeStep()) {
+      SalvagedRow row = row_of(statement);
+      if (!known.insert(row.numbers["row_number"]).second) break;
+      rows.push_back(std::move(row));
+    }
+  } catch (const SQLite::Exception&) {
+    complete = false;
+  }
+  for (SalvagedRow& row : rows) {
+    if (is_sound(row)) {
+      out.rows.push_back(std::move(row));
+    } else {
+      ++out.damaged_blobs;
+    }
+  }
+  return complete;
+}
+
+SalvagedTable read_salvaged_table(SQLite::Database& database, const std::string& table) {
+  SalvagedTable out;
+  std::set<std::int64_t> known;
+  out.complete = read_rows(database, table, "ASC", known, out);
+  if (!out.complete) read_rows(database, table, "DESC", known, out);
+  return out;
+}
+
+/// Keys and values: such a table has no row numbers.
+SalvagedTable read_meta_rows(SQLite::Database& database) {
+  SalvagedTable out;
+  try {
+    SQLite::Statement statement(database, "SELECT * FROM meta");
+    while (statement.executeStep()) out.rows.push_back(row_of(statement));
+  } catch (const SQLite::Exception&) {
+    out.complete = false;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::map<std::string, SalvagedTable> salvage_tables(const fs::path& path) {
+  const SalvageCopy copy(path);
+  std::map<std::string, SalvagedTable> tables;
+  try {
+    SQLite::Database database(copy.file().string(), SQLite::OPEN_READWRITE);
+    std::vector<std::string> names;
+    SQLite::Statement statement(database, "SELECT name FROM sqlite_master WHERE type = 'table'");
+    while (statement.executeStep()) names.push_back(statement.getColumn(0).getString());
+    for (const std::string& name : names) {
+      tables[name] =
+          name == "meta" ? read_meta_rows(database) : read_salvaged_table(database, name);
+    }
+  } catch (const SQLite::Exception& error) {
+    throw std::runtime_error(
+        fmt::format("{}: nothing can be read: {}", path.string(), error.what()));
+  }
+  return tables;
+}
+
+}  // namespace topogeo::storage
