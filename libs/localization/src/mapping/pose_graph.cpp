@@ -176,7 +176,7 @@ std::vector<std::uint32_t> PoseGraph::stops_near(const Eigen::Vector2d& place_m,
 
 RelativePoses PoseGraph::relative_to(std::uint32_t origin, std::span<const std::uint32_t> wanted,
                                      double largest_cost) const {
-  return links_->relative_to(poses_, origin, wanted, largest_cost);
+  return links_->relative_to(poses_, origin, wanted, largest_cost, kAllStops);
 }
 
 std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin) const {
@@ -196,8 +196,8 @@ std::vector<UncertainPose> PoseGraph::relative_to(std::uint32_t origin) const {
 }
 
 RelativePoses PoseGraph::predict_from(std::uint32_t origin, std::span<const std::uint32_t> wanted,
-                                      double largest_cost) const {
-  return calibrated_links_->relative_to(poses_, origin, wanted, largest_cost);
+                                      double largest_cost, std::size_t most) const {
+  return calibrated_links_->relative_to(poses_, origin, wanted, largest_cost, most);
 }
 
 void PoseGraph::visit_nearest(std::span<const std::uint32_t> origins,

@@ -108,14 +108,14 @@ void PoseLinks::visit_nearest(std::span<const std::uint32_t> origins,
 }
 
 RelativePoses PoseLinks::relative_to(std::span<const Pose2> poses, std::uint32_t origin,
-                                     std::span<const std::uint32_t> wanted,
-                                     double largest_cost) const {
+                                     std::span<const std::uint32_t> wanted, double largest_cost,
+                                     std::size_t most) const {
   if (wanted.empty()) return {};
   for (const std::uint32_t stop : wanted) marks_.wanted[stop] = 1;
   std::vector<std::uint32_t> reached;  // nearest first, so that each follows the one before it
   std::size_t left = wanted.size();
   visit_nearest({&origin, 1}, [&](std::uint32_t stop, double cost) {
-    if (cost > largest_cost) return false;
+    if (cost > largest_cost || reached.size() >= most) return false;
     marks_.position[stop] = static_cast<std::uint32_t>(reached.size());
     reached.push_back(stop);
     return !(marks_.wanted[stop] != 0 && --left == 0);

@@ -33,11 +33,11 @@ class PoseLinks {
   /// See PoseGraph::links_to.
   [[nodiscard]] std::vector<std::pair<std::uint32_t, Eigen::Matrix3d>> links_to(
       std::uint32_t stop) const;
-  /// See PoseGraph::relative_to; `poses` are those of all stops.
+  /// See PoseGraph::predict_from; `poses` are those of all stops.
   [[nodiscard]] RelativePoses relative_to(std::span<const geometry::Pose2> poses,
                                           std::uint32_t origin,
                                           std::span<const std::uint32_t> wanted,
-                                          double largest_cost) const;
+                                          double largest_cost, std::size_t most) const;
   /// See PoseGraph::visit_nearest.
   void visit_nearest(std::span<const std::uint32_t> origins,
                      const std::function<bool(std::uint32_t, double)>& visit) const;

@@ -27,6 +27,9 @@ constexpr double kFarthestCompared_m = 20.0;
 constexpr std::size_t kMostConsidered = 100;
 // No drift between two closed loops is larger: places further off are not looked for.
 constexpr double kFarthestPlace_m = 100.0;
+// Visited for the predictions of a stop: all of a log of 4 km. Of a longer one these are the
+// nearest by what is known of them, and with them the stops that show the place.
+constexpr std::size_t kMostVisited = 4000;
 constexpr double kWidening =
     3.0;  // of the deviations, when nothing was found where odometry predicts
 
@@ -55,50 +58,6 @@ bool any_accepted(std::span<const StopMatch> matches) {
 }
 
 }  // namespace
-
-double StopMatch::surprise() const {
-  if (predicted.covariance.isZero(0.0)) return 0.0;
-  return geometry::squared_mahalanobis(geometry::difference(predicted.T_a_b, edge.T_from_to),
-                                       predicted.covariance);
-}
-
-bool StopMatch::plausible() const {
-  // Further from the prediction no place is looked for either.
-  if (!predicted.covariance.isZero(0.0) &&
-      geometry::squared_mahalanobis(geometry::difference(predicted.T_a_b, edge.T_from_to),
-                                    widened_for_places(predicted.covariance)) >
-          geometry::kMahalanobis2Of99Percent) {
-    return false;
-  }
-  constexpr double kLeastOfWindow = 0.88;
-  using Limits = PlausibleMatch;
-  if (weakest_sigma_m > Limits::kLeastKnown_m || rivalry > Limits::kMostRivalry) return false;
-  if (source == ProposalSource::kWindow) {
-    return fitness >= kLeastOfWindow && overlap >= Limits::kLeastOverlap;
-  }
-  return accepted() ||
-         (uncertain() && doubt <= Limits::kMostDoubt && inliers >= Limits::kLeastInliers &&
-          overlap >= Limits::kLeastOverlap && violations <= Limits::kMostViolations);
-}
-
-LoopEvidence StopMatch::loop_evidence() const {
-  LoopEvidence known;
-  known.kind = source == ProposalSource::kWindow    ? LoopEvidence::Kind::kWindow
-               : accepted()                         ? LoopEvidence::Kind::kPassed
-               : uncertain()                        ? LoopEvidence::Kind::kDoubtful
-               : reason == Reason::kNothingInCommon ? LoopEvidence::Kind::kNone
-                                                    : LoopEvidence::Kind::kRefused;
-  known.fitness = fitness;
-  known.doubt = doubt;
-  known.overlap = overlap;
-  known.inliers = inliers;
-  known.rivalry = rivalry;
-  known.weakest_sigma_m = weakest_sigma_m;
-  known.surprise = surprise();
-  known.agreement = agreement;
-  known.rival_agreement = rival_agreement;
-  return known;
-}
 
 StopMatching::StopMatching(const LocalizerConfig& config, MatchPool& pool)
     : config_(config), requests_(config, pool) {}
@@ -248,8 +207,9 @@ std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
     const std::vector<std::uint32_t> near =
         graph.stops_near(place_m, kFarthestCompared_m, kMostConsidered, first_recent(stop));
     RelativePoses relative =
-        ask ? graph.predict_from(stop, graph.stops_near(place_m, kFarthestPlace_m, stop, stop))
-            : graph.predict_from(stop, near, largest_searchable_cost(config_));
+        ask ? graph.predict_from(stop, graph.stops_near(place_m, kFarthestPlace_m, stop, stop),
+                                 PoseGraph::kUnlimited, kMostVisited)
+            : graph.predict_from(stop, near, largest_searchable_cost(config_), kMostVisited);
     relative.widen(map_noise());
     for (const MatchCandidate& candidate : revisited_candidates(graph, stop, near, relative)) {
       const UncertainPose& T_stop_earlier = relative.at(candidate.id);
@@ -318,7 +278,8 @@ std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
       };
       for (std::uint32_t earlier = place.first_stop; earlier <= place.last_stop; ++earlier) {
         const UncertainPose T_query_earlier = predicted(earlier);
-        if (earlier >= first_recent(query) || chosen.count({earlier, query}) > 0 ||
+        if (earlier >= first_recent(query) || relative[earlier].covariance.isZero(0.0) ||
+            chosen.count({earlier, query}) > 0 ||
             !comparisons_.worth(earlier, query, T_query_earlier.T_a_b)) {
           continue;
         }

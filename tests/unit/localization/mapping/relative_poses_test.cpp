@@ -111,6 +111,29 @@ TEST(RelativePoses, PredictionsUseCalibratedCovariances) {
                   .covariance.isApprox(variances_of_edge(0.01, 0.02, 0.003)));
 }
 
+TEST(RelativePoses, PredictionsVisitTheNearestByCostAtMostSoMany) {
+  PoseGraph graph;
+  graph.add_pose({});
+  for (std::uint32_t i = 1; i < 6; ++i) {
+    graph.add_pose({1.0 * i, 0.0, 0.0});
+    graph.add_edge(
+        {i - 1, i, EdgeKind::kOdometry, {1.0, 0.0, 0.0}, variances_of_edge(0.01, 0.01, 0.001)});
+  }
+  graph.add_edge({0, 5, EdgeKind::kRevisit, {5.0, 0.0, 0.0}, variances_of_edge(1e-4, 1e-4, 1e-5)});
+  const std::vector<std::uint32_t> wanted{1, 3, 5};
+  const auto reached = [&](std::size_t most) {
+    const RelativePoses found = graph.predict_from(0, wanted, PoseGraph::kUnlimited, most);
+    std::vector<std::uint32_t> ids;
+    for (const RelativePoses::Stop& stop : found.stops()) ids.push_back(stop.id);
+    return ids;
+  };
+  // Itself first, then 5 by the loop, 1 and 4 by a step each, 2 and 3 by two.
+  EXPECT_EQ(reached(1), std::vector<std::uint32_t>{});
+  EXPECT_EQ(reached(2), std::vector<std::uint32_t>{5});
+  EXPECT_EQ(reached(4), (std::vector<std::uint32_t>{1, 5}));
+  EXPECT_EQ(reached(6), wanted);
+}
+
 TEST(RelativePoses, AlongThePathIsWhatTheStepsComposeTo) {
   PoseGraph graph = chain();
   // What else is known of the two ends does not count.

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/stop_matching.hpp"
+#include "topogeo/localization/mapping/stop_match.hpp"
 
 namespace topogeo::localization {
 

@@ -15,7 +15,7 @@
 #include "topogeo/localization/mapping/loop_agreement.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/stop_matching.hpp"
+#include "topogeo/localization/mapping/stop_match.hpp"
 
 namespace topogeo::localization {
 

@@ -104,6 +104,7 @@ class PoseGraph {
                                                       double radius_m, std::size_t most,
                                                       std::uint32_t end) const;
 
+  static constexpr std::size_t kAllStops = std::numeric_limits<std::size_t>::max();
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   /// Relative poses of the wanted stops (ascending) seen from `origin` with their covariances, each
   /// along the path on which the variance grows least. All edges between two stops count together:
@@ -120,10 +121,12 @@ class PoseGraph {
 
   /// The same by the calibrated covariances of the edges: where a stop is to be expected. Matches
   /// of one place share errors that do not grow along a path, so this is too sure for weighing
-  /// measurements against each other.
+  /// measurements against each other. At most `most` stops are visited, the nearest by cost, which
+  /// bounds the work where all of a large graph is nearly as near; those wanted beyond are missing.
   [[nodiscard]] RelativePoses predict_from(std::uint32_t origin,
                                            std::span<const std::uint32_t> wanted,
-                                           double largest_cost = kUnlimited) const;
+                                           double largest_cost = kUnlimited,
+                                           std::size_t most = kAllStops) const;
 
   /// Visits stops in the order of the path_cost() from the nearest of the origins, which are
   /// different stops, until `visit` (stop, cost) returns false.

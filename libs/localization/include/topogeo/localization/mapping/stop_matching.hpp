@@ -17,54 +17,16 @@
 #include "topogeo/localization/mapping/candidate_choice.hpp"
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
-#include "topogeo/localization/mapping/loop_decision.hpp"
-#include "topogeo/localization/mapping/loop_probability.hpp"
 #include "topogeo/localization/mapping/match_requests.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
-#include "topogeo/localization/mapping/state_monitor.hpp"
 #include "topogeo/localization/mapping/stop_comparisons.hpp"
+#include "topogeo/localization/mapping/stop_match.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"
 #include "topogeo/topomap/local_map.hpp"
 
 namespace topogeo::localization {
-
-/// The result of a match of two stops.
-struct StopMatch {
-  PoseGraphEdge edge;             ///< as measured; as predicted when nothing was in common
-  UncertainPose T_later_earlier;  ///< the same, with the covariance of the match itself
-  UncertainPose predicted;        ///< of edge.T_from_to, before the match
-  ProposalSource source = ProposalSource::kPrediction;
-  Verdict verdict = Verdict::kRejected;
-  Reason reason = Reason::kNothingInCommon;
-  double fitness = 0.0;  ///< [0, 1]
-  double doubt = 0.0;    ///< see doubt(); this and the next as in MatchResult
-  double overlap = 0.0;
-  double inliers = 0.0;
-  double violations = 0.0;
-  double rivalry = 0.0;  ///< see rivalry()
-  /// Deviation of the position along the direction in which the scans alone know it least, metres.
-  double weakest_sigma_m = 0.0;
-  /// Weight of the set with which it was accepted and of the heaviest one that contradicts that
-  /// (LoopAgreement); 0: it was not accepted with others.
-  double agreement = 0.0;
-  double rival_agreement = 0.0;
-  StepMatch evidence;  ///< of the pose of the later stop
-  std::vector<MatchSolution> solutions;
-
-  [[nodiscard]] bool accepted() const { return verdict == Verdict::kAccepted; }
-  /// Not accepted, but not refuted either.
-  [[nodiscard]] bool uncertain() const {
-    return reason == Reason::kDoubtful || reason == Reason::kSecondSolution;
-  }
-  /// Squared Mahalanobis distance of the match from its prediction; 0 without one.
-  [[nodiscard]] double surprise() const;
-  /// Whether it may be right together with others that agree with it (LoopAgreement).
-  [[nodiscard]] bool plausible() const;
-  /// What the probability that it is right follows from.
-  [[nodiscard]] LoopEvidence loop_evidence() const;
-};
 
 class StopMatching {
  public:

@@ -1,0 +1,53 @@
+#include "topogeo/localization/mapping/stop_match.hpp"
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/places/place_recognition.hpp"
+
+namespace topogeo::localization {
+
+double StopMatch::surprise() const {
+  if (predicted.covariance.isZero(0.0)) return 0.0;
+  return geometry::squared_mahalanobis(geometry::difference(predicted.T_a_b, edge.T_from_to),
+                                       predicted.covariance);
+}
+
+bool StopMatch::plausible() const {
+  // Further from the prediction no place is looked for either.
+  if (!predicted.covariance.isZero(0.0) &&
+      geometry::squared_mahalanobis(geometry::difference(predicted.T_a_b, edge.T_from_to),
+                                    widened_for_places(predicted.covariance)) >
+          geometry::kMahalanobis2Of99Percent) {
+    return false;
+  }
+  constexpr double kLeastOfWindow = 0.88;
+  using Limits = PlausibleMatch;
+  if (weakest_sigma_m > Limits::kLeastKnown_m || rivalry > Limits::kMostRivalry) return false;
+  if (source == ProposalSource::kWindow) {
+    return fitness >= kLeastOfWindow && overlap >= Limits::kLeastOverlap;
+  }
+  return accepted() ||
+         (uncertain() && doubt <= Limits::kMostDoubt && inliers >= Limits::kLeastInliers &&
+          overlap >= Limits::kLeastOverlap && violations <= Limits::kMostViolations);
+}
+
+LoopEvidence StopMatch::loop_evidence() const {
+  LoopEvidence known;
+  known.kind = source == ProposalSource::kWindow    ? LoopEvidence::Kind::kWindow
+               : accepted()                         ? LoopEvidence::Kind::kPassed
+               : uncertain()                        ? LoopEvidence::Kind::kDoubtful
+               : reason == Reason::kNothingInCommon ? LoopEvidence::Kind::kNone
+                                                    : LoopEvidence::Kind::kRefused;
+  known.fitness = fitness;
+  known.doubt = doubt;
+  known.overlap = overlap;
+  known.inliers = inliers;
+  known.rivalry = rivalry;
+  known.weakest_sigma_m = weakest_sigma_m;
+  known.surprise = surprise();
+  known.agreement = agreement;
+  known.rival_agreement = rival_agreement;
+  return known;
+}
+
+}  // namespace topogeo::localization
