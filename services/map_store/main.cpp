@@ -1,4 +1,5 @@
 // Keeps the map of a robot in a directory and shows it to all readers.
+#include <csignal>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -41,6 +42,7 @@ std::shared_ptr<const storage::MapDocument> map_to_continue(
 
 struct StoreOptions {
   map_store::MapStoreOptions store;
+  bool anew = false;
   std::optional<std::filesystem::path> continued;
   std::optional<std::filesystem::path> map;
   map_store::DrawingOptions drawing;
@@ -54,21 +56,26 @@ void add_options(command_line::Command& app, StoreOptions& options) {
   app.add_option("--out", store.directory,
                  "directory of the results, made if missing; needed unless a map is only shown");
   app.add_option("--database", store.database,
-                 "map database; replaced when it is of an earlier run; default: map.sqlite there");
+                 "map database, with which the map store goes on; default: map.sqlite there");
+  app.add_flag("--new", options.anew,
+               "begin a new map; the database that is there is kept once, as NAME.previous.sqlite");
   app.add_option("--continue", options.continued,
-                 "map.pb that is extended, as given to the localizer; it stays as it is")
+                 "map (map.pb or map.sqlite) that a new map extends, as given to the localizer; it "
+                 "stays as it is")
       ->type_name("FILE");
   app.add_option("--title", store.title, "title of the pictures; default: the robot's name");
   app.add_option("--map", options.map,
-                 "map.pb that is shown as it is; nothing is taken in and nothing written")
+                 "map (map.pb or map.sqlite) that is shown as it is; nothing is taken in and "
+                 "nothing written")
       ->type_name("FILE");
   add_drawing_options(app, options.drawing);
 }
 
 /// Shows a stored map, a drawing, or both.
 void serve(const service::Setup& setup, const StoreOptions& options) {
-  if (options.continued || !options.store.directory.empty()) {
-    throw service::UsageError("--map shows a map as it is: --out and --continue do not go with it");
+  if (options.continued || options.anew || !options.store.directory.empty()) {
+    throw service::UsageError(
+        "--map shows a map as it is: --out, --new and --continue do not go with it");
   }
   const pipeline::HybridMapConfig& config = setup.config.config.hybrid_map;
   storage::MapDrawing drawing = read_drawing(options.drawing, config.grid.resolution_m);
@@ -96,16 +103,21 @@ void keep(const service::Setup& setup, StoreOptions options) {
   storage::MapDrawing drawing =
       read_drawing(options.drawing, setup.config.config.hybrid_map.grid.resolution_m);
   store.continued = map_to_continue(options.continued, setup);
-  if (store.continued) store.drawing = store.continued->drawing;
-  pipeline::lay_over(store.drawing, std::move(drawing));
+  store.drawing = std::move(drawing);
   check_directory(store.directory);
   if (store.database.empty()) store.database = store.directory / "map.sqlite";
   if (store.title.empty()) store.title = setup.options.robot_id;
-  storage::MapDatabase database = map_store::fresh_database(store.database, setup.options.robot_id,
-                                                            setup.config.config.localizer.seed);
+  const std::uint64_t seed = setup.config.config.localizer.seed;
+  storage::MapDatabase database =
+      options.anew ? map_store::fresh_database(store.database, setup.options.robot_id, seed)
+                   : map_store::last_database(store.database, setup.options.robot_id, seed);
+  if (store.continued) map_store::begin_with(database, *store.continued);
+  // A file that may not grow any more is a full disk and no reason to die.
+  std::signal(SIGXFSZ, SIG_IGN);
   service::Service service(setup);
-  const map_store::MapStoreService running(service, std::move(store), std::move(database));
+  map_store::MapStoreService running(service, std::move(store), std::move(database));
   service.run();
+  running.end();
 }
 
 }  // namespace

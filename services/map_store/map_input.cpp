@@ -6,11 +6,31 @@
 #include <utility>
 
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::map_store {
 
-MapInput::MapInput(std::vector<topomap::LocalMap> stored)
-    : local_maps_(std::move(stored)), stored_(local_maps_.size()) {}
+MapInput::MapInput(Stored stored)
+    : local_maps_(std::move(stored.local_maps)),
+      first_kept_(std::move(stored.first_kept)),
+      closures_(std::move(stored.closures)) {
+  for (const topomap::LocalMap& map : local_maps_) remember(map);
+  if (!stored.trajectory.stops.empty()) {
+    closures_version_ = stored.trajectory.version;
+    for (const auto& segment : service::to_segments(stored.trajectory, {}, 0)) {
+      trajectory_.add(segment);
+    }
+  }
+  for (topomap::LocalMap& map : stored.waiting) add(std::move(map));
+}
+
+void MapInput::remember(const topomap::LocalMap& map) {
+  const topomap::LocalMap as_sent = topomap::numbered(map, map.stop.number, false);
+  arrived_.try_emplace(map.stop, Arrived{map.sequence, topomap::content_hash(as_sent)});
+  if (std::ranges::find(sessions_, map.stop.session) == sessions_.end()) {
+    sessions_.push_back(map.stop.session);
+  }
+}
 
 MapInput::Arrival MapInput::add(topomap::LocalMap map) {
   const topomap::StopId stop = map.stop;
@@ -27,20 +47,22 @@ MapInput::Arrival MapInput::add(topomap::LocalMap map) {
 }
 
 void MapInput::add(const msg::TrajectorySegment& message) {
-  check_sources(message);
+  check_stops(message);
   trajectory_.add(message);
   extend();
   drop_old();
 }
 
-void MapInput::check_sources(const msg::TrajectorySegment& message) const {
+void MapInput::check_stops(const msg::TrajectorySegment& message) const {
   for (const msg::StopPose& stop : message.stops()) {
-    if (stop.local_map_id() >= stored_) continue;
-    if (service::from_msg(stop.stop()) == local_maps_[stop.local_map_id()].stop) continue;
-    throw std::invalid_argument("stop " + std::to_string(stop.local_map_id()) +
-                                " is not that of the stored map, expected the first " +
-                                std::to_string(stored_) +
-                                " to be: localizer and map store need the same --continue");
+    if (stop.local_map_id() >= local_maps_.size()) continue;
+    const topomap::StopId named = service::from_msg(stop.stop());
+    const topomap::StopId held = local_maps_[stop.local_map_id()].stop;
+    if (named == held) continue;
+    throw std::invalid_argument(fmt::format(
+        "stop {} is stop {} of session {:016x}, in this map it is stop {} of session {:016x}: the "
+        "localizer does not go on with this map",
+        stop.local_map_id(), named.number, named.session, held.number, held.session));
   }
 }
 

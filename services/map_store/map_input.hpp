@@ -1,4 +1,5 @@
-// Collects local maps, trajectory and loop closures of a robot, which may come in any order.
+// Collects local maps, trajectory and loop closures of a robot, which may come in any order, also
+// after a new start of the map store or of those who send them.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,16 @@ namespace topogeo::map_store {
 
 class MapInput {
  public:
-  /// `stored` are the local maps of a map that is continued.
-  explicit MapInput(std::vector<topomap::LocalMap> stored = {});
+  /// The map that is continued.
+  struct Stored {
+    std::vector<topomap::LocalMap> local_maps = {};  ///< of the map, with its numbers
+    topomap::Trajectory trajectory = {};
+    std::vector<topomap::LoopClosure> closures = {};
+    std::vector<topomap::LocalMap> waiting = {};  ///< as they were sent, in the order of arrival
+    std::map<std::uint64_t, std::uint32_t> first_kept = {};  ///< see storage::SessionState
+  };
+  MapInput() = default;
+  explicit MapInput(Stored stored);
 
   /// At most so many maps wait for the trajectory, about 60 MB; then the oldest is dropped. Local
   /// maps wait in vain while the robot is only localized, and while a drive has not found its place
@@ -33,8 +42,7 @@ class MapInput {
   Arrival add(topomap::LocalMap map);
 
   /// Older segments and closures than those held are passed over. They throw std::invalid_argument
-  /// like service::from_msg, and when the first stops, or the number of stops that were there
-  /// before, are not those of the stored map.
+  /// like service::from_msg, and when they name other stops than the map has.
   void add(const msg::TrajectorySegment& message);
   void add(const msg::LoopClosures& message);
   /// The end of the localizer's stream; the last one counts.
@@ -65,7 +73,8 @@ class MapInput {
     std::uint64_t content_hash = 0;
     bool operator==(const Arrived&) const = default;
   };
-  void check_sources(const msg::TrajectorySegment& message) const;
+  void check_stops(const msg::TrajectorySegment& message) const;
+  void remember(const topomap::LocalMap& map);
   /// Takes in the maps that the trajectory names and that are here.
   void extend();
   /// Forgets the maps that cannot be used any more.
@@ -75,7 +84,6 @@ class MapInput {
   [[nodiscard]] bool dropped(const topomap::StopId& stop) const;
 
   std::vector<topomap::LocalMap> local_maps_;
-  std::size_t stored_ = 0;  // of them, from the stored map
   std::map<topomap::StopId, Arrived> arrived_;
   Waiting waiting_;
   std::map<std::uint64_t, std::uint32_t> first_kept_;  // by session: numbers below are dropped

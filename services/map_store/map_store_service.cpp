@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/log.hpp"
@@ -25,8 +26,31 @@ constexpr std::chrono::seconds kPublishPeriod{2};
 // The hybrid map is made in one go and may take much longer: at most a tenth.
 constexpr std::chrono::seconds kHybridPeriod{4};
 constexpr int kHybridShare = 10;
-constexpr milliseconds kStorePeriod{500};
+constexpr milliseconds kStorePeriod{200};
+constexpr std::chrono::seconds kStoreRetryPeriod{1};
+// Answers to requests for the map: a quarter of the time while there are some.
+constexpr milliseconds kSnapshotPeriod{40};
+constexpr milliseconds kSnapshotSlice{10};
+constexpr std::uint32_t kPiecesUnderWay = 64;  // 3.6 MB
 constexpr std::chrono::seconds kRetryPeriod{5};
+
+/// The map that is there, and its drawing under what is drawn now.
+MapInput::Stored stored_input(const storage::MapDatabase& database, storage::MapDrawing& drawing) {
+  storage::MapDocument document = database.load();
+  pipeline::lay_over(document.drawing, std::move(drawing));
+  drawing = std::move(document.drawing);
+  MapInput::Stored stored;
+  stored.local_maps = std::move(document.local_maps);
+  stored.trajectory = std::move(document.trajectory);
+  stored.closures = std::move(document.loop_closures);
+  for (const topomap::StopId& stop : database.waiting_stops()) {
+    if (auto map = database.stop(stop)) stored.waiting.push_back(std::move(*map));
+  }
+  for (const storage::SessionState& session : database.sessions()) {
+    stored.first_kept[session.id] = session.first_kept;
+  }
+  return stored;
+}
 
 }  // namespace
 
@@ -34,14 +58,19 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
                                  storage::MapDatabase database)
     : service_(service),
       options_(std::move(options)),
-      database_(std::move(database)),
-      input_(options_.continued ? options_.continued->local_maps
-                                : std::vector<topomap::LocalMap>{}),
+      archive_(std::move(database), options_.database),
+      input_(stored_input(archive_.database(), options_.drawing)),
       live_map_(service.setup().config.config.global_map),
       elements_(service),
       hybrid_(service),
-      ends_out_(service.advertise<msg::StreamEnd>()) {
-  if (!options_.drawing.empty()) database_.put_drawing(options_.drawing);
+      ends_out_(service.advertise<msg::StreamEnd>()),
+      stored_out_(service.advertise<msg::StoredMap>()),
+      pieces_out_(service.advertise<msg::SnapshotPiece>()),
+      snapshots_(
+          service.robot_id(),
+          [this](const auto& request, const auto& sink) { write_snapshot(request, sink); },
+          [this](const msg::SnapshotPiece& piece) { return send_piece(piece); }) {
+  if (!options_.drawing.empty()) archive_.put(options_.drawing);
   if (options_.drawing.grid) hybrid_pending_.emplace();  // there is a map before any scan
   listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); },
                         {.main_input = true});
@@ -51,12 +80,16 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   listen<msg::StreamEnd>([this](const msg::StreamEnd& end) {
     if (end.stage() == msg::kStageLocalizer) input_.set_end(end);
   });
+  service_.subscribe<msg::SnapshotRequest>(
+      [this](const msg::SnapshotRequest& request) { snapshots_.add(request); });
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
     finish_if_complete();
     report_losses();
     count();
   });
+  service_.loop().add_timer(kSnapshotPeriod,
+                            [this] { snapshots_.work(Clock::now(), kSnapshotSlice); });
   service_.loop().add_timer(kLivePeriod, [this] {
     if (finished_) {
       hybrid_.send_rest();
@@ -64,6 +97,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       work_on_live_map();
     }
   });
+  acknowledge();
   count();
   service_.status().set_state(msg::kServiceWaiting, "for local maps");
 }
@@ -83,31 +117,96 @@ void MapStoreService::on_local_map(const msg::LocalMap& message) {
   if (service_.status().state() == msg::kServiceWaiting) {
     service_.status().set_state(msg::kServiceRunning);
   }
-  if (input_.add(service::from_msg(message)) == MapInput::Arrival::kDifferent) {
+  topomap::LocalMap map = service::from_msg(message);
+  archive_.add(map);
+  if (input_.add(std::move(map)) == MapInput::Arrival::kDifferent) {
     service_.status().fault("local map differs",
                             "another map " + std::to_string(message.id()) + " came before");
   }
+  if (archive_.has_batch()) store();
 }
 
 bool MapStoreService::store() {
+  if (Clock::now() < next_store_) return false;
+  messaging::StatusPublisher& status = service_.status();
   try {
-    for (std::size_t i = database_.local_map_count(); i < input_.local_maps().size(); ++i) {
-      const storage::SessionStop stop{1, 0, input_.local_maps()[i]};
-      static_cast<void>(database_.put_stops({&stop, 1}));
-      const storage::JoinedStop joined{stop.source(), false};
-      database_.join({&joined, 1});
+    for (const topomap::StopId& stop : archive_.flush()) {
+      status.fault("local map differs",
+                   "another map " + std::to_string(stop.number) + " is in the map file");
     }
-    const topomap::Trajectory trajectory = input_.newest_trajectory();
-    if (trajectory.version != stored_version_ || trajectory.stops.size() != stored_stops_) {
-      database_.put_trajectory(trajectory.version, trajectory.stops, input_.usable_closures());
-      stored_version_ = trajectory.version;
-      stored_stops_ = trajectory.stops.size();
+    acknowledge();
+    archive_.put(input_.local_maps(), input_.newest_trajectory(), input_.usable_closures());
+    acknowledge();
+    if (storing_fails_) {
+      spdlog::info("the map is stored again");
+      status.set_state(msg::kServiceRunning);
     }
+    storing_fails_ = false;
     return true;
   } catch (const std::exception& error) {
-    service_.status().fault("database", error.what());
+    storing_failed(error.what());
     return false;
   }
+}
+
+// The map goes on in memory; senders keep what is not acknowledged.
+void MapStoreService::storing_failed(const std::string& why) {
+  service_.status().fault("database", why);
+  service_.status().set_state(msg::kServiceFailed, why);
+  storing_fails_ = true;
+  next_store_ = Clock::now() + kStoreRetryPeriod;
+}
+
+void MapStoreService::acknowledge() {
+  const storage::MapDatabase& database = archive_.database();
+  const std::vector<storage::SessionState> sessions = database.sessions();
+  const auto newest = std::find_if(sessions.rbegin(), sessions.rend(),
+                                   [](const auto& session) { return !session.is_over; });
+  const storage::SessionState none;
+  const storage::SessionState& session = newest == sessions.rend() ? none : *newest;
+  msg::StoredMap message = stored_;
+  message.map_id(database.map_id());
+  message.stops(database.local_map_count());
+  message.earlier_stops(database.local_map_count() - session.joined);
+  if (session.id != stored_.session() || session.stops != stored_.session_stops()) {
+    message.session(session.id);
+    message.session_stops(session.stops);
+    const auto last =
+        session.stops > 0 ? database.stop({session.id, session.stops - 1}) : std::nullopt;
+    const topomap::LocalMap stop = last.value_or(topomap::LocalMap{});
+    message.stamp_ns(stop.stamp_ns);
+    message.content_hash(last ? topomap::content_hash(stop) : 0);
+    message.T_odom_robot(service::to_msg(stop.T_odom_robot));
+    message.odometry_epoch(stop.odometry_epoch);
+  }
+  if (acknowledgements_ > 0 && message == stored_) return;
+  messaging::set_header(message, service_.robot_id(), message.stamp_ns(), acknowledgements_);
+  if (!stored_out_.write(message)) {
+    service_.status().fault("acknowledgement not sent", std::to_string(message.session_stops()));
+    return;
+  }
+  ++acknowledgements_;
+  stored_ = message;
+}
+
+void MapStoreService::write_snapshot(const msg::SnapshotRequest& request,
+                                     const SnapshotQueue::Sink& sink) {
+  if (!finished_) store();  // what cannot be stored is not in it
+  const storage::MapDatabase& database = archive_.database();
+  if (request.kind() == msg::kSnapshotMap) {
+    database.write_map_file(sink);
+  } else {
+    database.write_local_maps(request.session(), request.first(), sink);
+  }
+}
+
+bool MapStoreService::send_piece(const msg::SnapshotPiece& piece) {
+  // So much is under way at a time: what a slow reader does not take stays in memory.
+  if (piece.piece() % kPiecesUnderWay == 0 &&
+      !pieces_out_.wait_for_acknowledgments(kSnapshotSlice)) {
+    return false;
+  }
+  return pieces_out_.write(piece);
 }
 
 void MapStoreService::work_on_live_map() {
@@ -130,6 +229,7 @@ void MapStoreService::work_on_live_map() {
   const auto publish_start = Clock::now();
   hybrid_pending_ = live_map_.snapshot(trajectory.version);
   publish(*hybrid_pending_);
+  keep(*hybrid_pending_);
   published_maps_ = live_map_.size();
   published_version_ = trajectory.version;
   const auto now = Clock::now();
@@ -140,6 +240,15 @@ void MapStoreService::work_on_live_map() {
 void MapStoreService::publish(const topomap::GlobalMap& map) {
   if (input_.local_maps().empty()) return;
   elements_.publish(map, input_.local_maps().back().stamp_ns);
+}
+
+void MapStoreService::keep(const topomap::GlobalMap& map) {
+  if (storing_fails_) return;  // store() reports it
+  try {
+    archive_.put(map);
+  } catch (const std::exception& error) {
+    storing_failed(error.what());
+  }
 }
 
 void MapStoreService::publish_hybrid() {
@@ -188,15 +297,27 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
   document.loop_closures = input_.usable_closures();
   document.global_map = pipeline::fuse(config.global_map, document.local_maps, trajectory);
   document.drawing = options_.drawing;
+  document.map_id = archive_.database().map_id();
   return document;
 }
 
+void MapStoreService::end() {
+  if (finished_ || input_.newest_trajectory().stops.empty()) return;
+  next_store_ = {};
+  store();
+  const storage::MapDocument document = final_document(input_.newest_trajectory());
+  write_results(options_.directory, document, options_.title);
+  spdlog::info("stopped: the map so far, {} local maps, {} nodes and {} branches, in {}",
+               document.local_maps.size(), document.global_map.nodes.size(),
+               document.global_map.branches.size(), options_.directory.string());
+  keep(document.global_map);
+}
+
 void MapStoreService::finish(const topomap::Trajectory& trajectory) {
+  if (!store()) throw std::runtime_error("the map file could not be brought up to date");
   const storage::MapDocument document = final_document(trajectory);
   publish(document.global_map);
-  stored_version_ = 0;  // the closures of this version may have come after its poses were stored
-  if (!store()) throw std::runtime_error("the database could not be brought up to date");
-  database_.put_global_map(document.global_map);
+  archive_.put(document.global_map);
   write_results(options_.directory, document, options_.title);
 
   msg::StreamEnd end;
@@ -234,7 +355,11 @@ void MapStoreService::count() {
   status.set_counter("local_maps_dropped", static_cast<double>(input_.dropped()));
   status.set_counter("trajectory_version", static_cast<double>(input_.version()));
   status.set_counter("loop_closures", static_cast<double>(input_.usable_closures().size()));
-  status.set_counter("stored_local_maps", static_cast<double>(database_.local_map_count()));
+  status.set_counter("stored_local_maps",
+                     static_cast<double>(archive_.database().local_map_count()));
+  status.set_counter("local_maps_to_store", static_cast<double>(archive_.queued()));
+  status.set_counter("snapshots_served", static_cast<double>(snapshots_.served()));
+  status.set_counter("snapshots_refused", static_cast<double>(snapshots_.refused()));
   status.set_counter("map_rebuilds", static_cast<double>(live_map_.rebuilds()));
 }
 

@@ -1,4 +1,5 @@
-// Keeps the map of a robot: stores what comes, shows the live map, and writes the final one.
+// Keeps the map of a robot: stores what comes and acknowledges it, shows the live map, gives it to
+// those who ask, and writes the files of it at the end.
 #pragma once
 
 #include <chrono>
@@ -9,6 +10,7 @@
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
+#include "topogeo/msg/store.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
@@ -18,7 +20,9 @@
 #include "element_publisher.hpp"
 #include "hybrid_publisher.hpp"
 #include "live_map.hpp"
+#include "map_archive.hpp"
 #include "map_input.hpp"
+#include "snapshot_queue.hpp"
 
 namespace topogeo::map_store {
 
@@ -33,10 +37,15 @@ struct MapStoreOptions {
 /// Lives in the loop of its service.
 class MapStoreService {
  public:
-  /// `database` is empty, `options.directory` exists. Throws std::runtime_error when the drawing
-  /// cannot be stored.
+  /// Goes on with the map of `database`, which is that of `options.continued` where that is given.
+  /// `options.directory` exists. Throws std::runtime_error when the map cannot be read or the
+  /// drawing cannot be stored.
   MapStoreService(service::Service& service, MapStoreOptions options,
                   storage::MapDatabase database);
+
+  /// After the loop: writes the files of the map as far as it came. Throws std::runtime_error
+  /// naming the file.
+  void end();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -45,11 +54,18 @@ class MapStoreService {
   void listen(Handler handler, const service::Subscription& subscription = {});
   void on_local_map(const msg::LocalMap& message);
 
-  /// Puts what is new into the database; false, and a fault, when that fails.
+  /// Stores what is new and acknowledges it; false, and a fault, when that fails.
   bool store();
+  void storing_failed(const std::string& why);
+  void acknowledge();
+  void write_snapshot(const msg::SnapshotRequest& request, const SnapshotQueue::Sink& sink);
+  /// False when it is not sent.
+  bool send_piece(const msg::SnapshotPiece& piece);
   /// A slice of work on the live map.
   void work_on_live_map();
   void publish(const topomap::GlobalMap& map);
+  /// Stores it, or reports a fault.
+  void keep(const topomap::GlobalMap& map);
   /// Makes and sends the hybrid map of what is there, when it is time to.
   void publish_hybrid();
   void finish_if_complete();
@@ -62,16 +78,21 @@ class MapStoreService {
 
   service::Service& service_;
   MapStoreOptions options_;
-  storage::MapDatabase database_;
+  MapArchive archive_;
   MapInput input_;
   LiveMap live_map_;
   ElementPublisher elements_;
   HybridPublisher hybrid_;
 
   messaging::Writer<msg::StreamEnd> ends_out_;
+  messaging::Writer<msg::StoredMap> stored_out_;
+  messaging::Writer<msg::SnapshotPiece> pieces_out_;
+  SnapshotQueue snapshots_;
 
-  std::uint64_t stored_version_ = 0;
-  std::size_t stored_stops_ = 0;
+  std::uint64_t acknowledgements_ = 0;
+  msg::StoredMap stored_;         // as it was sent last
+  Clock::time_point next_store_;  // after a failure
+  bool storing_fails_ = false;
   std::size_t published_maps_ = 0;
   std::uint64_t published_version_ = 0;
   Clock::time_point next_publish_;

@@ -5,6 +5,7 @@
 
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::map_store {
 
@@ -31,6 +32,31 @@ storage::MapDatabase fresh_database(const fs::path& path, const std::string& rob
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
+}
+
+storage::MapDatabase last_database(const fs::path& path, const std::string& robot_id,
+                                   std::uint64_t seed) {
+  try {
+    return storage::MapDatabase::open_or_create(path, robot_id, seed);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(std::string(error.what()) +
+                                 "; begin a new map with --new, or name another file with "
+                                 "--database");
+  }
+}
+
+void begin_with(storage::MapDatabase& database, const storage::MapDocument& continued) {
+  try {
+    if (database.sessions().empty()) database.put_document(continued);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+  const std::uint64_t expected = storage::identified(continued).map_id;
+  if (database.map_id() == expected) return;
+  throw service::BadInputError(
+      fmt::format("the map database holds map {:016x} and not {:016x}, which is to be continued; "
+                  "leave out --continue to go on with it, or begin anew with --new",
+                  database.map_id(), expected));
 }
 
 void write_results(const fs::path& directory, const storage::MapDocument& document,

@@ -17,6 +17,15 @@ namespace topogeo::map_store {
 storage::MapDatabase fresh_database(const std::filesystem::path& path, const std::string& robot_id,
                                     std::uint64_t seed);
 
+/// The database that is there, to go on with it, or a new one. Throws service::BadInputError when
+/// what is there cannot be used; it stays as it is then.
+storage::MapDatabase last_database(const std::filesystem::path& path, const std::string& robot_id,
+                                   std::uint64_t seed);
+
+/// Puts the map that is to be extended into a new database; one that began with it stays as it is.
+/// Throws service::BadInputError when it holds another map.
+void begin_with(storage::MapDatabase& database, const storage::MapDocument& continued);
+
 /// Writes what results::write_map_outputs does, and map.pb last, so that where map.pb is new the
 /// others are too. Throws std::runtime_error naming the file.
 void write_results(const std::filesystem::path& directory, const storage::MapDocument& document,

@@ -140,7 +140,7 @@ int run_log(const RunOptions& options) {
   mounted.laser = job.inputs.config.config.local_mapper.T_robot_laser;
   const RunResult result = RunSupervisor(mounted, job.laser_lines).run();
   if (result.signal_number != 0) {
-    std::cerr << "topogeo: stopped, no map was written\n";
+    std::cerr << "topogeo: stopped, what was mapped is in " << options.job.out.string() << "\n";
     return kSignalBase + result.signal_number;
   }
   if (!result.finished) throw std::runtime_error(result.failure);

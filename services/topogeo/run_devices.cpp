@@ -138,7 +138,7 @@ int run_devices(RunOptions options) {
   support::check_writable_directory(options.job.out);
   const RunResult result = RunSupervisor(options, 0).run();
   if (result.signal_number != 0) {
-    std::cerr << "topogeo: stopped, no map was written\n";
+    std::cerr << "topogeo: stopped, what was mapped is in " << options.job.out.string() << "\n";
     return kSignalBase + result.signal_number;
   }
   if (!result.finished) throw std::runtime_error(result.failure);

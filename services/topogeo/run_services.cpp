@@ -42,7 +42,8 @@ Arguments common_arguments(const RunOptions& options, const std::string& partiti
 /// What a map store keeps, or the map that it shows as it is.
 Arguments store_arguments(const RunOptions& options) {
   if (options.goal && options.job.map) return {"--map", options.job.map->string()};
-  Arguments arguments = {"--out", options.job.out.string(), "--title", source_name(options)};
+  Arguments arguments = {"--out", options.job.out.string(), "--new", "--title",
+                         source_name(options)};
   if (options.job.continued) {
     arguments.insert(arguments.end(), {"--continue", options.job.continued->string()});
   }

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "topogeo/storage/read_map.hpp"
+
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -45,7 +47,6 @@ TEST_P(DyingServiceTest, IsNamedAndTheRestIsStopped) {
   EXPECT_EQ(run.wait(30), 1);
   EXPECT_THAT(run.err(), HasSubstr(std::string(GetParam()) + " was killed by signal 9"));
   EXPECT_THAT(run.services(), IsEmpty());
-  EXPECT_FALSE(std::filesystem::exists(out_ + "/map.pb"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Services, DyingServiceTest,
@@ -59,9 +60,9 @@ TEST_F(InterruptionTest, CtrlCStopsEverything) {
   EXPECT_THAT(run.services(), SizeIs(6));
   run.send_signal(SIGINT);
   EXPECT_EQ(run.wait(30), 128 + SIGINT);
-  EXPECT_THAT(run.err(), HasSubstr("stopped, no map was written"));
+  EXPECT_THAT(run.err(), HasSubstr("stopped, what was mapped is in"));
   EXPECT_THAT(run.services(), IsEmpty());
-  EXPECT_FALSE(std::filesystem::exists(out_ + "/map.pb"));
+  EXPECT_GT(storage::read_map(out_ + "/map.pb").trajectory.stops.size(), 0U);
 }
 
 TEST_F(InterruptionTest, CtrlCWhileServicesStart) {

@@ -31,7 +31,7 @@ namespace {
 
 /// A map file as far as its stops have poses.
 storage::MapDocument load_usable_map(const std::filesystem::path& file) {
-  storage::MapDocument document = storage::read_map(file);
+  storage::MapDocument document = storage::identified(storage::read_map(file));
   document.local_maps.resize(document.trajectory.stops.size());
   for (const topomap::StopPose& stop : document.trajectory.stops) {
     if (stop.located) continue;

@@ -67,7 +67,12 @@ storage::MapDocument MappingRun::finish() {
   }
   document.trajectory = slam_->trajectory();
   document.loop_closures = slam_->loop_closures();
-  if (continued_) document.drawing = continued_->drawing;
+  if (continued_) {
+    document.drawing = continued_->drawing;
+    document.map_id = continued_->map_id;
+  } else if (!document.local_maps.empty()) {
+    document.map_id = storage::map_id_of(document.local_maps.front().stop.session);
+  }
   const auto scope = times_.measure("map_store");
   document.global_map = fuse(config_.global_map, document.local_maps, document.trajectory);
   return document;

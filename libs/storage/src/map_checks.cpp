@@ -1,6 +1,5 @@
 // Whether the parts of a map fit together.
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 
 #include "topogeo/support/format.hpp"
@@ -24,15 +23,12 @@ void check_ascending(const std::vector<Element>& elements, const char* what) {
   }
 }
 
-void check_sources(const std::vector<StopSource>& sources, std::size_t map_count) {
-  if (!sources.empty() && sources.size() != map_count) {
-    fail("{} sources of stops: expected one for each of the {} local maps or none", sources.size(),
-         map_count);
-  }
-  std::set<StopSource> taken;
-  for (const StopSource& source : sources) {
-    if (taken.insert(source).second) continue;
-    fail("stop {} of session {:016x} is in the map twice", source.number, source.session);
+void check_sessions(const std::vector<topomap::LocalMap>& maps) {
+  for (const topomap::LocalMap& map : maps) {
+    const std::uint64_t session = map.stop.session;
+    if ((session == 0) == (maps.front().stop.session == 0)) continue;
+    fail("local map {} is of session {:016x}: expected one for all local maps or for none", map.id,
+         session);
   }
 }
 
@@ -82,7 +78,7 @@ void check_document(const MapDocument& document) {
     }
   }
   check_edges(document.edges, map_count);
-  check_sources(document.sources, map_count);
+  check_sessions(document.local_maps);
   check_global_map(document.global_map);
   check(document.drawing);
 }

@@ -162,6 +162,9 @@ void to_proto(const topomap::LocalMap& map, proto::LocalMap* out) {
     tracked->set_matched(scan.matched);
   }
   out->set_starts_drive(map.starts_drive);
+  out->set_session(map.stop.session);
+  out->set_number(map.stop.number);
+  out->set_odometry_epoch(map.odometry_epoch);
 }
 
 topomap::LocalMap from_proto(const proto::LocalMap& in) {
@@ -191,6 +194,8 @@ topomap::LocalMap from_proto(const proto::LocalMap& in) {
     map.track.push_back(tracked_scan_from_proto(scan));
   }
   map.starts_drive = in.starts_drive();
+  map.stop = {in.session(), in.number()};
+  map.odometry_epoch = in.odometry_epoch();
   return map;
 }
 

@@ -8,9 +8,11 @@
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "map_conversions.hpp"
+#include "map_file_writer.hpp"
 #include "map_rows.hpp"
 #include "map_schema.hpp"
 #include "meta_table.hpp"
@@ -164,20 +166,21 @@ void MapDatabase::change(const Work& work) try {
   throw_named(name_, error);
 }
 
-std::vector<StopSource> MapDatabase::put_stops(std::span<const SessionStop> stops) {
-  std::vector<StopSource> different;
+std::vector<topomap::StopId> MapDatabase::put_stops(std::span<const topomap::LocalMap> stops) {
+  std::vector<topomap::StopId> different;
   change([&] { different = write_stops(stops); });
   return different;
 }
 
-std::vector<StopSource> MapDatabase::write_stops(std::span<const SessionStop> stops) {
-  for (const SessionStop& stop : stops) {
-    if (stop.map.robot_id == robot_id_) continue;
-    throw std::invalid_argument(fmt::format("{}: stop {} of robot '{}', expected '{}'", name_,
-                                            stop.map.id, stop.map.robot_id, robot_id_));
+std::vector<topomap::StopId> MapDatabase::write_stops(std::span<const topomap::LocalMap> stops) {
+  for (const topomap::LocalMap& map : stops) {
+    if (map.robot_id == robot_id_ && map.stop.session != 0) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: stop {} of session {:016x} of robot '{}', expected a session of '{}'",
+                    name_, map.stop.number, map.stop.session, map.robot_id, robot_id_));
   }
-  std::vector<StopSource> different = stops_->put(stops);
-  if (map_id_ == 0 && !stops.empty()) write_map_id(map_id_of(stops.front().session));
+  std::vector<topomap::StopId> different = stops_->put(stops, false);
+  if (map_id_ == 0 && !stops.empty()) write_map_id(map_id_of(stops.front().stop.session));
   return different;
 }
 
@@ -197,8 +200,12 @@ std::size_t MapDatabase::drop_waiting(std::size_t most) {
 }
 
 void MapDatabase::put_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
-                                 std::span<const topomap::LoopClosure> closures) {
-  change([&] { write_trajectory(version, changed, closures); });
+                                 std::span<const topomap::LoopClosure> closures,
+                                 std::span<const JoinedStop> joined) {
+  change([&] {
+    stops_->join(joined);
+    write_trajectory(version, changed, closures);
+  });
 }
 
 void MapDatabase::write_trajectory(std::uint64_t version,
@@ -317,12 +324,9 @@ void MapDatabase::write_document(const MapDocument& document) {
                     name_, robot_id_, document.robot_id));
   }
   std::vector<JoinedStop> joined;
-  for (std::size_t i = 0; i < document.local_maps.size(); ++i) {
-    const StopSource& source = document.sources[i];
-    const SessionStop stop{source.session, 0,
-                           topomap::numbered(document.local_maps[i], source.number, false)};
-    stops_->put({&stop, 1});
-    joined.push_back({source, false});
+  for (const topomap::LocalMap& map : document.local_maps) {
+    static_cast<void>(stops_->put({&map, 1}, true));
+    joined.push_back({map.stop, false});
   }
   stops_->join(joined);
   if (document.map_id != 0) write_map_id(document.map_id);
@@ -335,10 +339,23 @@ void MapDatabase::write_document(const MapDocument& document) {
 MapDocument MapDatabase::load() const try {
   const SQLite::Transaction one_state(*database_, SQLite::TransactionBehavior::DEFERRED);
   MapDocument document;
+  stops_->for_each([&](topomap::LocalMap map) { document.local_maps.push_back(std::move(map)); });
+  load_rest(document);
+  try {
+    check_document(document);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: damaged ({})", name_, error.what()));
+  }
+  name_stops(document);
+  return document;
+} catch (const SQLite::Exception& error) {
+  throw_named(name_, error);
+}
+
+void MapDatabase::load_rest(MapDocument& document) const {
   document.robot_id = robot_id_;
   document.seed = seed_;
   document.map_id = read_meta_number(*database_, "map_id");
-  stops_->load(document);
   document.trajectory.version = read_meta_number(*database_, "trajectory_version");
   read_table<proto::StopPose>(*database_, name_, "stop_pose", document.trajectory.stops);
   read_table<proto::LoopClosure>(*database_, name_, "loop_closure", document.loop_closures);
@@ -351,23 +368,47 @@ MapDocument MapDatabase::load() const try {
   std::vector<planning::OccupancyGrid> grids;
   read_table<proto::DrawnGrid>(*database_, name_, "drawn_grid", grids);
   if (!grids.empty()) document.drawing.grid = std::move(grids.front());
-  try {
-    check_document(document);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: damaged ({})", name_, error.what()));
-  }
-  return document;
+}
+
+void MapDatabase::write_map_file(const std::function<void(std::string_view)>& sink) const try {
+  const SQLite::Transaction one_state(*database_, SQLite::TransactionBehavior::DEFERRED);
+  MapFileWriter writer(sink, robot_id_, seed_);
+  stops_->for_each([&](const topomap::LocalMap& map) { writer.add(map); });
+  MapDocument rest;
+  load_rest(rest);
+  writer.finish(rest);
 } catch (const SQLite::Exception& error) {
   throw_named(name_, error);
 }
 
-std::optional<SessionStop> MapDatabase::stop(const StopSource& source) const try {
-  return stops_->stop(source);
+std::size_t MapDatabase::write_local_maps(std::uint64_t session, std::uint32_t first,
+                                          const std::function<void(std::string_view)>& sink) const
+    try {
+  std::size_t count = 0;
+  stops_->for_each_of(session, first, [&](const topomap::LocalMap& map) {
+    sink(local_maps_bytes({&map, 1}));
+    ++count;
+  });
+  return count;
 } catch (const SQLite::Exception& error) {
   throw_named(name_, error);
 }
 
-std::vector<StopSource> MapDatabase::waiting_stops() const {
+std::optional<topomap::LocalMap> MapDatabase::stop(const topomap::StopId& stop) const try {
+  return stops_->stop(stop);
+} catch (const SQLite::Exception& error) {
+  throw_named(name_, error);
+}
+
+std::size_t MapDatabase::waiting_count() const {
+  return stops_->waiting_count();
+}
+
+bool MapDatabase::knows(const topomap::StopId& stop) const {
+  return stops_->knows(stop);
+}
+
+std::vector<topomap::StopId> MapDatabase::waiting_stops() const {
   return stops_->waiting();
 }
 

@@ -27,10 +27,11 @@ constexpr int kBusyTimeout_ms = 5000;  // for another program to finish its tran
 constexpr const char* kSchema = R"(
   CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
   CREATE TABLE session(
-    place INTEGER PRIMARY KEY, id INTEGER NOT NULL UNIQUE, kept_from INTEGER NOT NULL);
+    place INTEGER PRIMARY KEY, id INTEGER NOT NULL UNIQUE, kept_from INTEGER NOT NULL,
+    is_over INTEGER NOT NULL);
   CREATE TABLE stop(
     session INTEGER NOT NULL REFERENCES session(id), number INTEGER NOT NULL,
-    odometry_epoch INTEGER NOT NULL, stamp_ns INTEGER NOT NULL, content_hash INTEGER NOT NULL,
+    stamp_ns INTEGER NOT NULL, content_hash INTEGER NOT NULL,
     blob_hash INTEGER NOT NULL, blob BLOB NOT NULL,
     PRIMARY KEY(session, number));
   CREATE TABLE map_stop(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "topogeo/support/format.hpp"
@@ -33,12 +34,13 @@ void StopTables::forget() {
 
 void StopTables::read() {
   forget();
-  SQLite::Statement session(database_, "SELECT place, id, kept_from FROM session");
+  SQLite::Statement session(database_, "SELECT place, id, kept_from, is_over FROM session");
   while (session.executeStep()) {
     Session& entry = sessions_[as_unsigned(integer_at(session, 1))];
     entry.place = integer_at(session, 0);
     entry.kept_from = number_at(session, 2, file_);
     entry.gapless = entry.kept_from;
+    entry.is_over = integer_at(session, 3) != 0;
   }
   SQLite::Statement row(database_,
                         "SELECT s.session, s.number, m.id IS NULL FROM stop s "
@@ -51,23 +53,30 @@ void StopTables::read() {
     }
     const std::uint32_t number = number_at(row, 1, file_);
     count(found->second, number);
-    if (integer_at(row, 2) != 0) found->second.waiting.insert(number);
+    if (integer_at(row, 2) != 0) {
+      found->second.waiting.insert(number);
+    } else {
+      ++found->second.joined;
+    }
   }
   SQLite::Statement joined(database_, "SELECT count(*) FROM map_stop");
   joined.executeStep();
   joined_ = number_at(joined, 0, file_);
 }
 
-StopTables::Session& StopTables::session(std::uint64_t id) {
+StopTables::Session& StopTables::session(std::uint64_t id, bool is_over) {
   const auto found = sessions_.find(id);
   if (found != sessions_.end()) return found->second;
-  SQLite::Statement insert(database_, "INSERT INTO session(place, id, kept_from) VALUES(?, ?, 0)");
+  SQLite::Statement insert(database_,
+                           "INSERT INTO session(place, id, kept_from, is_over) VALUES(?, ?, 0, ?)");
   const auto place = static_cast<std::int64_t>(sessions_.size());
   insert.bind(1, place);
   insert.bind(2, as_signed(id));
+  insert.bind(3, is_over ? 1 : 0);
   insert.exec();
   Session& entry = sessions_[id];
   entry.place = place;
+  entry.is_over = is_over;
   return entry;
 }
 
@@ -77,40 +86,51 @@ void StopTables::count(Session& session, std::uint32_t number) {
   while (session.stored.erase(session.gapless) != 0) ++session.gapless;
 }
 
-bool StopTables::is_same(const SessionStop& stop) const {
-  SQLite::Statement row(database_,
-                        "SELECT stamp_ns, content_hash FROM stop WHERE session = ? AND number = ?");
-  row.bind(1, as_signed(stop.session));
-  row.bind(2, stop.map.id);
-  return !row.executeStep() ||  // dropped: whatever it was, it is of no use any more
-         (integer_at(row, 0) == stop.map.stamp_ns &&
-          as_unsigned(integer_at(row, 1)) == topomap::content_hash(stop.map));
+bool StopTables::knows(const topomap::StopId& stop) const {
+  const auto held = sessions_.find(stop.session);
+  return held != sessions_.end() &&
+         (stop.number < held->second.gapless || held->second.stored.contains(stop.number));
 }
 
-std::vector<StopSource> StopTables::put(std::span<const SessionStop> stops) {
-  std::vector<StopSource> different;
+bool StopTables::is_same(const topomap::LocalMap& map) const {
+  SQLite::Statement row(database_,
+                        "SELECT stamp_ns, content_hash FROM stop WHERE session = ? AND number = ?");
+  row.bind(1, as_signed(map.stop.session));
+  row.bind(2, map.stop.number);
+  return !row.executeStep() ||  // dropped: whatever it was, it is of no use any more
+         (integer_at(row, 0) == map.stamp_ns &&
+          as_unsigned(integer_at(row, 1)) == topomap::content_hash(map));
+}
+
+std::vector<topomap::StopId> StopTables::put(std::span<const topomap::LocalMap> stops,
+                                             bool are_over) {
+  std::vector<topomap::StopId> different;
   SQLite::Statement insert(database_,
-                           "INSERT INTO stop(session, number, odometry_epoch, stamp_ns, "
-                           "content_hash, blob_hash, blob) VALUES(?, ?, ?, ?, ?, ?, ?)");
-  for (const SessionStop& stop : stops) {
-    Session& held = session(stop.session);
-    const std::uint32_t number = stop.map.id;
-    if (number < held.gapless || held.stored.contains(number)) {
-      if (!is_same(stop)) different.push_back(stop.source());
+                           "INSERT INTO stop(session, number, stamp_ns, content_hash, "
+                           "blob_hash, blob) VALUES(?, ?, ?, ?, ?, ?)");
+  for (const topomap::LocalMap& given : stops) {
+    const auto [id, number] = given.stop;
+    Session& held = session(id, are_over);
+    const topomap::LocalMap map = topomap::numbered(given, number, false);  // as it was sent
+    if (knows(given.stop)) {
+      if (!is_same(map)) different.push_back(given.stop);
       continue;
     }
-    const std::string blob = to_blob<proto::LocalMap>(stop.map);
+    const std::string blob = to_blob<proto::LocalMap>(map);
     insert.reset();
-    insert.bind(1, as_signed(stop.session));
+    insert.bind(1, as_signed(id));
     insert.bind(2, number);
-    insert.bind(3, as_signed(stop.odometry_epoch));
-    insert.bind(4, stop.map.stamp_ns);
-    insert.bind(5, as_signed(topomap::content_hash(stop.map)));
-    insert.bind(6, as_signed(support::fnv1a(blob)));
-    bind_blob(insert, 7, blob);
+    insert.bind(3, map.stamp_ns);
+    insert.bind(4, as_signed(topomap::content_hash(map)));
+    insert.bind(5, as_signed(support::fnv1a(blob)));
+    bind_blob(insert, 6, blob);
     insert.exec();
     count(held, number);
     held.waiting.insert(number);
+    if (held.is_over && !are_over) {
+      database_.exec("UPDATE session SET is_over = 0 WHERE place = " + std::to_string(held.place));
+      held.is_over = false;
+    }
   }
   return different;
 }
@@ -118,26 +138,27 @@ std::vector<StopSource> StopTables::put(std::span<const SessionStop> stops) {
 void StopTables::join(std::span<const JoinedStop> stops) {
   SQLite::Statement insert(
       database_, "INSERT INTO map_stop(id, session, number, starts_drive) VALUES(?, ?, ?, ?)");
-  for (const auto& [source, starts_drive] : stops) {
-    const auto held = sessions_.find(source.session);
-    if (held == sessions_.end() || held->second.waiting.erase(source.number) == 0) {
+  for (const auto& [stop, starts_drive] : stops) {
+    const auto held = sessions_.find(stop.session);
+    if (held == sessions_.end() || held->second.waiting.erase(stop.number) == 0) {
       throw std::invalid_argument(
           fmt::format("{}: stop {} of session {:016x} cannot join the map: it is not stored, or "
                       "is in the map",
-                      file_, source.number, source.session));
+                      file_, stop.number, stop.session));
     }
     insert.reset();
     insert.bind(1, joined_);
-    insert.bind(2, as_signed(source.session));
-    insert.bind(3, source.number);
+    insert.bind(2, as_signed(stop.session));
+    insert.bind(3, stop.number);
     insert.bind(4, starts_drive ? 1 : 0);
     insert.exec();
     ++joined_;
+    ++held->second.joined;
   }
 }
 
 std::size_t StopTables::drop_waiting(std::size_t most) {
-  const std::vector<StopSource> all = waiting();
+  const std::vector<topomap::StopId> all = waiting();
   if (all.size() <= most) return 0;
   SQLite::Statement remove(database_, "DELETE FROM stop WHERE session = ? AND number = ?");
   SQLite::Statement mark(database_, "UPDATE session SET kept_from = ? WHERE id = ?");
@@ -160,48 +181,61 @@ std::size_t StopTables::drop_waiting(std::size_t most) {
   return drops;
 }
 
-std::optional<SessionStop> StopTables::stop(const StopSource& source) const {
-  SQLite::Statement row(database_,
-                        "SELECT number, blob_hash, blob, odometry_epoch FROM stop "
-                        "WHERE session = ? AND number = ?");
-  row.bind(1, as_signed(source.session));
-  row.bind(2, source.number);
+std::optional<topomap::LocalMap> StopTables::stop(const topomap::StopId& stop) const {
+  SQLite::Statement row(
+      database_, "SELECT number, blob_hash, blob FROM stop WHERE session = ? AND number = ?");
+  row.bind(1, as_signed(stop.session));
+  row.bind(2, stop.number);
   if (!row.executeStep()) return std::nullopt;
-  return SessionStop{source.session, as_unsigned(integer_at(row, 3)),
-                     parse_row<proto::LocalMap>(row, file_, "stop")};
+  return parse_row<proto::LocalMap>(row, file_, "stop");
 }
 
-void StopTables::load(MapDocument& document) const {
+void StopTables::for_each(const std::function<void(topomap::LocalMap)>& visit) const {
   SQLite::Statement row(database_,
                         "SELECT m.id, s.blob_hash, s.blob, m.starts_drive, m.session, m.number "
                         "FROM map_stop m LEFT JOIN stop s "
                         "ON s.session = m.session AND s.number = m.number ORDER BY m.id");
   while (row.executeStep()) {
     const std::uint32_t id = number_at(row, 0, file_);
-    const StopSource source{as_unsigned(integer_at(row, 4)), number_at(row, 5, file_)};
+    const topomap::StopId stop{as_unsigned(integer_at(row, 4)), number_at(row, 5, file_)};
     if (row.getColumn(1).isNull()) {
       throw std::runtime_error(fmt::format("{}: damaged (stop {} of session {:016x} is missing)",
-                                           file_, source.number, source.session));
+                                           file_, stop.number, stop.session));
     }
     topomap::LocalMap map = parse_row<proto::LocalMap>(row, file_, "stop");
-    if (map.id != source.number) {
-      throw std::runtime_error(
-          fmt::format("{}: damaged (stop {} is stored as stop {})", file_, map.id, source.number));
+    if (map.stop != stop) {
+      throw std::runtime_error(fmt::format("{}: damaged (stop {} is stored as stop {})", file_,
+                                           map.stop.number, stop.number));
     }
-    document.local_maps.push_back(topomap::numbered(std::move(map), id, integer_at(row, 3) != 0));
-    document.sources.push_back(source);
+    visit(topomap::numbered(std::move(map), id, integer_at(row, 3) != 0));
   }
 }
 
-std::vector<StopSource> StopTables::waiting() const {
-  std::vector<std::pair<std::int64_t, StopSource>> ordered;
+void StopTables::for_each_of(std::uint64_t session, std::uint32_t first,
+                             const std::function<void(topomap::LocalMap)>& visit) const {
+  SQLite::Statement row(database_,
+                        "SELECT number, blob_hash, blob FROM stop "
+                        "WHERE session = ? AND number >= ? ORDER BY number");
+  row.bind(1, as_signed(session));
+  row.bind(2, first);
+  while (row.executeStep()) visit(parse_row<proto::LocalMap>(row, file_, "stop"));
+}
+
+std::size_t StopTables::waiting_count() const {
+  std::size_t count = 0;
+  for (const auto& [id, session] : sessions_) count += session.waiting.size();
+  return count;
+}
+
+std::vector<topomap::StopId> StopTables::waiting() const {
+  std::vector<std::pair<std::int64_t, topomap::StopId>> ordered;
   for (const auto& [id, session] : sessions_) {
     for (const std::uint32_t number : session.waiting) {
-      ordered.push_back({session.place, {id, number}});
+      ordered.emplace_back(session.place, topomap::StopId{id, number});
     }
   }
   std::ranges::sort(ordered);
-  std::vector<StopSource> out;
+  std::vector<topomap::StopId> out;
   out.reserve(ordered.size());
   for (const auto& entry : ordered) out.push_back(entry.second);
   return out;
@@ -211,7 +245,8 @@ std::vector<SessionState> StopTables::sessions() const {
   std::vector<std::pair<std::int64_t, SessionState>> ordered;
   ordered.reserve(sessions_.size());
   for (const auto& [id, session] : sessions_) {
-    ordered.push_back({session.place, {id, session.gapless}});
+    ordered.push_back(
+        {session.place, {id, session.gapless, session.kept_from, session.joined, session.is_over}});
   }
   std::ranges::sort(ordered, {}, [](const auto& entry) { return entry.first; });
   std::vector<SessionState> out;

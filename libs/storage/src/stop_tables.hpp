@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,32 +29,40 @@ class StopTables {
   /// As if there were none.
   void forget();
 
-  /// As MapDatabase::put_stops.
-  std::vector<StopSource> put(std::span<const SessionStop> stops);
+  /// As MapDatabase::put_stops. Sessions that are new are over: see SessionState.
+  std::vector<topomap::StopId> put(std::span<const topomap::LocalMap> stops, bool are_over);
   /// As MapDatabase::join.
   void join(std::span<const JoinedStop> stops);
   /// As MapDatabase::drop_waiting.
   std::size_t drop_waiting(std::size_t most);
 
-  [[nodiscard]] std::optional<SessionStop> stop(const StopSource& source) const;
-  /// The stops of the map under its numbers, and where they come from.
-  void load(MapDocument& document) const;
+  /// The stops of a session from a number on, as they were sent.
+  void for_each_of(std::uint64_t session, std::uint32_t first,
+                   const std::function<void(topomap::LocalMap)>& visit) const;
+  [[nodiscard]] std::size_t waiting_count() const;
 
-  [[nodiscard]] std::vector<StopSource> waiting() const;
+  [[nodiscard]] std::optional<topomap::LocalMap> stop(const topomap::StopId& stop) const;
+  /// The stops of the map under its numbers, in their order.
+  void for_each(const std::function<void(topomap::LocalMap)>& visit) const;
+
+  [[nodiscard]] bool knows(const topomap::StopId& stop) const;
+  [[nodiscard]] std::vector<topomap::StopId> waiting() const;
   [[nodiscard]] std::vector<SessionState> sessions() const;
   [[nodiscard]] std::uint32_t joined() const { return joined_; }
 
  private:
   struct Session {
     std::int64_t place = 0;
+    bool is_over = false;
+    std::uint32_t joined = 0;         // stops in the map
     std::uint32_t kept_from = 0;      // below it, what has not joined was dropped
     std::set<std::uint32_t> stored;   // above `gapless`
     std::uint32_t gapless = 0;        // all numbers below came
     std::set<std::uint32_t> waiting;  // stored, not joined
   };
-  Session& session(std::uint64_t id);
+  Session& session(std::uint64_t id, bool is_over);
   void count(Session& session, std::uint32_t number);
-  [[nodiscard]] bool is_same(const SessionStop& stop) const;
+  [[nodiscard]] bool is_same(const topomap::LocalMap& map) const;
 
   SQLite::Database& database_;
   std::string file_;

@@ -47,6 +47,9 @@ TEST_F(MapDatabaseFile, GivesBackTheSameMapFile) {
   EXPECT_EQ(map_file_bytes(open().load()), map_file_bytes(document));
   EXPECT_EQ(map_file_bytes(MapDatabase::open_existing(path()).load()), map_file_bytes(document));
   EXPECT_EQ(map_file_bytes(read_map(path())), map_file_bytes(document));
+  std::string in_pieces;
+  open().write_map_file([&](std::string_view bytes) { in_pieces += bytes; });
+  EXPECT_EQ(in_pieces, map_file_bytes(document));
 }
 
 TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
@@ -57,11 +60,10 @@ TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
   EXPECT_EQ(database.trajectory_version(), 9U);
 
   document.local_maps.push_back(sample_local_map(3));
-  document.sources.push_back({document.sources[0].session, 3});
-  const std::vector<SessionStop> stops{{document.sources[3].session, 0, document.local_maps[3]},
-                                       {document.sources[1].session, 0, document.local_maps[1]}};
+  document.local_maps[3].stop = {document.local_maps[0].stop.session, 3};
+  const std::vector<topomap::LocalMap> stops{document.local_maps[3], document.local_maps[1]};
   EXPECT_THAT(database.put_stops(stops), IsEmpty()) << "the second is there already";
-  const JoinedStop joined{document.sources[3], false};
+  const JoinedStop joined{document.local_maps[3].stop, false};
   database.join({&joined, 1});
   document.trajectory.stops[1] = sample_stop(1, 77.0);
   document.trajectory.stops.push_back(sample_stop(3, 3.0));
@@ -84,15 +86,17 @@ TEST_F(MapDatabaseFile, RefusesWhatDoesNotFitAndStaysAsItWas) {
   const MapDocument document = identified(sample_document(3));
   store(document);
   MapDatabase database = open();
-  SessionStop other{document.sources[1].session, 0, sample_local_map(1)};
-  other.map.stamp_ns += 1;
-  EXPECT_THAT(database.put_stops({&other, 1}), ElementsAre(document.sources[1]));
-  JoinedStop joined{document.sources[1], false};
+  topomap::LocalMap other = document.local_maps[1];
+  other.stamp_ns += 1;
+  EXPECT_THAT(database.put_stops({&other, 1}), ElementsAre(document.local_maps[1].stop));
+  JoinedStop joined{document.local_maps[1].stop, false};
   EXPECT_THAT(error_of([&] { database.join({&joined, 1}); }), HasSubstr("it is not stored, or"));
-  joined.source.number = 3;
+  joined.stop.number = 3;
   EXPECT_THROW(database.join({&joined, 1}), std::invalid_argument);
-  other.map = sample_local_map(3);
-  other.map.robot_id = "robot-2";
+  other = sample_local_map(3);
+  EXPECT_THROW(database.put_stops({&other, 1}), std::invalid_argument) << "it has no session";
+  other.stop = {7, 3};
+  other.robot_id = "robot-2";
   EXPECT_THROW(database.put_stops({&other, 1}), std::invalid_argument);
   EXPECT_THROW(database.put_document(document), std::invalid_argument) << "it has stops";
 
@@ -193,9 +197,9 @@ TEST_F(MapDatabaseFile, RefusesDamagedContent) {
   try {
     MapDatabase database = MapDatabase::open_or_create(path, "robot-1", seed);
     for (std::uint32_t id = 0;; ++id) {
-      const SessionStop stop{7, 0, sample_local_map(id)};
+      const topomap::LocalMap stop = sample_stop_of(7, id);
       static_cast<void>(database.put_stops({&stop, 1}));
-      const JoinedStop joined{stop.source(), false};
+      const JoinedStop joined{stop.stop, false};
       database.join({&joined, 1});
       std::vector<topomap::StopPose> stops;
       for (std::uint32_t i = 0; i <= id; ++i) stops.push_back(sample_stop(i, i + 100.0 * id));
@@ -244,9 +248,9 @@ TEST_F(MapDatabaseFile, KeepsAConsistentPrefixWhenItsProcessIsKilled) {
     ASSERT_EQ(document.global_map.nodes.size(), 2U);
     EXPECT_EQ(document.global_map.nodes[1].id, 10 + document.global_map.version);
     ASSERT_EQ(database.sessions().size(), 1U);
-    const SessionStop next{7, 0, sample_local_map(database.sessions()[0].stops)};
+    const topomap::LocalMap next = sample_stop_of(7, database.sessions()[0].stops);
     EXPECT_THAT(database.put_stops({&next, 1}), IsEmpty()) << "it goes on";
-    EXPECT_EQ(database.sessions()[0].stops, next.map.id + 1);
+    EXPECT_EQ(database.sessions()[0].stops, next.id + 1);
   }
 }
 

@@ -60,9 +60,9 @@ TEST_F(GoldenFile, DatabaseOfVersion1IsMigrated) {
   MapDatabase database = MapDatabase::open_or_create(path(), "robot-1", expected.seed);
   EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(expected));
   EXPECT_EQ(database.map_id(), expected.map_id);
-  const SessionStop next{99, 1, sample_local_map(0)};
+  const topomap::LocalMap next = sample_stop_of(99, 0);
   EXPECT_TRUE(database.put_stops({&next, 1}).empty());
-  const JoinedStop joined{next.source(), true};
+  const JoinedStop joined{next.stop, true};
   database.join({&joined, 1});
   EXPECT_EQ(database.load().local_maps.size(), 6U);
 }
@@ -88,9 +88,12 @@ TEST_F(GoldenFile, DamagedDatabaseOfVersion1StaysAsItWas) {
 TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
   make("map_v2.sql");
   MapDocument expected = golden_document();
-  for (std::uint32_t i = 0; i < 3; ++i) expected.sources.push_back({0xfedcba9876543210U, i});
-  for (std::uint32_t i = 0; i < 2; ++i) expected.sources.push_back({7, i + 1});
-  expected.map_id = map_id_of(expected.sources[0].session);
+  for (topomap::LocalMap& map : expected.local_maps) {
+    map.stop =
+        map.id < 3 ? topomap::StopId{0xfedcba9876543210U, map.id} : topomap::StopId{7, map.id - 2};
+    map.odometry_epoch = 12;
+  }
+  expected.map_id = map_id_of(expected.local_maps[0].stop.session);
   expected.edges = {{0, 1, {1.0, 0.5, 0.25}, Eigen::Matrix3d::Identity()}};
   expected.drawing.zones.push_back(
       {"ramp", {{0.0, 0.0}, {4.0, 0.0}, {4.0, 3.0}}, planning::ZoneKind::kSlow, 0.3});
@@ -101,7 +104,10 @@ TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
   ASSERT_TRUE(waiting);
   EXPECT_EQ(waiting->odometry_epoch, 12U);
   ASSERT_EQ(database.sessions().size(), 2U);
+  EXPECT_TRUE(database.sessions()[0].is_over);
+  EXPECT_EQ(database.sessions()[0].joined, 3U);
   EXPECT_EQ(database.sessions()[1].stops, 4U) << "stop 0 was dropped";
+  EXPECT_FALSE(database.sessions()[1].is_over);
 }
 
 }  // namespace

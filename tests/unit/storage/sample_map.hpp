@@ -32,6 +32,14 @@ inline topomap::LocalMap sample_local_map(std::uint32_t id) {
   return map;
 }
 
+/// The same as a local mapper sends it.
+inline topomap::LocalMap sample_stop_of(std::uint64_t session, std::uint32_t number) {
+  topomap::LocalMap map = sample_local_map(number);
+  map.stop = {session, number};
+  map.odometry_epoch = 12;
+  return map;
+}
+
 inline topomap::StopPose sample_stop(std::uint32_t id, double x_m) {
   topomap::StopPose stop{id, 1'000'000'000LL * id + 7, {x_m, 2.0, -3.0}, Eigen::Matrix3d::Zero()};
   stop.covariance << 1, 2, 3, 4, 5, 6, 7, 8, 9;

@@ -111,7 +111,7 @@ TEST_F(Input, ADroppedMapThatTheTrajectoryNamesIsLost) {
 }
 
 TEST_F(Input, ExtendsAStoredMap) {
-  input_ = MapInput({maps_[0], maps_[1]});
+  input_ = MapInput(MapInput::Stored{.local_maps = {maps_[0], maps_[1]}});
   trajectory_.stops[0].stop = {kSession, 0};
   trajectory_.stops[1].stop = {kSession, 1};
   trajectory_.stops[2].stop = {kOther, 0};
@@ -126,7 +126,7 @@ TEST_F(Input, ExtendsAStoredMap) {
 TEST_F(Input, RefusesATrajectoryOfAnotherStoredMap) {
   trajectory_.stops[1].stop = {kOther, 1};
   const msg::TrajectorySegment segment = service::to_segment(trajectory_, 0, "robot", 0);
-  input_ = MapInput({maps_[0], maps_[1]});
+  input_ = MapInput(MapInput::Stored{.local_maps = {maps_[0], maps_[1]}});
   EXPECT_THROW(input_.add(segment), std::invalid_argument);
 }
 

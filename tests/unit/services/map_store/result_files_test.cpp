@@ -31,16 +31,41 @@ class Files : public testing::Test {
 topomap::LocalMap first_map() {
   topomap::LocalMap map;
   map.robot_id = "robot";
+  map.stop = {5, 0};
   map.points = {{1.0F, 2.0F}};
   return map;
 }
 
 TEST_F(Files, DatabaseOfAnEarlierRunIsReplaced) {
-  const storage::SessionStop stop{5, 0, first_map()};
+  const topomap::LocalMap stop = first_map();
   EXPECT_TRUE(fresh_database(database_, "robot", 1).put_stops({&stop, 1}).empty());
   const storage::MapDatabase fresh = fresh_database(database_, "other", 2);
   EXPECT_TRUE(fresh.sessions().empty());
   EXPECT_EQ(fresh.robot_id(), "other");
+}
+
+TEST_F(Files, DatabaseOfBeforeGoesOn) {
+  const topomap::LocalMap stop = first_map();
+  EXPECT_TRUE(last_database(database_, "robot", 1).put_stops({&stop, 1}).empty());
+  EXPECT_EQ(last_database(database_, "robot", 1).sessions().size(), 1U);
+  EXPECT_THROW(last_database(database_, "other", 1), service::BadInputError);
+  EXPECT_FALSE(fs::exists(directory_ / "map.previous.sqlite"));
+}
+
+TEST_F(Files, DatabaseBeginsWithTheMapThatItExtends) {
+  storage::MapDocument map;
+  map.robot_id = "robot";
+  map.local_maps = {first_map()};
+  storage::MapDatabase database = last_database(database_, "robot", 1);
+  begin_with(database, map);
+  EXPECT_EQ(database.local_map_count(), 1U);
+  topomap::LocalMap next = first_map();
+  next.stop = {6, 0};
+  EXPECT_TRUE(database.put_stops({&next, 1}).empty());
+  begin_with(database, map);  // after a new start
+  EXPECT_EQ(database.sessions().size(), 2U);
+  map.local_maps[0].stop.session = 9;
+  EXPECT_THROW(begin_with(database, map), service::BadInputError);
 }
 
 TEST_F(Files, EmptyFileIsNoDatabase) {

@@ -11,11 +11,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "topogeo/storage/map_document.hpp"
@@ -28,25 +30,19 @@ namespace topogeo::storage {
 
 class StopTables;
 
-/// A local map as it was sent: `map.id` is its number in the session.
-struct SessionStop {
-  std::uint64_t session = 0;
-  std::uint64_t odometry_epoch = 0;  ///< odometry of other epochs has another origin
-  topomap::LocalMap map;
-
-  [[nodiscard]] StopSource source() const { return {session, map.id}; }
-};
-
 /// A stop that joins the map.
 struct JoinedStop {
-  StopSource source;
+  topomap::StopId stop;
   bool starts_drive = false;  ///< see topomap::numbered
 };
 
 /// What is stored of a session.
 struct SessionState {
   std::uint64_t id = 0;
-  std::uint32_t stops = 0;  ///< all below this number came, those of no use were dropped since
+  std::uint32_t stops = 0;       ///< all below this number came ...
+  std::uint32_t first_kept = 0;  ///< ... and those below this one that did not join were dropped
+  std::uint32_t joined = 0;      ///< stops of it in the map
+  bool is_over = false;          ///< it came with a whole map: its local mapper does not go on
 };
 
 /// For one thread. Every call throws std::runtime_error naming the file and the cause when the file
@@ -80,10 +76,11 @@ class MapDatabase {
   /// How long a call waits for another program to finish its transaction; 5 s at first.
   void set_patience(std::chrono::milliseconds patience);
 
-  /// Stores stops in any order. Those that are stored already, or were dropped, change nothing.
-  /// Returns those that differ from the one stored under their number, which stays. Throws
-  /// std::invalid_argument when a stop is of another robot; nothing is stored then.
-  std::vector<StopSource> put_stops(std::span<const SessionStop> stops);
+  /// Stores stops as they were sent, in any order: their ids are their numbers in their sessions.
+  /// Those that are stored already, or were dropped, change nothing. Returns those that differ from
+  /// the one stored under their number, which stays. Throws std::invalid_argument when a stop is of
+  /// another robot or of no session; nothing is stored then.
+  std::vector<topomap::StopId> put_stops(std::span<const topomap::LocalMap> stops);
 
   /// Gives the next numbers of the map to these stops. Throws std::invalid_argument when one is not
   /// stored or has a number.
@@ -94,10 +91,12 @@ class MapDatabase {
   std::size_t drop_waiting(std::size_t most);
 
   /// Stores corrected poses of stops of the map, and the whole list of loop closures. Stops that
-  /// are not in `changed` keep their pose. Throws std::invalid_argument when `version` is older
-  /// than the stored one or a stop is not in the map.
+  /// are not in `changed` keep their pose; `joined` get the next numbers of the map first, as by
+  /// join(). Throws std::invalid_argument when `version` is older than the stored one or a stop is
+  /// not in the map.
   void put_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
-                      std::span<const topomap::LoopClosure> closures);
+                      std::span<const topomap::LoopClosure> closures,
+                      std::span<const JoinedStop> joined = {});
 
   /// Makes these the edges that the trajectory was made of. Throws std::invalid_argument when a
   /// stop is not in the map.
@@ -117,10 +116,21 @@ class MapDatabase {
   /// Everything that is in the map, checked.
   [[nodiscard]] MapDocument load() const;
 
+  /// The bytes of a map file of load(), piece by piece: the local maps are never in memory all at
+  /// once.
+  void write_map_file(const std::function<void(std::string_view)>& sink) const;
+  /// The bytes of local_maps_bytes() of the stops of a session from number `first` on, in the map
+  /// or not, piece by piece. Returns how many stops there are.
+  std::size_t write_local_maps(std::uint64_t session, std::uint32_t first,
+                               const std::function<void(std::string_view)>& sink) const;
+
   /// A stop as it was sent; empty when it is not stored.
-  [[nodiscard]] std::optional<SessionStop> stop(const StopSource& source) const;
+  [[nodiscard]] std::optional<topomap::LocalMap> stop(const topomap::StopId& stop) const;
   /// Stops that are stored and have not joined the map, by order of the sessions and number.
-  [[nodiscard]] std::vector<StopSource> waiting_stops() const;
+  [[nodiscard]] std::vector<topomap::StopId> waiting_stops() const;
+  [[nodiscard]] std::size_t waiting_count() const;
+  /// Whether it is stored, or was dropped.
+  [[nodiscard]] bool knows(const topomap::StopId& stop) const;
   /// In the order in which they came.
   [[nodiscard]] std::vector<SessionState> sessions() const;
 
@@ -159,7 +169,7 @@ class MapDatabase {
   template <typename Work>
   void change(const Work& work);
   // Parts of a transaction.
-  std::vector<StopSource> write_stops(std::span<const SessionStop> stops);
+  std::vector<topomap::StopId> write_stops(std::span<const topomap::LocalMap> stops);
   void write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
                         std::span<const topomap::LoopClosure> closures);
   void write_edges(const std::vector<MapEdge>& edges);
@@ -167,6 +177,8 @@ class MapDatabase {
   void write_drawing(const MapDrawing& drawing);
   void write_document(const MapDocument& document);
   void write_map_id(std::uint64_t map_id);
+  /// All but the local maps.
+  void load_rest(MapDocument& document) const;
 
   std::string name_;
   std::unique_ptr<SQLite::Database> database_;

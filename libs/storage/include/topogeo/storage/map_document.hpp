@@ -2,7 +2,6 @@
 // from.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,14 +14,6 @@
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::storage {
-
-/// Where a stop comes from: its local mapper numbers the stops of each session from 0.
-struct StopSource {
-  std::uint64_t session = 0;
-  std::uint32_t number = 0;
-
-  friend auto operator<=>(const StopSource&, const StopSource&) = default;
-};
 
 /// A measured pose of one stop seen from another, by a match or by scan tracking.
 struct MapEdge {
@@ -40,14 +31,16 @@ struct MapDocument {
   std::vector<topomap::LoopClosure> loop_closures;
   topomap::GlobalMap global_map;
   MapDrawing drawing;
-  std::uint64_t map_id = 0;         ///< the same in all states of a map; 0: it has none
-  std::vector<StopSource> sources;  ///< of each local map; empty: not known
-  std::vector<MapEdge> edges;       ///< that the trajectory was made of; empty: not known
+  std::uint64_t map_id = 0;    ///< the same in all states of a map; 0: it has none
+  std::vector<MapEdge> edges;  ///< that the trajectory was made of; empty: not known
 };
 
-/// The document with a source for each local map and a map id: those that it lacks follow from its
+/// The document with a session for all its stops and a map id: those that it lacks follow from its
 /// content, so that the same file is always the same session. Without local maps it stays as it is.
 MapDocument identified(MapDocument document);
+
+/// Gives each pose the stop of its local map: files have it once.
+void name_stops(MapDocument& document);
 
 /// The id of the map that a session begins; never 0.
 std::uint64_t map_id_of(std::uint64_t first_session);

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "topogeo/storage/map_document.hpp"
 
@@ -24,5 +26,10 @@ MapDocument read_map_file(const std::filesystem::path& path);
 /// The bytes of the file, and back; `name` stands for the file in messages. They throw as above.
 std::string map_file_bytes(const MapDocument& document);
 MapDocument parse_map_file(std::string_view bytes, const std::string& name);
+
+/// Local maps alone, as a map store sends those of a session (proto/map.proto, LocalMaps), and
+/// back. Throws std::runtime_error naming `name` and the damage.
+std::string local_maps_bytes(std::span<const topomap::LocalMap> maps);
+std::vector<topomap::LocalMap> parse_local_maps(std::string_view bytes, const std::string& name);
 
 }  // namespace topogeo::storage

@@ -1,0 +1,293 @@
+// A map store that is killed, stopped, started again, or whose disk is full: the map lives on.
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <random>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/store.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/storage/map_database.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
+#include "topogeo/support/random.hpp"
+#include "topogeo/world/world.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+constexpr std::chrono::seconds kLongestWait{60};
+
+/// Local mapper and localizer of a drive, as far as a map store sees them.
+class Drive {
+ public:
+  Drive(const std::string& domain, const std::string& partition)
+      : participant_([&] {
+          messaging::ParticipantOptions options;
+          options.domain = static_cast<std::uint32_t>(std::stoul(domain));
+          options.partition = partition;
+          options.name = "drive";
+          return options;
+        }()) {
+    pipeline::MappingRun run({}, "robot");
+    const world::World world =
+        world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+    for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
+    map_ = run.finish();
+    loop_.add<msg::StoredMap>(stored_reader_, [this](const msg::StoredMap& stored, const auto&) {
+      stored_ = stored;
+      most_stored_ = std::max(most_stored_, stored.session_stops());
+    });
+    loop_.add<msg::SnapshotPiece>(pieces_reader_,
+                                  [this](const msg::SnapshotPiece& piece, const auto&) {
+                                    if (piece.request_id() == requests_) pieces_.push_back(piece);
+                                  });
+  }
+
+  /// Sends the stops up to a number, and a trajectory that has them.
+  void send(std::size_t stops) {
+    for (; sent_ < stops; ++sent_) {
+      EXPECT_TRUE(maps_.write(service::to_msg(as_sent(sent_))));
+    }
+    topomap::Trajectory part = map_.trajectory;
+    part.stops.resize(stops);
+    part.version = stops == map_.local_maps.size() ? map_.trajectory.version : stops;
+    for (const auto& segment : service::to_segments(part, "robot", 0)) {
+      EXPECT_TRUE(segments_.write(segment));
+    }
+  }
+  void finish() {
+    send(map_.local_maps.size());
+    const std::uint64_t version = map_.trajectory.version;
+    EXPECT_TRUE(closures_.write(service::to_msg(map_.loop_closures, version, "robot", 0, 0)));
+    msg::StreamEnd end;
+    messaging::set_header(end, "robot", map_.local_maps.back().stamp_ns, 0);
+    end.stage(msg::kStageLocalizer);
+    end.count(map_.trajectory.stops.size());
+    end.version(version);
+    EXPECT_TRUE(ends_.write(end));
+  }
+
+  bool wait_until(const std::function<bool()>& done) {
+    const auto end = std::chrono::steady_clock::now() + kLongestWait;
+    while (!done() && std::chrono::steady_clock::now() < end) run_for(milliseconds(5));
+    return done();
+  }
+  void run_for(milliseconds duration) { static_cast<void>(loop_.run_for(duration)); }
+  bool wait_for_stored(std::uint32_t stops) {
+    return wait_until([&] { return stored_.session_stops() >= stops && stored_.stops() >= stops; });
+  }
+
+  /// The bytes of an answer; fails without one.
+  std::string ask(msg::SnapshotKind kind, std::uint64_t session = 0, std::uint32_t first = 0) {
+    pieces_.clear();
+    msg::SnapshotRequest request;
+    messaging::set_header(request, "robot", 0, requests_);
+    request.request_id(++requests_);
+    messaging::set_client_id(request, kClient);
+    request.kind(kind);
+    request.session(session);
+    request.first(first);
+    EXPECT_TRUE(wait_until([&] { return requests_writer_.matched() > 0; }));
+    EXPECT_TRUE(requests_writer_.write(request));
+    EXPECT_TRUE(wait_until([&] {
+      return !pieces_.empty() && pieces_.size() >= pieces_[0].pieces();
+    })) << pieces_.size();
+    std::string bytes;
+    for (const msg::SnapshotPiece& piece : pieces_) {
+      bytes.append(piece.bytes().begin(), piece.bytes().end());
+    }
+    return bytes;
+  }
+
+  [[nodiscard]] topomap::LocalMap as_sent(std::size_t number) const {
+    return map_.local_maps[number];  // one session: they are numbered as they were sent
+  }
+  [[nodiscard]] const storage::MapDocument& map() const { return map_; }
+  [[nodiscard]] std::uint32_t stops() const {
+    return static_cast<std::uint32_t>(map_.local_maps.size());
+  }
+  [[nodiscard]] const msg::StoredMap& stored() const { return stored_; }
+  [[nodiscard]] std::uint32_t most_stored() const { return most_stored_; }
+
+ private:
+  static constexpr const char* kClient = "drive";
+
+  storage::MapDocument map_;
+  messaging::Participant participant_;
+  messaging::EventLoop loop_;
+  messaging::Writer<msg::LocalMap> maps_{participant_};
+  messaging::Writer<msg::TrajectorySegment> segments_{participant_};
+  messaging::Writer<msg::LoopClosures> closures_{participant_};
+  messaging::Writer<msg::StreamEnd> ends_{participant_};
+  messaging::Writer<msg::SnapshotRequest> requests_writer_{participant_};
+  messaging::Reader<msg::StoredMap> stored_reader_{participant_};
+  messaging::Reader<msg::SnapshotPiece> pieces_reader_{participant_, {.addressee = kClient}};
+  std::vector<msg::SnapshotPiece> pieces_;
+  std::uint64_t requests_ = 0;
+  msg::StoredMap stored_;
+  std::uint32_t most_stored_ = 0;
+  std::size_t sent_ = 0;
+};
+
+class MapStoreLives : public testing::Test {
+ protected:
+  [[nodiscard]] std::vector<std::string> words(std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--out", (scratch_ / "out").string(), "--domain", own_domain(),
+                             "--partition", partition_});
+    return more;
+  }
+  [[nodiscard]] std::filesystem::path file(const std::string& name) const {
+    return scratch_ / "out" / name;
+  }
+
+  const bool udp_only_ = (use_udp_only(), true);
+  std::string partition_ = "lives" + std::to_string(std::random_device{}());
+  Scratch scratch_;
+  Drive drive_{own_domain(), partition_};
+};
+
+TEST_F(MapStoreLives, KilledAtAnyMomentItHasAllThatItAcknowledged) {
+  support::Random random(std::random_device{}());
+  const int kills = std::getenv("TOPOGEO_ALL_FAULTS") != nullptr ? 200 : 6;
+  for (int kill = 0; kill < kills; ++kill) {
+    Program store(scratch_, "map_store", words());
+    // Somewhere between its start and the last of what comes: also before it is there at all.
+    const auto lead = milliseconds(random.below(1500));
+    const auto begin = std::chrono::steady_clock::now();
+    std::uint32_t stops = std::max(1U, drive_.most_stored());
+    while (std::chrono::steady_clock::now() - begin < lead) {
+      stops = std::min(stops + 1, drive_.stops() - 1);
+      drive_.send(stops);
+      drive_.run_for(milliseconds(random.below(20)));
+    }
+    store.send_signal(SIGKILL);
+    ASSERT_EQ(store.wait(), 128 + SIGKILL) << store.err();
+    drive_.run_for(milliseconds(20));  // acknowledgements that are under way
+    if (drive_.most_stored() == 0) continue;
+    const auto database = storage::MapDatabase::open_read_only(file("map.sqlite"));
+    ASSERT_EQ(database.sessions().size(), 1U);
+    EXPECT_GE(database.sessions()[0].stops, drive_.most_stored());
+    const storage::MapDocument document = database.load();  // checks everything
+    for (std::uint32_t i = 0; i < drive_.most_stored(); ++i) {
+      const auto stop = database.stop({drive_.map().local_maps[0].stop.session, i});
+      ASSERT_TRUE(stop) << i;
+      EXPECT_EQ(topomap::content_hash(*stop), topomap::content_hash(drive_.as_sent(i)));
+    }
+  }
+  Program store(scratch_, "map_store", words());
+  drive_.finish();
+  store.wait_for_error_text("local maps, ");  // the final line
+  EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")))
+      << "another map than without interruptions";
+}
+
+TEST_F(MapStoreLives, StoppedItWritesTheMapAndGoesOnWithItLater) {
+  {
+    Program store(scratch_, "map_store", words());
+    drive_.send(4);
+    ASSERT_TRUE(drive_.wait_for_stored(4));
+    store.send_signal(SIGTERM);
+    EXPECT_EQ(store.wait(), 0) << store.err();
+  }
+  EXPECT_EQ(storage::read_map_file(file("map.pb")).trajectory.stops.size(), 4U);
+  for (const char* name : {"trajectory.tum", "odometry.tum", "map.svg", "map.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(file(name))) << name;
+  }
+  const storage::MapDocument stored = storage::read_map(file("map.sqlite"));
+  EXPECT_EQ(stored.trajectory.stops.size(), 4U);
+  EXPECT_EQ(stored.map_id, drive_.map().map_id);
+  {
+    Program store(scratch_, "map_store", words());
+    drive_.finish();
+    store.wait_for_error_text("local maps, ");
+    EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")));
+    store.send_signal(SIGTERM);
+    EXPECT_EQ(store.wait(), 0);
+  }
+  // A reader that writes nothing down needs no more than the file.
+  EXPECT_TRUE(storage::map_file_bytes(storage::read_map(file("map.sqlite"))) ==
+              read_file(file("map.pb")));
+  Program store(scratch_, "map_store", words({"--new"}));
+  store.wait_for_error_text("local maps, ");  // what was sent comes to it, too
+  EXPECT_EQ(storage::read_map(file("map.previous.sqlite")).local_maps.size(), drive_.stops());
+}
+
+TEST_F(MapStoreLives, ItAcknowledgesAndGivesTheMapToWhoAsks) {
+  Program store(scratch_, "map_store", words());
+  drive_.send(5);
+  ASSERT_TRUE(drive_.wait_for_stored(5));
+  const std::uint64_t session = drive_.map().local_maps[0].stop.session;
+  const topomap::LocalMap last = drive_.as_sent(4);
+  EXPECT_EQ(drive_.stored().map_id(), drive_.map().map_id);
+  EXPECT_EQ(drive_.stored().session(), session);
+  EXPECT_EQ(drive_.stored().stamp_ns(), last.stamp_ns);
+  EXPECT_EQ(drive_.stored().content_hash(), topomap::content_hash(last));
+  EXPECT_EQ(service::from_msg(drive_.stored().T_odom_robot()), last.T_odom_robot);
+
+  const storage::MapDocument got =
+      storage::parse_map_file(drive_.ask(msg::kSnapshotMap), "snapshot");
+  EXPECT_EQ(got.map_id, drive_.map().map_id);
+  ASSERT_EQ(got.local_maps.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(got.local_maps[i].stop == drive_.as_sent(i).stop);
+  EXPECT_EQ(got.trajectory.version, 5U);
+
+  const auto since =
+      storage::parse_local_maps(drive_.ask(msg::kSnapshotLocalMaps, session, 3), "snapshot");
+  ASSERT_EQ(since.size(), 2U);
+  EXPECT_EQ(since[1].stop, last.stop);
+  EXPECT_EQ(drive_.ask(msg::kSnapshotLocalMaps, 12345, 0), "") << "no such session, no stops";
+}
+
+TEST_F(MapStoreLives, OnAFullDiskTheMapGoesOnInMemory) {
+  Program store(scratch_, "map_store", words());
+  drive_.send(3);
+  ASSERT_TRUE(drive_.wait_for_stored(3));
+  rlimit before{};
+  ASSERT_EQ(::prlimit(store.pid(), RLIMIT_FSIZE, nullptr, &before), 0);
+  rlimit full = before;
+  full.rlim_cur = std::filesystem::file_size(file("map.sqlite-wal"));
+  ASSERT_EQ(::prlimit(store.pid(), RLIMIT_FSIZE, &full, nullptr), 0);
+  drive_.send(drive_.stops() - 1);
+  store.wait_for_error_text("map.sqlite: cannot be read or written");
+  EXPECT_LT(drive_.stored().session_stops(), drive_.stops() - 1);
+  ASSERT_EQ(::prlimit(store.pid(), RLIMIT_FSIZE, &before, nullptr), 0);
+  store.wait_for_error_text("the map is stored again");
+  EXPECT_TRUE(drive_.wait_for_stored(drive_.stops() - 1));
+  drive_.finish();
+  store.wait_for_error_text("local maps, ");
+  EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")));
+}
+
+TEST_F(MapStoreLives, ADamagedMapIsRefusedAndLeftAlone) {
+  std::filesystem::create_directory(scratch_ / "out");
+  const std::string damaged = std::string("SQLite format 3\0", 16) + std::string(5000, 'x');
+  std::ofstream(file("map.sqlite"), std::ios::binary) << damaged;
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--new"}}) {
+    Program store(scratch_, "map_store", words(more));
+    EXPECT_EQ(store.wait(), 3);
+    EXPECT_THAT(store.err(), HasSubstr("map.sqlite: "));
+    EXPECT_TRUE(read_file(file("map.sqlite")) == damaged);
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::test

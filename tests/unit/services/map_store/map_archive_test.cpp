@@ -1,0 +1,220 @@
+// The faults that a disk and its users have in store, each injected while a map comes in.
+#include "map_store/map_archive.hpp"
+
+#include <csignal>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/resource.h>
+
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
+
+#include "services/common/random_values.hpp"
+
+namespace topogeo::map_store {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::uint64_t kArchivedSession = 3;
+
+/// No file of this process grows beyond so many bytes: a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(std::uintmax_t bytes) {
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+class Archive : public testing::Test {
+ protected:
+  Archive() {
+    fs::remove_all(directory_);
+    fs::create_directories(directory_);
+    archive_.emplace(storage::MapDatabase::open_or_create(path_, "robot", 1), path_);
+    for (std::uint32_t i = 0; i < 300; ++i) {
+      topomap::LocalMap map = any_local_map(random_);
+      map.robot_id = "robot";
+      map.id = i;
+      map.stop = {kArchivedSession, i};
+      map.starts_drive = false;
+      maps_.push_back(std::move(map));
+    }
+  }
+  ~Archive() override {
+    archive_.reset();
+    fs::remove_all(directory_);
+  }
+
+  void add(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) archive_->add(maps_[i]);
+  }
+  [[nodiscard]] std::string flush_error() {
+    try {
+      static_cast<void>(archive_->flush());
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  /// What another program finds in the file now.
+  [[nodiscard]] std::uint32_t stored() const {
+    const auto sessions = storage::MapDatabase::open_read_only(path_).sessions();
+    return sessions.empty() ? 0 : sessions[0].stops;
+  }
+
+  support::Random random_{5};
+  fs::path directory_ = fs::path(testing::TempDir()) /
+                        (std::string("topogeo_archive_") +
+                         testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path path_ = directory_ / "map.sqlite";
+  std::optional<MapArchive> archive_;
+  std::vector<topomap::LocalMap> maps_;
+};
+
+TEST_F(Archive, StoresWhatComesOnceAndInAnyOrder) {
+  add(1, 100);
+  EXPECT_TRUE(archive_->has_batch());
+  EXPECT_THAT(archive_->flush(), IsEmpty());
+  EXPECT_EQ(stored(), 0U) << "the first one is missing";
+  add(0, 100);  // again
+  EXPECT_EQ(archive_->queued(), 1U);
+  EXPECT_THAT(archive_->flush(), IsEmpty());
+  EXPECT_EQ(stored(), 100U);
+}
+
+TEST_F(Archive, StoresWhatTheTrajectoryNames) {
+  add(0, 3);
+  EXPECT_THAT(archive_->flush(), IsEmpty());
+  std::vector<topomap::LocalMap> joined{maps_[0], topomap::numbered(maps_[2], 1, true)};
+  topomap::Trajectory trajectory;
+  trajectory.version = 4;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    trajectory.stops.push_back({i, joined[i].stamp_ns, {1.0 * i, 0.0, 0.0}, {}, joined[i].stop});
+    trajectory.stops.back().covariance.setIdentity();
+  }
+  std::vector<topomap::LoopClosure> closures{{0, 1, {}}};
+  archive_->put(joined, trajectory, closures);
+  closures[0].T_earlier_later.x_m = 2.0;
+  archive_->put(joined, trajectory, closures);
+  const storage::MapDocument document = storage::read_map(path_);
+  EXPECT_TRUE(document.local_maps == joined);
+  EXPECT_EQ(document.trajectory.version, 4U);
+  EXPECT_EQ(document.loop_closures[0].T_earlier_later.x_m, 2.0);
+  EXPECT_THAT(archive_->database().waiting_stops(),
+              ElementsAre(topomap::StopId{kArchivedSession, 1}));
+}
+
+TEST_F(Archive, KeepsTheNewestOfThoseThatNoMapWants) {
+  topomap::LocalMap map = maps_[0];
+  map.points.clear();
+  const auto most = static_cast<std::uint32_t>(MapArchive::kMostWaiting + MapArchive::kBatch);
+  for (std::uint32_t i = 0; i < most; ++i) {
+    map.id = i;
+    map.stop.number = i;
+    archive_->add(map);
+    if (archive_->has_batch()) {
+      EXPECT_THAT(archive_->flush(), IsEmpty());
+    }
+  }
+  EXPECT_EQ(archive_->database().waiting_count(), MapArchive::kMostWaiting);
+  EXPECT_EQ(stored(), most) << "acknowledged for good";
+  archive_->add(maps_[0]);
+  EXPECT_EQ(archive_->queued(), 0U) << "a dropped one is not taken in again";
+}
+
+TEST_F(Archive, FullDisk) {
+  add(0, 100);
+  EXPECT_THAT(archive_->flush(), IsEmpty());
+  add(100, 300);
+  {
+    const FullDisk full(fs::file_size(path_.string() + "-wal") + 20000);
+    EXPECT_THAT(flush_error(), HasSubstr("map.sqlite: cannot be read or written"));
+    EXPECT_EQ(stored(), archive_->database().sessions()[0].stops);
+    EXPECT_GE(stored(), 100U);
+    EXPECT_EQ(archive_->queued(), 300U - stored());
+    EXPECT_THAT(flush_error(), HasSubstr("map.sqlite: ")) << "it is still full";
+  }
+  EXPECT_EQ(flush_error(), "") << "there is room again";
+  EXPECT_EQ(stored(), 300U);
+}
+
+TEST_F(Archive, LockedFile) {
+  add(0, 10);
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
+  EXPECT_THAT(flush_error(), HasSubstr("database is locked"));
+  EXPECT_EQ(archive_->queued(), 10U);
+  ASSERT_EQ(sqlite3_exec(other, "ROLLBACK", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(other);
+  EXPECT_EQ(flush_error(), "");
+  EXPECT_EQ(stored(), 10U);
+}
+
+TEST_F(Archive, RemovedFileIsWrittenAgain) {
+  add(0, 50);
+  EXPECT_EQ(flush_error(), "");
+  fs::remove(path_);
+  add(50, 60);
+  EXPECT_EQ(flush_error(), "");
+  EXPECT_EQ(stored(), 60U);
+  for (const char* part : {"", "-wal", "-shm"}) fs::remove(path_.string() + part);
+  add(60, 70);
+  EXPECT_EQ(flush_error(), "");
+  add(70, 80);
+  EXPECT_EQ(flush_error(), "");
+  archive_.reset();
+  EXPECT_EQ(stored(), 80U);
+  EXPECT_EQ(storage::MapDatabase::open_existing(path_).waiting_count(), 80U);
+}
+
+TEST_F(Archive, RemovedFileOnAFullDiskStaysInMemory) {
+  add(0, 50);
+  EXPECT_EQ(flush_error(), "");
+  fs::remove(path_);
+  add(50, 60);
+  {
+    const FullDisk full(10000);
+    EXPECT_THAT(flush_error(), HasSubstr("map.sqlite.again: "));
+  }
+  EXPECT_EQ(flush_error(), "");
+  EXPECT_EQ(stored(), 60U);
+}
+
+TEST_F(Archive, AnotherFileInItsPlaceIsLeftAlone) {
+  add(0, 5);
+  EXPECT_EQ(flush_error(), "");
+  fs::rename(path_, directory_ / "moved.sqlite");
+  std::ofstream(path_) << "something else";
+  add(5, 10);
+  EXPECT_THAT(flush_error(), HasSubstr("another file has taken its place"));
+  std::ifstream in(path_);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "something else");
+  fs::remove(path_);
+  EXPECT_EQ(flush_error(), "");
+  EXPECT_EQ(stored(), 10U);
+}
+
+}  // namespace
+}  // namespace topogeo::map_store
