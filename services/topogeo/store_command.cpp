@@ -15,6 +15,7 @@ void add_store_command(command_line::Command& app, int& exit_code) {
   add_store_inspect_commands(*store, exit_code);
   add_store_export_command(*store, exit_code);
   add_store_import_command(*store, exit_code);
+  add_store_join_commands(*store, exit_code);
 }
 
 }  // namespace topogeo::cli

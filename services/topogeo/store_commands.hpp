@@ -8,5 +8,6 @@ namespace topogeo::cli {
 void add_store_inspect_commands(command_line::Command& store, int& exit_code);
 void add_store_export_command(command_line::Command& store, int& exit_code);
 void add_store_import_command(command_line::Command& store, int& exit_code);
+void add_store_join_commands(command_line::Command& store, int& exit_code);
 
 }  // namespace topogeo::cli
