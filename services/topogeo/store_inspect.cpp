@@ -10,6 +10,7 @@
 #include "topogeo/exchange/inspect.hpp"
 #include "topogeo/exchange/read_text.hpp"
 #include "topogeo/exchange/repair.hpp"
+#include "topogeo/exchange/sessions.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
@@ -28,10 +29,17 @@ struct InspectOptions {
 };
 
 int store_info(const InspectOptions& options) {
-  const exchange::MapSummary summary = exchange::summarize(read_any_map(options.file));
+  const storage::MapDocument map = read_any_map(options.file);
+  const exchange::MapSummary summary = exchange::summarize(map);
   const std::uint64_t bytes = fs::file_size(options.file);
   std::cout << (options.json ? exchange::summary_json(summary, bytes)
                              : exchange::summary_text(summary, bytes));
+  if (options.json) return service::kOk;
+  for (const exchange::SessionSummary& s : exchange::sessions_of(map)) {
+    std::cout << fmt::format("session    {}: {} stops, {:.1f} s\n",
+                             exchange::session_text(s.session), s.stops,
+                             static_cast<double>(s.last_stamp_ns - s.first_stamp_ns) * 1e-9);
+  }
   return service::kOk;
 }
 

@@ -1,4 +1,4 @@
-// topogeo store align and merge: two maps of one place.
+// topogeo store align, merge and remove-session: maps of one place put together and apart.
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -15,6 +15,7 @@
 #include "topogeo/exchange/grid_image.hpp"
 #include "topogeo/exchange/grid_map.hpp"
 #include "topogeo/exchange/merge.hpp"
+#include "topogeo/exchange/sessions.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -132,6 +133,36 @@ int store_merge(const MergeOptions& options) {
   }
 }
 
+struct RemoveOptions {
+  fs::path map;
+  std::string session;
+  fs::path out;
+  std::optional<fs::path> config;
+};
+
+int store_remove_session(const RemoveOptions& options) {
+  const pipeline::Config config = read_config(options.config);
+  const auto session = exchange::session_of_text(options.session);
+  if (!session) {
+    throw service::UsageError(fmt::format(
+        "session '{}': expected an id of `topogeo store info`, hexadecimal", options.session));
+  }
+  const storage::MapDocument map = read_any_map(options.map);
+  try {
+    const storage::MapDocument rest = exchange::without_session(map, *session, config.global_map);
+    storage::write_map_file(options.out, rest);
+    std::cout << fmt::format("{} stops removed, {} are left in {}\n",
+                             map.local_maps.size() - rest.local_maps.size(), rest.local_maps.size(),
+                             options.out.string());
+    if (rest.edges.empty()) {
+      print_notes({"the map keeps no measurements: the other poses stay as they are"});
+    }
+    return service::kOk;
+  } catch (const std::invalid_argument& error) {
+    throw service::BadInputError(options.map.string() + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 void add_store_join_commands(command_line::Command& store, int& exit_code) {
@@ -162,6 +193,19 @@ void add_store_join_commands(command_line::Command& store, int& exit_code) {
       "stay as they are. Exit codes: 0 merged, 1 ambiguous or nothing in common, 3 unusable "
       "input.");
   merge->callback([maps, &exit_code] { exit_code = store_merge(*maps); });
+
+  command_line::Command* remove =
+      store.add_subcommand("remove-session", "Make a map without the stops of a session");
+  auto removed = std::make_shared<RemoveOptions>();
+  remove->add_option("map", removed->map, "map file or database")->required()->type_name("MAP");
+  remove->add_option("session", removed->session, "id, as `topogeo store info` prints it")
+      ->required()
+      ->type_name("ID");
+  remove->add_option("--out", removed->out, "map file to write (map.pb)")
+      ->required()
+      ->type_name("MAP");
+  remove->add_option("--config", removed->config, "configuration (YAML)")->type_name("FILE");
+  remove->callback([removed, &exit_code] { exit_code = store_remove_session(*removed); });
 }
 
 }  // namespace topogeo::cli

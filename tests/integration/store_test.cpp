@@ -120,15 +120,27 @@ TEST_F(StoreTest, DamageIsToldAndWhatIsLeftIsSaved) {
   EXPECT_EQ(store({"check", path("saved.pb")}).code, 0);
 }
 
-TEST_F(StoreTest, AMapLiesInItself) {
+TEST_F(StoreTest, ARoomThatLooksAlikeFromBothSidesIsNotAligned) {
   const StoreOutcome align = store({"align", map_, map_, "--json"});
-  EXPECT_EQ(align.code, 0) << align.err;
-  const auto read = nlohmann::json::parse(align.out);
-  EXPECT_NEAR(read.at("x_m").get<double>(), 0.0, 0.05);
+  EXPECT_EQ(align.code, 1);
+  EXPECT_THAT(align.err, HasSubstr("not aligned: ambiguous"));
+  EXPECT_EQ(nlohmann::json::parse(align.out).at("found"), false);
   // A second map of the same session is the first one at another time.
   const StoreOutcome merge = store({"merge", map_, map_, "--out", path("twice.pb")});
   EXPECT_EQ(merge.code, 3);
   EXPECT_FALSE(std::filesystem::exists(path("twice.pb")));
+}
+
+TEST_F(StoreTest, SessionsAreNamedAndTheOnlyOneStays) {
+  const std::string info = store({"info", map_}).out;
+  const std::size_t at = info.find("session    ");
+  ASSERT_NE(at, std::string::npos) << info;
+  const std::string session = info.substr(at + 11, 16);
+  const StoreOutcome removed = store({"remove-session", map_, session, "--out", path("none.pb")});
+  EXPECT_EQ(removed.code, 3);
+  EXPECT_THAT(removed.err, HasSubstr("all stops are of it"));
+  EXPECT_EQ(store({"remove-session", map_, "monday", "--out", path("none.pb")}).code, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("none.pb")));
 }
 
 TEST_F(StoreTest, WrongCallsAndFilesAreToldInOneLine) {
