@@ -117,7 +117,7 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   status_ = monitor_.add(step.evidence);
   monitored_ = true;
   if (status_.state == LocalizationState::kTracking && !step.accepted.empty()) {
-    continued_.track(pose_);
+    continued_.track(pose_, stop.step.distance_m);
   }
   if (status_.state == LocalizationState::kLost) {
     begin_search();
@@ -249,9 +249,8 @@ std::uint32_t MapLocalizer::decide() {
     status_.state = LocalizationState::kAmbiguous;
     accepted = best->missed == 0 ? 1 : 0;
   }
-  const bool carried = !continued_.leads_to(best->pose);
-  if (!PlaceSearch::found(*best, carried)) return accepted;
-  if (carried) continued_.forget();
+  if (!PlaceSearch::found(*best, continued_.wanted_m(best->pose))) return accepted;
+  if (!continued_.pose() || !continued_.leads_to(best->pose)) continued_.forget();
   has_pose_ = true;
   StepEvidence evidence;
   evidence.points = kFewestSearched;

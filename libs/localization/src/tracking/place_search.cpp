@@ -36,10 +36,7 @@ constexpr std::uint32_t kSeenOften = 2;  // accepted stops before a place is tak
 constexpr std::uint32_t kSeenMoreOften = 4;
 constexpr double kLeastDistance_m = 0.3;  // between the first and the last of them
 constexpr std::uint32_t kMissedOften = 3;
-// Of a place to which the drive does not lead: longer than the look-alikes are in which robots that
-// had left their map were tracked.
-constexpr std::uint32_t kCarriedAccepted = 10;
-constexpr double kCarried_m = 15.0;
+constexpr std::uint32_t kCarriedAccepted = 10;  // of a place to which the drive does not lead
 // Nearer to each other, two poses are one hypothesis.
 constexpr double kHypothesesApart_m = 0.6;
 constexpr double kHypothesesApart_rad = 0.3;
@@ -169,9 +166,10 @@ std::optional<PlaceHypothesis> PlaceSearch::best() const {
   return *best;
 }
 
-bool PlaceSearch::found(const PlaceHypothesis& hypothesis, bool carried) {
+bool PlaceSearch::found(const PlaceHypothesis& hypothesis, double carried_m) {
   if (hypothesis.missed > 0 || hypothesis.fitness < kSurelyThere) return false;
-  if (carried && (hypothesis.accepted < kCarriedAccepted || hypothesis.distance_m < kCarried_m)) {
+  if (carried_m > 0.0 &&
+      (hypothesis.accepted < kCarriedAccepted || hypothesis.distance_m < carried_m)) {
     return false;
   }
   const bool accepted = hypothesis.weight >= kSure && hypothesis.accepted >= hypothesis.wanted &&

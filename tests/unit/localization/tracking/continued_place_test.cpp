@@ -49,7 +49,7 @@ TEST(ContinuedPlace, LeadsAnywhereWhereNothingIsKnown) {
 
 TEST(ContinuedPlace, GoesOnByMatchedSteps) {
   ContinuedPlace place;
-  place.track(kTracked);
+  place.track(kTracked, 1.0);
   for (int i = 0; i < 4; ++i) place.move(step(true));
   ASSERT_TRUE(place.pose());
   EXPECT_NEAR(place.pose()->T_a_b.x_m, 6.0, 1e-12);
@@ -60,7 +60,7 @@ TEST(ContinuedPlace, GoesOnByMatchedSteps) {
 
 TEST(ContinuedPlace, KnowsTheLessTheFurtherItWent) {
   ContinuedPlace place;
-  place.track(kTracked);
+  place.track(kTracked, 1.0);
   for (int i = 0; i < 100; ++i) place.move(step(true));
   EXPECT_TRUE(place.leads_to({{102.0, 8.0, 0.0}, spread(0.1, 0.02)}));
 }
@@ -68,26 +68,46 @@ TEST(ContinuedPlace, KnowsTheLessTheFurtherItWent) {
 TEST(ContinuedPlace, AStepThatMayHaveCarriedTheRobotEndsIt) {
   for (const Reason reason : {Reason::kFewInliers, Reason::kNothingInCommon}) {
     ContinuedPlace place;
-    place.track(kTracked);
+    place.track(kTracked, 1.0);
     place.move(unmatched(reason));
     EXPECT_FALSE(place.pose());
   }
   ContinuedPlace place;
-  place.track(kTracked);
+  place.track(kTracked, 1.0);
   place.move(step(false));  // nothing to match it with
   EXPECT_FALSE(place.pose());
 }
 
 TEST(ContinuedPlace, ADoubtfulStepThatMayBeRightDoesNot) {
   ContinuedPlace place;
-  place.track(kTracked);
+  place.track(kTracked, 1.0);
   place.move(unmatched(Reason::kDoubtful));
   EXPECT_TRUE(place.pose());
 }
 
+TEST(ContinuedPlace, WantsTwiceAsMuchOfWhatItContradicts) {
+  const UncertainPose elsewhere{{40.0, 0.0, 0.0}, spread(0.1, 0.02)};
+  ContinuedPlace place;
+  EXPECT_EQ(place.wanted_m(elsewhere), 0.0);
+  place.track(kTracked, 1.0);
+  EXPECT_EQ(place.wanted_m(kTracked), 0.0);
+  EXPECT_EQ(place.wanted_m(elsewhere), 15.0);
+  for (int i = 0; i < 11; ++i) place.track(kTracked, 1.0);
+  EXPECT_EQ(place.wanted_m(elsewhere), 24.0);
+  for (int i = 0; i < 20; ++i) place.track(kTracked, 1.0);
+  EXPECT_EQ(place.wanted_m(elsewhere), 40.0);
+  place.move(step(false));
+  EXPECT_EQ(place.wanted_m(elsewhere), 0.0);
+  place.track(kTracked, 1.0);  // it was there all the time
+  EXPECT_EQ(place.wanted_m(elsewhere), 40.0);
+  place.forget();
+  place.track(kTracked, 1.0);
+  EXPECT_EQ(place.wanted_m(elsewhere), 15.0);
+}
+
 TEST(ContinuedPlace, ForgetsWhenItIsTold) {
   ContinuedPlace place;
-  place.track(kTracked);
+  place.track(kTracked, 1.0);
   place.forget();
   EXPECT_FALSE(place.pose());
 }

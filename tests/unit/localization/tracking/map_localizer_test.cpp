@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/simulation/random_floors.hpp"
 
 #include "localization/simulated_maps.hpp"
 
@@ -16,18 +17,21 @@ using geometry::Pose2;
 
 const Eigen::Matrix3d kKnown = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
 
+std::shared_ptr<const StoredMap> stored(const test::DrivenMaps& driven) {
+  auto map = std::make_shared<StoredMap>();
+  for (std::size_t i = 0; i < driven.maps.size(); ++i) {
+    map->maps.push_back(*driven.maps[i]);
+    map->trajectory.stops.push_back({driven.maps[i]->id, driven.maps[i]->stamp_ns,
+                                     driven.T_world_robot[i], Eigen::Matrix3d::Zero()});
+  }
+  return map;
+}
+
 /// The floor as one drive saw it, with its true poses, and another drive through it.
 class MapLocalizerTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    const test::DrivenMaps first = test::drive(test::world("floor"), {});
-    auto map = std::make_shared<StoredMap>();
-    for (std::size_t i = 0; i < first.maps.size(); ++i) {
-      map->maps.push_back(*first.maps[i]);
-      map->trajectory.stops.push_back({first.maps[i]->id, first.maps[i]->stamp_ns,
-                                       first.T_world_robot[i], Eigen::Matrix3d::Zero()});
-    }
-    stored_ = map;
+    stored_ = stored(test::drive(test::world("floor"), {}));
     drive_ = new test::DrivenMaps(test::drive(test::world("floor"), {}, 0.41));
   }
   static void TearDownTestSuite() {
@@ -183,6 +187,32 @@ TEST_F(MapLocalizerTest, AnotherSessionIsSearchedFor) {
   EXPECT_EQ(localizer.searches(), 1U);
   EXPECT_FALSE(localizer.status().state == LocalizationState::kTracking && !right(localizer, 30))
       << "the odometry of one session says nothing of another";
+}
+
+// Two wings that are copies of each other. The map has the first one; the robot goes through that
+// and on to the second, with every step matched.
+TEST(MapLocalizer, ALookAlikeBeyondTheMapIsNotTaken) {
+  const world::World world = simulation::symmetric_building(1);
+  const auto& tour_m = world.tour_m;
+  const auto map = stored(test::drive(world, {tour_m.begin(), tour_m.begin() + 4}));
+  const test::DrivenMaps driven = test::drive(world, {tour_m.begin(), tour_m.begin() + 7}, 0.41);
+  InProcessPool pool;
+  MapLocalizer localizer({}, map, pool);
+  std::size_t tracked = 0;
+  std::size_t unknown = 0;
+  for (std::size_t i = 0; i < driven.maps.size(); ++i) {
+    localizer.add(driven.maps[i]);
+    if (localizer.status().state != LocalizationState::kTracking) {
+      ++unknown;
+      continue;
+    }
+    ++tracked;
+    const Pose2 error =
+        geometry::between(localizer.stops().back().T_map_robot, driven.T_world_robot[i]);
+    EXPECT_LT(error.position_m().norm(), 0.5) << i;
+  }
+  EXPECT_GT(tracked, 30U);
+  EXPECT_GT(unknown, 20U);
 }
 
 }  // namespace

@@ -95,9 +95,9 @@ TEST(PlaceSearch, APlaceToWhichTheDriveDoesNotLeadMustBeSeenOverALongPath) {
   for (int i = 1; i < 10; ++i) stop(search, {}, {true}, {0.9}, 1.5);
   EXPECT_EQ(search.best()->accepted, 10U);
   EXPECT_TRUE(PlaceSearch::found(*search.best()));
-  EXPECT_FALSE(PlaceSearch::found(*search.best(), true));  // 13.5 m
+  EXPECT_FALSE(PlaceSearch::found(*search.best(), 15.0));  // 13.5 m
   stop(search, {}, {true}, {0.9}, 1.5);
-  EXPECT_TRUE(PlaceSearch::found(*search.best(), true));
+  EXPECT_TRUE(PlaceSearch::found(*search.best(), 15.0));
 }
 
 TEST(PlaceSearch, TheExpectedPlaceNeedsTwoLooksWheneverItComesUp) {

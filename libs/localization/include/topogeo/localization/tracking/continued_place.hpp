@@ -17,19 +17,24 @@ class ContinuedPlace {
  public:
   /// The robot went on to its next stop.
   void move(const DriveStep& step);
-  /// At this stop it was tracked and matched with the map.
-  void track(const UncertainPose& T_map_robot) { pose_ = T_map_robot; }
+  /// At this stop it was tracked and matched with the map, this far from the stop before.
+  void track(const UncertainPose& T_map_robot, double distance_m);
   /// Nothing is known.
-  void forget() { pose_.reset(); }
+  void forget();
 
   /// T_map_robot by the stops of the drive; nothing where none was certain since the robot may have
   /// been carried.
   [[nodiscard]] const std::optional<UncertainPose>& pose() const { return pose_; }
   /// Whether the robot may be there without having been carried; true where nothing is known.
   [[nodiscard]] bool leads_to(const UncertainPose& T_map_robot) const;
+  /// Over how much path a place must be seen before it is taken, metres: 0 where the drive leads
+  /// there, otherwise twice as much as the robot was tracked over in the places that it
+  /// contradicts.
+  [[nodiscard]] double wanted_m(const UncertainPose& T_map_robot) const;
 
  private:
   std::optional<UncertainPose> pose_;
+  double tracked_m_ = 0.0;  // in all since nothing was known
 };
 
 }  // namespace topogeo::localization

@@ -60,9 +60,9 @@ class PlaceSearch {
   [[nodiscard]] const std::vector<PlaceHypothesis>& hypotheses() const { return hypotheses_; }
   /// The one of largest weight; nothing without any.
   [[nodiscard]] std::optional<PlaceHypothesis> best() const;
-  /// Whether it is the place: beyond doubt, and seen from often and far enough apart. `carried`:
-  /// the robot can be there only if something carried it unnoticed.
-  static bool found(const PlaceHypothesis& hypothesis, bool carried = false);
+  /// Whether it is the place: beyond doubt, and seen from often and far enough apart. `carried_m`:
+  /// over so much path, where the robot can be there only if something carried it unnoticed.
+  static bool found(const PlaceHypothesis& hypothesis, double carried_m = 0.0);
 
  private:
   void merge();
