@@ -21,6 +21,10 @@ class DatabaseReader {
 
   StoredPieces read() {
     for (const auto& [name, table] : tables_) {
+      if ((name == "map_node" || name == "map_branch") &&
+          (!table.complete || table.damaged_blobs > 0)) {
+        pieces_.graph_incomplete = true;
+      }
       if (!table.complete) {
         pieces_.damage.push_back(
             fmt::format("table {}: pages cannot be read, {} rows can", name, table.rows.size()));

@@ -1,8 +1,10 @@
 // A map file followed from field to field, also where it is damaged.
 #include <stdexcept>
+#include <utility>
 
 #include "topogeo/exchange/repair.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/hash.hpp"
 
 #include "map_fields.hpp"
 #include "wire.hpp"
@@ -34,6 +36,10 @@ class MapFileReader {
         continue;
       }
       at = resume_after(before);
+      gap_ = true;
+      std::size_t next = at;
+      const auto resumed = read_field(bytes_, next);
+      if (!resumed || resumed->number >= MapFields::kGlobalMap) pieces_.graph_incomplete = true;
       pieces_.damage.push_back(fmt::format("bytes {} to {} cannot be read: {}", before, at - 1,
                                            at == bytes_.size()
                                                ? "the file is cut short or damaged to its end"
@@ -95,8 +101,10 @@ class MapFileReader {
         pieces_.loops.push_back(payload);
         break;
       case MapFields::kGlobalMap:
-        take_parts(field.payload, pieces_.map_version,
-                   {nullptr, nullptr, &pieces_.nodes, &pieces_.branches});
+        if (!take_parts(field.payload, pieces_.map_version,
+                        {nullptr, nullptr, &pieces_.nodes, &pieces_.branches})) {
+          pieces_.graph_incomplete = true;
+        }
         break;
       case MapFields::kDrawing:
         take_parts(field.payload, ignored_, {nullptr, &pieces_.places, &pieces_.zones, &grids_});
@@ -112,21 +120,23 @@ class MapFileReader {
 
   void take_local_map(const std::string& payload) {
     const auto id = number_in(payload, MapFields::kIdOfLocalMap);
-    // Where the message cannot be followed the place in the file tells.
+    // They follow each other; where bytes were lost, the number says how many maps went with them.
     const std::uint32_t next = pieces_.stops.empty() ? 0 : pieces_.stops.back().id + 1;
     constexpr std::uint32_t kLongestGap = 10'000;  // a larger one is a damaged number
-    const bool plausible = id && *id >= next && *id - next < kLongestGap;
+    const bool plausible =
+        std::exchange(gap_, false) && id && *id >= next && *id - next < kLongestGap;
     pieces_.stops.push_back({plausible ? static_cast<std::uint32_t>(*id) : next, payload, {}});
   }
 
   /// The parts of a message, by their field numbers; field 1 is its version where none is for it.
-  void take_parts(std::string_view message, std::uint64_t& version,
+  /// False where the message ends early.
+  bool take_parts(std::string_view message, std::uint64_t& version,
                   const std::vector<std::vector<std::string>*>& lists) {
     for (std::size_t at = 0; at < message.size();) {
       const auto field = read_field(message, at);
       if (!field) {
-        pieces_.damage.push_back("a list of poses, nodes or drawn things ends early");
-        return;
+        pieces_.damage.emplace_back("a list of poses, nodes or drawn things ends early");
+        return false;
       }
       if (field->type == Type::kVarint && field->number == 1) version = field->value;
       if (field->type == Type::kBytes && field->number < lists.size() &&
@@ -134,14 +144,26 @@ class MapFileReader {
         lists[field->number]->emplace_back(field->payload);
       }
     }
+    return true;
   }
 
   std::string_view bytes_;
   StoredPieces pieces_;
   std::uint32_t last_ = 0;  // number of the last field
+  bool gap_ = false;        // bytes were lost since the last local map
   std::uint64_t ignored_ = 0;
   std::vector<std::string> grids_;
 };
+
+/// Of all bytes but the last field, which is the checksum.
+bool has_right_checksum(std::string_view bytes) {
+  constexpr std::size_t kFieldBytes = 9;
+  if (bytes.size() < kFieldBytes) return false;
+  std::size_t at = bytes.size() - kFieldBytes;
+  const std::uint64_t right = support::fnv1a(bytes.substr(0, at));
+  const auto field = read_field(bytes, at);
+  return field && field->number == MapFields::kChecksum && field->value == right;
+}
 
 }  // namespace
 
@@ -151,7 +173,12 @@ StoredPieces pieces_of_map_file(std::string_view bytes, const std::string& name)
   if (bytes.substr(0, 64).find(kFormat) == std::string_view::npos) {
     throw std::runtime_error(name + ": not a topogeo map (no 'topogeo-map' at its beginning)");
   }
-  return MapFileReader(bytes).read();
+  StoredPieces pieces = MapFileReader(bytes).read();
+  if (!has_right_checksum(bytes) && pieces.damage.empty()) {
+    pieces.damage.emplace_back(
+        "the checksum of the file is wrong: digits of what can be read may be damaged");
+  }
+  return pieces;
 }
 
 }  // namespace topogeo::exchange

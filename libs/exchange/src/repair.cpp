@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <ranges>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -44,6 +47,28 @@ std::string empty_stops(const std::string& robot_id, std::uint32_t count) {
         F::kLocalMap, with_id(bytes_field(F::kRobotOfLocalMap, robot_id), F::kIdOfLocalMap, id));
   }
   return fields;
+}
+
+// A number whose exponent is damaged. The global map takes no more (global_map_builder.hpp).
+constexpr double kFarthestPoint_m = 500.0;
+constexpr double kFarthestPose_m = 5000.0;
+
+void require_within(const Eigen::Vector2d& position_m, double most_m) {
+  if (!(position_m.cwiseAbs().maxCoeff() <= most_m)) throw std::runtime_error("far away");
+}
+
+/// Throws std::runtime_error for coordinates that no laser measures.
+void check_plausible(const topomap::LocalMap& map) {
+  for (const topomap::ScanPoint& p : map.points) require_within({p.x_m, p.y_m}, kFarthestPoint_m);
+  for (const topomap::LocalNode& node : map.nodes) {
+    require_within(node.position_m, kFarthestPoint_m);
+  }
+  for (const topomap::LocalBranch& branch : map.branches) {
+    for (const topomap::BranchPoint& p : branch.points) {
+      require_within(p.position_m, kFarthestPoint_m);
+    }
+  }
+  require_within(map.T_previous_robot.position_m(), kFarthestPose_m);
 }
 
 class Assembler {
@@ -112,6 +137,7 @@ class Assembler {
                                 with_id(stop.local_map + bytes_field(F::kRobotOfLocalMap, robot_),
                                         F::kIdOfLocalMap, 0)));
         topomap::LocalMap map = std::move(alone.local_maps.at(0));
+        check_plausible(map);
         map.id = stop.id;
         if (stop.starts_drive) map.starts_drive = *stop.starts_drive;
         found[stop.id] = std::move(map);
@@ -131,10 +157,37 @@ class Assembler {
         missing_.push_back(id);
       }
     }
+    name_stops();
     if (!missing_.empty()) {
       lose("{} stops have nothing of what they saw, the first of them {}", missing_.size(),
            missing_.front());
     }
+  }
+
+  /// A missing stop is taken for the next of the session before it, or the one before the session
+  /// behind. Where such a number is taken, or some stops have no session, none keeps its name.
+  void name_stops() {
+    std::vector<topomap::LocalMap>& maps = out_.document.local_maps;
+    for (const std::uint32_t id : missing_) {
+      if (id > 0 && maps[id - 1].stop.session != 0) {
+        maps[id].stop = {maps[id - 1].stop.session, maps[id - 1].stop.number + 1};
+      }
+    }
+    for (const std::uint32_t id : missing_ | std::views::reverse) {
+      if (maps[id].stop.session != 0 || id + 1 >= maps.size()) continue;
+      const topomap::StopId& next = maps[id + 1].stop;
+      if (next.number > 0) maps[id].stop = {next.session, next.number - 1};
+    }
+    std::set<std::pair<std::uint64_t, std::uint32_t>> names;
+    bool named = true;
+    for (const topomap::LocalMap& map : maps) {
+      named = named && map.stop.session != 0 &&
+              names.insert({map.stop.session, map.stop.number}).second;
+    }
+    if (named) return;
+    const auto has_name = [](const topomap::LocalMap& map) { return map.stop.session != 0; };
+    if (std::ranges::any_of(maps, has_name)) lose("the sessions of the stops are lost");
+    for (topomap::LocalMap& map : maps) map.stop = {};
   }
 
   [[nodiscard]] topomap::LocalMap empty_stop(std::uint32_t id) const {
@@ -157,6 +210,7 @@ class Assembler {
                                                               with_id(element, F::kIdOfPose, 0))));
       topomap::StopPose stop = alone.trajectory.stops.at(0);
       stop.local_map_id = static_cast<std::uint32_t>(*id);
+      require_within(stop.T_map_robot.position_m(), kFarthestPose_m);
       found[stop.local_map_id] = stop;
     });
     std::size_t followed = 0;
@@ -294,7 +348,7 @@ class Assembler {
     std::ranges::stable_sort(map.branches, {}, &topomap::MapBranch::id);
     remove_repeated(map.nodes);
     remove_repeated(map.branches);
-    const bool damaged = out_.lost.size() > before || !pieces_.damage.empty();
+    const bool damaged = out_.lost.size() > before || pieces_.graph_incomplete;
     if (!damaged && !map.nodes.empty()) return;
     if (pieces_.map_version == 0 && !damaged) return;  // it had none
     make_graph();
@@ -311,8 +365,12 @@ class Assembler {
     const storage::MapDocument& document = out_.document;
     const auto located = [](const topomap::StopPose& stop) { return stop.located; };
     if (!std::ranges::any_of(document.trajectory.stops, located)) return;
-    out_.document.global_map = pipeline::fuse(config_, document.local_maps, document.trajectory);
-    lose("nodes and branches are made anew, with ids of their own");
+    try {
+      out_.document.global_map = pipeline::fuse(config_, document.local_maps, document.trajectory);
+      lose("nodes and branches are made anew, with ids of their own");
+    } catch (const std::invalid_argument& error) {
+      lose("nodes and branches cannot be made anew: {}", error.what());
+    }
   }
 
   const StoredPieces& pieces_;

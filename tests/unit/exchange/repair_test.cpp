@@ -112,6 +112,42 @@ TEST_F(Repair, WhereALengthIsDamagedReadingGoesOnBehind) {
   EXPECT_TRUE(map.document.drawing.grid);
 }
 
+TEST_F(Repair, MissingStopsKeepThePlaceInTheirSession) {
+  storage::MapDocument whole = whole_map();
+  for (topomap::LocalMap& map : whole.local_maps) map.stop = {0x77, map.id + 5};
+  std::string bytes = storage::map_file_bytes(whole);
+  for (const int lost : {1, 3}) {
+    std::size_t at = 0;
+    for (int i = 0; i < lost; ++i) at = bytes.find("\x0a\x07robot-1", at + 1);
+    bytes[at - 1] = '\x7f';
+  }
+  const RepairedMap map = repaired(bytes);
+  ASSERT_EQ(map.document.local_maps.size(), 6U);
+  for (std::uint32_t id = 0; id < 6; ++id) {
+    EXPECT_EQ(map.document.local_maps[id].stop, (topomap::StopId{0x77, id + 5}));
+  }
+  static_cast<void>(storage::map_file_bytes(map.document));
+}
+
+TEST_F(Repair, ADamagedNumberOfAStopMovesNoOther) {
+  std::string bytes = storage::map_file_bytes(whole_map());
+  std::size_t at = 0;
+  for (int i = 0; i < 2; ++i) at = bytes.find("\x0a\x07robot-1\x10", at + 1);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 10] = '\x05';  // the number behind the robot's name was 2
+  const RepairedMap map = repaired(bytes);
+  ASSERT_EQ(map.document.local_maps.size(), 6U);
+  EXPECT_EQ(map.document.local_maps[2].stamp_ns, 3'000'000'000);
+}
+
+TEST_F(Repair, ADigitThatIsDamagedIsTold) {
+  std::string bytes = storage::map_file_bytes(whole_map());
+  const std::string points(reinterpret_cast<const char*>(whole_map().local_maps[2].points.data()),
+                           64);
+  bytes[bytes.find(points) + 5] ^= 1;
+  EXPECT_THAT(repaired(bytes).lost, Contains(HasSubstr("the checksum of the file is wrong")));
+}
+
 TEST_F(Repair, FlippedBitsNeverCostMoreThanTheyTouch) {
   const storage::MapDocument whole = whole_map();
   const std::string bytes = storage::map_file_bytes(whole);

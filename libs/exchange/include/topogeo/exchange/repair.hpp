@@ -40,6 +40,7 @@ struct StoredPieces {
   std::vector<std::string> places;    ///< Place
   std::vector<std::string> zones;     ///< DrawnZone
   std::string grid;                   ///< DrawnGrid; "": none
+  bool graph_incomplete = false;      ///< nodes or branches are among what was lost
   Notes damage;                       ///< what was lost already
 };
 
