@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/log.hpp"
 
 namespace topogeo::map_store {
@@ -12,15 +13,32 @@ namespace {
 /// What did not fit into a history is sent again as often as readers can be expected to have made
 /// room.
 constexpr std::chrono::milliseconds kServerRetryPeriod{500};
+constexpr std::chrono::milliseconds kServerSnapshotPeriod{40};
+constexpr std::chrono::milliseconds kServerSnapshotSlice{20};
 
 }  // namespace
 
 MapServer::MapServer(service::Service& service, storage::MapDocument document,
                      const planning::HybridMap& hybrid)
-    : service_(service), document_(std::move(document)), elements_(service), hybrid_(service) {
+    : service_(service),
+      document_(std::move(document)),
+      elements_(service),
+      hybrid_(service),
+      pieces_out_(service.advertise<msg::SnapshotPiece>()),
+      snapshots_(
+          service.robot_id(),
+          [this](const msg::SnapshotRequest& request, const SnapshotQueue::Sink& sink) {
+            if (request.kind() == msg::kSnapshotMap) sink(storage::map_file_bytes(document_));
+          },
+          [this](const msg::SnapshotPiece& piece) { return pieces_out_.write(piece); }) {
   if (!document_.local_maps.empty()) stamp_ns_ = document_.local_maps.back().stamp_ns;
   hybrid_.publish(hybrid, stamp_ns_);
   send();
+  service_.subscribe<msg::SnapshotRequest>(
+      [this](const msg::SnapshotRequest& request) { snapshots_.add(request); });
+  service_.loop().add_timer(kServerSnapshotPeriod, [this] {
+    snapshots_.work(std::chrono::steady_clock::now(), kServerSnapshotSlice);
+  });
   service_.loop().add_timer(kServerRetryPeriod, [this] { send(); });
   service_.status().set_counter("local_maps", static_cast<double>(document_.local_maps.size()));
   service_.status().set_state(msg::kServiceRunning);

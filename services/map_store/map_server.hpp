@@ -1,4 +1,4 @@
-// Shows a map that is finished, or drawn, to all readers.
+// Shows a map that is finished, or drawn, to all readers, and gives it to those who ask.
 #pragma once
 
 #include "topogeo/planning/hybrid_map.hpp"
@@ -7,6 +7,7 @@
 
 #include "element_publisher.hpp"
 #include "hybrid_publisher.hpp"
+#include "snapshot_queue.hpp"
 
 namespace topogeo::map_store {
 
@@ -27,6 +28,8 @@ class MapServer {
   std::int64_t stamp_ns_ = 0;  // of its last stop
   ElementPublisher elements_;
   HybridPublisher hybrid_;
+  messaging::Writer<msg::SnapshotPiece> pieces_out_;
+  SnapshotQueue snapshots_;
   bool elements_sent_ = false;
 };
 

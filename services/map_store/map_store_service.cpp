@@ -18,9 +18,12 @@ using std::chrono::milliseconds;
 
 namespace {
 
-// The live map shares the cores with the localizer: 50 ms of work every 250 ms, a fifth.
+// The live map shares the cores with the localizer: 50 ms of work every 250 ms, a fifth; more while
+// it is far behind, after a start or a loop that moves everything.
 constexpr milliseconds kLivePeriod{250};
 constexpr milliseconds kLiveSlice{50};
+constexpr milliseconds kCatchUpSlice{150};
+constexpr std::size_t kFarBehind = 1000;  // local maps, a tenth of a second of work
 constexpr int kLiveShare = 5;
 constexpr std::chrono::seconds kPublishPeriod{2};
 // The hybrid map is made in one go and may take much longer: at most a tenth.
@@ -35,8 +38,11 @@ constexpr std::uint32_t kPiecesUnderWay = 64;  // 3.6 MB
 constexpr std::chrono::seconds kRetryPeriod{5};
 
 /// The map that is there, and its drawing under what is drawn now.
-MapInput::Stored stored_input(const storage::MapDatabase& database, storage::MapDrawing& drawing) {
+/// `shown` becomes its global map, if it has one.
+MapInput::Stored stored_input(const storage::MapDatabase& database, storage::MapDrawing& drawing,
+                              std::optional<topomap::GlobalMap>& shown) {
   storage::MapDocument document = database.load();
+  if (!document.global_map.nodes.empty()) shown = std::move(document.global_map);
   pipeline::lay_over(document.drawing, std::move(drawing));
   drawing = std::move(document.drawing);
   MapInput::Stored stored;
@@ -59,7 +65,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
     : service_(service),
       options_(std::move(options)),
       archive_(std::move(database), options_.database),
-      input_(stored_input(archive_.database(), options_.drawing)),
+      input_(stored_input(archive_.database(), options_.drawing, hybrid_pending_)),
       live_map_(service.setup().config.config.global_map),
       elements_(service),
       hybrid_(service),
@@ -71,7 +77,9 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
           [this](const auto& request, const auto& sink) { write_snapshot(request, sink); },
           [this](const msg::SnapshotPiece& piece) { return send_piece(piece); }) {
   if (!options_.drawing.empty()) archive_.put(options_.drawing);
-  if (options_.drawing.grid) hybrid_pending_.emplace();  // there is a map before any scan
+  // There is a map before any scan.
+  if (hybrid_pending_) publish(*hybrid_pending_);
+  if (options_.drawing.grid && !hybrid_pending_) hybrid_pending_.emplace();
   listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); },
                         {.main_input = true});
   listen<msg::TrajectorySegment>(
@@ -214,8 +222,10 @@ void MapStoreService::work_on_live_map() {
   // Not between a map and its publication, or frequent corrections would leave nothing to publish.
   if (Clock::now() >= next_publish_) live_map_.check(trajectory.stops);
   const auto start = Clock::now();
+  const bool far_behind = live_map_.size() + kFarBehind < input_.local_maps().size();
+  const milliseconds slice = far_behind ? kCatchUpSlice : kLiveSlice;
   bool more = true;
-  while (more && Clock::now() - start < kLiveSlice) {
+  while (more && Clock::now() - start < slice) {
     try {
       more = live_map_.step(input_.local_maps(), trajectory.stops);
     } catch (const std::invalid_argument& error) {

@@ -79,6 +79,7 @@ class MapStoreService {
   service::Service& service_;
   MapStoreOptions options_;
   MapArchive archive_;
+  std::optional<topomap::GlobalMap> hybrid_pending_;  // what the next hybrid map is made of
   MapInput input_;
   LiveMap live_map_;
   ElementPublisher elements_;
@@ -96,7 +97,6 @@ class MapStoreService {
   std::size_t published_maps_ = 0;
   std::uint64_t published_version_ = 0;
   Clock::time_point next_publish_;
-  std::optional<topomap::GlobalMap> hybrid_pending_;  // what the next hybrid map is made of
   Clock::time_point next_hybrid_;
   Clock::time_point next_attempt_;  // to finish, after a failure
   bool finished_ = false;
