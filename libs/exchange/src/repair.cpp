@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <map>
-#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -173,7 +172,8 @@ class Assembler {
         maps[id].stop = {maps[id - 1].stop.session, maps[id - 1].stop.number + 1};
       }
     }
-    for (const std::uint32_t id : missing_ | std::views::reverse) {
+    for (std::size_t i = missing_.size(); i-- > 0;) {
+      const std::uint32_t id = missing_[i];
       if (maps[id].stop.session != 0 || id + 1 >= maps.size()) continue;
       const topomap::StopId& next = maps[id + 1].stop;
       if (next.number > 0) maps[id].stop = {next.session, next.number - 1};
@@ -356,8 +356,8 @@ class Assembler {
 
   template <typename Element>
   static void remove_repeated(std::vector<Element>& elements) {
-    const auto [first, last] = std::ranges::unique(elements, {}, &Element::id);
-    elements.erase(first, last);
+    const auto same = [](const Element& a, const Element& b) { return a.id == b.id; };
+    elements.erase(std::unique(elements.begin(), elements.end(), same), elements.end());
   }
 
   /// From the stops, when those have seen something.

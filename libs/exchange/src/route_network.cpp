@@ -213,8 +213,7 @@ class Builder {
       network_.notes.push_back(
           fmt::format("{} virtual branches left out, no scan has seen them", virtual_));
     }
-    const auto repeated = std::ranges::unique(narrow_);
-    narrow_.erase(repeated.begin(), repeated.end());
+    narrow_.erase(std::unique(narrow_.begin(), narrow_.end()), narrow_.end());
     if (!narrow_.empty()) {
       network_.notes.push_back(
           fmt::format("{} branches are narrower than the robot in places ({:g} m on each side), "
