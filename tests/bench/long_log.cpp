@@ -132,6 +132,13 @@ void run_log(const LongLogOptions& options) {
     truth.push_back({log.scans[i].sequence, log.scans[i].stamp_ns, log.T_world_robot[i]});
   }
   const double added_s = support::process_cpu_s();
+  const std::size_t quarter = steps.size() / 4;
+  report("steps in the first quarter", steps, 0, quarter);
+  report("steps in the last quarter", steps, steps.size() - quarter, steps.size());
+  for (const double at_m : {1e3, 2e3, 5e3, 10e3, 20e3}) {
+    if (at_m < 1.1 * path_m) report_last_kilometre(at_m, steps);
+  }
+  std::fflush(stdout);  // what follows takes minutes on a long log
   const storage::MapDocument map = mapping.finish();
   const double end_s = support::process_cpu_s();
 
@@ -143,12 +150,6 @@ void run_log(const LongLogOptions& options) {
               end_s - start_s, end_s - added_s, peak_memory_mb(), memory_before_mb);
   for (const support::StageTime& stage : mapping.stages()) {
     std::printf("  %s: %.1f s\n", stage.stage.c_str(), stage.cpu_s);
-  }
-  const std::size_t quarter = steps.size() / 4;
-  report("steps in the first quarter", steps, 0, quarter);
-  report("steps in the last quarter", steps, steps.size() - quarter, steps.size());
-  for (const double at_m : {1e3, 2e3, 5e3, 10e3, 20e3}) {
-    if (at_m < 1.1 * path_m) report_last_kilometre(at_m, steps);
   }
   std::printf("rms error %.3f m corrected, %.1f m by odometry\n",
               pipeline::trajectory_error(corrected, truth).rms_m,

@@ -214,7 +214,15 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
         rival = std::max(rival, weight_of(set_around(rivals[k], rivals, graph, path_m), path_m));
       }
       if (weight < kOverRival * rival) continue;
+      const bool as_predicted = surprise_of(set) <= geometry::kMahalanobis2Of99Percent;
       for (const std::size_t i : set) {
+        // A window that slid along a corridor agrees with the others, but not with the prediction
+        // that they agree with.
+        const StopMatch& match = hypotheses_[i].match;
+        if (as_predicted && match.source == ProposalSource::kWindow &&
+            match.surprise() > geometry::kMahalanobis2Of99Percent) {
+          continue;
+        }
         if (!hypotheses_[i].accepted) {
           out.push_back(hypotheses_[i].match);
           out.back().agreement = weight;

@@ -129,6 +129,26 @@ TEST_F(LoopAgreementTest, AFewThatContradictAreOutvoted) {
   EXPECT_EQ(all.front().rival_agreement, 1.0);  // one doubtful match
 }
 
+// Half a metre along the corridor against a prediction that all others agree with.
+TEST_F(LoopAgreementTest, AWindowThatAloneContradictsThePredictionIsLeftOut) {
+  const auto predicted = [](StopMatch match, double off_m) {
+    match.predicted = {{match.edge.T_from_to.x_m, match.edge.T_from_to.y_m - off_m, 0.0},
+                       spread_of(0.1, 0.05)};
+    return match;
+  };
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    agreement_.add(predicted(match(i, 30 + i, 1.0), 0.1), path_m_);
+  }
+  StopMatch window = predicted(match(6, 36, 1.0), 0.5);
+  window.source = ProposalSource::kWindow;
+  agreement_.add(window, path_m_);
+  StopMatch stop = predicted(match(7, 37, 1.0), 0.5);
+  agreement_.add(stop, path_m_);
+  const std::vector<StopMatch> all = accepted();
+  EXPECT_EQ(all.size(), 7U);
+  for (const StopMatch& one : all) EXPECT_NE(one.edge.from, 6U);
+}
+
 TEST_F(LoopAgreementTest, AgainstAGoodPredictionMoreAreWanted) {
   const auto surprising = [&](std::uint32_t i) {
     StopMatch one = match(i, 30 + i, 1.0);
