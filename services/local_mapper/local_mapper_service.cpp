@@ -1,28 +1,80 @@
 #include "local_mapper_service.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/log.hpp"
 
 namespace topogeo::local_mapper {
 
-LocalMapperService::LocalMapperService(service::Service& service, bool replay)
+namespace {
+
+/// Keeps the sessions of two starts apart, also when a laser that stands sees the same.
+std::uint64_t session_salt(bool replay) {
+  if (replay) return 0;
+  std::random_device random;
+  return (std::uint64_t{random()} << 32U) | random();
+}
+
+}  // namespace
+
+LocalMapperService::LocalMapperService(service::Service& service, bool replay, bool standalone)
     : service_(service),
-      mapper_(service.setup().config.config.local_mapper, service.robot_id()),
+      mapper_(service.setup().config.config.local_mapper, service.robot_id(), session_salt(replay)),
       local_maps_(service.advertise<msg::LocalMap>()),
       tracked_poses_(service.advertise<msg::TrackedPose>()),
-      ends_out_(service.advertise<msg::StreamEnd>()) {
-  service.subscribe<msg::Scan>(
-      [this](const msg::Scan& scan) { on_scan(scan); },
-      {.role = replay ? std::string(messaging::kReplayRole) : std::string(), .main_input = true});
-  service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
+      ends_out_(service.advertise<msg::StreamEnd>()),
+      replay_(replay) {
   for (const char* counter : {"scans", "local_maps", "tracked_scans", "matched_scans"}) {
     service_.status().set_counter(counter, 0.0);
   }
+  if (standalone) {
+    begin();
+    return;
+  }
+  service_.status().set_state(msg::kServiceWaiting, "for the map store");
+  store_.emplace(service, [this](const msg::StoredMap& stored) { on_stored(stored); });
+}
+
+void LocalMapperService::on_stored(const msg::StoredMap& stored) {
+  if (begun_ || stored_) return;
+  if (stored.session_stops() == 0) {
+    begin();
+    return;
+  }
+  stored_ = stored;
+  store_->request(msg::kSnapshotLocalMaps, stored.session(), stored.session_stops() - 1,
+                  [this](const service::StoreClient::Answer& answer) { on_last_stop(answer); });
+}
+
+void LocalMapperService::on_last_stop(const service::StoreClient::Answer& answer) {
+  try {
+    if (!answer.bytes) throw std::invalid_argument(answer.why);
+    const std::vector<topomap::LocalMap> stops =
+        storage::parse_local_maps(*answer.bytes, "snapshot");
+    if (stops.empty()) throw std::invalid_argument("no stop came");
+    mapper_.resume(stops.back());
+    spdlog::info("goes on after stop {}", stops.back().stop.number);
+  } catch (const std::exception& error) {
+    service_.status().fault("no snapshot", error.what());
+    spdlog::warn("the session cannot go on, another one begins: {}", error.what());
+  }
+  begin();
+}
+
+void LocalMapperService::begin() {
+  begun_ = true;
+  service_.subscribe<msg::Scan>(
+      [this](const msg::Scan& scan) { on_scan(scan); },
+      {.role = replay_ ? std::string(messaging::kReplayRole) : std::string(), .main_input = true});
+  service_.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
   service_.status().set_state(msg::kServiceWaiting, "for scans");
 }
 
@@ -52,6 +104,13 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
   messaging::StatusPublisher& status = service_.status();
   const std::uint64_t sequence = message.sequence_number();
   const std::string name = "scan " + std::to_string(sequence);
+  const bool other_source = odometry_epoch_ && odometry_epoch_ != message.odometry_epoch();
+  odometry_epoch_ = message.odometry_epoch();
+  if (other_source) {  // or it has started anew
+    next_sequence_ = sequence;
+    geometry_.reset();
+    last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
+  }
   if (sequence < next_sequence_) {
     status.fault("old scan", name + ", expected " + std::to_string(next_sequence_));
     return std::nullopt;
@@ -71,7 +130,7 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
                        std::to_string(geometry_->angle_min_rad) + " rad");
       return std::nullopt;
     }
-    if (scans_used_ > 0 && scan.stamp_ns <= last_stamp_ns_) {
+    if (scan.stamp_ns <= last_stamp_ns_) {
       status.fault("time not increasing", name);
       return std::nullopt;
     }
@@ -121,8 +180,9 @@ void LocalMapperService::finish_if_complete() {
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
   end.stage(msg::kStageLocalMapper);
-  end.count(maps_);
-  end.last_id(maps_ == 0 ? 0 : maps_ - 1);
+  const std::uint64_t stops = scans_used_ == 0 ? 0 : mapper_.last_stop().number + 1;
+  end.count(stops);
+  end.last_id(stops == 0 ? 0 : stops - 1);
   if (!service_.send(ends_out_, end, "stream end")) return;
   spdlog::info("{} local maps of {} scans", maps_, scans_used_);
   service_.status().set_state(msg::kServiceFinished);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "topogeo/messaging/writer.hpp"
@@ -10,14 +11,16 @@
 #include "topogeo/msg/stream.h"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/service/service.hpp"
+#include "topogeo/service/store_client.hpp"
 
 namespace topogeo::local_mapper {
 
 /// Lives in the loop of its service.
 class LocalMapperService {
  public:
-  /// `replay`: the scans come from a log and none must be lost.
-  LocalMapperService(service::Service& service, bool replay);
+  /// `replay`: the scans come from a log and none must be lost. `standalone`: there is no map
+  /// store, so there is no session to go on with.
+  LocalMapperService(service::Service& service, bool replay, bool standalone);
 
  private:
   /// What all scans of a source have in common.
@@ -28,6 +31,10 @@ class LocalMapperService {
     friend bool operator==(const Geometry&, const Geometry&) = default;
   };
 
+  void on_stored(const msg::StoredMap& stored);
+  void on_last_stop(const service::StoreClient::Answer& answer);
+  /// Nothing is read before it is known with which session to go on.
+  void begin();
   void on_scan(const msg::Scan& message);
   /// The scan, if it continues those before; else a fault.
   std::optional<scan::Scan> accept(const msg::Scan& message);
@@ -43,9 +50,14 @@ class LocalMapperService {
   messaging::Writer<msg::TrackedPose> tracked_poses_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
-  std::uint64_t next_sequence_ = 0;  // of the scan that is expected
+  bool replay_;
+  bool begun_ = false;
+  std::optional<msg::StoredMap> stored_;
+  std::optional<service::StoreClient> store_;
+  std::optional<std::uint64_t> odometry_epoch_;  // of the last scan
+  std::uint64_t next_sequence_ = 0;              // of the scan that is expected
   std::uint64_t scans_used_ = 0;
-  std::int64_t last_stamp_ns_ = 0;
+  std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::optional<Geometry> geometry_;
   std::uint64_t maps_ = 0;
   std::uint64_t tracked_ = 0;

@@ -9,14 +9,18 @@
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
   bool replay = false;
+  bool standalone = false;
   return service::run_service(
       argc, argv, "local_mapper", "Makes local topo-geometric maps of laser scans.",
       [&](command_line::Command& app) {
         app.add_flag("--replay", replay, "the scans come from a log: slow it down, lose none");
+        app.add_flag("--standalone", standalone,
+                     "there is no map store: begin a new session at once instead of asking for "
+                     "the last one");
       },
       [&](const service::Setup& setup) {
         service::Service service(setup);
-        const local_mapper::LocalMapperService mapper(service, replay);
+        const local_mapper::LocalMapperService mapper(service, replay, standalone);
         service.run();
       });
 }

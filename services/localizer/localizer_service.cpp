@@ -71,7 +71,6 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
             [&service](std::string_view reason, std::string_view detail) {
               service.status().fault(reason, detail);
             }),
-      slam_(make_slam(service, options, pool_, optimizer_)),
       commands_(service, [this] { schedule(); }),
       trajectory_(service),
       poses_(service.advertise<msg::LivePose>()),
@@ -87,14 +86,43 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
   });
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
   service.loop().add_timer(kCountPeriod, [this] { set_pool_counters(pool_, service_.status()); });
+  slam_.emplace(make_slam(service, options, pool_, optimizer_));
   count();
+  if (options.standalone || options.map || options.continued) {
+    resume({});
+  } else {
+    resume_.emplace(service, options.replay, [this](ResumeFrom from) { resume(std::move(from)); });
+  }
+}
+
+void LocalizerService::resume(ResumeFrom from) {
+  if (from.map) {
+    using Use = localization::MapToUse::Use;
+    const topomap::LocalMap& last = from.map->maps.back();
+    slam_.emplace(
+        service_.setup().config.config.localizer, pool_, &optimizer_,
+        localization::MapToUse{from.map, from.goes_on ? Use::kGoOn : Use::kContinue, std::nullopt});
+    if (from.goes_on) {
+      queue_.start_after(last.stop);
+      odometry_.start_after(last);
+      live_.set_stop(std::make_shared<const topomap::LocalMap>(last));
+      live_.correct(from.map->trajectory.stops.back());
+    }
+    spdlog::info("goes on with a map of {} stops", from.map->maps.size());
+  } else if (!from.stops.empty()) {
+    known_stops_ = from.stops.size();
+    spdlog::info("adds {} stops again", known_stops_);
+  }
+  for (StopQueue::MapPointer& map : from.stops) queue_.add(std::move(map));
+  ready_ = true;
   service_.status().set_state(msg::kServiceWaiting, "for local maps");
   schedule();
 }
 
 void LocalizerService::on_map(const msg::LocalMap& message) {
   const std::string name = "local map " + std::to_string(message.id());
-  const StopQueue::Arrival arrival = queue_.arrival(message.id(), message.content_hash());
+  const StopQueue::Arrival arrival =
+      queue_.arrival({message.session(), message.id()}, message.content_hash());
   if (arrival == StopQueue::Arrival::kOtherRun) {
     service_.status().fault("local map of another run", name);
   }
@@ -125,8 +153,8 @@ void LocalizerService::send_pose() {
   service::LivePose live;
   live.stamp_ns = now->stamp_ns;
   live.sequence = now->sequence;
-  live.status = slam_->status();
-  live.mode = slam_.mapping() ? msg::kModeMapping : msg::kModeLocalization;
+  live.status = (*slam_)->status();
+  live.mode = slam_->mapping() ? msg::kModeMapping : msg::kModeLocalization;
   live.T_map_robot = now->T_map_robot.T_a_b;
   live.covariance = now->T_map_robot.covariance;
   live.last_stop = live_.stop_pose().stop;
@@ -146,6 +174,8 @@ void LocalizerService::schedule() {
 }
 
 void LocalizerService::work() {
+  scheduled_ = ready_;
+  if (!ready_) return;
   try {
     if (!waited_) wait_for_workers();
     carry_out_commands();
@@ -181,33 +211,34 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
   if (service_.status().state() != msg::kServiceRunning) {
     service_.status().set_state(msg::kServiceRunning);
   }
-  slam_->add(map);
+  (*slam_)->add(odometry_.add(map));
   live_.set_stop(map);
+  if (queue_.taken() < known_stops_) return;
   publish(false);
   send_pose();  // a correction shows at once, also when no odometry comes any more
   count();
 }
 
 std::size_t LocalizerService::stops_in_map() const {
-  return slam_.mapping_session() != nullptr ? slam_.mapping_session()->maps().size()
-                                            : queue_.taken();
+  return slam_->mapping_session() != nullptr ? slam_->mapping_session()->maps().size()
+                                             : queue_.taken();
 }
 
 void LocalizerService::finish() {
-  service_.status().set_state(msg::kServiceRunning, slam_.follower() == nullptr
+  service_.status().set_state(msg::kServiceRunning, slam_->follower() == nullptr
                                                         ? "matching revisited places"
                                                         : "localizing");
-  slam_->finish();
-  if (options_.csv && slam_.mapping_session() == nullptr) {
+  (*slam_)->finish();
+  if (options_.csv && slam_->mapping_session() == nullptr) {
     support::write_file_atomically(*options_.csv,
-                                   pipeline::localization_csv(slam_.follower()->stops()));
+                                   pipeline::localization_csv(slam_->follower()->stops()));
   }
   finished_ = true;
   publish(true);
   send_pose();
   count();
-  const RunParts parts{*slam_, slam_.follower(),
-                       options_.continued ? slam_.mapping_session() : nullptr, pool_.counts()};
+  const RunParts parts{**slam_, slam_->follower(),
+                       options_.continued ? slam_->mapping_session() : nullptr, pool_.counts()};
   const msg::RunSummary summary =
       make_run_summary(parts, service_.robot_id(), live_.stop_pose().stamp_ns);
   if (!service_.send(summaries_, summary, "run summary")) return;
@@ -219,21 +250,21 @@ void LocalizerService::finish() {
   end.last_id(stops == 0 ? 0 : stops - 1);
   end.version(trajectory_.version());
   if (!service_.send(ends_out_, end, "stream end")) return;
-  const localization::SlamCounts counts = slam_->counts();
+  const localization::SlamCounts counts = (*slam_)->counts();
   spdlog::info("{} stops, {} match tasks, {} loop closures", queue_.taken(), counts.tasks,
                trajectory_.closures());
   std::string message;
-  if (slam_.mapping_session() != nullptr) {
-    message = pipeline::continuation_message(*slam_.mapping_session());
+  if (slam_->mapping_session() != nullptr) {
+    message = pipeline::continuation_message(*slam_->mapping_session());
     if (!message.empty()) spdlog::warn("{}", message);
   }
   service_.status().set_state(msg::kServiceFinished, message);
 }
 
 void LocalizerService::publish(bool whole) {
-  const topomap::Trajectory trajectory = slam_->trajectory();
-  if (const auto last = slam_->last_stop()) live_.correct(*last);
-  if (!trajectory_.publish(*slam_, trajectory, live_.stop_pose().stamp_ns, whole)) throw Stopped();
+  const topomap::Trajectory trajectory = (*slam_)->trajectory();
+  if (const auto last = (*slam_)->last_stop()) live_.correct(*last);
+  if (!trajectory_.publish(**slam_, trajectory, live_.stop_pose().stamp_ns, whole)) throw Stopped();
 }
 
 // --- commands
@@ -250,7 +281,7 @@ void LocalizerService::carry_out_commands() {
 
 CommandAnswer LocalizerService::carry_out(const service::LocalizationCommand& command) {
   const CommandMoment now{finished_, stops_in_map(), live_.T_stop_robot()};
-  CommandAnswer answer = localizer::carry_out(command, now, slam_);
+  CommandAnswer answer = localizer::carry_out(command, now, *slam_);
   if (answer.accepted && command.kind == msg::kCommandSetPose && live_.has_stop()) {
     live_.correct(stop_pose(command, now), command.covariance);
   }
@@ -266,14 +297,14 @@ void LocalizerService::count() {
   };
   set("local_maps", queue_.taken());
   set("stops", queue_.taken());
-  set_slam_counters(*slam_, trajectory_.closures(), status);
-  if (const localization::MappingSession* session = slam_.mapping_session()) {
+  set_slam_counters(**slam_, trajectory_.closures(), status);
+  if (const localization::MappingSession* session = slam_->mapping_session()) {
     if (options_.continued) {
       for (const auto& [name, value] : pipeline::continuation_counts(*session)) set(name, value);
     }
     set("stops_in_map", stops_in_map());
   }
-  if (const auto* in_map = slam_.follower()) {
+  if (const auto* in_map = slam_->follower()) {
     for (const auto& [name, value] : pipeline::localization_counts(*in_map)) set(name, value);
   }
   set_pool_counters(pool_, status);

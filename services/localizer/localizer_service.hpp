@@ -18,7 +18,9 @@
 #include "background_optimizer.hpp"
 #include "command_channel.hpp"
 #include "live_pose_estimate.hpp"
+#include "odometry_chain.hpp"
 #include "remote_pool.hpp"
+#include "resume.hpp"
 #include "stop_queue.hpp"
 #include "trajectory_publisher.hpp"
 
@@ -31,6 +33,8 @@ struct LocalizerOptions {
   std::optional<std::filesystem::path> continued;  ///< map to extend; none: one is begun
   std::optional<geometry::Pose2> initial_pose;     ///< in either; none: it is searched for
   std::optional<std::filesystem::path> csv;        ///< where localization.csv is written at the end
+  bool standalone = false;  ///< there is no map store: a new map is begun at once
+  bool replay = false;      ///< the stops come from a log: whatever dies, the map is the same
 };
 
 /// Lives in the loop of its service.
@@ -39,6 +43,7 @@ class LocalizerService {
   LocalizerService(service::Service& service, const LocalizerOptions& options);
 
  private:
+  void resume(ResumeFrom from);
   void on_map(const msg::LocalMap& message);
   void on_odometry(const msg::Odometry& message);
   void send_pose();
@@ -59,15 +64,19 @@ class LocalizerService {
   LocalizerOptions options_;
   RemotePool pool_;
   BackgroundOptimizer optimizer_;
-  localization::SlamSession slam_;
+  std::optional<localization::SlamSession> slam_;
   CommandChannel commands_;
   TrajectoryPublisher trajectory_;
   messaging::Writer<msg::LivePose> poses_;
   messaging::Writer<msg::RunSummary> summaries_;
   messaging::Writer<msg::StreamEnd> ends_out_;
 
+  std::optional<Resume> resume_;  // until it is known where to go on
   StopQueue queue_;
+  OdometryChain odometry_;
+  std::size_t known_stops_ = 0;  // to be added again: others have their poses already
   LivePoseEstimate live_;
+  bool ready_ = false;  // it is known where to go on
   bool scheduled_ = false;
   bool waited_ = false;
   bool finished_ = false;

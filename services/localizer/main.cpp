@@ -33,6 +33,12 @@ int main(int argc, char** argv) {
         app.add_option("--initial-pose", initial_pose,
                        "where the robot is in it, m and degrees (default: it is searched for)")
             ->type_name("X,Y,DEG");
+        app.add_flag("--standalone", options.standalone,
+                     "there is no map store: begin a new map at once instead of waiting for what "
+                     "it has");
+        app.add_flag("--replay", options.replay,
+                     "the stops come from a log: after a restart add all of them again, so that "
+                     "the map is the same");
         app.add_option("--csv", options.csv, "write pose and state of each stop there at the end")
             ->needs(map)
             ->type_name("FILE");

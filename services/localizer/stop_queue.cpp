@@ -1,25 +1,52 @@
 #include "stop_queue.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace topogeo::localizer {
 
-StopQueue::Arrival StopQueue::arrival(std::uint32_t id, std::uint64_t content_hash) const {
-  if (id >= hashes_.size()) return Arrival::kNew;
-  return content_hash == hashes_[id] ? Arrival::kRepeated : Arrival::kOtherRun;
+StopQueue::Arrival StopQueue::arrival(const topomap::StopId& stop,
+                                      std::uint64_t content_hash) const {
+  const auto taken = hashes_.find(stop);
+  if (taken != hashes_.end()) {
+    return content_hash == taken->second ? Arrival::kRepeated : Arrival::kOtherRun;
+  }
+  const bool before = last_ && stop.session == last_->session && stop.number <= last_->number;
+  return before ? Arrival::kRepeated : Arrival::kNew;
 }
 
 void StopQueue::add(MapPointer map) {
-  const std::uint32_t id = map->id;
-  waiting_[id] = std::move(map);
+  const topomap::StopId stop = map->stop;
+  if (std::find(sessions_.begin(), sessions_.end(), stop.session) == sessions_.end()) {
+    sessions_.push_back(stop.session);
+  }
+  waiting_[stop] = std::move(map);
 }
 
 StopQueue::MapPointer StopQueue::take() {
-  if (waiting_.empty() || waiting_.begin()->first != hashes_.size()) return nullptr;
-  MapPointer map = std::move(waiting_.begin()->second);
-  waiting_.erase(waiting_.begin());
-  hashes_.push_back(topomap::content_hash(*map));
+  if (last_) {
+    if (MapPointer next = take({last_->session, last_->number + 1})) return next;
+  }
+  for (const std::uint64_t session : sessions_) {
+    if (last_ && session == last_->session) continue;
+    if (MapPointer first = take({session, 0})) return first;
+  }
+  return nullptr;
+}
+
+StopQueue::MapPointer StopQueue::take(const topomap::StopId& stop) {
+  const auto found = waiting_.find(stop);
+  if (found == waiting_.end()) return nullptr;
+  MapPointer map = std::move(found->second);
+  waiting_.erase(found);
+  hashes_[stop] = topomap::content_hash(*map);
+  last_ = stop;
   return map;
+}
+
+bool StopQueue::finished() const {
+  const std::uint64_t next = last_ ? std::uint64_t{last_->number} + 1 : 0;
+  return maps_in_session_ && next >= *maps_in_session_;
 }
 
 }  // namespace topogeo::localizer

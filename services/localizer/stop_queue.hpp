@@ -1,5 +1,5 @@
-// Local maps on their way into the localizer: each once, in the order of their ids, until the
-// stream ends.
+// Local maps on their way into the localizer: each once, session by session in the order of their
+// numbers, until the stream ends.
 #pragma once
 
 #include <cstddef>
@@ -20,28 +20,34 @@ class StopQueue {
   enum class Arrival : std::uint8_t {
     kNew,       ///< to be added
     kRepeated,  ///< has been taken already: a reader gets a map again when its writer comes back
-    kOtherRun,  ///< another map of an id that has been taken
+    kOtherRun,  ///< another map of a stop that has been taken
   };
-  [[nodiscard]] Arrival arrival(std::uint32_t id, std::uint64_t content_hash) const;
+  [[nodiscard]] Arrival arrival(const topomap::StopId& stop, std::uint64_t content_hash) const;
 
-  /// Replaces a map of that id that has not been taken.
+  /// Goes on after that stop of a map that is there already. Before the first is taken.
+  void start_after(const topomap::StopId& stop) { last_ = stop; }
+
+  /// Replaces a map of that stop that has not been taken.
   void add(MapPointer map);
-  /// The next local map; null when it has not come yet.
+  /// The next local map: of the session that is on, or else the first stop of one that came later;
+  /// null when neither has come yet.
   MapPointer take();
-  /// So many local maps are in the whole stream.
-  void end_at(std::uint64_t maps) { maps_in_stream_ = maps; }
+  /// So many local maps are in the session that the stream ends with.
+  void end_at(std::uint64_t maps) { maps_in_session_ = maps; }
 
   /// Local maps taken so far.
   [[nodiscard]] std::size_t taken() const { return hashes_.size(); }
   /// All of an ended stream have been taken.
-  [[nodiscard]] bool finished() const {
-    return maps_in_stream_ && hashes_.size() >= *maps_in_stream_;
-  }
+  [[nodiscard]] bool finished() const;
 
  private:
-  std::map<std::uint32_t, MapPointer> waiting_;  // by id
-  std::vector<std::uint64_t> hashes_;            // of those taken; index: id
-  std::optional<std::uint64_t> maps_in_stream_;
+  MapPointer take(const topomap::StopId& stop);
+
+  std::map<topomap::StopId, MapPointer> waiting_;
+  std::vector<std::uint64_t> sessions_;              // in the order in which they came
+  std::map<topomap::StopId, std::uint64_t> hashes_;  // of those taken
+  std::optional<topomap::StopId> last_;              // taken, or there before
+  std::optional<std::uint64_t> maps_in_session_;
 };
 
 }  // namespace topogeo::localizer

@@ -55,10 +55,11 @@ msg::BaseState to_msg(devices::BaseState state) {
 }  // namespace
 
 BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
-                         const HostTime& time,
+                         const HostTime& time, std::uint64_t odometry_epoch,
                          std::function<void(const geometry::OdometrySample&)> on_odometry)
     : service_(service),
       time_(time),
+      odometry_epoch_(odometry_epoch),
       on_odometry_(std::move(on_odometry)),
       driver_(config.base),
       odometry_(service.advertise<msg::Odometry>()),
@@ -92,6 +93,7 @@ void BaseChannel::after_driver(std::int64_t) {
     messaging::set_header(message, service_.robot_id(), time_.stamp_ns(sample.stamp_ns),
                           odometry_sent_);
     message.T_odom_robot(service::to_msg(sample.T_odom_robot));
+    message.odometry_epoch(odometry_epoch_);
     message.linear_mps(sample.linear_mps);
     message.angular_radps(sample.angular_radps);
     if (odometry_.write(message)) {

@@ -23,6 +23,7 @@ class BaseChannel {
  public:
   /// `on_odometry` gets every sample, stamped by the steady clock.
   BaseChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
+              std::uint64_t odometry_epoch,
               std::function<void(const geometry::OdometrySample&)> on_odometry);
   BaseChannel(const BaseChannel&) = delete;
   BaseChannel& operator=(const BaseChannel&) = delete;
@@ -50,6 +51,7 @@ class BaseChannel {
 
   service::Service& service_;
   const HostTime& time_;
+  const std::uint64_t odometry_epoch_;
   std::function<void(const geometry::OdometrySample&)> on_odometry_;
   devices::BaseDriver driver_;
   messaging::Writer<msg::Odometry> odometry_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <random>
 #include <string>
 
 #include "topogeo/messaging/message.hpp"
@@ -19,8 +20,16 @@ constexpr milliseconds kPoll{20};            // for readers at the start: no sca
 constexpr milliseconds kStatePeriod{250};    // twice for each status, so that it is never older
 constexpr milliseconds kLastDelivery{2000};  // for readers to have what was published
 
-ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config) {
+/// The base's odometry counts from where this program found it.
+std::uint64_t new_epoch() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32U) | random();
+}
+
+ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config,
+                             std::uint64_t odometry_epoch) {
   ScanGateOptions options;
+  options.odometry_epoch = odometry_epoch;
   options.has_base = !config.base_port.empty();
   options.odometry_wait_ns = config.odometry_wait_ns;
   options.longest_extrapolation_ns = config.longest_extrapolation_ns;
@@ -33,17 +42,19 @@ ScanGateOptions gate_options(const service::Service& service, const DeviceConfig
 DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& config, int readers)
     : service_(service),
       readers_(readers),
-      gate_(gate_options(service, config)),
+      odometry_epoch_(new_epoch()),
+      gate_(gate_options(service, config, odometry_epoch_)),
       scans_(service.advertise<msg::Scan>()),
       stream_end_(service.advertise<msg::StreamEnd>()) {
   service_.status().set_counter("scans_sent", 0.0);
   if (config.base_port.empty()) {
     spdlog::warn("there is no base: by the odometry the robot stands still");
   } else {
-    base_.emplace(service_, config, time_, [this](const geometry::OdometrySample& sample) {
-      gate_.add(sample);
-      release(steady_now_ns());
-    });
+    base_.emplace(service_, config, time_, odometry_epoch_,
+                  [this](const geometry::OdometrySample& sample) {
+                    gate_.add(sample);
+                    release(steady_now_ns());
+                  });
   }
   if (!config.laser_port.empty()) {
     laser_.emplace(service_, config, time_, gate_,

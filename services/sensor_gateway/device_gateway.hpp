@@ -44,6 +44,7 @@ class DeviceGateway {
   service::Service& service_;
   HostTime time_;
   int readers_;
+  const std::uint64_t odometry_epoch_;
   ScanGate gate_;
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::StreamEnd> stream_end_;

@@ -27,6 +27,7 @@ msg::Odometry odometry_of(const scan::Scan& scan, const std::string& robot_id,
   msg::Odometry out;
   messaging::set_header(out, robot_id, scan.stamp_ns, scan.sequence);
   out.T_odom_robot(service::to_msg(scan.T_odom_robot));
+  out.odometry_epoch(scan.odometry_epoch);
   if (scan.sequence > 0) {
     const double step_s = static_cast<double>(scan.stamp_ns - last.stamp_ns()) * 1e-9;
     const geometry::Pose2 step =

@@ -69,6 +69,7 @@ std::optional<scan::Scan> ScanGate::finish(devices::PlsScan&& scan) {
     }
     if (answer->extrapolated) ++extrapolated_;
     out.T_odom_robot = answer->T_odom_robot;
+    out.odometry_epoch = options_.odometry_epoch;
     if (repeats(scan.ranges_m, out.T_odom_robot)) {
       drop(ScanDrop::kRepeated);
       return std::nullopt;

@@ -34,6 +34,7 @@ struct ScanGateOptions {
   bool has_base = true;                       ///< false: the odometry is always the identity
   std::int64_t odometry_wait_ns = 0;          ///< for odometry after a scan, at most; >= 0
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
+  std::uint64_t odometry_epoch = 0;           ///< of the odometry that it gets
   double range_max_m = 49.9;  ///< ranges from here on are no return, as when a log is read
 };
 

@@ -11,6 +11,7 @@ namespace {
 
 using supervision::Importance;
 using supervision::ProcessGroup;
+using supervision::Restart;
 using Arguments = std::vector<std::string>;
 
 constexpr std::string_view kWorker = "ga_worker";
@@ -81,7 +82,10 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const Argu
                               : Arguments{"--devices", options.devices.string()};
   // All of them have the first scan.
   const std::string readers = options.record.empty() ? "1" : "2";
-  processes.start(kScanSource, "sensor_gateway", common + source + Arguments{"--readers", readers});
+  // A log cannot be taken up in its middle.
+  processes.start(kScanSource, "sensor_gateway", common + source + Arguments{"--readers", readers},
+                  Importance::kNeeded,
+                  options.devices.empty() ? Restart::kNever : Restart::kWhenItDies);
 }
 
 void start_recorder(ProcessGroup& processes, const RunOptions& options,
@@ -116,19 +120,26 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
                     const std::string& partition) {
   const Arguments common = common_arguments(options, partition);
   const auto start = [&processes](const std::string& service, const Arguments& arguments) {
+    processes.start(service, service, arguments, Importance::kNeeded, Restart::kWhenItDies);
+  };
+  // While it is away a log that is read would go on without it.
+  const auto start_once = [&processes](const std::string& service, const Arguments& arguments) {
     processes.start(service, service, arguments);
   };
   start("map_store", common + store_arguments(options));
+  processes.leave_out_at_restart("map_store", "--new");
   start("planner", common);
   if (options.goal || options.explore) start("navigator", common);
   const std::uint32_t wait_workers = options.wait_workers.value_or(options.workers);
-  start("localizer", common + Arguments{"--wait-workers", std::to_string(wait_workers)} +
+  const bool replay = options.devices.empty();
+  const Arguments source = replay ? Arguments{"--replay"} : Arguments{};
+  start("localizer", common + source + Arguments{"--wait-workers", std::to_string(wait_workers)} +
                          map_arguments(options));
-  start("local_mapper", options.devices.empty() ? common + Arguments{"--replay"} : common);
+  replay ? start_once("local_mapper", common + source) : start("local_mapper", common + source);
   for (std::uint32_t i = 1; i <= options.workers; ++i) {
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);
     processes.start(name, std::string(kWorker), common + Arguments{"--name", name, "--slots", "1"},
-                    Importance::kExpendable);
+                    Importance::kExpendable, Restart::kWhenItDies);
   }
   if (!options.record.empty()) start_recorder(processes, options, partition);
   start_source(processes, options, common);

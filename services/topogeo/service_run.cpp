@@ -1,5 +1,6 @@
 #include "service_run.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <random>
 #include <utility>
@@ -13,6 +14,8 @@ namespace {
 
 /// Often enough for a progress line that moves; ends of processes need not be seen sooner.
 constexpr std::chrono::milliseconds kRunTick{50};
+constexpr std::chrono::milliseconds kFirstRestart{100};
+constexpr std::chrono::milliseconds kLongestRestart{5000};
 constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
@@ -67,13 +70,27 @@ void ServiceRun::run() {
 void ServiceRun::tick() {
   if (ended_) return;
   while (const auto end = processes_.next_unexpected_end()) {
-    if (end->fatal) {
+    if (end->can_restart && signal_.load() == 0) {
+      restart(end->name, end->description);
+    } else if (end->fatal) {
       fail(end->description);
       break;
+    } else {
+      hooks_.log(end->description + "; the run continues without it");
     }
-    hooks_.log(end->description + "; the run continues without it");
   }
   hooks_.on_tick();
+}
+
+// One that dies again and again is started less and less often.
+void ServiceRun::restart(const std::string& name, const std::string& description) {
+  const std::uint32_t times = ++restarts_[name];
+  const std::chrono::milliseconds delay =
+      std::min(kFirstRestart * (1U << std::min(times - 1, 10U)), kLongestRestart);
+  hooks_.log(fmt::format("{}; started again ({})", description, times));
+  loop_.call_after(delay, [this, name] {
+    if (!ended_) processes_.restart(name);
+  });
 }
 
 void ServiceRun::note_failure(const std::string& why) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,12 +61,14 @@ class ServiceRun {
  private:
   void on_signal(int number);
   void tick();
+  void restart(const std::string& name, const std::string& description);
 
   const std::string partition_;
   bool ended_ = false;
   std::string failure_;
   Hooks hooks_;
   std::atomic<int> signal_ = 0;
+  std::map<std::string, std::uint32_t> restarts_;  // by name of the process
 
   messaging::Participant participant_;
   messaging::EventLoop loop_;

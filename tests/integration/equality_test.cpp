@@ -79,9 +79,30 @@ TEST_F(EqualityTest, WorkerKilledHalfWay) {
   ::kill(workers[0], SIGKILL);
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.err(), HasSubstr("was killed by signal 9"));
-  EXPECT_THAT(run.err(), HasSubstr("the run continues without it"));
+  EXPECT_THAT(run.err(), HasSubstr("started again"));
   expect_same_bytes("run");
 }
+
+class EqualityByRestartTest : public EqualityTest, public testing::WithParamInterface<const char*> {
+};
+
+TEST_P(EqualityByRestartTest, KilledHalfWay) {
+  use_udp_only();
+  map("floor");
+  Program run(scratch_, "topogeo", run_words("run", 1));
+  run.wait_for_progress(40);
+  const std::vector<pid_t> service = run.services(GetParam());
+  ASSERT_EQ(service.size(), 1U);
+  ::kill(service[0], SIGKILL);
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.err(), HasSubstr(std::string(GetParam()) + " was killed by signal 9"));
+  EXPECT_THAT(run.err(), HasSubstr("started again"));
+  expect_same_bytes("run");
+}
+
+INSTANTIATE_TEST_SUITE_P(Services, EqualityByRestartTest,
+                         testing::Values("localizer", "map_store", "planner"),
+                         [](const auto& service) { return std::string(service.param); });
 
 TEST_F(EqualityTest, AllWorkersKilledHalfWay) {
   use_udp_only();

@@ -49,9 +49,9 @@ TEST_P(DyingServiceTest, IsNamedAndTheRestIsStopped) {
   EXPECT_THAT(run.services(), IsEmpty());
 }
 
+// The rest can be started again (EqualityTest); who reads a log would miss a part of it.
 INSTANTIATE_TEST_SUITE_P(Services, DyingServiceTest,
-                         testing::Values("sensor_gateway", "local_mapper", "localizer", "map_store",
-                                         "planner"),
+                         testing::Values("sensor_gateway", "local_mapper"),
                          [](const auto& service) { return std::string(service.param); });
 
 TEST_F(InterruptionTest, CtrlCStopsEverything) {

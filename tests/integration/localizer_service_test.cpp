@@ -33,6 +33,7 @@ class LocalizerTest : public ::testing::Test {
   }
 
   std::unique_ptr<Program> start(const std::string& name, std::vector<std::string> words = {}) {
+    if (name == "localizer") words.emplace_back("--standalone");
     words.insert(words.end(), {"--domain", own_domain(), "--partition", partition_});
     return std::make_unique<Program>(scratch_, name, words);
   }

@@ -97,8 +97,8 @@ ServiceRun::ServiceRun(const Scratch& scratch, const Drive& drive, const std::st
   };
   start("map_store", {"--out", out_.string(), "--title",
                       std::filesystem::path(drive.log()).filename().string()});
-  start("local_mapper", {"--replay"});
-  localizer_ = start("localizer", {});
+  start("local_mapper", {"--replay", "--standalone"});
+  localizer_ = start("localizer", {"--standalone"});
   if (!scan_writer_.wait_for_matched(1, kFaultPatience) ||
       !wait_until([this] { return status_.state() == msg::kServiceWaiting; })) {
     throw std::runtime_error("the services do not start");

@@ -30,7 +30,8 @@ class SwitchTest : public ::testing::Test {
   }
 
   void start(std::vector<std::string> words = {}) {
-    words.insert(words.end(), {"--domain", own_domain(), "--partition", partition_});
+    words.insert(words.end(),
+                 {"--standalone", "--domain", own_domain(), "--partition", partition_});
     localizer_ = std::make_unique<Program>(scratch_, "localizer", words);
     ASSERT_TRUE(commands_.wait_for_matched(1, kPatience));
     ASSERT_TRUE(replies_.wait_for_matched(1, kPatience));

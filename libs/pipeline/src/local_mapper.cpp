@@ -1,7 +1,6 @@
 #include "topogeo/pipeline/local_mapper.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -25,8 +24,7 @@ std::uint64_t session_of(const scan::Scan& scan, const std::string& robot_id, st
   support::Fnv1a hash;
   hash.add(robot_id);
   hash.add(salt);
-  hash.add(static_cast<std::uint64_t>(scan.stamp_ns));
-  for (const float range_m : scan.ranges_m) hash.add(std::bit_cast<std::uint32_t>(range_m));
+  hash.add(scan::fingerprint(scan));
   return std::max<std::uint64_t>(hash.value(), 1);
 }
 
@@ -42,9 +40,12 @@ LocalMapper::LocalMapper(const LocalMapperConfig& config, std::string robot_id,
       session_salt_(session_salt) {}
 
 std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
-  if (next_.number == 0) {
-    next_.session = session_of(scan, robot_id_, session_salt_);
-    return make_stop(scan, Pose2{});
+  if (next_.number == 0) return begin_session(scan);
+  if (scan.odometry_epoch != odometry_epoch_) {
+    odometry_epoch_ = scan.odometry_epoch;
+    tracker_.restart_odometry(scan.T_odom_robot);
+    const localization::TrackedPose bridge = tracker_.track(points_of(scan), scan.T_odom_robot);
+    return bridge.matched ? make_stop(scan, bridge.T_stop_robot) : begin_session(scan);
   }
   const localization::TrackedPose pose = tracker_.track(points_of(scan), scan.T_odom_robot);
   const Pose2& T = pose.T_stop_robot;
@@ -72,6 +73,19 @@ std::optional<LocalMap> LocalMapper::finish() {
   const Pose2 T_stop_robot = track_.back().T_stop_robot;
   track_.pop_back();
   return make_stop(scan, T_stop_robot);
+}
+
+LocalMap LocalMapper::begin_session(const scan::Scan& scan) {
+  next_ = {session_of(scan, robot_id_, session_salt_), 0};
+  odometry_epoch_ = scan.odometry_epoch;
+  track_.clear();
+  return make_stop(scan, Pose2{});
+}
+
+void LocalMapper::resume(const LocalMap& last_stop) {
+  next_ = {last_stop.stop.session, last_stop.stop.number + 1};
+  odometry_epoch_ = last_stop.odometry_epoch;
+  tracker_.start(last_stop.points, last_stop.T_robot_laser, last_stop.T_odom_robot);
 }
 
 LocalMap LocalMapper::make_stop(const scan::Scan& scan, const Pose2& T_stop_robot) {

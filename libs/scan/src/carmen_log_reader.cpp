@@ -98,6 +98,7 @@ struct CarmenLogReader::Impl {
   std::optional<std::int64_t> last_ns;  // stamp of the last scan that take() accepted
   std::optional<Candidate> ready;       // accepted, not yet handed out
   std::uint64_t sequence = 0;
+  std::uint64_t odometry_epoch = 0;
 };
 
 void CarmenLogReader::Impl::skip(SkipReason reason, std::uint64_t line, const std::string& text) {
@@ -238,7 +239,9 @@ std::optional<Scan> CarmenLogReader::next() {
   std::optional<Candidate> candidate = std::exchange(impl_->ready, std::nullopt);
   if (!candidate) candidate = impl_->take();
   if (!candidate) return std::nullopt;
+  if (impl_->sequence == 0) impl_->odometry_epoch = fingerprint(candidate->scan);
   candidate->scan.sequence = impl_->sequence++;
+  candidate->scan.odometry_epoch = impl_->odometry_epoch;
   ++impl_->statistics.scans;
   return std::move(candidate->scan);
 }

@@ -18,43 +18,75 @@ ProcessGroup::ProcessGroup(std::filesystem::path programs, std::filesystem::path
 }
 
 void ProcessGroup::start(const std::string& name, const std::string& program,
-                         const std::vector<std::string>& arguments, Importance importance) {
-  members_.push_back(
-      {ChildProcess(name, programs_ / program, arguments, logs_ / (name + ".log")), importance});
+                         const std::vector<std::string>& arguments, Importance importance,
+                         Restart restart) {
+  Member member{nullptr, importance, restart, program, arguments};
+  member.process = make(member, name);
+  members_.push_back(std::move(member));
+}
+
+std::unique_ptr<ChildProcess> ProcessGroup::make(const Member& member, const std::string& name) {
+  const std::string life = member.restarts == 0 ? "" : "-" + std::to_string(member.restarts + 1);
+  return std::make_unique<ChildProcess>(name, programs_ / member.program, member.arguments,
+                                        logs_ / (name + life + ".log"));
+}
+
+void ProcessGroup::leave_out_at_restart(const std::string& name, const std::string& argument) {
+  for (Member& member : members_) {
+    if (member.process->name() == name) member.left_out = argument;
+  }
+}
+
+void ProcessGroup::restart(const std::string& name) {
+  for (Member& member : members_) {
+    if (member.process->name() != name) continue;
+    if (const auto& exit = member.process->poll()) {
+      member.earlier_wall_s += exit->wall_s;
+      member.earlier_cpu_s += exit->cpu_s;
+    }
+    ++member.restarts;
+    if (!member.left_out.empty()) std::erase(member.arguments, member.left_out);
+    member.process = make(member, name);
+    member.reported = false;
+  }
 }
 
 std::optional<UnexpectedEnd> ProcessGroup::next_unexpected_end() {
   for (Member& member : members_) {
     if (member.reported) continue;
-    const std::optional<ChildExit>& exit = member.process.poll();
+    const std::optional<ChildExit>& exit = member.process->poll();
     if (!exit) continue;
     member.reported = true;
     if (member.importance == Importance::kMayFinish && exit->clean()) continue;
-    const std::string last = member.process.last_line();
+    const std::string last = member.process->last_line();
+    // With another exit code it has said that it cannot work with what it was given.
+    const bool died = exit->signal_number != 0 || exit->exit_code == 1;
     return UnexpectedEnd{
-        member.process.name() + " " + describe(*exit) +
+        member.process->name(),
+        member.process->name() + " " + describe(*exit) +
             (last.empty() ? ", its log is empty" : "; last line of its log: " + last),
-        member.importance != Importance::kExpendable};
+        member.importance != Importance::kExpendable,
+        member.restart == Restart::kWhenItDies && died && member.restarts < kMostRestarts};
   }
   return std::nullopt;
 }
 
 void ProcessGroup::finish(const std::string& name) {
   for (Member& member : members_) {
-    if (member.process.name() == name) member.importance = Importance::kMayFinish;
+    if (member.process->name() == name) member.importance = Importance::kMayFinish;
   }
   send_signal(SIGTERM, name);
 }
 
 void ProcessGroup::send_signal(int signal_number, const std::string& name) {
   for (Member& member : members_) {
-    if (name.empty() || member.process.name() == name) member.process.send_signal(signal_number);
+    if (name.empty() || member.process->name() == name) member.process->send_signal(signal_number);
   }
 }
 
 bool ProcessGroup::runs(const std::string& name) {
   for (Member& member : members_) {
-    if ((name.empty() || member.process.name() == name) && !member.process.poll()) return true;
+    if ((name.empty() || member.process->name() == name) && !member.process->poll()) return true;
   }
   return false;
 }
@@ -70,7 +102,7 @@ std::vector<std::string> ProcessGroup::stop(double patience_s, const Pause& paus
   end({});
   std::vector<std::string> killed;
   for (Member& member : members_) {
-    if (!member.process.poll()) killed.push_back(member.process.name());
+    if (!member.process->poll()) killed.push_back(member.process->name());
   }
   send_signal(SIGKILL, {});
   return killed;
@@ -79,9 +111,10 @@ std::vector<std::string> ProcessGroup::stop(double patience_s, const Pause& paus
 std::vector<support::StageTime> ProcessGroup::wait() {
   std::vector<support::StageTime> times;
   for (Member& member : members_) {
-    member.process.wait();
-    if (const auto& exit = member.process.poll()) {
-      times.push_back({member.process.name(), exit->wall_s, exit->cpu_s});
+    member.process->wait();
+    if (const auto& exit = member.process->poll()) {
+      times.push_back({member.process->name(), member.earlier_wall_s + exit->wall_s,
+                       member.earlier_cpu_s + exit->cpu_s});
     }
   }
   return times;

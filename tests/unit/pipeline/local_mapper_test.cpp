@@ -115,5 +115,62 @@ TEST_F(LocalMapperTest, FinishMakesAStopOfTheLastScanOnce) {
   EXPECT_FALSE(mapper.finish());
 }
 
+// --- sessions and epochs of the odometry
+
+TEST_F(LocalMapperTest, ASessionHasTheSameNumberEachTimeAndWithSaltAnother) {
+  const scan::Scan scan = scan_at({2.0, 3.0, 0.0});
+  LocalMapper a({}, "r");
+  LocalMapper b({}, "r");
+  LocalMapper salted({}, "r", 5);
+  LocalMapper other_robot({}, "s");
+  const std::uint64_t session = a.add(scan)->stop.session;
+  EXPECT_NE(session, 0U);
+  EXPECT_EQ(b.add(scan)->stop.session, session);
+  EXPECT_NE(salted.add(scan)->stop.session, session);
+  EXPECT_NE(other_robot.add(scan)->stop.session, session);
+}
+
+TEST_F(LocalMapperTest, GoesOnAfterTheLastStopOfAnotherLife) {
+  LocalMapper before({}, "r");
+  const topomap::LocalMap last = *before.add(scan_at({2.0, 3.0, 0.0}));
+  LocalMapper mapper({}, "r");
+  mapper.resume(last);
+  EXPECT_EQ(mapper.last_stop(), last.stop);
+  EXPECT_FALSE(mapper.add(scan_at({2.3, 3.0, 0.0})));
+  const auto next = mapper.add(scan_at({3.0, 3.0, 0.0}));
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->stop, (topomap::StopId{last.stop.session, 1}));
+  EXPECT_NEAR(next->T_previous_robot.x_m, 1.0, 0.02);
+}
+
+TEST_F(LocalMapperTest, ANewEpochNearTheLastScanStaysInTheSession) {
+  LocalMapper mapper({}, "r");
+  const topomap::LocalMap first = *mapper.add(scan_at({2.0, 3.0, 0.0}));
+  EXPECT_FALSE(mapper.add(scan_at({2.4, 3.0, 0.0})));
+  scan::Scan scan = scan_at({2.45, 3.02, 0.03});
+  scan.odometry_epoch = 8;
+  scan.T_odom_robot = {};
+  const auto stop = mapper.add(scan);
+  ASSERT_TRUE(stop) << "what was measured before has another origin";
+  EXPECT_EQ(stop->stop, (topomap::StopId{first.stop.session, 1}));
+  EXPECT_EQ(stop->odometry_epoch, 8U);
+  EXPECT_LT(geometry::difference(stop->T_previous_robot, {0.45, 0.02, 0.03}).norm(), 0.02);
+}
+
+TEST_F(LocalMapperTest, ANewEpochElsewhereBeginsASession) {
+  LocalMapper mapper({}, "r");
+  const topomap::LocalMap first = *mapper.add(scan_at({2.0, 3.0, 0.0}));
+  EXPECT_FALSE(mapper.add(scan_at({2.2, 3.0, 0.0})));
+  scan::Scan scan = scan_at({3.5, 1.2, 1.5});  // somebody has carried it
+  scan.odometry_epoch = 8;
+  scan.T_odom_robot = {};
+  const auto stop = mapper.add(scan);
+  ASSERT_TRUE(stop);
+  EXPECT_NE(stop->stop.session, first.stop.session);
+  EXPECT_EQ(stop->stop.number, 0U);
+  EXPECT_TRUE(stop->track.empty());
+  EXPECT_EQ(stop->T_previous_robot, Pose2{});
+}
+
 }  // namespace
 }  // namespace topogeo::pipeline

@@ -57,6 +57,41 @@ TEST_F(ProcessGroupTest, TheEndOfAnExpendableProcessIsNotFatal) {
   EXPECT_FALSE(end->fatal);
 }
 
+TEST_F(ProcessGroupTest, OneThatDiedIsStartedAgainWithoutWhatWasForItsFirstStart) {
+  group_.start("store", "sh", {"-c", "echo life $0; kill -9 $$", "first"}, Importance::kNeeded,
+               Restart::kWhenItDies);
+  group_.leave_out_at_restart("store", "first");
+  group_.wait();
+  const std::optional<UnexpectedEnd> end = group_.next_unexpected_end();
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->name, "store");
+  EXPECT_TRUE(end->can_restart);
+  group_.restart("store");
+  EXPECT_EQ(group_.wait().size(), 1U);
+  EXPECT_TRUE(group_.next_unexpected_end());
+  EXPECT_EQ(log_of("store"), "life first\n");
+  EXPECT_EQ(log_of("store-2"), "life /bin/sh\n");
+}
+
+TEST_F(ProcessGroupTest, OneThatSaysItCannotWorkIsNotStartedAgain) {
+  group_.start("store", "sh", {"-c", "exit 3"}, Importance::kNeeded, Restart::kWhenItDies);
+  group_.wait();
+  EXPECT_FALSE(group_.next_unexpected_end()->can_restart);
+}
+
+TEST_F(ProcessGroupTest, OneThatDiesAgainAndAgainIsGivenUp) {
+  group_.start("store", "sh", {"-c", "exit 1"}, Importance::kNeeded, Restart::kWhenItDies);
+  std::uint32_t restarts = 0;
+  for (;; ++restarts) {
+    group_.wait();
+    const std::optional<UnexpectedEnd> end = group_.next_unexpected_end();
+    ASSERT_TRUE(end);
+    if (!end->can_restart) break;
+    group_.restart("store");
+  }
+  EXPECT_EQ(restarts, ProcessGroup::kMostRestarts);
+}
+
 TEST_F(ProcessGroupTest, OneThatMayFinishIsReportedOnlyWhenItFails) {
   start("recorder", "exit 0", Importance::kMayFinish);
   group_.wait();

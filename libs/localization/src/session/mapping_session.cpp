@@ -20,6 +20,11 @@ constexpr double kTrackedDistance_m = 4.0;
 constexpr double kContradicted = 0.3;      // in the mean over that distance
 constexpr double kContradictedOnce = 0.5;  // by one stop
 
+// No stop before the first of a session: its number wraps.
+topomap::StopId before(const topomap::StopId& stop) {
+  return {stop.session, stop.number - 1};
+}
+
 void add_to(SlamCounts& sum, const SlamCounts& more) {
   sum.tasks += more.tasks;
   sum.evaluations += more.evaluations;
@@ -51,6 +56,11 @@ MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
   }
   start_following(std::move(map));
   if (initial) follower_->set_pose(initial->T_a_b, initial->covariance);
+}
+
+void MappingSession::go_on() {
+  follower_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
+  last_id_ = maps_.back()->stop;
 }
 
 bool MappingSession::add(MapPointer map) {
@@ -132,7 +142,8 @@ void MappingSession::join() {
   const double confidence = follower_->status().confidence;
   std::vector<MapPointer> drive;
   for (const MapPointer& map : std::exchange(waiting_, {})) {
-    drive.push_back(numbered(map, drive.empty()));
+    const bool follows = !maps_.empty() && maps_.back()->stop == before(map->stop);
+    drive.push_back(numbered(map, !follows));
     maps_.push_back(drive.back());
   }
   end_following();

@@ -23,8 +23,9 @@ SlamSession::SlamSession(const LocalizerConfig& config, MatchPool& pool, GraphOp
                          const MapToUse& stored) {
   std::optional<UncertainPose> start;
   if (stored.T_map_start) start = {*stored.T_map_start, given_pose_covariance()};
-  if (stored.use == MapToUse::Use::kContinue) {
+  if (stored.use != MapToUse::Use::kLocalize) {
     auto session = std::make_unique<MappingSession>(config, pool, optimizer, stored.map, start);
+    if (stored.use == MapToUse::Use::kGoOn) session->go_on();
     mapping_session_ = session.get();
     slam_ = std::move(session);
     return;

@@ -17,6 +17,16 @@ void ScanTracker::start(std::span<const ScanPoint> points, const Pose2& T_robot_
   T_odom_last_ = T_odom_robot;
 }
 
+void ScanTracker::restart_odometry(const Pose2& T_odom_robot) {
+  // A base that nobody commands stands after its watchdog's time.
+  constexpr double kSigma_m = 0.1;
+  constexpr double kSigma_rad = 0.1;
+  last_.covariance +=
+      Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
+          .asDiagonal();
+  T_odom_last_ = T_odom_robot;
+}
+
 TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T_odom_robot) {
   const UncertainPose before = last_;
   const UncertainPose step =

@@ -232,6 +232,49 @@ TEST_F(MappingSessionTest, StopsAndResumesMapping) {
   EXPECT_LT(geometry::between(truth, after.stops.back().T_map_robot).position_m().norm(), 0.25);
 }
 
+TEST_F(MappingSessionTest, AnotherSessionIsAnotherDriveThatFindsItsPlace) {
+  MappingSession session({}, pool_);
+  for (std::size_t i = 0; i < kFirst; ++i) session.add(driven_->maps[i]);
+  const std::uint64_t version = session.trajectory().version;
+  const Maps second = part(driven_->maps, kFirst, kFirst + kSecond);
+  for (const auto& map : second) session.add(map);
+  session.finish();
+  EXPECT_EQ(session.unmapped_stops(), 0U);
+  ASSERT_EQ(session.maps().size(), kFirst + kSecond);
+  const topomap::Trajectory after = session.trajectory();
+  EXPECT_GT(after.version, version);
+  EXPECT_TRUE(session.maps()[kFirst]->starts_drive);
+  EXPECT_EQ(after.stops[kFirst].stop, (topomap::StopId{2, 0}));
+  EXPECT_LT(largest_error_m(after), 0.25);
+}
+
+TEST_F(MappingSessionTest, StopsOfASessionThatFoundNoPlaceAreGivenUpWithIt) {
+  MappingSession session({}, pool_);
+  for (std::size_t i = 0; i < kFirst; ++i) session.add(driven_->maps[i]);
+  Maps other = part(driven_->maps, kFirst, kFirst + 2);  // too few to be sure
+  for (const auto& map : other) session.add(map);
+  EXPECT_EQ(session.waiting_stops(), 2U);
+  topomap::LocalMap next = *driven_->maps[kFirst];
+  next.stop = {3, 0};
+  session.add(std::make_shared<const topomap::LocalMap>(next));
+  EXPECT_EQ(session.waiting_stops(), 1U);
+  EXPECT_EQ(session.unmapped_stops(), 3U);
+}
+
+TEST_F(MappingSessionTest, GoesOnAtTheLastStopOfTheStoredMap) {
+  MappingSession session({}, pool_, nullptr, stored_, std::nullopt);
+  session.go_on();
+  const Maps drive = part(driven_->maps, 0, kFirst + kSecond);
+  for (std::size_t i = kFirst; i < kFirst + kSecond; ++i) {
+    session.add(drive[i]);
+    EXPECT_EQ(session.unmapped_stops(), 0U) << "there is nothing to search for";
+  }
+  session.finish();
+  ASSERT_EQ(session.maps().size(), kFirst + kSecond);
+  EXPECT_FALSE(session.maps()[kFirst]->starts_drive);
+  EXPECT_LT(largest_error_m(session.trajectory()), 0.25);
+}
+
 TEST_F(MappingSessionTest, RefusesAnotherRobotAStopOutOfTurnAndTheAlgorithmThatCannot) {
   MappingSession session({}, pool_, nullptr, stored_, std::nullopt);
   topomap::LocalMap map = *driven_->maps[0];

@@ -9,10 +9,14 @@ namespace {
 
 using Arrival = StopQueue::Arrival;
 
-StopQueue::MapPointer queued_map(std::uint32_t id) {
+constexpr std::uint64_t kSession = 7;
+constexpr std::uint64_t kLater = 3;
+
+StopQueue::MapPointer queued_map(std::uint32_t id, std::uint64_t session = kSession) {
   auto map = std::make_shared<topomap::LocalMap>();
   map->robot_id = "robot";
   map->id = id;
+  map->stop = {session, id};
   return map;
 }
 
@@ -31,13 +35,40 @@ TEST(StopQueue, DistinguishesARepeatedMapFromThatOfAnotherRun) {
   StopQueue queue;
   const StopQueue::MapPointer map = queued_map(0);
   const std::uint64_t hash = topomap::content_hash(*map);
-  EXPECT_EQ(queue.arrival(0, hash), Arrival::kNew);
+  EXPECT_EQ(queue.arrival({kSession, 0}, hash), Arrival::kNew);
   queue.add(map);
-  EXPECT_EQ(queue.arrival(0, hash + 1), Arrival::kNew) << "one that waits may be replaced";
+  EXPECT_EQ(queue.arrival({kSession, 0}, hash + 1), Arrival::kNew)
+      << "one that waits may be replaced";
   ASSERT_NE(queue.take(), nullptr);
-  EXPECT_EQ(queue.arrival(0, hash), Arrival::kRepeated);
-  EXPECT_EQ(queue.arrival(0, hash + 1), Arrival::kOtherRun);
-  EXPECT_EQ(queue.arrival(1, hash), Arrival::kNew);
+  EXPECT_EQ(queue.arrival({kSession, 0}, hash), Arrival::kRepeated);
+  EXPECT_EQ(queue.arrival({kSession, 0}, hash + 1), Arrival::kOtherRun);
+  EXPECT_EQ(queue.arrival({kSession, 1}, hash), Arrival::kNew);
+}
+
+TEST(StopQueue, GoesOverToASessionThatCameLater) {
+  StopQueue queue;
+  queue.add(queued_map(0));
+  queue.add(queued_map(0, kLater));
+  queue.add(queued_map(1));
+  EXPECT_EQ(queue.take()->stop, (topomap::StopId{kSession, 0}));
+  EXPECT_EQ(queue.take()->stop, (topomap::StopId{kSession, 1})) << "the one that is on comes first";
+  EXPECT_EQ(queue.take()->stop, (topomap::StopId{kLater, 0}));
+  queue.add(queued_map(2));
+  EXPECT_EQ(queue.take(), nullptr) << "a session that was left is over";
+  queue.add(queued_map(1, kLater));
+  EXPECT_EQ(queue.take()->stop, (topomap::StopId{kLater, 1}));
+  EXPECT_EQ(queue.taken(), 4U);
+}
+
+TEST(StopQueue, GoesOnAfterAStopOfAMapThatIsThere) {
+  StopQueue queue;
+  queue.start_after({kSession, 5});
+  EXPECT_EQ(queue.arrival({kSession, 5}, 1), Arrival::kRepeated);
+  EXPECT_EQ(queue.arrival({kSession, 6}, 1), Arrival::kNew);
+  queue.add(queued_map(6));
+  EXPECT_EQ(queue.take()->stop.number, 6U);
+  queue.end_at(7);
+  EXPECT_TRUE(queue.finished());
 }
 
 TEST(StopQueue, IsFinishedWhenAllOfTheStreamHaveBeenTaken) {

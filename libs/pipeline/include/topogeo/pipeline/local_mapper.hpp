@@ -25,8 +25,13 @@ class LocalMapper {
   LocalMapper(const LocalMapperConfig& config, std::string robot_id,
               std::uint64_t session_salt = 0);
 
+  /// Goes on with the session of its last stop, as if there had been no scan since. Before the
+  /// first scan.
+  void resume(const topomap::LocalMap& last_stop);
+
   /// Takes the next scan, in time order; gives a local map when the robot is at a stop. The first
-  /// scan is one.
+  /// scan is one, and the first of each epoch of the odometry: when it can be placed against the
+  /// last stop it belongs to the session, else it begins another one.
   std::optional<topomap::LocalMap> add(const scan::Scan& scan);
 
   /// The last scan, placed against the last stop; null when that was the stop.
@@ -34,7 +39,7 @@ class LocalMapper {
     return track_.empty() ? nullptr : &track_.back();
   }
 
-  /// After the first scan.
+  /// After the first scan or resume().
   [[nodiscard]] topomap::StopId last_stop() const { return {next_.session, next_.number - 1}; }
 
   /// At the end of a log: makes a stop of the last scan, if it was none, so that the scans since
@@ -42,6 +47,7 @@ class LocalMapper {
   std::optional<topomap::LocalMap> finish();
 
  private:
+  topomap::LocalMap begin_session(const scan::Scan& scan);
   topomap::LocalMap make_stop(const scan::Scan& scan, const geometry::Pose2& T_stop_robot);
   [[nodiscard]] std::vector<topomap::ScanPoint> points_of(const scan::Scan& scan) const;
 
@@ -53,6 +59,7 @@ class LocalMapper {
   topomap::LocalMapBuilder map_builder_;
   std::uint64_t session_salt_ = 0;
   topomap::StopId next_;
+  std::uint64_t odometry_epoch_ = 0;         // of the last scan
   std::vector<topomap::TrackedScan> track_;  // since the last stop
   std::optional<scan::Scan> last_;           // the last scan, if it was no stop
 };

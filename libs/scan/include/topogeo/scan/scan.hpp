@@ -16,12 +16,16 @@ struct Scan {
   double angle_step_rad = 0.0;   ///< from one beam to the next, counter-clockwise, > 0
   std::vector<float> ranges_m;   ///< one per beam; kNoReturn where the beam met nothing
   geometry::Pose2 T_odom_robot;  ///< odometry pose at the time of the scan
-  /// Odometry poses of different epochs have nothing in common. 0 in logs.
+  /// Odometry poses of different epochs have nothing in common: the base, or what reads it, started
+  /// anew between them, or they are of different logs.
   std::uint64_t odometry_epoch = 0;
 
   /// Range of a beam without an echo. Readers of logs and devices put it for every reading at or
   /// above the sensor's maximum and for every reading of zero or less.
   static constexpr float kNoReturn = 0.0F;
 };
+
+/// A number for a scan that no other one has, as far as its time and its ranges tell.
+std::uint64_t fingerprint(const Scan& scan);
 
 }  // namespace topogeo::scan

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,11 +22,17 @@ enum class Importance : std::uint8_t {
   kExpendable,  ///< they go on without it
 };
 
+/// Whether a process that dies can be started again, and goes on where it was.
+enum class Restart : std::uint8_t { kNever, kWhenItDies };
+
 /// A process that ended although its work was not done.
 struct UnexpectedEnd {
+  std::string name;
   std::string
       description;     ///< "localizer was killed by signal 9 (Killed); last line of its log: ..."
   bool fatal = false;  ///< the others cannot go on without it
+  /// It may be started again: it is not too often that it ended, and not by what it was given.
+  bool can_restart = false;
 };
 
 class ProcessGroup {
@@ -37,8 +44,16 @@ class ProcessGroup {
 
   /// Starts a program under a name of its own. Throws like ChildProcess.
   void start(const std::string& name, const std::string& program,
-             const std::vector<std::string>& arguments,
-             Importance importance = Importance::kNeeded);
+             const std::vector<std::string>& arguments, Importance importance = Importance::kNeeded,
+             Restart restart = Restart::kNever);
+  /// What is left out of the arguments when the process of that name is started again.
+  void leave_out_at_restart(const std::string& name, const std::string& argument);
+  /// Starts one again that has ended, with a log of its own, <name>-2.log and so on. Throws like
+  /// ChildProcess.
+  void restart(const std::string& name);
+
+  /// How often one is started again at most.
+  static constexpr std::uint32_t kMostRestarts = 20;
 
   /// One that has ended since the last call; an end that was in order is passed over.
   std::optional<UnexpectedEnd> next_unexpected_end();
@@ -58,10 +73,19 @@ class ProcessGroup {
 
  private:
   struct Member {
-    ChildProcess process;
+    std::unique_ptr<ChildProcess> process;
     Importance importance = Importance::kNeeded;
-    bool reported = false;  // its end
+    Restart restart = Restart::kNever;
+    std::string program;
+    std::vector<std::string> arguments;
+    std::string left_out = {};  // of them at a restart
+    bool reported = false;      // its end
+    std::uint32_t restarts = 0;
+    double earlier_wall_s = 0.0;  // of its lives before
+    double earlier_cpu_s = 0.0;
   };
+
+  std::unique_ptr<ChildProcess> make(const Member& member, const std::string& name);
 
   void send_signal(int signal_number, const std::string& name);
   [[nodiscard]] bool runs(const std::string& name);

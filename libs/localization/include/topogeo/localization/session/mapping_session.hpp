@@ -35,6 +35,10 @@ class MappingSession : public Slam {
   MappingSession(const LocalizerConfig& config, MatchPool& pool, GraphOptimizer* optimizer,
                  std::shared_ptr<const StoredMap> map, const std::optional<UncertainPose>& initial);
 
+  /// The drive goes on from the last stop of the stored map, which is one of its session. Before
+  /// the first stop.
+  void go_on();
+
   /// The next stop of the drive. The numbers of a session count on from the first that comes,
   /// whatever becomes of its stops; throws std::invalid_argument otherwise, or when it is of
   /// another robot than the map. Another session is another drive, whose place in the map is

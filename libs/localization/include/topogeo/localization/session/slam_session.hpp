@@ -24,7 +24,11 @@ Eigen::Matrix3d given_pose_covariance();
 
 /// A stored map, and what the session is to do with it.
 struct MapToUse {
-  enum class Use : std::uint8_t { kLocalize, kContinue };
+  enum class Use : std::uint8_t {
+    kLocalize,
+    kContinue,
+    kGoOn  ///< the same, and the robot goes on from the last stop of the map
+  };
   std::shared_ptr<const StoredMap> map;
   Use use = Use::kLocalize;
   std::optional<geometry::Pose2> T_map_start;  ///< of the robot at its first stop, as a person

@@ -26,6 +26,9 @@ class ScanTracker {
   void start(std::span<const topomap::ScanPoint> points, const geometry::Pose2& T_robot_laser,
              const geometry::Pose2& T_odom_robot);
 
+  /// The odometry starts anew with the next scan, which was taken about where the last one was.
+  void restart_odometry(const geometry::Pose2& T_odom_robot);
+
   /// Places the next scan against the stop. Call start() first.
   TrackedPose track(std::span<const topomap::ScanPoint> points,
                     const geometry::Pose2& T_odom_robot);

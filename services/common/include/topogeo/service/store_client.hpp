@@ -1,0 +1,55 @@
+// What a service that starts wants of the map store: what is stored, and snapshots of it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/store.h"
+#include "topogeo/service/service.hpp"
+
+namespace topogeo::service {
+
+/// Lives in the loop of its service.
+class StoreClient {
+ public:
+  /// `on_stored` is called for every message of the store.
+  StoreClient(Service& service, std::function<void(const msg::StoredMap&)> on_stored);
+  ~StoreClient();
+  StoreClient(const StoreClient&) = delete;
+  StoreClient& operator=(const StoreClient&) = delete;
+
+  /// The bytes, as SnapshotKind says, or why there are none.
+  struct Answer {
+    std::optional<std::string> bytes;
+    std::string why;
+  };
+  using Handler = std::function<void(Answer answer)>;
+
+  /// Asks again and again while the store does not answer: it may be starting. One at a time; a
+  /// second request replaces the first.
+  void request(msg::SnapshotKind kind, std::uint64_t session, std::uint32_t first, Handler handler);
+
+ private:
+  void send();
+  void on_piece(const msg::SnapshotPiece& piece);
+  void tick();
+
+  using Clock = std::chrono::steady_clock;
+
+  Service& service_;
+  std::string client_id_;
+  messaging::Writer<msg::SnapshotRequest> requests_;
+  std::uint64_t requests_sent_ = 0;
+  std::optional<msg::SnapshotRequest> request_;
+  Handler handler_;
+  std::vector<std::optional<std::string>> pieces_;  // of the answer
+  Clock::time_point last_heard_;
+  std::uint64_t timer_ = 0;
+};
+
+}  // namespace topogeo::service

@@ -1,0 +1,82 @@
+#include "topogeo/service/store_client.hpp"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/host.hpp"
+
+namespace topogeo::service {
+
+namespace {
+
+constexpr std::chrono::milliseconds kAskPeriod{200};
+/// Without another piece of an answer: the store has gone, or a piece with it.
+constexpr std::chrono::seconds kPatience{2};
+
+}  // namespace
+
+StoreClient::StoreClient(Service& service, std::function<void(const msg::StoredMap&)> on_stored)
+    : service_(service),
+      client_id_(fmt::format("{}-{:08x}", support::process_name(), std::random_device{}())),
+      requests_(service.advertise<msg::SnapshotRequest>()) {
+  service.subscribe<msg::StoredMap>(std::move(on_stored));
+  service.subscribe<msg::SnapshotPiece>(
+      [this](const msg::SnapshotPiece& piece) { on_piece(piece); }, {.addressee = client_id_});
+  timer_ = service.loop().add_timer(kAskPeriod, [this] { tick(); });
+}
+
+StoreClient::~StoreClient() {
+  service_.loop().cancel_timer(timer_);
+}
+
+void StoreClient::request(msg::SnapshotKind kind, std::uint64_t session, std::uint32_t first,
+                          Handler handler) {
+  msg::SnapshotRequest& request = request_.emplace();
+  messaging::set_client_id(request, client_id_);
+  request.kind(kind);
+  request.session(session);
+  request.first(first);
+  handler_ = std::move(handler);
+  send();
+}
+
+void StoreClient::send() {
+  messaging::set_header(*request_, service_.robot_id(), 0, requests_sent_);
+  request_->request_id(++requests_sent_);
+  pieces_.clear();
+  last_heard_ = Clock::now();
+  // One that cannot be sent now is sent again by the timer.
+  static_cast<void>(requests_.write(*request_));
+}
+
+void StoreClient::on_piece(const msg::SnapshotPiece& piece) {
+  if (!request_ || piece.request_id() != request_->request_id()) return;
+  last_heard_ = Clock::now();
+  if (piece.pieces() > 0 && piece.piece() < piece.pieces()) {
+    pieces_.resize(piece.pieces());
+    pieces_[piece.piece()] = std::string(piece.bytes().begin(), piece.bytes().end());
+    const auto here = [](const std::optional<std::string>& part) { return part.has_value(); };
+    if (!std::all_of(pieces_.begin(), pieces_.end(), here)) return;
+  }
+  Answer answer;
+  if (piece.pieces() > 0) {
+    answer.bytes.emplace();
+    for (const std::optional<std::string>& part : pieces_) *answer.bytes += *part;
+  } else {
+    answer.why = piece.message().to_string();
+  }
+  request_.reset();
+  pieces_.clear();
+  std::exchange(handler_, {})(std::move(answer));
+}
+
+void StoreClient::tick() {
+  if (!request_) return;
+  const bool silent = pieces_.empty() && Clock::now() - last_heard_ >= kAskPeriod * 5;
+  if (silent || Clock::now() - last_heard_ >= kPatience) send();
+}
+
+}  // namespace topogeo::service

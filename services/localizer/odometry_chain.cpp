@@ -1,0 +1,24 @@
+#include "odometry_chain.hpp"
+
+#include <utility>
+
+namespace topogeo::localizer {
+
+OdometryChain::MapPointer OdometryChain::add(MapPointer map) {
+  const bool same_session = last_ && last_->stop.session == map->stop.session;
+  if (!same_session) {
+    T_first_odom_ = {};
+  } else if (last_->odometry_epoch != map->odometry_epoch) {
+    T_first_odom_ =
+        last_->T_odom_robot * map->T_previous_robot * geometry::inverse(map->T_odom_robot);
+  }
+  if (T_first_odom_ != geometry::Pose2{}) {
+    auto chained = std::make_shared<topomap::LocalMap>(*map);
+    chained->T_odom_robot = T_first_odom_ * map->T_odom_robot;
+    map = std::move(chained);
+  }
+  last_ = Last{map->stop, map->odometry_epoch, map->T_odom_robot};
+  return map;
+}
+
+}  // namespace topogeo::localizer

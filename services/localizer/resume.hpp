@@ -1,0 +1,49 @@
+// Where a localizer that starts goes on: with the map that the map store has.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "topogeo/localization/mapping/stored_map.hpp"
+#include "topogeo/service/store_client.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localizer {
+
+/// What there is to go on with.
+struct ResumeFrom {
+  std::shared_ptr<const localization::StoredMap>
+      map;               ///< null: the map begins with the stops below
+  bool goes_on = false;  ///< its last stop is one of the session that is on
+  std::vector<std::shared_ptr<const topomap::LocalMap>> stops;  ///< of that session, to be added
+};
+
+/// Waits for the map store and gets from it what it has. Lives in the loop of its service.
+class Resume {
+ public:
+  using Handler = std::function<void(ResumeFrom from)>;
+
+  /// A session that alone makes the map is added again from its first stop, which gives the map of
+  /// an undisturbed run to the bit: always when `exact`, else while that takes no longer than a
+  /// second or two. Calls `on_ready` once.
+  Resume(service::Service& service, bool exact, Handler on_ready);
+
+ private:
+  void on_stored(const msg::StoredMap& stored);
+  void get_map();
+  void get_stops(std::uint32_t first);
+  void on_map(const service::StoreClient::Answer& answer);
+  void on_stops(const service::StoreClient::Answer& answer);
+  /// False, and a fault, when the store has no answer; then all is asked for again.
+  bool usable(const service::StoreClient::Answer& answer);
+
+  service::Service& service_;
+  bool exact_;
+  Handler on_ready_;
+  std::optional<msg::StoredMap> stored_;
+  ResumeFrom from_;
+  service::StoreClient client_;
+};
+
+}  // namespace topogeo::localizer
