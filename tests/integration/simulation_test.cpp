@@ -26,6 +26,11 @@ class SimulationTest : public testing::Test {
             "0",   "--domain", own_domain(), "--speed", "0.6"};
   }
 
+  /// Seen from its start, the estimated pose is the true one.
+  static Eigen::Vector2d way(const std::vector<topomap::StampedPose>& poses) {
+    return geometry::between(poses.front().pose, poses.back().pose).position_m();
+  }
+
   Scratch scratch_;
   std::string out_ = scratch_ / "out";
 };
@@ -40,15 +45,35 @@ TEST_F(SimulationTest, DrivesTheTourThroughSerialPortsAndMapsIt) {
   ASSERT_GT(truth.size(), 20U);
   ASSERT_LE(truth.size(), found.size());
   EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(6.2, 3.0)).norm(), 0.3);
-  // Seen from its start, the estimated pose is the true one.
-  const auto way = [](const auto& poses) {
-    return geometry::between(poses.front().pose, poses.back().pose).position_m();
-  };
   EXPECT_LT((way(truth) - way(found)).norm(), 0.2);
   EXPECT_TRUE(std::filesystem::exists(out_ + "/map.pb"));
   EXPECT_FALSE(std::filesystem::is_symlink(out_ + "/laser.port"));
   EXPECT_FALSE(std::filesystem::is_symlink(out_ + "/base.port"));
 }
+
+/// One service is killed while the robot drives.
+class SimulationLivesTest : public SimulationTest,
+                            public testing::WithParamInterface<const char*> {};
+
+TEST_P(SimulationLivesTest, TheMapEndsCompleteAndRight) {
+  Program run(scratch_, "topogeo", words(std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml"));
+  run.wait_for_progress(40);
+  const std::vector<pid_t> service = run.services(GetParam());
+  ASSERT_EQ(service.size(), 1U);
+  ::kill(service[0], SIGKILL);
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.err(), HasSubstr(std::string(GetParam()) + " was killed by signal 9"));
+  EXPECT_THAT(run.err(), HasSubstr("started again"));
+  const auto truth = storage::read_trajectory_tum(out_ + "/truth.tum");
+  const auto found = storage::read_trajectory_tum(out_ + "/trajectory.tum");
+  EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(6.2, 3.0)).norm(), 0.3);
+  EXPECT_LT((way(truth) - way(found)).norm(), 0.2) << "one map from the first scan to the last";
+}
+
+INSTANTIATE_TEST_SUITE_P(Services, SimulationLivesTest,
+                         testing::Values("sensor_gateway", "local_mapper", "localizer",
+                                         "map_store"),
+                         [](const auto& service) { return std::string(service.param); });
 
 TEST_F(SimulationTest, CtrlCEndsTheDriveWithAMap) {
   Program run(scratch_, "topogeo", words(std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml"));
