@@ -43,9 +43,8 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   if (next_.number == 0) return begin_session(scan);
   if (scan.odometry_epoch != odometry_epoch_) {
     odometry_epoch_ = scan.odometry_epoch;
-    tracker_.restart_odometry(scan.T_odom_robot);
-    const localization::TrackedPose bridge = tracker_.track(points_of(scan), scan.T_odom_robot);
-    return bridge.matched ? make_stop(scan, bridge.T_stop_robot) : begin_session(scan);
+    const std::optional<Pose2> T_stop_robot = find_again(scan);
+    return T_stop_robot ? make_stop(scan, *T_stop_robot) : begin_session(scan);
   }
   const localization::TrackedPose pose = tracker_.track(points_of(scan), scan.T_odom_robot);
   const Pose2& T = pose.T_stop_robot;
@@ -73,6 +72,22 @@ std::optional<LocalMap> LocalMapper::finish() {
   const Pose2 T_stop_robot = track_.back().T_stop_robot;
   track_.pop_back();
   return make_stop(scan, T_stop_robot);
+}
+
+// A base that nobody commands drives on until its watchdog stops it.
+std::optional<Pose2> LocalMapper::find_again(const scan::Scan& scan) const {
+  constexpr double kFarthest_m = 1.25;
+  constexpr double kStep_m = 0.25;  // from each of them a match finds what lies between
+  const std::vector<ScanPoint> points = points_of(scan);
+  localization::TrackedPose best;
+  for (double ahead_m = 0.0; ahead_m <= kFarthest_m; ahead_m += kStep_m) {
+    localization::ScanTracker tracker = tracker_;
+    tracker.restart_odometry(scan.T_odom_robot, {ahead_m, 0.0, 0.0});
+    const localization::TrackedPose pose = tracker.track(points, scan.T_odom_robot);
+    if (pose.matched && pose.agreement > best.agreement) best = pose;
+  }
+  if (!best.matched) return std::nullopt;
+  return best.T_stop_robot;
 }
 
 LocalMap LocalMapper::begin_session(const scan::Scan& scan) {

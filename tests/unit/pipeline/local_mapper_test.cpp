@@ -157,6 +157,19 @@ TEST_F(LocalMapperTest, ANewEpochNearTheLastScanStaysInTheSession) {
   EXPECT_LT(geometry::difference(stop->T_previous_robot, {0.45, 0.02, 0.03}).norm(), 0.02);
 }
 
+TEST_F(LocalMapperTest, ARobotThatDroveOnUntilItsWatchdogIsFoundAgain) {
+  LocalMapper mapper({}, "r");
+  const topomap::LocalMap first = *mapper.add(scan_at({2.0, 3.0, 0.0}));
+  EXPECT_FALSE(mapper.add(scan_at({2.3, 3.0, 0.0})));
+  scan::Scan scan = scan_at({3.1, 3.0, 0.02});
+  scan.odometry_epoch = 8;
+  scan.T_odom_robot = {};
+  const auto stop = mapper.add(scan);
+  ASSERT_TRUE(stop);
+  EXPECT_EQ(stop->stop, (topomap::StopId{first.stop.session, 1}));
+  EXPECT_LT(geometry::difference(stop->T_previous_robot, {1.1, 0.0, 0.02}).norm(), 0.02);
+}
+
 TEST_F(LocalMapperTest, ANewEpochElsewhereBeginsASession) {
   LocalMapper mapper({}, "r");
   const topomap::LocalMap first = *mapper.add(scan_at({2.0, 3.0, 0.0}));

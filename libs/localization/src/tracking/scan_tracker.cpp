@@ -17,13 +17,13 @@ void ScanTracker::start(std::span<const ScanPoint> points, const Pose2& T_robot_
   T_odom_last_ = T_odom_robot;
 }
 
-void ScanTracker::restart_odometry(const Pose2& T_odom_robot) {
-  // A base that nobody commands stands after its watchdog's time.
+void ScanTracker::restart_odometry(const Pose2& T_odom_robot, const Pose2& T_last_robot) {
   constexpr double kSigma_m = 0.1;
   constexpr double kSigma_rad = 0.1;
   last_.covariance +=
       Eigen::Vector3d(kSigma_m * kSigma_m, kSigma_m * kSigma_m, kSigma_rad * kSigma_rad)
           .asDiagonal();
+  last_.T_a_b = last_.T_a_b * T_last_robot;
   T_odom_last_ = T_odom_robot;
 }
 
@@ -53,7 +53,7 @@ TrackedPose ScanTracker::track(std::span<const ScanPoint> points, const Pose2& T
     last_.T_a_b = T;
     last_.covariance = (refined.information + prior.information).inverse();
   }
-  return {last_.T_a_b, matched};
+  return {last_.T_a_b, matched, refined.overlap * refined.inliers};
 }
 
 }  // namespace topogeo::localization

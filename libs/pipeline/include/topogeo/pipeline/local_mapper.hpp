@@ -47,6 +47,8 @@ class LocalMapper {
   std::optional<topomap::LocalMap> finish();
 
  private:
+  /// T_stop_robot of a scan whose odometry has another origin.
+  [[nodiscard]] std::optional<geometry::Pose2> find_again(const scan::Scan& scan) const;
   topomap::LocalMap begin_session(const scan::Scan& scan);
   topomap::LocalMap make_stop(const scan::Scan& scan, const geometry::Pose2& T_stop_robot);
   [[nodiscard]] std::vector<topomap::ScanPoint> points_of(const scan::Scan& scan) const;

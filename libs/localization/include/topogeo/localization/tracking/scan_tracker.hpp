@@ -16,6 +16,7 @@ namespace topogeo::localization {
 struct TrackedPose {
   geometry::Pose2 T_stop_robot;
   bool matched = false;  ///< false: odometry alone since the last matched scan
+  double agreement = 0.0;  ///< share of the scan that the stop saw as well and has there, [0, 1]
 };
 
 class ScanTracker {
@@ -26,8 +27,9 @@ class ScanTracker {
   void start(std::span<const topomap::ScanPoint> points, const geometry::Pose2& T_robot_laser,
              const geometry::Pose2& T_odom_robot);
 
-  /// The odometry starts anew with the next scan, which was taken about where the last one was.
-  void restart_odometry(const geometry::Pose2& T_odom_robot);
+  /// The odometry starts anew with the next scan, which was taken about there, seen from where the
+  /// last one was.
+  void restart_odometry(const geometry::Pose2& T_odom_robot, const geometry::Pose2& T_last_robot);
 
   /// Places the next scan against the stop. Call start() first.
   TrackedPose track(std::span<const topomap::ScanPoint> points,
