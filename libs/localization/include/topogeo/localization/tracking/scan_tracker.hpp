@@ -15,7 +15,7 @@ namespace topogeo::localization {
 
 struct TrackedPose {
   geometry::Pose2 T_stop_robot;
-  bool matched = false;  ///< false: odometry alone since the last matched scan
+  bool matched = false;    ///< false: odometry alone since the last matched scan
   double agreement = 0.0;  ///< share of the scan that the stop saw as well and has there, [0, 1]
 };
 
