@@ -82,6 +82,7 @@ class Aligner {
       return out;
     }
     std::vector<double> support;
+    support.reserve(hypotheses.size());
     for (const Pose2& T : hypotheses) support.push_back(support_of(T));
     const auto best = std::ranges::max_element(support);
     const Pose2& T_best = hypotheses[static_cast<std::size_t>(best - support.begin())];

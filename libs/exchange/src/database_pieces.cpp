@@ -65,6 +65,7 @@ class DatabaseReader {
       ordered[number_of_row(row, "row_number")] = text_of(row, "blob");
     }
     std::vector<std::string> out;
+    out.reserve(ordered.size());
     for (auto& [id, blob] : ordered) out.push_back(std::move(blob));
     return out;
   }

@@ -185,10 +185,10 @@ TEST_F(Repair, WhatIsNoMapIsRefused) {
 TEST_F(Repair, ADatabaseWithDamagedPagesGivesTheOthers) {
   // A file of schema 1, as the last program of that version wrote it, made by SQLite's own shell.
   const std::filesystem::path file = directory_ / "map.sqlite";
-  run_program({"/usr/bin/python3", "-c",
-               "import sqlite3,sys; d=sqlite3.connect(sys.argv[1]); "
-               "d.executescript(open(sys.argv[2]).read())",
-               file.string(), TOPOGEO_TEST_DATA "/map_v1.sql"});
+  const std::string script =
+      "import sqlite3,sys; d=sqlite3.connect(sys.argv[1]); "
+      "d.executescript(open(sys.argv[2]).read())";
+  run_program({"/usr/bin/python3", "-c", script, file.string(), TOPOGEO_TEST_DATA "/map_v1.sql"});
   const storage::MapDocument good = storage::read_map(file);
   const RepairedMap map = assemble(pieces_of_database(file), {}, "map.sqlite");
   EXPECT_THAT(map.lost, IsEmpty());

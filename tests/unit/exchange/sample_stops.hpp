@@ -37,7 +37,7 @@ inline storage::MapDocument sample_stops() {
     topomap::LocalMap map;
     map.robot_id = "robot-1";
     map.id = id;
-    map.sequence = 10U * id;
+    map.sequence = std::uint64_t{10} * id;
     map.stamp_ns = 1'000'000'000LL * (id + 1);
     map.starts_drive = id == 4;
     const double x_m = second ? id - 4.0 : id;
