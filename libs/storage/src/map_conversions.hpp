@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,16 @@ MapDrawing from_proto(const proto::Drawing& in);  ///< checked with check(MapDra
 void check_document(const MapDocument& document);
 void check_global_map(const topomap::GlobalMap& map);
 void check_edges(const std::vector<MapEdge>& edges, std::size_t map_count);
+
+/// Makes the std::runtime_error of a check a std::invalid_argument that names the file.
+template <typename Check>
+void require_valid(const std::string& file, const char* what, const Check& check) {
+  try {
+    check();
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(file + ": " + what + error.what());
+  }
+}
 
 /// The same bytes for the same message everywhere. Throws std::runtime_error above 2 GB.
 std::string deterministic_bytes(const google::protobuf::MessageLite& message);

@@ -1,6 +1,5 @@
 #include "topogeo/storage/map_database.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -13,27 +12,13 @@
 
 #include "map_conversions.hpp"
 #include "map_file_writer.hpp"
-#include "map_rows.hpp"
 #include "map_schema.hpp"
+#include "map_tables.hpp"
 #include "meta_table.hpp"
 #include "sqlite_rows.hpp"
 #include "stop_tables.hpp"
-#include "table_writer.hpp"
 
 namespace topogeo::storage {
-namespace {
-
-template <typename Check>
-void require_valid(const std::string& file, const char* what, const Check& check) {
-  try {
-    check();
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(fmt::format("{}: {}{}", file, what, error.what()));
-  }
-}
-
-}  // namespace
-
 MapDatabase::MapDatabase(MapDatabase&&) noexcept = default;
 MapDatabase& MapDatabase::operator=(MapDatabase&&) noexcept = default;
 MapDatabase::~MapDatabase() = default;
@@ -42,7 +27,8 @@ MapDatabase::MapDatabase(const std::filesystem::path& path,
                          std::unique_ptr<SQLite::Database> database)
     : name_(path.string()),
       database_(std::move(database)),
-      stops_(std::make_unique<StopTables>(*database_, name_)) {}
+      stops_(std::make_unique<StopTables>(*database_, name_)),
+      tables_(std::make_unique<MapTables>(*database_, name_)) {}
 
 MapDatabase MapDatabase::open_or_create(const std::filesystem::path& path,
                                         const std::string& robot_id, std::uint64_t seed) try {
@@ -112,14 +98,6 @@ void MapDatabase::migrate() {
   database_->exec("PRAGMA foreign_keys=ON");
 }
 
-void MapDatabase::read_hashes(const char* table, BlobHashes& hashes) {
-  hashes.clear();
-  SQLite::Statement row(*database_, fmt::format("SELECT id, blob_hash FROM {}", table));
-  while (row.executeStep()) {
-    hashes[static_cast<std::uint32_t>(integer_at(row, 0))] = as_unsigned(integer_at(row, 1));
-  }
-}
-
 void MapDatabase::read_state() {
   // Finds a file that was cut short now instead of at some later read.
   SQLite::Statement check(*database_, "PRAGMA quick_check(1)");
@@ -135,13 +113,8 @@ void MapDatabase::read_state() {
 void MapDatabase::read_tables() {
   tables_are_known_ = false;
   map_id_ = read_meta_number(*database_, "map_id");
-  trajectory_version_ = read_meta_number(*database_, "trajectory_version");
   stops_->read();
-  read_hashes("stop_pose", hashes_.poses);
-  read_hashes("loop_closure", hashes_.closures);
-  read_hashes("edge", hashes_.edges);
-  read_hashes("map_node", hashes_.nodes);
-  read_hashes("map_branch", hashes_.branches);
+  tables_->read();
   tables_are_known_ = true;
 }
 
@@ -204,112 +177,20 @@ void MapDatabase::put_trajectory(std::uint64_t version, std::span<const topomap:
                                  std::span<const JoinedStop> joined) {
   change([&] {
     stops_->join(joined);
-    write_trajectory(version, changed, closures);
+    tables_->write_trajectory(version, changed, closures, stops_->joined());
   });
 }
 
-void MapDatabase::write_trajectory(std::uint64_t version,
-                                   std::span<const topomap::StopPose> changed,
-                                   std::span<const topomap::LoopClosure> closures) {
-  if (version < trajectory_version_) {
-    throw std::invalid_argument(
-        fmt::format("{}: trajectory version {} after {}", name_, version, trajectory_version_));
-  }
-  const std::uint32_t count = stops_->joined();
-  for (const topomap::StopPose& stop : changed) {
-    if (stop.local_map_id < count) continue;
-    throw std::invalid_argument(
-        fmt::format("{}: stop {} has no local map yet", name_, stop.local_map_id));
-  }
-  for (const topomap::LoopClosure& c : closures) {
-    if (c.earlier_id < c.later_id && c.later_id < count) continue;
-    throw std::invalid_argument(fmt::format("{}: loop closure from {} to {}: expected ids below {}",
-                                            name_, c.earlier_id, c.later_id, count));
-  }
-  TableWriter pose_writer(*database_, "stop_pose", ", version", ", ?");
-  for (const topomap::StopPose& stop : changed) {
-    pose_writer.put(hashes_.poses, stop.local_map_id, to_blob<proto::StopPose>(stop),
-                    {as_signed(version)});
-  }
-  // The place in the list is the id, so that reading gives back the caller's order.
-  TableWriter closure_writer(*database_, "loop_closure", ", earlier_id, later_id", ", ?, ?");
-  for (std::size_t i = 0; i < closures.size(); ++i) {
-    closure_writer.put(hashes_.closures, static_cast<std::uint32_t>(i),
-                       to_blob<proto::LoopClosure>(closures[i]),
-                       {closures[i].earlier_id, closures[i].later_id});
-  }
-  closure_writer.remove_others(hashes_.closures,
-                               [&](std::uint32_t id) { return id < closures.size(); });
-  write_meta(*database_, "trajectory_version", std::to_string(version));
-  trajectory_version_ = version;
-}
-
 void MapDatabase::put_edges(const std::vector<MapEdge>& edges) {
-  change([&] { write_edges(edges); });
-}
-
-void MapDatabase::write_edges(const std::vector<MapEdge>& edges) {
-  require_valid(name_, "", [&] { check_edges(edges, stops_->joined()); });
-  TableWriter writer(*database_, "edge", ", earlier_id, later_id", ", ?, ?");
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    writer.put(hashes_.edges, static_cast<std::uint32_t>(i), to_blob<proto::MapEdge>(edges[i]),
-               {edges[i].earlier_id, edges[i].later_id});
-  }
-  writer.remove_others(hashes_.edges, [&](std::uint32_t id) { return id < edges.size(); });
+  change([&] { tables_->write_edges(edges, stops_->joined()); });
 }
 
 void MapDatabase::put_global_map(const topomap::GlobalMap& map) {
-  change([&] { write_global_map(map); });
-}
-
-void MapDatabase::write_global_map(const topomap::GlobalMap& map) {
-  require_valid(name_, "global map: ", [&] { check_global_map(map); });
-  TableWriter node_writer(*database_, "map_node");
-  std::vector<std::uint32_t> kept;  // ascending, as the check has found
-  const auto is_kept = [&](std::uint32_t id) { return std::ranges::binary_search(kept, id); };
-  for (const topomap::MapNode& node : map.nodes) {
-    node_writer.put(hashes_.nodes, node.id, to_blob<proto::MapNode>(node));
-    kept.push_back(node.id);
-  }
-  node_writer.remove_others(hashes_.nodes, is_kept);
-  TableWriter branch_writer(*database_, "map_branch", ", node_a, node_b", ", ?, ?");
-  kept.clear();
-  for (const topomap::MapBranch& branch : map.branches) {
-    branch_writer.put(hashes_.branches, branch.id, to_blob<proto::MapBranch>(branch),
-                      {branch.node_a, branch.node_b});
-    kept.push_back(branch.id);
-  }
-  branch_writer.remove_others(hashes_.branches, is_kept);
-  write_meta(*database_, "global_map_version", std::to_string(map.version));
+  change([&] { tables_->write_global_map(map); });
 }
 
 void MapDatabase::put_drawing(const MapDrawing& drawing) {
-  change([&] { write_drawing(drawing); });
-}
-
-void MapDatabase::write_drawing(const MapDrawing& drawing) {
-  require_valid(name_, "", [&] { check(drawing); });
-  for (const char* table : {"place", "zone", "drawn_grid"}) {
-    database_->exec(fmt::format("DELETE FROM {}", table));
-  }
-  BlobHashes none_stored;
-  TableWriter place_writer(*database_, "place", ", name", ", ?");
-  for (const planning::Place& place : drawing.places) {
-    place_writer.put(none_stored, static_cast<std::uint32_t>(none_stored.size()),
-                     to_blob<proto::Place>(place), {}, {place.name});
-  }
-  none_stored.clear();
-  TableWriter zone_writer(*database_, "zone", ", name, kind", ", ?, ?");
-  for (const planning::DrawnZone& zone : drawing.zones) {
-    zone_writer.put(none_stored, static_cast<std::uint32_t>(none_stored.size()),
-                    to_blob<proto::DrawnZone>(zone), {},
-                    {zone.name, planning::to_string(zone.kind)});
-  }
-  none_stored.clear();
-  if (drawing.grid) {
-    TableWriter(*database_, "drawn_grid")
-        .put(none_stored, 0, to_blob<proto::DrawnGrid>(*drawing.grid));
-  }
+  change([&] { tables_->write_drawing(drawing); });
 }
 
 void MapDatabase::put_document(const MapDocument& document) {
@@ -330,17 +211,18 @@ void MapDatabase::write_document(const MapDocument& document) {
   }
   stops_->join(joined);
   if (document.map_id != 0) write_map_id(document.map_id);
-  write_trajectory(document.trajectory.version, document.trajectory.stops, document.loop_closures);
-  write_edges(document.edges);
-  write_global_map(document.global_map);
-  write_drawing(document.drawing);
+  tables_->write_trajectory(document.trajectory.version, document.trajectory.stops,
+                            document.loop_closures, stops_->joined());
+  tables_->write_edges(document.edges, stops_->joined());
+  tables_->write_global_map(document.global_map);
+  tables_->write_drawing(document.drawing);
 }
 
 MapDocument MapDatabase::load() const try {
   const SQLite::Transaction one_state(*database_, SQLite::TransactionBehavior::DEFERRED);
   MapDocument document;
   stops_->for_each([&](topomap::LocalMap map) { document.local_maps.push_back(std::move(map)); });
-  load_rest(document);
+  tables_->load(document);
   try {
     check_document(document);
   } catch (const std::runtime_error& error) {
@@ -352,30 +234,12 @@ MapDocument MapDatabase::load() const try {
   throw_named(name_, error);
 }
 
-void MapDatabase::load_rest(MapDocument& document) const {
-  document.robot_id = robot_id_;
-  document.seed = seed_;
-  document.map_id = read_meta_number(*database_, "map_id");
-  document.trajectory.version = read_meta_number(*database_, "trajectory_version");
-  read_table<proto::StopPose>(*database_, name_, "stop_pose", document.trajectory.stops);
-  read_table<proto::LoopClosure>(*database_, name_, "loop_closure", document.loop_closures);
-  read_table<proto::MapEdge>(*database_, name_, "edge", document.edges);
-  document.global_map.version = read_meta_number(*database_, "global_map_version");
-  read_table<proto::MapNode>(*database_, name_, "map_node", document.global_map.nodes);
-  read_table<proto::MapBranch>(*database_, name_, "map_branch", document.global_map.branches);
-  read_table<proto::Place>(*database_, name_, "place", document.drawing.places);
-  read_table<proto::DrawnZone>(*database_, name_, "zone", document.drawing.zones);
-  std::vector<planning::OccupancyGrid> grids;
-  read_table<proto::DrawnGrid>(*database_, name_, "drawn_grid", grids);
-  if (!grids.empty()) document.drawing.grid = std::move(grids.front());
-}
-
 void MapDatabase::write_map_file(const std::function<void(std::string_view)>& sink) const try {
   const SQLite::Transaction one_state(*database_, SQLite::TransactionBehavior::DEFERRED);
   MapFileWriter writer(sink, robot_id_, seed_);
   stops_->for_each([&](const topomap::LocalMap& map) { writer.add(map); });
   MapDocument rest;
-  load_rest(rest);
+  tables_->load(rest);
   writer.finish(rest);
 } catch (const SQLite::Exception& error) {
   throw_named(name_, error);
@@ -414,6 +278,10 @@ std::vector<topomap::StopId> MapDatabase::waiting_stops() const {
 
 std::vector<SessionState> MapDatabase::sessions() const {
   return stops_->sessions();
+}
+
+std::uint64_t MapDatabase::trajectory_version() const {
+  return tables_->trajectory_version();
 }
 
 std::uint32_t MapDatabase::local_map_count() const {

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +27,7 @@ class Database;
 
 namespace topogeo::storage {
 
+class MapTables;
 class StopTables;
 
 /// A stop that joins the map.
@@ -136,7 +136,7 @@ class MapDatabase {
 
   /// Stops in the map, the number that the next one gets.
   [[nodiscard]] std::uint32_t local_map_count() const;
-  [[nodiscard]] std::uint64_t trajectory_version() const { return trajectory_version_; }
+  [[nodiscard]] std::uint64_t trajectory_version() const;
   [[nodiscard]] const std::string& robot_id() const { return robot_id_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
   /// 0 until there is a stop.
@@ -146,49 +146,28 @@ class MapDatabase {
   void copy_to(const std::filesystem::path& path) const;
 
  private:
-  /// Hash of each stored blob of a table by id, to write only what has changed.
-  using BlobHashes = std::map<std::uint32_t, std::uint64_t>;
-
-  /// Blob hashes of all tables with ids.
-  struct Hashes {
-    BlobHashes poses;
-    BlobHashes closures;
-    BlobHashes edges;
-    BlobHashes nodes;
-    BlobHashes branches;
-  };
-
   MapDatabase(const std::filesystem::path& path, std::unique_ptr<SQLite::Database> database);
   void create(const std::string& robot_id, std::uint64_t seed);
   void migrate();
   void read_state();
   /// What is remembered of the tables.
   void read_tables();
-  void read_hashes(const char* table, BlobHashes& hashes);
   /// Does `work` as one transaction: when it throws nothing has happened.
   template <typename Work>
   void change(const Work& work);
   // Parts of a transaction.
   std::vector<topomap::StopId> write_stops(std::span<const topomap::LocalMap> stops);
-  void write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
-                        std::span<const topomap::LoopClosure> closures);
-  void write_edges(const std::vector<MapEdge>& edges);
-  void write_global_map(const topomap::GlobalMap& map);
-  void write_drawing(const MapDrawing& drawing);
   void write_document(const MapDocument& document);
   void write_map_id(std::uint64_t map_id);
-  /// All but the local maps.
-  void load_rest(MapDocument& document) const;
 
   std::string name_;
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<StopTables> stops_;
+  std::unique_ptr<MapTables> tables_;
   bool tables_are_known_ = false;  // false: what is remembered of them is not what is stored
   std::string robot_id_;
   std::uint64_t seed_ = 0;
   std::uint64_t map_id_ = 0;
-  std::uint64_t trajectory_version_ = 0;
-  Hashes hashes_;
 };
 
 }  // namespace topogeo::storage

@@ -1,0 +1,147 @@
+#include "map_tables.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <SQLiteCpp/Statement.h>
+
+#include "topogeo/support/format.hpp"
+
+#include "map_conversions.hpp"
+#include "map_rows.hpp"
+#include "meta_table.hpp"
+#include "sqlite_rows.hpp"
+
+namespace topogeo::storage {
+
+MapTables::MapTables(SQLite::Database& database, std::string file)
+    : database_(database), file_(std::move(file)) {}
+
+void MapTables::read() {
+  trajectory_version_ = read_meta_number(database_, "trajectory_version");
+  read_hashes("stop_pose", pose_hashes_);
+  read_hashes("loop_closure", closure_hashes_);
+  read_hashes("edge", edge_hashes_);
+  read_hashes("map_node", node_hashes_);
+  read_hashes("map_branch", branch_hashes_);
+}
+
+void MapTables::write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
+                                 std::span<const topomap::LoopClosure> closures,
+                                 std::uint32_t stops) {
+  if (version < trajectory_version_) {
+    throw std::invalid_argument(
+        fmt::format("{}: trajectory version {} after {}", file_, version, trajectory_version_));
+  }
+  for (const topomap::StopPose& stop : changed) {
+    if (stop.local_map_id < stops) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: stop {} has no local map yet", file_, stop.local_map_id));
+  }
+  for (const topomap::LoopClosure& c : closures) {
+    if (c.earlier_id < c.later_id && c.later_id < stops) continue;
+    throw std::invalid_argument(fmt::format("{}: loop closure from {} to {}: expected ids below {}",
+                                            file_, c.earlier_id, c.later_id, stops));
+  }
+  TableWriter pose_writer(database_, "stop_pose", ", version", ", ?");
+  for (const topomap::StopPose& stop : changed) {
+    pose_writer.put(pose_hashes_, stop.local_map_id, to_blob<proto::StopPose>(stop),
+                    {as_signed(version)});
+  }
+  // The place in the list is the id, so that reading gives back the caller's order.
+  TableWriter closure_writer(database_, "loop_closure", ", earlier_id, later_id", ", ?, ?");
+  for (std::size_t i = 0; i < closures.size(); ++i) {
+    closure_writer.put(closure_hashes_, static_cast<std::uint32_t>(i),
+                       to_blob<proto::LoopClosure>(closures[i]),
+                       {closures[i].earlier_id, closures[i].later_id});
+  }
+  closure_writer.remove_others(closure_hashes_,
+                               [&](std::uint32_t id) { return id < closures.size(); });
+  write_meta(database_, "trajectory_version", std::to_string(version));
+  trajectory_version_ = version;
+}
+
+void MapTables::write_edges(const std::vector<MapEdge>& edges, std::uint32_t stops) {
+  require_valid(file_, "", [&] { check_edges(edges, stops); });
+  TableWriter writer(database_, "edge", ", earlier_id, later_id", ", ?, ?");
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    writer.put(edge_hashes_, static_cast<std::uint32_t>(i), to_blob<proto::MapEdge>(edges[i]),
+               {edges[i].earlier_id, edges[i].later_id});
+  }
+  writer.remove_others(edge_hashes_, [&](std::uint32_t id) { return id < edges.size(); });
+}
+
+void MapTables::write_global_map(const topomap::GlobalMap& map) {
+  require_valid(file_, "global map: ", [&] { check_global_map(map); });
+  TableWriter node_writer(database_, "map_node");
+  std::vector<std::uint32_t> kept;  // ascending, as the check has found
+  const auto is_kept = [&](std::uint32_t id) { return std::ranges::binary_search(kept, id); };
+  for (const topomap::MapNode& node : map.nodes) {
+    node_writer.put(node_hashes_, node.id, to_blob<proto::MapNode>(node));
+    kept.push_back(node.id);
+  }
+  node_writer.remove_others(node_hashes_, is_kept);
+  TableWriter branch_writer(database_, "map_branch", ", node_a, node_b", ", ?, ?");
+  kept.clear();
+  for (const topomap::MapBranch& branch : map.branches) {
+    branch_writer.put(branch_hashes_, branch.id, to_blob<proto::MapBranch>(branch),
+                      {branch.node_a, branch.node_b});
+    kept.push_back(branch.id);
+  }
+  branch_writer.remove_others(branch_hashes_, is_kept);
+  write_meta(database_, "global_map_version", std::to_string(map.version));
+}
+
+void MapTables::write_drawing(const MapDrawing& drawing) {
+  require_valid(file_, "", [&] { check(drawing); });
+  for (const char* table : {"place", "zone", "drawn_grid"}) {
+    database_.exec(fmt::format("DELETE FROM {}", table));
+  }
+  BlobHashes none_stored;
+  TableWriter place_writer(database_, "place", ", name", ", ?");
+  for (const planning::Place& place : drawing.places) {
+    place_writer.put(none_stored, static_cast<std::uint32_t>(none_stored.size()),
+                     to_blob<proto::Place>(place), {}, {place.name});
+  }
+  none_stored.clear();
+  TableWriter zone_writer(database_, "zone", ", name, kind", ", ?, ?");
+  for (const planning::DrawnZone& zone : drawing.zones) {
+    zone_writer.put(none_stored, static_cast<std::uint32_t>(none_stored.size()),
+                    to_blob<proto::DrawnZone>(zone), {},
+                    {zone.name, planning::to_string(zone.kind)});
+  }
+  none_stored.clear();
+  if (drawing.grid) {
+    TableWriter(database_, "drawn_grid")
+        .put(none_stored, 0, to_blob<proto::DrawnGrid>(*drawing.grid));
+  }
+}
+
+void MapTables::load(MapDocument& document) const {
+  document.robot_id = read_meta(database_, "robot_id");
+  document.seed = read_meta_number(database_, "seed");
+  document.map_id = read_meta_number(database_, "map_id");
+  document.trajectory.version = read_meta_number(database_, "trajectory_version");
+  read_table<proto::StopPose>(database_, file_, "stop_pose", document.trajectory.stops);
+  read_table<proto::LoopClosure>(database_, file_, "loop_closure", document.loop_closures);
+  read_table<proto::MapEdge>(database_, file_, "edge", document.edges);
+  document.global_map.version = read_meta_number(database_, "global_map_version");
+  read_table<proto::MapNode>(database_, file_, "map_node", document.global_map.nodes);
+  read_table<proto::MapBranch>(database_, file_, "map_branch", document.global_map.branches);
+  read_table<proto::Place>(database_, file_, "place", document.drawing.places);
+  read_table<proto::DrawnZone>(database_, file_, "zone", document.drawing.zones);
+  std::vector<planning::OccupancyGrid> grids;
+  read_table<proto::DrawnGrid>(database_, file_, "drawn_grid", grids);
+  if (!grids.empty()) document.drawing.grid = std::move(grids.front());
+}
+
+void MapTables::read_hashes(const char* table, BlobHashes& hashes) {
+  hashes.clear();
+  SQLite::Statement row(database_, fmt::format("SELECT id, blob_hash FROM {}", table));
+  while (row.executeStep()) {
+    hashes[static_cast<std::uint32_t>(integer_at(row, 0))] = as_unsigned(integer_at(row, 1));
+  }
+}
+
+}  // namespace topogeo::storage
