@@ -45,6 +45,8 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay, b
 
 void LocalMapperService::on_stored(const msg::StoredMap& stored) {
   if (begun_ || stored_) return;
+  // A log that is added to its own map is another session (as in MappingRun).
+  if (replay_ && stored.stops() > 0) mapper_.set_session_salt(stored.map_id());
   if (stored.session_stops() == 0) {
     begin();
     return;

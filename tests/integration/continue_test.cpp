@@ -90,6 +90,19 @@ TEST_P(ContinueByWorkersTest, OverDdsItGivesTheBytesOfOneProcess) {
   EXPECT_THAT(run.out, testing::Not(HasSubstr("fault of the localizer")));
 }
 
+TEST_F(ContinueTest, ALogThatIsAddedToItsOwnMapIsAnotherSession) {
+  make_map(0.4);
+  const std::string log = scratch_ / "again.clf.gz";
+  write_part("floor", log, 0.0, 0.4);
+  const Outcome alone = call({"map", "--log", log, "--continue", map_}, "alone");
+  ASSERT_EQ(alone.code, 0) << alone.err;
+  const Outcome run = call({"run", "--log", log, "--continue", map_, "--workers", "0"}, "run");
+  ASSERT_EQ(run.code, 0) << run.err;
+  expect_same_files("alone", "run");
+  const json continuation = report("run")["continuation"];
+  EXPECT_EQ(continuation["added_stops"], continuation["stored_stops"]);
+}
+
 INSTANTIATE_TEST_SUITE_P(Workers, ContinueByWorkersTest, testing::Values(1, 2, 4),
                          [](const auto& workers) { return std::to_string(workers.param); });
 

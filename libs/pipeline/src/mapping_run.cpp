@@ -22,7 +22,8 @@ MappingRun::MappingRun(const Config& config, std::string robot_id,
                        const std::optional<geometry::Pose2>& initial_pose)
     : config_(config),
       robot_id_(std::move(robot_id)),
-      local_mapper_(config.local_mapper, robot_id_),
+      // A log that is added to its own map is another session.
+      local_mapper_(config.local_mapper, robot_id_, storage::identified(*map).map_id),
       continued_(std::move(map)),
       slam_(config.localizer, pool_, nullptr,
             {stored_map(*continued_), MapToUse::Use::kContinue, initial_pose}) {}

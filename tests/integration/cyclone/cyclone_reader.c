@@ -47,11 +47,8 @@ static void report(dds_entity_t reader, const char* name) {
     const dds_return_t count =
         checked(dds_take(reader, samples, infos, kSamples, kSamples), "dds_take");
     for (dds_return_t i = 0; i < count; ++i) {
-      if (infos[i].valid_data) {
-        printf("sample %s\n", name);
-      } else if (infos[i].instance_state == DDS_IST_NOT_ALIVE_DISPOSED) {
-        printf("disposed %s\n", name);
-      }
+      if (infos[i].valid_data) printf("sample %s\n", name);
+      if (infos[i].instance_state == DDS_IST_NOT_ALIVE_DISPOSED) printf("disposed %s\n", name);
     }
     if (count > 0) dds_return_loan(reader, samples, count);
     if (count < kSamples) break;

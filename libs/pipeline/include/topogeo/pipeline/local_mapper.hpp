@@ -25,6 +25,9 @@ class LocalMapper {
   LocalMapper(const LocalMapperConfig& config, std::string robot_id,
               std::uint64_t session_salt = 0);
 
+  /// Other numbers for the sessions that begin from here on, as the constructor's `session_salt`.
+  void set_session_salt(std::uint64_t salt) { session_salt_ = salt; }
+
   /// Goes on with the session of its last stop, as if there had been no scan since. Before the
   /// first scan.
   void resume(const topomap::LocalMap& last_stop);
