@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "topogeo/messaging/message.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/log.hpp"
 
@@ -24,6 +25,7 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
       document_(std::move(document)),
       elements_(service),
       hybrid_(service),
+      stored_out_(service.advertise<msg::StoredMap>()),
       pieces_out_(service.advertise<msg::SnapshotPiece>()),
       snapshots_(
           service.robot_id(),
@@ -46,7 +48,18 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
                hybrid.zones().zones.size(), hybrid.places().size());
 }
 
+// No session goes on here: a local mapper begins one.
+void MapServer::announce() {
+  msg::StoredMap message;
+  messaging::set_header(message, service_.robot_id(), stamp_ns_, 0);
+  message.map_id(document_.map_id);
+  message.stops(static_cast<std::uint32_t>(document_.trajectory.stops.size()));
+  message.earlier_stops(message.stops());
+  announced_ = stored_out_.write(message);
+}
+
 void MapServer::send() {
+  if (!announced_) announce();
   if (!elements_sent_) elements_sent_ = elements_.publish(document_.global_map, stamp_ns_);
   hybrid_.send_rest();
 }

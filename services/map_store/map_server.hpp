@@ -22,14 +22,17 @@ class MapServer {
  private:
   /// Sends what could not be sent before.
   void send();
+  void announce();
 
   service::Service& service_;
   storage::MapDocument document_;
   std::int64_t stamp_ns_ = 0;  // of its last stop
   ElementPublisher elements_;
   HybridPublisher hybrid_;
+  messaging::Writer<msg::StoredMap> stored_out_;
   messaging::Writer<msg::SnapshotPiece> pieces_out_;
   SnapshotQueue snapshots_;
+  bool announced_ = false;
   bool elements_sent_ = false;
 };
 

@@ -35,7 +35,7 @@ void SnapshotQueue::add(const msg::SnapshotRequest& request) {
 }
 
 void SnapshotQueue::make_next(Clock::time_point now) {
-  answer_.emplace();
+  answer_ = Answer{};
   answer_->last_sent = now;
   if (!refused_requests_.empty()) {
     answer_->request = refused_requests_.front();

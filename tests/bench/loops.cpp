@@ -154,12 +154,13 @@ void print_details(const bench::LoopFigures& f) {
 }
 
 /// The drives through one synthetic floor together as one log.
-void print_judged(const LoopOptions& options, std::map<std::size_t, bench::JudgedLog> judged) {
+void print_judged(const LoopOptions& options,
+                  const std::map<std::size_t, bench::JudgedLog>& judged) {
   std::vector<bench::JudgedLog> logs;
-  for (auto& [index, log] : judged) {
+  for (const auto& [index, log] : judged) {
     const bool floor = log.name.find(kFloor) != std::string::npos;
     if (!floor) {
-      logs.push_back(std::move(log));
+      logs.push_back(log);
       continue;
     }
     const std::string name = log.name.substr(0, log.name.find(kFloor));
@@ -212,7 +213,8 @@ int main(int argc, char** argv) {
   LoopOptions options;
   app.add_option("log", options.logs, "NAME, or NAME/N: every N-th scan of it alone")
       ->type_name("NAME");
-  app.add_option("--floors", options.floors, "drives through each synthetic floor but the large ones as well")
+  app.add_option("--floors", options.floors,
+                 "drives through each synthetic floor but the large ones as well")
       ->check(command_line::range(0.0, 1000.0));
   app.add_flag("--reliability", options.reliability,
                "whether the probabilities of the decisions are right");

@@ -83,8 +83,8 @@ TEST_F(EqualityTest, WorkerKilledHalfWay) {
   expect_same_bytes("run");
 }
 
-class EqualityByRestartTest : public EqualityTest, public testing::WithParamInterface<const char*> {
-};
+class EqualityByRestartTest : public EqualityTest,
+                              public testing::WithParamInterface<const char*> {};
 
 TEST_P(EqualityByRestartTest, KilledHalfWay) {
   use_udp_only();

@@ -188,7 +188,8 @@ TEST_F(Repair, ADatabaseWithDamagedPagesGivesTheOthers) {
   const std::string script =
       "import sqlite3,sys; d=sqlite3.connect(sys.argv[1]); "
       "d.executescript(open(sys.argv[2]).read())";
-  run_program({"/usr/bin/python3", "-c", script, file.string(), TOPOGEO_TEST_DATA "/map_v1.sql"});
+  const std::string text = std::string(TOPOGEO_TEST_DATA) + "/map_v1.sql";
+  run_program({"/usr/bin/python3", "-c", script, file.string(), text});
   const storage::MapDocument good = storage::read_map(file);
   const RepairedMap map = assemble(pieces_of_database(file), {}, "map.sqlite");
   EXPECT_THAT(map.lost, IsEmpty());

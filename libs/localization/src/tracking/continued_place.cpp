@@ -15,7 +15,7 @@ constexpr double kMargin_rad = 0.05;
 // As of loops (LoopAgreement): twice as heavy as what it contradicts. Look-alikes were tracked over
 // 10 m where a robot had hardly begun to be; nothing but a copy of a building is longer than the
 // largest, after which a robot that was carried unnoticed is found again.
-constexpr double kOverRival = 2.0;
+constexpr double kOverContradicted = 2.0;
 constexpr double kLeast_m = 15.0;
 constexpr double kMost_m = 40.0;
 
@@ -43,7 +43,8 @@ void ContinuedPlace::forget() {
 }
 
 double ContinuedPlace::wanted_m(const UncertainPose& T_map_robot) const {
-  return leads_to(T_map_robot) ? 0.0 : std::clamp(kOverRival * tracked_m_, kLeast_m, kMost_m);
+  return leads_to(T_map_robot) ? 0.0
+                               : std::clamp(kOverContradicted * tracked_m_, kLeast_m, kMost_m);
 }
 
 bool ContinuedPlace::leads_to(const UncertainPose& T_map_robot) const {

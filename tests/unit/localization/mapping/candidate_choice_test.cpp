@@ -23,10 +23,11 @@ std::vector<std::uint32_t> ids(const std::vector<MatchCandidate>& candidates) {
 class CandidateChoiceTest : public ::testing::Test {
  protected:
   void consider(CandidateChoice& choice, std::uint32_t id, double x_m) const {
-    choice.consider(id, here_.profile, outline_, {Pose2{x_m, 0.0, 0.0}, {}});
+    choice.consider(id, here_.profile, outline_, {Pose2{x_m, 0.0, 0.0}, Eigen::Matrix3d::Zero()});
   }
   [[nodiscard]] double overlap_at(double x_m) const {
-    return expected_overlap(here_.profile, outline_, {Pose2{x_m, 0.0, 0.0}, {}});
+    return expected_overlap(here_.profile, outline_,
+                            {Pose2{x_m, 0.0, 0.0}, Eigen::Matrix3d::Zero()});
   }
 
   MatchFeatures here_ = test::features_at(test::l_room(), {0.0, 0.5, 0.0});

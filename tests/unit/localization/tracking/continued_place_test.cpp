@@ -7,13 +7,13 @@ namespace {
 
 using geometry::Pose2;
 
-Eigen::Matrix3d spread(double sigma_m, double sigma_rad) {
+Eigen::Matrix3d step_spread(double sigma_m, double sigma_rad) {
   return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
 }
 
 DriveStep step(bool matched) {
   DriveStep step;
-  step.T_before_now = {{1.0, 0.0, 0.0}, spread(0.02, 0.005)};
+  step.T_before_now = {{1.0, 0.0, 0.0}, step_spread(0.02, 0.005)};
   step.distance_m = 1.0;
   step.matched = matched;
   return step;
@@ -24,10 +24,10 @@ DriveStep unmatched(Reason reason) {
   DriveStep without = step(false);
   MatchTask task;
   task.T_reference_query = {1.0, 0.0, 0.0};
-  task.covariance = spread(0.1, 0.05);
+  task.covariance = step_spread(0.1, 0.05);
   MatchResult result;
   result.T_reference_query = {1.0, 0.0, 0.0};
-  result.covariance = spread(0.03, 0.01);
+  result.covariance = step_spread(0.03, 0.01);
   result.verdict = Verdict::kRejected;
   result.reason = reason;
   result.overlap = 0.8;
@@ -37,12 +37,12 @@ DriveStep unmatched(Reason reason) {
   return without;
 }
 
-const UncertainPose kTracked{{2.0, 3.0, 0.0}, spread(0.05, 0.01)};
+const UncertainPose kTracked{{2.0, 3.0, 0.0}, step_spread(0.05, 0.01)};
 
 TEST(ContinuedPlace, LeadsAnywhereWhereNothingIsKnown) {
   ContinuedPlace place;
   EXPECT_FALSE(place.pose());
-  EXPECT_TRUE(place.leads_to({{50.0, 0.0, 0.0}, spread(0.1, 0.02)}));
+  EXPECT_TRUE(place.leads_to({{50.0, 0.0, 0.0}, step_spread(0.1, 0.02)}));
   place.move(step(true));
   EXPECT_FALSE(place.pose());
 }
@@ -53,16 +53,16 @@ TEST(ContinuedPlace, GoesOnByMatchedSteps) {
   for (int i = 0; i < 4; ++i) place.move(step(true));
   ASSERT_TRUE(place.pose());
   EXPECT_NEAR(place.pose()->T_a_b.x_m, 6.0, 1e-12);
-  EXPECT_TRUE(place.leads_to({{6.3, 3.2, 0.05}, spread(0.1, 0.02)}));
-  EXPECT_FALSE(place.leads_to({{6.0, 9.0, 0.0}, spread(0.1, 0.02)}));   // the next office
-  EXPECT_FALSE(place.leads_to({{6.0, 3.0, 1.57}, spread(0.1, 0.02)}));  // looks elsewhere
+  EXPECT_TRUE(place.leads_to({{6.3, 3.2, 0.05}, step_spread(0.1, 0.02)}));
+  EXPECT_FALSE(place.leads_to({{6.0, 9.0, 0.0}, step_spread(0.1, 0.02)}));   // the next office
+  EXPECT_FALSE(place.leads_to({{6.0, 3.0, 1.57}, step_spread(0.1, 0.02)}));  // looks elsewhere
 }
 
 TEST(ContinuedPlace, KnowsTheLessTheFurtherItWent) {
   ContinuedPlace place;
   place.track(kTracked, 1.0);
   for (int i = 0; i < 100; ++i) place.move(step(true));
-  EXPECT_TRUE(place.leads_to({{102.0, 8.0, 0.0}, spread(0.1, 0.02)}));
+  EXPECT_TRUE(place.leads_to({{102.0, 8.0, 0.0}, step_spread(0.1, 0.02)}));
 }
 
 TEST(ContinuedPlace, AStepThatMayHaveCarriedTheRobotEndsIt) {
@@ -86,7 +86,7 @@ TEST(ContinuedPlace, ADoubtfulStepThatMayBeRightDoesNot) {
 }
 
 TEST(ContinuedPlace, WantsTwiceAsMuchOfWhatItContradicts) {
-  const UncertainPose elsewhere{{40.0, 0.0, 0.0}, spread(0.1, 0.02)};
+  const UncertainPose elsewhere{{40.0, 0.0, 0.0}, step_spread(0.1, 0.02)};
   ContinuedPlace place;
   EXPECT_EQ(place.wanted_m(elsewhere), 0.0);
   place.track(kTracked, 1.0);

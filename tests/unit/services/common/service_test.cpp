@@ -94,7 +94,9 @@ TEST_F(ServiceTest, MainInputIsCountedInTheStatus) {
   messaging::Writer<msg::LocalMap> maps(peer_);
   messaging::Writer<msg::Goal> goals(peer_);
   ASSERT_TRUE(maps.write(message_of<msg::LocalMap>("robot")));
-  ASSERT_TRUE(maps.write(message_of<msg::LocalMap>("another")));
+  auto other = message_of<msg::LocalMap>("another");
+  other.session(5);
+  ASSERT_TRUE(maps.write(other));
   ASSERT_TRUE(goals.write(message_of<msg::Goal>("robot")));
   EXPECT_TRUE(
       run_until([&] { return status_.inputs() == 1 && counter("ignored: other robot") == 1.0; }));

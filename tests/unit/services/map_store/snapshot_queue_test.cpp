@@ -83,7 +83,7 @@ TEST_F(Snapshots, AnAnswerThatCannotBeMadeSaysWhy) {
 }
 
 TEST_F(Snapshots, ASlowReaderGetsEachPieceOnce) {
-  answer_ = std::string(3 * msg::kMaxPieceBytes, 'x');
+  answer_ = std::string(std::size_t{3} * msg::kMaxPieceBytes, 'x');
   queue_.add(request(1));
   reader_takes_ = false;
   EXPECT_FALSE(work());

@@ -35,9 +35,9 @@ void set_text_cut(BoundedString& field, std::string_view text) {
   field = std::string(text.substr(0, size));
 }
 
-/// The number that stands for a text in the key of a topic.
+/// The number that stands for a text in the key of a topic; 0 for no text.
 inline std::uint64_t key_of(std::string_view text) {
-  return support::fnv1a(text);
+  return text.empty() ? 0 : support::fnv1a(text);
 }
 
 /// Sets robot_id and, where the message has it, its key. Throws like set_text.
