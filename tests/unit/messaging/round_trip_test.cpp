@@ -250,6 +250,14 @@ void fill(msg::MapElement& element) {
   element.points().assign(msg::kMaxBranchPoints, branch_point(2.0));
 }
 
+void fill(msg::SnapshotPiece& piece) {
+  set_client_id(piece, "local_mapper-1");
+  piece.request_id(3);
+  piece.piece(1);
+  piece.pieces(2);
+  piece.bytes().assign(msg::kMaxPieceBytes, 0xa5);
+}
+
 void fill(msg::TrackedPose& tracked) {
   tracked.stop().session(0xfedcba9876543210ULL);
   tracked.stop().number(7);
