@@ -201,7 +201,7 @@ bool print_logs(const LoopOptions& options, const pipeline::LoadedConfig& config
     threads.emplace_back(work);
   }
   for (std::thread& thread : threads) thread.join();
-  print_judged(options, std::move(judged));
+  print_judged(options, judged);
   return all_measured;
 }
 
