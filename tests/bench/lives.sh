@@ -38,6 +38,7 @@ for ((round = 1; round <= rounds; ++round)); do
   for service in localizer map_store ga_worker; do
     [ -e "$work/out/map.pb" ] && break
     kill -9 "${pids[$service]}"
+    wait "${pids[$service]}" 2> /dev/null || true
     from=$(date +%s%N)
     start $service
     until running $service; do sleep 0.05; done
