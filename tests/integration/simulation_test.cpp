@@ -57,7 +57,7 @@ class SimulationLivesTest : public SimulationTest,
 
 TEST_P(SimulationLivesTest, TheMapEndsCompleteAndRight) {
   Program run(scratch_, "topogeo", words(std::string(TOPOGEO_TEST_DATA) + "/short.world.yaml"));
-  run.wait_for_progress(40);
+  run.wait_for_progress(25);  // the rest takes longer than a start does
   const std::vector<pid_t> service = run.services(GetParam());
   ASSERT_EQ(service.size(), 1U);
   ::kill(service[0], SIGKILL);
