@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,23 +10,15 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/log.hpp"
+#include "topogeo/support/random.hpp"
 
 namespace topogeo::local_mapper {
 
-namespace {
-
-/// Keeps the sessions of two starts apart, also when a laser that stands sees the same.
-std::uint64_t session_salt(bool replay) {
-  if (replay) return 0;
-  std::random_device random;
-  return (std::uint64_t{random()} << 32U) | random();
-}
-
-}  // namespace
-
 LocalMapperService::LocalMapperService(service::Service& service, bool replay, bool standalone)
     : service_(service),
-      mapper_(service.setup().config.config.local_mapper, service.robot_id(), session_salt(replay)),
+      // Random salt keeps the sessions of two starts apart when a laser that stands sees the same.
+      mapper_(service.setup().config.config.local_mapper, service.robot_id(),
+              replay ? 0 : support::unrepeatable_u64()),
       local_maps_(service.advertise<msg::LocalMap>()),
       tracked_poses_(service.advertise<msg::TrackedPose>()),
       ends_out_(service.advertise<msg::StreamEnd>()),

@@ -25,7 +25,7 @@ void StopQueue::add(MapPointer map) {
 
 StopQueue::MapPointer StopQueue::take() {
   if (last_) {
-    if (MapPointer next = take({last_->session, last_->number + 1})) return next;
+    if (MapPointer next = take(last_->next())) return next;
   }
   for (const std::uint64_t session : sessions_) {
     if (last_ && session == last_->session) continue;

@@ -71,8 +71,7 @@ void MapInput::extend() {
     const auto found = waiting_.find(stop->stop);
     if (found == waiting_.end()) return;
     const auto id = static_cast<std::uint32_t>(local_maps_.size());
-    const bool follows = id == 0 || local_maps_.back().stop ==
-                                        topomap::StopId{stop->stop.session, stop->stop.number - 1};
+    const bool follows = id == 0 || local_maps_.back().stop.next() == stop->stop;
     local_maps_.push_back(
         topomap::numbered(std::move(waiting_.extract(found).mapped()), id, !follows));
   }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <random>
 #include <string>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/log.hpp"
+#include "topogeo/support/random.hpp"
 
 namespace topogeo::sensor_gateway {
 
@@ -19,12 +19,6 @@ namespace {
 constexpr milliseconds kPoll{20};            // for readers at the start: no scan waits noticeably
 constexpr milliseconds kStatePeriod{250};    // twice for each status, so that it is never older
 constexpr milliseconds kLastDelivery{2000};  // for readers to have what was published
-
-/// The base's odometry counts from where this program found it.
-std::uint64_t new_epoch() {
-  std::random_device random;
-  return (std::uint64_t{random()} << 32U) | random();
-}
 
 ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config,
                              std::uint64_t odometry_epoch) {
@@ -42,7 +36,7 @@ ScanGateOptions gate_options(const service::Service& service, const DeviceConfig
 DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& config, int readers)
     : service_(service),
       readers_(readers),
-      odometry_epoch_(new_epoch()),
+      odometry_epoch_(support::unrepeatable_u64()),
       gate_(gate_options(service, config, odometry_epoch_)),
       scans_(service.advertise<msg::Scan>()),
       stream_end_(service.advertise<msg::StreamEnd>()) {

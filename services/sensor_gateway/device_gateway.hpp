@@ -44,7 +44,8 @@ class DeviceGateway {
   service::Service& service_;
   HostTime time_;
   int readers_;
-  const std::uint64_t odometry_epoch_;
+  const std::uint64_t
+      odometry_epoch_;  // the odometry counts from where this program found the base
   ScanGate gate_;
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::StreamEnd> stream_end_;

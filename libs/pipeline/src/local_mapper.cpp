@@ -98,7 +98,7 @@ LocalMap LocalMapper::begin_session(const scan::Scan& scan) {
 }
 
 void LocalMapper::resume(const LocalMap& last_stop) {
-  next_ = {last_stop.stop.session, last_stop.stop.number + 1};
+  next_ = last_stop.stop.next();
   odometry_epoch_ = last_stop.odometry_epoch;
   tracker_.start(last_stop.points, last_stop.T_robot_laser, last_stop.T_odom_robot);
 }
@@ -108,7 +108,7 @@ LocalMap LocalMapper::make_stop(const scan::Scan& scan, const Pose2& T_stop_robo
   map.robot_id = robot_id_;
   map.id = next_.number;
   map.stop = next_;
-  ++next_.number;
+  next_ = next_.next();
   map.sequence = scan.sequence;
   map.stamp_ns = scan.stamp_ns;
   map.T_odom_robot = scan.T_odom_robot;

@@ -7,10 +7,10 @@
 #include <google/protobuf/io/coded_stream.h>
 
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/file_content.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
 
-#include "file_content.hpp"
 #include "map_conversions.hpp"
 #include "map_file_format.hpp"
 #include "map_file_writer.hpp"
@@ -142,7 +142,7 @@ void write_map_file(const std::filesystem::path& path, const MapDocument& docume
 }
 
 MapDocument read_map_file(const std::filesystem::path& path) {
-  return parse_map_file(file_content(path), path.string());
+  return parse_map_file(support::file_content(path), path.string());
 }
 
 }  // namespace topogeo::storage

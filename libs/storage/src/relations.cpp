@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "topogeo/support/file_content.hpp"
 #include "topogeo/support/format.hpp"
 
-#include "file_content.hpp"
 #include "text_fields.hpp"
 
 namespace topogeo::storage {
@@ -40,7 +40,7 @@ std::vector<Relation> parse_relations(std::string_view text, const std::string& 
 }
 
 std::vector<Relation> read_relations(const std::filesystem::path& path) {
-  return parse_relations(file_content(path), path.string());
+  return parse_relations(support::file_content(path), path.string());
 }
 
 }  // namespace topogeo::storage

@@ -6,9 +6,9 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/file_content.hpp"
 #include "topogeo/support/format.hpp"
 
-#include "file_content.hpp"
 #include "text_fields.hpp"
 
 namespace topogeo::storage {
@@ -88,7 +88,7 @@ std::vector<topomap::StampedPose> parse_trajectory_tum(std::string_view text,
 }
 
 std::vector<topomap::StampedPose> read_trajectory_tum(const std::filesystem::path& path) {
-  return parse_trajectory_tum(file_content(path), path.string());
+  return parse_trajectory_tum(support::file_content(path), path.string());
 }
 
 }  // namespace topogeo::storage

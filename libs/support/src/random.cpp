@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 
 #include "topogeo/geometry/portable_math.hpp"
@@ -59,6 +60,11 @@ double Random::normal() {
   spare_normal_ = radius * direction.sin;
   has_spare_normal_ = true;
   return radius * direction.cos;
+}
+
+std::uint64_t unrepeatable_u64() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32U) | random();
 }
 
 }  // namespace topogeo::support

@@ -10,11 +10,19 @@ void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap
     throw std::invalid_argument("localizer: local map " + std::to_string(map.id) +
                                 " came, expected " + std::to_string(next_id));
   }
-  if (first != nullptr && map.robot_id != first->robot_id) {
-    throw std::invalid_argument("localizer: local map " + std::to_string(map.id) +
-                                " is of robot '" + map.robot_id + "', expected '" +
-                                first->robot_id + "'");
-  }
+  if (first != nullptr) check_robot(map, *first);
+}
+
+void check_robot(const topomap::LocalMap& map, const topomap::LocalMap& first) {
+  if (map.robot_id == first.robot_id) return;
+  throw std::invalid_argument("localizer: local map " + std::to_string(map.id) + " is of robot '" +
+                              map.robot_id + "', expected '" + first.robot_id + "'");
+}
+
+void check_follows(const topomap::StopId& stop, const topomap::StopId& last) {
+  if (stop == last.next()) return;
+  throw std::invalid_argument("localizer: stop " + std::to_string(stop.number) +
+                              " came, expected " + std::to_string(last.next().number));
 }
 
 }  // namespace topogeo::localization

@@ -20,11 +20,6 @@ constexpr double kTrackedDistance_m = 4.0;
 constexpr double kContradicted = 0.3;      // in the mean over that distance
 constexpr double kContradictedOnce = 0.5;  // by one stop
 
-// No stop before the first of a session: its number wraps.
-topomap::StopId before(const topomap::StopId& stop) {
-  return {stop.session, stop.number - 1};
-}
-
 void add_to(SlamCounts& sum, const SlamCounts& more) {
   sum.tasks += more.tasks;
   sum.evaluations += more.evaluations;
@@ -65,15 +60,8 @@ void MappingSession::go_on() {
 
 bool MappingSession::add(MapPointer map) {
   const bool same_session = last_id_ && last_id_->session == map->stop.session;
-  if (same_session && last_id_->number + 1 != map->stop.number) {
-    throw std::invalid_argument("localizer: stop " + std::to_string(map->stop.number) +
-                                " came, expected " + std::to_string(last_id_->number + 1));
-  }
-  if (!maps_.empty() && map->robot_id != maps_.front()->robot_id) {
-    throw std::invalid_argument("localizer: stop " + std::to_string(map->stop.number) +
-                                " is of robot '" + map->robot_id + "', expected '" +
-                                maps_.front()->robot_id + "'");
-  }
+  if (same_session) check_follows(map->stop, *last_id_);
+  if (!maps_.empty()) check_robot(*map, *maps_.front());
   if (last_id_ && !same_session) begin_drive(*map);
   last_id_ = map->stop;
   ++stops_;
@@ -142,7 +130,7 @@ void MappingSession::join() {
   const double confidence = follower_->status().confidence;
   std::vector<MapPointer> drive;
   for (const MapPointer& map : std::exchange(waiting_, {})) {
-    const bool follows = !maps_.empty() && maps_.back()->stop == before(map->stop);
+    const bool follows = !maps_.empty() && maps_.back()->stop.next() == map->stop;
     drive.push_back(numbered(map, !follows));
     maps_.push_back(drive.back());
   }

@@ -41,12 +41,9 @@ MapLocalizer::MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const 
 
 bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
   const auto number = static_cast<std::uint32_t>(stops_.size());
-  if (last_id_ && last_id_->session == map->stop.session &&
-      last_id_->number + 1 != map->stop.number) {
-    throw std::invalid_argument("map localizer: stop " + std::to_string(map->stop.number) +
-                                " came, expected " + std::to_string(last_id_->number + 1));
-  }
-  if (last_id_ && last_id_->session != map->stop.session) {
+  if (last_id_ && last_id_->session == map->stop.session) {
+    check_follows(map->stop, *last_id_);
+  } else if (last_id_) {
     T_odom_last_.reset();
     search();
   }

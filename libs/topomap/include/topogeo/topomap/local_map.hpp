@@ -71,6 +71,7 @@ struct TrackedScan {
 struct StopId {
   std::uint64_t session = 0;
   std::uint32_t number = 0;  ///< counts the stops of the session from 0
+  [[nodiscard]] StopId next() const { return {session, number + 1}; }
   friend auto operator<=>(const StopId&, const StopId&) = default;
 };
 

@@ -57,5 +57,9 @@ class Slam {
 /// That `map` is the next one of the robot: throws std::invalid_argument unless its id is `next_id`
 /// and its robot that of `first`, if there is one before it.
 void check_next(const topomap::LocalMap& map, std::size_t next_id, const topomap::LocalMap* first);
+/// Throws std::invalid_argument unless both are of one robot.
+void check_robot(const topomap::LocalMap& map, const topomap::LocalMap& first);
+/// Throws std::invalid_argument unless `stop` is the one after `last`.
+void check_follows(const topomap::StopId& stop, const topomap::StopId& last);
 
 }  // namespace topogeo::localization

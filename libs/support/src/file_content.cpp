@@ -1,18 +1,14 @@
-// A whole file in memory.
-#pragma once
+#include "topogeo/support/file_content.hpp"
 
 #include <cerrno>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
-#include <string>
 #include <system_error>
 
-namespace topogeo::storage {
+namespace topogeo::support {
 
-/// Throws std::runtime_error naming the path and the cause.
-inline std::string file_content(const std::filesystem::path& path) {
+std::string file_content(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     throw std::runtime_error(path.string() + ": is a directory, expected a file");
@@ -27,4 +23,4 @@ inline std::string file_content(const std::filesystem::path& path) {
   return content;
 }
 
-}  // namespace topogeo::storage
+}  // namespace topogeo::support
