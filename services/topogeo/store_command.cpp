@@ -8,7 +8,7 @@ namespace topogeo::cli {
 
 void add_store_command(command_line::Command& app, int& exit_code) {
   command_line::Command* store =
-      app.add_subcommand("store", "Show, check, convert and join map files and databases");
+      app.add_subcommand("store", "Show, check, convert, join and keep map files and databases");
   store->require_subcommand(1);
   store->footer(
       "A FILE is a map file (map.pb) or a map database (map.sqlite); the content decides.");
@@ -16,6 +16,7 @@ void add_store_command(command_line::Command& app, int& exit_code) {
   add_store_export_command(*store, exit_code);
   add_store_import_command(*store, exit_code);
   add_store_join_commands(*store, exit_code);
+  add_store_snapshot_commands(*store, exit_code);
 }
 
 }  // namespace topogeo::cli

@@ -266,6 +266,43 @@ TEST_F(MapStoreLives, ItAcknowledgesAndGivesTheMapToWhoAsks) {
   EXPECT_EQ(drive_.ask(msg::kSnapshotLocalMaps, 12345, 0), "") << "no such session, no stops";
 }
 
+TEST_F(MapStoreLives, SnapshotsAreTakenWhileItWritesAndRestoredWhenItIsStopped) {
+  const std::string out = (scratch_ / "out").string();
+  const auto run_store_command = [&](const std::vector<std::string>& words) {
+    Program command(scratch_, "topogeo", words);
+    const int code = command.wait();
+    return std::pair(code, command.out() + command.err());
+  };
+  {
+    Program store(scratch_, "map_store", words());
+    drive_.send(4);
+    ASSERT_TRUE(drive_.wait_for_stored(4));
+    const auto [taken, text] = run_store_command({"store", "snapshot", out, "four"});
+    EXPECT_EQ(taken, 0) << text;
+    EXPECT_THAT(text, HasSubstr("4 stops"));
+    const auto [restored, why] = run_store_command({"store", "restore", out, "four"});
+    EXPECT_EQ(restored, 1);
+    EXPECT_THAT(why, HasSubstr("a map store or another program has it open"));
+    drive_.send(drive_.stops() - 1);  // it goes on
+    ASSERT_TRUE(drive_.wait_for_stored(drive_.stops() - 1));
+    store.send_signal(SIGTERM);
+    EXPECT_EQ(store.wait(), 0) << store.err();
+  }
+  const auto [restored, text] = run_store_command({"store", "restore", out, "four"});
+  EXPECT_EQ(restored, 0) << text;
+  EXPECT_EQ(storage::read_map(file("map.sqlite")).local_maps.size(), 4U);
+  const auto [listed, lines] = run_store_command({"store", "snapshots", out});
+  EXPECT_EQ(listed, 0);
+  EXPECT_THAT(lines, HasSubstr("before-four"));
+  EXPECT_EQ(run_store_command({"store", "snapshot", out, "a/b"}).first, 2);
+  EXPECT_EQ(run_store_command({"store", "snapshot", scratch_ / "none", "a"}).first, 3);
+  // It goes on with the map of that time; the senders still have the rest.
+  Program store(scratch_, "map_store", words());
+  drive_.finish();
+  store.wait_for_error_text("local maps, ");
+  EXPECT_TRUE(storage::map_file_bytes(drive_.map()) == read_file(file("map.pb")));
+}
+
 TEST_F(MapStoreLives, OnAFullDiskTheMapGoesOnInMemory) {
   Program store(scratch_, "map_store", words());
   drive_.send(3);
