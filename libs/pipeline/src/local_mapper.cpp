@@ -37,7 +37,8 @@ LocalMapper::LocalMapper(const LocalMapperConfig& config, std::string robot_id,
       tracker_(config.tracker),
       diagram_maker_(config.voronoi),
       map_builder_(config.local_map),
-      session_salt_(session_salt) {}
+      session_salt_(session_salt),
+      track_(config.longest_track) {}
 
 std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   if (next_.number == 0) return begin_session(scan);
@@ -51,17 +52,16 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
   // A scan that cannot be placed against the stop needs the wider search that only stops get, but a
   // covered laser must not make a stop of every scan. Where scans are sparse, waiting for one more
   // would put the next stop far beyond the wanted distance.
-  const Pose2 T_last = track_.empty() ? Pose2{} : track_.back().T_stop_robot;
+  const Pose2 T_last = track_.empty() ? Pose2{} : track_.last().T_stop_robot;
   const double step_m = std::sqrt((T.position_m() - T_last.position_m()).squaredNorm());
   const double turn_rad = std::fabs(geometry::wrap_angle(T.theta_rad - T_last.theta_rad));
   const double distance_m = std::sqrt(T.position_m().squaredNorm());
   const bool lost =
       !pose.matched && (distance_m >= kLostStop_m || std::fabs(T.theta_rad) >= kLostStop_rad);
   const bool stop = lost || distance_m + 0.5 * step_m >= config_.stop_distance_m ||
-                    std::fabs(T.theta_rad) + 0.5 * turn_rad >= config_.stop_turn_rad ||
-                    track_.size() + 1 >= config_.longest_track;
+                    std::fabs(T.theta_rad) + 0.5 * turn_rad >= config_.stop_turn_rad;
   if (stop) return make_stop(scan, T);
-  track_.push_back({scan.sequence, scan.stamp_ns, scan.T_odom_robot, T, pose.matched});
+  track_.add({scan.sequence, scan.stamp_ns, scan.T_odom_robot, T, pose.matched});
   last_ = scan;
   return std::nullopt;
 }
@@ -69,8 +69,8 @@ std::optional<LocalMap> LocalMapper::add(const scan::Scan& scan) {
 std::optional<LocalMap> LocalMapper::finish() {
   if (!last_) return std::nullopt;
   const scan::Scan scan = *std::exchange(last_, std::nullopt);
-  const Pose2 T_stop_robot = track_.back().T_stop_robot;
-  track_.pop_back();
+  const Pose2 T_stop_robot = track_.last().T_stop_robot;
+  track_.drop_last();
   return make_stop(scan, T_stop_robot);
 }
 
@@ -93,7 +93,7 @@ std::optional<Pose2> LocalMapper::find_again(const scan::Scan& scan) const {
 LocalMap LocalMapper::begin_session(const scan::Scan& scan) {
   next_ = {session_of(scan, robot_id_, session_salt_), 0};
   odometry_epoch_ = scan.odometry_epoch;
-  track_.clear();
+  track_.take();
   return make_stop(scan, Pose2{});
 }
 
@@ -114,7 +114,7 @@ LocalMap LocalMapper::make_stop(const scan::Scan& scan, const Pose2& T_stop_robo
   map.T_odom_robot = scan.T_odom_robot;
   map.odometry_epoch = scan.odometry_epoch;
   map.T_previous_robot = T_stop_robot;
-  map.track = std::exchange(track_, {});
+  map.track = track_.take();
   diagram_maker_.compute(scan, diagram_);
   map_builder_.build(diagram_, scan, config_.T_robot_laser, map);
   last_.reset();

@@ -18,8 +18,10 @@ void describe(LocalMapperConfig& config, support::ConfigSchema& schema) {
              "in poor odometry");
   schema.add("stop.turn_rad", &config.stop_turn_rad, 0.05, 3.14, "rad",
              "turn after which a stop is made");
-  schema.add("stop.longest_track", &config.longest_track, 1U, kLongestOnTheWire, "scans",
-             "scans after which a stop is made even if the robot stands");
+  schema.add(
+      "stop.longest_track", &config.longest_track, 2U, kLongestOnTheWire, "scans",
+      "scans between two stops whose poses are kept; of more, while the robot stands, evenly "
+      "spread ones");
 }
 
 }  // namespace topogeo::pipeline

@@ -69,12 +69,42 @@ TEST_F(LocalMapperTest, StopsByTurn) {
   EXPECT_EQ(stops(mapper, poses), (std::vector<std::uint64_t>{0, 3}));
 }
 
-TEST_F(LocalMapperTest, StopsWhenTheTrackIsFull) {
+TEST_F(LocalMapperTest, ARobotThatStandsMakesNoStop) {
   LocalMapperConfig config;
   config.longest_track = 5;
   LocalMapper mapper(config, "r");
-  const std::vector<Pose2> standing(12, Pose2{3.0, 3.0, 0.0});
-  EXPECT_EQ(stops(mapper, standing), (std::vector<std::uint64_t>{0, 5, 10}));
+  const std::vector<Pose2> standing(1000, Pose2{3.0, 3.0, 0.0});
+  EXPECT_EQ(stops(mapper, standing), (std::vector<std::uint64_t>{0}));
+  ASSERT_NE(mapper.last_tracked(), nullptr);
+  EXPECT_EQ(mapper.last_tracked()->sequence, 999U);
+
+  const auto next = mapper.finish();
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->sequence, 999U);
+  EXPECT_LE(next->track.size(), 5U);
+}
+
+TEST(BoundedTrack, KeepsEvenlySpreadScansAndTheLast) {
+  BoundedTrack track(4);
+  const auto sequences_after = [&track](std::uint64_t scans) {
+    for (std::uint64_t i = 1; i <= scans; ++i) {
+      topomap::TrackedScan scan;
+      scan.sequence = i;
+      track.add(scan);
+    }
+    std::vector<std::uint64_t> out;
+    for (const topomap::TrackedScan& scan : track.take()) out.push_back(scan.sequence);
+    return out;
+  };
+  using Sequences = std::vector<std::uint64_t>;
+  EXPECT_EQ(sequences_after(4), (Sequences{1, 2, 3, 4}));
+  EXPECT_EQ(sequences_after(5), (Sequences{1, 3, 5}));
+  EXPECT_EQ(sequences_after(6), (Sequences{1, 3, 5, 6}));
+  EXPECT_EQ(sequences_after(7), (Sequences{1, 3, 5, 7}));
+  EXPECT_EQ(sequences_after(8), (Sequences{1, 5, 8}));
+  EXPECT_EQ(sequences_after(9), (Sequences{1, 5, 9}));
+  EXPECT_EQ(sequences_after(1000), (Sequences{1, 513, 1000}));
+  EXPECT_TRUE(track.empty());
 }
 
 TEST_F(LocalMapperTest, MapCarriesTheScansSinceTheStopBefore) {

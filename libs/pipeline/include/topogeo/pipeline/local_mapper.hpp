@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "topogeo/localization/tracking/scan_tracker.hpp"
+#include "topogeo/pipeline/bounded_track.hpp"
 #include "topogeo/pipeline/local_mapper_config.hpp"
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -39,7 +40,7 @@ class LocalMapper {
 
   /// The last scan, placed against the last stop; null when that was the stop.
   [[nodiscard]] const topomap::TrackedScan* last_tracked() const {
-    return track_.empty() ? nullptr : &track_.back();
+    return track_.empty() ? nullptr : &track_.last();
   }
 
   /// After the first scan or resume().
@@ -64,9 +65,9 @@ class LocalMapper {
   topomap::LocalMapBuilder map_builder_;
   std::uint64_t session_salt_ = 0;
   topomap::StopId next_;
-  std::uint64_t odometry_epoch_ = 0;         // of the last scan
-  std::vector<topomap::TrackedScan> track_;  // since the last stop
-  std::optional<scan::Scan> last_;           // the last scan, if it was no stop
+  std::uint64_t odometry_epoch_ = 0;  // of the last scan
+  BoundedTrack track_;                // since the last stop
+  std::optional<scan::Scan> last_;    // the last scan, if it was no stop
 };
 
 }  // namespace topogeo::pipeline
