@@ -9,20 +9,28 @@ ElementPublisher::ElementPublisher(service::Service& service)
       updates_(service.robot_id()),
       elements_(service.advertise<msg::MapElement>()) {}
 
-bool ElementPublisher::publish(const topomap::GlobalMap& map, std::int64_t stamp_ns) {
-  const ElementUpdates::Update update = updates_.update_to(map, stamp_ns);
+bool ElementPublisher::send(msg::MapElement& element) {
+  updates_.number(element);
+  if (!elements_.write(element)) {
+    service_.status().fault("map element not sent", std::to_string(element.id()));
+    return false;
+  }
+  updates_.sent(element);
+  return true;
+}
+
+bool ElementPublisher::publish(const topomap::GlobalMap& map, std::uint64_t map_id,
+                               std::int64_t stamp_ns) {
+  ElementUpdates::Update update = updates_.update_to(map, map_id, stamp_ns);
   for (const msg::MapElement& element : update.gone) {
     elements_.dispose(element);
     updates_.disposed(element);
   }
   bool all_sent = true;
-  for (const msg::MapElement& element : update.changed) {
-    if (elements_.write(element)) {
-      updates_.sent(element);
-    } else {
-      service_.status().fault("map element not sent", std::to_string(element.id()));
-      all_sent = false;
-    }
+  for (msg::MapElement& element : update.changed) {
+    // Without an element that it counts, a summary is of no use.
+    if (element.kind() == msg::kElementSummary && !all_sent) break;
+    all_sent &= send(element);
   }
   messaging::StatusPublisher& status = service_.status();
   status.add_to_counter("map_updates");

@@ -17,11 +17,13 @@ class ElementPublisher {
  public:
   explicit ElementPublisher(service::Service& service);
 
-  /// `stamp_ns` is of the last stop in the map. False when something could not be sent: it is tried
-  /// again with the next update.
-  bool publish(const topomap::GlobalMap& map, std::int64_t stamp_ns);
+  /// `stamp_ns` is of the last stop in the map. False when something could not be sent: call it
+  /// again.
+  bool publish(const topomap::GlobalMap& map, std::uint64_t map_id, std::int64_t stamp_ns);
 
  private:
+  bool send(msg::MapElement& element);
+
   service::Service& service_;
   ElementUpdates updates_;
   messaging::Writer<msg::MapElement> elements_;

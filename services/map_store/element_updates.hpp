@@ -22,9 +22,13 @@ class ElementUpdates {
     std::vector<msg::MapElement> changed;  ///< to be written, the summary last
   };
   /// Elements that are as they were are not in it. `stamp_ns` is of the last stop in the map.
-  /// Report what was sent with sent() and disposed().
-  [[nodiscard]] Update update_to(const topomap::GlobalMap& map, std::int64_t stamp_ns) const;
+  /// Call number() for each element before it is sent, and report what was sent with sent() and
+  /// disposed(). The summary is sent when all others are.
+  [[nodiscard]] Update update_to(const topomap::GlobalMap& map, std::uint64_t map_id,
+                                 std::int64_t stamp_ns) const;
 
+  /// Gives an element its number, and a summary the hash of what was sent before it.
+  void number(msg::MapElement& element) const;
   void sent(const msg::MapElement& element);
   void disposed(const msg::MapElement& element);
   /// Elements sent so far, the sequence number of the next.
@@ -37,6 +41,7 @@ class ElementUpdates {
   std::string robot_id_;
   std::map<Key, msg::MapElement> sent_;
   std::uint64_t count_ = 0;
+  std::uint64_t samples_hash_ = 0;  // of nodes and branches in sent_
 };
 
 }  // namespace topogeo::map_store

@@ -60,7 +60,9 @@ void MapServer::announce() {
 
 void MapServer::send() {
   if (!announced_) announce();
-  if (!elements_sent_) elements_sent_ = elements_.publish(document_.global_map, stamp_ns_);
+  if (!elements_sent_) {
+    elements_sent_ = elements_.publish(document_.global_map, document_.map_id, stamp_ns_);
+  }
   hybrid_.send_rest();
 }
 

@@ -77,8 +77,10 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
           [this](const auto& request, const auto& sink) { write_snapshot(request, sink); },
           [this](const msg::SnapshotPiece& piece) { return send_piece(piece); }) {
   if (!options_.drawing.empty()) archive_.put(options_.drawing);
-  // There is a map before any scan.
-  if (hybrid_pending_) publish(*hybrid_pending_);
+  // There is a map before any scan, be it empty; one that has to be fused first comes when it is.
+  if (hybrid_pending_ || input_.local_maps().empty()) {
+    publish(hybrid_pending_.value_or(topomap::GlobalMap{}));
+  }
   if (options_.drawing.grid && !hybrid_pending_) hybrid_pending_.emplace();
   listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); },
                         {.main_input = true});
@@ -238,18 +240,21 @@ void MapStoreService::work_on_live_map() {
   if (more || !changed || Clock::now() < next_publish_) return;
   const auto publish_start = Clock::now();
   hybrid_pending_ = live_map_.snapshot(trajectory.version);
-  publish(*hybrid_pending_);
+  const bool sent = publish(*hybrid_pending_);
   keep(*hybrid_pending_);
-  published_maps_ = live_map_.size();
-  published_version_ = trajectory.version;
+  if (sent) {
+    published_maps_ = live_map_.size();
+    published_version_ = trajectory.version;
+  }
   const auto now = Clock::now();
   next_publish_ =
       now + std::max<Clock::duration>(kPublishPeriod, kLiveShare * (now - publish_start));
 }
 
-void MapStoreService::publish(const topomap::GlobalMap& map) {
-  if (input_.local_maps().empty()) return;
-  elements_.publish(map, input_.local_maps().back().stamp_ns);
+bool MapStoreService::publish(const topomap::GlobalMap& map) {
+  const std::vector<topomap::LocalMap>& maps = input_.local_maps();
+  return elements_.publish(map, archive_.database().map_id(),
+                           maps.empty() ? 0 : maps.back().stamp_ns);
 }
 
 void MapStoreService::keep(const topomap::GlobalMap& map) {
@@ -326,7 +331,7 @@ void MapStoreService::end() {
 void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   if (!store()) throw std::runtime_error("the map file could not be brought up to date");
   const storage::MapDocument document = final_document(trajectory);
-  publish(document.global_map);
+  if (!publish(document.global_map)) throw std::runtime_error("the map could not be sent");
   archive_.put(document.global_map);
   write_results(options_.directory, document, options_.title);
 

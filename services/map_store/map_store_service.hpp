@@ -63,7 +63,8 @@ class MapStoreService {
   bool send_piece(const msg::SnapshotPiece& piece);
   /// A slice of work on the live map.
   void work_on_live_map();
-  void publish(const topomap::GlobalMap& map);
+  /// False when something of it could not be sent.
+  bool publish(const topomap::GlobalMap& map);
   /// Stores it, or reports a fault.
   void keep(const topomap::GlobalMap& map);
   /// Makes and sends the hybrid map of what is there, when it is time to.

@@ -31,6 +31,7 @@ ExploreSession::ExploreSession(const messaging::Participant& participant,
       client_(participant, loop, robot_id),
       progress_(std::cerr, support::stderr_is_terminal(), supervision::terminal_columns()),
       tour_(config),
+      follower_(robot_id),
       elements_(participant),
       segments_(participant),
       poses_(participant) {
@@ -43,18 +44,11 @@ void ExploreSession::listen(messaging::EventLoop& loop) {
   loop.add<msg::MapElement>(
       elements_,
       [this](const msg::MapElement& element, const SampleInfo& info) {
-        if (!is_own(element)) return;
-        try {
-          graph_mirror_.put(element, info.instance);
-          graph_changed_ = true;
-        } catch (const std::invalid_argument&) {
-          return;
-        }
+        graph_changed_ |= follower_.put(element, info.instance.bytes, info.writer.bytes);
       },
       [this](const SampleInfo& info) {
         if (info.state != messaging::InstanceState::kDisposed) return;
-        graph_mirror_.remove(info.instance);
-        graph_changed_ = true;
+        graph_changed_ |= follower_.remove(info.instance.bytes, info.writer.bytes);
       });
   loop.add<msg::TrajectorySegment>(
       segments_, [this](const msg::TrajectorySegment& segment, const SampleInfo&) {
@@ -73,11 +67,11 @@ void ExploreSession::listen(messaging::EventLoop& loop) {
 void ExploreSession::take_map() {
   const std::shared_ptr<const planning::HybridMap> map = client_.map();
   bool changed = map != map_;
-  if (graph_changed_) {
-    if (std::optional<topomap::GlobalMap> graph = graph_mirror_.map()) {
-      graph_changed_ = false;
-      graph_ = std::make_shared<const topomap::GlobalMap>(std::move(*graph));
+  if (std::exchange(graph_changed_, false)) {
+    try {
+      graph_ = std::make_shared<const topomap::GlobalMap>(service::from_elements(*follower_.map()));
       changed = true;
+    } catch (const std::invalid_argument&) {  // the one before stays
     }
   }
   map_ = map;

@@ -12,13 +12,13 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/msg/map_update.h"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/navigation/exploration_tour.hpp"
-#include "topogeo/service/map_mirror.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
 #include "topogeo/supervision/goal_progress.hpp"
 
@@ -60,7 +60,7 @@ class ExploreSession {
   GoalClient client_;
   supervision::GoalProgress progress_;
   navigation::ExplorationTour tour_;
-  service::MapMirror graph_mirror_;
+  map_client::MapFollower follower_;
   service::TrajectoryAssembly trajectory_;
   bool graph_changed_ = false;
   std::shared_ptr<const topomap::GlobalMap> graph_;

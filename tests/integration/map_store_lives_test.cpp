@@ -2,8 +2,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
-#include <map>
 #include <random>
 #include <thread>
 
@@ -11,21 +9,12 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "topogeo/messaging/event_loop.hpp"
-#include "topogeo/messaging/message.hpp"
-#include "topogeo/messaging/reader.hpp"
-#include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/store.h"
-#include "topogeo/msg/stream.h"
-#include "topogeo/pipeline/mapping_run.hpp"
-#include "topogeo/service/conversions.hpp"
-#include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/storage/map_database.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/random.hpp"
-#include "topogeo/world/world.hpp"
 
+#include "drive.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -33,120 +22,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using testing::HasSubstr;
-
-constexpr std::chrono::seconds kLongestWait{60};
-
-/// Local mapper and localizer of a drive, as far as a map store sees them.
-class Drive {
- public:
-  Drive(const std::string& domain, const std::string& partition, const std::string& name)
-      : participant_([&] {
-          messaging::ParticipantOptions options;
-          options.domain = static_cast<std::uint32_t>(std::stoul(domain));
-          options.partition = partition;
-          options.name = "drive";
-          return options;
-        }()) {
-    pipeline::MappingRun run({}, "robot");
-    const world::World world =
-        world::load_world(std::string(TOPOGEO_TEST_DATA) + "/" + name + ".world.yaml");
-    for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
-    map_ = run.finish();
-    loop_.add<msg::StoredMap>(stored_reader_, [this](const msg::StoredMap& stored, const auto&) {
-      stored_ = stored;
-      most_stored_ = std::max(most_stored_, stored.session_stops());
-    });
-    loop_.add<msg::SnapshotPiece>(pieces_reader_,
-                                  [this](const msg::SnapshotPiece& piece, const auto&) {
-                                    if (piece.request_id() == requests_) pieces_.push_back(piece);
-                                  });
-  }
-
-  /// Sends the stops up to a number, and a trajectory that has them.
-  void send(std::size_t stops) {
-    for (; sent_ < stops; ++sent_) {
-      EXPECT_TRUE(maps_.write(service::to_msg(as_sent(sent_))));
-    }
-    topomap::Trajectory part = map_.trajectory;
-    part.stops.resize(stops);
-    part.version = stops == map_.local_maps.size() ? map_.trajectory.version : stops;
-    for (const auto& segment : service::to_segments(part, "robot", 0)) {
-      EXPECT_TRUE(segments_.write(segment));
-    }
-  }
-  void finish() {
-    send(map_.local_maps.size());
-    const std::uint64_t version = map_.trajectory.version;
-    EXPECT_TRUE(closures_.write(service::to_msg(map_.loop_closures, version, "robot", 0, 0)));
-    msg::StreamEnd end;
-    messaging::set_header(end, "robot", map_.local_maps.back().stamp_ns, 0);
-    end.stage(msg::kStageLocalizer);
-    end.count(map_.trajectory.stops.size());
-    end.version(version);
-    EXPECT_TRUE(ends_.write(end));
-  }
-
-  bool wait_until(const std::function<bool()>& done) {
-    const auto end = std::chrono::steady_clock::now() + kLongestWait;
-    while (!done() && std::chrono::steady_clock::now() < end) run_for(milliseconds(5));
-    return done();
-  }
-  void run_for(milliseconds duration) { static_cast<void>(loop_.run_for(duration)); }
-  bool wait_for_stored(std::uint32_t stops) {
-    return wait_until([&] { return stored_.session_stops() >= stops && stored_.stops() >= stops; });
-  }
-
-  /// The bytes of an answer; fails without one.
-  std::string ask(msg::SnapshotKind kind, std::uint64_t session = 0, std::uint32_t first = 0) {
-    pieces_.clear();
-    msg::SnapshotRequest request;
-    messaging::set_header(request, "robot", 0, requests_);
-    request.request_id(++requests_);
-    messaging::set_client_id(request, kClient);
-    request.kind(kind);
-    request.session(session);
-    request.first(first);
-    EXPECT_TRUE(wait_until([&] { return requests_writer_.matched() > 0; }));
-    EXPECT_TRUE(requests_writer_.write(request));
-    EXPECT_TRUE(wait_until([&] {
-      return !pieces_.empty() && pieces_.size() >= pieces_[0].pieces();
-    })) << pieces_.size();
-    std::string bytes;
-    for (const msg::SnapshotPiece& piece : pieces_) {
-      bytes.append(piece.bytes().begin(), piece.bytes().end());
-    }
-    return bytes;
-  }
-
-  [[nodiscard]] topomap::LocalMap as_sent(std::size_t number) const {
-    return map_.local_maps[number];  // one session: they are numbered as they were sent
-  }
-  [[nodiscard]] const storage::MapDocument& map() const { return map_; }
-  [[nodiscard]] std::uint32_t stops() const {
-    return static_cast<std::uint32_t>(map_.local_maps.size());
-  }
-  [[nodiscard]] const msg::StoredMap& stored() const { return stored_; }
-  [[nodiscard]] std::uint32_t most_stored() const { return most_stored_; }
-
- private:
-  static constexpr const char* kClient = "drive";
-
-  storage::MapDocument map_;
-  messaging::Participant participant_;
-  messaging::EventLoop loop_;
-  messaging::Writer<msg::LocalMap> maps_{participant_};
-  messaging::Writer<msg::TrajectorySegment> segments_{participant_};
-  messaging::Writer<msg::LoopClosures> closures_{participant_};
-  messaging::Writer<msg::StreamEnd> ends_{participant_};
-  messaging::Writer<msg::SnapshotRequest> requests_writer_{participant_};
-  messaging::Reader<msg::StoredMap> stored_reader_{participant_};
-  messaging::Reader<msg::SnapshotPiece> pieces_reader_{participant_, {.addressee = kClient}};
-  std::vector<msg::SnapshotPiece> pieces_;
-  std::uint64_t requests_ = 0;
-  msg::StoredMap stored_;
-  std::uint32_t most_stored_ = 0;
-  std::size_t sent_ = 0;
-};
 
 class MapStoreLives : public testing::Test {
  protected:

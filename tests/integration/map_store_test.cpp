@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -18,7 +19,6 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/live_hybrid_map.hpp"
-#include "topogeo/service/map_mirror.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/world/world.hpp"
@@ -85,22 +85,22 @@ struct LateReader {
           return options;
         }()) {
     loop.add<msg::MapElement>(elements, [this](const auto& element, const auto& info) {
-      map_mirror.put(element, info.instance);
+      follower.put(element, info.instance.bytes, info.writer.bytes);
     });
   }
 
   bool wait() {
     const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!(hybrid.map() && map_mirror.map()) && std::chrono::steady_clock::now() < end) {
+    while (!(hybrid.map() && follower.map()) && std::chrono::steady_clock::now() < end) {
       static_cast<void>(loop.run_for(std::chrono::milliseconds(20)));
     }
-    return hybrid.map() && map_mirror.map();
+    return hybrid.map() && follower.map();
   }
 
   messaging::Participant participant;
   messaging::EventLoop loop;
   messaging::Reader<msg::MapElement> elements{participant};
-  service::MapMirror map_mirror;
+  map_client::MapFollower follower{"robot"};
   service::LiveHybridMap hybrid{participant, loop,
                                 [](const auto& message, const auto& use) { use(message); }};
 };
@@ -159,7 +159,7 @@ TEST_F(MapStoreShows, AStoredMapToWhoeverComesLate) {
   ASSERT_TRUE(reader.wait());
   const storage::MapDocument document = two_rooms();
   expect_same(*reader.hybrid.map(), pipeline::make_hybrid_map(pipeline::parts_of(document), {}));
-  const topomap::GlobalMap global = reader.map_mirror.map().value();
+  const topomap::GlobalMap global = service::from_elements(*reader.follower.map());
   EXPECT_EQ(global.version, 3U);
   ASSERT_EQ(global.nodes.size(), 3U);
   EXPECT_EQ(global.nodes[1].kind, topomap::NodeKind::kDoor);

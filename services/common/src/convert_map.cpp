@@ -1,5 +1,4 @@
-#include <algorithm>
-
+#include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 
@@ -23,8 +22,8 @@ msg::MapElement element(msg::MapElementKind kind, std::uint32_t id, std::uint64_
 
 }  // namespace
 
-std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::string_view robot_id,
-                                         std::int64_t stamp_ns) {
+std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::uint64_t map_id,
+                                         std::string_view robot_id, std::int64_t stamp_ns) {
   std::vector<msg::MapElement> out;
   out.reserve(map.nodes.size() + map.branches.size() + 1);
   for (const topomap::MapNode& node : map.nodes) {
@@ -45,6 +44,7 @@ std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::str
   }
   msg::MapElement& summary =
       out.emplace_back(element(msg::kElementSummary, 0, map.version, robot_id, stamp_ns));
+  summary.map_id(map_id);
   summary.nodes(static_cast<std::uint32_t>(map.nodes.size()));
   summary.branches(static_cast<std::uint32_t>(map.branches.size()));
   return out;
@@ -65,25 +65,16 @@ topomap::MapBranch branch_from_msg(const msg::MapElement& message) {
           message.observations(), detail::from_branch_points(message.points(), "points")};
 }
 
-topomap::GlobalMap from_elements(std::span<const msg::MapElement> elements) {
-  topomap::GlobalMap map;
-  for (const msg::MapElement& entry : elements) {
-    switch (entry.kind()) {
-      case msg::kElementNode:
-        map.nodes.push_back(node_from_msg(entry));
-        break;
-      case msg::kElementBranch:
-        map.branches.push_back(branch_from_msg(entry));
-        break;
-      case msg::kElementSummary:
-        map.version = entry.map_version();
-        break;
-    }
+topomap::GlobalMap from_elements(const map_client::Map& map) {
+  topomap::GlobalMap out;
+  out.version = map.version;
+  for (const auto& [id, node] : map.nodes) out.nodes.push_back(node_from_msg(*node));
+  for (const auto& [id, branch] : map.branches) {
+    check(map.nodes.contains(branch->node_a()), "node_a", "a node of the map");
+    check(map.nodes.contains(branch->node_b()), "node_b", "a node of the map");
+    out.branches.push_back(branch_from_msg(*branch));
   }
-  const auto by_id = [](const auto& a, const auto& b) { return a.id < b.id; };
-  std::sort(map.nodes.begin(), map.nodes.end(), by_id);
-  std::sort(map.branches.begin(), map.branches.end(), by_id);
-  return map;
+  return out;
 }
 
 }  // namespace topogeo::service

@@ -21,7 +21,8 @@ const std::vector<Include>& project_includes() {
 /// it is the one door to the library.
 const std::vector<RestrictedLibrary>& restricted_libraries() {
   static const std::vector<RestrictedLibrary> kLibraries = {
-      {"fastdds/", {"libs/messaging/src/"}},
+      {"fastdds/",
+       {"libs/messaging/src/", "libs/map_client/include/topogeo/map_client/map_reader.hpp"}},
       {"fastcdr/", {"libs/messaging/src/"}},
       {"topogeo/msg/type_supports.h", {"libs/messaging/src/"}},
       {"CLI/", {"libs/command_line/src/command_line.cpp"}},

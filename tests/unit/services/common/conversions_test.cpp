@@ -1,3 +1,4 @@
+#include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/service/conversions.hpp"
 
 #include <algorithm>
@@ -234,10 +235,18 @@ TEST_P(Conversions, LocalizationCommandIsExactAndItsCovarianceIsChecked) {
 
 TEST_P(Conversions, GlobalMapIsExactInAnyOrderOfItsElements) {
   const topomap::GlobalMap map = any_global_map(random_);
-  std::vector<msg::MapElement> elements = to_elements(map, "robot", 1);
+  const std::vector<msg::MapElement> elements = to_elements(map, 7, "robot", 1);
   ASSERT_EQ(elements.size(), 51U);
-  std::reverse(elements.begin(), elements.end());
-  EXPECT_TRUE(from_elements(elements) == map);
+  EXPECT_EQ(elements.back().map_id(), 7U);
+  map_client::Map parts;
+  parts.version = elements.back().map_version();
+  for (std::size_t i = elements.size() - 1; i-- > 0;) {
+    const auto element = std::make_shared<const msg::MapElement>(elements[i]);
+    (element->kind() == msg::kElementNode ? parts.nodes : parts.branches)[element->id()] = element;
+  }
+  EXPECT_TRUE(from_elements(parts) == map);
+  parts.nodes.erase(parts.branches.begin()->second->node_a());
+  EXPECT_THROW(from_elements(parts), std::invalid_argument);
 }
 
 /// The text of the std::invalid_argument that `call` throws.

@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "topogeo/service/map_mirror.hpp"
+#include "topogeo/map_client/map_follower.hpp"
+#include "topogeo/service/conversions.hpp"
 
 #include "services/common/random_values.hpp"
 
@@ -11,51 +12,55 @@ namespace topogeo {
 namespace {
 
 /// As DDS does it: one handle for each kind and id.
-messaging::Handle handle_of(const msg::MapElement& element) {
-  messaging::Handle handle;
-  handle.bytes[0] = static_cast<std::uint8_t>(element.kind());
-  handle.bytes[1] = static_cast<std::uint8_t>(element.id());
-  return handle;
+map_client::Handle handle_of(const msg::MapElement& element) {
+  return {static_cast<std::uint8_t>(element.kind()), static_cast<std::uint8_t>(element.id())};
 }
 
 class Elements : public testing::Test {
  protected:
   map_store::ElementUpdates::Update send(const topomap::GlobalMap& map) {
-    auto update = updates_.update_to(map, 1);
+    auto update = updates_.update_to(map, kMapId, 1);
     for (const auto& element : update.gone) {
-      mirror_.remove(handle_of(element));
+      follower_.remove(handle_of(element), kWriter);
       updates_.disposed(element);
     }
-    for (const auto& element : update.changed) {
-      mirror_.put(element, handle_of(element));
+    for (auto& element : update.changed) {
+      updates_.number(element);
+      follower_.put(element, handle_of(element), kWriter);
       updates_.sent(element);
     }
     return update;
   }
+  void expect_shown(const topomap::GlobalMap& map) const {
+    ASSERT_TRUE(follower_.is_current());
+    EXPECT_TRUE(service::from_elements(*follower_.map()) == map);
+    EXPECT_EQ(follower_.map()->map_id, kMapId);
+  }
 
+  static constexpr std::uint64_t kMapId = 77;
+  static constexpr map_client::Handle kWriter{1};
   support::Random random_{1};
   topomap::GlobalMap map_ = any_global_map(random_);
   map_store::ElementUpdates updates_{"robot"};
-  service::MapMirror mirror_;
+  map_client::MapFollower follower_{"robot"};
 };
 
-TEST_F(Elements, MirrorHoldsWhatWasSent) {
-  EXPECT_FALSE(mirror_.map().has_value());
+TEST_F(Elements, AFollowerHoldsWhatWasSent) {
+  EXPECT_EQ(follower_.map(), nullptr);
   const auto update = send(map_);
   EXPECT_EQ(update.changed.size(), 51U);
   EXPECT_EQ(update.changed.back().kind(), msg::kElementSummary);
-  ASSERT_TRUE(mirror_.map().has_value());
-  EXPECT_TRUE(*mirror_.map() == map_);
+  expect_shown(map_);
 }
 
 TEST_F(Elements, OnlyChangesTravel) {
   send(map_);
-  EXPECT_TRUE(updates_.update_to(map_, 2).changed.empty());
+  EXPECT_TRUE(updates_.update_to(map_, kMapId, 2).changed.empty());
 
   map_.version += 1;
   map_.nodes[4].position_m.x() = 1.5;
   map_.branches.pop_back();
-  const auto update = send(map_);
+  auto update = send(map_);
   ASSERT_EQ(update.changed.size(), 2U);
   EXPECT_EQ(update.changed[0].id(), map_.nodes[4].id);
   EXPECT_EQ(update.changed[0].map_version(), map_.version);
@@ -63,28 +68,21 @@ TEST_F(Elements, OnlyChangesTravel) {
   EXPECT_EQ(update.changed[1].sequence_number(), 52U);
   ASSERT_EQ(update.gone.size(), 1U);
   EXPECT_EQ(update.gone[0].kind(), msg::kElementBranch);
-  ASSERT_TRUE(mirror_.map().has_value());
-  EXPECT_TRUE(*mirror_.map() == map_);
+  expect_shown(map_);
+
+  map_.nodes[4].position_m.x() = 2.5;  // under the same version
+  update = send(map_);
+  ASSERT_EQ(update.changed.size(), 2U);
+  expect_shown(map_);
 }
 
 TEST_F(Elements, WhatCouldNotBeSentComesWithTheNextUpdate) {
-  const auto update = updates_.update_to(map_, 1);
-  for (std::size_t i = 1; i < update.changed.size(); ++i) updates_.sent(update.changed[i]);
-  const auto next = updates_.update_to(map_, 1);
-  ASSERT_EQ(next.changed.size(), 1U);
+  auto update = updates_.update_to(map_, kMapId, 1);
+  for (std::size_t i = 1; i + 1 < update.changed.size(); ++i) updates_.sent(update.changed[i]);
+  const auto next = updates_.update_to(map_, kMapId, 1);
+  ASSERT_EQ(next.changed.size(), 2U);
   EXPECT_EQ(next.changed[0].id(), update.changed[0].id());
-}
-
-TEST_F(Elements, MapWithAnElementMissingIsNone) {
-  const auto update = updates_.update_to(map_, 1);
-  for (std::size_t i = update.changed.size(); i-- > 1;) {
-    mirror_.put(update.changed[i], handle_of(update.changed[i]));
-  }
-  EXPECT_FALSE(mirror_.map().has_value());
-  mirror_.put(update.changed[0], handle_of(update.changed[0]));
-  EXPECT_TRUE(mirror_.map().has_value());
-  mirror_.remove(handle_of(update.changed[30]));
-  EXPECT_FALSE(mirror_.map().has_value());
+  EXPECT_EQ(next.changed[1].kind(), msg::kElementSummary);
 }
 
 }  // namespace

@@ -1,0 +1,205 @@
+// Follows the map of a robot over DDS (Fast DDS), from the first moment on: what the map store has
+// sent before comes first. Needs no other part of topogeo than the generated types.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "topogeo/map_client/map_follower.hpp"
+#include "topogeo/msg/map_updatePubSubTypes.h"
+
+namespace topogeo::map_client {
+
+struct MapReaderOptions {
+  std::string robot_id = "robot";
+  std::uint32_t domain = 0;           ///< DDS domain; unused with a participant
+  std::string partition = "topogeo";  ///< --partition of the services
+  /// Of the program that uses this; it outlives the reader. Null: an own one of default settings.
+  eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
+  /// A map that stays incomplete for so long, while nothing comes, is read anew from its beginning.
+  std::chrono::milliseconds patience{2000};
+};
+
+/// Not for several threads at a time.
+class MapReader {
+ public:
+  /// Joins the domain. Throws std::runtime_error when the middleware refuses.
+  explicit MapReader(const MapReaderOptions& options = {});
+  MapReader(const MapReader&) = delete;
+  MapReader& operator=(const MapReader&) = delete;
+  ~MapReader();
+
+  /// Returns as soon as map() is another one than before; false when `timeout` has passed before.
+  bool wait(std::chrono::nanoseconds timeout);
+  /// Takes what is there. True when map() is another one than before.
+  bool take();
+
+  /// As those of MapFollower.
+  [[nodiscard]] const Map* map() const { return follower_.map(); }
+  [[nodiscard]] bool is_current() const { return follower_.is_current(); }
+  std::vector<Change> take_changes() { return follower_.take_changes(); }
+
+  /// Map stores that are connected now.
+  [[nodiscard]] int stores() const;
+  /// How often the map was read anew.
+  [[nodiscard]] int restarts() const { return restarts_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void open();
+  void make_reader();
+  void close();
+  void start_again_if_stuck();
+
+  MapReaderOptions options_;
+  MapFollower follower_;
+  eprosima::fastdds::dds::TypeSupport type_{new msg::MapElementPubSubType};
+  bool own_participant_ = false;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+  eprosima::fastdds::dds::Topic* topic_ = nullptr;
+  eprosima::fastdds::dds::DataReader* reader_ = nullptr;
+  msg::MapElement element_;  // reused, so that its points keep their memory
+  Clock::time_point last_news_ = Clock::now();
+  int restarts_ = 0;
+};
+
+inline MapReader::MapReader(const MapReaderOptions& options)
+    : options_(options), follower_(options.robot_id) {
+  try {
+    open();
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+inline MapReader::~MapReader() {
+  close();
+}
+
+inline void MapReader::open() {
+  namespace dds = eprosima::fastdds::dds;
+  const auto require = [](const auto* entity, const char* what) {
+    if (entity == nullptr) throw std::runtime_error(std::string("DDS: cannot create ") + what);
+  };
+  dds::DomainParticipant*& participant = options_.participant;
+  if (participant == nullptr) {
+    own_participant_ = true;
+    participant = dds::DomainParticipantFactory::get_instance()->create_participant(
+        options_.domain, dds::PARTICIPANT_QOS_DEFAULT);
+    require(participant, "a participant");
+  }
+  type_.register_type(participant);
+  dds::SubscriberQos qos = dds::SUBSCRIBER_QOS_DEFAULT;
+  qos.partition().push_back(options_.partition.c_str());
+  subscriber_ = participant->create_subscriber(qos);
+  require(subscriber_, "a subscriber");
+  // Topic names carry the version of the wire contract: peers of other versions are not seen.
+  const std::string name = "topogeo/v" + std::to_string(msg::kSchemaVersion) + "/map";
+  // One that the program has already; looking it up makes another object for it.
+  topic_ = participant->lookup_topicdescription(name) != nullptr
+               ? participant->find_topic(name, {0, 0})
+               : participant->create_topic(name, type_.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+  require(topic_, name.c_str());
+  make_reader();
+}
+
+inline void MapReader::make_reader() {
+  namespace dds = eprosima::fastdds::dds;
+  // As the map store's writer offers it (role `state` in deploy/dds_profiles.xml): the last sample
+  // of each element, for late readers, too.
+  constexpr int kMostElements = 32768;
+  constexpr int kAllocatedAtFirst = 16;
+  dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
+  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+  qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = 1;
+  qos.resource_limits().max_samples = kMostElements;
+  qos.resource_limits().max_instances = kMostElements;
+  qos.resource_limits().max_samples_per_instance = 1;
+  qos.resource_limits().allocated_samples = kAllocatedAtFirst;
+  qos.endpoint().history_memory_policy =
+      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.data_sharing().off();
+  reader_ = subscriber_->create_datareader(topic_, qos);
+  if (reader_ == nullptr) throw std::runtime_error("DDS: cannot create a reader of the map");
+}
+
+inline void MapReader::close() {
+  if (options_.participant == nullptr) return;
+  if (reader_ != nullptr) subscriber_->delete_datareader(reader_);
+  if (subscriber_ != nullptr) options_.participant->delete_subscriber(subscriber_);
+  if (topic_ != nullptr) options_.participant->delete_topic(topic_);
+  if (own_participant_) {
+    eprosima::fastdds::dds::DomainParticipantFactory::get_instance()->delete_participant(
+        options_.participant);
+  }
+}
+
+inline bool MapReader::take() {
+  namespace dds = eprosima::fastdds::dds;
+  bool changed = false;
+  dds::SampleInfo info;
+  const auto handle = [](const dds::InstanceHandle_t& from) {
+    Handle to;
+    std::copy_n(static_cast<const std::uint8_t*>(from.value), to.size(), to.begin());
+    return to;
+  };
+  while (reader_->take_next_sample(&element_, &info) == ReturnCode_t::RETCODE_OK) {
+    last_news_ = Clock::now();
+    const Handle instance = handle(info.instance_handle);
+    const Handle writer = handle(info.publication_handle);
+    if (info.valid_data) {
+      changed |= follower_.put(element_, instance, writer);
+    } else if (info.instance_state == dds::NOT_ALIVE_DISPOSED_INSTANCE_STATE) {
+      changed |= follower_.remove(instance, writer);
+    }
+  }
+  return changed;
+}
+
+inline bool MapReader::wait(std::chrono::nanoseconds timeout) {
+  constexpr std::chrono::milliseconds kSlice{100};  // between two looks whether it is stuck
+  const Clock::time_point end = Clock::now() + timeout;
+  while (!take()) {
+    start_again_if_stuck();
+    const auto left = std::chrono::nanoseconds(end - Clock::now());
+    if (left.count() <= 0) return false;
+    const auto slice = std::min<std::chrono::nanoseconds>(left, kSlice);
+    reader_->wait_for_unread_message({0, static_cast<std::uint32_t>(slice.count())});
+  }
+  return true;
+}
+
+inline void MapReader::start_again_if_stuck() {
+  if (follower_.is_current() || stores() == 0) last_news_ = Clock::now();
+  if (Clock::now() - last_news_ < options_.patience) return;
+  subscriber_->delete_datareader(reader_);
+  reader_ = nullptr;
+  follower_.begin_again();
+  make_reader();
+  last_news_ = Clock::now();
+  ++restarts_;
+}
+
+inline int MapReader::stores() const {
+  eprosima::fastdds::dds::SubscriptionMatchedStatus status;
+  reader_->get_subscription_matched_status(status);
+  return status.current_count;
+}
+
+}  // namespace topogeo::map_client
