@@ -41,7 +41,7 @@ TEST_F(CommandsTest, EveryProgramHasHelpAndVersion) {
 TEST_F(CommandsTest, EverySubcommandHasHelp) {
   for (const char* name : {"run", "map", "demo", "status", "workers", "plan", "dvl", "config",
                            "calibrate-odometry", "compare", "calibrate-laser", "simulate-route",
-                           "record", "check-log", "base", "simulator", "store"}) {
+                           "record", "check-log", "base", "simulator", "store", "follow"}) {
     Program help(scratch_, "topogeo", {name, "--help"});
     EXPECT_EQ(help.wait(), 0) << name;
     EXPECT_THAT(help.out(), HasSubstr("Usage: topogeo " + std::string(name)));

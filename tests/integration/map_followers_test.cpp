@@ -1,6 +1,6 @@
-// Twenty programs follow the map of a robot while its map store grows it, moves it, takes from it, is
-// killed and starts again. Some join late, lose messages, sleep or start again themselves. In the
-// end each holds what the store holds.
+// Twenty programs follow the map of a robot while its map store grows it, moves it, takes from it,
+// is killed and starts again. Some join late, lose messages, sleep or start again themselves. In
+// the end each holds what the store holds.
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fastdds/rtps/transport/test_UDPv4TransportDescriptor.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "topogeo/map_client/map_reader.hpp"
@@ -86,8 +87,8 @@ class MapFollowers : public testing::Test {
   using Kind = Subscriber::Kind;
 
   MapFollowers() {
-    for (const Kind kind : {Kind::kSteady, Kind::kLate, Kind::kLossy, Kind::kSleeping,
-                            Kind::kRestarting}) {
+    for (const Kind kind :
+         {Kind::kSteady, Kind::kLate, Kind::kLossy, Kind::kSleeping, Kind::kRestarting}) {
       for (int i = 0; i < 4; ++i) {
         subscribers_.push_back(std::make_unique<Subscriber>(kind, partition_));
       }
@@ -119,6 +120,12 @@ class MapFollowers : public testing::Test {
         ++moved_;
       }
     }
+  }
+  /// `topogeo follow`.
+  std::unique_ptr<Program> follow(std::vector<std::string> words) const {
+    words.insert(words.begin(), "follow");
+    words.insert(words.end(), {"--domain", own_domain(), "--partition", partition_});
+    return std::make_unique<Program>(scratch_, "topogeo", words);
   }
   std::unique_ptr<Program> store() {
     return std::make_unique<Program>(
@@ -168,8 +175,7 @@ TEST_F(MapFollowers, EndWithExactlyWhatTheStoreHolds) {
   first->wait_for_error_text("local maps, ");  // the final line
   each(Kind::kSleeping, [](Subscriber& subscriber) { subscriber.wake(); });
 
-  const topomap::GlobalMap stored =
-      storage::read_map(scratch_ / "out" / "map.sqlite").global_map;
+  const topomap::GlobalMap stored = storage::read_map(scratch_ / "out" / "map.sqlite").global_map;
   const auto holds = [&](const std::unique_ptr<Subscriber>& subscriber) {
     return subscriber->has(stored.version) &&
            service::from_elements(*subscriber->reader().map()) == stored;
@@ -187,9 +193,29 @@ TEST_F(MapFollowers, EndWithExactlyWhatTheStoreHolds) {
     EXPECT_TRUE(std::ranges::equal(map.nodes, of_first.nodes, same)) << i;
     EXPECT_TRUE(std::ranges::equal(map.branches, of_first.branches, same)) << i;
   }
+  const auto file = scratch_ / "map.graphml";
+  const auto shown = follow({"--once", "--json", "--out", file.string()});
+  EXPECT_EQ(shown->wait(), 0) << shown->err();
+  EXPECT_THAT(shown->out(), testing::HasSubstr(R"("event":"added","kind":"node","id":)"));
+  EXPECT_THAT(shown->out(),
+              testing::HasSubstr("\"nodes\":" + std::to_string(stored.nodes.size()) + "," +
+                                 "\"branches\":" + std::to_string(stored.branches.size()) + "}\n"));
+  EXPECT_THAT(read_file(file), testing::HasSubstr("</graphml>"));
   EXPECT_GT(removed_, 0);
   EXPECT_GT(moved_, 0);
   EXPECT_GT(stored.nodes.size(), 10U);
+}
+
+TEST_F(MapFollowers, WithoutAStoreTheCommandWaitsUntilItIsStopped) {
+  for (const bool once : {false, true}) {
+    const auto waiting =
+        follow(once ? std::vector<std::string>{"--once"} : std::vector<std::string>{});
+    waiting->wait_for_error_text("waits for a map store of robot 'robot'");
+    waiting->send_signal(SIGINT);
+    EXPECT_EQ(waiting->wait(), once ? 128 + SIGINT : 0) << waiting->err();
+    EXPECT_EQ(waiting->out(), "");
+  }
+  EXPECT_EQ(follow({"--out", "map.png"})->wait(), 2);
 }
 
 }  // namespace
