@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"
 
 namespace topogeo::localizer {
@@ -22,6 +23,7 @@ TrajectoryPublisher::TrajectoryPublisher(service::Service& service)
     : service_(service),
       segment_writer_(service.advertise<msg::TrajectorySegment>()),
       closure_writer_(service.advertise<msg::LoopClosures>()),
+      edge_writer_(service.advertise<msg::MapEdges>()),
       decision_writer_(service.advertise<msg::LoopDecisions>()) {}
 
 bool TrajectoryPublisher::publish(const localization::Slam& slam,
@@ -29,6 +31,7 @@ bool TrajectoryPublisher::publish(const localization::Slam& slam,
                                   bool whole) {
   version_ = trajectory.version;
   if (!send_segments(trajectory, whole)) return false;
+  if (!send_edges(slam, trajectory.version, stamp_ns, whole)) return false;
   if (!send_decisions(slam.loop_decisions(), stamp_ns)) return false;
   std::vector<topomap::LoopClosure> closures = slam.loop_closures();
   if (!whole && same(closures, closures_)) return true;
@@ -49,6 +52,25 @@ bool TrajectoryPublisher::send_segments(const topomap::Trajectory& trajectory, b
         service::to_segment(trajectory, number, service_.robot_id(), segments_sent_++);
     return service_.send(segment_writer_, segment, "trajectory");
   });
+}
+
+// New ones come last: what is before the first that differs is there already.
+bool TrajectoryPublisher::send_edges(const localization::Slam& slam, std::uint64_t version,
+                                     std::int64_t stamp_ns, bool whole) {
+  std::vector<storage::MapEdge> edges = pipeline::map_edges(slam.edges());
+  const auto differs = std::ranges::mismatch(edges, edges_).in1;
+  if (!whole && differs == edges.end() && edges.size() == edges_.size()) return true;
+  const auto first = whole ? std::size_t{0} : static_cast<std::size_t>(differs - edges.begin());
+  edges_ = std::move(edges);
+  const std::uint32_t count = service::edge_segment_count(edges_.size());
+  // When edges were only removed, the last segment has the new number of them.
+  auto segment = std::min(static_cast<std::uint32_t>(first / msg::kSegmentEdges), count - 1);
+  for (; segment < count; ++segment) {
+    const msg::MapEdges message = service::to_segment(edges_, segment, version, service_.robot_id(),
+                                                      stamp_ns, edge_segments_sent_++);
+    if (!service_.send(edge_writer_, message, "edges")) return false;
+  }
+  return true;
 }
 
 // Decisions are only appended, so the last segment that was sent and those after it have changed.

@@ -10,6 +10,7 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/trajectory.h"
 #include "topogeo/service/service.hpp"
+#include "topogeo/storage/map_document.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 #include "trajectory_updates.hpp"
@@ -34,19 +35,24 @@ class TrajectoryPublisher {
 
  private:
   bool send_segments(const topomap::Trajectory& trajectory, bool whole);
+  bool send_edges(const localization::Slam& slam, std::uint64_t version, std::int64_t stamp_ns,
+                  bool whole);
   bool send_decisions(const std::vector<localization::LoopDecision>& decisions,
                       std::int64_t stamp_ns);
 
   service::Service& service_;
   messaging::Writer<msg::TrajectorySegment> segment_writer_;
   messaging::Writer<msg::LoopClosures> closure_writer_;
+  messaging::Writer<msg::MapEdges> edge_writer_;
   messaging::Writer<msg::LoopDecisions> decision_writer_;
   TrajectoryUpdates updates_;
   std::uint64_t version_ = 0;
   std::vector<topomap::LoopClosure> closures_;
+  std::vector<storage::MapEdge> edges_;  // as sent
   std::size_t decisions_ = 0;
   std::uint64_t segments_sent_ = 0;
   std::uint64_t closures_sent_ = 0;
+  std::uint64_t edge_segments_sent_ = 0;
   std::uint64_t decision_segments_sent_ = 0;
 };
 

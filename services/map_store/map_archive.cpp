@@ -83,6 +83,11 @@ void MapArchive::put(std::span<const topomap::LocalMap> local_maps,
   closures_ = hash_of(closures);
 }
 
+void MapArchive::put(const std::vector<storage::MapEdge>& edges) {
+  check_file();
+  database_.put_edges(edges);
+}
+
 void MapArchive::put(const topomap::GlobalMap& map) {
   check_file();
   database_.put_global_map(map);

@@ -45,6 +45,7 @@ class MapArchive {
   /// not stored.
   void put(std::span<const topomap::LocalMap> local_maps, const topomap::Trajectory& trajectory,
            std::span<const topomap::LoopClosure> closures);
+  void put(const std::vector<storage::MapEdge>& edges);
   void put(const topomap::GlobalMap& map);
   void put(const storage::MapDrawing& drawing);
 

@@ -13,7 +13,8 @@ namespace topogeo::map_store {
 MapInput::MapInput(Stored stored)
     : local_maps_(std::move(stored.local_maps)),
       first_kept_(std::move(stored.first_kept)),
-      closures_(std::move(stored.closures)) {
+      closures_(std::move(stored.closures)),
+      stored_edges_(std::move(stored.edges)) {
   for (const topomap::LocalMap& map : local_maps_) remember(map);
   if (!stored.trajectory.stops.empty()) {
     closures_version_ = stored.trajectory.version;
@@ -120,6 +121,18 @@ void MapInput::add(const msg::LoopClosures& message) {
   closures_version_ = message.version();
 }
 
+void MapInput::add(const msg::MapEdges& message) {
+  edges_.add(message);
+  ++edge_changes_;
+}
+
+std::vector<storage::MapEdge> MapInput::usable_edges() const {
+  std::vector<storage::MapEdge> out = edges_.newest().value_or(stored_edges_);
+  std::erase_if(out,
+                [&](const storage::MapEdge& edge) { return edge.later_id >= local_maps_.size(); });
+  return out;
+}
+
 topomap::Trajectory MapInput::newest_trajectory() const {
   topomap::Trajectory out = trajectory_.newest();
   out.stops.resize(std::min(out.stops.size(), local_maps_.size()));
@@ -135,7 +148,8 @@ std::vector<topomap::LoopClosure> MapInput::usable_closures() const {
 }
 
 std::optional<topomap::Trajectory> MapInput::final_trajectory() const {
-  if (!end_ || local_maps_.size() < end_->count() || closures_version_ != end_->version()) {
+  if (!end_ || local_maps_.size() < end_->count() || closures_version_ != end_->version() ||
+      !edges_.whole(end_->version())) {
     return std::nullopt;
   }
   std::optional<topomap::Trajectory> out = trajectory_.whole(end_->version());

@@ -10,7 +10,9 @@
 
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
+#include "topogeo/service/edge_assembly.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
+#include "topogeo/storage/map_document.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
@@ -23,6 +25,7 @@ class MapInput {
     std::vector<topomap::LocalMap> local_maps = {};  ///< of the map, with its numbers
     topomap::Trajectory trajectory = {};
     std::vector<topomap::LoopClosure> closures = {};
+    std::vector<storage::MapEdge> edges = {};
     std::vector<topomap::LocalMap> waiting = {};  ///< as they were sent, in the order of arrival
     std::map<std::uint64_t, std::uint32_t> first_kept = {};  ///< see storage::SessionState
   };
@@ -45,6 +48,7 @@ class MapInput {
   /// like service::from_msg, and when they name other stops than the map has.
   void add(const msg::TrajectorySegment& message);
   void add(const msg::LoopClosures& message);
+  void add(const msg::MapEdges& message);
   /// The end of the localizer's stream; the last one counts.
   void set_end(const msg::StreamEnd& message) { end_ = message; }
 
@@ -60,10 +64,14 @@ class MapInput {
   [[nodiscard]] topomap::Trajectory newest_trajectory() const;
   /// The newest closures between stops whose maps are here.
   [[nodiscard]] std::vector<topomap::LoopClosure> usable_closures() const;
+  /// The newest measurements between stops whose maps are here.
+  [[nodiscard]] std::vector<storage::MapEdge> usable_edges() const;
+  /// Grows with each change of them.
+  [[nodiscard]] std::uint64_t edge_changes() const { return edge_changes_; }
   [[nodiscard]] std::uint64_t version() const { return trajectory_.version(); }
 
   /// The final trajectory, when everything that the end of the stream names is here: all maps, all
-  /// segments and the closures of the final version.
+  /// segments, closures and edges of the final version.
   [[nodiscard]] std::optional<topomap::Trajectory> final_trajectory() const;
 
  private:
@@ -92,6 +100,9 @@ class MapInput {
   service::TrajectoryAssembly trajectory_;
   std::vector<topomap::LoopClosure> closures_;
   std::optional<std::uint64_t> closures_version_;
+  std::vector<storage::MapEdge> stored_edges_;  // until newer ones have come
+  service::EdgeAssembly edges_;
+  std::uint64_t edge_changes_ = 0;
   std::optional<msg::StreamEnd> end_;
 };
 

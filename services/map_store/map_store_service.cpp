@@ -31,6 +31,8 @@ constexpr std::chrono::seconds kHybridPeriod{4};
 constexpr int kHybridShare = 10;
 constexpr milliseconds kStorePeriod{200};
 constexpr std::chrono::seconds kStoreRetryPeriod{1};
+constexpr std::chrono::seconds kEdgePeriod{2};  // measurements: at most a twentieth of the time
+constexpr int kEdgeShare = 20;
 // Answers to requests for the map: a quarter of the time while there are some.
 constexpr milliseconds kSnapshotPeriod{40};
 constexpr milliseconds kSnapshotSlice{10};
@@ -49,6 +51,7 @@ MapInput::Stored stored_input(const storage::MapDatabase& database, storage::Map
   stored.local_maps = std::move(document.local_maps);
   stored.trajectory = std::move(document.trajectory);
   stored.closures = std::move(document.loop_closures);
+  stored.edges = std::move(document.edges);
   for (const topomap::StopId& stop : database.waiting_stops()) {
     if (auto map = database.stop(stop)) stored.waiting.push_back(std::move(*map));
   }
@@ -87,6 +90,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   listen<msg::TrajectorySegment>(
       [this](const msg::TrajectorySegment& segment) { input_.add(segment); });
   listen<msg::LoopClosures>([this](const msg::LoopClosures& closures) { input_.add(closures); });
+  listen<msg::MapEdges>([this](const msg::MapEdges& edges) { input_.add(edges); });
   listen<msg::StreamEnd>([this](const msg::StreamEnd& end) {
     if (end.stage() == msg::kStageLocalizer) input_.set_end(end);
   });
@@ -136,7 +140,7 @@ void MapStoreService::on_local_map(const msg::LocalMap& message) {
   if (archive_.has_batch()) store();
 }
 
-bool MapStoreService::store() {
+bool MapStoreService::store(bool all) {
   if (Clock::now() < next_store_) return false;
   messaging::StatusPublisher& status = service_.status();
   try {
@@ -146,6 +150,7 @@ bool MapStoreService::store() {
     }
     acknowledge();
     archive_.put(input_.local_maps(), input_.newest_trajectory(), input_.usable_closures());
+    store_edges(all);
     acknowledge();
     if (storing_fails_) {
       spdlog::info("the map is stored again");
@@ -157,6 +162,16 @@ bool MapStoreService::store() {
     storing_failed(error.what());
     return false;
   }
+}
+
+// All of them are compared with what is stored, which takes its time on a large map.
+void MapStoreService::store_edges(bool now) {
+  if (input_.edge_changes() == stored_edges_ || (!now && Clock::now() < next_edges_)) return;
+  const auto start = Clock::now();
+  archive_.put(input_.usable_edges());
+  stored_edges_ = input_.edge_changes();
+  const auto end = Clock::now();
+  next_edges_ = end + std::max<Clock::duration>(kEdgePeriod, kEdgeShare * (end - start));
 }
 
 // The map goes on in memory; senders keep what is not acknowledged.
@@ -201,7 +216,7 @@ void MapStoreService::acknowledge() {
 
 void MapStoreService::write_snapshot(const msg::SnapshotRequest& request,
                                      const SnapshotQueue::Sink& sink) {
-  if (!finished_) store();  // what cannot be stored is not in it
+  if (!finished_) store(true);  // what cannot be stored is not in it
   const storage::MapDatabase& database = archive_.database();
   if (request.kind() == msg::kSnapshotMap) {
     database.write_map_file(sink);
@@ -310,6 +325,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
   document.local_maps = input_.local_maps();
   document.trajectory = trajectory;
   document.loop_closures = input_.usable_closures();
+  document.edges = input_.usable_edges();
   document.global_map = pipeline::fuse(config.global_map, document.local_maps, trajectory);
   document.drawing = options_.drawing;
   document.map_id = archive_.database().map_id();
@@ -319,7 +335,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
 void MapStoreService::end() {
   if (finished_ || input_.newest_trajectory().stops.empty()) return;
   next_store_ = {};
-  store();
+  store(true);
   const storage::MapDocument document = final_document(input_.newest_trajectory());
   write_results(options_.directory, document, options_.title);
   spdlog::info("stopped: the map so far, {} local maps, {} nodes and {} branches, in {}",
@@ -329,7 +345,7 @@ void MapStoreService::end() {
 }
 
 void MapStoreService::finish(const topomap::Trajectory& trajectory) {
-  if (!store()) throw std::runtime_error("the map file could not be brought up to date");
+  if (!store(true)) throw std::runtime_error("the map file could not be brought up to date");
   const storage::MapDocument document = final_document(trajectory);
   if (!publish(document.global_map)) throw std::runtime_error("the map could not be sent");
   archive_.put(document.global_map);

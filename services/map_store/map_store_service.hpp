@@ -54,8 +54,10 @@ class MapStoreService {
   void listen(Handler handler, const service::Subscription& subscription = {});
   void on_local_map(const msg::LocalMap& message);
 
-  /// Stores what is new and acknowledges it; false, and a fault, when that fails.
-  bool store();
+  /// Stores what is new and acknowledges it; false, and a fault, when that fails. `all`: the
+  /// measurements, too, which else are stored now and then.
+  bool store(bool all = false);
+  void store_edges(bool now);
   void storing_failed(const std::string& why);
   void acknowledge();
   void write_snapshot(const msg::SnapshotRequest& request, const SnapshotQueue::Sink& sink);
@@ -94,6 +96,8 @@ class MapStoreService {
   std::uint64_t acknowledgements_ = 0;
   msg::StoredMap stored_;         // as it was sent last
   Clock::time_point next_store_;  // after a failure
+  Clock::time_point next_edges_;
+  std::uint64_t stored_edges_ = 0;  // changes of them that are stored
   bool storing_fails_ = false;
   std::size_t published_maps_ = 0;
   std::uint64_t published_version_ = 0;

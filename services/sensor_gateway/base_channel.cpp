@@ -11,6 +11,7 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/log.hpp"
+#include "topogeo/support/random.hpp"
 
 namespace topogeo::sensor_gateway {
 
@@ -55,17 +56,18 @@ msg::BaseState to_msg(devices::BaseState state) {
 }  // namespace
 
 BaseChannel::BaseChannel(service::Service& service, const DeviceConfig& config,
-                         const HostTime& time, std::uint64_t odometry_epoch,
-                         std::function<void(const geometry::OdometrySample&)> on_odometry)
+                         const HostTime& time, const std::optional<RememberedOdometry>& remembered,
+                         Hooks hooks)
     : service_(service),
       time_(time),
-      odometry_epoch_(odometry_epoch),
-      on_odometry_(std::move(on_odometry)),
+      remembered_(remembered),
+      hooks_(std::move(hooks)),
       driver_(config.base),
       odometry_(service.advertise<msg::Odometry>()),
       statuses_(service.advertise<msg::BaseStatus>()),
       line_(service.loop(), driver_, PortOptions{config.base_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
+  if (remembered_) driver_.resume_odometry(remembered_->state);
   service.subscribe<msg::MotionCommand>(
       [this](const msg::MotionCommand& command) { on_command(command); });
   service.subscribe<msg::BaseCommand>(
@@ -87,13 +89,23 @@ BaseChannel::~BaseChannel() {
   }
 }
 
+void BaseChannel::begin_epoch(std::int64_t stamp_ns) {
+  // Where the system's clock was set back meanwhile, others would take what comes for old.
+  const bool resumed =
+      remembered_ && driver_.odometry_resumed() && stamp_ns > remembered_->last_stamp_ns;
+  odometry_epoch_ = resumed ? remembered_->epoch : support::unrepeatable_u64();
+  if (resumed) spdlog::info("the odometry goes on: the base has counted on");
+  hooks_.on_epoch(*odometry_epoch_, resumed);
+}
+
 void BaseChannel::after_driver(std::int64_t) {
   for (const devices::BaseOdometry& sample : driver_.take_odometry()) {
+    if (!odometry_epoch_) begin_epoch(time_.stamp_ns(sample.stamp_ns));
     msg::Odometry message;
     messaging::set_header(message, service_.robot_id(), time_.stamp_ns(sample.stamp_ns),
                           odometry_sent_);
     message.T_odom_robot(service::to_msg(sample.T_odom_robot));
-    message.odometry_epoch(odometry_epoch_);
+    message.odometry_epoch(*odometry_epoch_);
     message.linear_mps(sample.linear_mps);
     message.angular_radps(sample.angular_radps);
     if (odometry_.write(message)) {
@@ -101,7 +113,8 @@ void BaseChannel::after_driver(std::int64_t) {
     } else {
       service_.status().fault("send blocked", "odometry");
     }
-    on_odometry_({sample.stamp_ns, sample.T_odom_robot, sample.linear_mps, sample.angular_radps});
+    hooks_.on_odometry(
+        {sample.stamp_ns, sample.T_odom_robot, sample.linear_mps, sample.angular_radps});
   }
   if (driver_.status().state != published_state_ || ready() != published_ready_) publish_status();
 }

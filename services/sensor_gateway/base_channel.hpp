@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "topogeo/devices/base_driver.hpp"
 #include "topogeo/geometry/odometry_track.hpp"
@@ -14,6 +15,7 @@
 
 #include "device_config.hpp"
 #include "host_time.hpp"
+#include "odometry_memory.hpp"
 #include "serial_line.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -21,10 +23,15 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class BaseChannel {
  public:
-  /// `on_odometry` gets every sample, stamped by the steady clock.
+  /// `on_epoch` gets the epoch of the odometry before `on_odometry` gets the first sample; these
+  /// are stamped by the steady clock. With a `remembered` state the odometry goes on in its epoch,
+  /// if the base has counted on.
+  struct Hooks {
+    std::function<void(std::uint64_t epoch, bool resumed)> on_epoch;
+    std::function<void(const geometry::OdometrySample&)> on_odometry;
+  };
   BaseChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
-              std::uint64_t odometry_epoch,
-              std::function<void(const geometry::OdometrySample&)> on_odometry);
+              const std::optional<RememberedOdometry>& remembered, Hooks hooks);
   BaseChannel(const BaseChannel&) = delete;
   BaseChannel& operator=(const BaseChannel&) = delete;
   BaseChannel(BaseChannel&&) = delete;
@@ -38,6 +45,10 @@ class BaseChannel {
   [[nodiscard]] std::string describe() const;
   /// Sets the counters of the service's status.
   void count();
+  /// Empty before the first odometry.
+  [[nodiscard]] std::optional<devices::OdometerState> odometer_state() const {
+    return driver_.odometer_state();
+  }
 
   /// Halts the base and waits, at most half a second, until it stands. Its own watchdog stops it
   /// if this does not reach it.
@@ -45,14 +56,17 @@ class BaseChannel {
 
  private:
   void after_driver(std::int64_t now_ns);
+  /// Whether the odometry goes on or begins, once it is known.
+  void begin_epoch(std::int64_t stamp_ns);
   void on_command(const msg::MotionCommand& command);
   void on_command(const msg::BaseCommand& command);
   void publish_status();
 
   service::Service& service_;
   const HostTime& time_;
-  const std::uint64_t odometry_epoch_;
-  std::function<void(const geometry::OdometrySample&)> on_odometry_;
+  std::optional<RememberedOdometry> remembered_;
+  Hooks hooks_;
+  std::optional<std::uint64_t> odometry_epoch_;
   devices::BaseDriver driver_;
   messaging::Writer<msg::Odometry> odometry_;
   messaging::Writer<msg::BaseStatus> statuses_;

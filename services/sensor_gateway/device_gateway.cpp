@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
@@ -33,9 +34,11 @@ ScanGateOptions gate_options(const service::Service& service, const DeviceConfig
 
 }  // namespace
 
-DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& config, int readers)
+DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& config, int readers,
+                             const std::filesystem::path& memory)
     : service_(service),
       readers_(readers),
+      memory_(memory),
       odometry_epoch_(support::unrepeatable_u64()),
       gate_(gate_options(service, config, odometry_epoch_)),
       scans_(service.advertise<msg::Scan>()),
@@ -44,11 +47,18 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
   if (config.base_port.empty()) {
     spdlog::warn("there is no base: by the odometry the robot stands still");
   } else {
-    base_.emplace(service_, config, time_, odometry_epoch_,
-                  [this](const geometry::OdometrySample& sample) {
-                    gate_.add(sample);
-                    release(steady_now_ns());
-                  });
+    const std::optional<RememberedOdometry> remembered = memory_.load();
+    BaseChannel::Hooks hooks;
+    hooks.on_epoch = [this, remembered](std::uint64_t epoch, bool resumed) {
+      odometry_epoch_ = epoch;
+      gate_.begin(epoch, resumed ? remembered->next_sequence : 0);
+    };
+    hooks.on_odometry = [this](const geometry::OdometrySample& sample) {
+      gate_.add(sample);
+      release(steady_now_ns());
+      remember();
+    };
+    base_.emplace(service_, config, time_, remembered, std::move(hooks));
   }
   if (!config.laser_port.empty()) {
     laser_.emplace(service_, config, time_, gate_,
@@ -78,12 +88,20 @@ void DeviceGateway::release(std::int64_t now_ns) {
     wait_ns_ = now_ns - leaving.arrival_ns;
     latency_ns_ = steady_now_ns() - leaving.arrival_ns;
     largest_latency_ns_ = std::max(largest_latency_ns_, latency_ns_);
+    remember();
   }
   service_.loop().cancel_timer(release_timer_);
   if (gate_.due_ns() == std::numeric_limits<std::int64_t>::max()) return;
   release_timer_ = service_.loop().call_after(
       std::chrono::nanoseconds(std::max<std::int64_t>(0, gate_.due_ns() - now_ns)),
       [this] { release(steady_now_ns()); });
+}
+
+void DeviceGateway::remember() {
+  if (!base_) return;  // while it is made
+  const std::optional<devices::OdometerState> state = base_->odometer_state();
+  if (!state) return;
+  memory_.store({*state, odometry_epoch_, gate_.scans(), time_.stamp_ns(steady_now_ns())});
 }
 
 bool DeviceGateway::publish(const scan::Scan& scan) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,7 @@
 #include "device_config.hpp"
 #include "host_time.hpp"
 #include "laser_channel.hpp"
+#include "odometry_memory.hpp"
 #include "scan_gate.hpp"
 
 namespace topogeo::sensor_gateway {
@@ -21,8 +23,10 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class DeviceGateway {
  public:
-  /// Scans are numbered and published from when `readers` of them are there.
-  DeviceGateway(service::Service& service, const DeviceConfig& config, int readers);
+  /// Scans are numbered and published from when `readers` of them are there. In the file `memory`
+  /// (empty: none) it keeps where odometry and numbers are, to go on there when it starts again.
+  DeviceGateway(service::Service& service, const DeviceConfig& config, int readers,
+                const std::filesystem::path& memory = {});
   DeviceGateway(const DeviceGateway&) = delete;
   DeviceGateway& operator=(const DeviceGateway&) = delete;
   DeviceGateway(DeviceGateway&&) = delete;
@@ -35,6 +39,7 @@ class DeviceGateway {
 
  private:
   void wait_for_readers();
+  void remember();
   /// Publishes what can leave by now.
   void release(std::int64_t now_ns);
   /// False, and a fault, when it cannot be sent.
@@ -44,8 +49,8 @@ class DeviceGateway {
   service::Service& service_;
   HostTime time_;
   int readers_;
-  const std::uint64_t
-      odometry_epoch_;  // the odometry counts from where this program found the base
+  OdometryMemory memory_;
+  std::uint64_t odometry_epoch_;
   ScanGate gate_;
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::StreamEnd> stream_end_;

@@ -22,6 +22,7 @@ struct Options {
   std::filesystem::path devices;
   std::optional<std::string> laser_port;
   std::optional<std::string> base_port;
+  std::filesystem::path memory;
 };
 
 struct OpenLog {
@@ -70,6 +71,11 @@ void add_options_to(command_line::Command& app, Options& options) {
       ->needs(devices);
   app.add_option("--base-port", options.base_port, "instead of the one in the file")
       ->needs(devices);
+  app.add_option("--memory", options.memory,
+                 "file that keeps where the odometry is, so that it goes on when the gateway is "
+                 "started again; best in /run, as it is written all the time")
+      ->needs(devices)
+      ->type_name("FILE");
 }
 
 void replay(const service::Setup& setup, const sensor_gateway::GatewayOptions& options) {
@@ -83,7 +89,8 @@ void replay(const service::Setup& setup, const sensor_gateway::GatewayOptions& o
 void work_with_devices(const service::Setup& setup, const Options& options) {
   const sensor_gateway::DeviceConfig config = load_devices(options);
   service::Service service(setup);
-  sensor_gateway::DeviceGateway gateway(service, config, options.replay.readers.value_or(0));
+  sensor_gateway::DeviceGateway gateway(service, config, options.replay.readers.value_or(0),
+                                        options.memory);
   service.run();
   gateway.finish();
 }

@@ -46,6 +46,11 @@ class ScanGate {
 
   /// Nothing leaves before this is set.
   void open() { open_ = true; }
+  /// The odometry that comes is of this epoch, and the next scan has this number. Before the first.
+  void begin(std::uint64_t odometry_epoch, std::uint64_t next_sequence) {
+    options_.odometry_epoch = odometry_epoch;
+    next_sequence_ = next_sequence;
+  }
   void add(devices::PlsScan scan, std::int64_t now_ns);
   void add(const geometry::OdometrySample& sample) { track_.add(sample); }
 

@@ -66,7 +66,8 @@ Arguments map_arguments(const RunOptions& options) {
 }
 
 /// The devices or the log, and a simulator where there are no real devices.
-void start_source(ProcessGroup& processes, const RunOptions& options, const Arguments& common) {
+void start_source(ProcessGroup& processes, const RunOptions& options, const std::string& partition,
+                  const Arguments& common) {
   if (const auto& simulation = options.simulation) {
     processes.start(
         "simulator", "simulator",
@@ -79,7 +80,8 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const Argu
   }
   const Arguments source =
       options.devices.empty() ? Arguments{"--log", options.job.log.string(), "--rate", options.rate}
-                              : Arguments{"--devices", options.devices.string()};
+                              : Arguments{"--devices", options.devices.string(), "--memory",
+                                          odometry_memory(partition).string()};
   // All of them have the first scan.
   const std::string readers = options.record.empty() ? "1" : "2";
   // A log cannot be taken up in its middle.
@@ -112,6 +114,10 @@ std::string source_name(const RunOptions& options) {
   return (options.devices.empty() ? options.job.log : options.devices).filename().string();
 }
 
+std::filesystem::path odometry_memory(const std::string& partition) {
+  return "/dev/shm/topogeo-" + partition + ".odometry";
+}
+
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device) {
   return std::filesystem::absolute(options.job.out / (device + ".port"));
 }
@@ -142,7 +148,7 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
                     Importance::kExpendable, Restart::kWhenItDies);
   }
   if (!options.record.empty()) start_recorder(processes, options, partition);
-  start_source(processes, options, common);
+  start_source(processes, options, partition, common);
 }
 
 std::vector<support::StageTime> by_stage(std::vector<support::StageTime> times) {

@@ -22,6 +22,10 @@ inline constexpr double kSimulatedAcceleration = 1.5;  // m/s^2
 /// Where the simulator of a run puts the port of "laser" or "base".
 std::filesystem::path simulated_port(const RunOptions& options, const std::string& device);
 
+/// Where the gateway of a run keeps its odometry: in memory, since a write to a disk may take
+/// seconds. To be removed at the end.
+std::filesystem::path odometry_memory(const std::string& partition);
+
 /// The one that scans come from: to be asked to end before all others.
 inline constexpr const char* kScanSource = "sensor_gateway";
 

@@ -36,6 +36,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
   loop.add<msg::ServiceStatus>(
       status_reader_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
         result_.services.update(status, info);
+        run_.note_state(status);
       });
   loop.add<msg::StreamEnd>(
       end_reader_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <random>
+#include <system_error>
 #include <utility>
 
 #include <unistd.h>
 
+#include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
@@ -16,6 +19,8 @@ namespace {
 constexpr std::chrono::milliseconds kRunTick{50};
 constexpr std::chrono::milliseconds kFirstRestart{100};
 constexpr std::chrono::milliseconds kLongestRestart{5000};
+/// What was at work for so long before it died did not die of its start.
+constexpr double kSettled_s = 5.0;
 constexpr double kStopTime_s = 5.0;  // that services have to end after they are asked to
 
 messaging::Participant join(const RunOptions& options, const std::string& partition) {
@@ -43,6 +48,11 @@ ServiceRun::ServiceRun(const RunOptions& options)
     : partition_(own_partition()),
       participant_(join(options, partition_)),
       processes_(folder_of_this_program(), options.job.out / "logs") {}
+
+ServiceRun::~ServiceRun() {
+  std::error_code ignored;
+  std::filesystem::remove(odometry_memory(partition_), ignored);
+}
 
 void ServiceRun::start(const RunOptions& options, Hooks hooks) {
   hooks_ = std::move(hooks);
@@ -84,13 +94,33 @@ void ServiceRun::tick() {
 
 // One that dies again and again is started less and less often.
 void ServiceRun::restart(const std::string& name, const std::string& description) {
-  const std::uint32_t times = ++restarts_[name];
+  const double now_s = support::monotonic_s();
+  const auto worked = at_work_since_s_.find(name);
+  if (worked != at_work_since_s_.end()) {
+    if (now_s - worked->second > kSettled_s) deaths_in_row_[name] = 0;
+    at_work_since_s_.erase(worked);
+  }
+  const std::uint32_t times = ++deaths_in_row_[name];
   const std::chrono::milliseconds delay =
       std::min(kFirstRestart * (1U << std::min(times - 1, 10U)), kLongestRestart);
-  hooks_.log(fmt::format("{}; started again ({})", description, times));
+  hooks_.log(fmt::format("{}; started again ({})", description, ++restarts_[name]));
+  away_since_s_[name] = now_s;
   loop_.call_after(delay, [this, name] {
     if (!ended_) processes_.restart(name);
   });
+}
+
+void ServiceRun::note_state(const msg::ServiceStatus& status) {
+  if (status.state() != msg::kServiceRunning) return;
+  for (const auto& [name, since_s] : away_since_s_) {
+    const pid_t pid = processes_.pid(name);
+    if (pid < 0 || status.process_id() != static_cast<std::uint32_t>(pid)) continue;
+    hooks_.log(
+        fmt::format("{} is at work again after {:.1f} s", name, support::monotonic_s() - since_s));
+    at_work_since_s_[name] = support::monotonic_s();
+    away_since_s_.erase(name);
+    return;
+  }
 }
 
 void ServiceRun::note_failure(const std::string& why) {

@@ -13,6 +13,7 @@
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
+#include "topogeo/msg/status.h"
 #include "topogeo/supervision/process_group.hpp"
 
 #include "run_services.hpp"
@@ -32,6 +33,12 @@ class ServiceRun {
   /// supervision::ProcessGroup.
   explicit ServiceRun(const RunOptions& options);
 
+  ServiceRun(const ServiceRun&) = delete;
+  ServiceRun& operator=(const ServiceRun&) = delete;
+  ServiceRun(ServiceRun&&) = delete;
+  ServiceRun& operator=(ServiceRun&&) = delete;
+  ~ServiceRun();
+
   [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
   [[nodiscard]] messaging::EventLoop& loop() { return loop_; }
 
@@ -42,6 +49,9 @@ class ServiceRun {
   /// Runs the loop until it is stopped: by the caller, by fail(), by a service that ended although
   /// it is needed, or by a signal. No hook is called afterwards.
   void run();
+
+  /// Logs how long a service was away that was started again and is at work.
+  void note_state(const msg::ServiceStatus& status);
 
   /// Asks the source of the scans to end, so that the others finish their work.
   void end_stream() { processes_.finish(kScanSource); }
@@ -68,7 +78,10 @@ class ServiceRun {
   std::string failure_;
   Hooks hooks_;
   std::atomic<int> signal_ = 0;
-  std::map<std::string, std::uint32_t> restarts_;  // by name of the process
+  std::map<std::string, std::uint32_t> restarts_;       // by name of the process
+  std::map<std::string, std::uint32_t> deaths_in_row_;  // without settled work between
+  std::map<std::string, double> away_since_s_;          // those that do not work again yet
+  std::map<std::string, double> at_work_since_s_;       // those that were started again
 
   messaging::Participant participant_;
   messaging::EventLoop loop_;

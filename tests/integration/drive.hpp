@@ -70,6 +70,9 @@ class Drive {
     send(map_.local_maps.size());
     const std::uint64_t version = map_.trajectory.version;
     EXPECT_TRUE(closures_.write(service::to_msg(map_.loop_closures, version, "robot", 0, 0)));
+    for (std::uint32_t i = 0; i < service::edge_segment_count(map_.edges.size()); ++i) {
+      EXPECT_TRUE(edges_.write(service::to_segment(map_.edges, i, version, "robot", 0, i)));
+    }
     msg::StreamEnd end;
     messaging::set_header(end, "robot", map_.local_maps.back().stamp_ns, 0);
     end.stage(msg::kStageLocalizer);
@@ -140,6 +143,7 @@ class Drive {
   messaging::Writer<msg::LocalMap> maps_{participant_};
   messaging::Writer<msg::TrajectorySegment> segments_{participant_};
   messaging::Writer<msg::LoopClosures> closures_{participant_};
+  messaging::Writer<msg::MapEdges> edges_{participant_};
   messaging::Writer<msg::StreamEnd> ends_{participant_};
   messaging::Writer<msg::SnapshotRequest> requests_writer_{participant_};
   messaging::Reader<msg::StoredMap> stored_reader_{participant_};

@@ -204,6 +204,7 @@ TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   messaging::Writer<msg::LocalMap> maps(reader.participant);
   messaging::Writer<msg::TrajectorySegment> segments(reader.participant);
   messaging::Writer<msg::LoopClosures> closures(reader.participant);
+  messaging::Writer<msg::MapEdges> edges(reader.participant);
   messaging::Writer<msg::StreamEnd> ends(reader.participant);
   for (const topomap::LocalMap& map : expected.local_maps) {
     ASSERT_TRUE(maps.write(service::to_msg(map)));
@@ -213,6 +214,10 @@ TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   }
   ASSERT_TRUE(closures.write(
       service::to_msg(expected.loop_closures, expected.trajectory.version, "robot", 0, 0)));
+  for (std::uint32_t i = 0; i < service::edge_segment_count(expected.edges.size()); ++i) {
+    ASSERT_TRUE(edges.write(
+        service::to_segment(expected.edges, i, expected.trajectory.version, "robot", 0, i)));
+  }
   ASSERT_TRUE(reader.wait()) << "there is a map while the drive lasts";
 
   msg::StreamEnd end;

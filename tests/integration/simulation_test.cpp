@@ -64,6 +64,10 @@ TEST_P(SimulationLivesTest, TheMapEndsCompleteAndRight) {
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_THAT(run.err(), HasSubstr(std::string(GetParam()) + " was killed by signal 9"));
   EXPECT_THAT(run.err(), HasSubstr("started again"));
+  EXPECT_THAT(run.err(), HasSubstr(std::string(GetParam()) + " is at work again after"));
+  if (std::string(GetParam()) == "sensor_gateway") {
+    EXPECT_THAT(read_file(out_ + "/logs/sensor_gateway-2.log"), HasSubstr("the odometry goes on"));
+  }
   const auto truth = storage::read_trajectory_tum(out_ + "/truth.tum");
   const auto found = storage::read_trajectory_tum(out_ + "/trajectory.tum");
   EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(6.2, 3.0)).norm(), 0.3);

@@ -35,6 +35,8 @@ constexpr unsigned kManyDoubts = 4;
 constexpr double kSpeedDoubt = 0.5;
 /// and change so many times as fast as the commanded accelerations.
 constexpr double kHaste = 2.0;
+/// Messages before and after a pause may have been late by different times, no more than this.
+constexpr std::int64_t kSameClock_ns = 500'000'000;
 
 }  // namespace
 
@@ -136,6 +138,36 @@ void BaseOdometer::start_from(const McpReport& report) {
   base_ns_ = base_clock_.follow(report.wide(McpField::kClock));
 }
 
+/// The base that sent the last report of an earlier life has not been switched off since.
+bool BaseOdometer::counted_on(const McpReport& report, std::int64_t arrival_ns) const {
+  const auto ticks = static_cast<std::int32_t>(report.wide(McpField::kClock) -
+                                               resumed_->report.wide(McpField::kClock));
+  const std::int64_t elapsed_ns = ticks_ns(ticks);
+  const std::int64_t arrived_ns = arrival_ns - resumed_->arrival_ns;
+  return elapsed_ns > 0 &&
+         std::abs(elapsed_ns - arrived_ns) <= kSameClock_ns + arrived_ns / kDriftDivisor &&
+         moved_plausibly(resumed_->report, report, elapsed_ns, true);
+}
+
+BaseOdometer::Result BaseOdometer::begin(const McpReport& report, std::int64_t arrival_ns) {
+  if (resumed_ && counted_on(report, arrival_ns)) {
+    T_odom_base_ = resumed_->T_odom_robot * geometry::inverse(tracker_.track(resumed_->report));
+    base_clock_.follow(resumed_->report.wide(McpField::kClock));
+    has_resumed_ = true;
+  } else if (resumed_ && ++doubts_ < kFewDoubts) {
+    return {Verdict::kImplausible, {}};  // a wrong digit must not cost the odometry
+  } else {
+    start_from(report);
+  }
+  resumed_.reset();
+  return {Verdict::kGood, accept(report, arrival_ns)};
+}
+
+std::optional<OdometerState> BaseOdometer::state() const {
+  if (!last_) return std::nullopt;
+  return OdometerState{last_->report, last_->arrival_ns, T_odom_robot_};
+}
+
 BaseOdometry BaseOdometer::accept(const McpReport& report, std::int64_t arrival_ns) {
   base_ns_ = base_clock_.follow(report.wide(McpField::kClock));
   T_odom_robot_ = T_odom_base_ * tracker_.track(report);
@@ -147,10 +179,7 @@ BaseOdometry BaseOdometer::accept(const McpReport& report, std::int64_t arrival_
 }
 
 BaseOdometer::Result BaseOdometer::take(const McpReport& report, std::int64_t arrival_ns) {
-  if (!last_) {
-    start_from(report);
-    return {Verdict::kGood, accept(report, arrival_ns)};
-  }
+  if (!last_) return begin(report, arrival_ns);
   const bool clock_goes_on = clock_follows(report, arrival_ns);
   const std::int64_t elapsed_ns = base_clock_.since_last_ns(report.wide(McpField::kClock));
   if (clock_goes_on && moved_plausibly(last_->report, report, elapsed_ns, false)) {

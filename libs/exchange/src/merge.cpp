@@ -11,6 +11,7 @@
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/localization/session/mapping_session.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
@@ -71,6 +72,12 @@ localization::StoredMap stored_part(const storage::MapDocument& document) {
     if (earlier < 0 || later < 0) continue;
     stored.loop_closures.push_back({static_cast<std::uint32_t>(earlier),
                                     static_cast<std::uint32_t>(later), loop.T_earlier_later});
+  }
+  for (localization::PoseGraphEdge edge : pipeline::pose_graph_edges(document.edges)) {
+    if (new_ids.at(edge.from) < 0 || new_ids.at(edge.to) < 0) continue;
+    edge.from = static_cast<std::uint32_t>(new_ids[edge.from]);
+    edge.to = static_cast<std::uint32_t>(new_ids[edge.to]);
+    stored.edges.push_back(edge);
   }
   return stored;
 }
@@ -161,6 +168,7 @@ class Merger {
     for (const auto& map : session.maps()) next.maps.push_back(*map);
     next.trajectory = session.trajectory();
     next.loop_closures = session.loop_closures();
+    next.edges = session.edges();
     for (std::size_t i = before; i < after; ++i) {
       names_.push_back(other_.local_maps[drive.stops.at(next.maps[i].stop.number)].stop);
     }
@@ -205,6 +213,7 @@ MergedMap merge(const storage::MapDocument& a, const storage::MapDocument& b,
   document.local_maps = merger.map().maps;
   document.trajectory = merger.map().trajectory;
   document.loop_closures = merger.map().loop_closures;
+  document.edges = pipeline::map_edges(merger.map().edges);
   for (std::size_t i = 0; i < document.local_maps.size(); ++i) {
     document.local_maps[i].robot_id = a.robot_id;
     document.local_maps[i].stop = merger.names()[i];

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/support/format.hpp"
 
@@ -33,10 +34,8 @@ std::vector<Pair> kept_pairs(const std::vector<Pair>& pairs,
 void optimize_poses(storage::MapDocument& document) {
   localization::PoseGraph graph;
   for (const topomap::StopPose& stop : document.trajectory.stops) graph.add_pose(stop.T_map_robot);
-  for (const storage::MapEdge& edge : document.edges) {
-    if (edge.later_id >= document.trajectory.stops.size()) continue;
-    graph.add_edge({edge.earlier_id, edge.later_id, localization::EdgeKind::kSequential,
-                    edge.T_earlier_later, edge.covariance});
+  for (const auto& edge : pipeline::pose_graph_edges(document.edges)) {
+    if (edge.to < document.trajectory.stops.size()) graph.add_edge(edge);
   }
   if (!graph.optimize().usable) return;
   for (topomap::StopPose& stop : document.trajectory.stops) {

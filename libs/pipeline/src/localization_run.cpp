@@ -45,6 +45,31 @@ storage::MapDocument load_usable_map(const std::filesystem::path& file) {
   throw std::runtime_error(file.string() + ": the map has no stop that saw anything");
 }
 
+localization::EdgeKind kind_of(storage::MapEdge::Kind kind) {
+  switch (kind) {
+    case storage::MapEdge::Kind::kOdometry:
+      return localization::EdgeKind::kOdometry;
+    case storage::MapEdge::Kind::kLoop:
+      return localization::EdgeKind::kRevisit;
+    case storage::MapEdge::Kind::kSequential:
+    case storage::MapEdge::Kind::kUnknown:
+      break;
+  }
+  return localization::EdgeKind::kSequential;
+}
+
+storage::MapEdge::Kind kind_of(localization::EdgeKind kind) {
+  switch (kind) {
+    case localization::EdgeKind::kOdometry:
+      return storage::MapEdge::Kind::kOdometry;
+    case localization::EdgeKind::kRevisit:
+      return storage::MapEdge::Kind::kLoop;
+    case localization::EdgeKind::kSequential:
+      break;
+  }
+  return storage::MapEdge::Kind::kSequential;
+}
+
 std::string mounting_text(const geometry::Pose2& T_robot_laser) {
   return fmt::format("{:.4f},{:.4f} m, {:.4f} rad", T_robot_laser.x_m, T_robot_laser.y_m,
                      T_robot_laser.theta_rad);
@@ -57,8 +82,32 @@ std::shared_ptr<const localization::StoredMap> load_stored_map(const std::filesy
 }
 
 std::shared_ptr<const localization::StoredMap> stored_map(const storage::MapDocument& document) {
-  return std::make_shared<const localization::StoredMap>(
-      localization::StoredMap{document.local_maps, document.trajectory, document.loop_closures});
+  localization::StoredMap stored{
+      document.local_maps, document.trajectory, document.loop_closures, {}};
+  stored.edges = pose_graph_edges(document.edges);
+  std::erase_if(stored.edges, [&](const localization::PoseGraphEdge& edge) {
+    return edge.to >= document.trajectory.stops.size();
+  });
+  return std::make_shared<const localization::StoredMap>(std::move(stored));
+}
+
+std::vector<localization::PoseGraphEdge> pose_graph_edges(std::span<const storage::MapEdge> edges) {
+  std::vector<localization::PoseGraphEdge> out;
+  out.reserve(edges.size());
+  for (const storage::MapEdge& edge : edges) {
+    out.push_back({edge.earlier_id, edge.later_id, kind_of(edge.kind), edge.T_earlier_later,
+                   edge.covariance});
+  }
+  return out;
+}
+
+std::vector<storage::MapEdge> map_edges(std::span<const localization::PoseGraphEdge> edges) {
+  std::vector<storage::MapEdge> out;
+  out.reserve(edges.size());
+  for (const localization::PoseGraphEdge& edge : edges) {
+    out.push_back({edge.from, edge.to, edge.T_from_to, edge.covariance, kind_of(edge.kind)});
+  }
+  return out;
 }
 
 std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::filesystem::path& file,

@@ -68,6 +68,7 @@ storage::MapDocument MappingRun::finish() {
   }
   document.trajectory = slam_->trajectory();
   document.loop_closures = slam_->loop_closures();
+  document.edges = map_edges(slam_->edges());
   if (continued_) {
     document.drawing = continued_->drawing;
     document.map_id = continued_->map_id;

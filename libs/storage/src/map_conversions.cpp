@@ -232,11 +232,14 @@ void to_proto(const MapEdge& edge, proto::MapEdge* out) {
   out->set_later_id(edge.later_id);
   to_proto(edge.T_earlier_later, out->mutable_t_earlier_later());
   to_proto(edge.covariance, out->mutable_covariance());
+  out->set_kind(static_cast<proto::EdgeKind>(edge.kind));
 }
 
 MapEdge from_proto(const proto::MapEdge& in) {
+  const auto kind = static_cast<MapEdge::Kind>(
+      proto::EdgeKind_IsValid(in.kind()) ? in.kind() : proto::EDGE_UNKNOWN);
   return {in.earlier_id(), in.later_id(), from_proto(in.t_earlier_later(), "edge"),
-          covariance_from_proto(in.covariance(), "covariance of an edge")};
+          covariance_from_proto(in.covariance(), "covariance of an edge"), kind};
 }
 
 void to_proto(const topomap::MapNode& node, proto::MapNode* out) {

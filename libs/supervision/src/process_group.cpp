@@ -51,6 +51,13 @@ void ProcessGroup::restart(const std::string& name) {
   }
 }
 
+pid_t ProcessGroup::pid(const std::string& name) const {
+  for (const Member& member : members_) {
+    if (member.process->name() == name) return member.process->pid();
+  }
+  return -1;
+}
+
 std::optional<UnexpectedEnd> ProcessGroup::next_unexpected_end() {
   for (Member& member : members_) {
     if (member.reported) continue;

@@ -91,6 +91,50 @@ std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message) {
   return out;
 }
 
+std::uint32_t edge_segment_count(std::size_t edges) {
+  const std::size_t segments = (edges + msg::kSegmentEdges - 1) / msg::kSegmentEdges;
+  return static_cast<std::uint32_t>(std::max<std::size_t>(segments, 1));
+}
+
+msg::MapEdges to_segment(std::span<const storage::MapEdge> edges, std::uint32_t segment,
+                         std::uint64_t trajectory_version, std::string_view robot_id,
+                         std::int64_t stamp_ns, std::uint64_t sequence_number) {
+  const std::size_t begin = std::size_t{segment} * msg::kSegmentEdges;
+  check(segment < edge_segment_count(edges.size()), "segment", "less than the number of segments");
+  msg::MapEdges out;
+  messaging::set_header(out, robot_id, stamp_ns, sequence_number);
+  out.segment(segment);
+  out.version(trajectory_version);
+  out.total(static_cast<std::uint32_t>(edges.size()));
+  const std::size_t count = std::min<std::size_t>(msg::kSegmentEdges, edges.size() - begin);
+  for (const storage::MapEdge& edge : edges.subspan(begin, count)) {
+    msg::MapEdge entry;
+    entry.earlier_id(edge.earlier_id);
+    entry.later_id(edge.later_id);
+    entry.kind(static_cast<msg::MapEdgeKind>(edge.kind));  // same values, see the IDL
+    entry.T_earlier_later(to_msg(edge.T_earlier_later));
+    entry.covariance(to_msg(edge.covariance));
+    out.edges().push_back(entry);
+  }
+  return out;
+}
+
+std::vector<storage::MapEdge> from_msg(const msg::MapEdges& message) {
+  const std::uint64_t begin = std::uint64_t{message.segment()} * msg::kSegmentEdges;
+  check(message.segment() < edge_segment_count(message.total()), "segment",
+        "less than the number of segments");
+  const std::uint64_t size = std::min<std::uint64_t>(msg::kSegmentEdges, message.total() - begin);
+  check(message.edges().size() == size, "edges", "every edge of the segment");
+  std::vector<storage::MapEdge> out;
+  for (const msg::MapEdge& edge : message.edges()) {
+    check(edge.earlier_id() < edge.later_id(), "edges.earlier_id", "less than later_id");
+    check(edge.kind() <= msg::kEdgeLoop, "edges.kind", "a MapEdgeKind");
+    out.push_back({edge.earlier_id(), edge.later_id(), from_msg(edge.T_earlier_later()),
+                   from_msg(edge.covariance()), static_cast<storage::MapEdge::Kind>(edge.kind())});
+  }
+  return out;
+}
+
 msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id) {
   msg::LivePose out;
   messaging::set_header(out, robot_id, pose.stamp_ns, pose.sequence);

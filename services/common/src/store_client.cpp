@@ -12,7 +12,8 @@ namespace topogeo::service {
 
 namespace {
 
-constexpr std::chrono::milliseconds kAskPeriod{200};
+constexpr std::chrono::milliseconds kAskPeriod{100};
+constexpr std::chrono::milliseconds kSilence{1000};
 /// Without another piece of an answer: the store has gone, or a piece with it.
 constexpr std::chrono::seconds kPatience{2};
 
@@ -48,7 +49,8 @@ void StoreClient::send() {
   request_->request_id(++requests_sent_);
   pieces_.clear();
   last_heard_ = Clock::now();
-  // One that cannot be sent now is sent again by the timer.
+  // One that cannot be sent now, or that nobody hears yet, is sent again by the timer.
+  heard_by_nobody_ = requests_.matched() == 0;
   static_cast<void>(requests_.write(*request_));
 }
 
@@ -75,8 +77,9 @@ void StoreClient::on_piece(const msg::SnapshotPiece& piece) {
 
 void StoreClient::tick() {
   if (!request_) return;
-  const bool silent = pieces_.empty() && Clock::now() - last_heard_ >= kAskPeriod * 5;
-  if (silent || Clock::now() - last_heard_ >= kPatience) send();
+  const bool silent = pieces_.empty() && Clock::now() - last_heard_ >= kSilence;
+  const bool first_reader = heard_by_nobody_ && requests_.matched() > 0;
+  if (first_reader || silent || Clock::now() - last_heard_ >= kPatience) send();
 }
 
 }  // namespace topogeo::service

@@ -79,6 +79,50 @@ TEST_F(BaseOdometerTest, DropsOneReportThatJumpsAndKeepsThePose) {
   EXPECT_NEAR(after.odometry.T_odom_robot.x_m, 0.0, 0.01);
 }
 
+/// A driver that is killed after 30 reports, 8 of them a second, and one that starts 2 s later.
+class ResumedOdometerTest : public BaseOdometerTest {
+ protected:
+  ResumedOdometerTest() {
+    for (std::uint32_t i = 0; i <= 30; ++i) {
+      (void)take(1000 + 32 * i, 0.02 * i, std::int64_t{i} * 125 * kMs);
+    }
+    next_.resume(*odometer_.state());
+  }
+  static constexpr std::int64_t kLast_ns = 30 * 125 * kMs;
+  BaseOdometer next_{BaseSettings{}};
+};
+
+TEST_F(ResumedOdometerTest, GoesOnWhereTheBaseHasCountedTo) {
+  const auto result = next_.take(standing(1960 + 512, 1.1), kLast_ns + 2 * kSecond + 60 * kMs);
+  EXPECT_EQ(result.verdict, Verdict::kGood);
+  EXPECT_TRUE(next_.has_resumed());
+  EXPECT_NEAR(result.odometry.T_odom_robot.x_m, 1.1, 0.01) << "driven on meanwhile";
+  EXPECT_EQ(next_.take(standing(1960 + 544, 1.1), kLast_ns + 2185 * kMs).verdict, Verdict::kGood);
+}
+
+TEST_F(ResumedOdometerTest, OneWrongReportDoesNotCostIt) {
+  EXPECT_EQ(next_.take(standing(1960 + 512, 19.0), kLast_ns + 2 * kSecond).verdict,
+            Verdict::kImplausible);
+  const auto result = next_.take(standing(1960 + 544, 0.7), kLast_ns + 2125 * kMs);
+  EXPECT_TRUE(next_.has_resumed());
+  EXPECT_NEAR(result.odometry.T_odom_robot.x_m, 0.7, 0.01);
+}
+
+TEST_F(ResumedOdometerTest, BeginsAnewWithABaseThatWasSwitchedOffOrAnotherOne) {
+  // Clock and registers from their start; then a clock that fits with a place that is too far.
+  for (const auto& [ticks, forward_m] :
+       std::vector<std::pair<std::uint32_t, double>>{{200, 0.0}, {1960 + 512, 12.0}}) {
+    BaseOdometer other{BaseSettings{}};
+    other.resume(*odometer_.state());
+    EXPECT_EQ(other.take(standing(ticks, forward_m), kLast_ns + 2 * kSecond).verdict,
+              Verdict::kImplausible);
+    const auto result = other.take(standing(ticks + 32, forward_m), kLast_ns + 2125 * kMs);
+    EXPECT_EQ(result.verdict, Verdict::kGood);
+    EXPECT_FALSE(other.has_resumed());
+    EXPECT_EQ(result.odometry.T_odom_robot, geometry::Pose2{});
+  }
+}
+
 TEST_F(BaseOdometerTest, BelievesAPlaceThatStays) {
   for (std::uint32_t i = 0; i < 30; ++i)
     (void)take(1000 + 32 * i, 1.0, std::int64_t{i} * 125 * kMs);

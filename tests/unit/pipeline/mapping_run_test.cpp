@@ -1,11 +1,15 @@
 #include "topogeo/pipeline/mapping_run.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
 #include "topogeo/results/outputs.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
@@ -51,6 +55,42 @@ TEST(MappingRunTest, CorrectsTheRoundThroughARoom) {
   EXPECT_LT(errors.corrected.rms_m, 0.05);
   EXPECT_LT(errors.corrected.rms_m, 0.5 * errors.odometry.rms_m);
   EXPECT_FALSE(document.global_map.branches.empty());
+}
+
+TEST(MappingRunTest, TheMapKeepsTheMeasurementsThatHoldItsPoses) {
+  const storage::MapDocument document = mapped(simulated("room"));
+  using Kind = storage::MapEdge::Kind;
+  const auto is_there = [&](Kind kind, std::uint32_t earlier, std::uint32_t later) {
+    return std::ranges::any_of(document.edges, [&](const storage::MapEdge& edge) {
+      return edge.kind == kind && edge.earlier_id == earlier && edge.later_id == later;
+    });
+  };
+  for (std::uint32_t i = 1; i < document.local_maps.size(); ++i) {
+    EXPECT_TRUE(is_there(Kind::kOdometry, i - 1, i)) << i;
+  }
+  EXPECT_FALSE(document.loop_closures.empty());
+  for (const topomap::LoopClosure& loop : document.loop_closures) {
+    EXPECT_TRUE(is_there(Kind::kLoop, loop.earlier_id, loop.later_id));
+  }
+  // Least squares finds the poses again, from where odometry alone would have them.
+  localization::PoseGraph graph;
+  const std::vector<topomap::StopPose>& stops = document.trajectory.stops;
+  for (const topomap::LocalMap& map : document.local_maps) {
+    graph.add_pose(geometry::between(document.local_maps[0].T_odom_robot, map.T_odom_robot));
+  }
+  for (const auto& edge : pose_graph_edges(document.edges)) {
+    EXPECT_GT(edge.covariance.determinant(), 0.0);
+    graph.add_edge(edge);
+  }
+  EXPECT_TRUE(graph.optimize().usable);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const geometry::Pose2 apart = geometry::between(graph.poses()[i], stops[i].T_map_robot);
+    EXPECT_LT(apart.position_m().norm(), 0.005) << i;
+    EXPECT_LT(std::abs(apart.theta_rad), 0.003) << i;
+  }
+  // A map that is continued has them, too: those that there were and new ones.
+  const auto stored = stored_map(document);
+  EXPECT_EQ(map_edges(stored->edges), document.edges);
 }
 
 TEST(MappingRunTest, ClosesTheLoopOfTheFloor) {

@@ -284,6 +284,7 @@ Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimi
     graph_.add_edge(edge);
     matching_.skip(edge);
   }
+  edges_known_ = !stored->edges.empty() || stored->maps.size() == 1;
   version_ = stored->trajectory.version;
   stored_stops_ = matching_.size();
 }

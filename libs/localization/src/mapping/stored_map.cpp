@@ -21,6 +21,12 @@ Eigen::Matrix3d usual_match_covariance() {
 }
 
 void check(const StoredMap& map) {
+  for (const PoseGraphEdge& edge : map.edges) {
+    if (edge.from < edge.to && edge.to < map.maps.size()) continue;
+    throw std::invalid_argument("localizer: an edge of a stored map leads from stop " +
+                                std::to_string(edge.from) + " to " + std::to_string(edge.to) +
+                                ", expected ascending numbers of its stops");
+  }
   if (!map.maps.empty() && map.maps.size() == map.trajectory.stops.size()) return;
   throw std::invalid_argument("localizer: a stored map of " + std::to_string(map.maps.size()) +
                               " local maps and " + std::to_string(map.trajectory.stops.size()) +
@@ -28,14 +34,19 @@ void check(const StoredMap& map) {
 }
 
 std::vector<PoseGraphEdge> edges_of(const StoredMap& map) {
-  std::vector<PoseGraphEdge> edges;
+  std::vector<PoseGraphEdge> edges = map.edges;
+  const bool known = !edges.empty();
   const std::vector<topomap::StopPose>& stops = map.trajectory.stops;
+  std::vector<bool> held(stops.size(), false);
+  for (const PoseGraphEdge& edge : edges) held[edge.to] = true;
   for (std::uint32_t i = 1; i < stops.size(); ++i) {
+    if (held[i]) continue;  // also where it was stored after the poses and lacks the last ones
     const double weaker = map.maps[i].starts_drive ? kWeakerBetweenDrives : 1.0;
     edges.push_back({i - 1, i, EdgeKind::kSequential,
                      geometry::between(stops[i - 1].T_map_robot, stops[i].T_map_robot),
                      weaker * usual_match_covariance()});
   }
+  if (known) return edges;
   for (const topomap::LoopClosure& loop : map.loop_closures) {
     edges.push_back({loop.earlier_id, loop.later_id, EdgeKind::kRevisit, loop.T_earlier_later,
                      usual_match_covariance()});

@@ -85,6 +85,7 @@ std::shared_ptr<const StoredMap> MappingSession::map_so_far() const {
   auto stored = std::make_shared<StoredMap>();
   stored->trajectory = mapper_->trajectory();
   stored->loop_closures = mapper_->loop_closures();
+  stored->edges = mapper_->edges();
   for (const MapPointer& map : maps_) stored->maps.push_back(*map);
   return stored;
 }

@@ -43,6 +43,21 @@ TEST(StoredMap, DrivesHangTogetherByTheirLoops) {
   EXPECT_TRUE(edges[1].covariance.isApprox(100.0 * edges[0].covariance));
 }
 
+TEST(StoredMap, TakesTheMeasurementsThatItKeepsAndFillsWhatTheyLack) {
+  StoredMap map = three_stops();
+  map.loop_closures = {{0, 2, {2.05, 0.0, 0.2}}};
+  const Eigen::Matrix3d covariance = 0.01 * Eigen::Matrix3d::Identity();
+  map.edges = {{0, 1, EdgeKind::kOdometry, {1.1, 0.0, 0.1}, covariance}};
+  const std::vector<PoseGraphEdge> edges = edges_of(map);
+  ASSERT_EQ(edges.size(), 2U) << "its loops are among them, if they are known";
+  EXPECT_EQ(edges[0].T_from_to, (geometry::Pose2{1.1, 0.0, 0.1}));
+  EXPECT_EQ(edges[0].covariance, covariance);
+  EXPECT_EQ(edges[1].from, 1U) << "nothing else leads to stop 2";
+  EXPECT_EQ(edges[1].to, 2U);
+  map.edges[0].to = 3;
+  EXPECT_THROW(check(map), std::invalid_argument);
+}
+
 TEST(StoredMap, HasAStopForEachLocalMap) {
   EXPECT_NO_THROW(check(three_stops()));
   StoredMap fewer = three_stops();

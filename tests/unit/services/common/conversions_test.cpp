@@ -1,4 +1,3 @@
-#include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/service/conversions.hpp"
 
 #include <algorithm>
@@ -9,7 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/service/decision_assembly.hpp"
+#include "topogeo/service/edge_assembly.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
 
 #include "services/common/random_values.hpp"
@@ -143,6 +144,38 @@ TEST_P(Conversions, LoopClosuresAreExact) {
     closures.push_back({earlier, earlier + 1, any_pose(random_)});
   }
   EXPECT_TRUE(from_msg(to_msg(closures, 5, "robot", 6, 7)) == closures);
+}
+
+TEST_P(Conversions, EdgesAreExactInSegmentsOfAnyOrder) {
+  for (const std::size_t count : {0U, 1U, 128U, 129U, 300U}) {
+    std::vector<storage::MapEdge> edges;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto earlier = static_cast<std::uint32_t>(random_.below(1000));
+      edges.push_back({earlier, earlier + 1, any_pose(random_), any_matrix(random_),
+                       static_cast<storage::MapEdge::Kind>(random_.below(4))});
+    }
+    EdgeAssembly assembly;
+    for (std::uint32_t segment = edge_segment_count(count); segment-- > 0;) {
+      EXPECT_FALSE(assembly.whole(5).has_value());
+      assembly.add(to_segment(edges, segment, 5, "robot", 6, segment));
+    }
+    EXPECT_EQ(assembly.whole(5), edges);
+    EXPECT_EQ(assembly.newest(), edges);
+    EXPECT_FALSE(assembly.whole(6).has_value());
+    // One more comes, then two of the last go: only the last segment is sent again.
+    edges.push_back({1, 2, any_pose(random_), any_matrix(random_), storage::MapEdge::Kind::kLoop});
+    const auto last = edge_segment_count(edges.size()) - 1;
+    assembly.add(to_segment(edges, last, 6, "robot", 6, 9));
+    EXPECT_EQ(assembly.newest(), edges);
+    if (count != 300U) continue;
+    edges.resize(256);
+    assembly.add(to_segment(edges, 1, 7, "robot", 6, 10));
+    EXPECT_EQ(assembly.newest(), edges);
+    EXPECT_FALSE(assembly.whole(7).has_value()) << "the first one is older";
+  }
+  msg::MapEdges cut = to_segment({}, 0, 5, "robot", 6, 0);
+  cut.total(1);
+  EXPECT_THROW(from_msg(cut), std::invalid_argument);
 }
 
 TEST_P(Conversions, LivePoseIsExact) {

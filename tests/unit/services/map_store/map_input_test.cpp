@@ -34,6 +34,15 @@ class Input : public testing::Test {
     return service::to_msg(list, version, "robot", 0, 0);
   }
 
+  [[nodiscard]] static msg::MapEdges edges(std::uint64_t version) {
+    std::vector<storage::MapEdge> list(2);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      list[i].earlier_id = i;
+      list[i].later_id = i + 1;
+    }
+    return service::to_segment(list, 0, version, "robot", 0, 0);
+  }
+
   support::Random random_{1};
   std::vector<topomap::LocalMap> maps_;
   topomap::Trajectory trajectory_;
@@ -138,6 +147,10 @@ TEST_F(Input, TrajectoryReachesAsFarAsTheLocalMaps) {
   input_.add(maps_[1]);
   EXPECT_EQ(input_.newest_trajectory().stops.size(), 2U);
   EXPECT_EQ(input_.usable_closures().size(), 1U);
+  EXPECT_EQ(input_.edge_changes(), 0U);
+  input_.add(edges(8));
+  EXPECT_EQ(input_.usable_edges().size(), 1U);
+  EXPECT_EQ(input_.edge_changes(), 1U);
 }
 
 TEST_F(Input, CompleteOnlyWithEveryPartOfTheFinalVersion) {
@@ -148,6 +161,7 @@ TEST_F(Input, CompleteOnlyWithEveryPartOfTheFinalVersion) {
       [&] { input_.add(maps_[2]); },
       [&] { input_.add(service::to_segment(trajectory_, 0, "robot", 0)); },
       [&] { input_.add(closures(8)); },
+      [&] { input_.add(edges(8)); },
       [&] { input_.set_end(end_); },
   };
   for (std::size_t last = 0; last < steps.size(); ++last) {
@@ -170,6 +184,9 @@ TEST_F(Input, OlderPartsDoNotCompleteIt) {
   EXPECT_FALSE(input_.final_trajectory().has_value());
   input_.add(closures(8));
   input_.add(closures(7));  // late: passed over
+  EXPECT_FALSE(input_.final_trajectory().has_value());
+  input_.add(edges(8));
+  input_.add(edges(7));
   EXPECT_TRUE(input_.final_trajectory().has_value());
 }
 

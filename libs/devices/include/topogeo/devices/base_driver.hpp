@@ -68,6 +68,10 @@ class BaseDriver final : public SerialDriver {
   /// Odometry since the last call; stamps increase strictly over the driver's whole life.
   [[nodiscard]] std::vector<BaseOdometry> take_odometry();
   [[nodiscard]] const BaseStatus& status() const { return status_; }
+  /// See BaseOdometer.
+  void resume_odometry(const OdometerState& state) { odometer_.resume(state); }
+  [[nodiscard]] bool odometry_resumed() const { return odometer_.has_resumed(); }
+  [[nodiscard]] std::optional<OdometerState> odometer_state() const { return odometer_.state(); }
 
  private:
   void follow(BaseLink::Change change, std::int64_t now_ns);

@@ -20,6 +20,14 @@ struct BaseOdometry {
   double angular_radps = 0.0;  ///< counter-clockwise
 };
 
+/// Where the odometry was: what another life of the program needs to go on with it, as long as the
+/// base counts on.
+struct OdometerState {
+  McpReport report{};            ///< the last that was accepted
+  std::int64_t arrival_ns = 0;   ///< when it came, on the host's steady clock
+  geometry::Pose2 T_odom_robot;  ///< what it meant
+};
+
 /// A device's clock on the host's steady clock: messages come late by varying times but never
 /// early, so that the least delay of the last seconds shows the offset between the clocks.
 class DeviceClock {
@@ -66,6 +74,14 @@ class BaseOdometer {
   };
   Result take(const McpReport& report, std::int64_t arrival_ns);
 
+  /// Goes on from there if the first reports show that the base has counted on since: its clock
+  /// went as the host's, and it is no further than a base can have driven. Before the first report.
+  void resume(const OdometerState& state) { resumed_ = state; }
+  /// Whether it went on; false before the first odometry, and when it began anew.
+  [[nodiscard]] bool has_resumed() const { return has_resumed_; }
+  /// Empty before the first odometry.
+  [[nodiscard]] std::optional<OdometerState> state() const;
+
  private:
   /// What of a report the next one is compared with.
   struct Reference {
@@ -77,6 +93,8 @@ class BaseOdometer {
   [[nodiscard]] bool moved_plausibly(const McpReport& from, const McpReport& to,
                                      std::int64_t elapsed_ns, bool loosely) const;
   BaseOdometry accept(const McpReport& report, std::int64_t arrival_ns);
+  [[nodiscard]] bool counted_on(const McpReport& report, std::int64_t arrival_ns) const;
+  Result begin(const McpReport& report, std::int64_t arrival_ns);
   void start_from(const McpReport& report);
 
   McpUnits units_;
@@ -90,6 +108,8 @@ class BaseOdometer {
   std::int64_t base_ns_ = 0;
   geometry::Pose2 T_odom_base_{};
   geometry::Pose2 T_odom_robot_{};
+  std::optional<OdometerState> resumed_{};  // until the first odometry
+  bool has_resumed_ = false;
 };
 
 }  // namespace topogeo::devices

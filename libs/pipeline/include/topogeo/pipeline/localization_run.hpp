@@ -26,6 +26,10 @@ std::shared_ptr<const localization::StoredMap> load_stored_map(const std::filesy
 /// The map of a document as it is localized in and continued.
 std::shared_ptr<const localization::StoredMap> stored_map(const storage::MapDocument& document);
 
+/// What a map keeps of the measurements of a pose graph, and back.
+std::vector<storage::MapEdge> map_edges(std::span<const localization::PoseGraphEdge> edges);
+std::vector<localization::PoseGraphEdge> pose_graph_edges(std::span<const storage::MapEdge> edges);
+
 /// A map file that this robot is to continue. Throws std::runtime_error naming the file when it
 /// cannot be read, has no stop that saw anything or stops without a place, is of another robot, or
 /// was made with the laser elsewhere on the robot than it is now.

@@ -15,12 +15,21 @@
 
 namespace topogeo::storage {
 
-/// A measured pose of one stop seen from another, by a match or by scan tracking.
+/// A measured pose of one stop seen from another.
 struct MapEdge {
+  enum class Kind : std::uint8_t {
+    kUnknown,     ///< of a file that does not say
+    kOdometry,    ///< of the base
+    kSequential,  ///< a match with a stop shortly before
+    kLoop,        ///< a match with a stop of an earlier visit
+  };
   std::uint32_t earlier_id = 0;  ///< local map ids
   std::uint32_t later_id = 0;
   geometry::Pose2 T_earlier_later;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< in the frame of the earlier stop
+  Kind kind = Kind::kUnknown;
+
+  friend bool operator==(const MapEdge&, const MapEdge&) = default;
 };
 
 struct MapDocument {

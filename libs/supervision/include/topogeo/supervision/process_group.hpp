@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <sys/types.h>
+
 #include "topogeo/supervision/child_process.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
@@ -51,6 +53,9 @@ class ProcessGroup {
   /// Starts one again that has ended, with a log of its own, <name>-2.log and so on. Throws like
   /// ChildProcess.
   void restart(const std::string& name);
+
+  /// The process of that name; -1 if there is none.
+  [[nodiscard]] pid_t pid(const std::string& name) const;
 
   /// How often one is started again at most.
   static constexpr std::uint32_t kMostRestarts = 20;

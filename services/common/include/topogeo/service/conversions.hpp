@@ -29,6 +29,7 @@
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/scan/scan.hpp"
+#include "topogeo/storage/map_document.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -92,6 +93,15 @@ msg::LoopClosures to_msg(std::span<const topomap::LoopClosure> closures,
                          std::uint64_t trajectory_version, std::string_view robot_id,
                          std::int64_t stamp_ns, std::uint64_t sequence_number);
 std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message);
+
+/// Number of segments that so many measurements have: at least one.
+std::uint32_t edge_segment_count(std::size_t edges);
+/// Segment `segment` < edge_segment_count of the measurements that a trajectory is made of.
+msg::MapEdges to_segment(std::span<const storage::MapEdge> edges, std::uint32_t segment,
+                         std::uint64_t trajectory_version, std::string_view robot_id,
+                         std::int64_t stamp_ns, std::uint64_t sequence_number);
+/// The measurements of one segment, checked: as many as `total` has, of ascending stops.
+std::vector<storage::MapEdge> from_msg(const msg::MapEdges& message);
 
 /// Number of segments that so many loop decisions have.
 std::uint32_t decision_segment_count(std::size_t decisions);

@@ -49,6 +49,7 @@ class StoreClient {
   Handler handler_;
   std::vector<std::optional<std::string>> pieces_;  // of the answer
   Clock::time_point last_heard_;
+  bool heard_by_nobody_ = false;  // the store was not known when the request was sent
   std::uint64_t timer_ = 0;
 };
 

@@ -74,6 +74,10 @@ class Localizer : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return loops_.decisions();
   }
+  /// None where it goes on with a stored map that does not keep its own.
+  [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const override {
+    return edges_known_ ? graph_.edges() : no_edges();
+  }
   [[nodiscard]] LocalizationStatus status() const override { return monitor_.status(); }
   [[nodiscard]] SlamCounts counts() const override;
   /// The stops and all that was measured between them.
@@ -108,6 +112,7 @@ class Localizer : public Slam {
   std::vector<UncertainPose> odometry_steps_;
   std::size_t stored_stops_ = 0;      // that were there before the first own one
   std::optional<UncertainPose> gap_;  // to the next stop, where no odometry leads to it
+  bool edges_known_ = true;
   std::uint64_t version_ = 0;
   std::uint64_t steps_in_doubt_ = 0;
 };

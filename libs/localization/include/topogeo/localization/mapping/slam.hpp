@@ -12,6 +12,7 @@
 #include "topogeo/localization/mapping/localization_state.hpp"
 #include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/mapping/match_counts.hpp"
+#include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
@@ -44,11 +45,17 @@ class Slam {
   [[nodiscard]] virtual std::vector<topomap::LoopClosure> loop_closures() const = 0;
   /// Every loop that was considered so far, in the order of the decisions.
   [[nodiscard]] virtual const std::vector<LoopDecision>& loop_decisions() const = 0;
+  /// All measurements that hold the poses together, if they are known; else none.
+  [[nodiscard]] virtual const std::vector<PoseGraphEdge>& edges() const { return no_edges(); }
   /// How well the pose of the last stop is known.
   [[nodiscard]] virtual LocalizationStatus status() const = 0;
   [[nodiscard]] virtual SlamCounts counts() const = 0;
 
  protected:
+  static const std::vector<PoseGraphEdge>& no_edges() {
+    static const std::vector<PoseGraphEdge> none;
+    return none;
+  }
   Slam() = default;
   Slam(const Slam&) = default;
   Slam& operator=(const Slam&) = default;

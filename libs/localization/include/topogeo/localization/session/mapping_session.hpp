@@ -80,6 +80,9 @@ class MappingSession : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override {
     return mapper_->loop_decisions();
   }
+  [[nodiscard]] const std::vector<PoseGraphEdge>& edges() const override {
+    return mapper_->edges();
+  }
   [[nodiscard]] LocalizationStatus status() const override {
     return follower_ ? follower_->status() : mapper_->status();
   }

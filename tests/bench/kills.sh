@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Each service killed with -9 ten times at random moments of the simulated drive through the demo
+# floor (topogeo run --sim: gateway, emulated laser and base, all services): the map must end
+# complete, its error within 1 cm of that of an undisturbed drive. Prints a row for each drive.
+#
+#   tests/bench/kills.sh OUT [KILLS] [SERVICE...]     ten kills, all services, 4 minutes each
+#
+# SEED=n chooses other moments. Over UDP: a killed program leaves shared memory behind in which
+# others may wait for seconds.
+set -euo pipefail
+out=${1:?"expected a folder for the results"}
+kills=${2:-10}
+services=("${@:3}")
+[ ${#services[@]} -gt 0 ] ||
+  services=(sensor_gateway local_mapper localizer ga_worker_1 map_store planner)
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+bin=${BIN:-$root/build/bin}
+world=${WORLD:-$root/tests/data/floor.world.yaml}
+export TOPOGEO_DDS_PARTICIPANT=udp_only
+RANDOM=${SEED:-1}
+mkdir -p "$out"
+
+drive() {  # NAME: starts a drive
+  "$bin/topogeo" run --sim "$world" --out "$out/$1" --workers 1 \
+    > "$out/$1.out" 2> "$out/$1.err" &
+  run=$!
+}
+process() {  # SERVICE: the child of the run that has it
+  case $1 in
+    ga_worker_1) pgrep -P "$run" -f "/ga_worker .*--name ga_worker_1" ;;
+    *) pgrep -P "$run" -x "$1" ;;
+  esac
+}
+row() {  # NAME KILLS: result of a drive
+  local corrected stops times
+  corrected=$(grep -o 'corrected.*' "$out/$1.out" | head -1 || true)
+  stops=$(grep -o '^.*stops.*' "$out/$1.out" | head -1 || true)
+  times=$({ grep -o 'at work again after [0-9.]* s' "$out/$1.err" || true; } | awk '
+    { n++; sum += $5; if ($5 > most) most = $5 }
+    END { if (n) printf "%d times at work again after %.1f s, at most %.1f s", n, sum / n, most }')
+  echo "$1: $2 kills; $times; $corrected; $stops"
+}
+
+if [ ! -s "$out/undisturbed.out" ]; then
+  drive undisturbed
+  wait "$run" || echo "undisturbed: failed, see $out/undisturbed.err"
+fi
+row undisturbed 0
+for service in "${services[@]}"; do
+  drive "$service"
+  done=0
+  until grep -q 'mapping' "$out/$service.err"; do sleep 0.2; done
+  for ((i = 0; i < kills; ++i)); do
+    # A drive takes 200 s on a machine of its own: the moments are spread over the first 150.
+    sleep "$((150 / kills / 2 + RANDOM % (150 / kills))).$((RANDOM % 1000))"
+    kill -0 "$run" 2> /dev/null || break
+    pid=$(process "$service") || continue
+    kill -9 "$pid" && done=$((done + 1))
+  done
+  wait "$run" || echo "$service: failed: $(tail -1 "$out/$service.err")"
+  row "$service" "$done"
+done
