@@ -67,7 +67,8 @@ function(topogeo_add_idl)
   add_library(${target} STATIC ${sources})
   add_library(topogeo::${ARG_NAME} ALIAS ${target})
   # SYSTEM: generated headers do not follow our warnings.
-  target_include_directories(${target} SYSTEM PUBLIC ${include_dir})
+  target_include_directories(${target} SYSTEM PUBLIC $<BUILD_INTERFACE:${include_dir}>
+                                                     $<INSTALL_INTERFACE:include>)
   target_link_libraries(${target} PUBLIC fastcdr fastrtps)
   target_compile_options(${target} PRIVATE -w ${TOPOGEO_COLD_OPTIMIZATION})
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${TOPOGEO_UNITY} UNITY_BUILD_BATCH_SIZE 12)

@@ -66,7 +66,8 @@ function(topogeo_add_library)
   set(target topogeo_${ARG_NAME})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(topogeo::${ARG_NAME} ALIAS ${target})
-  target_include_directories(${target} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/include
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                                              $<INSTALL_INTERFACE:include>
                                        PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   topogeo_compile_options(${target})

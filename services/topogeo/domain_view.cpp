@@ -51,8 +51,10 @@ void add_view_options(command_line::Command& app, DomainView& view) {
   app.add_flag("--watch", view.watch, "again every second until Ctrl-C");
 }
 
-messaging::Participant join(const DomainView& view, const std::string& name) {
+messaging::Participant join(const DomainView& view, const std::string& name,
+                            const std::string& identity) {
   messaging::ParticipantOptions options;
+  options.identity = identity;
   options.domain = view.domain;
   options.partition = view.partition;
   options.name = name;

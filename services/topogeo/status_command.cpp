@@ -20,6 +20,7 @@ namespace {
 struct StatusOptions {
   DomainView view;
   std::string service;  ///< only those of this name; empty: all
+  std::string host;     ///< only those of this host; empty: all
   bool verbose = false;
   bool json = false;
 };
@@ -36,13 +37,14 @@ void print(const StatusOptions& options, const StatusTable& table,
 }
 
 int show_status(const StatusOptions& options) {
-  const messaging::Participant participant = join(options.view, "topogeo status");
+  const messaging::Participant participant = join(options.view, "topogeo status", "status");
   messaging::EventLoop loop;
   StatusTable table;
   loop.add<msg::ServiceStatus>(
       messaging::Reader<msg::ServiceStatus>(participant),
       [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
         if (!options.service.empty() && status.service() != options.service.c_str()) return;
+        if (!options.host.empty() && status.host() != options.host.c_str()) return;
         table.update(status, info, StatusTable::Clock::now());
       },
       [&](const messaging::SampleInfo& info) { table.remove(info); });
@@ -73,6 +75,9 @@ void add_status_command(command_line::Command& app, int& exit_code) {
   command->add_option("service", options->service, "only services of this name, with all details")
       ->type_name("SERVICE");
   add_view_options(*command, options->view);
+  command
+      ->add_option("--host", options->host, "only services of this host, for example $(hostname)")
+      ->type_name("HOST");
   command->add_flag("--verbose", options->verbose, "details of all services: counters, versions");
   command->add_flag("--json", options->json, "for programs: fields as in idl/status.idl");
   command->footer(

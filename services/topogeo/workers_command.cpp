@@ -25,7 +25,7 @@ struct WorkersOptions {
 };
 
 int show_workers(const WorkersOptions& options) {
-  const messaging::Participant participant = join(options.view, "topogeo workers");
+  const messaging::Participant participant = join(options.view, "topogeo workers", "status");
   const messaging::Reader<msg::WorkerStatus> reader(participant);
   messaging::EventLoop loop;
   WorkerTable table(std::string(support::kVersion), localization::matcher_fingerprint());

@@ -1,8 +1,11 @@
 #include "topogeo/command_line/command_line.hpp"
 
 #include <iostream>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
+
+#include "generated_help.hpp"
 
 namespace topogeo::command_line {
 
@@ -186,6 +189,14 @@ void Command::set_version_flag(const std::string& names, const std::string& vers
 }
 
 std::optional<int> Command::parse(int argc, const char* const* argv) {
+  if (argc == 2 && argv[1] == std::string_view("--print-manual")) {
+    std::cout << manual_page(*app_);
+    return 0;
+  }
+  if (argc == 2 && argv[1] == std::string_view("--print-completion")) {
+    std::cout << bash_completion(*app_);
+    return 0;
+  }
   try {
     app_->parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version

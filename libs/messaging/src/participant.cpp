@@ -85,8 +85,22 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                              "' is not in the profiles file");
   }
   qos.name(options.name);
-  participant_ = require(factory->create_participant(options.domain, qos),
-                         "a participant in domain " + std::to_string(options.domain));
+  const std::filesystem::path security =
+      options.security.empty() ? std::filesystem::path(environment("TOPOGEO_SECURITY"))
+                               : options.security;
+  if (!security.empty()) {
+    add_security(qos, security / options.identity);
+    refusals_ = std::make_unique<RefusalListener>();
+  }
+  participant_ =
+      factory->create_participant(options.domain, qos, refusals_.get(), dds::StatusMask::none());
+  if (participant_ == nullptr && secured()) {
+    throw std::runtime_error("DDS security: the material in '" +
+                             (security / options.identity).string() + "' was refused" +
+                             reason_of_denial());
+  }
+  static_cast<void>(
+      require(participant_, "a participant in domain " + std::to_string(options.domain)));
   try {
     if (participant_->register_content_filter_factory(
             kAddressFilterClass, &AddressFilterFactory::instance()) != ReturnCode_t::RETCODE_OK) {
@@ -146,7 +160,21 @@ void ParticipantCore::remove_filtered(dds::ContentFilteredTopic& topic) {
   participant_->delete_contentfilteredtopic(&topic);
 }
 
+std::vector<std::string> ParticipantCore::take_refusals() {
+  return refusals_ == nullptr ? std::vector<std::string>{} : refusals_->take();
+}
+
+std::string ParticipantCore::reason_of_denial() const {
+  if (!secured()) return {};
+  const std::string error = last_security_error();
+  return error.empty() ? ": denied by security" : ": denied by security: " + error;
+}
+
 Participant::Participant(const ParticipantOptions& options)
     : core_(std::make_shared<ParticipantCore>(options)) {}
+
+std::vector<std::string> Participant::take_refusals() const {
+  return core_->take_refusals();
+}
 
 }  // namespace topogeo::messaging

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -15,6 +17,8 @@
 
 #include "topogeo/messaging/detail/endpoint.hpp"
 #include "topogeo/messaging/participant.hpp"
+
+#include "security.hpp"
 
 namespace topogeo::messaging {
 
@@ -37,7 +41,13 @@ class ParticipantCore {
                                                               const std::string& addressee);
   void remove_filtered(eprosima::fastdds::dds::ContentFilteredTopic& topic);
 
+  [[nodiscard]] bool secured() const { return refusals_ != nullptr; }
+  std::vector<std::string> take_refusals();
+  /// Why an endpoint was not made: what the plug-ins of security logged, empty without security.
+  [[nodiscard]] std::string reason_of_denial() const;
+
  private:
+  std::unique_ptr<RefusalListener> refusals_;  // with security; called while participant_ lives
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

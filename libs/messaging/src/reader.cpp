@@ -139,7 +139,8 @@ ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
   impl_->reader = subscriber.create_datareader(description, qos, &impl_->listener, mask);
   if (impl_->reader == nullptr) {
     throw std::runtime_error("DDS: cannot create a reader of topic " + std::string(topic.name) +
-                             " with profile '" + profile + "'");
+                             " with profile '" + profile + "'" +
+                             impl_->participant->reason_of_denial());
   }
   impl_->reader->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
 }

@@ -1,6 +1,7 @@
 #include "topogeo/messaging/status_publisher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -72,6 +73,13 @@ void StatusPublisher::set_state(msg::ServiceState state, std::string_view messag
   status_.state(state);
   set_text_cut(status_.message(), message);
   publish();
+}
+
+std::string StatusPublisher::text() const {
+  constexpr std::array<const char*, 6> kNames = {"starting", "waiting", "running",
+                                                 "finished", "failed",  "stopped"};
+  const std::string message = status_.message().c_str();
+  return kNames.at(status_.state()) + (message.empty() ? "" : ": " + message);
 }
 
 void StatusPublisher::count_input(std::string_view name) {

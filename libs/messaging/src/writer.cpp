@@ -80,7 +80,8 @@ WriterCore::WriterCore(const Participant& participant, const TopicInfo& topic,
       publisher.create_datawriter(&impl_->participant->topic(topic), qos, &impl_->listener);
   if (impl_->writer == nullptr) {
     throw std::runtime_error("DDS: cannot create a writer of topic " + std::string(topic.name) +
-                             " with profile '" + profile + "'");
+                             " with profile '" + profile + "'" +
+                             impl_->participant->reason_of_denial());
   }
 }
 

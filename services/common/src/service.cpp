@@ -13,7 +13,7 @@ namespace topogeo::service {
 namespace {
 
 /// Less than the period of the status, which is to be of now.
-constexpr std::chrono::milliseconds kCpuPeriod{200};
+constexpr std::chrono::milliseconds kTick{200};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Service::Service(const Setup& setup, bool any_robot)
       participant_, loop_,
       messaging::ServiceIdentity{setup.name, setup.instance, any_robot ? "" : robot_id(),
                                  std::string(support::kVersion)});
-  loop_.add_timer(kCpuPeriod, [this] { status_->set_counter("cpu_s", support::process_cpu_s()); });
+  loop_.add_timer(kTick, [this] { tick(); });
 }
 
 Service::~Service() {
@@ -40,6 +40,14 @@ void Service::run() {
     throw;
   }
   spdlog::debug("stopped");
+}
+
+void Service::tick() {
+  status_->set_counter("cpu_s", support::process_cpu_s());
+  manager_.show(status_->text());
+  for (const std::string& refusal : participant_.take_refusals()) {
+    status_->fault("peer refused", refusal);
+  }
 }
 
 void Service::report_blocked(std::string_view what) {

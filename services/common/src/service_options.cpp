@@ -58,6 +58,7 @@ messaging::Participant make_participant(const ServiceOptions& options, const std
   participant.partition = options.partition;
   participant.name = options.robot_id + "/" + service;
   participant.profiles_file = options.profiles_file;
+  participant.identity = service;
   return messaging::Participant(participant);
 }
 

@@ -1,5 +1,8 @@
 #include "topogeo/command_line/command_line.hpp"
 
+#include <cstdio>
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -258,6 +261,62 @@ TEST(CommandLine, ReportsWrongUsageForProgramsWithoutExitCodes) {
   EXPECT_EQ(command.parse_or_report(static_cast<int>(words.size()), words.data()), 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "The following argument was not expected: --other (see --help)\n");
+}
+
+/// What a program with these words prints.
+std::string printed(Command& command, const char* word) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(parse(command, {word}), 0);
+  return testing::internal::GetCapturedStdout();
+}
+
+struct ToolCommand {
+  ToolCommand() {
+    command.add_flag("--all", all, "everything - at once");
+    Command* drive = command.add_subcommand("drive", "Drive somewhere");
+    drive->add_option("--gear", gear, "how fast")
+        ->check(one_of({"low", "high"}))
+        ->default_str("low");
+    drive->add_subcommand("home", "Drive home");
+  }
+  Command command{"Drives things. And more.", "tool"};
+  std::string gear;
+  bool all = false;
+};
+
+TEST(CommandLine, PrintsAManualPageOfItsOptions) {
+  ToolCommand tool;
+  const std::string page = printed(tool.command, "--print-manual");
+  EXPECT_THAT(page, HasSubstr("tool \\- Drives things\n"));
+  EXPECT_THAT(page, HasSubstr(".B \\-\\-all\neverything \\- at once\n"));
+  EXPECT_THAT(page, HasSubstr(".SS tool drive\nDrive somewhere\n"));
+  EXPECT_THAT(page, HasSubstr("how fast ({low,high}) (default: low)"));
+  EXPECT_THAT(page, HasSubstr(".SS tool drive home\n"));
+}
+
+/// What bash offers for the words of a line, the last of which is not finished.
+std::string completed(const std::string& script, const std::string& line) {
+  const std::string file = testing::TempDir() + "completion.bash";
+  std::ofstream(file) << script << "COMP_WORDS=(" << line
+                      << "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _tool; echo ${COMPREPLY[*]}";
+  std::FILE* const output = ::popen(("bash " + file).c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(output); c != EOF && c != '\n'; c = std::fgetc(output)) {
+    text += static_cast<char>(c);
+  }
+  EXPECT_EQ(::pclose(output), 0);
+  return text;
+}
+
+TEST(CommandLine, PrintsACompletionThatBashUnderstands) {
+  ToolCommand tool;
+  const std::string script = printed(tool.command, "--print-completion");
+  EXPECT_EQ(completed(script, "tool d"), "drive");
+  EXPECT_EQ(completed(script, "tool --"), "--help --all");
+  EXPECT_EQ(completed(script, "tool drive --"), "--help --gear");
+  EXPECT_EQ(completed(script, "tool drive --gear ''"), "low high");
+  EXPECT_EQ(completed(script, "tool drive h"), "home");
+  EXPECT_EQ(completed(script, "tool drive home h"), "");
 }
 
 }  // namespace

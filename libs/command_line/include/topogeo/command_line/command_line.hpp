@@ -129,6 +129,8 @@ class Command {
 
   /// Fills the variables and calls what was given to callback(). Returns the exit code when the
   /// program has nothing left to do, since help or the version was printed. Throws UsageError.
+  /// The only words --print-manual and --print-completion, which help does not list, print the
+  /// manual page and the completion for bash.
   [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
   /// The same for programs that have no exit codes of their own: prints what is wrong to stderr and
   /// returns 2.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace topogeo::messaging {
 
@@ -22,6 +23,10 @@ struct ParticipantOptions {
   /// File of QoS profiles; empty: TOPOGEO_DDS_PROFILES of the environment, else the built-in copy
   /// of deploy/dds_profiles.xml. One process can use one file only.
   std::filesystem::path profiles_file;
+  /// Folder with a folder for each identity, made by deploy/security/make_keys: certificate,
+  /// permissions, encryption. Empty: TOPOGEO_SECURITY of the environment; empty, too: no security.
+  std::filesystem::path security;
+  std::string identity = "topogeo";  ///< its folder there: name of the service or command
 };
 
 class ParticipantCore;
@@ -29,8 +34,13 @@ class ParticipantCore;
 class Participant {
  public:
   /// Joins the domain. Throws std::runtime_error when the profiles cannot be loaded, the profile is
-  /// unknown or the transport cannot be opened; std::invalid_argument for a domain over 232.
+  /// unknown, the transport cannot be opened or the security material is refused;
+  /// std::invalid_argument for a domain over 232.
   explicit Participant(const ParticipantOptions& options = {});
+
+  /// With security: a line for each peer that was refused since the last call and for each thing
+  /// that a peer was denied.
+  [[nodiscard]] std::vector<std::string> take_refusals() const;
 
   [[nodiscard]] const std::shared_ptr<ParticipantCore>& core() const { return core_; }
 

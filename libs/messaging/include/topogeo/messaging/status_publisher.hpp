@@ -38,6 +38,8 @@ class StatusPublisher {
   /// Sent at once. `message` is for people and may be empty.
   void set_state(msg::ServiceState state, std::string_view message = {});
   [[nodiscard]] msg::ServiceState state() const { return status_.state(); }
+  /// The state and its message, for people.
+  [[nodiscard]] std::string text() const;
 
   /// Counts one of what the service works on, for example "scan". A service has one such input.
   void count_input(std::string_view name);

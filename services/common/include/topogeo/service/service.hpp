@@ -12,6 +12,7 @@
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/service_manager.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/messaging/status_publisher.hpp"
 #include "topogeo/messaging/topics.hpp"
@@ -111,6 +112,8 @@ class Service {
     return false;
   }
 
+  /// What the status and the service manager show besides what services report themselves.
+  void tick();
   void report_blocked(std::string_view what);
   void report_invalid(const messaging::TopicInfo& topic, std::uint64_t sequence_number,
                       std::string_view why);
@@ -120,6 +123,7 @@ class Service {
   messaging::EventLoop loop_;
   std::optional<messaging::StatusPublisher> status_;
   std::optional<messaging::SignalStop> signals_;
+  messaging::ServiceManager manager_{loop_};
 };
 
 }  // namespace topogeo::service

@@ -1,0 +1,164 @@
+#include "security.hpp"
+
+#include <array>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include <fastdds/dds/log/Log.hpp>
+
+#include "topogeo/support/log.hpp"
+
+namespace topogeo::messaging {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+/// Lines kept until they are taken, and peers: strangers can make any number of them.
+constexpr std::size_t kMaxRefusals = 256;
+constexpr std::size_t kMaxPeers = 1024;
+/// Three messages, sent again each second where one is lost.
+constexpr std::chrono::seconds kHandshakeTime{3};
+
+struct SecurityFile {
+  const char* property;
+  const char* name;
+  bool required;
+};
+
+constexpr std::array<SecurityFile, 7> kFiles = {{
+    {"dds.sec.auth.builtin.PKI-DH.identity_ca", "identity_ca.pem", true},
+    {"dds.sec.auth.builtin.PKI-DH.identity_certificate", "certificate.pem", true},
+    {"dds.sec.auth.builtin.PKI-DH.private_key", "key.pem", true},
+    {"dds.sec.auth.builtin.PKI-DH.identity_crl", "revoked.pem", false},
+    {"dds.sec.access.builtin.Access-Permissions.permissions_ca", "permissions_ca.pem", true},
+    {"dds.sec.access.builtin.Access-Permissions.governance", "governance.p7s", true},
+    {"dds.sec.access.builtin.Access-Permissions.permissions", "permissions.p7s", true},
+}};
+
+/// What the security plug-ins of this process logged. Never destroyed: the logging thread of the
+/// middleware may outlive static objects.
+struct SecurityErrors {
+  std::mutex mutex;
+  std::deque<std::string> lines;
+  std::string last;
+};
+
+SecurityErrors& security_errors() {
+  static auto* const errors = new SecurityErrors;  // NOLINT(cppcoreguidelines-owning-memory)
+  return *errors;
+}
+
+class LogForwarder final : public dds::LogConsumer {
+ public:
+  void Consume(const dds::Log::Entry& entry) override {
+    const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
+    if (!category.starts_with("SECURITY")) {
+      spdlog::warn("DDS: {}: {}", category, entry.message);
+      return;
+    }
+    SecurityErrors& errors = security_errors();
+    const std::lock_guard lock(errors.mutex);
+    errors.last = entry.message;
+    if (errors.lines.size() == kMaxRefusals) errors.lines.pop_front();
+    errors.lines.push_back(entry.message);
+  }
+};
+
+/// In place of the middleware's own printing, which a stranger could use to fill a log.
+void forward_log() {
+  static const bool done = [] {
+    dds::Log::ClearConsumers();
+    dds::Log::RegisterConsumer(std::make_unique<LogForwarder>());
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+std::string text_of(const rtps::GuidPrefix_t& prefix) {
+  std::ostringstream text;
+  text << prefix;
+  return text.str();
+}
+
+}  // namespace
+
+void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& folder) {
+  forward_log();
+  auto& properties = qos.properties().properties();
+  properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");
+  properties.emplace_back("dds.sec.access.plugin", "builtin.Access-Permissions");
+  properties.emplace_back("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+  for (const SecurityFile& file : kFiles) {
+    const std::filesystem::path path = std::filesystem::absolute(folder / file.name);
+    if (!std::filesystem::exists(path)) {
+      if (!file.required) continue;
+      throw std::runtime_error("DDS security: cannot read '" + path.string() +
+                               "'; deploy/security/make_keys makes it");
+    }
+    properties.emplace_back(file.property, "file://" + path.string());
+  }
+}
+
+std::string last_security_error() {
+  dds::Log::Flush();
+  SecurityErrors& errors = security_errors();
+  const std::lock_guard lock(errors.mutex);
+  return errors.last;
+}
+
+void RefusalListener::on_participant_discovery(dds::DomainParticipant* /*participant*/,
+                                               rtps::ParticipantDiscoveryInfo&& info) {
+  const rtps::GuidPrefix_t& prefix = info.info.m_guid.guidPrefix;
+  const std::lock_guard lock(mutex_);
+  const auto known = peers_.find(prefix);
+  if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+      info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
+    if (known == peers_.end()) return;
+    if (!known->second.settled) report(prefix, "left before it had shown who it is");
+    peers_.erase(known);
+  } else if (known == peers_.end() && peers_.size() < kMaxPeers) {
+    peers_[prefix] = {info.info.m_participantName.to_string(), Clock::now()};
+  }
+}
+
+void RefusalListener::onParticipantAuthentication(dds::DomainParticipant* /*participant*/,
+                                                  rtps::ParticipantAuthenticationInfo&& info) {
+  const rtps::GuidPrefix_t& prefix = info.guid.guidPrefix;
+  const std::lock_guard lock(mutex_);
+  if (info.status == rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT) {
+    report(prefix, "has not shown who it is");
+  }
+  if (const auto known = peers_.find(prefix); known != peers_.end()) known->second.settled = true;
+}
+
+void RefusalListener::report(const rtps::GuidPrefix_t& prefix, const std::string& what) {
+  const auto known = peers_.find(prefix);
+  if (refusals_.size() == kMaxRefusals) refusals_.pop_front();
+  refusals_.push_back("'" + (known == peers_.end() ? std::string("unnamed") : known->second.name) +
+                      "' (" + text_of(prefix) + ") " + what);
+}
+
+std::vector<std::string> RefusalListener::take() {
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [prefix, peer] : peers_) {
+      if (peer.settled || Clock::now() - peer.since < kHandshakeTime) continue;
+      report(prefix, "does not finish authentication");
+      peer.settled = true;
+    }
+    lines.assign(refusals_.begin(), refusals_.end());
+    refusals_.clear();
+  }
+  SecurityErrors& errors = security_errors();
+  const std::lock_guard lock(errors.mutex);
+  lines.insert(lines.end(), errors.lines.begin(), errors.lines.end());
+  errors.lines.clear();
+  return lines;
+}
+
+}  // namespace topogeo::messaging

@@ -1,0 +1,58 @@
+// DDS security of a participant: its certificate and permissions, and the peers that it refuses.
+// Object Management Group, DDS Security 1.1, chapters 8 and 9; Fast DDS has the built-in plug-ins.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+
+namespace topogeo::messaging {
+
+/// Turns authentication, access control and encryption on, with the files that
+/// deploy/security/make_keys writes into `folder`. Throws std::runtime_error that names the file
+/// that is missing.
+void add_security(eprosima::fastdds::dds::DomainParticipantQos& qos,
+                  const std::filesystem::path& folder);
+
+/// What the security plug-ins last logged, to explain a participant or endpoint that could not be
+/// made; empty when they logged nothing.
+std::string last_security_error();
+
+/// Remembers the peers that did not pass authentication: those that were refused, and those that
+/// have not finished it, because they do not accept us or have nothing to show.
+class RefusalListener final : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void onParticipantAuthentication(
+      eprosima::fastdds::dds::DomainParticipant* participant,
+      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+
+  /// A line for each refusal since the last call: those of this participant, and what the security
+  /// plug-ins of this process logged. Bounded: of a flood the newest remain.
+  std::vector<std::string> take();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Peer {
+    std::string name;
+    Clock::time_point since;
+    bool settled = false;  // accepted, or reported already
+  };
+
+  void report(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix, const std::string& what);
+
+  std::mutex mutex_;
+  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, Peer> peers_;
+  std::deque<std::string> refusals_;
+};
+
+}  // namespace topogeo::messaging

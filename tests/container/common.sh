@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# What the tests of this folder have in common. Sourced with the build folder as first argument of the test.
+set -euo pipefail
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build=$(cd "${1:?"expected the build folder"}" && pwd)
+bin=$build/bin
+work=$(mktemp -d)
+cleanups=()
+
+# The last thing that was to be cleaned up goes first.
+clean_up() {
+  local status=$? i
+  for ((i = ${#cleanups[@]} - 1; i >= 0; --i)); do eval "${cleanups[i]}" > /dev/null 2>&1 || true; done
+  [ $status -eq 0 ] || [ $status -eq 77 ] || [ -z "${KEEP:-}" ] || { echo "kept: $work" >&2; return; }
+  rm -rf "$work"
+}
+trap clean_up EXIT
+
+step() { printf '%3d s: %s\n' $SECONDS "$*"; }
+fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
+skip() { printf 'skipped: %s\n' "$*"; exit 77; }  # SKIP_RETURN_CODE
+need() { command -v "$1" > /dev/null || skip "$1 is not installed"; }
+
+# eventually SECONDS COMMAND...: until the command succeeds.
+eventually() {
+  local end=$((SECONDS + $1))
+  shift
+  until "$@"; do
+    [ $SECONDS -lt $end ] || return 1
+    sleep 0.2
+  done
+}
+
+need_programs() {
+  local program
+  for program in topogeo navigator simulator ga_worker; do
+    [ -x "$bin/$program" ] || skip "the services are not built"
+  done
+}
+
+# Packages of the programs as they are now.
+need_packages() {
+  need dpkg-shlibdeps
+  need_programs
+  exec 8> "$build/.packages.lock"
+  flock 8
+  local newest
+  newest=$(find "$bin" "$source_dir/cmake" "$source_dir/deploy" -newer "$build/packages/topogeo_0.1.0_amd64.deb" -type f \
+    2> /dev/null | head -n 1) || true
+  if [ ! -e "$build/packages/topogeo_0.1.0_amd64.deb" ] || [ -n "$newest" ]; then
+    step "making packages"
+    ninja -C "$build" manuals > "$work/ninja.log" 2>&1 || { cat "$work/ninja.log"; fail "manual pages"; }
+    (cd "$build" && cpack > "$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
+  fi
+  exec 8>&-
+}
+
+need_engine() {
+  need docker
+  docker info > /dev/null 2>&1 || skip "no container engine runs (tests/container/start_engine starts one)"
+}
+
+image=topogeo-test
+
+# The image of the packages; the tests share it.
+need_image() {
+  need_engine
+  need_packages
+  exec 7> "$build/.image.lock"
+  flock 7
+  local key
+  key=$(sha256sum "$build"/packages/*.deb "$source_dir"/deploy/{Dockerfile,health,install-packages} |
+    sha256sum | cut -c1-16)
+  if [ "$(docker image inspect -f '{{ index .Config.Labels "key" }}' $image 2> /dev/null)" != "$key" ]; then
+    step "making the image"
+    "$source_dir/deploy/image" $image --label key="$key" > "$work/image.log" 2>&1 ||
+      { tail -n 30 "$work/image.log"; fail "the image cannot be made"; }
+    step "made the image"
+  fi
+  exec 7>&-
+}
+
+# A log of the synthetic floor, its first N scans: log N FILE.
+make_log() {
+  local all=$build/tests/container-floor.clf
+  exec 6> "$build/.log.lock"
+  flock 6
+  if [ ! -e "$all" ]; then
+    # The demo writes the log first; what it makes of it is not needed here.
+    "$bin/topogeo" demo --out "$work/demo" --workers 0 > "$work/demo.log" 2>&1 ||
+      { cat "$work/demo.log"; fail "topogeo demo"; }
+    gunzip -c "$work/demo/floor.clf.gz" > "$all.new"
+    mv "$all.new" "$all"
+  fi
+  exec 6>&-
+  awk -v most="$1" '/^FLASER/ && ++scans > most { exit } { print }' "$all" > "$2"
+}
+
+same_results() {  # DIR DIR
+  local file
+  for file in map.pb trajectory.tum; do
+    [ -s "$1/$file" ] || fail "$1/$file is missing"
+    cmp "$1/$file" "$2/$file" || fail "$file differs from that of one process"
+  done
+}

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Hosts as containers on a bridge network, for the tests of this folder. Sourced after common.sh.
+# shellcheck disable=SC2154  # common.sh sets them
+
+network=topogeo-test-$$
+
+make_network() {
+  docker network create "$network" > /dev/null
+  cleanups+=("docker network rm $network")
+}
+
+# start_host NAME [OPTIONS]: a container that waits for `run_on`.
+start_host() {
+  local host=$1
+  shift
+  docker run -d --rm --name "$network-$host" --hostname "$host" --network "$network" --network-alias "$host" \
+    --init --no-healthcheck -e TOPOGEO_DDS_PARTICIPANT=udp_only -e TOPOGEO_DOMAIN=0 \
+    -v "$work:/work" --user root "$@" "$image" sleep infinity > /dev/null
+  cleanups+=("docker rm -f $network-$host")
+}
+
+on() {  # HOST COMMAND...
+  docker exec "$network-$1" "${@:2}"
+}
+
+# start_on HOST NAME COMMAND...: in the background; output in $work/log/HOST.NAME.
+start_on() {
+  mkdir -p "$work/log"
+  # shellcheck disable=SC2016
+  docker exec -d "$network-$1" sh -c 'echo $$ > "/run/$1.pid"; log=/work/log/$(hostname).$1; shift
+    exec "$@" >> "$log" 2>&1' sh "${@:2}"
+}
+
+# kill_on HOST NAME [SIGNAL]: and waits until it is gone.
+kill_on() {
+  # shellcheck disable=SC2016
+  on "$1" sh -c 'pid=$(cat "/run/$1.pid"); kill -"$2" "$pid"; while kill -0 "$pid" 2> /dev/null; do sleep 0.05; done' \
+    sh "$2" "${3:-9}"
+}
+
+no_multicast_on() {  # HOST
+  local pid
+  pid=$(docker inspect -f '{{ .State.Pid }}' "$network-$1")
+  nsenter -t "$pid" -n iptables -A OUTPUT -d 224.0.0.0/4 -j DROP
+}
+
+# Number of workers that have done something, and of those that are there.
+workers_done() { on robot topogeo workers 2> /dev/null | awk 'NR > 1 && $5 ~ /^[0-9]+$/ && $5 > 0' | wc -l; }
+workers_there() { on robot topogeo workers 2> /dev/null | awk 'NR > 1 && $5 ~ /^[0-9]+$/' | wc -l; }
+
+start_worker() { start_on "$1" ga_worker ga_worker --slots 1 --name "$1"; }
+
+start_service() {  # NAME, on the robot
+  case $1 in
+    map_store) start_on robot map_store map_store --out "/work/$run" --title log.clf ;;
+    sensor_gateway) start_on robot sensor_gateway sensor_gateway --log /work/log.clf --rate "${rate:-lossless}" ;;
+    localizer) start_on robot localizer localizer --replay --wait-workers "${workers:-2}" --wait-seconds 30 ;;
+    local_mapper) start_on robot local_mapper local_mapper --replay ;;
+    *) start_on robot "$1" "$1" ;;
+  esac
+}
+
+# start_mapping RUN: all services of the robot; the results come into $work/RUN.
+start_mapping() {
+  run=$1
+  local service
+  for service in map_store localizer local_mapper planner sensor_gateway; do start_service $service; done
+}
+
+# wait_for_map SECONDS
+wait_for_map() {
+  eventually "$1" test -e "$work/$run/trajectory.tum" || { tail -n 3 "$work"/log/* >&2; fail "no map in time"; }
+  eventually 20 test -e "$work/$run/map.pb" || fail "no map in time"
+}
+
+stop_mapping() {
+  local service
+  for service in sensor_gateway local_mapper localizer planner map_store; do kill_on robot $service TERM || true; done
+}

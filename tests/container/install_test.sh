@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# What cmake --install makes: units that systemd accepts, and headers and libraries with which a program of
+# somebody else hears a service.
+# shellcheck source-path=SCRIPTDIR
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+need_programs
+step "installing"
+ninja -C "$build" manuals > /dev/null
+DESTDIR=$work/root cmake --install "$build" --strip > "$work/install.log" 2>&1 ||
+  { tail -n 5 "$work/install.log"; fail "cmake --install"; }
+prefix=$work/root$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$build/CMakeCache.txt")
+
+step "units"
+if command -v systemd-analyze > /dev/null; then
+  cp -r "$prefix/lib/systemd/system" "$work/units"
+  # Names of programs are looked up in the folders of the system; here they are somewhere else.
+  sed -Ei "s#^ExecStart=([^ ]+)#ExecStart=$prefix/bin/\\1#" "$work"/units/*.service
+  mv "$work/units/topogeo-worker@.service" "$work/units/topogeo-worker@1.service"
+  for unit in "$work"/units/*; do
+    # What other units of this machine have wrong is not of interest.
+    MANPATH=$prefix/share/man systemd-analyze verify "$unit" 2>&1 | grep -F topogeo > "$work/verify" || true
+    [ ! -s "$work/verify" ] || { cat "$work/verify"; fail "$(basename "$unit")"; }
+  done
+  sed -i 's/^Restart=always/Restart=nonsense/' "$work/units/topogeo-worker@1.service"
+  MANPATH=$prefix/share/man systemd-analyze verify "$work/units/topogeo-worker@1.service" 2>&1 | grep -q nonsense ||
+    fail "systemd-analyze verify finds nothing wrong with a unit that is wrong"
+else
+  echo "systemd-analyze is not installed: the units are not checked"
+fi
+
+step "a subscriber"
+if ! { cmake -S "$source_dir/tests/container/subscriber" -B "$work/subscriber" -G Ninja \
+  -DCMAKE_PREFIX_PATH="$prefix" && ninja -C "$work/subscriber"; } > "$work/subscriber.log" 2>&1; then
+  tail -n 30 "$work/subscriber.log"
+  fail "the subscriber does not compile"
+fi
+partition=install-test-$$
+"$prefix/bin/topogeo-planner" --partition "$partition" --log-level off &
+cleanups+=("kill $!")
+heard=$(timeout 60 "$work/subscriber/subscriber" "$partition") || fail "the subscriber heard nothing"
+[ "$heard" = planner ] || fail "the subscriber heard '$heard'"
+
+step "signs of life for systemd"
+# The socket of the service manager, as systemd makes it.
+python3 - "$prefix/libexec/topogeo/planner" "$partition" <<'PY' || fail "sd_notify"
+import os, socket, subprocess, sys, tempfile, time
+
+path = os.path.join(tempfile.mkdtemp(), "notify")
+manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+manager.bind(path)
+manager.settimeout(30)
+planner = subprocess.Popen(
+    [sys.argv[1], "--partition", sys.argv[2], "--log-level", "off"],
+    env=dict(os.environ, NOTIFY_SOCKET=path, WATCHDOG_USEC="600000"))
+seen = []
+while not {"READY=1", "WATCHDOG=1"} <= set(seen) or not any(s.startswith("STATUS=") for s in seen):
+    seen.append(manager.recv(4096).decode())
+assert seen[0] == "READY=1", seen
+planner.terminate()
+while seen[-1] != "STOPPING=1":
+    seen.append(manager.recv(4096).decode())
+assert planner.wait() == 0
+PY

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# The packages: lintian finds no errors, they install in a clean container, the programs run there, and
+# nothing is left when they are removed.
+# shellcheck source-path=SCRIPTDIR
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+need_packages
+if command -v lintian > /dev/null; then
+  step "lintian"
+  lintian --fail-on error "$build"/packages/*.deb > "$work/lintian" 2>&1 ||
+    { grep '^E' "$work/lintian"; fail "lintian finds errors"; }
+fi
+
+need_image
+step "running what is installed"
+log=$work/log.clf
+make_log 60 "$log"
+chmod 755 "$work"
+"$bin/topogeo" map --log "$log" --out "$work/here" > /dev/null 2>&1
+# shellcheck disable=SC2016
+docker run --rm -i --user root -v "$work:/work" $image bash -euo pipefail -c '
+  [ "$(topogeo --version)" = "topogeo 0.1.0" ]
+  cd /tmp
+  # As the user of the services.
+  install -d -o topogeo /tmp/out
+  setpriv --reuid topogeo --regid topogeo --clear-groups env HOME=/tmp \
+    topogeo run --log /work/log.clf --out /tmp/out --workers 1 > /tmp/run.log 2>&1 || { cat /tmp/run.log; exit 1; }
+  cp /tmp/out/map.pb /tmp/out/trajectory.tum /work/
+  for command in topogeo ga_worker topogeo-localizer topogeo-map-store topogeo-planner; do
+    gzip -dc /usr/share/man/man1/$command.1.gz | grep -q "^.SH OPTIONS" || echo "no manual page of $command"
+    $command --help > /dev/null
+  done
+  . /usr/share/bash-completion/completions/topogeo
+  COMP_WORDS=(topogeo stat) COMP_CWORD=1
+  _topogeo
+  [ "${COMPREPLY[*]}" = status ]
+  [ -e /etc/topogeo/topogeo.env ] && [ -e /usr/lib/systemd/system/topogeo.target ]
+  apt-get purge -q -y topogeo topogeo-workers > /dev/null
+  left=$(find / -xdev -iname "*topogeo*" -not -path "/proc/*" -not -path "/tmp/*" -not -path "/work/*" \
+    -not -path "/var/log/*" -not -path "/var/lib/apt/*" -not -path "/var/cache/*" -not -path "/home/robot/*")
+  [ -z "$left" ] || { echo "left behind:"; echo "$left"; exit 1; }
+' || fail "in the container"
+mkdir "$work/there"
+mv "$work/map.pb" "$work/trajectory.tum" "$work/there"
+same_results "$work/there" "$work/here"
+
+base=$(docker image inspect -f '{{ .Size }}' "${BASE:-debian:bookworm}")
+all=$(docker image inspect -f '{{ .Size }}' $image)
+step "the image has $(((all - base) / 1000000)) MB beyond its base"
+[ $(((all - base) / 1000000)) -le 250 ] || fail "the image has more than 250 MB beyond its base"
+[ "$(docker image inspect -f '{{ .Config.User }}' $image)" = robot ] || fail "the image runs as root"

@@ -1,0 +1,116 @@
+#!/usr/bin/env bash
+# DDS security with the material of make_keys: a whole run is that of one process; strangers get nothing and are
+# counted and named: without certificate, of a foreign authority, expired, revoked; a worker that writes what is
+# not its own is denied, even if its own side lets it.
+# shellcheck source-path=SCRIPTDIR
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+need openssl
+need_programs
+export TOPOGEO_DDS_PARTICIPANT=udp_only
+make_keys=$source_dir/deploy/security/make_keys
+keys=$work/keys
+# A domain of its own: the participants of other tests would be strangers, too.
+domain=$((100 + $$ % 100))
+partition=security-$$
+
+secured() { TOPOGEO_SECURITY=$1 "${@:2}"; }
+status() { secured "$1" "$bin/topogeo" status --domain $domain --partition $partition "${@:2}" 2>&1; }
+start() {  # FOLDER SERVICE OPTIONS...
+  TOPOGEO_SECURITY=$1 "$bin/$2" --domain $domain --partition $partition --log-level off "${@:3}" \
+    > "$work/$2.log" 2>&1 &
+  pid=$!
+  cleanups+=("kill $pid")
+}
+stop() { kill "$pid"; wait "$pid" || fail "a service ended with $?"; }
+refused() {  # how often peers were refused, says the planner
+  status "$keys/robot" planner | awk '/^  fault .* peer refused/ { print $2; found = 1 } END { if (!found) print 0 }'
+}
+more_refused_than() { [ "$(refused)" -gt "$1" ]; }
+
+step "keys"
+"$make_keys" "$keys" issue robot
+"$make_keys" "$keys" issue pc1 ga_worker status
+"$make_keys" "$work/foreign" issue pc1 ga_worker status
+[ -z "$(find "$keys" -name '*.key' -not -path '*/ca/*')" ] || fail "a key of an authority leaves ca"
+[ -z "$(find "$keys" -type f -perm /077)" ] || fail "others can read keys"
+awk '!/^#/ && /(writes|reads):/ { for (i = 3; i <= NF; i++) if ($i != "*") print $i }' \
+  "$source_dir/deploy/security/permissions.txt" > "$work/topics"
+while read -r topic; do
+  grep -q "\"$topic\"," "$source_dir/libs/messaging/include/topogeo/messaging/topics.def" || fail "no topic '$topic'"
+done < "$work/topics"
+
+step "a whole run"
+make_log 80 "$work/log.clf"
+"$bin/topogeo" map --log "$work/log.clf" --out "$work/alone" > /dev/null 2>&1
+secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --out "$work/run" --domain $domain > "$work/run.log" 2>&1 ||
+  { cat "$work/run.log"; fail "the secured run"; }
+same_results "$work/run" "$work/alone"
+grep -q ' 0 sent to workers' "$work/run.log" && fail "the workers had no work"
+
+step "strangers"
+start "$keys/robot" planner
+planner=$pid
+eventually 20 status "$keys/robot" > /dev/null || fail "the owner gets no status"
+status "$keys/pc1" > /dev/null || fail "another host of the owner gets no status"
+before=$(refused)
+status "" > "$work/plain" && fail "a stranger without certificate gets a status"
+eventually 10 more_refused_than "$before" || fail "the stranger without certificate is not counted"
+status "$keys/robot" | grep -q "peer refused: 'topogeo" || fail "the stranger is not named"
+before=$(refused)
+status "$work/foreign/pc1" --watch > "$work/foreign.log" &
+pid=$!
+cleanups+=("kill $pid")
+eventually 20 more_refused_than "$before" || fail "the stranger of a foreign authority is not counted"
+kill $pid
+grep -q running "$work/foreign.log" && fail "a stranger of a foreign authority gets a status"
+
+step "expired, renewed, revoked"
+STARTDATE=20240101000000Z ENDDATE=20250101000000Z "$make_keys" "$keys" renew pc1 status
+status "$keys/pc1" > "$work/expired" && fail "an expired certificate is accepted"
+grep -q "was refused" "$work/expired" || { cat "$work/expired"; fail "an expired certificate has no clear error"; }
+"$make_keys" "$keys" renew pc1 status
+status "$keys/pc1" > /dev/null || fail "a renewed certificate is refused"
+cp -r "$keys/pc1" "$work/stolen"
+"$make_keys" "$keys" revoke pc1 status
+"$make_keys" "$keys" list | grep -q '^pc1/status .*, revoked$' || fail "the list does not show what is revoked"
+pid=$planner
+stop
+start "$keys/robot" planner  # reads the list of revoked certificates at its start
+planner=$pid
+eventually 20 status "$keys/robot" > /dev/null || fail "the owner gets no status"
+before=$(refused)
+status "$work/stolen" > /dev/null && fail "a revoked certificate is accepted"
+eventually 10 more_refused_than "$before" || fail "the revoked certificate is not counted"
+pid=$planner
+stop
+
+step "a worker that writes the map"
+mkdir "$work/thief"
+cp -r "$keys/pc1/ga_worker" "$work/thief/map_store"
+secured "$work/thief" "$bin/map_store" --out "$work/thief/out" --domain $domain --partition $partition \
+  > "$work/thief.log" 2>&1 && fail "a worker may write the map"
+grep -q "denied by security" "$work/thief.log" || { cat "$work/thief.log"; fail "no clear error"; }
+# Its own side no longer forbids it: a governance without access control, as if its program were changed.
+sed 's#\(enable_write_access_control>\)true#\1false#; s#\(enable_read_access_control>\)true#\1false#;
+  s#\(enable_join_access_control>\)true#\1false#' "$keys/ca/governance.xml" > "$work/governance.xml"
+openssl smime -sign -text -in "$work/governance.xml" -out "$work/thief/map_store/governance.p7s" \
+  -signer "$keys/ca/permissions_ca.pem" -inkey "$keys/ca/permissions_ca.key"
+start "$keys/robot" local_mapper
+mapper=$pid
+eventually 20 status "$keys/robot" local_mapper > /dev/null || fail "the local mapper does not start"
+start "$work/thief" map_store --out "$work/thief/out"
+thief=$pid
+sleep 5
+status "$keys/robot" local_mapper > "$work/mapper"
+grep -q 'for the map store' "$work/mapper" || { cat "$work/mapper"; fail "the local mapper believes a worker"; }
+pid=$thief
+kill "$pid" 2> /dev/null || true
+wait "$pid" 2> /dev/null || true
+start "$keys/robot" map_store --out "$work/out"
+believes() { status "$keys/robot" local_mapper | grep -q 'for scans'; }
+eventually 20 believes || { status "$keys/robot" local_mapper; fail "the local mapper does not hear the map store"; }
+stop
+pid=$mapper
+stop
+step "the end"

@@ -1,0 +1,21 @@
+// Prints the name of the first service whose status arrives.
+#include <iostream>
+
+#include <topogeo/messaging/participant.hpp>
+#include <topogeo/messaging/reader.hpp>
+#include <topogeo/msg/status.h>
+
+int main(int, char** argv) {
+  topogeo::messaging::ParticipantOptions options;
+  options.partition = argv[1];
+  const topogeo::messaging::Participant participant(options);
+  topogeo::messaging::Reader<topogeo::msg::ServiceStatus> reader(participant);
+  bool heard = false;
+  while (!heard) {
+    reader.wait_for_data(std::chrono::seconds(1));
+    reader.take([&](const topogeo::msg::ServiceStatus& status, const auto& info) {
+      if (info.valid && !heard) std::cout << status.service().c_str() << '\n';
+      heard = heard || info.valid;
+    });
+  }
+}
