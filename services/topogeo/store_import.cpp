@@ -168,7 +168,8 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
       ->capture_default_str()
       ->type_name("M");
   command->footer(
-      "pgm      image and YAML of map_server (FILE is the YAML), modes trinary, scale and raw\n"
+      "pgm      image (PGM, PNG, BMP) and YAML of map_server (FILE is the YAML), modes trinary, "
+      "scale, raw\n"
       "geojson  graph, places and zones of Nav2's route server\n"
       "lif      graph and stations of a layout (1.0.0, draft of 2.0)\n"
       "zones    zone set of VDA 5050 3.0\n"

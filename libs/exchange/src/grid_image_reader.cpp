@@ -6,9 +6,10 @@
 
 #include "topogeo/exchange/grid_image.hpp"
 #include "topogeo/exchange/read_text.hpp"
-#include "topogeo/planning/pgm_image.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/yaml_reader.hpp"
+
+#include "raster_image.hpp"
 
 namespace topogeo::exchange {
 namespace {
@@ -64,7 +65,7 @@ ImageYaml read_image_yaml(const YamlNode& root) {
   constexpr double kMostTurn_rad = 7.0;
   ImageYaml yaml;
   yaml.image = root.required("image").text();
-  if (yaml.image.empty()) root.at("image").fail("the name of a PGM file");
+  if (yaml.image.empty()) root.at("image").fail("the name of an image");
   yaml.frame.resolution_m = root.required("resolution").number(0.01, 1.0, "m");
   const std::vector<YamlNode> origin = root.required("origin").tuple(3, "[x, y, yaw]");
   yaml.frame.T_map_grid = {
@@ -78,11 +79,14 @@ ImageYaml read_image_yaml(const YamlNode& root) {
   return yaml;
 }
 
-std::int8_t value_of(std::uint8_t pixel, int depth, const ImageYaml& yaml) {
+/// `see_through`: map_server since Jazzy knows nothing there, but where the pixel is the value.
+std::int8_t value_of(std::uint16_t pixel, int depth, const ImageYaml& yaml,
+                     bool see_through = false) {
   if (yaml.mode == ImageMode::kRaw) {
     const long value = std::lround(255.0 * pixel / depth);
     return value <= 100 ? static_cast<std::int8_t>(value) : std::int8_t{-1};
   }
+  if (see_through) return -1;
   const float light = static_cast<float>(pixel) / static_cast<float>(depth);
   const float occupied = yaml.negate ? light : 1.0F - light;
   // Where both hold, free wins.
@@ -93,11 +97,12 @@ std::int8_t value_of(std::uint8_t pixel, int depth, const ImageYaml& yaml) {
       std::lround((occupied - yaml.free) / (yaml.occupied - yaml.free) * 100.0F));
 }
 
-void note_thresholds(const ImageYaml& yaml, const planning::PgmImage& image, Notes& notes) {
-  constexpr std::uint8_t kUnknownPixel = 205;
-  if (yaml.mode == ImageMode::kRaw || yaml.negate || image.depth != 255) return;
-  if (std::ranges::find(image.pixels, kUnknownPixel) == image.pixels.end()) return;
-  if (value_of(kUnknownPixel, image.depth, yaml) == 0) {
+void note_thresholds(const ImageYaml& yaml, const RasterImage& image, Notes& notes) {
+  constexpr int kUnknownPixel = 205;
+  if (yaml.mode == ImageMode::kRaw || yaml.negate || image.white % 255 != 0) return;
+  const auto unknown = static_cast<std::uint16_t>(kUnknownPixel * (image.white / 255));
+  if (std::ranges::find(image.grey, unknown) == image.grey.end()) return;
+  if (value_of(unknown, image.white, yaml) == 0) {
     notes.push_back(fmt::format(
         "free_thresh {:g} makes free what map_saver writes as unknown (205); 0.196 would not",
         yaml.free));
@@ -112,7 +117,7 @@ GridImage read_grid_image(const std::filesystem::path& yaml_path) {
   GridImage grid;
   note_unknown_keys(root, grid.notes);
   const std::filesystem::path image_path = yaml_path.parent_path() / yaml.image;
-  const planning::PgmImage image = planning::parse_pgm(read_text(image_path), image_path.string());
+  const RasterImage image = parse_raster_image(read_text(image_path), image_path.string());
   note_thresholds(yaml, image, grid.notes);
   grid.mode = yaml.mode;
   grid.frame = yaml.frame;
@@ -121,8 +126,9 @@ GridImage read_grid_image(const std::filesystem::path& yaml_path) {
   grid.values.reserve(grid.frame.size());
   for (std::int32_t row = grid.frame.rows - 1; row >= 0; --row) {
     for (std::int32_t column = 0; column < grid.frame.columns; ++column) {
-      grid.values.push_back(
-          value_of(image.pixels[grid.frame.index({column, row})], image.depth, yaml));
+      const std::size_t i = grid.frame.index({column, row});
+      const bool see_through = !image.see_through.empty() && image.see_through[i] != 0;
+      grid.values.push_back(value_of(image.grey[i], image.white, yaml, see_through));
     }
   }
   return grid;

@@ -88,9 +88,31 @@ double RouteDriver::speed_past_obstacles(const Scene& scene, bool& another_path)
                                  kObstacleBrake * config_.follower.acceleration_m_per_s2));
 }
 
+double RouteDriver::speed_in_zones(const Scene& scene) const {
+  const planning::FreeSpace& space = scene.route.map()->space();
+  double most = config_.follower.speed_m_per_s;
+  if (!space.rules().guides()) return most;
+  const double brake = kObstacleBrake * config_.follower.acceleration_m_per_s2;
+  const auto consider = [&](const Eigen::Vector2d& point_m, double ahead_m) {
+    const auto cell = space.frame().cell_of(point_m);
+    const auto limit = cell ? space.rules().speed_mps(space.frame().index(*cell)) : std::nullopt;
+    if (!limit) return;
+    const double late_m = config_.follower.delay_s * most;
+    most =
+        std::min(most, std::sqrt(*limit * *limit + 2.0 * brake * std::max(0.0, ahead_m - late_m)));
+  };
+  consider(scene.T_map_robot.position_m(), 0.0);
+  for (const planning::PathSample& sample : follower_.path()) {
+    const double ahead_m = sample.distance_m - follower_.progress_m();
+    if (ahead_m > 0.0 && ahead_m < kSees_m) consider(sample.T_map_robot.position_m(), ahead_m);
+  }
+  return most;
+}
+
 RouteDriver::Step RouteDriver::follow(const Scene& scene, bool held) {
   Step step;
-  const double limit = speed_past_obstacles(scene, step.another_path);
+  const double limit =
+      std::min(speed_past_obstacles(scene, step.another_path), speed_in_zones(scene));
   if (held && !step.another_path) step.another_path = go_round(scene);
   step.follower = follower_.step(scene.T_map_robot, scene.now_ns, limit);
   const geometry::Velocity& command = step.follower.command;

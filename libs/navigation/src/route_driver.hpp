@@ -77,6 +77,8 @@ class RouteDriver {
  private:
   bool go_round(const Scene& scene);
   double speed_past_obstacles(const Scene& scene, bool& another_path);
+  /// What slow zones allow here, and further on as far as the robot can still slow down.
+  [[nodiscard]] double speed_in_zones(const Scene& scene) const;
 
   const NavigatorConfig& config_;
   LocalPlanner planner_;

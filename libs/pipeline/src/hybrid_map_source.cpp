@@ -118,7 +118,9 @@ bool has_grid(const HybridMapParts& parts) {
 
 planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config) {
   check(config);
-  planning::FreeSpace space(make_grid(parts, config), config.inflation);
+  std::span<const planning::DrawnZone> drawn;
+  if (parts.drawing != nullptr) drawn = parts.drawing->zones;
+  planning::FreeSpace space(make_grid(parts, config), config.inflation, drawn);
   planning::ZoneMap zones = make_zones(space, parts, config.zones);
   std::vector<planning::Place> places;
   if (parts.drawing != nullptr) places = parts.drawing->places;

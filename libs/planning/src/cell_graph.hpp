@@ -25,7 +25,9 @@ struct CellEdge {
 /// (north-east, north-west, south-west, south-east).
 class CellGraph {
  public:
-  explicit CellGraph(const SearchWindow& window) : mask_(window.mask().data()) {
+  explicit CellGraph(const SearchWindow& window)
+      : mask_(window.mask().data()),
+        directions_(window.directions().empty() ? nullptr : window.directions().data()) {
     const auto up = static_cast<std::int32_t>(window.stride());
     offsets_ = {1, up, -1, -up, up + 1, up - 1, -up - 1, -up + 1};
   }
@@ -40,12 +42,13 @@ class CellGraph {
     const bool north_west = north && west && open(5);
     const bool south_west = south && west && open(6);
     const bool south_east = south && east && open(7);
-    return static_cast<std::uint32_t>(east) | static_cast<std::uint32_t>(north) << 1U |
-           static_cast<std::uint32_t>(west) << 2U | static_cast<std::uint32_t>(south) << 3U |
-           static_cast<std::uint32_t>(north_east) << 4U |
-           static_cast<std::uint32_t>(north_west) << 5U |
-           static_cast<std::uint32_t>(south_west) << 6U |
-           static_cast<std::uint32_t>(south_east) << 7U;
+    const std::uint32_t open_ones =
+        static_cast<std::uint32_t>(east) | static_cast<std::uint32_t>(north) << 1U |
+        static_cast<std::uint32_t>(west) << 2U | static_cast<std::uint32_t>(south) << 3U |
+        static_cast<std::uint32_t>(north_east) << 4U |
+        static_cast<std::uint32_t>(north_west) << 5U |
+        static_cast<std::uint32_t>(south_west) << 6U | static_cast<std::uint32_t>(south_east) << 7U;
+    return directions_ == nullptr ? open_ones : allowed(vertex, open_ones);
   }
 
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t vertex, std::size_t k) const {
@@ -53,7 +56,17 @@ class CellGraph {
   }
 
  private:
+  [[nodiscard]] std::uint32_t allowed(std::uint32_t vertex, std::uint32_t neighbours) const {
+    std::uint32_t kept = neighbours & directions_[vertex];
+    for (std::uint32_t left = kept; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(__builtin_ctz(left));
+      kept &= ~(1U << k) | directions_[neighbour(vertex, k)];
+    }
+    return kept;
+  }
+
   const std::uint8_t* mask_;
+  const std::uint8_t* directions_;  // null: all
   std::array<std::int32_t, 8> offsets_{};
 };
 

@@ -89,14 +89,22 @@ std::vector<std::int32_t> squared_distances(const OccupancyGrid& grid, bool unkn
 
 }  // namespace
 
-FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config)
-    : grid_(std::move(grid)), config_(config) {
+FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config,
+                     std::span<const DrawnZone> zones)
+    : grid_(std::move(grid)), config_(config), rules_(grid_.frame(), zones) {
   check(config);
   squared_ = squared_distances(grid_, config.inflate_unknown);
   passable_.resize(squared_.size());
   const double forbidden = config.forbidden_cells * config.forbidden_cells;
   for (std::size_t i = 0; i < squared_.size(); ++i) {
     passable_[i] = grid_.cells()[i] == CellState::kFree && squared_[i] > forbidden ? 1 : 0;
+  }
+  if (rules_.no_go().empty()) return;
+  OccupancyGrid no_go(frame());
+  for (const Cell& cell : rules_.no_go()) no_go.set(cell, CellState::kOccupied);
+  const std::vector<std::int32_t> to_zone = squared_distances(no_go, false);
+  for (std::size_t i = 0; i < to_zone.size(); ++i) {
+    if (to_zone[i] <= forbidden) passable_[i] = 0;
   }
 }
 

@@ -81,8 +81,12 @@ class Search {
     rank_[start] = estimate(start);
     before_[start] = start;
     const CellGraph graph(window_);
-    const auto weight = boost::make_function_property_map<CellEdge>(
-        [](const CellEdge& edge) { return edge.diagonal ? std::numbers::sqrt2 : 1.0; });
+    const float* const slowness = window_.slowness().empty() ? nullptr : window_.slowness().data();
+    const auto weight = boost::make_function_property_map<CellEdge>([=](const CellEdge& edge) {
+      const double length = edge.diagonal ? std::numbers::sqrt2 : 1.0;
+      if (slowness == nullptr) return length;
+      return length * 0.5 * (double{slowness[edge.from]} + double{slowness[edge.to]});
+    });
     try {
       boost::astar_search_no_init(graph, start, estimate, StopVisitor(wanted_, left_),
                                   before_.data(), rank_.data(), cost_.data(), weight, color_.data(),
@@ -130,7 +134,7 @@ CellBox whole(const GridFrame& frame) {
   return {{0, 0}, {frame.columns - 1, frame.rows - 1}};
 }
 
-SearchWindow::SearchWindow(const FreeSpace& space, const CellBox& box)
+SearchWindow::SearchWindow(const FreeSpace& space, const CellBox& box, Rules rules)
     : box_(box), stride_(static_cast<std::uint32_t>(box.high.column - box.low.column + 3)) {
   mask_.assign(static_cast<std::size_t>(box.high.row - box.low.row + 3) * stride_, 0);
   for (std::int32_t row = box.low.row; row <= box.high.row; ++row) {
@@ -138,6 +142,17 @@ SearchWindow::SearchWindow(const FreeSpace& space, const CellBox& box)
     std::size_t from = space.frame().index({box.low.column, row});
     for (std::int32_t column = box.low.column; column <= box.high.column; ++column) {
       mask_[to++] = space.passable(from++) ? 1 : 0;
+    }
+  }
+  if (rules == Rules::kIgnored || !space.rules().guides()) return;
+  slowness_.assign(mask_.size(), 1.0F);
+  directions_.assign(mask_.size(), 0xFF);
+  for (std::int32_t row = box.low.row; row <= box.high.row; ++row) {
+    std::size_t to = index({box.low.column, row});
+    std::size_t from = space.frame().index({box.low.column, row});
+    for (std::int32_t column = box.low.column; column <= box.high.column; ++column, ++to, ++from) {
+      slowness_[to] = space.rules().slowness(from);
+      directions_[to] = space.rules().directions(from);
     }
   }
 }

@@ -123,6 +123,7 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
     for (auto start = start_cell; start;
          start = ends.start_apart(map_, from_m, config_.start_snap_m, tried)) {
       route = query.run(*start, *goal_cell);
+      if (query.needs_rules(route.cells)) route = query.run_by_rules(*start, *goal_cell);
       if (!route.cells.empty()) break;
       tried.push_back(map_.zone_of(*start));
     }
@@ -137,6 +138,8 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
                      "no path leads from " + shown(from_m) + " to " + shown(goal.point_m));
     if (!closed.nodes.empty() || !closed.edges.empty() || !cells.empty()) {
       route.reason += " with what is closed now";
+    } else if (map_.space().rules().guides()) {
+      route.reason += " as one-way zones allow";
     }
   }
   const std::vector<bool> reachable = query.within_reach(*start_cell);
@@ -157,7 +160,7 @@ HybridRoute plan_on_grid(const FreeSpace& space, const Eigen::Vector2d& from_m,
   if (!start) return route;
   const auto goal = ends.goal(to_m, config.goal_snap_m, route);
   if (!goal) return route;
-  const SearchWindow window(space, whole(space.frame()));
+  const SearchWindow window(space, whole(space.frame()), SearchWindow::Rules::kObeyed);
   auto path = shortest_path(window, *start, *goal);
   if (!path) {
     return no_route(RouteStatus::kUnreachable,

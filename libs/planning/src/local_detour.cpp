@@ -145,7 +145,7 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
   const auto robot = frame.cell_of(robot_m);
   if (!robot) return failure(DetourStatus::kLost, "the robot is outside of the grid");
   const auto half = static_cast<std::int32_t>(config.half_side_m / frame.resolution_m);
-  SearchWindow window(space, grown({*robot, *robot}, half, frame));
+  SearchWindow window(space, grown({*robot, *robot}, half, frame), SearchWindow::Rules::kObeyed);
   const std::vector<Cell> obstacles = cells_of(frame, obstacles_m);
   for (const Cell& cell : obstacles) {
     window.close_disc(cell, space.inflation().forbidden_cells);
@@ -183,7 +183,7 @@ Detour plan_detour(const FreeSpace& space, std::span<const Cell> route,
   const auto passable = [&](const Cell& cell) {
     return window.box().contains(cell) ? window.open(cell) : space.passable(cell);
   };
-  detour.points_m = straighten_where(frame, passable, detour.cells, robot_m, goal_m);
+  detour.points_m = straighten_by_rules(space, passable, detour.cells, robot_m, goal_m);
   return detour;
 }
 

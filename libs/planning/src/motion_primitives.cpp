@@ -46,8 +46,8 @@ bool in_sight(const FreeSpace& space, const Eigen::Vector2d& a_m, const Eigen::V
 std::vector<Eigen::Vector2d> straighten(const FreeSpace& space, std::span<const Cell> cells,
                                         const Eigen::Vector2d& from_m,
                                         const Eigen::Vector2d& to_m) {
-  return straighten_where(
-      space.frame(), [&](const Cell& cell) { return space.passable(cell); }, cells, from_m, to_m);
+  return straighten_by_rules(
+      space, [&](const Cell& cell) { return space.passable(cell); }, cells, from_m, to_m);
 }
 
 double length_m(std::span<const Eigen::Vector2d> points_m) {

@@ -221,6 +221,28 @@ bool RouteQuery::uses_closed_edge(std::span<const Cell> cells) const {
   });
 }
 
+bool RouteQuery::needs_rules(std::span<const Cell> cells) const {
+  const DrivingRules& rules = map_.space().rules();
+  return rules.guides() && std::ranges::any_of(cells, [&](const Cell& cell) {
+           return rules.area(map_.frame().index(cell)) != 0;
+         });
+}
+
+HybridRoute RouteQuery::run_by_rules(const Cell& from, const Cell& to) const {
+  HybridRoute route;
+  SearchWindow window(map_.space(), whole(map_.frame()), SearchWindow::Rules::kObeyed);
+  cells_.close_in(window);
+  close_parts(window, map_.zone_of(from));
+  auto path = shortest_path(window, from, to);
+  if (!path || uses_closed_edge(path->cells)) return route;
+  route.cells = std::move(path->cells);
+  name_nodes_and_edges(route);
+  if (map_.zone_of(from) != map_.zone_of(to)) {
+    route.kind = route.nodes.size() > 1 ? RouteKind::kDistantZones : RouteKind::kAdjacentZones;
+  }
+  return route;
+}
+
 std::vector<Eigen::Vector2d> RouteQuery::straightened(std::span<const Cell> cells,
                                                       const Eigen::Vector2d& from_m,
                                                       const Eigen::Vector2d& to_m) const {
@@ -234,7 +256,7 @@ std::vector<Eigen::Vector2d> RouteQuery::straightened(std::span<const Cell> cell
     return map_.space().passable(cell) && !cells_.forbids(cell) &&
            (borders.empty() || !has_cell(borders, cell));
   };
-  auto points_m = straighten_where(map_.frame(), open, cells, from_m, to_m);
+  auto points_m = straighten_by_rules(map_.space(), open, cells, from_m, to_m);
   if (!uses_closed_edge(cells_along(map_.frame(), points_m))) return points_m;
   const auto nowhere = [](const Cell&) { return false; };
   return straighten_where(map_.frame(), nowhere, cells, from_m, to_m);

@@ -22,6 +22,12 @@ class RouteQuery {
   /// other.
   [[nodiscard]] HybridRoute run(const Cell& from, const Cell& to) const;
 
+  /// Whether slow or one-way zones on the path may make another one better, or forbid this one. On
+  /// one that touches none of them they cost nothing: it is the cheapest with them, too.
+  [[nodiscard]] bool needs_rules(std::span<const Cell> cells) const;
+  /// As run(), by one search of the whole grid that heeds the rules of zones.
+  [[nodiscard]] HybridRoute run_by_rules(const Cell& from, const Cell& to) const;
+
   /// As OpenNetwork::within_reach.
   [[nodiscard]] std::vector<bool> within_reach(const Cell& from) const {
     return network_.within_reach(from);

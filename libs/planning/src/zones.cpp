@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "cell_line.hpp"
+#include "polygon_cells.hpp"
 #include "zone_labels.hpp"
 
 namespace topogeo::planning {
@@ -51,39 +52,13 @@ std::vector<std::size_t> cut(const FreeSpace& space, const Passage& passage,
   return cells;
 }
 
-// Even-odd rule: whether a ray to the right crosses the outline an odd number of times.
-bool inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& point) {
-  bool odd = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Eigen::Vector2d& a = polygon[i];
-    const Eigen::Vector2d& b = polygon[j];
-    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
-    if (point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) odd = !odd;
-  }
-  return odd;
-}
-
 // Gives the passable cells in a polygon that belong to no zone yet to `index`.
 void fill_polygon(const FreeSpace& space, const std::vector<Eigen::Vector2d>& polygon_m,
                   std::uint32_t index, std::vector<std::uint32_t>& owner) {
-  const GridFrame& frame = space.frame();
-  std::vector<Eigen::Vector2d> polygon;
-  Eigen::Vector2d low(frame.columns, frame.rows);
-  Eigen::Vector2d high(0.0, 0.0);
-  for (const Eigen::Vector2d& corner_m : polygon_m) {
-    polygon.push_back(frame.in_cells(corner_m));
-    low = low.cwiseMin(polygon.back());
-    high = high.cwiseMax(polygon.back());
-  }
-  low = low.cwiseMax(Eigen::Vector2d::Zero());
-  high = high.cwiseMin(Eigen::Vector2d(frame.columns - 1, frame.rows - 1));
-  for (auto row = static_cast<std::int32_t>(low.y()); row <= high.y(); ++row) {
-    for (auto column = static_cast<std::int32_t>(low.x()); column <= high.x(); ++column) {
-      const std::size_t i = frame.index({column, row});
-      if (!space.passable(i) || owner[i] != kNoLabel) continue;
-      if (inside(polygon, {column + 0.5, row + 0.5})) owner[i] = index;
-    }
-  }
+  visit_cells_in(space.frame(), polygon_m, [&](const Cell& cell) {
+    const std::size_t i = space.frame().index(cell);
+    if (space.passable(i) && owner[i] == kNoLabel) owner[i] = index;
+  });
 }
 
 ZoneLabels no_labels(const FreeSpace& space) {

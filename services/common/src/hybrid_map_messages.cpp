@@ -68,6 +68,17 @@ void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
     messaging::set_text(entry.name(), fitting(zone.name, kMost), "zone");
     entry.area_m2(static_cast<double>(zone.cells) * cell_m2);
   }
+  check_bound("rules", map.space().rules().zones().size(), msg::kMaxRules);
+  for (const planning::DrawnZone& zone : map.space().rules().zones()) {
+    msg::HybridRule& entry = out.rules().emplace_back();
+    messaging::set_text(entry.name(), zone.name, "zone");
+    entry.kind(static_cast<std::uint8_t>(zone.kind));
+    entry.value(zone.value);
+    check_bound("corners of a zone", zone.polygon_m.size(), msg::kMaxRuleCorners);
+    for (const Eigen::Vector2d& corner_m : zone.polygon_m) {
+      entry.corners().push_back(to_point(corner_m));
+    }
+  }
   check_bound("places", map.places().size(), msg::kMaxPlaces);
   for (const planning::Place& place : map.places()) {
     msg::HybridPlace& entry = out.places().emplace_back();

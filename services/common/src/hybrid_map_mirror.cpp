@@ -27,6 +27,17 @@ planning::InflationConfig inflation_of(const msg::HybridMap& summary) {
 void check_zones_and_places(const msg::HybridMap& summary) {
   check_bound("zones", summary.zones().size(), msg::kMaxZones);
   for (const msg::HybridZone& zone : summary.zones()) finite(zone.area_m2(), "area of a zone");
+  check_bound("rules", summary.rules().size(), msg::kMaxRules);
+  for (const msg::HybridRule& rule : summary.rules()) {
+    check(rule.kind() > 0 && rule.kind() < planning::kZoneKinds, "kind of a rule", "1 to 3");
+    check(rule.corners().size() >= 3, "corners of a rule", "at least 3");
+    check_bound("corners of a rule", rule.corners().size(), msg::kMaxRuleCorners);
+    finite(rule.value(), "value of a rule");
+    for (const msg::Point2& corner : rule.corners()) {
+      finite(corner.x_m(), "corner of a rule");
+      finite(corner.y_m(), "corner of a rule");
+    }
+  }
   check_bound("places", summary.places().size(), msg::kMaxPlaces);
   std::set<std::string> names;
   for (const msg::HybridPlace& place : summary.places()) {
@@ -36,6 +47,20 @@ void check_zones_and_places(const msg::HybridMap& summary) {
     finite(place.position().x_m(), "position of a place");
     finite(place.position().y_m(), "position of a place");
   }
+}
+
+std::vector<planning::DrawnZone> rules_of(const msg::HybridMap& summary) {
+  std::vector<planning::DrawnZone> zones;
+  for (const msg::HybridRule& rule : summary.rules()) {
+    planning::DrawnZone& zone = zones.emplace_back();
+    zone.name = rule.name().to_string();
+    zone.kind = static_cast<planning::ZoneKind>(rule.kind());
+    zone.value = rule.value();
+    for (const msg::Point2& corner : rule.corners()) {
+      zone.polygon_m.emplace_back(corner.x_m(), corner.y_m());
+    }
+  }
+  return zones;
 }
 
 void check_graph(const msg::HybridMap& summary) {
@@ -155,7 +180,7 @@ std::shared_ptr<const planning::HybridMap> HybridMapMirror::build() const {
     places.push_back({place.name().to_string(), {place.position().x_m(), place.position().y_m()}});
   }
   return std::make_shared<const planning::HybridMap>(
-      planning::FreeSpace(std::move(grid), inflation_of(*summary_)),
+      planning::FreeSpace(std::move(grid), inflation_of(*summary_), rules_of(*summary_)),
       zone_map(frame, std::move(zones), *summary_), std::move(places));
 }
 

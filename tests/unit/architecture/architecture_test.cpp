@@ -42,6 +42,7 @@ const std::vector<RestrictedLibrary>& restricted_libraries() {
       {"cairo", {"libs/render/src/"}},
       {"yaml-cpp/", {"libs/support/src/"}},
       {"nlohmann/", {"libs/exchange/src/", "libs/storage/src/", "services/topogeo/"}},
+      {"png.h", {"libs/exchange/src/"}},
       {"pugixml", {"libs/exchange/src/"}},
       {"zlib.h", {"libs/scan/src/", "libs/storage/src/"}},
       {"fmt/", {"libs/support/include/topogeo/support/format.hpp"}},

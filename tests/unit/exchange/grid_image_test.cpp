@@ -1,9 +1,13 @@
 #include "topogeo/exchange/grid_image.hpp"
 
+#include <cstdint>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include "topogeo/exchange/read_text.hpp"
 #include "topogeo/planning/grid_file.hpp"
@@ -136,9 +140,88 @@ TEST_F(GridImageFiles, NamesWhatIsWrong) {
   EXPECT_THAT(
       error("image: a.pgm\nresolution: 0.05\norigin: [0, 0]\nnegate: 0\n" + std::string(kTail)),
       HasSubstr("origin: expected [x, y, yaw]"));
-  EXPECT_THAT(error(good, "P6 1 1 255 abc"), HasSubstr("a.pgm: not a PGM image"));
+  EXPECT_THAT(error(good, "P6 1 1 255 abc"),
+              HasSubstr("a.pgm: no image in PGM (P2, P5), PNG or BMP"));
   EXPECT_THAT(error_of([&] { read_grid_image(directory_ / "none.yaml"); }),
               HasSubstr("none.yaml: cannot be opened"));
+}
+
+/// A PNG of eight bits a channel.
+std::string png_bytes(std::uint32_t width, std::uint32_t height, std::uint32_t format,
+                      const std::vector<std::uint8_t>& pixels) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = width;
+  image.height = height;
+  image.format = format;
+  png_alloc_size_t size = 0;
+  png_image_write_get_memory_size(image, size, 0, pixels.data(), 0, nullptr);
+  std::string bytes(size, '\0');
+  png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr);
+  bytes.resize(size);
+  return bytes;
+}
+
+std::string little_endian(std::uint32_t value, int size) {
+  std::string bytes;
+  for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xFFU);
+  return bytes;
+}
+
+/// Rows as they lie in the file, each filled up to four bytes.
+std::string bmp_bytes(std::int32_t width, std::int32_t height, std::uint32_t bits,
+                      const std::string& palette, const std::string& rows) {
+  const auto begin = static_cast<std::uint32_t>(54 + palette.size());
+  return "BM" + little_endian(begin + static_cast<std::uint32_t>(rows.size()), 4) +
+         little_endian(0, 4) + little_endian(begin, 4) + little_endian(40, 4) +
+         little_endian(static_cast<std::uint32_t>(width), 4) +
+         little_endian(static_cast<std::uint32_t>(height), 4) + little_endian(1, 2) +
+         little_endian(bits, 2) + std::string(24, '\0') + palette + rows;
+}
+
+TEST_F(GridImageFiles, PngAndBmpAreReadAsPgmIs) {
+  const std::string yaml = std::string(kHead) + "negate: 0\n" + kTail;
+  const GridImage pgm = read(yaml);  // 254 0 / 205 100
+  EXPECT_EQ(read(yaml, png_bytes(2, 2, PNG_FORMAT_GRAY, {254, 0, 205, 100})).values, pgm.values);
+  const std::vector<std::uint8_t> colours = {254, 255, 253, 0, 0, 0, 205, 205, 205, 90, 100, 110};
+  EXPECT_EQ(read(yaml, png_bytes(2, 2, PNG_FORMAT_RGB, colours)).values, pgm.values);
+  // From below, blue first, rows of six bytes filled up to eight.
+  const auto row = [](std::vector<int> bytes) {
+    std::string text;
+    for (const int byte : bytes) text += static_cast<char>(byte);
+    return text;
+  };
+  const std::string lower = row({205, 205, 205, 110, 100, 90, 0, 0});
+  const std::string upper = row({253, 255, 254, 0, 0, 0, 0, 0});
+  EXPECT_EQ(read(yaml, bmp_bytes(2, 2, 24, "", lower + upper)).values, pgm.values);
+  EXPECT_EQ(read(yaml, bmp_bytes(2, -2, 24, "", upper + lower)).values, pgm.values);
+  std::string palette;
+  for (int i = 0; i < 256; ++i) palette += row({i, i, i, 0});
+  EXPECT_EQ(read(yaml, bmp_bytes(2, 2, 8, palette, row({205, 100, 0, 0, 254, 0, 0, 0}))).values,
+            pgm.values);
+}
+
+TEST_F(GridImageFiles, NothingIsKnownWhereAnImageIsSeenThrough) {
+  const std::vector<std::uint8_t> pixels = {254, 255, 254, 128, 0, 255, 0, 0};
+  const std::string png = png_bytes(2, 2, PNG_FORMAT_GA, pixels);
+  const std::string yaml = std::string(kHead) + "negate: 0\n" + kTail;
+  EXPECT_THAT(read(yaml, png).values, ElementsAre(100, -1, 0, -1));
+  EXPECT_THAT(read(yaml + "mode: scale\n", png).values, ElementsAre(100, -1, 0, -1));
+}
+
+TEST_F(GridImageFiles, ImagesThatAreDamagedOrOfOtherFormatsAreNamed) {
+  const std::string yaml = std::string(kHead) + "negate: 0\n" + kTail;
+  const std::string png = png_bytes(2, 2, PNG_FORMAT_GRAY, {254, 0, 205, 100});
+  for (std::size_t size = 5; size < png.size() - 12; ++size) {
+    EXPECT_THAT(error(yaml, png.substr(0, size)), HasSubstr("a.pgm: ")) << size;
+  }
+  const std::string bmp = bmp_bytes(1, 1, 24, "", std::string(4, 'x'));
+  for (std::size_t size = 2; size < bmp.size() - 1; ++size) {
+    EXPECT_THAT(error(yaml, bmp.substr(0, size)), HasSubstr("cut short")) << size;
+  }
+  EXPECT_THAT(error(yaml, bmp_bytes(1, 1, 4, "", "xxxx")), HasSubstr("4 bits"));
+  EXPECT_THAT(error(yaml, bmp_bytes(30000, 1, 24, "", "xxxx")), HasSubstr("30000 x 1 pixels"));
+  EXPECT_THAT(error(yaml, "GIF89a"), HasSubstr("PGM (P2, P5), PNG or BMP"));
 }
 
 }  // namespace

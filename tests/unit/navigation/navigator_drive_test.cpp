@@ -1,5 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +42,35 @@ TEST(NavigatorDrive, ArrivesThroughADoorWithNoise) {
     EXPECT_LT(drive.off_m(), 0.08);
     EXPECT_EQ(drive.robot.collisions(), 0U);
   }
+}
+
+TEST(NavigatorDrive, KeepsToTheSpeedOfASlowZoneAndOutOfANoGoZone) {
+  using planning::ZoneKind;
+  DriveSettings settings = from(1.0, 3.0, 0.0);
+  settings.noise = true;
+  TestDrive drive(room(), settings);
+  // The slow one reaches from wall to wall.
+  const std::vector<planning::DrawnZone> zones = {
+      {"ramp", {{3.0, -1.0}, {5.0, -1.0}, {5.0, 7.0}, {3.0, 7.0}}, ZoneKind::kSlow, 0.2},
+      {"wet", {{5.6, 2.0}, {6.2, 2.0}, {6.2, 4.0}, {5.6, 4.0}}, ZoneKind::kNoGo, 0.0}};
+  planning::FreeSpace space(drive.map->space().grid(), drive.map->space().inflation(), zones);
+  planning::ZoneMap parts = planning::zones_by_width(space);
+  drive.map = std::make_shared<const planning::HybridMap>(std::move(space), std::move(parts));
+  drive.navigator.set_map(drive.map, ++drive.map_version);
+  drive.go_to({7.0, 3.0});
+  double fastest_in = 0.0;
+  double fastest_out = 0.0;
+  const auto arrived = [&] {
+    const Eigen::Vector2d at = drive.robot.T_world_robot().position_m();
+    EXPECT_FALSE(at.x() > 5.6 && at.x() < 6.2 && at.y() > 2.0 && at.y() < 4.0) << at.transpose();
+    double& fastest = at.x() > 3.03 && at.x() < 4.97 ? fastest_in : fastest_out;
+    fastest = std::max(fastest, drive.robot.velocity().linear_m_per_s);
+    return drive.status().state == NavigatorState::kArrived;
+  };
+  ASSERT_TRUE(drive.run_until(arrived, 90.0)) << drive.status().message;
+  EXPECT_LT(fastest_in, 0.23);
+  EXPECT_GT(fastest_out, 0.4);
+  EXPECT_EQ(drive.robot.collisions(), 0U);
 }
 
 TEST(NavigatorDrive, ArrivesInPrimitives) {

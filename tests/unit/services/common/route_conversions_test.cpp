@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/service/hybrid_map_messages.hpp"
+#include "topogeo/service/hybrid_map_mirror.hpp"
 
 namespace topogeo::service {
 namespace {
@@ -109,6 +111,47 @@ TEST(RouteConversion, ARefusalHasItsReasonAndTheNearestPlace) {
   EXPECT_FALSE(plan.found);
   EXPECT_THAT(plan.reason, SizeIs(255));
   EXPECT_THAT(plan.points_m, IsEmpty());
+}
+
+TEST(HybridMapConversion, RulesOfZonesComeAlong) {
+  planning::GridFrame frame;
+  frame.columns = frame.rows = 40;
+  using planning::ZoneKind;
+  const std::vector<planning::DrawnZone> drawn{
+      {"office", {{0, 0}, {1, 0}, {1, 4}, {0, 4}}, ZoneKind::kRoom, 0.0},
+      {"wet", {{1.0, 1.0}, {2, 1}, {2, 2}}, ZoneKind::kNoGo, 0.0},
+      {"ramp", {{2, 0}, {3, 0}, {3, 4}, {2, 4}}, ZoneKind::kSlow, 0.25},
+      {"aisle", {{3, 0}, {4, 0}, {4, 4}, {3, 4}}, ZoneKind::kOneWay, -1.5}};
+  planning::FreeSpace space(planning::OccupancyGrid(frame, planning::CellState::kFree), {}, drawn);
+  planning::ZoneMap parts = planning::zones_by_width(space);
+  const planning::HybridMap map(std::move(space), std::move(parts));
+  HybridMapMessages messages = to_messages(map, "robot", 5, 6);
+  HybridMapMirror mirror;
+  for (const msg::GridTile& tile : messages.tiles) {
+    messaging::Handle handle;
+    handle.bytes[0] = static_cast<std::uint8_t>(tile.tile());
+    mirror.put(tile, handle);
+  }
+  mirror.put(messages.summary);
+  ASSERT_TRUE(mirror.map());
+  const planning::FreeSpace& got = mirror.map()->space();
+  ASSERT_THAT(got.rules().zones(), SizeIs(3));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(got.rules().zones()[i].name, drawn[i + 1].name);
+    EXPECT_EQ(got.rules().zones()[i].kind, drawn[i + 1].kind);
+    EXPECT_EQ(got.rules().zones()[i].value, drawn[i + 1].value);
+    EXPECT_EQ(got.rules().zones()[i].polygon_m, drawn[i + 1].polygon_m);
+  }
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    EXPECT_EQ(got.passable(i), map.space().passable(i));
+    EXPECT_EQ(got.rules().directions(i), map.space().rules().directions(i));
+    EXPECT_EQ(got.rules().speed_mps(i), map.space().rules().speed_mps(i));
+  }
+  messages.summary.rules()[0].kind(0);
+  EXPECT_THROW(mirror.put(messages.summary), std::invalid_argument);
+  messages.summary.rules()[0].kind(1);
+  messages.summary.rules()[0].corners().resize(2);
+  EXPECT_THROW(mirror.put(messages.summary), std::invalid_argument);
 }
 
 TEST(RouteConversion, GivesTheNavigatorThePlacesOfNodesThatTheMapHas) {

@@ -8,8 +8,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "topogeo/planning/driving_rules.hpp"
 #include "topogeo/planning/grid_config.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
 
@@ -17,12 +19,16 @@ namespace topogeo::planning {
 
 class FreeSpace {
  public:
-  /// Throws std::invalid_argument as `check`.
-  explicit FreeSpace(OccupancyGrid grid, const InflationConfig& config = {});
+  /// The robot keeps out of no-go zones among `zones` as far as from obstacles. Throws
+  /// std::invalid_argument as `check`.
+  explicit FreeSpace(OccupancyGrid grid, const InflationConfig& config = {},
+                     std::span<const DrawnZone> zones = {});
 
   [[nodiscard]] const OccupancyGrid& grid() const { return grid_; }
   [[nodiscard]] const GridFrame& frame() const { return grid_.frame(); }
   [[nodiscard]] const InflationConfig& inflation() const { return config_; }
+  /// What the zones demand besides.
+  [[nodiscard]] const DrivingRules& rules() const { return rules_; }
 
   /// Whether the robot's middle may be in the cell; false outside.
   [[nodiscard]] bool passable(const Cell& cell) const {
@@ -43,6 +49,7 @@ class FreeSpace {
   InflationConfig config_;
   std::vector<std::int32_t> squared_;
   std::vector<std::uint8_t> passable_;
+  DrivingRules rules_;
 };
 
 }  // namespace topogeo::planning

@@ -1,8 +1,10 @@
 // Cheapest paths over the cells of a window of the grid: A* to one cell, or one search to many.
 //
 // Eight neighbours; a step costs its length in cells, 1 or the root of 2. A diagonal step needs
-// both cells beside it open, so no path cuts a corner. The searches are those of Boost.Graph on a
-// graph that is never stored: the neighbours follow from the mask of open cells.
+// both cells beside it open, so no path cuts a corner. Where zones are to be heeded a step costs as
+// much more as they are slower, and goes in no direction that either of its cells forbids. The
+// searches are those of Boost.Graph on a graph that is never stored: the neighbours follow from the
+// mask of open cells.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +40,11 @@ CellBox whole(const GridFrame& frame);
 /// Which cells of a box a search may enter.
 class SearchWindow {
  public:
+  /// Whether a search heeds the speeds and directions of FreeSpace::rules().
+  enum class Rules : std::uint8_t { kIgnored, kObeyed };
+
   /// The passable cells of the box, which must lie in the grid.
-  SearchWindow(const FreeSpace& space, const CellBox& box);
+  SearchWindow(const FreeSpace& space, const CellBox& box, Rules rules = Rules::kIgnored);
 
   /// The cells of the box whose label is `label`; one label for each cell of the grid.
   SearchWindow(const GridFrame& frame, const CellBox& box, std::span<const std::uint16_t> labels,
@@ -68,11 +73,16 @@ class SearchWindow {
   }
   [[nodiscard]] std::uint32_t stride() const { return stride_; }
   [[nodiscard]] const std::vector<std::uint8_t>& mask() const { return mask_; }
+  /// By cell as the mask; empty where nothing is demanded.
+  [[nodiscard]] const std::vector<float>& slowness() const { return slowness_; }
+  [[nodiscard]] const std::vector<std::uint8_t>& directions() const { return directions_; }
 
  private:
   CellBox box_;
   std::uint32_t stride_ = 0;
   std::vector<std::uint8_t> mask_;
+  std::vector<float> slowness_{};
+  std::vector<std::uint8_t> directions_{};
 };
 
 struct CellPath {

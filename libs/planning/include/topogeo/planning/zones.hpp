@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/planning/drawn_zone.hpp"
 #include "topogeo/planning/free_space.hpp"
 #include "topogeo/planning/grid_config.hpp"
 #include "topogeo/planning/grid_search.hpp"
@@ -59,27 +60,10 @@ ZoneMap zones_between(const FreeSpace& space, std::span<const Passage> passages,
 /// narrow passages that is nearer to it.
 ZoneMap zones_by_width(const FreeSpace& space, const ZoneConfig& config = {});
 
-/// What a drawn zone is for. The values are those of proto/map.proto.
-enum class ZoneKind : std::uint8_t {
-  kRoom = 0,    ///< a part of the floor with a name
-  kNoGo = 1,    ///< to be kept out of
-  kSlow = 2,    ///< value: largest speed in m/s
-  kOneWay = 3,  ///< value: heading in rad of those who drive through it, map frame
-};
-inline constexpr std::size_t kZoneKinds = 4;
-
 /// As files name them: "room", "no_go", "slow", "one_way".
 const char* to_string(ZoneKind kind);
 /// Empty when there is no such kind.
 std::optional<ZoneKind> zone_kind_of(std::string_view name);
-
-/// A zone as it is drawn. Of several rooms that overlap the first counts.
-struct DrawnZone {
-  std::string name;
-  std::vector<Eigen::Vector2d> polygon_m;  ///< corners in order, map frame
-  ZoneKind kind = ZoneKind::kRoom;
-  double value = 0.0;  ///< as its kind says; else 0
-};
 
 /// A zone for each polygon; when walls separate it into parts, the largest has the name and the
 /// others are "NAME 2", "NAME 3", ... The free space outside of all polygons becomes zones without

@@ -1,0 +1,136 @@
+#include "raster_image.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <stdexcept>
+
+#include <png.h>
+
+#include "topogeo/planning/pgm_image.hpp"
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::exchange {
+namespace {
+
+constexpr std::int64_t kMostAlong = 20000;  // as a grid, see occupancy_grid.hpp
+constexpr std::int64_t kMostPixels = 100'000'000;
+constexpr int kColours = 3;
+constexpr int kOpaque = 255;
+
+[[noreturn]] void fail_raster(const std::string& source, const std::string& what) {
+  throw std::runtime_error(source + ": " + what);
+}
+
+RasterImage blank_raster(std::int64_t width, std::int64_t height, const std::string& source) {
+  if (width < 1 || height < 1 || width > kMostAlong || height > kMostAlong ||
+      width * height > kMostPixels) {
+    fail_raster(source, fmt::format("{} x {} pixels, allowed are 1 to {} along, {} in all", width,
+                                    height, kMostAlong, kMostPixels));
+  }
+  RasterImage image;
+  image.width = static_cast<std::int32_t>(width);
+  image.height = static_cast<std::int32_t>(height);
+  image.grey.resize(static_cast<std::size_t>(width * height));
+  return image;
+}
+
+RasterImage raster_of_pgm(std::string_view bytes, const std::string& source) {
+  const planning::PgmImage pgm = planning::parse_pgm(bytes, source);
+  RasterImage image = blank_raster(pgm.width, pgm.height, source);
+  image.white = pgm.depth;
+  image.grey.assign(pgm.pixels.begin(), pgm.pixels.end());
+  return image;
+}
+
+RasterImage raster_of_png(std::string_view bytes, const std::string& source) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) {
+    fail_raster(source, fmt::format("no PNG image: {}", static_cast<const char*>(png.message)));
+  }
+  png.format = PNG_FORMAT_RGBA;
+  std::vector<png_byte> pixels;
+  RasterImage image;
+  try {
+    image = blank_raster(png.width, png.height, source);
+    pixels.resize(PNG_IMAGE_SIZE(png));
+  } catch (...) {
+    png_image_free(&png);
+    throw;
+  }
+  if (png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr) == 0) {
+    fail_raster(source,
+                fmt::format("damaged PNG image: {}", static_cast<const char*>(png.message)));
+  }
+  image.white = kColours * 255;
+  image.see_through.resize(image.grey.size());
+  for (std::size_t i = 0; i < image.grey.size(); ++i) {
+    const png_byte* const pixel = &pixels[4 * i];
+    image.grey[i] = static_cast<std::uint16_t>(pixel[0] + pixel[1] + pixel[2]);
+    image.see_through[i] = pixel[3] == kOpaque ? 0 : 1;
+  }
+  return image;
+}
+
+/// Microsoft's bitmap: BITMAPINFOHEADER or a later one, uncompressed, 8 bits with a palette, 24 or
+/// 32.
+class BmpParser {
+ public:
+  BmpParser(std::string_view bytes, const std::string& source) : bytes_(bytes), source_(source) {}
+
+  RasterImage parse() {
+    constexpr std::size_t kInfoHeader = 40;
+    const std::size_t begin = number(10, 4);
+    const std::size_t header = number(14, 4);
+    const std::int64_t width = static_cast<std::int32_t>(number(18, 4));
+    const std::int64_t height = static_cast<std::int32_t>(number(22, 4));
+    const std::size_t bits = number(28, 2);
+    if (header < kInfoHeader) fail_raster(source_, "a BMP image of OS/2, save it as PNG");
+    if (number(30, 4) != 0 || (bits != 8 && bits != 24 && bits != 32)) {
+      fail_raster(source_, fmt::format("a BMP image of {} bits or compressed, expected 8, 24 or 32 "
+                                       "bits, uncompressed",
+                                       bits));
+    }
+    RasterImage image = blank_raster(width, std::abs(height), source_);
+    image.white = kColours * 255;
+    const auto columns = static_cast<std::size_t>(width);
+    const auto rows = static_cast<std::size_t>(image.height);
+    const std::size_t stride = (columns * bits / 8 + 3) / 4 * 4;
+    const std::size_t palette = 14 + header;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::size_t stored = height > 0 ? rows - 1 - row : row;
+      for (std::size_t column = 0; column < columns; ++column) {
+        std::size_t at = begin + stored * stride + column * bits / 8;
+        if (bits == 8) at = palette + 4 * number(at, 1);
+        image.grey[row * columns + column] =
+            static_cast<std::uint16_t>(number(at, 1) + number(at + 1, 1) + number(at + 2, 1));
+      }
+    }
+    return image;
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t number(std::size_t at, std::size_t size) const {
+    if (at + size > bytes_.size()) fail_raster(source_, "a BMP image that is cut short");
+    std::uint32_t value = 0;
+    for (std::size_t i = size; i-- > 0;) {
+      value = value << 8U | static_cast<unsigned char>(bytes_[at + i]);
+    }
+    return value;
+  }
+
+  std::string_view bytes_;
+  const std::string& source_;
+};
+
+}  // namespace
+
+RasterImage parse_raster_image(std::string_view bytes, const std::string& source) {
+  if (bytes.starts_with("\x89PNG")) return raster_of_png(bytes, source);
+  if (bytes.starts_with("BM")) return BmpParser(bytes, source).parse();
+  if (bytes.starts_with("P2") || bytes.starts_with("P5")) return raster_of_pgm(bytes, source);
+  fail_raster(source, "no image in PGM (P2, P5), PNG or BMP");
+}
+
+}  // namespace topogeo::exchange
