@@ -17,7 +17,7 @@ partition=security-$$
 secured() { TOPOGEO_SECURITY=$1 "${@:2}"; }
 status() { secured "$1" "$bin/topogeo" status --domain $domain --partition $partition "${@:2}" 2>&1; }
 start() {  # FOLDER SERVICE OPTIONS...
-  TOPOGEO_SECURITY=$1 "$bin/$2" --domain $domain --partition $partition --log-level off "${@:3}" \
+  TOPOGEO_SECURITY=$1 "$bin/$2" --domain $domain --partition $partition --log-level debug "${@:3}" \
     > "$work/$2.log" 2>&1 &
   pid=$!
   cleanups+=("kill $pid")
@@ -34,11 +34,11 @@ step "keys"
 "$make_keys" "$work/foreign" issue pc1 ga_worker status
 [ -z "$(find "$keys" -name '*.key' -not -path '*/ca/*')" ] || fail "a key of an authority leaves ca"
 [ -z "$(find "$keys" -type f -perm /077)" ] || fail "others can read keys"
-awk '!/^#/ && /(writes|reads):/ { for (i = 3; i <= NF; i++) if ($i != "*") print $i }' \
-  "$source_dir/deploy/security/permissions.txt" > "$work/topics"
-while read -r topic; do
-  grep -q "\"$topic\"," "$source_dir/libs/messaging/include/topogeo/messaging/topics.def" || fail "no topic '$topic'"
-done < "$work/topics"
+sed -nE 's/^TOPOGEO_TOPIC\(\w+, *"(\w+)".*/\1/p' "$source_dir/libs/messaging/include/topogeo/messaging/topics.def" |
+  sort > "$work/topics"
+awk '!/^#/ && $2 == "writes:" { for (i = 3; i <= NF; i++) print $i }' "$source_dir/deploy/security/permissions.txt" |
+  sort -u > "$work/written"
+diff "$work/topics" "$work/written" || fail "topics (<) and the table of permissions (>) differ"
 
 step "a whole run"
 make_log 80 "$work/log.clf"
@@ -56,9 +56,11 @@ status "$keys/pc1" > /dev/null || fail "another host of the owner gets no status
 before=$(refused)
 status "" > "$work/plain" && fail "a stranger without certificate gets a status"
 eventually 10 more_refused_than "$before" || fail "the stranger without certificate is not counted"
-status "$keys/robot" | grep -q "peer refused: 'topogeo" || fail "the stranger is not named"
+status "$keys/robot" > "$work/named"
+grep -q "peer refused: 'topogeo" "$work/named" || fail "the stranger is not named"
 before=$(refused)
-status "$work/foreign/pc1" --watch > "$work/foreign.log" &
+TOPOGEO_SECURITY=$work/foreign/pc1 "$bin/topogeo" status --domain $domain --partition $partition --watch \
+  > "$work/foreign.log" 2>&1 &
 pid=$!
 cleanups+=("kill $pid")
 eventually 20 more_refused_than "$before" || fail "the stranger of a foreign authority is not counted"
@@ -73,7 +75,8 @@ grep -q "was refused" "$work/expired" || { cat "$work/expired"; fail "an expired
 status "$keys/pc1" > /dev/null || fail "a renewed certificate is refused"
 cp -r "$keys/pc1" "$work/stolen"
 "$make_keys" "$keys" revoke pc1 status
-"$make_keys" "$keys" list | grep -q '^pc1/status .*, revoked$' || fail "the list does not show what is revoked"
+"$make_keys" "$keys" list > "$work/list"
+grep -q '^pc1/status .*, revoked$' "$work/list" || fail "the list does not show what is revoked"
 pid=$planner
 stop
 start "$keys/robot" planner  # reads the list of revoked certificates at its start
@@ -102,15 +105,18 @@ eventually 20 status "$keys/robot" local_mapper > /dev/null || fail "the local m
 start "$work/thief" map_store --out "$work/thief/out"
 thief=$pid
 sleep 5
-status "$keys/robot" local_mapper > "$work/mapper"
-grep -q 'for the map store' "$work/mapper" || { cat "$work/mapper"; fail "the local mapper believes a worker"; }
+if grep -q 'waiting: for scans' "$work/local_mapper.log"; then
+  cat "$work/local_mapper.log"
+  fail "the local mapper believes a worker"
+fi
+grep "peer refused" "$work/local_mapper.log" > "$work/refusals" || fail "the worker that writes the map is not counted"
 pid=$thief
-kill "$pid" 2> /dev/null || true
+kill "$pid" 2> /dev/null || { cat "$work/map_store.log"; fail "the changed map store did not even start"; }
 wait "$pid" 2> /dev/null || true
 start "$keys/robot" map_store --out "$work/out"
-believes() { status "$keys/robot" local_mapper | grep -q 'for scans'; }
-eventually 20 believes || { status "$keys/robot" local_mapper; fail "the local mapper does not hear the map store"; }
+believes() { grep -q 'waiting: for scans' "$work/local_mapper.log"; }
+eventually 20 believes || { cat "$work/local_mapper.log"; fail "the local mapper does not hear the map store"; }
 stop
 pid=$mapper
 stop
-step "the end"
+cat "$work/refusals"; step "the end"

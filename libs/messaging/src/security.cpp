@@ -56,7 +56,13 @@ class LogForwarder final : public dds::LogConsumer {
  public:
   void Consume(const dds::Log::Entry& entry) override {
     const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
-    if (!category.starts_with("SECURITY")) {
+    // What discovery logs when permissions deny a peer its endpoint.
+    const bool denied = entry.message.starts_with("Security manager returns an error");
+    if (!category.starts_with("SECURITY") && !denied) {
+      // Once a second: what a peer that is gone leaves behind is reported for each packet.
+      const auto now = std::chrono::steady_clock::now();
+      if (now - last_ < std::chrono::seconds(1)) return;
+      last_ = now;
       spdlog::warn("DDS: {}: {}", category, entry.message);
       return;
     }
@@ -66,6 +72,9 @@ class LogForwarder final : public dds::LogConsumer {
     if (errors.lines.size() == kMaxRefusals) errors.lines.pop_front();
     errors.lines.push_back(entry.message);
   }
+
+ private:
+  std::chrono::steady_clock::time_point last_;  // used by the logging thread alone
 };
 
 /// In place of the middleware's own printing, which a stranger could use to fill a log.
@@ -87,6 +96,7 @@ std::string text_of(const rtps::GuidPrefix_t& prefix) {
 }  // namespace
 
 void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& folder) {
+  keep_security_races_away();
   forward_log();
   auto& properties = qos.properties().properties();
   properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");

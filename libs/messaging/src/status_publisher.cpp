@@ -72,6 +72,7 @@ StatusPublisher::~StatusPublisher() {
 void StatusPublisher::set_state(msg::ServiceState state, std::string_view message) {
   status_.state(state);
   set_text_cut(status_.message(), message);
+  spdlog::debug("{}", text());
   publish();
 }
 
