@@ -136,6 +136,7 @@ ReaderCore::ReaderCore(const Participant& participant, const TopicInfo& topic,
   // Data is taken by whoever waits for it; only events come through the listener.
   dds::StatusMask mask = dds::StatusMask::all();
   mask >> dds::StatusMask::data_available();
+  if (impl_->participant->secured()) use_long_sessions(qos.properties());
   impl_->reader = subscriber.create_datareader(description, qos, &impl_->listener, mask);
   if (impl_->reader == nullptr) {
     throw std::runtime_error("DDS: cannot create a reader of topic " + std::string(topic.name) +

@@ -102,6 +102,7 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
   properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");
   properties.emplace_back("dds.sec.access.plugin", "builtin.Access-Permissions");
   properties.emplace_back("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+  use_long_sessions(qos.properties());
   for (const SecurityFile& file : kFiles) {
     const std::filesystem::path path = std::filesystem::absolute(folder / file.name);
     if (!std::filesystem::exists(path)) {
@@ -111,6 +112,10 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
     }
     properties.emplace_back(file.property, "file://" + path.string());
   }
+}
+
+void use_long_sessions(rtps::PropertyPolicy& properties) {
+  properties.properties().emplace_back("dds.sec.crypto.maxblockspersession", "1048576");
 }
 
 std::string last_security_error() {

@@ -76,6 +76,7 @@ WriterCore::WriterCore(const Participant& participant, const TopicInfo& topic,
                              " is not in the profiles file");
   }
   qos.writer_resource_limits().reader_filters_allocation.maximum = kMaxReaderFilters;
+  if (impl_->participant->secured()) use_long_sessions(qos.properties());
   impl_->writer =
       publisher.create_datawriter(&impl_->participant->topic(topic), qos, &impl_->listener);
   if (impl_->writer == nullptr) {
