@@ -1,9 +1,7 @@
 #!/usr/bin/env bash
 # A robot and search workers on other hosts: the map of a log is that of one process to the byte, also when
 # services are killed and started again and when a host joins late; discovery by two servers without multicast.
-# shellcheck source-path=SCRIPTDIR
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source-path=SCRIPTDIR
 source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
 
 need_image

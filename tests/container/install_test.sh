@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # What cmake --install makes: units that systemd accepts, and headers and libraries with which a program of
 # somebody else hears a service.
-# shellcheck source-path=SCRIPTDIR
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_programs
@@ -28,6 +27,33 @@ if command -v systemd-analyze > /dev/null; then
 else
   echo "systemd-analyze is not installed: the units are not checked"
 fi
+
+step "compose file and manifests"
+if command -v docker-compose > /dev/null; then
+  for profile in robot offboard demo; do
+    docker-compose -f "$source_dir/deploy/compose.yaml" --profile $profile config -q || fail "compose.yaml, $profile"
+  done
+fi
+python3 - "$source_dir"/deploy/kubernetes/*.yaml <<'PY' || fail "manifests"
+import sys, yaml
+
+for path in sys.argv[1:]:
+    with open(path) as file:
+        documents = list(yaml.safe_load_all(file))
+    labels = []
+    for document in documents:
+        assert {"apiVersion", "kind", "metadata"} <= set(document), document
+        template = document.get("spec", {}).get("template")
+        if template:
+            assert document["spec"]["selector"]["matchLabels"] == template["metadata"]["labels"]
+            labels.append(template["metadata"]["labels"])
+            for container in template["spec"]["containers"]:
+                assert container["resources"]["limits"]["memory"]
+                assert container["securityContext"]["runAsNonRoot"]
+    for document in documents:
+        if document["kind"] == "Service":
+            assert document["spec"]["selector"] in labels, document
+PY
 
 step "a subscriber"
 if ! { cmake -S "$source_dir/tests/container/subscriber" -B "$work/subscriber" -G Ninja \

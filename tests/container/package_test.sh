@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # The packages: lintian finds no errors, they install in a clean container, the programs run there, and
 # nothing is left when they are removed.
-# shellcheck source-path=SCRIPTDIR
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_packages
@@ -27,7 +26,8 @@ docker run --rm -i --user root -v "$work:/work" $image bash -euo pipefail -c '
     topogeo run --log /work/log.clf --out /tmp/out --workers 1 > /tmp/run.log 2>&1 || { cat /tmp/run.log; exit 1; }
   cp /tmp/out/map.pb /tmp/out/trajectory.tum /work/
   for command in topogeo ga_worker topogeo-localizer topogeo-map-store topogeo-planner; do
-    gzip -dc /usr/share/man/man1/$command.1.gz | grep -q "^.SH OPTIONS" || echo "no manual page of $command"
+    gzip -dc /usr/share/man/man1/$command.1.gz > /tmp/page
+    grep -q "^.SH OPTIONS" /tmp/page || { echo "no manual page of $command"; exit 1; }
     $command --help > /dev/null
   done
   . /usr/share/bash-completion/completions/topogeo

@@ -2,7 +2,6 @@
 # DDS security with the material of make_keys: a whole run is that of one process; strangers get nothing and are
 # counted and named: without certificate, of a foreign authority, expired, revoked; a worker that writes what is
 # not its own is denied, even if its own side lets it.
-# shellcheck source-path=SCRIPTDIR
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need openssl

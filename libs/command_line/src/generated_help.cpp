@@ -134,7 +134,7 @@ void append_case(std::string& script, const CLI::App& app, const std::string& pa
 }  // namespace
 
 std::string manual_page(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string title = name;
   std::ranges::transform(title, title.begin(),
                          [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -160,7 +160,7 @@ std::string manual_page(const CLI::App& app) {
 }
 
 std::string bash_completion(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string script = "# Completion of " + name + " in bash, made by " + name +
                        " --print-completion.\n_" + name + R"(() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
