@@ -34,6 +34,9 @@ class SimulatedDevices {
   /// Lets the world and the devices run until `now_ns` and exchanges bytes with the ports.
   void run_until(std::int64_t now_ns);
 
+  /// So much time passes in which the world stands still; the clocks of the devices go on.
+  void stand_still(std::int64_t duration_ns) { now_ns_ += duration_ns; }
+
   [[nodiscard]] simulation::SimulatedRobot& robot() { return robot_; }
   [[nodiscard]] simulation::PlsEmulator& laser() { return laser_; }
   [[nodiscard]] simulation::McpEmulator& base() { return base_; }

@@ -53,14 +53,13 @@ std::int64_t SimulatorService::stamp_ns() const {
 }
 
 void SimulatorService::tick() {
-  auto passed = Clock::now() - start_;
+  const auto passed = Clock::now() - start_;
   const auto done =
       std::chrono::nanoseconds(std::llround(static_cast<double>(devices_.now_ns()) / time_factor_));
   if (const auto late = passed - done - kLatest; late.count() > 0) {
     service_.status().add_to_counter("stood_still_s", std::chrono::duration<double>(late).count());
-    start_ += late;
-    start_stamp_ns_ += nanoseconds(late);
-    passed -= late;
+    // No host sees the clock of a real base stop.
+    devices_.stand_still(std::llround(static_cast<double>(nanoseconds(late)) * time_factor_));
   }
   devices_.run_until(std::llround(static_cast<double>(nanoseconds(passed)) * time_factor_));
   faults_.tick();

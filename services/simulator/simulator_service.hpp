@@ -44,7 +44,7 @@ class SimulatorService {
   FaultInjector faults_;
   messaging::Writer<msg::GroundTruth> truth_;
   messaging::Writer<msg::Sonar> sonar_;
-  Clock::time_point start_;        // when the world's clock was 0, moved on by what it was late
+  Clock::time_point start_;        // when the world's clock was 0
   std::int64_t start_stamp_ns_;    // of that, since the epoch
   std::int64_t truth_due_ns_ = 0;  // in the world, and the next two
   std::int64_t sonar_due_ns_ = 0;

@@ -21,7 +21,11 @@ RANDOM=${SEED:-1}
 mkdir -p "$out"
 
 drive() {  # NAME: starts a drive
-  "$bin/topogeo" run --sim "$world" --out "$out/$1" --workers 1 \
+  touch "$out/$1.err"
+  local how=()
+  # The tour is driven without it.
+  if [ "$1" = navigator ]; then how=(--explore); fi
+  "$bin/topogeo" run --sim "$world" --out "$out/$1" --workers 1 "${how[@]}" \
     > "$out/$1.out" 2> "$out/$1.err" &
   run=$!
 }
@@ -49,7 +53,7 @@ row undisturbed 0
 for service in "${services[@]}"; do
   drive "$service"
   done=0
-  until grep -q 'mapping' "$out/$service.err"; do sleep 0.2; done
+  until grep -q 'mapping' "$out/$service.err" || [ "$service" = navigator ]; do sleep 0.2; done
   for ((i = 0; i < kills; ++i)); do
     # A drive takes 200 s on a machine of its own: the moments are spread over the first 150.
     sleep "$((150 / kills / 2 + RANDOM % (150 / kills))).$((RANDOM % 1000))"

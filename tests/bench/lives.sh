@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Services that are killed and started again while a log is mapped: all are started by hand, the
 # localizer, the map store and the worker are killed with -9 in turn, and the map must be that of
-# `topogeo map` to the byte. Prints how long each was away.
+# `topogeo map` to the byte. Prints how long each was away. As root the localizer also moves to another
+# machine, once: a network namespace with an address of its own, with the same map store.
 #
 #   tests/bench/lives.sh LOG [ROUNDS]      LOG as ./run demo leaves it: demo/floor.clf.gz
 #
@@ -14,36 +15,56 @@ work=$(mktemp -d)
 partition="lives-$$"
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 declare -A pids
-trap 'kill "${pids[@]}" 2> /dev/null || true; rm -rf "$work"' EXIT
+machine=""  # process that holds the other network namespace
+trap 'kill "${pids[@]}" $machine 2> /dev/null || true; rm -rf "$work"' EXIT
 
-start() {
+other_machine() {  # before any service starts: they look for interfaces once
+  [ "$(id -u)" = 0 ] || return 1
+  unshare --net sleep infinity &
+  machine=$!
+  sleep 0.2
+  ip link add "lv$$" type veth peer name "lw$$" netns "$machine" || return 1
+  ip addr add 10.213.7.1/24 dev "lv$$" && ip link set "lv$$" up
+  nsenter -t "$machine" -n sh -c \
+    "ip link set lo up; ip addr add 10.213.7.2/24 dev lw$$; ip link set lw$$ up"
+}
+
+start() {  # SERVICE [WORDS]: on this machine, or by the words before the command
+  local service=$1 before=("${@:2}")
+  set -- "$service"
   case $1 in
     map_store) set -- "$1" --out "$work/out" --title lives ;;
     sensor_gateway) set -- "$1" --log "$log" --rate 10 ;;
     ga_worker) set -- "$1" --slots 1 ;;
     *) set -- "$1" --replay ;;
   esac
-  "$bin/$1" "${@:2}" --partition "$partition" >> "$work/$1.log" 2>&1 &
+  "${before[@]}" "$bin/$1" "${@:2}" --partition "$partition" >> "$work/$1.log" 2>&1 &
   pids[$1]=$!
+}
+again() {  # SERVICE WHERE [WORDS]: kills it and starts it again
+  kill -9 "${pids[$1]}"
+  wait "${pids[$1]}" 2> /dev/null || true
+  local from
+  from=$(date +%s%N)
+  start "$1" "${@:3}"
+  until running "$1"; do sleep 0.05; done
+  echo "$1 killed, and there again$2 after $((($(date +%s%N) - from) / 1000000)) ms"
+  sleep 1
 }
 running() {  # SERVICE: its process says that it works
   "$bin/topogeo" status "$1" --partition "$partition" --json 2> /dev/null |
     grep -q "\"process_id\": *${pids[$1]}\b"
 }
 
+other_machine 2> /dev/null || echo "no other machine: that needs root"
 "$bin/topogeo" map --log "$log" --out "$work/alone" > /dev/null 2>&1
 for service in map_store ga_worker localizer local_mapper sensor_gateway; do start $service; done
 sleep 3
+if [ -n "$machine" ]; then again localizer " on another machine" nsenter -t "$machine" -n; fi
 for ((round = 1; round <= rounds; ++round)); do
   for service in localizer map_store ga_worker; do
     [ -e "$work/out/map.pb" ] && break
-    kill -9 "${pids[$service]}"
-    wait "${pids[$service]}" 2> /dev/null || true
-    from=$(date +%s%N)
-    start $service
-    until running $service; do sleep 0.05; done
-    echo "$service killed, and there again after $((($(date +%s%N) - from) / 1000000)) ms"
-    sleep 1
+    again $service ""
   done
 done
 until [ -e "$work/out/map.pb" ]; do sleep 0.2; done

@@ -67,6 +67,22 @@ TEST_F(SimulatedDevicesTest, TheBaseDrivesTheRobotAndReportsIt) {
   EXPECT_EQ(path_m(), stopped_m);
 }
 
+TEST_F(SimulatedDevicesTest, WhereTheWorldStandsStillTheClockOfTheBaseGoesOn) {
+  devices_.run_until(kReady_ns);
+  base_.write("HD\r");
+  base_.write(kDrive);
+  run_for(2.0);
+  const double driven_m = path_m();
+  static_cast<void>(base_.read());
+  devices_.stand_still(2 * kSecond_ns);
+  EXPECT_EQ(path_m(), driven_m);
+  EXPECT_EQ(devices_.now_ns(), kReady_ns + 4 * kSecond_ns);
+  base_.write("CL\r");  // 7 s since it was switched on, in 1/256 s
+  run_for(0.02);
+  EXPECT_THAT(base_.read(), HasSubstr("CL 7"));
+  EXPECT_GT(path_m(), driven_m) << "and then it drives on";
+}
+
 TEST_F(SimulatedDevicesTest, AtAnotherRateNothingIsUnderstood) {
   devices_.run_until(kReady_ns);
   base_.set_rate(B38400);
