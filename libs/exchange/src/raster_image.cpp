@@ -54,7 +54,7 @@ RasterImage raster_of_png(std::string_view bytes, const std::string& source) {
   RasterImage image;
   try {
     image = blank_raster(png.width, png.height, source);
-    pixels.resize(PNG_IMAGE_SIZE(png));
+    pixels.resize(4 * image.grey.size());
   } catch (...) {
     png_image_free(&png);
     throw;
@@ -102,7 +102,7 @@ class BmpParser {
       const std::size_t stored = height > 0 ? rows - 1 - row : row;
       for (std::size_t column = 0; column < columns; ++column) {
         std::size_t at = begin + stored * stride + column * bits / 8;
-        if (bits == 8) at = palette + 4 * number(at, 1);
+        if (bits == 8) at = palette + std::size_t{4} * number(at, 1);
         image.grey[row * columns + column] =
             static_cast<std::uint16_t>(number(at, 1) + number(at + 1, 1) + number(at + 2, 1));
       }

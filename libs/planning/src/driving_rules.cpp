@@ -14,9 +14,9 @@ namespace {
 
 /// What robots drive at elsewhere, as follower.speed_m_per_s by default: only how much slower a
 /// zone is counts.
-constexpr double kUsualSpeed_mps = 0.6;
+constexpr double kUsualSpeed_m_s = 0.6;
 /// Slower counts no more: a way round is never a hundred times longer.
-constexpr double kLeastSpeed_mps = 0.006;
+constexpr double kLeastSpeed_m_s = 0.006;
 
 constexpr double kCosOf120Degrees = -0.5;
 
@@ -71,7 +71,7 @@ DrivingRules::DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zo
 void DrivingRules::add(const DrawnZone& zone, const GridFrame& frame, Area& area) {
   if (zone.kind == ZoneKind::kSlow) {
     area.speed_mps = std::min(area.speed_mps.value_or(zone.value), zone.value);
-    const double slowness = kUsualSpeed_mps / std::max(*area.speed_mps, kLeastSpeed_mps);
+    const double slowness = kUsualSpeed_m_s / std::max(*area.speed_mps, kLeastSpeed_m_s);
     area.slowness = static_cast<float>(std::max(1.0, slowness));
     return;
   }

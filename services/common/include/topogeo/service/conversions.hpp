@@ -147,13 +147,14 @@ struct LivePose {
 msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id);
 LivePose from_msg(const msg::LivePose& message);
 
-/// Nodes, branches and last the summary, each with map_version of the map and sequence number 0, and
-/// no hash of samples.
+/// Nodes, branches and last the summary, each with map_version of the map and sequence number 0,
+/// and no hash of samples.
 std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::uint64_t map_id,
                                          std::string_view robot_id, std::int64_t stamp_ns);
 topomap::MapNode node_from_msg(const msg::MapElement& message);
 topomap::MapBranch branch_from_msg(const msg::MapElement& message);
-/// Throws like node_from_msg and branch_from_msg, and when a branch ends at a node that is not there.
+/// Throws like node_from_msg and branch_from_msg, and when a branch ends at a node that is not
+/// there.
 topomap::GlobalMap from_elements(const map_client::Map& map);
 
 /// Where a robot shall go, or what it shall do about the goal that it has, as in msg::Goal.
