@@ -78,10 +78,14 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
                            simulated_port(options, "base").string(), "--base-baud",
                            std::to_string(kSimulatedBaseBaud)});
   }
-  const Arguments source =
-      options.devices.empty() ? Arguments{"--log", options.job.log.string(), "--rate", options.rate}
-                              : Arguments{"--devices", options.devices.string(), "--memory",
-                                          odometry_memory(partition).string()};
+  Arguments source = {"--log", options.job.log.string(), "--rate", options.rate};
+  if (!options.devices.empty()) {
+    source = {"--devices", options.devices.string()};
+    const std::filesystem::path memory = odometry_memory(partition);
+    if (std::filesystem::is_directory(memory.parent_path())) {
+      source.insert(source.end(), {"--memory", memory.string()});
+    }
+  }
   // All of them have the first scan.
   const std::string readers = options.record.empty() ? "1" : "2";
   // A log cannot be taken up in its middle.
