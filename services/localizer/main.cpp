@@ -6,6 +6,7 @@
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/service/sole_service.hpp"
 
 #include "localizer_service.hpp"
 
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
           throw service::UsageError(error.what());
         }
         service::Service service(setup);
+        const service::SoleService sole(service);
         const localizer::LocalizerService localizer(service, options);
         service.run();
       });

@@ -1,17 +1,23 @@
 // Keeps the map of a robot in a directory and shows it to all readers.
+#include <chrono>
 #include <csignal>
 #include <exception>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/service/sole_service.hpp"
 #include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/atomic_file.hpp"
+#include "topogeo/support/file_lock.hpp"
 
 #include "drawing_options.hpp"
 #include "map_server.hpp"
@@ -28,6 +34,22 @@ void check_directory(const std::filesystem::path& directory) {
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
+}
+
+/// Of the results and the database: map.lock beside map.sqlite and map.pb, and one beside a
+/// database elsewhere. They stay until the process ends.
+std::vector<support::FileLock> lock(const map_store::MapStoreOptions& store) {
+  // A map store that was killed needs a moment to give its memory and its files back.
+  constexpr std::chrono::seconds kPatience{1};
+  std::set<std::filesystem::path> paths = {store.directory / "map.lock"};
+  paths.insert(std::filesystem::path(store.database).replace_extension(".lock"));
+  std::vector<support::FileLock> locks;
+  try {
+    for (const std::filesystem::path& path : paths) locks.emplace_back(path, kPatience);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(std::string(error.what()) + ", another map store?");
+  }
+  return locks;
 }
 
 std::shared_ptr<const storage::MapDocument> map_to_continue(
@@ -90,6 +112,7 @@ void serve(const service::Setup& setup, const StoreOptions& options) {
     }
   }();
   service::Service service(setup);
+  const service::SoleService sole(service);
   const map_store::MapServer server(service, std::move(document), hybrid);
   service.run();
 }
@@ -107,6 +130,9 @@ void keep(const service::Setup& setup, StoreOptions options) {
   check_directory(store.directory);
   if (store.database.empty()) store.database = store.directory / "map.sqlite";
   if (store.title.empty()) store.title = setup.options.robot_id;
+  const std::vector<support::FileLock> locks = lock(store);
+  service::Service service(setup);
+  const service::SoleService sole(service);
   const std::uint64_t seed = setup.config.config.localizer.seed;
   storage::MapDatabase database =
       options.anew ? map_store::fresh_database(store.database, setup.options.robot_id, seed)
@@ -114,7 +140,6 @@ void keep(const service::Setup& setup, StoreOptions options) {
   if (store.continued) map_store::begin_with(database, *store.continued);
   // A file that may not grow any more is a full disk and no reason to die.
   std::signal(SIGXFSZ, SIG_IGN);
-  service::Service service(setup);
   map_store::MapStoreService running(service, std::move(store), std::move(database));
   service.run();
   running.end();

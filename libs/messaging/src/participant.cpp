@@ -12,6 +12,8 @@
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 
+#include "topogeo/messaging/shared_memory.hpp"
+
 #include "address_filter.hpp"
 #include "participant_core.hpp"
 
@@ -58,6 +60,7 @@ void load_profiles(const std::filesystem::path& requested) {
                              "' is not a valid Fast DDS profiles file");
   }
   loaded = file;
+  remove_dead_segments();  // once for each process, before it makes its own
 }
 
 template <class Entity>

@@ -49,6 +49,7 @@ StatusPublisher::StatusPublisher(const Participant& participant, EventLoop& loop
   set_text(status_.version(), identity.version, "version");
   set_text(status_.host(), host, "host");
   status_.process_id(static_cast<std::uint32_t>(::getpid()));
+  status_.started_ns(support::wall_clock_ns());
   status_.state(msg::kServiceStarting);
   loop_.add(writer_);
   loop_.on_event([this](const Event& event) { on_event(event); });

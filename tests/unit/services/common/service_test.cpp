@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "topogeo/service/sole_service.hpp"
+
 #include "messaging/fixture.hpp"
 
 namespace topogeo::service {
@@ -159,6 +161,43 @@ TEST_F(ServiceTest, AdvertisedWriterReachesAPeerAndItsEventsAreWatched) {
   const messaging::Reader<msg::Goal> strict(peer_);  // wants what role command does not offer
   EXPECT_TRUE(run_until([&] { return status_.fault_count() > 0; }));
   EXPECT_EQ(status_.faults()[0].reason().to_string(), "incompatible_qos");
+}
+
+/// Another service of the same name for the same robot, whose clock is far off.
+msg::ServiceStatus rival_of(const msg::ServiceStatus& own, msg::ServiceState state) {
+  msg::ServiceStatus rival = own;
+  messaging::set_service(rival, own.service().to_string(), "elsewhere-1");
+  rival.state(state);
+  rival.started_ns(own.started_ns() + (state == msg::kServiceStarting ? -1 : 1) * 1'000'000'000LL);
+  return rival;
+}
+
+TEST_F(ServiceTest, WhoStartsStopsForOneThatWorks) {
+  messaging::Writer<msg::ServiceStatus> writer(peer_);
+  ASSERT_TRUE(writer.write(rival_of(service_.status().message(), msg::kServiceRunning)));
+  try {
+    const SoleService sole(service_);
+    service_.run();  // on a busy machine the status comes only now, when the younger one stops
+    FAIL() << "two of them work";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "another mapper works for robot 'robot': elsewhere-1; this one stops");
+  }
+  EXPECT_EQ(service_.status().state(), msg::kServiceFailed);
+}
+
+TEST_F(ServiceTest, WhoWorksCountsThoseThatStartOnce) {
+  const SoleService sole(service_);
+  service_.status().set_state(msg::kServiceRunning);
+  messaging::Writer<msg::ServiceStatus> writer(peer_);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(writer.write(rival_of(service_.status().message(), msg::kServiceStarting)));
+  }
+  ASSERT_TRUE(
+      run_until([&] { return status_.service() == "mapper" && status_.fault_count() > 0; }));
+  EXPECT_EQ(status_.fault_count(), 1U);
+  EXPECT_EQ(status_.faults()[0].reason().to_string(), "second mapper");
+  EXPECT_EQ(status_.state(), msg::kServiceRunning);
 }
 
 }  // namespace

@@ -40,6 +40,8 @@ class StatusPublisher {
   [[nodiscard]] msg::ServiceState state() const { return status_.state(); }
   /// The state and its message, for people.
   [[nodiscard]] std::string text() const;
+  /// As it was sent last, but for its state, which is that of now.
+  [[nodiscard]] const msg::ServiceStatus& message() const { return status_; }
 
   /// Counts one of what the service works on, for example "scan". A service has one such input.
   void count_input(std::string_view name);

@@ -1,0 +1,71 @@
+#include "topogeo/service/sole_service.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <tuple>
+
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::service {
+
+namespace {
+
+// Services of one network find each other in a tenth of a second. What is heard later counts, too.
+constexpr std::chrono::milliseconds kListening{300};
+// For the other one to count who was refused: it publishes its status twice a second.
+constexpr std::chrono::seconds kFarewell{1};
+
+/// They do the same for the same robot.
+bool are_rivals(const msg::ServiceStatus& a, const msg::ServiceStatus& b) {
+  const bool same = a.instance() == b.instance() && a.started_ns() == b.started_ns();
+  return !same && a.service() == b.service() && a.robot_id() == b.robot_id();
+}
+
+}  // namespace
+
+bool has_precedence(const msg::ServiceStatus& other, const msg::ServiceStatus& own) {
+  if (!are_rivals(other, own) || other.state() == msg::kServiceStopped) return false;
+  const auto rank = [](const msg::ServiceStatus& status) {
+    return std::tuple(status.state() == msg::kServiceStarting, status.started_ns(),
+                      status.instance_key());
+  };
+  return rank(other) < rank(own);
+}
+
+SoleService::SoleService(Service& service) : service_(service) {
+  service_.subscribe<msg::ServiceStatus>(
+      [this](const msg::ServiceStatus& other) { compare(other); }, {.any_robot = true});
+  const bool stopped = service_.loop().run_for(kListening);
+  listening_ = false;
+  if (!refused_.empty()) {
+    const auto end = std::chrono::steady_clock::now() + kFarewell;
+    while (!counted_ && !stopped && std::chrono::steady_clock::now() < end) {
+      service_.loop().run_for(kListening / 10);
+    }
+    throw std::runtime_error(refused_);
+  }
+  // A signal that came meanwhile is for the loop that follows.
+  if (stopped) service_.loop().stop();
+}
+
+void SoleService::compare(const msg::ServiceStatus& other) {
+  const msg::ServiceStatus& own = service_.status().message();
+  if (!are_rivals(other, own) || other.state() == msg::kServiceStopped) return;
+  const std::string fault = fmt::format("second {}", own.service().c_str());
+  if (!refused_.empty()) {
+    counted_ |= std::ranges::any_of(other.faults(), [&](const msg::FaultCount& count) {
+      return count.reason() == fault.c_str();
+    });
+  } else if (has_precedence(other, own)) {
+    refused_ = fmt::format("another {} works for robot '{}': {}; this one stops",
+                           own.service().c_str(), own.robot_id().c_str(), other.instance().c_str());
+    service_.status().set_state(msg::kServiceFailed, refused_);
+    if (!listening_) throw std::runtime_error(refused_);
+  } else if (reported_.insert(other.instance().to_string()).second) {
+    service_.status().fault(fault, fmt::format("{} was started for the same robot; it has to stop",
+                                               other.instance().c_str()));
+  }
+}
+
+}  // namespace topogeo::service
