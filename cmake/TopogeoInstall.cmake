@@ -56,13 +56,13 @@ install(FILES ${deploy}/compose.yaml ${deploy}/devices.example.yaml
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
 
 # ---- for subscribers ----
-set(libraries geometry support idl messaging)
+set(libraries geometry support idl map_client messaging)
 foreach(library IN LISTS libraries)
   set_target_properties(topogeo_${library} PROPERTIES EXPORT_NAME ${library})
   install(TARGETS topogeo_${library} EXPORT topogeo
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT topogeo-dev)
 endforeach()
-foreach(library geometry support messaging)
+foreach(library geometry support map_client messaging)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/libs/${library}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
           COMPONENT topogeo-dev)
 endforeach()

@@ -6,13 +6,14 @@
 #
 #   tests/bench/lives.sh LOG [ROUNDS]      LOG as ./run demo leaves it: demo/floor.clf.gz
 #
-# TOPOGEO_DDS_PARTICIPANT=udp_only: over UDP alone.
+# Over UDP: a killed program leaves shared memory behind in which others may wait for seconds.
 set -euo pipefail
 log=${1:?"expected a log"}
 rounds=${2:-3}
 bin=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../build/bin" && pwd)
 work=$(mktemp -d)
 partition="lives-$$"
+export TOPOGEO_DDS_PARTICIPANT=udp_only
 declare -A pids
 machine=""  # process that holds the other network namespace
 trap 'kill "${pids[@]}" $machine 2> /dev/null || true; rm -rf "$work"' EXIT

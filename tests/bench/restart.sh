@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# How long until a program is heard that takes the place of one killed with -9: a subscriber of the
+# map that hears a map store that lives, and a subscriber that lives and hears a map store.
+#
+#   tests/bench/restart.sh [ROUNDS]
+#
+# Over shared memory, as within a host; with TOPOGEO_DDS_PARTICIPANT=udp_only over UDP.
+set -euo pipefail
+rounds=${1:-10}
+bin=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../build/bin" && pwd)
+work=$(mktemp -d)
+partition="restart-$$"
+declare -A pids
+trap 'kill "${pids[@]}" 2> /dev/null || true; wait; rm -rf "$work"' EXIT
+
+start() {  # NAME PROGRAM [WORDS]
+  "$bin/$2" "${@:3}" --partition "$partition" >> "$work/$1" 2> /dev/null &
+  pids[$1]=$!
+}
+kill_now() {  # NAME
+  kill -9 "${pids[$1]}"
+  wait "${pids[$1]}" 2> /dev/null || true
+}
+maps() { grep -c '"event":"map"' "$work/living" || true; }  # that the living subscriber has shown
+wait_for_maps() { until [ "$(maps)" -ge "$1" ]; do sleep 0.02; done; }
+ms_since() { echo $((($(date +%s%N) - $1) / 1000000)); }
+
+start store map_store --out "$work/out"
+start living topogeo follow --json
+start killed topogeo follow --json
+start worker ga_worker --slots 1
+wait_for_maps 1
+sleep 2
+for ((round = 1; round <= rounds; ++round)); do
+  kill_now killed
+  from=$(date +%s%N)
+  "$bin/topogeo" follow --once --partition "$partition" > /dev/null 2>&1
+  subscriber=$(ms_since "$from")
+  start killed topogeo follow --json
+  sleep 1
+  before=$(maps)
+  kill_now store
+  from=$(date +%s%N)
+  start store map_store --out "$work/out"
+  wait_for_maps $((before + 1))
+  echo "$round: restarted subscriber $subscriber ms, restarted map store $(ms_since "$from") ms"
+  sleep 1
+done
