@@ -18,7 +18,8 @@ start_worker pc1
 start_worker pc2
 start_mapping plain
 wait_for_map 120
-[ "$(workers_done)" = 2 ] || fail "$(workers_done) of 2 workers had work"
+both_worked() { [ "$(workers_done)" = 2 ]; }
+eventually 20 both_worked || fail "$(workers_done) of 2 workers had work"
 same_results "$work/plain" "$work/alone"
 stop_mapping
 
