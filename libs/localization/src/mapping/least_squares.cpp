@@ -14,6 +14,12 @@ namespace {
 
 using geometry::Pose2;
 
+// A factorization fills up where places were passed many times: of 20 km in one building it takes
+// gigabytes. So large a problem was solved in parts before and is near its solution, where
+// conjugate gradients reach the same cost in the memory of the edges.
+constexpr std::size_t kMostFactored = 6000;
+constexpr int kMostGradients = 1000;
+
 // Whitened difference between the relative pose of two stops and what an edge measured.
 class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
  public:
@@ -81,6 +87,11 @@ OptimizationSummary least_squares(std::span<Pose2> poses, std::span<const std::u
   // Eigen's Cholesky and not SuiteSparse's: the latter calls a BLAS whose kernels depend on the
   // CPU.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  if (poses.size() > kMostFactored) {
+    options.linear_solver_type = ceres::CGNR;
+    options.preconditioner_type = ceres::JACOBI;
+    options.max_linear_solver_iterations = kMostGradients;
+  }
   options.num_threads = 1;
   options.max_num_iterations = 30;
   options.function_tolerance = 1e-5;

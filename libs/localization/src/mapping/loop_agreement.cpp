@@ -25,8 +25,10 @@ constexpr double kAgree = 7.8;     // 95 % of right pairs (chi-square, three deg
 constexpr double kCountedApart_m = 0.75;
 constexpr double kLeastShare = 0.6;
 constexpr double kMostShare = 1.5;
-// More is wanted of a set that the prediction speaks against: per logarithm of the squared
-// Mahalanobis distance, because a prediction is wrong by far more often than a Gaussian says.
+// Less than of a robot that may be anywhere in a map (AgreementWeights::kWanted): here a prediction
+// speaks, too. More is wanted of a set that this one speaks against: per logarithm of the squared
+// Mahalanobis distance, because it is wrong by far more often than a Gaussian says.
+constexpr double kWanted = 3.0;
 constexpr double kPerSurprise = 0.75;
 constexpr double kOverRival = 2.0;  // how much heavier than its rivals an accepted set is
 constexpr std::size_t kRivalSeeds = 8;
@@ -147,7 +149,9 @@ bool LoopAgreement::spread(const Set& set, std::span<const double> path_m) const
 }
 
 // Those of the same later stretch that put the robot elsewhere. Loops with another earlier visit of
-// the same place do not: where that lies is what the graph predicts.
+// the same place do not: where that lies is what the graph predicts, and as far as the set
+// surprises the graph they must contradict each other. That was charged for once, by what is
+// wanted.
 LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
                                             const PoseGraph& graph,
                                             std::span<const double> path_m) const {
@@ -174,6 +178,7 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
   }
   const RelativePoses T_seed_stop = graph.predict_from(
       seed_edge.from, std::vector<std::uint32_t>(of_other_visits.begin(), of_other_visits.end()));
+  const double surprise = surprise_of(set);
   const auto elsewhere = [&](std::size_t i) {
     if (of_one_visit(i)) return true;
     const auto later_apart_m = [&](std::size_t other) {
@@ -185,7 +190,7 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
         }));
     const UncertainPose T_from_nearest = compose(inverse(T_seed_stop.at(edge_of(i).from)),
                                                  graph.along_path(seed_edge.from, nearest.from));
-    return disagreement(graph, nearest, edge_of(i), T_from_nearest) > kAgree;
+    return disagreement(graph, nearest, edge_of(i), T_from_nearest) > kAgree + surprise;
   };
   std::erase_if(others, [&](std::size_t i) { return !elsewhere(i); });
   return others;
@@ -203,7 +208,7 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
       const Set set = set_around(seed, all, graph, path_m);
       const double weight = weight_of(set, path_m);
-      const double wanted = AgreementWeights::kWanted + kPerSurprise * std::log1p(surprise_of(set));
+      const double wanted = kWanted + kPerSurprise * std::log1p(surprise_of(set));
       if (weight < wanted || !spread(set, path_m)) continue;
       std::vector<std::size_t> rivals = rivals_of(seed, set, graph, path_m);
       double rival = 0.0;

@@ -2,6 +2,7 @@
 // the robot to one place, those of a look-alike to another.
 #include "topogeo/localization/mapping/loop_agreement.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -63,9 +64,9 @@ TEST_F(LoopAgreementTest, OneDoubtfulLoopProvesNothing) {
 }
 
 TEST_F(LoopAgreementTest, SeveralStopsThatAgreeAreAcceptedTogether) {
-  for (std::uint32_t i = 0; i < 3; ++i) add(i, 30 + i, 1.0);
+  for (std::uint32_t i = 0; i < 2; ++i) add(i, 30 + i, 1.0);
   EXPECT_TRUE(accepted().empty());
-  for (std::uint32_t i = 3; i < 6; ++i) add(i, 30 + i, 1.0);
+  for (std::uint32_t i = 2; i < 6; ++i) add(i, 30 + i, 1.0);
   EXPECT_EQ(accepted().size(), 6U);
   EXPECT_TRUE(accepted().empty());  // each once
 }
@@ -105,16 +106,33 @@ TEST_F(LoopAgreementTest, LoopsWithALookAlikeFarAwayAreRivals) {
   EXPECT_TRUE(accepted().empty());
 }
 
-// Four stops of a sparse log see as much as six of a dense one.
+// The robot has drifted by 1.2 m since the first visit, far more than the graph says; what it saw
+// shortly before lies where the graph has it.
+TEST_F(LoopAgreementTest, LoopsThatDriftedAlongAreNoRivals) {
+  const auto predicted = [](StopMatch match) {
+    match.predicted = {{match.edge.T_from_to.x_m, 0.0, 0.0}, spread_of(0.25, 0.05)};
+    return match;
+  };
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    agreement_.add(predicted(match(i, 70 + i, 1.2)), path_m_);
+    if (i < 4) agreement_.add(predicted(match(35 + i, 70 + i, 0.0)), path_m_);
+  }
+  const std::vector<StopMatch> all = accepted();
+  EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                          [](const StopMatch& one) { return one.edge.from < 20; }),
+            8);
+}
+
+// Three stops of a sparse log see as much as five of a dense one.
 TEST_F(LoopAgreementTest, StopsFarApartCountMore) {
   LoopAgreement dense;
   std::vector<double> half_m = path_m_;
   for (double& at_m : half_m) at_m *= 0.5;
-  for (std::uint32_t i = 0; i < 4; ++i) {
+  for (std::uint32_t i = 0; i < 3; ++i) {
     add(i, 30 + i, 1.0);
     dense.add(match(i, 30 + i, 1.0), half_m);
   }
-  EXPECT_EQ(accepted().size(), 4U);
+  EXPECT_EQ(accepted().size(), 3U);
   EXPECT_TRUE(dense.accepted(graph_, half_m).empty());
 }
 
@@ -155,9 +173,9 @@ TEST_F(LoopAgreementTest, AgainstAGoodPredictionMoreAreWanted) {
     one.predicted = {{30.0, 0.0, 0.0}, spread_of(0.2, 0.02)};
     return one;
   };
-  for (std::uint32_t i = 0; i < 5; ++i) agreement_.add(surprising(i), path_m_);
+  for (std::uint32_t i = 0; i < 4; ++i) agreement_.add(surprising(i), path_m_);
   EXPECT_TRUE(accepted().empty());
-  for (std::uint32_t i = 5; i < 10; ++i) agreement_.add(surprising(i), path_m_);
+  for (std::uint32_t i = 4; i < 10; ++i) agreement_.add(surprising(i), path_m_);
   EXPECT_EQ(accepted().size(), 10U);
 }
 

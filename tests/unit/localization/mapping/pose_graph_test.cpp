@@ -48,6 +48,42 @@ TEST(PoseGraphTest, DisagreementIsTheSquaredMahalanobisDistance) {
   EXPECT_NEAR(graph.disagreement(edge), 9.0 + 4.0, 1e-9);
 }
 
+// Laps of a round of 100 stops, more than are factorized, each shifted by what odometry adds up to.
+TEST(PoseGraphTest, ManyStopsAreSpreadWithoutAFactorization) {
+  constexpr std::uint32_t kRound = 100;
+  constexpr std::uint32_t kStops = 6100;
+  support::Random random(7);
+  std::vector<Pose2> truth;
+  for (std::uint32_t i = 0; i < kStops; ++i) {
+    const double angle = 2.0 * std::numbers::pi * (i % kRound) / kRound;
+    truth.push_back({10.0 * std::cos(angle), 10.0 * std::sin(angle), geometry::wrap_angle(angle)});
+  }
+  PoseGraph graph;
+  double cost_of_truth = 0.0;  // no optimum is worse
+  for (std::uint32_t i = 0; i < kStops; ++i) {
+    const double lap = i / kRound;
+    graph.add_pose({truth[i].x_m + 0.002 * lap * (i > 0), truth[i].y_m, truth[i].theta_rad});
+    if (i == 0) continue;
+    Pose2 step = geometry::between(truth[i - 1], truth[i]);
+    const double off_m = 0.01 * (random.uniform() - 0.5);
+    step.x_m += off_m;
+    cost_of_truth += 0.5 * (off_m / 0.05) * (off_m / 0.05);
+    graph.add_edge({i - 1, i, EdgeKind::kOdometry, step, diagonal(0.05, 0.01)});
+    if (i < kRound) continue;
+    graph.add_edge({i - kRound, i, EdgeKind::kRevisit, {}, diagonal(0.02, 0.005)});
+  }
+  const OptimizationSummary summary = graph.optimize();
+  EXPECT_TRUE(summary.usable);
+  EXPECT_LT(summary.final_cost, cost_of_truth);
+  EXPECT_LT(cost_of_truth, 0.5 * summary.initial_cost);
+  double farthest_m = 0.0;
+  for (std::uint32_t i = 0; i < kStops; ++i) {
+    const Pose2& place = graph.poses()[i % kRound];
+    farthest_m = std::max(farthest_m, (graph.poses()[i].position_m() - place.position_m()).norm());
+  }
+  EXPECT_LT(farthest_m, 0.03);  // 0.12 m before
+}
+
 TEST(PoseGraphTest, PlacesTheLastPoseBetweenWhatItsEdgesSay) {
   PoseGraph graph;
   graph.add_pose({});
