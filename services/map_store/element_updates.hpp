@@ -37,9 +37,15 @@ class ElementUpdates {
  private:
   using Key = std::pair<msg::MapElementKind, std::uint32_t>;
   static Key key_of(const msg::MapElement& element) { return {element.kind(), element.id()}; }
+  /// Hashes, as whole elements of a large map take twenty megabytes.
+  struct Sent {
+    std::uint64_t content = 0;
+    std::uint64_t sample = 0;  // map_client::sample_hash; 0 of the summary
+  };
+  void forget(const Key& key);
 
   std::string robot_id_;
-  std::map<Key, msg::MapElement> sent_;
+  std::map<Key, Sent> sent_;
   std::uint64_t count_ = 0;
   std::uint64_t samples_hash_ = 0;  // of nodes and branches in sent_
 };

@@ -1,8 +1,11 @@
 #include "hybrid_updates.hpp"
 
+#include <string_view>
 #include <utility>
 
+#include "topogeo/messaging/message.hpp"
 #include "topogeo/service/hybrid_map_messages.hpp"
+#include "topogeo/support/hash.hpp"
 
 namespace topogeo::map_store {
 
@@ -16,6 +19,17 @@ bool same_tile(msg::HybridMap a, const msg::HybridMap& b) {
   return a == b;
 }
 
+std::uint64_t content_of_cells(const msg::GridTile& tile) {
+  support::Fnv1a hash;
+  const auto bytes = [](const auto& cells) {
+    return std::string_view(reinterpret_cast<const char*>(cells.data()),
+                            cells.size() * sizeof(cells.front()));
+  };
+  hash.add(bytes(tile.states()));
+  hash.add(bytes(tile.zones()));
+  return hash.value();
+}
+
 }  // namespace
 
 HybridUpdates::Update HybridUpdates::update_to(const planning::HybridMap& map,
@@ -25,16 +39,18 @@ HybridUpdates::Update HybridUpdates::update_to(const planning::HybridMap& map,
   Update update;
   for (msg::GridTile& tile : messages.tiles) {
     const auto before = sent_.find(tile.tile());
-    if (before != sent_.end() && before->second.states() == tile.states() &&
-        before->second.zones() == tile.zones()) {
-      messages.summary.tile_versions()[tile.tile()] = before->second.version();
+    if (before != sent_.end() && before->second.content == content_of_cells(tile)) {
+      messages.summary.tile_versions()[tile.tile()] = before->second.version;
       continue;
     }
     tile.sequence_number(count_ + update.changed.size());
     update.changed.push_back(std::move(tile));
   }
   for (const auto& [number, tile] : sent_) {
-    if (number >= messages.tiles.size()) update.gone.push_back(tile);
+    if (number < messages.tiles.size()) continue;
+    msg::GridTile& gone = update.gone.emplace_back();
+    messaging::set_header(gone, robot_id_, stamp_ns, 0);
+    gone.tile(number);
   }
   messages.summary.sequence_number(summaries_);
   if (!sent_summary_ || !update.changed.empty() || !same_tile(messages.summary, *sent_summary_)) {
@@ -45,7 +61,7 @@ HybridUpdates::Update HybridUpdates::update_to(const planning::HybridMap& map,
 }
 
 void HybridUpdates::sent(const msg::GridTile& tile) {
-  sent_.insert_or_assign(tile.tile(), tile);
+  sent_.insert_or_assign(tile.tile(), SentTile{tile.version(), content_of_cells(tile)});
   ++count_;
 }
 

@@ -41,7 +41,11 @@ class HybridUpdates {
  private:
   std::string robot_id_;
   std::uint64_t version_;
-  std::map<std::uint32_t, msg::GridTile> sent_;
+  struct SentTile {
+    std::uint64_t version = 0;
+    std::uint64_t content = 0;  // hash of its cells, as the cells of a large map take ten megabytes
+  };
+  std::map<std::uint32_t, SentTile> sent_;
   std::optional<msg::HybridMap> sent_summary_;
   std::uint64_t count_ = 0;
   std::uint64_t summaries_ = 0;

@@ -335,6 +335,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
 void MapStoreService::end() {
   if (finished_ || input_.newest_trajectory().stops.empty()) return;
   next_store_ = {};
+  live_map_ = LiveMap(service_.setup().config.config.global_map);  // its memory is needed
   store(true);
   const storage::MapDocument document = final_document(input_.newest_trajectory());
   write_results(options_.directory, document, options_.title);

@@ -13,7 +13,7 @@ namespace topogeo::messaging {
 namespace {
 
 /// What the history allocates for a sample before it knows how large it is, bytes.
-constexpr std::uint32_t kInitialPayload = 1024;
+constexpr std::uint32_t kInitialPayload = 256;
 
 /// A generated type support whose histories start small and grow with the samples. The generated
 /// one makes histories allocate the maximum of a bounded type for each sample, which is 50 MB for a

@@ -54,7 +54,7 @@ class Tracer {
       weight += w;
     };
     add(cell);
-    for (const std::int32_t next : cell.neighbours) {
+    for (const std::int32_t next : ridge_.neighbours(i)) {
       if (next != RidgeCells::kNone) add(ridge_.cells()[index(next)]);
     }
     return {sum / weight, static_cast<double>(cell.votes.clearance_m), cell.votes.share(),

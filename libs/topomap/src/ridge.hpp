@@ -18,7 +18,7 @@ struct RidgePoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame
   double clearance_m = 0.0;
   double share = 0.0;            ///< share of the views that voted for it, [0, 1]
-  std::uint32_t first_seen = 0;  ///< VoteGrid::Chunk::first_seen of its block
+  std::uint32_t first_seen = 0;  ///< VoteGrid::Block::first_seen of its block
   std::uint32_t views = 0;
 };
 

@@ -72,9 +72,9 @@ std::int32_t* RidgeCells::slot(std::int32_t x, std::int32_t y) {
                      static_cast<std::size_t>(cx - low_x_)];
   if (tile == kNone) {
     tile = static_cast<std::int32_t>(tiles_.size());
-    tiles_.emplace_back().fill(kNone);
+    tiles_.emplace_back(std::make_unique<Tile>())->fill(kNone);
   }
-  return &tiles_[static_cast<std::size_t>(tile)][VoteGrid::cell_in_chunk({x, y})];
+  return &(*tiles_[static_cast<std::size_t>(tile)])[VoteGrid::cell_in_chunk({x, y})];
 }
 
 void RidgeCells::add(const VoteGrid& grid, CellIndex at, std::int32_t& slot_of_cell) {
@@ -84,17 +84,21 @@ void RidgeCells::add(const VoteGrid& grid, CellIndex at, std::int32_t& slot_of_c
   const auto chunk =
       grid.chunks().find({at.y >> VoteGrid::kChunkBits, at.x >> VoteGrid::kChunkBits});
   if (chunk == grid.chunks().end()) return;
-  added.votes = chunk->second.cells[VoteGrid::cell_in_chunk(at)];
-  added.first_seen = chunk->second.first_seen[VoteGrid::block_in_chunk(at)];
+  const VoteGrid::Block* const block = chunk->second.find(at);
+  if (block == nullptr) return;
+  added.votes = block->cells[VoteGrid::cell_in_block(at)];
+  added.first_seen = block->first_seen;
 }
 
 void RidgeCells::collect(const VoteGrid& grid, const GlobalMapConfig& config) {
   for (const auto& [at, chunk] : grid.chunks()) {
     for (std::int32_t i = 0; i < VoteGrid::kChunk * VoteGrid::kChunk; ++i) {
-      const VoteCell& votes = chunk.cells[static_cast<std::size_t>(i)];
-      if (votes.views < config.min_observations || votes.share() < config.bridge_share) continue;
       const CellIndex cell{at.second * VoteGrid::kChunk + i % VoteGrid::kChunk,
                            at.first * VoteGrid::kChunk + i / VoteGrid::kChunk};
+      const VoteGrid::Block* const block = chunk.find(cell);
+      if (block == nullptr) continue;
+      const VoteCell& votes = block->cells[VoteGrid::cell_in_block(cell)];
+      if (votes.views < config.min_observations || votes.share() < config.bridge_share) continue;
       add(grid, cell, *slot(cell.x, cell.y));
     }
   }
@@ -102,7 +106,7 @@ void RidgeCells::collect(const VoteGrid& grid, const GlobalMapConfig& config) {
 
 // Drops the connected sets of cells of which none reaches the higher threshold (hysteresis).
 void RidgeCells::drop_unsupported(const GlobalMapConfig& config) {
-  std::vector<Cell> supported;
+  std::vector<std::int32_t> supported;
   std::vector<char> visited(cells_.size(), 0);
   std::vector<std::int32_t> set;
   for (std::size_t seed = 0; seed < cells_.size(); ++seed) {
@@ -121,10 +125,13 @@ void RidgeCells::drop_unsupported(const GlobalMapConfig& config) {
       }
     }
     if (!enough) continue;
-    for (const std::int32_t k : set) supported.push_back(cells_[static_cast<std::size_t>(k)]);
+    supported.insert(supported.end(), set.begin(), set.end());
   }
-  for (Tile& tile : tiles_) tile.fill(kNone);
-  cells_ = std::move(supported);
+  for (const std::unique_ptr<Tile>& tile : tiles_) tile->fill(kNone);
+  std::vector<Cell> cells;
+  cells.reserve(supported.size() + supported.size() / 8);  // with the holes to come
+  for (const std::int32_t k : supported) cells.push_back(cells_[static_cast<std::size_t>(k)]);
+  cells_ = std::move(cells);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     *slot(cells_[i].at.x, cells_[i].at.y) = static_cast<std::int32_t>(i);
   }
@@ -165,19 +172,23 @@ void RidgeCells::fill_holes(const VoteGrid& grid, const GlobalMapConfig& config)
 }
 
 void RidgeCells::link_neighbours() {
-  for (Cell& cell : cells_) {
+  neighbours_.resize(cells_.size());
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    Cell& cell = cells_[i];
     cell.kept = true;
     for (std::size_t k = 0; k < 8; ++k) {
       const std::int32_t next = *slot(cell.at.x + kAround[k].x, cell.at.y + kAround[k].y);
-      cell.neighbours[k] = next >= 0 ? next : kNone;
+      neighbours_[i][k] = next >= 0 ? next : kNone;
     }
   }
+  tiles_.clear();
+  tile_of_chunk_.clear();
 }
 
-unsigned RidgeCells::pattern(const Cell& cell) const {
+unsigned RidgeCells::pattern(std::int32_t index) const {
   unsigned p = 0;
   for (unsigned k = 0; k < 8; ++k) {
-    const std::int32_t next = cell.neighbours[k];
+    const std::int32_t next = neighbours(index)[k];
     if (next != kNone && cells_[static_cast<std::size_t>(next)].kept) p |= 1U << k;
   }
   return p;
@@ -193,7 +204,7 @@ void RidgeCells::thin() {
   const auto consider = [&](std::int32_t i) {
     const Cell& cell = cells_[static_cast<std::size_t>(i)];
     char& waiting = queued[static_cast<std::size_t>(i)];
-    if (waiting != 0 || !cell.kept || !kRemovable[pattern(cell)]) return;
+    if (waiting != 0 || !cell.kept || !kRemovable[pattern(i)]) return;
     waiting = 1;
     queue.emplace(cell.votes.support, i);
   };
@@ -203,9 +214,9 @@ void RidgeCells::thin() {
     queue.pop();
     queued[static_cast<std::size_t>(lowest)] = 0;
     Cell& cell = cells_[static_cast<std::size_t>(lowest)];
-    if (!kRemovable[pattern(cell)]) continue;
+    if (!kRemovable[pattern(lowest)]) continue;
     cell.kept = false;
-    for (const std::int32_t next : cell.neighbours) {
+    for (const std::int32_t next : neighbours(lowest)) {
       if (next != kNone) consider(next);
     }
   }
@@ -213,7 +224,7 @@ void RidgeCells::thin() {
 
 std::vector<std::int32_t> RidgeCells::kept_neighbours(std::int32_t index) const {
   std::vector<std::int32_t> kept;
-  for (const std::int32_t next : cells_[static_cast<std::size_t>(index)].neighbours) {
+  for (const std::int32_t next : neighbours(index)) {
     if (next != kNone && cells_[static_cast<std::size_t>(next)].kept) kept.push_back(next);
   }
   return kept;

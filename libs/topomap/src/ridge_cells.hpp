@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "topogeo/topomap/global_map_builder.hpp"
@@ -11,8 +12,6 @@
 
 namespace topogeo::topomap {
 
-/// Cells by their neighbours: 0 east, then counter-clockwise to 7 south-east; kNone where the
-/// neighbour is not in the set.
 class RidgeCells {
  public:
   static constexpr std::int32_t kNone = -1;
@@ -22,15 +21,20 @@ class RidgeCells {
     VoteCell votes;
     std::uint32_t first_seen = 0;
     bool kept = false;  ///< on the thinned ridge
-    std::array<std::int32_t, 8> neighbours{};
   };
+  /// Indices of cells: 0 east, then counter-clockwise to 7 south-east; kNone where the neighbour is
+  /// not in the set.
+  using Neighbours = std::array<std::int32_t, 8>;
 
   /// Cells above the thresholds of `config`, small holes between them filled, thinned.
   RidgeCells(const VoteGrid& grid, const GlobalMapConfig& config);
 
   [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
+  [[nodiscard]] const Neighbours& neighbours(std::int32_t index) const {
+    return neighbours_[static_cast<std::size_t>(index)];
+  }
 
-  /// Kept neighbours of a kept cell, in the order of Cell::neighbours.
+  /// Kept neighbours of a kept cell, in the order of Neighbours.
   [[nodiscard]] std::vector<std::int32_t> kept_neighbours(std::int32_t index) const;
 
  private:
@@ -43,14 +47,15 @@ class RidgeCells {
   void fill_holes(const VoteGrid& grid, const GlobalMapConfig& config);
   void link_neighbours();
   void thin();
-  [[nodiscard]] unsigned pattern(const Cell& cell) const;
+  [[nodiscard]] unsigned pattern(std::int32_t index) const;
   [[nodiscard]] std::int32_t* slot(std::int32_t x, std::int32_t y);
   void add(const VoteGrid& grid, CellIndex at, std::int32_t& slot);
 
   std::vector<Cell> cells_;
-  std::vector<Tile> tiles_;
-  std::vector<std::int32_t> tile_of_chunk_;  // over the bounding box of the chunks, kNone: no tile
-  std::int32_t low_x_ = 0;                   // of that box, chunks
+  std::vector<Neighbours> neighbours_;        // of cells_
+  std::vector<std::unique_ptr<Tile>> tiles_;  // until neighbours_ is made
+  std::vector<std::int32_t> tile_of_chunk_;   // over the bounding box of the chunks, kNone: no tile
+  std::int32_t low_x_ = 0;                    // of that box, chunks
   std::int32_t low_y_ = 0;
   std::int32_t width_ = 0;
   std::int32_t height_ = 0;

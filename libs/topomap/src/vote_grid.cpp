@@ -124,9 +124,14 @@ void VoteGrid::vote_against(const ViewWindow& window, const geometry::Pose2& T_r
       const auto found = chunks_.find({cy, cx});
       if (found == chunks_.end()) continue;
       for (std::int32_t i = 0; i < kChunk * kChunk; ++i) {
-        VoteCell& c = found->second.cells[static_cast<std::size_t>(i)];
-        if (c.views == 0) continue;
         const CellIndex at{cx * kChunk + i % kChunk, cy * kChunk + i / kChunk};
+        Block* const block = found->second.find(at);
+        if (block == nullptr) {
+          i += kBlock - 1;  // its other cells of this row
+          continue;
+        }
+        VoteCell& c = block->cells[cell_in_block(at)];
+        if (c.views == 0) continue;
         const std::int32_t wx = at.x - window.low.x;
         const std::int32_t wy = at.y - window.low.y;
         if (wx < 0 || wy < 0 || wx >= window.width || wy >= window.height) continue;
@@ -146,10 +151,18 @@ void VoteGrid::vote_against(const ViewWindow& window, const geometry::Pose2& T_r
 }
 
 VoteCell& VoteGrid::cell(CellIndex at) {
-  Chunk& chunk = chunks_[{at.y >> kChunkBits, at.x >> kChunkBits}];
-  std::uint32_t& first = chunk.first_seen[block_in_chunk(at)];
-  if (first == 0) first = ++blocks_seen_;
-  return chunk.cells[cell_in_chunk(at)];
+  Block& block = chunks_[{at.y >> kChunkBits, at.x >> kChunkBits}].block(at);
+  if (block.first_seen == 0) block.first_seen = ++blocks_seen_;
+  return block.cells[cell_in_block(at)];
+}
+
+VoteGrid::Block& VoteGrid::Chunk::block(CellIndex at) {
+  std::uint8_t& slot = slots_[block_in_chunk(at)];
+  if (slot == 0) {
+    blocks_.emplace_back();
+    slot = static_cast<std::uint8_t>(blocks_.size());
+  }
+  return blocks_[slot - 1U];
 }
 
 void VoteGrid::fade(VoteCell& c) const {

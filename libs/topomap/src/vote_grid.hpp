@@ -42,17 +42,38 @@ class VoteGrid {
   static constexpr std::int32_t kChunk = 1 << kChunkBits;  ///< cells
   static constexpr std::int32_t kBlock = 4;                ///< cells
 
-  struct Chunk {
-    std::array<VoteCell, static_cast<std::size_t>(kChunk* kChunk)> cells{};
-    /// Order in which blocks of 4 x 4 cells were first voted for, from 1, 0 if never; names for
-    /// places that have no better one.
-    std::array<std::uint32_t, static_cast<std::size_t>((kChunk / kBlock) * (kChunk / kBlock))>
-        first_seen{};
+  /// 4 x 4 cells. Branches are thin, so most blocks of a chunk have no votes and are not there.
+  struct Block {
+    std::array<VoteCell, static_cast<std::size_t>(kBlock* kBlock)> cells{};
+    /// Order in which blocks were first voted for, from 1; names for places that have no better
+    /// one.
+    std::uint32_t first_seen = 0;
   };
-  /// Indices in Chunk::cells and Chunk::first_seen of a cell.
+  class Chunk {
+   public:
+    /// The block of a cell; null when it has no votes.
+    [[nodiscard]] const Block* find(CellIndex at) const {
+      const std::uint8_t slot = slots_[block_in_chunk(at)];
+      return slot == 0 ? nullptr : &blocks_[slot - 1U];
+    }
+    Block* find(CellIndex at) { return const_cast<Block*>(std::as_const(*this).find(at)); }
+    /// The same, made where there is none.
+    Block& block(CellIndex at);
+
+   private:
+    static constexpr std::size_t kBlocks =
+        static_cast<std::size_t>((kChunk / kBlock) * (kChunk / kBlock));
+    std::array<std::uint8_t, kBlocks> slots_{};  // index in blocks_ + 1
+    std::vector<Block> blocks_;
+  };
+  /// Of a cell: its number in its chunk, row by row, and in Block::cells.
   static std::size_t cell_in_chunk(CellIndex at) {
     return static_cast<std::size_t>(at.y & (kChunk - 1)) * kChunk +
            static_cast<std::size_t>(at.x & (kChunk - 1));
+  }
+  static std::size_t cell_in_block(CellIndex at) {
+    return static_cast<std::size_t>(at.y & (kBlock - 1)) * kBlock +
+           static_cast<std::size_t>(at.x & (kBlock - 1));
   }
   static std::size_t block_in_chunk(CellIndex at) {
     return static_cast<std::size_t>(at.y & (kChunk - 1)) / kBlock * (kChunk / kBlock) +
