@@ -34,7 +34,15 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay, b
   store_.emplace(service, [this](const msg::StoredMap& stored) { on_stored(stored); });
 }
 
+namespace {
+
+// A reader that is behind has them all the same; about 4 MB.
+constexpr std::size_t kKeptWhenStored = 256;
+
+}  // namespace
+
 void LocalMapperService::on_stored(const msg::StoredMap& stored) {
+  if (begun_) release(stored);
   if (begun_ || stored_) return;
   // A log that is added to its own map is another session (as in MappingRun).
   if (replay_ && stored.stops() > 0) mapper_.set_session_salt(stored.map_id());
@@ -69,6 +77,21 @@ void LocalMapperService::begin() {
       {.role = replay_ ? std::string(messaging::kReplayRole) : std::string(), .main_input = true});
   service_.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
   service_.status().set_state(msg::kServiceWaiting, "for scans");
+}
+
+// What is stored comes from the map store when it is needed again. A log ends, and those who come
+// late find all of it.
+void LocalMapperService::release(const msg::StoredMap& stored) {
+  if (replay_ || sent_.empty() || stored.session() != sent_.back().session) return;
+  while (sent_.size() > kKeptWhenStored) {
+    const topomap::StopId stop = sent_.front();
+    if (stop.session == stored.session() && stop.number >= stored.session_stops()) return;
+    msg::LocalMap gone;
+    gone.session(stop.session);
+    gone.id(stop.number);
+    local_maps_.dispose(gone);
+    sent_.pop_front();
+  }
 }
 
 void LocalMapperService::on_scan(const msg::Scan& message) {
@@ -146,6 +169,7 @@ void LocalMapperService::publish(const topomap::LocalMap& map) {
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(error.what());  // no fault of the scan; the run cannot go on without
   }
+  sent_.push_back(map.stop);
   service_.status().set_counter("local_maps", static_cast<double>(++maps_));
   service_.status().set_counter("tracked_scans", static_cast<double>(tracked_));
   service_.status().set_counter("matched_scans", static_cast<double>(matched_));

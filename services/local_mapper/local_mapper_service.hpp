@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <optional>
 
@@ -32,6 +33,8 @@ class LocalMapperService {
   };
 
   void on_stored(const msg::StoredMap& stored);
+  /// Forgets local maps that are stored.
+  void release(const msg::StoredMap& stored);
   void on_last_stop(const service::StoreClient::Answer& answer);
   /// Nothing is read before it is known with which session to go on.
   void begin();
@@ -60,6 +63,7 @@ class LocalMapperService {
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::optional<Geometry> geometry_;
   std::uint64_t maps_ = 0;
+  std::deque<topomap::StopId> sent_;  // that late readers get, oldest first
   std::uint64_t tracked_ = 0;
   std::uint64_t matched_ = 0;
   std::optional<std::uint64_t> scans_in_stream_;

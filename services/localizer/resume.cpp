@@ -78,7 +78,13 @@ void Resume::on_map(const service::StoreClient::Answer& answer) {
 void Resume::on_stops(const service::StoreClient::Answer& answer) {
   if (!usable(answer)) return;
   try {
-    for (topomap::LocalMap& map : storage::parse_local_maps(*answer.bytes, "snapshot")) {
+    std::vector<topomap::LocalMap> stops = storage::parse_local_maps(*answer.bytes, "snapshot");
+    // Views that others show as well have left a long drive.
+    if (!from_.map && stops.size() < stored_->session_stops()) {
+      get_map();
+      return;
+    }
+    for (topomap::LocalMap& map : stops) {
       from_.stops.push_back(std::make_shared<const topomap::LocalMap>(std::move(map)));
     }
     on_ready_(std::move(from_));

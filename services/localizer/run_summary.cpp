@@ -37,7 +37,7 @@ void add_localization(msg::RunSummary& summary, const localization::MapLocalizer
 
 void add_continuation(msg::RunSummary& summary, const localization::MappingSession& session) {
   summary.stored_stops(session.stored_stops());
-  summary.added_stops(session.maps().size() - session.stored_stops());
+  summary.added_stops(session.added_stops());
   summary.unmapped_stops(session.unmapped_stops());
   messaging::set_text_cut(summary.message(), pipeline::continuation_message(session));
 }

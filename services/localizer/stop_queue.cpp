@@ -11,12 +11,14 @@ StopQueue::Arrival StopQueue::arrival(const topomap::StopId& stop,
   if (taken != hashes_.end()) {
     return content_hash == taken->second ? Arrival::kRepeated : Arrival::kOtherRun;
   }
+  if (over_.contains(stop.session)) return Arrival::kRepeated;
   const bool before = last_ && stop.session == last_->session && stop.number <= last_->number;
   return before ? Arrival::kRepeated : Arrival::kNew;
 }
 
 void StopQueue::add(MapPointer map) {
   const topomap::StopId stop = map->stop;
+  if (over_.contains(stop.session)) return;
   if (std::find(sessions_.begin(), sessions_.end(), stop.session) == sessions_.end()) {
     sessions_.push_back(stop.session);
   }
@@ -39,9 +41,18 @@ StopQueue::MapPointer StopQueue::take(const topomap::StopId& stop) {
   if (found == waiting_.end()) return nullptr;
   MapPointer map = std::move(found->second);
   waiting_.erase(found);
+  if (last_ && last_->session != stop.session) end_session(last_->session);
   hashes_[stop] = topomap::content_hash(*map);
+  ++taken_;
   last_ = stop;
   return map;
+}
+
+void StopQueue::end_session(std::uint64_t session) {
+  over_.insert(session);
+  std::erase(sessions_, session);
+  hashes_.clear();
+  std::erase_if(waiting_, [&](const auto& entry) { return entry.first.session == session; });
 }
 
 bool StopQueue::finished() const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "topogeo/topomap/local_map.hpp"
@@ -36,17 +37,21 @@ class StopQueue {
   void end_at(std::uint64_t maps) { maps_in_session_ = maps; }
 
   /// Local maps taken so far.
-  [[nodiscard]] std::size_t taken() const { return hashes_.size(); }
+  [[nodiscard]] std::size_t taken() const { return taken_; }
   /// All of an ended stream have been taken.
   [[nodiscard]] bool finished() const;
 
  private:
   MapPointer take(const topomap::StopId& stop);
+  /// Another session is on: what is left of this one is not wanted any more.
+  void end_session(std::uint64_t session);
 
   std::map<topomap::StopId, MapPointer> waiting_;
   std::vector<std::uint64_t> sessions_;              // in the order in which they came
-  std::map<topomap::StopId, std::uint64_t> hashes_;  // of those taken
-  std::optional<topomap::StopId> last_;              // taken, or there before
+  std::map<topomap::StopId, std::uint64_t> hashes_;  // of those taken of the session that is on
+  std::set<std::uint64_t> over_;                     // sessions
+  std::size_t taken_ = 0;
+  std::optional<topomap::StopId> last_;  // taken, or there before
   std::optional<std::uint64_t> maps_in_session_;
 };
 

@@ -30,14 +30,18 @@ bool TrajectoryPublisher::publish(const localization::Slam& slam,
                                   const topomap::Trajectory& trajectory, std::int64_t stamp_ns,
                                   bool whole) {
   version_ = trajectory.version;
+  whole |= trajectory.numbered_since != numbered_since_;
+  if (trajectory.numbered_since != numbered_since_) decisions_ = 0;
+  numbered_since_ = trajectory.numbered_since;
   if (!send_segments(trajectory, whole)) return false;
   if (!send_edges(slam, trajectory.version, stamp_ns, whole)) return false;
   if (!send_decisions(slam.loop_decisions(), stamp_ns)) return false;
   std::vector<topomap::LoopClosure> closures = slam.loop_closures();
   if (!whole && same(closures, closures_)) return true;
   closures_ = std::move(closures);
-  const msg::LoopClosures message = service::to_msg(
-      closures_, trajectory.version, service_.robot_id(), stamp_ns, closures_sent_++);
+  const msg::LoopClosures message =
+      service::to_msg(closures_, trajectory.version, service_.robot_id(), stamp_ns,
+                      closures_sent_++, numbered_since_);
   return service_.send(closure_writer_, message, "loop closures");
 }
 
@@ -66,8 +70,9 @@ bool TrajectoryPublisher::send_edges(const localization::Slam& slam, std::uint64
   // When edges were only removed, the last segment has the new number of them.
   auto segment = std::min(static_cast<std::uint32_t>(first / msg::kSegmentEdges), count - 1);
   for (; segment < count; ++segment) {
-    const msg::MapEdges message = service::to_segment(edges_, segment, version, service_.robot_id(),
-                                                      stamp_ns, edge_segments_sent_++);
+    const msg::MapEdges message =
+        service::to_segment(edges_, segment, version, service_.robot_id(), stamp_ns,
+                            edge_segments_sent_++, numbered_since_);
     if (!service_.send(edge_writer_, message, "edges")) return false;
   }
   return true;
@@ -79,8 +84,8 @@ bool TrajectoryPublisher::send_decisions(const std::vector<localization::LoopDec
   if (decisions.size() == decisions_) return true;
   const auto first = static_cast<std::uint32_t>(decisions_ / msg::kSegmentDecisions);
   for (std::uint32_t i = first; i < service::decision_segment_count(decisions.size()); ++i) {
-    const msg::LoopDecisions segment =
-        service::to_segment(decisions, i, service_.robot_id(), stamp_ns, decision_segments_sent_++);
+    const msg::LoopDecisions segment = service::to_segment(
+        decisions, i, service_.robot_id(), stamp_ns, decision_segments_sent_++, numbered_since_);
     if (!service_.send(decision_writer_, segment, "loop decisions")) return false;
   }
   decisions_ = decisions.size();

@@ -47,6 +47,7 @@ class TrajectoryPublisher {
   messaging::Writer<msg::LoopDecisions> decision_writer_;
   TrajectoryUpdates updates_;
   std::uint64_t version_ = 0;
+  std::uint64_t numbered_since_ = 0;
   std::vector<topomap::LoopClosure> closures_;
   std::vector<storage::MapEdge> edges_;  // as sent
   std::size_t decisions_ = 0;

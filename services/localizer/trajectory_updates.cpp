@@ -6,6 +6,8 @@ namespace topogeo::localizer {
 
 std::vector<std::uint32_t> TrajectoryUpdates::update(const topomap::Trajectory& trajectory) {
   std::vector<std::uint32_t> changed;
+  if (trajectory.numbered_since != numbered_since_) last_.clear();
+  numbered_since_ = trajectory.numbered_since;
   for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
     const auto segment = static_cast<std::uint32_t>(i / msg::kSegmentStops);
     if (!changed.empty() && changed.back() == segment) continue;

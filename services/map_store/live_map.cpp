@@ -14,12 +14,24 @@ void LiveMap::check(std::span<const topomap::StopPose> stops) {
     if (std::hypot(moved.x_m, moved.y_m) <= kMoved_m && std::fabs(moved.theta_rad) <= kTurned_rad) {
       continue;
     }
-    builder_ = topomap::GlobalMapBuilder(config_);
     rebuild_until_ = used_.size();
-    used_.clear();
-    ++rebuilds_;
+    start_anew();
     return;
   }
+}
+
+void LiveMap::renumber(std::uint64_t numbered_since) {
+  if (numbered_since == numbered_since_) return;
+  numbered_since_ = numbered_since;
+  if (used_.empty()) return;
+  rebuild_until_ = 0;
+  start_anew();
+}
+
+void LiveMap::start_anew() {
+  builder_ = topomap::GlobalMapBuilder(config_);
+  used_.clear();
+  ++rebuilds_;
 }
 
 bool LiveMap::step(std::span<const topomap::LocalMap> maps,
@@ -27,7 +39,7 @@ bool LiveMap::step(std::span<const topomap::LocalMap> maps,
   const std::size_t next = used_.size();
   if (next >= std::min(maps.size(), stops.size())) return false;
   used_.push_back(stops[next].T_map_robot);
-  if (stops[next].located) builder_.integrate(maps[next], stops[next].T_map_robot);
+  if (stops[next].located) builder_.integrate(maps[next], stops[next]);
   return true;
 }
 

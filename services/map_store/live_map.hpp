@@ -22,6 +22,9 @@ class LiveMap {
 
   explicit LiveMap(const topomap::GlobalMapConfig& config);
 
+  /// Starts anew if stops have other numbers since this version than before.
+  void renumber(std::uint64_t numbered_since);
+
   /// Starts anew if a pose has moved since its map was fused. Not while a new start is under way:
   /// it would never come to its end.
   void check(std::span<const topomap::StopPose> stops);
@@ -39,11 +42,14 @@ class LiveMap {
   }
 
  private:
+  void start_anew();
+
   topomap::GlobalMapConfig config_;
   topomap::GlobalMapBuilder builder_;
   std::vector<geometry::Pose2> used_;  // pose that each map was fused at
   std::size_t rebuild_until_ = 0;      // size() at which the last new start is done
   std::uint64_t rebuilds_ = 0;
+  std::uint64_t numbered_since_ = 0;
 };
 
 }  // namespace topogeo::map_store

@@ -70,6 +70,13 @@ void MapArchive::put(std::span<const topomap::LocalMap> local_maps,
                      const topomap::Trajectory& trajectory,
                      std::span<const topomap::LoopClosure> closures) {
   std::vector<storage::JoinedStop> joined;
+  if (trajectory.numbered_since != database_.numbered_since()) {
+    for (const topomap::LocalMap& map : local_maps) joined.push_back({map.stop, map.starts_drive});
+    check_file();
+    database_.renew(trajectory, closures, joined);
+    remember(trajectory, closures);
+    return;
+  }
   for (std::size_t i = database_.local_map_count(); i < local_maps.size(); ++i) {
     joined.push_back({local_maps[i].stop, local_maps[i].starts_drive});
   }
@@ -78,6 +85,11 @@ void MapArchive::put(std::span<const topomap::LocalMap> local_maps,
   if (joined.empty() && same) return;
   check_file();
   database_.put_trajectory(trajectory.version, trajectory.stops, closures, joined);
+  remember(trajectory, closures);
+}
+
+void MapArchive::remember(const topomap::Trajectory& trajectory,
+                          std::span<const topomap::LoopClosure> closures) {
   version_ = trajectory.version;
   poses_ = trajectory.stops.size();
   closures_ = hash_of(closures);

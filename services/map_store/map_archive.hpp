@@ -41,7 +41,8 @@ class MapArchive {
   std::vector<topomap::StopId> flush();
 
   /// Stores which stops the map has, their poses and the closures. `local_maps` begin with those
-  /// that the map had before. Throws like flush(), and std::invalid_argument when a local map is
+  /// that the map had before, unless the trajectory has numbered them anew: then those that it does
+  /// not name leave the map. Throws like flush(), and std::invalid_argument when a local map is
   /// not stored.
   void put(std::span<const topomap::LocalMap> local_maps, const topomap::Trajectory& trajectory,
            std::span<const topomap::LoopClosure> closures);
@@ -52,6 +53,8 @@ class MapArchive {
   [[nodiscard]] const storage::MapDatabase& database() const { return database_; }
 
  private:
+  void remember(const topomap::Trajectory& trajectory,
+                std::span<const topomap::LoopClosure> closures);
   /// Writes the file again if it was removed. Throws when another one is in its place.
   void check_file();
 

@@ -42,13 +42,21 @@ MapInput::Arrival MapInput::add(topomap::LocalMap map) {
   if (std::ranges::find(sessions_, stop.session) == sessions_.end())
     sessions_.push_back(stop.session);
   waiting_.emplace(stop, std::move(map));
+  if (renewal_) renew();
   extend();
   drop_old();
   return Arrival::kNew;
 }
 
 void MapInput::add(const msg::TrajectorySegment& message) {
-  check_stops(message);
+  if (message.numbered_since() > trajectory_.numbered_since()) {
+    renewal_of(message.numbered_since()).trajectory.add(message);
+    renew();
+    return;
+  }
+  // The localizer has started again with the numbers of before.
+  if (renewal_ && message.version() >= renewal_numbers_) renewal_.reset();
+  if (message.numbered_since() == trajectory_.numbered_since()) check_stops(message);
   trajectory_.add(message);
   extend();
   drop_old();
@@ -71,11 +79,70 @@ void MapInput::extend() {
   while (const topomap::StopPose* stop = trajectory_.stop(local_maps_.size())) {
     const auto found = waiting_.find(stop->stop);
     if (found == waiting_.end()) return;
-    const auto id = static_cast<std::uint32_t>(local_maps_.size());
-    const bool follows = id == 0 || local_maps_.back().stop.next() == stop->stop;
-    local_maps_.push_back(
-        topomap::numbered(std::move(waiting_.extract(found).mapped()), id, !follows));
+    take_in(std::move(waiting_.extract(found).mapped()));
   }
+}
+
+void MapInput::take_in(topomap::LocalMap map) {
+  const auto id = static_cast<std::uint32_t>(local_maps_.size());
+  const bool follows = id == 0 || local_maps_.back().stop.next() == map.stop;
+  local_maps_.push_back(topomap::numbered(std::move(map), id, !follows));
+}
+
+MapInput::Renewal& MapInput::renewal_of(std::uint64_t numbered_since) {
+  if (!renewal_ || numbered_since > renewal_numbers_) {
+    renewal_.emplace();
+    renewal_numbers_ = numbered_since;
+  }
+  return *renewal_;
+}
+
+void MapInput::renew() {
+  if (!renewal_->trajectory.complete()) return;
+  const topomap::Trajectory trajectory = renewal_->trajectory.newest();
+  std::map<topomap::StopId, topomap::LocalMap*> before;
+  for (topomap::LocalMap& map : local_maps_) before[map.stop] = &map;
+  const topomap::StopId first = trajectory.stops.front().stop;
+  if (!before.empty() && !before.contains(first)) {
+    renewal_.reset();
+    throw std::invalid_argument(fmt::format(
+        "stop {} of session {:016x} is the first one of a trajectory that is numbered anew, but "
+        "not in this map: the localizer does not go on with this map",
+        first.number, first.session));
+  }
+  // Nothing leaves the map because of a stop that is late.
+  bool late = false;
+  for (const topomap::StopPose& stop : trajectory.stops) {
+    late |= !before.contains(stop.stop) && !waiting_.contains(stop.stop);
+    if (late && before.contains(stop.stop)) return;
+  }
+  std::vector<topomap::LocalMap> all = std::exchange(local_maps_, {});
+  for (const topomap::StopPose& stop : trajectory.stops) {
+    const auto joins = waiting_.find(stop.stop);
+    const auto stays = before.find(stop.stop);
+    if (stays != before.end()) {
+      take_in(std::move(*stays->second));
+      before.erase(stays);
+    } else if (joins != waiting_.end()) {
+      take_in(std::move(waiting_.extract(joins).mapped()));
+    } else {
+      break;
+    }
+  }
+  for (const auto& [stop, map] : before) {
+    arrived_.erase(stop);
+    std::uint32_t& first_kept = first_kept_[stop.session];
+    first_kept = std::max(first_kept, stop.number + 1);
+  }
+  trajectory_ = std::move(renewal_->trajectory);
+  closures_ = std::move(renewal_->closures);
+  closures_version_ = renewal_->closures_version;
+  stored_edges_.clear();
+  edges_ = std::move(renewal_->edges);
+  ++edge_changes_;
+  renewal_.reset();
+  extend();
+  drop_old();
 }
 
 // The trajectory names the stops of a session in the order of their numbers.
@@ -116,12 +183,25 @@ std::optional<topomap::StopId> MapInput::lost() const {
 }
 
 void MapInput::add(const msg::LoopClosures& message) {
-  if (closures_version_ && message.version() < *closures_version_) return;
-  closures_ = service::from_msg(message);
-  closures_version_ = message.version();
+  if (message.numbered_since() < trajectory_.numbered_since()) return;
+  auto* closures = &closures_;
+  auto* version = &closures_version_;
+  if (message.numbered_since() > trajectory_.numbered_since()) {
+    Renewal& renewal = renewal_of(message.numbered_since());
+    closures = &renewal.closures;
+    version = &renewal.closures_version;
+  }
+  if (*version && message.version() < **version) return;
+  *closures = service::from_msg(message);
+  *version = message.version();
 }
 
 void MapInput::add(const msg::MapEdges& message) {
+  if (message.numbered_since() > trajectory_.numbered_since()) {
+    renewal_of(message.numbered_since()).edges.add(message);
+    return;
+  }
+  if (message.numbered_since() < trajectory_.numbered_since()) return;
   edges_.add(message);
   ++edge_changes_;
 }

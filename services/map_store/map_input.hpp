@@ -45,7 +45,8 @@ class MapInput {
   Arrival add(topomap::LocalMap map);
 
   /// Older segments and closures than those held are passed over. They throw std::invalid_argument
-  /// like service::from_msg, and when they name other stops than the map has.
+  /// like service::from_msg, and when they name other stops than the map has. A trajectory whose
+  /// stops are numbered anew, because some have left the map, takes effect when it is complete.
   void add(const msg::TrajectorySegment& message);
   void add(const msg::LoopClosures& message);
   void add(const msg::MapEdges& message);
@@ -54,6 +55,8 @@ class MapInput {
 
   /// Local maps of the stops of the trajectory, without gaps, numbered as it numbers them.
   [[nodiscard]] const std::vector<topomap::LocalMap>& local_maps() const { return local_maps_; }
+  /// Version of the trajectory since which they have these numbers.
+  [[nodiscard]] std::uint64_t numbered_since() const { return trajectory_.numbered_since(); }
   /// Maps that came and that the trajectory does not have, or not yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   /// Maps that were dropped: the trajectory went on without them, or too many waited for it.
@@ -81,7 +84,18 @@ class MapInput {
     std::uint64_t content_hash = 0;
     bool operator==(const Arrived&) const = default;
   };
+  /// A trajectory of other numbers than the map has now.
+  struct Renewal {
+    service::TrajectoryAssembly trajectory;
+    std::vector<topomap::LoopClosure> closures;
+    std::optional<std::uint64_t> closures_version;
+    service::EdgeAssembly edges;
+  };
   void check_stops(const msg::TrajectorySegment& message) const;
+  Renewal& renewal_of(std::uint64_t numbered_since);
+  /// Makes the map that of renewal_, when that is complete.
+  void renew();
+  void take_in(topomap::LocalMap map);
   void remember(const topomap::LocalMap& map);
   /// Takes in the maps that the trajectory names and that are here.
   void extend();
@@ -103,6 +117,8 @@ class MapInput {
   std::vector<storage::MapEdge> stored_edges_;  // until newer ones have come
   service::EdgeAssembly edges_;
   std::uint64_t edge_changes_ = 0;
+  std::optional<Renewal> renewal_;
+  std::uint64_t renewal_numbers_ = 0;  // numbered_since of renewal_
   std::optional<msg::StreamEnd> end_;
 };
 

@@ -236,6 +236,7 @@ bool MapStoreService::send_piece(const msg::SnapshotPiece& piece) {
 
 void MapStoreService::work_on_live_map() {
   const topomap::Trajectory trajectory = input_.newest_trajectory();
+  live_map_.renumber(trajectory.numbered_since);
   // Not between a map and its publication, or frequent corrections would leave nothing to publish.
   if (Clock::now() >= next_publish_) live_map_.check(trajectory.stops);
   const auto start = Clock::now();
@@ -313,7 +314,8 @@ void MapStoreService::finish_if_complete() {
 
 storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& trajectory) const {
   const auto& before = options_.continued;
-  if (before && before->trajectory.stops.size() == trajectory.stops.size()) {
+  if (before && before->trajectory.stops.size() == trajectory.stops.size() &&
+      before->trajectory.numbered_since == trajectory.numbered_since) {
     storage::MapDocument same = *before;
     same.drawing = options_.drawing;
     return same;

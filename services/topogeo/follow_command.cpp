@@ -77,6 +77,7 @@ nlohmann::ordered_json json_of(const map_client::Change& change) {
   if (!change.now) return out;
   out["map_version"] = element.map_version();
   out["observations"] = element.observations();
+  out["last_seen_ns"] = element.last_seen_ns();
   if (element.kind() == msg::kElementNode) {
     out["node_kind"] = node_kind_name(element);
     out["point"] = point_of(element.node_position());

@@ -76,12 +76,22 @@ class GeojsonReader {
         node.id = metadata.required("node").id();
         node.clearance_m = metadata.required("clearance").number();
         node.observations = metadata.required("observations").id();
+        node.last_seen_ns = last_seen(metadata);
       }
       if (!own_ && metadata.at("name").is_text()) {
         graph_.drawing.places.push_back({metadata.at("name").text(), position_m});
       }
     }
     graph_.map.nodes.push_back(node);
+  }
+
+  /// Files of before do not have it.
+  static std::int64_t last_seen(const JsonValue& properties) {
+    const JsonValue text = properties.at("last_seen");
+    if (!text.is_text()) return 0;
+    const auto stamp_ns = stamp_of(text.text());
+    if (!stamp_ns) text.fail("seconds with nine digits");
+    return *stamp_ns;
   }
 
   void add_branch(const JsonValue& properties, const JsonValue& points) {
@@ -91,6 +101,7 @@ class GeojsonReader {
     branch.node_b = properties.required("node_b").id();
     branch.is_virtual = properties.required("virtual").boolean_or(false);
     branch.observations = properties.required("observations").id();
+    branch.last_seen_ns = last_seen(properties);
     const std::vector<double> clearances = properties.required("clearances").numbers();
     for (const JsonValue& point : points.items()) {
       const std::size_t i = branch.points.size();

@@ -86,6 +86,7 @@ class GeojsonWriter {
       metadata["kind"] = name_of(of_map.kind);
       metadata["node"] = of_map.id;
       metadata["observations"] = of_map.observations;
+      if (of_map.last_seen_ns != 0) metadata["last_seen"] = seconds_text(of_map.last_seen_ns);
     }
     if (in.place) metadata["name"] = drawing_.places[*in.place].name;
     return geojson_feature(
@@ -117,14 +118,16 @@ class GeojsonWriter {
       points.push_back(coordinates(p.position_m));
       clearances.push_back(p.clearance_m);
     }
+    Json properties = {{"topogeo", "branch"},
+                       {"id", branch.id},
+                       {"node_a", branch.node_a},
+                       {"node_b", branch.node_b},
+                       {"virtual", branch.is_virtual},
+                       {"observations", branch.observations},
+                       {"clearances", std::move(clearances)}};
+    if (branch.last_seen_ns != 0) properties["last_seen"] = seconds_text(branch.last_seen_ns);
     return geojson_feature(
-        {{"topogeo", "branch"},
-         {"id", branch.id},
-         {"node_a", branch.node_a},
-         {"node_b", branch.node_b},
-         {"virtual", branch.is_virtual},
-         {"observations", branch.observations},
-         {"clearances", std::move(clearances)}},
+        std::move(properties),
         collection_of({{"type", "LineString"}, {"coordinates", std::move(points)}}));
   }
 

@@ -104,6 +104,16 @@ class GraphmlReader {
     }
     return *value;
   }
+  std::int64_t last_seen(const Data& data) const {
+    const auto found = data.find("last_seen");
+    if (found == data.end()) return 0;
+    const std::optional<std::int64_t> stamp_ns = stamp_of(found->second);
+    if (!stamp_ns) {
+      fail(fmt::format("{}: last_seen: expected seconds with nine digits, got '{}'", here(),
+                       found->second));
+    }
+    return *stamp_ns;
+  }
   std::uint32_t count(const Data& data) const {
     const std::uint64_t value = whole(data, "observations", 1);
     if (value > std::numeric_limits<std::uint32_t>::max()) {
@@ -132,6 +142,7 @@ class GraphmlReader {
     node.node.position_m = position_m;
     node.node.clearance_m = number(data, "clearance", 0.0);
     node.node.observations = count(data);
+    node.node.last_seen_ns = last_seen(data);
     if (kind != data.end()) node.node.kind = node_kind_of(kind->second).value_or(node.node.kind);
     nodes_.push_back(std::move(node));
   }
@@ -174,6 +185,7 @@ class GraphmlReader {
     const auto own = own_ ? own_id(element.attribute("id").value(), 'b') : std::nullopt;
     branch.id = own.value_or(static_cast<std::uint32_t>(graph_.map.branches.size() + 1));
     branch.observations = count(data);
+    branch.last_seen_ns = last_seen(data);
     const auto is_virtual = data.find("virtual");
     branch.is_virtual =
         is_virtual != data.end() && (is_virtual->second == "true" || is_virtual->second == "1");

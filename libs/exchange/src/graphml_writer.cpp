@@ -18,9 +18,11 @@ constexpr std::string_view kHead = R"(<?xml version="1.0" encoding="UTF-8"?>
 <key id="kind" for="node" attr.name="kind" attr.type="string"/>
 <key id="clearance" for="node" attr.name="clearance" attr.type="double"/>
 <key id="seen" for="node" attr.name="observations" attr.type="long"/>
+<key id="seen_last" for="node" attr.name="last_seen" attr.type="string"/>
 <key id="name" for="node" attr.name="name" attr.type="string"/>
 <key id="virtual" for="edge" attr.name="virtual" attr.type="boolean"/>
 <key id="times" for="edge" attr.name="observations" attr.type="long"/>
+<key id="last_time" for="edge" attr.name="last_seen" attr.type="string"/>
 <key id="length" for="edge" attr.name="length" attr.type="double"/>
 <key id="narrowest" for="edge" attr.name="least_clearance" attr.type="double"/>
 <key id="points" for="edge" attr.name="points" attr.type="string"/>
@@ -74,6 +76,7 @@ std::string edge_text(const topomap::MapBranch& branch) {
                      branch.node_b) +
          datum("virtual", branch.is_virtual ? "true" : "false") +
          datum("times", std::to_string(branch.observations)) +
+         datum("last_time", seconds_text(branch.last_seen_ns)) +
          datum("length", number_text(length_m)) + datum("narrowest", number_text(narrowest_m)) +
          datum("points", points) + "</edge>\n";
 }
@@ -86,7 +89,8 @@ std::string graphml_text(const topomap::GlobalMap& map, std::span<const planning
   for (const topomap::MapNode& node : map.nodes) {
     text += fmt::format("<node id=\"n{}\">", node.id) + position(node.position_m) +
             datum("kind", name_of(node.kind)) + datum("clearance", number_text(node.clearance_m)) +
-            datum("seen", std::to_string(node.observations)) + "</node>\n";
+            datum("seen", std::to_string(node.observations)) +
+            datum("seen_last", seconds_text(node.last_seen_ns)) + "</node>\n";
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
     text += fmt::format("<node id=\"p{}\">", i) + position(places[i].position_m) +

@@ -82,6 +82,8 @@ void add_stops(MapSummary& summary, const storage::MapDocument& document) {
   }
   summary.sessions += sessions.size();
   for (const topomap::StopPose& stop : document.trajectory.stops) {
+    summary.views += stop.views;
+    summary.last_stamp_ns = std::max(summary.last_stamp_ns, stop.last_seen_ns());
     if (!stop.located) continue;
     ++summary.located_stops;
     extent.add(stop.T_map_robot.position_m());
@@ -242,9 +244,9 @@ MapSummary summarize(const storage::MapDocument& document) {
 std::string summary_text(const MapSummary& s, std::uint64_t file_bytes) {
   std::string text =
       fmt::format("robot      {}, seed {}\n", s.robot_id.empty() ? "-" : s.robot_id, s.seed);
-  text +=
-      fmt::format("stops      {} in {} {}, {} with a pose, {} scan points\n", s.stops, s.sessions,
-                  s.sessions == 1 ? "session" : "sessions", s.located_stops, s.points);
+  text += fmt::format("stops      {} in {} {}, {} with a pose, for {} views, {} scan points\n",
+                      s.stops, s.sessions, s.sessions == 1 ? "session" : "sessions",
+                      s.located_stops, s.views, s.points);
   text += fmt::format("driven     {:.1f} m, {} scans, {:.1f} s from the first stop to the last\n",
                       s.driven_m, s.scans,
                       static_cast<double>(s.last_stamp_ns - s.first_stamp_ns) * 1e-9);
@@ -282,6 +284,7 @@ std::string summary_json(const MapSummary& s, std::uint64_t file_bytes) {
                                  {"sessions", s.sessions},
                                  {"stops", s.stops},
                                  {"located_stops", s.located_stops},
+                                 {"views", s.views},
                                  {"scans", s.scans},
                                  {"points", s.points},
                                  {"first_stamp_ns", s.first_stamp_ns},

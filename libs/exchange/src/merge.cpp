@@ -148,6 +148,7 @@ class Merger {
     localization::InProcessPool pool;
     const auto stored = std::make_shared<const localization::StoredMap>(map_);
     localization::MappingSession session(config_.localizer, pool, nullptr, stored, start);
+    session.keep_all_views();  // their names here count the stops
     ++drives_;
     for (std::size_t i = 0; i < drive.stops.size(); ++i) {
       auto map = std::make_shared<LocalMap>(other_.local_maps[drive.stops[i]]);

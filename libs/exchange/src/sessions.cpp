@@ -101,6 +101,7 @@ storage::MapDocument without_session(const storage::MapDocument& document, std::
   out.loop_closures = kept_pairs(document.loop_closures, new_ids);
   out.edges = kept_pairs(document.edges, new_ids);
   out.trajectory.version = document.trajectory.version + 1;
+  out.trajectory.numbered_since = out.trajectory.version;
   if (!out.edges.empty()) optimize_poses(out);
   out.global_map = pipeline::fuse(config, out.local_maps, out.trajectory);
   return out;

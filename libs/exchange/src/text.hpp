@@ -17,6 +17,10 @@ std::string number_text(double value);
 std::optional<double> number_of(std::string_view text);
 std::optional<std::uint64_t> whole_number_of(std::string_view text);
 
+/// A stamp in seconds with nine digits behind the point, and back; nothing for any other text.
+std::string seconds_text(std::int64_t stamp_ns);
+std::optional<std::int64_t> stamp_of(std::string_view seconds);
+
 /// "real", "fictitious", "virtual", "door", "narrowing", "hall_corridor".
 std::string_view name_of(topomap::NodeKind kind);
 std::optional<topomap::NodeKind> node_kind_of(std::string_view name);

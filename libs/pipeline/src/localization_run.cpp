@@ -131,14 +131,14 @@ std::shared_ptr<const storage::MapDocument> load_map_to_continue(const std::file
 
 storage::ReasonCounts continuation_counts(const localization::MappingSession& session) {
   return {{"stored_stops", session.stored_stops()},
-          {"added_stops", session.maps().size() - session.stored_stops()},
+          {"added_stops", session.added_stops()},
           {"unmapped_stops", session.unmapped_stops()}};
 }
 
 std::string continuation_message(const localization::MappingSession& session) {
   const std::size_t waiting = session.waiting_stops();
   if (waiting == 0) return {};
-  const bool grew = session.maps().size() > session.stored_stops();
+  const bool grew = session.added_stops() > 0;
   return fmt::format("the robot did not find its place in the map ({}): {} stops are not mapped{}",
                      localization::to_string(session.status().state), waiting,
                      grew ? "" : ", the map is as it was");

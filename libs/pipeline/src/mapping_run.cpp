@@ -58,7 +58,7 @@ storage::MapDocument MappingRun::finish() {
     const auto scope = times_.measure("localizer");
     slam_->finish();
   }
-  if (continued_ && session()->maps().size() == session()->stored_stops()) return *continued_;
+  if (continued_ && session()->added_stops() == 0) return *continued_;
   storage::MapDocument document;
   document.robot_id = robot_id_;
   document.seed = config_.localizer.seed;
@@ -91,7 +91,7 @@ topomap::GlobalMap fuse(const topomap::GlobalMapConfig& config,
   }
   for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
     const topomap::StopPose& stop = trajectory.stops[i];
-    if (stop.located) builder.integrate(local_maps.at(i), stop.T_map_robot);
+    if (stop.located) builder.integrate(local_maps.at(i), stop);
   }
   return builder.snapshot(trajectory.version);
 }

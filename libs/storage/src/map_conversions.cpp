@@ -205,6 +205,8 @@ void to_proto(const topomap::StopPose& stop, proto::StopPose* out) {
   to_proto(stop.T_map_robot, out->mutable_t_map_robot());
   to_proto(stop.covariance, out->mutable_covariance());
   out->set_not_located(!stop.located);
+  out->set_more_views(stop.views - 1);
+  out->set_last_view_ns(stop.last_view_ns);
 }
 
 topomap::StopPose from_proto(const proto::StopPose& in) {
@@ -214,6 +216,10 @@ topomap::StopPose from_proto(const proto::StopPose& in) {
   stop.T_map_robot = from_proto(in.t_map_robot(), "pose of a stop");
   stop.covariance = covariance_from_proto(in.covariance(), "covariance of a stop");
   stop.located = !in.not_located();
+  require(in.more_views() < std::numeric_limits<std::uint32_t>::max(), "{} more views of a stop",
+          in.more_views());
+  stop.views = in.more_views() + 1;
+  stop.last_view_ns = in.last_view_ns();
   return stop;
 }
 
@@ -249,6 +255,7 @@ void to_proto(const topomap::MapNode& node, proto::MapNode* out) {
   out->set_y_m(node.position_m.y());
   out->set_clearance_m(node.clearance_m);
   out->set_observations(node.observations);
+  out->set_last_seen_ns(node.last_seen_ns);
 }
 
 topomap::MapNode from_proto(const proto::MapNode& in) {
@@ -258,6 +265,7 @@ topomap::MapNode from_proto(const proto::MapNode& in) {
   node.position_m = {finite(in.x_m(), "node position"), finite(in.y_m(), "node position")};
   node.clearance_m = finite(in.clearance_m(), "node clearance");
   node.observations = in.observations();
+  node.last_seen_ns = in.last_seen_ns();
   return node;
 }
 
@@ -267,6 +275,7 @@ void to_proto(const topomap::MapBranch& branch, proto::MapBranch* out) {
   out->set_node_b(branch.node_b);
   out->set_is_virtual(branch.is_virtual);
   out->set_observations(branch.observations);
+  out->set_last_seen_ns(branch.last_seen_ns);
   to_proto(branch.points, out->mutable_points());
 }
 
@@ -277,6 +286,7 @@ topomap::MapBranch from_proto(const proto::MapBranch& in) {
   branch.node_b = in.node_b();
   branch.is_virtual = in.is_virtual();
   branch.observations = in.observations();
+  branch.last_seen_ns = in.last_seen_ns();
   branch.points = branch_points_from_proto(in.points());
   return branch;
 }

@@ -172,12 +172,33 @@ std::size_t MapDatabase::drop_waiting(std::size_t most) {
   return dropped;
 }
 
+void MapDatabase::drop_session(std::uint64_t session) {
+  change([&] { stops_->drop_session(session); });
+}
+
+void MapDatabase::compact() try {
+  database_->exec("VACUUM; PRAGMA wal_checkpoint(TRUNCATE)");
+} catch (const SQLite::Exception& error) {
+  throw_named(name_, error);
+}
+
 void MapDatabase::put_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
                                  std::span<const topomap::LoopClosure> closures,
                                  std::span<const JoinedStop> joined) {
   change([&] {
     stops_->join(joined);
     tables_->write_trajectory(version, changed, closures, stops_->joined());
+  });
+}
+
+void MapDatabase::renew(const topomap::Trajectory& trajectory,
+                        std::span<const topomap::LoopClosure> closures,
+                        std::span<const JoinedStop> stops) {
+  change([&] {
+    tables_->forget_stops();
+    stops_->renew(stops);
+    tables_->write_trajectory(trajectory.version, trajectory.stops, closures, stops_->joined());
+    tables_->write_numbered_since(trajectory.numbered_since);
   });
 }
 
@@ -213,6 +234,7 @@ void MapDatabase::write_document(const MapDocument& document) {
   if (document.map_id != 0) write_map_id(document.map_id);
   tables_->write_trajectory(document.trajectory.version, document.trajectory.stops,
                             document.loop_closures, stops_->joined());
+  tables_->write_numbered_since(document.trajectory.numbered_since);
   tables_->write_edges(document.edges, stops_->joined());
   tables_->write_global_map(document.global_map);
   tables_->write_drawing(document.drawing);
@@ -282,6 +304,10 @@ std::vector<SessionState> MapDatabase::sessions() const {
 
 std::uint64_t MapDatabase::trajectory_version() const {
   return tables_->trajectory_version();
+}
+
+std::uint64_t MapDatabase::numbered_since() const {
+  return tables_->numbered_since();
 }
 
 std::uint32_t MapDatabase::local_map_count() const {

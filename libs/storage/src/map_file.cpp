@@ -66,6 +66,7 @@ MapDocument document_from_proto(const proto::MapFile& in) {
   document.seed = in.seed();
   for (const auto& map : in.local_maps()) document.local_maps.push_back(from_proto(map));
   document.trajectory.version = in.trajectory().version();
+  document.trajectory.numbered_since = in.trajectory().numbered_since();
   for (const auto& stop : in.trajectory().stops()) {
     document.trajectory.stops.push_back(from_proto(stop));
   }

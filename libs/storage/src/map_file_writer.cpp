@@ -34,6 +34,7 @@ void MapFileWriter::add(const topomap::LocalMap& map) {
 void MapFileWriter::finish(const MapDocument& rest) {
   proto::MapFile fields;
   fields.mutable_trajectory()->set_version(rest.trajectory.version);
+  fields.mutable_trajectory()->set_numbered_since(rest.trajectory.numbered_since);
   for (const auto& stop : rest.trajectory.stops) {
     to_proto(stop, fields.mutable_trajectory()->add_stops());
   }

@@ -20,6 +20,7 @@ MapTables::MapTables(SQLite::Database& database, std::string file)
 
 void MapTables::read() {
   trajectory_version_ = read_meta_number(database_, "trajectory_version");
+  numbered_since_ = read_meta_number_or(database_, "numbered_since", 0);
   read_hashes("stop_pose", pose_hashes_);
   read_hashes("loop_closure", closure_hashes_);
   read_hashes("edge", edge_hashes_);
@@ -60,6 +61,21 @@ void MapTables::write_trajectory(std::uint64_t version, std::span<const topomap:
                                [&](std::uint32_t id) { return id < closures.size(); });
   write_meta(database_, "trajectory_version", std::to_string(version));
   trajectory_version_ = version;
+}
+
+void MapTables::forget_stops() {
+  for (const char* table : {"edge", "loop_closure", "stop_pose"}) {
+    database_.exec(fmt::format("DELETE FROM {}", table));
+  }
+  edge_hashes_.clear();
+  closure_hashes_.clear();
+  pose_hashes_.clear();
+}
+
+void MapTables::write_numbered_since(std::uint64_t version) {
+  if (version == numbered_since_) return;
+  write_meta(database_, "numbered_since", std::to_string(version));
+  numbered_since_ = version;
 }
 
 void MapTables::write_edges(const std::vector<MapEdge>& edges, std::uint32_t stops) {
@@ -123,6 +139,7 @@ void MapTables::load(MapDocument& document) const {
   document.seed = read_meta_number(database_, "seed");
   document.map_id = read_meta_number(database_, "map_id");
   document.trajectory.version = read_meta_number(database_, "trajectory_version");
+  document.trajectory.numbered_since = read_meta_number_or(database_, "numbered_since", 0);
   read_table<proto::StopPose>(database_, file_, "stop_pose", document.trajectory.stops);
   read_table<proto::LoopClosure>(database_, file_, "loop_closure", document.loop_closures);
   read_table<proto::MapEdge>(database_, file_, "edge", document.edges);

@@ -26,6 +26,9 @@ class MapTables {
   /// As MapDatabase::put_trajectory and so on, in a map of so many stops.
   void write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
                         std::span<const topomap::LoopClosure> closures, std::uint32_t stops);
+  /// Poses, closures and edges; before the stops get other numbers.
+  void forget_stops();
+  void write_numbered_since(std::uint64_t version);
   void write_edges(const std::vector<MapEdge>& edges, std::uint32_t stops);
   void write_global_map(const topomap::GlobalMap& map);
   void write_drawing(const MapDrawing& drawing);
@@ -34,6 +37,7 @@ class MapTables {
   void load(MapDocument& document) const;
 
   [[nodiscard]] std::uint64_t trajectory_version() const { return trajectory_version_; }
+  [[nodiscard]] std::uint64_t numbered_since() const { return numbered_since_; }
 
  private:
   void read_hashes(const char* table, BlobHashes& hashes);
@@ -41,6 +45,7 @@ class MapTables {
   SQLite::Database& database_;
   std::string file_;
   std::uint64_t trajectory_version_ = 0;
+  std::uint64_t numbered_since_ = 0;
   BlobHashes pose_hashes_;
   BlobHashes closure_hashes_;
   BlobHashes edge_hashes_;

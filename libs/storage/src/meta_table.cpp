@@ -38,4 +38,11 @@ std::uint64_t read_meta_number(SQLite::Database& database, const std::string& ke
                                        database.getFilename(), key, text));
 }
 
+std::uint64_t read_meta_number_or(SQLite::Database& database, const std::string& key,
+                                  std::uint64_t otherwise) {
+  SQLite::Statement statement(database, "SELECT 1 FROM meta WHERE key = ?");
+  statement.bind(1, key);
+  return statement.executeStep() ? read_meta_number(database, key) : otherwise;
+}
+
 }  // namespace topogeo::storage

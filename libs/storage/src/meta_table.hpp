@@ -17,4 +17,8 @@ std::string read_meta(SQLite::Database& database, const std::string& key);
 /// The same, also when it is no number.
 std::uint64_t read_meta_number(SQLite::Database& database, const std::string& key);
 
+/// The same, but `otherwise` when there is none.
+std::uint64_t read_meta_number_or(SQLite::Database& database, const std::string& key,
+                                  std::uint64_t otherwise);
+
 }  // namespace topogeo::storage

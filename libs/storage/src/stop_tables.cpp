@@ -160,25 +160,68 @@ void StopTables::join(std::span<const JoinedStop> stops) {
 std::size_t StopTables::drop_waiting(std::size_t most) {
   const std::vector<topomap::StopId> all = waiting();
   if (all.size() <= most) return 0;
-  SQLite::Statement remove(database_, "DELETE FROM stop WHERE session = ? AND number = ?");
-  SQLite::Statement mark(database_, "UPDATE session SET kept_from = ? WHERE id = ?");
   const std::size_t drops = all.size() - most;
   for (std::size_t i = 0; i < drops; ++i) {
-    Session& held = sessions_.at(all[i].session);
-    remove.reset();
-    remove.bind(1, as_signed(all[i].session));
-    remove.bind(2, all[i].number);
-    remove.exec();
-    held.waiting.erase(all[i].number);
-    held.kept_from = all[i].number + 1;
-    // What never came below counts as dropped, too.
-    while (held.gapless < held.kept_from) count(held, held.gapless);
-    mark.reset();
-    mark.bind(1, held.kept_from);
-    mark.bind(2, as_signed(all[i].session));
-    mark.exec();
+    remove(all[i]);
+    keep_from(all[i].session, all[i].number + 1);
   }
   return drops;
+}
+
+void StopTables::drop_session(std::uint64_t session) {
+  const auto held = sessions_.find(session);
+  if (held == sessions_.end()) return;
+  while (!held->second.waiting.empty()) {
+    const std::uint32_t number = *held->second.waiting.begin();
+    remove({session, number});
+    keep_from(session, number + 1);
+  }
+}
+
+void StopTables::remove(const topomap::StopId& stop) {
+  SQLite::Statement row(database_, "DELETE FROM stop WHERE session = ? AND number = ?");
+  row.bind(1, as_signed(stop.session));
+  row.bind(2, stop.number);
+  row.exec();
+  sessions_.at(stop.session).waiting.erase(stop.number);
+}
+
+void StopTables::keep_from(std::uint64_t session, std::uint32_t number) {
+  Session& held = sessions_.at(session);
+  if (number <= held.kept_from) return;
+  held.kept_from = number;
+  // What never came below counts as dropped, too.
+  while (held.gapless < held.kept_from) count(held, held.gapless);
+  SQLite::Statement mark(database_, "UPDATE session SET kept_from = ? WHERE id = ?");
+  mark.bind(1, number);
+  mark.bind(2, as_signed(session));
+  mark.exec();
+}
+
+void StopTables::renew(std::span<const JoinedStop> stops) {
+  std::set<topomap::StopId> leaving;
+  std::map<std::uint64_t, std::uint32_t> decided;  // by session: numbers below
+  SQLite::Statement row(database_, "SELECT session, number FROM map_stop");
+  while (row.executeStep()) {
+    leaving.insert({as_unsigned(integer_at(row, 0)), number_at(row, 1, file_)});
+  }
+  row.reset();
+  database_.exec("DELETE FROM map_stop");
+  joined_ = 0;
+  for (const topomap::StopId& stop : leaving) {
+    Session& held = sessions_.at(stop.session);
+    held.waiting.insert(stop.number);
+    held.joined = 0;
+    decided[stop.session] = stop.number + 1;
+  }
+  join(stops);
+  for (const JoinedStop& joined : stops) leaving.erase(joined.stop);
+  for (const topomap::StopId& stop : leaving) remove(stop);
+  for (const auto& [session, number] : decided) {
+    const std::set<std::uint32_t>& waiting = sessions_.at(session).waiting;
+    while (!waiting.empty() && *waiting.begin() < number) remove({session, *waiting.begin()});
+    keep_from(session, number);
+  }
 }
 
 std::optional<topomap::LocalMap> StopTables::stop(const topomap::StopId& stop) const {

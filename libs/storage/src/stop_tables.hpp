@@ -33,6 +33,10 @@ class StopTables {
   std::vector<topomap::StopId> put(std::span<const topomap::LocalMap> stops, bool are_over);
   /// As MapDatabase::join.
   void join(std::span<const JoinedStop> stops);
+  /// As MapDatabase::renew; nothing refers to numbers of the map.
+  void renew(std::span<const JoinedStop> stops);
+  /// As MapDatabase::drop_session.
+  void drop_session(std::uint64_t session);
   /// As MapDatabase::drop_waiting.
   std::size_t drop_waiting(std::size_t most);
 
@@ -62,6 +66,8 @@ class StopTables {
   };
   Session& session(std::uint64_t id, bool is_over);
   void count(Session& session, std::uint32_t number);
+  void remove(const topomap::StopId& stop);
+  void keep_from(std::uint64_t session, std::uint32_t number);
   [[nodiscard]] bool is_same(const topomap::LocalMap& map) const;
 
   SQLite::Database& database_;

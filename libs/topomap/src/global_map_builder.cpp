@@ -72,10 +72,19 @@ GlobalMapBuilder& GlobalMapBuilder::operator=(GlobalMapBuilder&&) noexcept = def
 GlobalMapBuilder::~GlobalMapBuilder() = default;
 
 void GlobalMapBuilder::integrate(const LocalMap& map, const geometry::Pose2& T_map_robot) {
+  StopPose stop;
+  stop.stamp_ns = map.stamp_ns;
+  stop.T_map_robot = T_map_robot;
+  integrate(map, stop);
+}
+
+void GlobalMapBuilder::integrate(const LocalMap& map, const StopPose& stop) {
+  const geometry::Pose2& T_map_robot = stop.T_map_robot;
   check_input(map, T_map_robot);
   const SeenRegion view(map, state_->config.gap_m);
-  state_->grid.add(map, T_map_robot, view);
-  state_->nodes.add(map, T_map_robot, view);
+  const Sighting sighting{stop.views, stop.last_seen_ns()};
+  state_->grid.add(map, T_map_robot, view, sighting);
+  state_->nodes.add(map, T_map_robot, view, sighting);
   state_->names.add(map, T_map_robot);
   state_->path.add(map, T_map_robot);
 }
@@ -87,7 +96,7 @@ void GlobalMapBuilder::rebuild(std::span<const LocalMap> maps, std::span<const S
   }
   for (std::size_t i = 0; i < maps.size(); ++i) check_input(maps[i], poses[i].T_map_robot);
   state_ = std::make_unique<State>(state_->config);
-  for (std::size_t i = 0; i < maps.size(); ++i) integrate(maps[i], poses[i].T_map_robot);
+  for (std::size_t i = 0; i < maps.size(); ++i) integrate(maps[i], poses[i]);
 }
 
 GlobalMap GlobalMapBuilder::snapshot(std::uint64_t version) const {

@@ -62,13 +62,13 @@ class Extraction {
 
   [[nodiscard]] MapNode fused(std::uint32_t id) const {
     const FusedNode& n = fusion_.nodes()[id];
-    return {id, n.kind, n.position_m, n.clearance_m, n.observations};
+    return {id, n.kind, n.position_m, n.clearance_m, n.observations, n.last_seen_ns};
   }
 
   MapNode unfused(const RidgePoint& place, NodeKind kind) {
     std::uint32_t id = kFirstUnfusedId + place.first_seen;
     while (!taken_.insert(id).second) ++id;
-    return {id, kind, place.position_m, place.clearance_m, place.views};
+    return {id, kind, place.position_m, place.clearance_m, place.views, place.last_seen_ns};
   }
 
   void name_ridge_nodes() {
@@ -173,6 +173,7 @@ class Extraction {
       for (const RidgePoint& p : piece.points) {
         first_block = std::min(first_block, p.first_seen);
         branch.observations = std::max(branch.observations, p.views);
+        branch.last_seen_ns = std::max(branch.last_seen_ns, p.last_seen_ns);
         branch.points.push_back({p.position_m, p.clearance_m});
       }
       branch.points.push_back({piece.b.position_m, piece.b.clearance_m});

@@ -12,7 +12,7 @@ bool compatible(NodeKind a, NodeKind b) {
 }
 
 void NodeFusion::add(const LocalMap& map, const geometry::Pose2& T_map_robot,
-                     const SeenRegion& view) {
+                     const SeenRegion& view, const Sighting& sighting) {
   ++view_;
   for (const LocalNode& n : map.nodes) {
     if (!n.in_main_graph || n.kind == NodeKind::kFictitious || n.kind == NodeKind::kVirtual) {
@@ -22,11 +22,12 @@ void NodeFusion::add(const LocalMap& map, const geometry::Pose2& T_map_robot,
     seen.kind = n.kind;
     seen.position_m = T_map_robot * n.position_m;
     seen.clearance_m = n.clearance_m;
+    seen.observations = sighting.views;
+    seen.last_seen_ns = sighting.last_ns;
     if (const std::optional<std::uint32_t> id = equivalent(seen)) {
       merge(*id, seen);
     } else {
       const auto added = static_cast<std::uint32_t>(nodes_.size());
-      seen.observations = 1;
       seen.weight_for = 1.0;
       seen.last_view = view_;
       nodes_.push_back(seen);
@@ -72,9 +73,10 @@ void NodeFusion::merge(std::uint32_t id, const FusedNode& seen) {
   if (known.last_view == view_) return;
   known.last_view = view_;
   tree_.remove(Entry{{known.position_m.x(), known.position_m.y()}, id});
-  ++known.observations;
+  known.observations += seen.observations;
+  known.last_seen_ns = std::max(known.last_seen_ns, seen.last_seen_ns);
   known.weight_for += 1.0;
-  const double share = 1.0 / known.observations;
+  const double share = static_cast<double>(seen.observations) / known.observations;
   known.position_m += share * (seen.position_m - known.position_m);
   known.clearance_m += share * (seen.clearance_m - known.clearance_m);
   tree_.insert(Entry{{known.position_m.x(), known.position_m.y()}, id});

@@ -26,6 +26,7 @@ struct FusedNode {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< mean over the views, map frame (7.25)
   double clearance_m = 0.0;                              ///< mean over the views (7.26)
   std::uint32_t observations = 0;                        ///< views that saw it
+  std::int64_t last_seen_ns = 0;                         ///< stamp of the last of them
   double weight_for = 0.0;      ///< the same, fading beyond GlobalMapConfig::memory_views
   double weight_against = 0.0;  ///< views that saw the place without it, fading alike
   std::int64_t last_view = -1;  ///< view that touched it last
@@ -39,7 +40,8 @@ class NodeFusion {
   explicit NodeFusion(const GlobalMapConfig& config) : config_(config) {}
 
   /// Merges the nodes of one view.
-  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view);
+  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view,
+           const Sighting& sighting);
 
   /// Index = the node's id for good.
   [[nodiscard]] const std::vector<FusedNode>& nodes() const { return nodes_; }

@@ -57,8 +57,9 @@ class Tracer {
     for (const std::int32_t next : ridge_.neighbours(i)) {
       if (next != RidgeCells::kNone) add(ridge_.cells()[index(next)]);
     }
-    return {sum / weight, static_cast<double>(cell.votes.clearance_m), cell.votes.share(),
-            cell.first_seen, cell.votes.views};
+    return {sum / weight,       static_cast<double>(cell.votes.clearance_m),
+            cell.votes.share(), cell.first_seen,
+            cell.votes.views,   cell.votes.last_seen_ns};
   }
 
   // One node for all junction cells that touch each other, at the best supported one.

@@ -20,6 +20,7 @@ struct RidgePoint {
   double share = 0.0;            ///< share of the views that voted for it, [0, 1]
   std::uint32_t first_seen = 0;  ///< VoteGrid::Block::first_seen of its block
   std::uint32_t views = 0;
+  std::int64_t last_seen_ns = 0;  ///< stamp of the last of them
 };
 
 struct RidgeEdge {

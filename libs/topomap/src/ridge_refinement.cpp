@@ -165,6 +165,7 @@ void unite_nodes(RidgeGraph& graph, std::uint32_t kept, std::uint32_t gone) {
   to.position_m = 0.5 * (to.position_m + from.position_m);
   to.clearance_m = 0.5 * (to.clearance_m + from.clearance_m);
   to.views = std::max(to.views, from.views);
+  to.last_seen_ns = std::max(to.last_seen_ns, from.last_seen_ns);
   to.first_seen = std::min(to.first_seen, from.first_seen);
   for (RidgeEdge& e : graph.edges) {
     if (e.a == gone) e.a = kept;

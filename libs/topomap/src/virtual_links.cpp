@@ -267,7 +267,8 @@ MapNode node_at(const Eigen::Vector2d& place_m, double near_m, std::uint32_t new
   if (at_end || std::min(to_a_m, to_b_m) < near_m) return to_a_m <= to_b_m ? a : b;
 
   const BranchPoint at = branch->points[point];
-  MapNode node{new_id, NodeKind::kVirtual, at.position_m, at.clearance_m, branch->observations};
+  MapNode node{new_id,         NodeKind::kVirtual,   at.position_m,
+               at.clearance_m, branch->observations, branch->last_seen_ns};
   MapBranch first = *branch;
   MapBranch second = *branch;
   const auto cut = static_cast<std::ptrdiff_t>(point);

@@ -12,10 +12,10 @@ std::int32_t to_cell(double coordinate_m, double cell_m) {
 
 }  // namespace
 
-void VoteGrid::add(const LocalMap& map, const geometry::Pose2& T_map_robot,
-                   const SeenRegion& view) {
+void VoteGrid::add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view,
+                   const Sighting& sighting) {
   const ViewWindow window = draw(map, T_map_robot, view);
-  vote_for(window);
+  vote_for(window, sighting);
   vote_against(window, inverse(T_map_robot), view);
 }
 
@@ -91,7 +91,7 @@ void VoteGrid::draw_point(const BranchPoint& point_map, bool certain, bool votes
   }
 }
 
-void VoteGrid::vote_for(const ViewWindow& window) {
+void VoteGrid::vote_for(const ViewWindow& window, const Sighting& sighting) {
   const auto radius2 = static_cast<float>(config_.vote_radius_m * config_.vote_radius_m);
   std::size_t index = 0;
   for (std::int32_t y = 0; y < window.height; ++y) {
@@ -107,7 +107,8 @@ void VoteGrid::vote_for(const ViewWindow& window) {
       c.for_views += weight;
       c.clearance_weight += vote;
       c.clearance_m += (seen.clearance_m - c.clearance_m) * vote / c.clearance_weight;
-      ++c.views;
+      c.views += sighting.views;
+      c.last_seen_ns = std::max(c.last_seen_ns, sighting.last_ns);
       fade(c);
     }
   }

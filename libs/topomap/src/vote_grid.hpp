@@ -28,7 +28,8 @@ struct VoteCell {
   float against = 0.0F;      ///< weight of the views that saw the place without a branch
   float clearance_m = 0.0F;  ///< mean of the branches near by
   float clearance_weight = 0.0F;
-  std::uint32_t views = 0;  ///< views with a branch near by, never forgotten
+  std::uint32_t views = 0;        ///< views with a branch near by, never forgotten
+  std::int64_t last_seen_ns = 0;  ///< stamp of the last of them
 
   [[nodiscard]] double share() const {
     const float all = for_views + against;
@@ -85,7 +86,8 @@ class VoteGrid {
   explicit VoteGrid(const GlobalMapConfig& config) : config_(config) {}
 
   /// The votes of one view.
-  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view);
+  void add(const LocalMap& map, const geometry::Pose2& T_map_robot, const SeenRegion& view,
+           const Sighting& sighting);
 
   [[nodiscard]] const Chunks& chunks() const { return chunks_; }
 
@@ -108,7 +110,7 @@ class VoteGrid {
   void draw_branch(const LocalBranch& branch, const geometry::Pose2& T_map_robot,
                    const SeenRegion& view, ViewWindow& window) const;
   void draw_point(const BranchPoint& point_map, bool certain, bool votes, ViewWindow& window) const;
-  void vote_for(const ViewWindow& window);
+  void vote_for(const ViewWindow& window, const Sighting& sighting);
   void vote_against(const ViewWindow& window, const geometry::Pose2& T_robot_map,
                     const SeenRegion& view);
   VoteCell& cell(CellIndex at);

@@ -66,7 +66,7 @@ std::uint32_t decision_segment_count(std::size_t decisions) {
 
 msg::LoopDecisions to_segment(std::span<const LoopDecision> decisions, std::uint32_t segment,
                               std::string_view robot_id, std::int64_t stamp_ns,
-                              std::uint64_t sequence_number) {
+                              std::uint64_t sequence_number, std::uint64_t numbered_since) {
   const std::size_t begin = std::size_t{segment} * msg::kSegmentDecisions;
   check(begin < decisions.size(), "segment", "less than the number of segments");
   const std::size_t size = std::min(std::size_t{msg::kSegmentDecisions}, decisions.size() - begin);
@@ -74,6 +74,7 @@ msg::LoopDecisions to_segment(std::span<const LoopDecision> decisions, std::uint
   messaging::set_header(out, robot_id, stamp_ns, sequence_number);
   out.segment(segment);
   out.total(static_cast<std::uint32_t>(decisions.size()));
+  out.numbered_since(numbered_since);
   for (const LoopDecision& decision : decisions.subspan(begin, size)) {
     out.decisions().push_back(to_wire(decision));
   }

@@ -30,6 +30,7 @@ std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::uin
     msg::MapElement& entry =
         out.emplace_back(element(msg::kElementNode, node.id, map.version, robot_id, stamp_ns));
     entry.observations(node.observations);
+    entry.last_seen_ns(node.last_seen_ns);
     entry.node_kind(detail::to_msg(node.kind));
     entry.node_position(detail::to_branch_point(node.position_m, node.clearance_m));
   }
@@ -37,6 +38,7 @@ std::vector<msg::MapElement> to_elements(const topomap::GlobalMap& map, std::uin
     msg::MapElement& entry =
         out.emplace_back(element(msg::kElementBranch, branch.id, map.version, robot_id, stamp_ns));
     entry.observations(branch.observations);
+    entry.last_seen_ns(branch.last_seen_ns);
     entry.node_a(branch.node_a);
     entry.node_b(branch.node_b);
     entry.is_virtual(branch.is_virtual);
@@ -54,15 +56,17 @@ topomap::MapNode node_from_msg(const msg::MapElement& message) {
   check(message.kind() == msg::kElementNode, "kind", "a node");
   const topomap::BranchPoint at =
       detail::from_branch_point(message.node_position(), "node_position");
-  return {message.id(), detail::from_msg(message.node_kind()), at.position_m, at.clearance_m,
-          message.observations()};
+  return {message.id(),           detail::from_msg(message.node_kind()),
+          at.position_m,          at.clearance_m,
+          message.observations(), message.last_seen_ns()};
 }
 
 topomap::MapBranch branch_from_msg(const msg::MapElement& message) {
   check(message.kind() == msg::kElementBranch, "kind", "a branch");
   return {message.id(),           message.node_a(),
           message.node_b(),       message.is_virtual(),
-          message.observations(), detail::from_branch_points(message.points(), "points")};
+          message.observations(), detail::from_branch_points(message.points(), "points"),
+          message.last_seen_ns()};
 }
 
 topomap::GlobalMap from_elements(const map_client::Map& map) {

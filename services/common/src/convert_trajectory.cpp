@@ -25,6 +25,7 @@ msg::TrajectorySegment to_segment(const topomap::Trajectory& trajectory, std::ui
   out.segment(segment);
   out.version(trajectory.version);
   out.total_stops(static_cast<std::uint32_t>(trajectory.stops.size()));
+  out.numbered_since(trajectory.numbered_since);
   for (std::size_t i = begin; i < end; ++i) {
     const topomap::StopPose& stop = trajectory.stops[i];
     check(stop.local_map_id == i, "stops.local_map_id", "the index in the trajectory");
@@ -35,6 +36,8 @@ msg::TrajectorySegment to_segment(const topomap::Trajectory& trajectory, std::ui
     pose.stamp_ns(stop.stamp_ns);
     pose.T_map_robot(to_msg(stop.T_map_robot));
     pose.covariance(to_msg(stop.covariance));
+    pose.views(stop.views);
+    pose.last_view_ns(stop.last_view_ns);
     out.stops().push_back(pose);
   }
   return out;
@@ -59,19 +62,23 @@ std::vector<topomap::StopPose> from_msg(const msg::TrajectorySegment& message) {
   std::vector<topomap::StopPose> out;
   for (const msg::StopPose& pose : message.stops()) {
     check(pose.local_map_id() == begin + out.size(), "stops.local_map_id", "consecutive ids");
+    check(pose.views() >= 1, "stops.views", "at least 1");
     out.push_back({pose.local_map_id(), pose.stamp_ns(), from_msg(pose.T_map_robot()),
-                   from_msg(pose.covariance()), from_msg(pose.stop()), pose.located()});
+                   from_msg(pose.covariance()), from_msg(pose.stop()), pose.located(), pose.views(),
+                   pose.last_view_ns()});
   }
   return out;
 }
 
 msg::LoopClosures to_msg(std::span<const topomap::LoopClosure> closures,
                          std::uint64_t trajectory_version, std::string_view robot_id,
-                         std::int64_t stamp_ns, std::uint64_t sequence_number) {
+                         std::int64_t stamp_ns, std::uint64_t sequence_number,
+                         std::uint64_t numbered_since) {
   check_bound("closures", closures.size(), msg::kMaxLoopClosures);
   msg::LoopClosures out;
   messaging::set_header(out, robot_id, stamp_ns, sequence_number);
   out.version(trajectory_version);
+  out.numbered_since(numbered_since);
   for (const topomap::LoopClosure& closure : closures) {
     msg::LoopClosure entry;
     entry.earlier_id(closure.earlier_id);
@@ -98,7 +105,8 @@ std::uint32_t edge_segment_count(std::size_t edges) {
 
 msg::MapEdges to_segment(std::span<const storage::MapEdge> edges, std::uint32_t segment,
                          std::uint64_t trajectory_version, std::string_view robot_id,
-                         std::int64_t stamp_ns, std::uint64_t sequence_number) {
+                         std::int64_t stamp_ns, std::uint64_t sequence_number,
+                         std::uint64_t numbered_since) {
   const std::size_t begin = std::size_t{segment} * msg::kSegmentEdges;
   check(segment < edge_segment_count(edges.size()), "segment", "less than the number of segments");
   msg::MapEdges out;
@@ -106,6 +114,7 @@ msg::MapEdges to_segment(std::span<const storage::MapEdge> edges, std::uint32_t 
   out.segment(segment);
   out.version(trajectory_version);
   out.total(static_cast<std::uint32_t>(edges.size()));
+  out.numbered_since(numbered_since);
   const std::size_t count = std::min<std::size_t>(msg::kSegmentEdges, edges.size() - begin);
   for (const storage::MapEdge& edge : edges.subspan(begin, count)) {
     msg::MapEdge entry;

@@ -7,7 +7,10 @@
 namespace topogeo::service {
 
 void DecisionAssembly::add(const msg::LoopDecisions& message) {
+  if (message.numbered_since() < numbered_since_) return;
   std::vector<localization::LoopDecision> decisions = from_msg(message);
+  if (message.numbered_since() > numbered_since_) segments_.clear();
+  numbered_since_ = message.numbered_since();
   std::vector<localization::LoopDecision>& held = segments_[message.segment()];
   if (decisions.size() > held.size()) held = std::move(decisions);
 }

@@ -7,6 +7,12 @@
 namespace topogeo::service {
 
 bool TrajectoryAssembly::add(const msg::TrajectorySegment& message) {
+  if (message.numbered_since() < numbered_since_) return false;
+  if (message.numbered_since() > numbered_since_) {
+    static_cast<void>(from_msg(message));  // throws before anything is forgotten
+    segments_.clear();
+    numbered_since_ = message.numbered_since();
+  }
   const auto held = segments_.find(message.segment());
   if (held != segments_.end() && message.version() < held->second.version) return false;
   segments_[message.segment()] = {message.version(), message.total_stops(), from_msg(message)};
@@ -17,11 +23,23 @@ bool TrajectoryAssembly::add(const msg::TrajectorySegment& message) {
 topomap::Trajectory TrajectoryAssembly::newest() const {
   topomap::Trajectory out;
   out.version = version_;
+  out.numbered_since = numbered_since_;
   for (const auto& [number, segment] : segments_) {
     if (std::uint64_t{number} * msg::kSegmentStops != out.stops.size()) break;
     out.stops.insert(out.stops.end(), segment.stops.begin(), segment.stops.end());
   }
   return out;
+}
+
+bool TrajectoryAssembly::complete() const {
+  std::uint32_t total_stops = 0;
+  std::size_t stops = 0;
+  for (const auto& [number, segment] : segments_) {
+    if (std::uint64_t{number} * msg::kSegmentStops != stops) return false;
+    stops += segment.stops.size();
+    total_stops = std::max(total_stops, segment.total_stops);
+  }
+  return stops > 0 && stops == total_stops;
 }
 
 const topomap::StopPose* TrajectoryAssembly::stop(std::size_t number) const {
@@ -34,6 +52,7 @@ const topomap::StopPose* TrajectoryAssembly::stop(std::size_t number) const {
 std::optional<topomap::Trajectory> TrajectoryAssembly::whole(std::uint64_t version) const {
   topomap::Trajectory out;
   out.version = version;
+  out.numbered_since = numbered_since_;
   std::uint32_t total_stops = 0;
   for (const auto& [number, segment] : segments_) {
     if (segment.version != version) return std::nullopt;

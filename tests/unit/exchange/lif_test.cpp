@@ -36,12 +36,14 @@ topomap::GlobalMap reduced(const std::vector<std::uint32_t>& branches) {
   for (topomap::MapNode& node : map.nodes) {
     node.clearance_m = 0.0;
     node.observations = 1;
+    node.last_seen_ns = 0;
   }
   std::erase_if(map.branches, [&](const topomap::MapBranch& branch) {
     return std::ranges::find(branches, branch.id) == branches.end();
   });
   for (topomap::MapBranch& branch : map.branches) {
     branch.observations = 1;
+    branch.last_seen_ns = 0;
     for (topomap::BranchPoint& p : branch.points) p.clearance_m = 0.0;
   }
   return map;

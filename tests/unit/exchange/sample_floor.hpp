@@ -21,12 +21,12 @@ inline topomap::GlobalMap sample_graph() {
   using topomap::NodeKind;
   topomap::GlobalMap map;
   map.version = 12;
-  map.nodes = {{2, NodeKind::kReal, {0.0, 0.0}, 0.9, 3},
+  map.nodes = {{2, NodeKind::kReal, {0.0, 0.0}, 0.9, 3, 1'700'000'000'123'456'789},
                {7, NodeKind::kDoor, {4.0, 0.5}, 0.45, 11},
                {9, NodeKind::kHallCorridor, {8.0, 1.0 / 3.0}, 1.0, 1},
                {12, NodeKind::kFictitious, {8.0, 4.0}, 0.5, 2}};
   map.branches = {
-      {1, 2, 7, false, 5, {{{0.0, 0.0}, 0.9}, {{2.0, 0.4}, 0.1 + 0.6}, {{4.0, 0.5}, 0.45}}},
+      {1, 2, 7, false, 5, {{{0.0, 0.0}, 0.9}, {{2.0, 0.4}, 0.1 + 0.6}, {{4.0, 0.5}, 0.45}}, 5},
       {3, 7, 9, false, 4, {{{4.0, 0.5}, 0.45}, {{6.0, 1.5}, 0.8}, {{8.0, 1.0 / 3.0}, 1.0}}},
       {4, 7, 9, false, 2, {{{4.0, 0.5}, 0.45}, {{6.0, -1.5}, 0.8}, {{8.0, 1.0 / 3.0}, 1.0}}},
       {6,
@@ -70,6 +70,7 @@ inline void expect_same(const topomap::GlobalMap& a, const topomap::GlobalMap& b
     EXPECT_EQ(a.nodes[i].position_m, b.nodes[i].position_m);
     EXPECT_EQ(a.nodes[i].clearance_m, b.nodes[i].clearance_m);
     EXPECT_EQ(a.nodes[i].observations, b.nodes[i].observations);
+    EXPECT_EQ(a.nodes[i].last_seen_ns, b.nodes[i].last_seen_ns);
   }
   ASSERT_EQ(a.branches.size(), b.branches.size());
   for (std::size_t i = 0; i < a.branches.size(); ++i) {
@@ -78,6 +79,7 @@ inline void expect_same(const topomap::GlobalMap& a, const topomap::GlobalMap& b
     EXPECT_EQ(a.branches[i].node_b, b.branches[i].node_b);
     EXPECT_EQ(a.branches[i].is_virtual, b.branches[i].is_virtual);
     EXPECT_EQ(a.branches[i].observations, b.branches[i].observations);
+    EXPECT_EQ(a.branches[i].last_seen_ns, b.branches[i].last_seen_ns);
     EXPECT_TRUE(std::ranges::equal(a.branches[i].points, b.branches[i].points, same));
   }
 }

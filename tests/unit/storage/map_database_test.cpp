@@ -113,6 +113,55 @@ TEST_F(MapDatabaseFile, RefusesWhatDoesNotFitAndStaysAsItWas) {
   EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(document));
 }
 
+TEST_F(MapDatabaseFile, StopsLeaveTheMapForGood) {
+  const MapDocument document = identified(sample_document(5));
+  store(document);
+  MapDatabase database = open();
+  topomap::LocalMap late = sample_local_map(5);
+  late.stop = {document.local_maps[0].stop.session, 5};
+  database.put_stops({&late, 1});
+
+  topomap::Trajectory trajectory;
+  trajectory.version = trajectory.numbered_since = 12;
+  std::vector<JoinedStop> kept;
+  for (const std::uint32_t stop : {0U, 2U, 4U}) {
+    trajectory.stops.push_back(document.trajectory.stops[stop]);
+    trajectory.stops.back().local_map_id = static_cast<std::uint32_t>(kept.size());
+    trajectory.stops.back().views = 7;
+    trajectory.stops.back().last_view_ns = 99;
+    kept.push_back({document.local_maps[stop].stop, stop > 0});
+  }
+  kept.push_back({{late.stop.session, 77}, false});
+  const std::vector<topomap::LoopClosure> closures{{0, 2, {}}};
+  EXPECT_THROW(database.renew(trajectory, closures, kept), std::invalid_argument);
+  EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(document)) << "as it was";
+  kept.pop_back();
+  database.renew(trajectory, closures, kept);
+
+  const auto expect_renewed = [&](const MapDatabase& renewed) {
+    const MapDocument after = renewed.load();
+    ASSERT_EQ(after.local_maps.size(), 3U);
+    EXPECT_EQ(after.local_maps[1].stop.number, 2U);
+    EXPECT_EQ(after.local_maps[1].id, 1U);
+    EXPECT_TRUE(after.local_maps[1].starts_drive);
+    EXPECT_EQ(after.trajectory.numbered_since, 12U);
+    EXPECT_EQ(after.trajectory.stops[2].views, 7U);
+    EXPECT_EQ(after.trajectory.stops[2].last_view_ns, 99);
+    EXPECT_EQ(after.loop_closures.size(), 1U);
+    EXPECT_TRUE(after.edges.empty());
+    EXPECT_FALSE(renewed.stop(document.local_maps[1].stop));
+    EXPECT_TRUE(renewed.knows(document.local_maps[1].stop)) << "it is not taken in again";
+    EXPECT_THAT(renewed.waiting_stops(), ElementsAre(late.stop));
+    ASSERT_EQ(renewed.sessions().size(), 1U);
+    EXPECT_EQ(renewed.sessions()[0].stops, 6U);
+    EXPECT_EQ(renewed.sessions()[0].joined, 3U);
+  };
+  expect_renewed(database);
+  EXPECT_THAT(database.put_stops({&document.local_maps[1], 1}), IsEmpty());
+  expect_renewed(database);
+  expect_renewed(open());
+}
+
 TEST_F(MapDatabaseFile, RefusesAnotherRobotSeedVersionOrProgram) {
   store(sample_document(1));
   EXPECT_THAT(error_of([&] { MapDatabase::open_or_create(path(), "robot-2", kSeed); }),

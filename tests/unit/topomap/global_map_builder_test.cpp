@@ -287,12 +287,12 @@ TEST(GlobalMapBuilder, VirtualElementsAndThoseOffTheMainGraphAreNotFused) {
   LocalMap map = view(corridor(6), {0.5, 0, 0});
   GlobalMapBuilder builder;
   for (LocalBranch& b : map.branches) b.is_virtual = true;
-  builder.integrate(map, {});
+  builder.integrate(map, geometry::Pose2{});
   for (LocalBranch& b : map.branches) {
     b.is_virtual = false;
     b.in_main_graph = false;
   }
-  builder.integrate(map, {});
+  builder.integrate(map, geometry::Pose2{});
   EXPECT_TRUE(builder.snapshot(1).branches.empty());
 }
 
@@ -336,15 +336,15 @@ TEST(GlobalMapBuilder, RefusesWhatItCannotPlace) {
   GlobalMapBuilder builder;
   const LocalMap map = view(corridor(6), {0.5, 0, 0});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(builder.integrate(map, {nan, 0, 0}), std::invalid_argument);
-  EXPECT_THROW(builder.integrate(map, {0, 0, nan}), std::invalid_argument);
-  EXPECT_THROW(builder.integrate(map, {6000, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(builder.integrate(map, geometry::Pose2{nan, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(builder.integrate(map, geometry::Pose2{0, 0, nan}), std::invalid_argument);
+  EXPECT_THROW(builder.integrate(map, geometry::Pose2{6000, 0, 0}), std::invalid_argument);
   LocalMap broken = map;
   broken.branches[0].points[1].position_m.x() = nan;
-  EXPECT_THROW(builder.integrate(broken, {}), std::invalid_argument);
+  EXPECT_THROW(builder.integrate(broken, geometry::Pose2{}), std::invalid_argument);
   EXPECT_THROW(builder.rebuild(std::vector<LocalMap>{map}, {}), std::invalid_argument);
   EXPECT_TRUE(builder.snapshot(1).branches.empty());
-  EXPECT_NO_THROW(builder.integrate(LocalMap{}, {}));
+  EXPECT_NO_THROW(builder.integrate(LocalMap{}, geometry::Pose2{}));
 }
 
 TEST(GlobalMapConfig, NamesTheFieldOutOfRange) {

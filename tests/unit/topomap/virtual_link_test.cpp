@@ -259,7 +259,7 @@ TEST(VirtualLink, IsTheSameBuiltStepByStepAndAnew) {
     (void)one_by_one.snapshot(0);
   }
   GlobalMapBuilder anew;
-  anew.integrate(drive.maps_[0], {5, 5, 1});
+  anew.integrate(drive.maps_[0], geometry::Pose2{5, 5, 1});
   anew.rebuild(drive.maps_, drive.stops_);
   const GlobalMap a = one_by_one.snapshot(1);
   const GlobalMap b = anew.snapshot(1);
@@ -282,7 +282,7 @@ TEST(VirtualLink, RefusesATrackThatIsNotFinite) {
   map.track.resize(1);
   map.track[0].T_stop_robot.x_m = std::nan("");
   GlobalMapBuilder builder;
-  EXPECT_THROW(builder.integrate(map, {}), std::invalid_argument);
+  EXPECT_THROW(builder.integrate(map, geometry::Pose2{}), std::invalid_argument);
 }
 
 }  // namespace

@@ -38,7 +38,10 @@ std::vector<PoseGraphEdge> edges_of(const StoredMap& map) {
   const bool known = !edges.empty();
   const std::vector<topomap::StopPose>& stops = map.trajectory.stops;
   std::vector<bool> held(stops.size(), false);
-  for (const PoseGraphEdge& edge : edges) held[edge.to] = true;
+  // The steps along the stops are what paths are added up of.
+  for (const PoseGraphEdge& edge : edges) {
+    if (edge.from + 1 == edge.to) held[edge.to] = true;
+  }
   for (std::uint32_t i = 1; i < stops.size(); ++i) {
     if (held[i]) continue;  // also where it was stored after the poses and lacks the last ones
     const double weaker = map.maps[i].starts_drive ? kWeakerBetweenDrives : 1.0;

@@ -31,26 +31,35 @@ void add_to(SlamCounts& sum, const SlamCounts& more) {
 
 MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
                                GraphOptimizer* optimizer)
-    : config_(config), pool_(pool), mapper_(make_slam(config, pool, optimizer)) {
+    : config_(config),
+      pool_(pool),
+      optimizer_(optimizer),
+      mapper_(make_slam(config, pool, optimizer)) {
   localizer_ = dynamic_cast<Localizer*>(mapper_.get());
 }
 
 MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
                                GraphOptimizer* optimizer, std::shared_ptr<const StoredMap> map,
                                const std::optional<UncertainPose>& initial)
-    : config_(config), pool_(pool) {
+    : config_(config), pool_(pool), optimizer_(optimizer) {
   if (config.mode != LocalizerMode::kGraph) {
     throw std::invalid_argument("localizer.mode: a stored map is continued in mode graph only");
   }
-  auto localizer = std::make_unique<Localizer>(config, pool, optimizer, map);
-  localizer_ = localizer.get();
-  mapper_ = std::move(localizer);
+  take_map(map);
   stored_stops_ = map->maps.size();
-  for (const topomap::LocalMap& stored : map->maps) {
-    maps_.push_back(MapPointer(map, &stored));
-  }
   start_following(std::move(map));
   if (initial) follower_->set_pose(initial->T_a_b, initial->covariance);
+}
+
+void MappingSession::take_map(const std::shared_ptr<const StoredMap>& map) {
+  auto localizer = std::make_unique<Localizer>(config_, pool_, optimizer_, map);
+  localizer_ = localizer.get();
+  mapper_ = std::move(localizer);
+  maps_.clear();
+  for (const topomap::LocalMap& stored : map->maps) maps_.push_back(MapPointer(map, &stored));
+  stands_for_ = map->trajectory.stops;
+  numbered_since_ = map->trajectory.numbered_since;
+  renew_at_ = std::max(kLongDrive, 2 * maps_.size());
 }
 
 void MappingSession::go_on() {
@@ -83,7 +92,7 @@ void MappingSession::begin_drive(const topomap::LocalMap& map) {
 
 std::shared_ptr<const StoredMap> MappingSession::map_so_far() const {
   auto stored = std::make_shared<StoredMap>();
-  stored->trajectory = mapper_->trajectory();
+  stored->trajectory = trajectory();
   stored->loop_closures = mapper_->loop_closures();
   stored->edges = mapper_->edges();
   for (const MapPointer& map : maps_) stored->maps.push_back(*map);
@@ -93,8 +102,15 @@ std::shared_ptr<const StoredMap> MappingSession::map_so_far() const {
 bool MappingSession::map_stop(const MapPointer& map) {
   const MapPointer own = numbered(map, false);
   const bool moved = mapper_->add(own);
-  maps_.push_back(own);
+  add_to_map(own);
+  if (maps_.size() >= renew_at_ && localizer_ != nullptr) renew_long_drive();
   return moved;
+}
+
+void MappingSession::add_to_map(MapPointer map) {
+  maps_.push_back(std::move(map));
+  stands_for_.emplace_back();
+  ++added_;
 }
 
 bool MappingSession::follow(const MapPointer& map) {
@@ -102,6 +118,8 @@ bool MappingSession::follow(const MapPointer& map) {
   const bool found = confirmed();
   if (!mapping_) return false;
   waiting_.push_back(map);
+  if (waiting_.size() > kMostWaiting) waiting_.erase(waiting_.begin());
+  follower_->forget_stops(kMostWaiting);
   if (found) join();
   return found;
 }
@@ -127,16 +145,56 @@ bool MappingSession::confirmed() {
 }
 
 void MappingSession::join() {
-  const std::vector<StoredMatch> matches = follower_->last_step()->accepted;
+  std::vector<StoredMatch> matches = follower_->last_step()->accepted;
+  if (const auto by = renew(0)) matches = renewed(std::move(matches), *by);
   const double confidence = follower_->status().confidence;
   std::vector<MapPointer> drive;
   for (const MapPointer& map : std::exchange(waiting_, {})) {
     const bool follows = !maps_.empty() && maps_.back()->stop.next() == map->stop;
     drive.push_back(numbered(map, !follows));
-    maps_.push_back(drive.back());
+    add_to_map(drive.back());
   }
   end_following();
   localizer_->join(drive, matches, confidence);
+}
+
+std::optional<MappingSession::Renewed> MappingSession::renew(std::size_t untouched) {
+  if (keeps_all_) return std::nullopt;
+  localizer_->settle();
+  std::shared_ptr<const StoredMap> before = map_so_far();
+  KeptViews kept(before->maps, before->trajectory.stops, kKeptTimes, untouched);
+  if (kept.dropped() == 0) return std::nullopt;
+  const std::uint64_t next_task = localizer_->next_task();
+  add_to(counts_before_, mapper_->counts());
+  take_map(std::make_shared<const StoredMap>(with_kept_views(*before, kept)));
+  localizer_->number_tasks_from(next_task);
+  return Renewed{std::move(before), std::move(kept)};
+}
+
+std::vector<StoredMatch> MappingSession::renewed(std::vector<StoredMatch> matches,
+                                                 const Renewed& by) {
+  const std::vector<topomap::StopPose>& stops = by.before->trajectory.stops;
+  for (StoredMatch& match : matches) {
+    const std::uint32_t stands = by.kept.stands_for(match.stop);
+    if (stands != match.stop) {
+      const UncertainPose T_stands_stop{
+          geometry::between(stops[stands].T_map_robot, stops[match.stop].T_map_robot),
+          usual_match_covariance()};
+      match.T_stop_robot = compose(T_stands_stop, match.T_stop_robot);
+    }
+    match.stop = by.kept.new_id(stands);
+  }
+  return matches;
+}
+
+// The robot is followed from its last stop on, and with the next one that is matched it maps again.
+void MappingSession::renew_long_drive() {
+  constexpr std::size_t kUntouched = 100;  // the place where the robot is, and loops under way
+  const auto by = renew(kUntouched);
+  renew_at_ = std::max(kLongDrive, maps_.size() + kLongDrive / 2);
+  if (!by) return;
+  start_following(map_so_far());
+  follower_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
 }
 
 // As the map numbers it: after its last stop.
@@ -149,7 +207,7 @@ MappingSession::MapPointer MappingSession::numbered(const MapPointer& map,
 }
 
 void MappingSession::finish() {
-  if (!follower_ && maps_.size() > stored_stops_) mapper_->finish();
+  if (!follower_ && added_ > 0) mapper_->finish();
 }
 
 // --- the turns
@@ -193,8 +251,12 @@ void MappingSession::end_following() {
 
 topomap::Trajectory MappingSession::trajectory() const {
   topomap::Trajectory trajectory = mapper_->trajectory();
+  trajectory.numbered_since = numbered_since_;
   for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
-    trajectory.stops[i].stop = maps_[i]->stop;
+    topomap::StopPose& stop = trajectory.stops[i];
+    stop.stop = maps_[i]->stop;
+    stop.views = stands_for_[i].views;
+    stop.last_view_ns = stands_for_[i].last_view_ns;
   }
   return trajectory;
 }

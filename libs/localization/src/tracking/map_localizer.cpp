@@ -40,7 +40,7 @@ MapLocalizer::MapLocalizer(const LocalizerConfig& config, std::shared_ptr<const 
     : config_(config), matching_(config, std::move(map), pool) {}
 
 bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
-  const auto number = static_cast<std::uint32_t>(stops_.size());
+  const std::uint32_t number = added_++;
   if (last_id_ && last_id_->session == map->stop.session) {
     check_follows(map->stop, *last_id_);
   } else if (last_id_) {
@@ -288,11 +288,16 @@ void MapLocalizer::start_after(const topomap::LocalMap& map, const Pose2& T_map_
   T_odom_last_ = map.T_odom_robot;
 }
 
+void MapLocalizer::forget_stops(std::size_t most) {
+  if (stops_.size() < 2 * most) return;  // not at every stop
+  stops_.erase(stops_.begin(), stops_.end() - static_cast<std::ptrdiff_t>(most));
+}
+
 // --- state
 
 topomap::Trajectory MapLocalizer::trajectory() const {
   topomap::Trajectory trajectory;
-  trajectory.version = stops_.size();
+  trajectory.version = added_;
   for (const LocalizedStop& stop : stops_) trajectory.stops.push_back(pose_of(stop));
   return trajectory;
 }

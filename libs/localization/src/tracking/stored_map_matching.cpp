@@ -12,6 +12,8 @@ namespace {
 // Stored stops further away are not compared: a robot in a finished map has nearer ones that see
 // the same.
 constexpr double kFarthestStored_m = 12.0;
+// Ids of the stops of a drive, which come round: the pool keeps no more of them.
+constexpr std::uint32_t kDriveIds = 1024;
 
 }  // namespace
 
@@ -31,7 +33,7 @@ DriveStop StoredMapMatching::add(const topomap::LocalMap& map, std::uint32_t num
                                  const std::optional<Pose2>& T_odom_last) {
   DriveStop stop;
   auto renumbered = std::make_shared<topomap::LocalMap>(map);
-  renumbered->id = static_cast<std::uint32_t>(stored_stops()) + number;
+  renumbered->id = static_cast<std::uint32_t>(stored_stops()) + number % kDriveIds;
   stop.map = renumbered;
   requests_.add_map(stop.map);
   stop.features = extract_scan_features(map.points, map.T_robot_laser);

@@ -122,7 +122,9 @@ inline topomap::Trajectory any_trajectory(support::Random& random, std::uint32_t
                          any_pose(random),
                          any_matrix(random),
                          {random.next_u64(), any_u32(random)},
-                         random.next_u64() % 2 == 0});
+                         random.next_u64() % 2 == 0,
+                         1 + static_cast<std::uint32_t>(random.below(9)),
+                         any_i64(random)});
   }
   return out;
 }
@@ -135,12 +137,13 @@ inline topomap::GlobalMap any_global_map(support::Random& random) {
                          any_kind(random),
                          {any_double(random), any_double(random)},
                          any_double(random),
-                         any_u32(random)});
+                         any_u32(random),
+                         any_i64(random)});
   }
   for (std::uint32_t i = 0; i < 30; ++i) {
     out.branches.push_back({2 * i, 3 * static_cast<std::uint32_t>(random.below(20)),
                             3 * static_cast<std::uint32_t>(random.below(20)), any_bool(random),
-                            any_u32(random), any_points(random)});
+                            any_u32(random), any_points(random), any_i64(random)});
   }
   return out;
 }
@@ -180,10 +183,10 @@ inline bool operator==(const LocalMap& a, const LocalMap& b) {
 inline bool operator==(const StopPose& a, const StopPose& b) {
   return a.local_map_id == b.local_map_id && a.stamp_ns == b.stamp_ns &&
          a.T_map_robot == b.T_map_robot && a.covariance == b.covariance && a.stop == b.stop &&
-         a.located == b.located;
+         a.located == b.located && a.views == b.views && a.last_view_ns == b.last_view_ns;
 }
 inline bool operator==(const Trajectory& a, const Trajectory& b) {
-  return a.version == b.version && a.stops == b.stops;
+  return a.version == b.version && a.stops == b.stops && a.numbered_since == b.numbered_since;
 }
 inline bool operator==(const LoopClosure& a, const LoopClosure& b) {
   return a.earlier_id == b.earlier_id && a.later_id == b.later_id &&
@@ -191,11 +194,13 @@ inline bool operator==(const LoopClosure& a, const LoopClosure& b) {
 }
 inline bool operator==(const MapNode& a, const MapNode& b) {
   return a.id == b.id && a.kind == b.kind && a.position_m == b.position_m &&
-         a.clearance_m == b.clearance_m && a.observations == b.observations;
+         a.clearance_m == b.clearance_m && a.observations == b.observations &&
+         a.last_seen_ns == b.last_seen_ns;
 }
 inline bool operator==(const MapBranch& a, const MapBranch& b) {
   return a.id == b.id && a.node_a == b.node_a && a.node_b == b.node_b &&
-         a.is_virtual == b.is_virtual && a.observations == b.observations && a.points == b.points;
+         a.is_virtual == b.is_virtual && a.observations == b.observations && a.points == b.points &&
+         a.last_seen_ns == b.last_seen_ns;
 }
 inline bool operator==(const GlobalMap& a, const GlobalMap& b) {
   return a.version == b.version && a.nodes == b.nodes && a.branches == b.branches;

@@ -55,6 +55,7 @@ TEST(StopQueue, GoesOverToASessionThatCameLater) {
   EXPECT_EQ(queue.take()->stop, (topomap::StopId{kLater, 0}));
   queue.add(queued_map(2));
   EXPECT_EQ(queue.take(), nullptr) << "a session that was left is over";
+  EXPECT_EQ(queue.arrival({kSession, 9}, 1), StopQueue::Arrival::kRepeated);
   queue.add(queued_map(1, kLater));
   EXPECT_EQ(queue.take()->stop, (topomap::StopId{kLater, 1}));
   EXPECT_EQ(queue.taken(), 4U);

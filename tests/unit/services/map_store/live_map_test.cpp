@@ -64,6 +64,21 @@ TEST_F(Live, WaitsForPosesAndMaps) {
   EXPECT_EQ(live_.size(), 0U);
 }
 
+TEST_F(Live, OtherNumbersStartAnew) {
+  live_.renumber(7);
+  EXPECT_EQ(live_.rebuilds(), 0U) << "nothing was there";
+  work(live_);
+  live_.renumber(7);
+  EXPECT_EQ(live_.size(), 5U);
+  maps_.erase(maps_.begin() + 1);
+  stops_.erase(stops_.begin() + 1);
+  live_.renumber(8);
+  EXPECT_EQ(live_.size(), 0U);
+  work(live_);
+  EXPECT_EQ(live_.size(), 4U);
+  EXPECT_TRUE(live_.snapshot(1) == fused());
+}
+
 TEST_F(Live, SmallCorrectionsStayLargerOnesStartAnew) {
   work(live_);
   stops_[2].T_map_robot.y_m += 0.04;

@@ -125,6 +125,37 @@ TEST_F(Archive, StoresWhatTheTrajectoryNames) {
               ElementsAre(topomap::StopId{kArchivedSession, 1}));
 }
 
+TEST_F(Archive, StopsThatLeaveTheMapLeaveTheFile) {
+  add(0, 5);
+  EXPECT_THAT(archive_->flush(), IsEmpty());
+  topomap::Trajectory trajectory;
+  trajectory.version = 4;
+  std::vector<topomap::LocalMap> joined(maps_.begin(), maps_.begin() + 4);
+  const auto poses_of = [&] {
+    trajectory.stops.clear();
+    for (const topomap::LocalMap& map : joined) {
+      trajectory.stops.push_back({map.id, map.stamp_ns, {}, {}, map.stop});
+      trajectory.stops.back().covariance.setIdentity();
+    }
+  };
+  poses_of();
+  archive_->put(joined, trajectory, {});
+  joined = {maps_[0], topomap::numbered(maps_[3], 1, true), topomap::numbered(maps_[4], 2, false)};
+  trajectory.version = trajectory.numbered_since = 5;
+  poses_of();
+  archive_->put(joined, trajectory, {});
+  EXPECT_TRUE(storage::read_map(path_).local_maps == joined);
+  EXPECT_FALSE(archive_->database().stop(maps_[1].stop));
+  EXPECT_EQ(stored(), 5U);
+  archive_->add(maps_[1]);
+  EXPECT_EQ(archive_->queued(), 0U);
+  // Poses go on as usual.
+  trajectory.version = 6;
+  trajectory.stops[2].T_map_robot.x_m = 3.0;
+  archive_->put(joined, trajectory, {});
+  EXPECT_EQ(storage::read_map(path_).trajectory.stops[2].T_map_robot.x_m, 3.0);
+}
+
 TEST_F(Archive, KeepsTheNewestOfThoseThatNoMapWants) {
   topomap::LocalMap map = maps_[0];
   map.points.clear();

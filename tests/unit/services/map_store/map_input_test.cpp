@@ -139,6 +139,88 @@ TEST_F(Input, RefusesATrajectoryOfAnotherStoredMap) {
   EXPECT_THROW(input_.add(segment), std::invalid_argument);
 }
 
+/// The stored map without its second stop, and another drive that joins it.
+class RenewedInput : public Input {
+ protected:
+  RenewedInput() {
+    input_ = MapInput(MapInput::Stored{.local_maps = maps_, .trajectory = trajectory_});
+    joins_ = maps_[1];
+    joins_.stop = {kOther, 0};
+    trajectory_.version = trajectory_.numbered_since = 20;
+    trajectory_.stops[1].stop = {kSession, 2};
+    trajectory_.stops[2].stop = joins_.stop;
+  }
+  topomap::LocalMap joins_;
+};
+
+TEST_F(RenewedInput, StopsThatTheTrajectoryHasNoMoreLeaveTheMap) {
+  input_.add(joins_);
+  input_.add(service::to_msg(std::vector<topomap::LoopClosure>{{0, 1, {}}}, 20, "robot", 0, 0, 20));
+  EXPECT_EQ(input_.local_maps().size(), 3U);
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  ASSERT_EQ(input_.local_maps().size(), 3U);
+  EXPECT_TRUE(input_.local_maps()[0] == maps_[0]);
+  EXPECT_TRUE(input_.local_maps()[1] == topomap::numbered(maps_[2], 1, true));
+  EXPECT_TRUE(input_.local_maps()[2] == topomap::numbered(joins_, 2, true));
+  EXPECT_EQ(input_.numbered_since(), 20U);
+  EXPECT_EQ(input_.usable_closures().size(), 1U);
+  EXPECT_EQ(input_.add(maps_[1]), Arrival::kKnown) << "it is not taken in again";
+  EXPECT_EQ(input_.waiting(), 0U);
+  EXPECT_TRUE(input_.newest_trajectory() == trajectory_);
+}
+
+TEST_F(RenewedInput, TheStopsThatJoinMayComeLater) {
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  EXPECT_EQ(input_.local_maps().size(), 2U);
+  input_.add(joins_);
+  EXPECT_EQ(input_.local_maps().size(), 3U);
+}
+
+TEST_F(RenewedInput, WhatHasTheNumbersOfBeforeIsPassedOver) {
+  topomap::Trajectory before = trajectory_;
+  before.numbered_since = 0;
+  before.version = 30;
+  before.stops[1].stop = {kSession, 1};
+  input_.add(joins_);
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  input_.add(service::to_segment(before, 0, "robot", 0));
+  input_.add(service::to_msg(std::vector<topomap::LoopClosure>{{0, 1, {}}}, 30, "robot", 0, 0, 0));
+  EXPECT_TRUE(input_.newest_trajectory() == trajectory_);
+  EXPECT_TRUE(input_.usable_closures().empty());
+}
+
+TEST_F(RenewedInput, TakesEffectWhenAllOfItHasCome) {
+  topomap::Trajectory large = any_trajectory(random_, msg::kSegmentStops + 2);
+  large.version = large.numbered_since = 20;
+  for (topomap::StopPose& stop : large.stops) stop.stop = {kOther, stop.local_map_id};
+  large.stops[0].stop = maps_[2].stop;
+  input_.add(service::to_segment(large, 1, "robot", 0));
+  EXPECT_EQ(input_.numbered_since(), 0U);
+  EXPECT_EQ(input_.local_maps().size(), 3U);
+  input_.add(service::to_segment(large, 0, "robot", 0));
+  EXPECT_EQ(input_.numbered_since(), 20U);
+  ASSERT_EQ(input_.local_maps().size(), 1U);
+  EXPECT_EQ(input_.local_maps()[0].stop, maps_[2].stop);
+}
+
+TEST_F(RenewedInput, NothingLeavesBecauseOfAStopThatIsLate) {
+  trajectory_.stops[1].stop = joins_.stop;
+  trajectory_.stops[2].stop = {kSession, 2};
+  input_.add(service::to_segment(trajectory_, 0, "robot", 0));
+  EXPECT_TRUE(input_.local_maps() == maps_);
+  input_.add(joins_);
+  ASSERT_EQ(input_.local_maps().size(), 3U);
+  EXPECT_EQ(input_.local_maps()[1].stop, joins_.stop);
+  EXPECT_EQ(input_.local_maps()[2].stop, (topomap::StopId{kSession, 2}));
+}
+
+TEST_F(RenewedInput, RefusesOneOfAnotherMap) {
+  trajectory_.stops[0].stop = {kOther, 7};
+  const msg::TrajectorySegment segment = service::to_segment(trajectory_, 0, "robot", 0);
+  EXPECT_THROW(input_.add(segment), std::invalid_argument);
+  EXPECT_TRUE(input_.local_maps() == maps_);
+}
+
 TEST_F(Input, TrajectoryReachesAsFarAsTheLocalMaps) {
   input_.add(service::to_segment(trajectory_, 0, "robot", 0));
   input_.add(closures(8));

@@ -20,7 +20,9 @@ struct MapSummary {
   std::size_t sessions = 0;  ///< drives
   std::size_t stops = 0;
   std::size_t located_stops = 0;
-  std::size_t scans = 0;  ///< that have a pose, stops included
+  std::uint64_t views = 0;  ///< that the stops stand for: more than stops where a place was seen
+                            ///< again and again
+  std::size_t scans = 0;    ///< that have a pose, stops included
   std::size_t points = 0;
   std::int64_t first_stamp_ns = 0;  ///< of the stops; 0 without any
   std::int64_t last_stamp_ns = 0;

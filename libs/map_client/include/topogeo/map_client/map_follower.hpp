@@ -57,9 +57,9 @@ inline std::uint64_t sample_hash(const msg::MapElement& element) {
 /// True when two elements say the same of the floor, whenever they were sent.
 inline bool same_content(const msg::MapElement& a, const msg::MapElement& b) {
   return a.kind() == b.kind() && a.id() == b.id() && a.observations() == b.observations() &&
-         a.node_kind() == b.node_kind() && a.node_position() == b.node_position() &&
-         a.node_a() == b.node_a() && a.node_b() == b.node_b() && a.is_virtual() == b.is_virtual() &&
-         a.points() == b.points();
+         a.last_seen_ns() == b.last_seen_ns() && a.node_kind() == b.node_kind() &&
+         a.node_position() == b.node_position() && a.node_a() == b.node_a() &&
+         a.node_b() == b.node_b() && a.is_virtual() == b.is_virtual() && a.points() == b.points();
 }
 
 /// Not for several threads at a time.

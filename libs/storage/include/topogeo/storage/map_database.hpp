@@ -90,6 +90,12 @@ class MapDatabase {
   /// They are not taken in again. Returns how many were dropped.
   std::size_t drop_waiting(std::size_t most);
 
+  /// Drops the stops of a session that have not joined the map, as above.
+  void drop_session(std::uint64_t session);
+
+  /// Gives back the room of what was dropped.
+  void compact();
+
   /// Stores corrected poses of stops of the map, and the whole list of loop closures. Stops that
   /// are not in `changed` keep their pose; `joined` get the next numbers of the map first, as by
   /// join(). Throws std::invalid_argument when `version` is older than the stored one or a stop is
@@ -97,6 +103,13 @@ class MapDatabase {
   void put_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
                       std::span<const topomap::LoopClosure> closures,
                       std::span<const JoinedStop> joined = {});
+
+  /// Stops leave the map: these are all that are in it now, in this order, with the poses of a
+  /// trajectory that has numbered them anew. The others are removed for good and are not taken in
+  /// again; neither are stops of a session that came before the last of it in the map. Throws like
+  /// put_trajectory().
+  void renew(const topomap::Trajectory& trajectory, std::span<const topomap::LoopClosure> closures,
+             std::span<const JoinedStop> stops);
 
   /// Makes these the edges that the trajectory was made of. Throws std::invalid_argument when a
   /// stop is not in the map.
@@ -137,6 +150,8 @@ class MapDatabase {
   /// Stops in the map, the number that the next one gets.
   [[nodiscard]] std::uint32_t local_map_count() const;
   [[nodiscard]] std::uint64_t trajectory_version() const;
+  /// See topomap::Trajectory.
+  [[nodiscard]] std::uint64_t numbered_since() const;
   [[nodiscard]] const std::string& robot_id() const { return robot_id_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
   /// 0 until there is a stop.

@@ -15,7 +15,8 @@ struct MapNode {
   NodeKind kind = NodeKind::kReal;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame
   double clearance_m = 0.0;
-  std::uint32_t observations = 1;  ///< local maps that saw it
+  std::uint32_t observations = 1;  ///< views that saw it
+  std::int64_t last_seen_ns = 0;   ///< stamp of the last of them; 0: not known
 };
 
 struct MapBranch {
@@ -25,6 +26,7 @@ struct MapBranch {
   bool is_virtual = false;
   std::uint32_t observations = 1;
   std::vector<BranchPoint> points;  ///< map frame, ordered from node_a to node_b
+  std::int64_t last_seen_ns = 0;    ///< as of a node; of a virtual branch 0
 };
 
 struct GlobalMap {

@@ -27,6 +27,12 @@
 
 namespace topogeo::topomap {
 
+/// Which views a local map stands for.
+struct Sighting {
+  std::uint32_t views = 1;
+  std::int64_t last_ns = 0;  ///< stamp of the last one
+};
+
 /// The fused map. Its state is a function of the sequence of integrated maps and poses alone.
 class GlobalMapBuilder {
  public:
@@ -41,8 +47,11 @@ class GlobalMapBuilder {
   /// origin, or a coordinate of the map not finite or more than 500 m from the robot; the state is
   /// then unchanged.
   void integrate(const LocalMap& map, const geometry::Pose2& T_map_robot);
+  /// The same for a view that stands for others, too: they count in the observations of what it
+  /// shows.
+  void integrate(const LocalMap& map, const StopPose& stop);
 
-  /// The same state as a new builder after integrating maps[i] at poses[i].T_map_robot in order.
+  /// The same state as a new builder after integrating maps[i] at poses[i] in order.
   /// Throws std::invalid_argument when the numbers differ, or as `integrate` does.
   void rebuild(std::span<const LocalMap> maps, std::span<const StopPose> poses);
 

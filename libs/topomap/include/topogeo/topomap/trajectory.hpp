@@ -1,6 +1,7 @@
 // The corrected trajectory of a robot: one pose for each stop, and from that one for each scan.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,12 +21,21 @@ struct StopPose {
   Eigen::Matrix3d covariance =
       Eigen::Matrix3d::Zero();  ///< of (x, y, theta) in the map frame, m and rad
   StopId stop{};
-  bool located = true;  ///< false: the robot was not located, the pose means nothing
+  bool located = true;      ///< false: the robot was not located, the pose means nothing
+  std::uint32_t views = 1;  ///< that it stands for: its own and those that were left out since
+                            ///< because they showed the same
+  std::int64_t last_view_ns = 0;  ///< stamp of the last of those left out; 0: none was
+
+  /// When its place was last seen like that.
+  [[nodiscard]] std::int64_t last_seen_ns() const { return std::max(stamp_ns, last_view_ns); }
 };
 
 struct Trajectory {
   std::uint64_t version = 0;    ///< grows with every change
   std::vector<StopPose> stops;  ///< index = local map id
+  /// Version in which stops left the map last, so that those after them have other ids since; 0:
+  /// none ever did.
+  std::uint64_t numbered_since = 0;
 };
 
 /// A closed loop: two stops far apart on the path whose maps were matched.

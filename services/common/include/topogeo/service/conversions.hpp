@@ -91,7 +91,8 @@ std::vector<topomap::StopPose> from_msg(const msg::TrajectorySegment& message);
 
 msg::LoopClosures to_msg(std::span<const topomap::LoopClosure> closures,
                          std::uint64_t trajectory_version, std::string_view robot_id,
-                         std::int64_t stamp_ns, std::uint64_t sequence_number);
+                         std::int64_t stamp_ns, std::uint64_t sequence_number,
+                         std::uint64_t numbered_since = 0);
 std::vector<topomap::LoopClosure> from_msg(const msg::LoopClosures& message);
 
 /// Number of segments that so many measurements have: at least one.
@@ -99,7 +100,8 @@ std::uint32_t edge_segment_count(std::size_t edges);
 /// Segment `segment` < edge_segment_count of the measurements that a trajectory is made of.
 msg::MapEdges to_segment(std::span<const storage::MapEdge> edges, std::uint32_t segment,
                          std::uint64_t trajectory_version, std::string_view robot_id,
-                         std::int64_t stamp_ns, std::uint64_t sequence_number);
+                         std::int64_t stamp_ns, std::uint64_t sequence_number,
+                         std::uint64_t numbered_since = 0);
 /// The measurements of one segment, checked: as many as `total` has, of ascending stops.
 std::vector<storage::MapEdge> from_msg(const msg::MapEdges& message);
 
@@ -108,7 +110,8 @@ std::uint32_t decision_segment_count(std::size_t decisions);
 /// Segment `segment` < decision_segment_count of all decisions so far.
 msg::LoopDecisions to_segment(std::span<const localization::LoopDecision> decisions,
                               std::uint32_t segment, std::string_view robot_id,
-                              std::int64_t stamp_ns, std::uint64_t sequence_number);
+                              std::int64_t stamp_ns, std::uint64_t sequence_number,
+                              std::uint64_t numbered_since = 0);
 /// The decisions of one segment, checked: as many as `total` has.
 std::vector<localization::LoopDecision> from_msg(const msg::LoopDecisions& message);
 

@@ -13,7 +13,8 @@ namespace topogeo::service {
 
 class DecisionAssembly {
  public:
-  /// A segment older than the one that is held is passed over. Throws std::invalid_argument like
+  /// A segment older than the one that is held, or of other numbers than the newest, is passed
+  /// over. Throws std::invalid_argument like
   /// from_msg.
   void add(const msg::LoopDecisions& message);
 
@@ -22,6 +23,7 @@ class DecisionAssembly {
 
  private:
   std::map<std::uint32_t, std::vector<localization::LoopDecision>> segments_;
+  std::uint64_t numbered_since_ = 0;  // of all of them
 };
 
 }  // namespace topogeo::service

@@ -14,12 +14,18 @@ namespace topogeo::service {
 /// Keeps the newest of each segment of one robot.
 class TrajectoryAssembly {
  public:
-  /// False when the segment is older than the one held; equal versions replace. Throws
+  /// False when the segment is older than the one held; equal versions replace. When stops have
+  /// other numbers since, the segments of before are forgotten. Throws
   /// std::invalid_argument like from_msg.
   bool add(const msg::TrajectorySegment& message);
 
   /// Newest version of any segment; 0 without one.
   [[nodiscard]] std::uint64_t version() const { return version_; }
+
+  /// See topomap::Trajectory.
+  [[nodiscard]] std::uint64_t numbered_since() const { return numbered_since_; }
+  /// Every stop has come, in whatever version.
+  [[nodiscard]] bool complete() const;
 
   /// The newest pose of each stop up to the first segment that has not come. Segments of different
   /// versions may stand side by side; `version` is the newest.
@@ -39,6 +45,7 @@ class TrajectoryAssembly {
   };
   std::map<std::uint32_t, Segment> segments_;
   std::uint64_t version_ = 0;
+  std::uint64_t numbered_since_ = 0;
 };
 
 }  // namespace topogeo::service

@@ -56,6 +56,9 @@ class Localizer : public Slam {
   void join(std::span<const MapPointer> drive, std::span<const StoredMatch> matches_of_last,
             double confidence);
 
+  /// Takes in what is still being worked out about earlier poses.
+  void settle() { apply(schedule_.fetch_now()); }
+
   /// Numbers its tasks on from there; no number may occur twice in one pool.
   void number_tasks_from(std::uint64_t next_task) { matching_.requests().number_from(next_task); }
   [[nodiscard]] std::uint64_t next_task() const { return matching_.requests().next_task(); }

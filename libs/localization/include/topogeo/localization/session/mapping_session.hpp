@@ -5,8 +5,9 @@
 // after a time in which stops were not mapped, it is followed or searched for by a MapLocalizer.
 // Its stops are kept meanwhile, and join the map together as soon as the last of them is tracked
 // and matched there, after a search only some metres further; if that never happens the map
-// stays as it was. All of that follows from the stops alone, so one drive gives the same map
-// wherever it is computed.
+// stays as it was. When a drive joins, views of earlier drives leave the map that others show as
+// well (KeptViews), so that a patrol does not make it grow. All of that follows from the stops
+// alone, so one drive gives the same map wherever it is computed.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +19,7 @@
 #include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/mapping/stored_map.hpp"
+#include "topogeo/localization/session/kept_views.hpp"
 #include "topogeo/localization/tracking/map_localizer.hpp"
 
 namespace topogeo::localization {
@@ -25,6 +27,11 @@ namespace topogeo::localization {
 class MappingSession : public Slam {
  public:
   using MapPointer = std::shared_ptr<const topomap::LocalMap>;
+
+  /// A drive that does not find its place joins the map with so many stops, the newest ones.
+  static constexpr std::size_t kMostWaiting = 1024;
+  /// A drive alone has so many stops before views of it leave the map that it has shown twice.
+  static constexpr std::size_t kLongDrive = 4000;
 
   /// Begins an empty map. The pool and the optimizer must outlive the session.
   MappingSession(const LocalizerConfig& config, MatchPool& pool,
@@ -38,6 +45,9 @@ class MappingSession : public Slam {
   /// The drive goes on from the last stop of the stored map, which is one of its session. Before
   /// the first stop.
   void go_on();
+
+  /// No view leaves the map, whatever others show.
+  void keep_all_views() { keeps_all_ = true; }
 
   /// The next stop of the drive. The numbers of a session count on from the first that comes,
   /// whatever becomes of its stops; throws std::invalid_argument otherwise, or when it is of
@@ -63,13 +73,13 @@ class MappingSession : public Slam {
   [[nodiscard]] const std::vector<MapPointer>& maps() const { return maps_; }
   /// ... their poses, each with the stop that its local map came as ...
   [[nodiscard]] topomap::Trajectory trajectory() const override;
-  /// ... and how many of them were there before this drive.
+  /// ... how many of them were there at the start ...
   [[nodiscard]] std::size_t stored_stops() const { return stored_stops_; }
+  /// ... and how many were added since, of which some may have left the map again.
+  [[nodiscard]] std::size_t added_stops() const { return added_; }
 
-  /// Stops of the drive that are not in the map: not wanted, or their place was not found.
-  [[nodiscard]] std::size_t unmapped_stops() const {
-    return stops_ - (maps_.size() - stored_stops_);
-  }
+  /// Stops of the drive that were not added: not wanted, or their place was not found.
+  [[nodiscard]] std::size_t unmapped_stops() const { return stops_ - added_; }
   /// Of those, the ones that join it if the robot finds its place.
   [[nodiscard]] std::size_t waiting_stops() const { return waiting_.size(); }
   [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
@@ -90,17 +100,32 @@ class MappingSession : public Slam {
 
  private:
   void begin_drive(const topomap::LocalMap& map);
+  /// Makes it the map, with a mapper of its own.
+  void take_map(const std::shared_ptr<const StoredMap>& map);
   [[nodiscard]] std::shared_ptr<const StoredMap> map_so_far() const;
   bool map_stop(const MapPointer& map);
   bool follow(const MapPointer& map);
   bool confirmed();
   void join();
+  /// Views that others show as well leave the map, but none of the last `untouched` ones. Returns
+  /// what was kept of which stops, if any left.
+  struct Renewed {
+    std::shared_ptr<const StoredMap> before;
+    KeptViews kept;
+  };
+  std::optional<Renewed> renew(std::size_t untouched);
+  /// The matches as those of the stops that are kept.
+  [[nodiscard]] static std::vector<StoredMatch> renewed(std::vector<StoredMatch> matches,
+                                                        const Renewed& by);
+  void renew_long_drive();
+  void add_to_map(MapPointer map);
   void start_following(std::shared_ptr<const StoredMap> map);
   void end_following();
   [[nodiscard]] MapPointer numbered(const MapPointer& map, bool starts_drive) const;
 
   LocalizerConfig config_;
   MatchPool& pool_;
+  GraphOptimizer* optimizer_;
   std::unique_ptr<Slam> mapper_;
   Localizer* localizer_ = nullptr;  // mapper_, unless that is the algorithm of the Thesis
   std::unique_ptr<MapLocalizer> follower_;
@@ -108,7 +133,12 @@ class MappingSession : public Slam {
   std::optional<topomap::StopId> last_id_;  // of the drive
   std::size_t stops_ = 0;                   // that came
   std::vector<MapPointer> maps_;
+  std::vector<topomap::StopPose> stands_for_;  // of each: which views it stands for, nothing else
+  std::uint64_t numbered_since_ = 0;           // see topomap::Trajectory
   std::size_t stored_stops_ = 0;
+  std::size_t added_ = 0;
+  std::size_t renew_at_ = kLongDrive;
+  bool keeps_all_ = false;
   bool searched_ = false;  // the place is known by a search
   struct Tracked {
     std::uint32_t stops = 0;     // in succession, the last one included
@@ -117,7 +147,7 @@ class MappingSession : public Slam {
   };
   Tracked tracked_;
   std::vector<MapPointer> waiting_;  // to join the map, as they came
-  SlamCounts counts_before_;         // of followers that have gone
+  SlamCounts counts_before_;         // of followers and mappers that have gone
 };
 
 }  // namespace topogeo::localization

@@ -58,8 +58,8 @@ class MapLocalizer : public Slam {
 
   /// The next stop of the drive: the numbers of a session count on from the first that comes.
   /// Throws std::invalid_argument otherwise. Another session is another drive: the pose is
-  /// forgotten and searched for. In the pool and in tasks the map has the id that follows those of
-  /// the stored maps. False: no earlier pose moves.
+  /// forgotten and searched for. In the pool and in tasks the map has one of the ids that follow
+  /// those of the stored maps. False: no earlier pose moves.
   bool add(std::shared_ptr<const topomap::LocalMap> map) override;
   /// Nothing is left to be done after the last map.
   void finish() override {}
@@ -78,7 +78,10 @@ class MapLocalizer : public Slam {
   /// Forgets the pose and searches the whole map from the next stop on.
   void search();
 
-  /// All stops so far.
+  /// Forgets all stops but the last ones, at least `most` of them.
+  void forget_stops(std::size_t most);
+
+  /// All stops so far that were not forgotten.
   [[nodiscard]] const std::vector<LocalizedStop>& stops() const { return stops_; }
   /// The same as a trajectory in the frame of the map.
   [[nodiscard]] topomap::Trajectory trajectory() const override;
@@ -121,6 +124,7 @@ class MapLocalizer : public Slam {
   bool monitored_ = false;                      // the last stop was, by what its pose is judged
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
   std::vector<LocalizedStop> stops_;
+  std::uint32_t added_ = 0;  // stops that came
   std::optional<TrackedStep> last_step_;
   LocalizationStatus status_;
   std::size_t searches_ = 0;

@@ -36,9 +36,9 @@ class StoredMapMatching {
   StoredMapMatching(const LocalizerConfig& config, std::shared_ptr<const StoredMap> map,
                     MatchPool& pool);
 
-  /// Makes a stop of the drive known to the pool: the `number`th, under the id that follows those
-  /// of the stored maps. Matches it with the stops before. `T_odom_last`: the odometry at the stop
-  /// before, if there is one.
+  /// Makes a stop of the drive known to the pool: the `number`th, under one of the ids that follow
+  /// those of the stored maps. Matches it with the stops before. `T_odom_last`: the odometry at the
+  /// stop before, if there is one.
   DriveStop add(const topomap::LocalMap& map, std::uint32_t number,
                 const std::optional<geometry::Pose2>& T_odom_last);
 

@@ -1,0 +1,48 @@
+// What a map can do without: stops of sessions that never joined it, and views of places that
+// others show as well.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "topogeo/storage/map_document.hpp"
+#include "topogeo/topomap/global_map_config.hpp"
+
+namespace topogeo::exchange {
+
+struct PruneSettings {
+  /// Sessions whose last stop is so much older than the newest stop of all. The newest session,
+  /// which may go on, stays.
+  std::int64_t older_ns = 0;
+  /// Times that are kept of each place, see localization::KeptViews; none: all views stay.
+  std::optional<std::size_t> times;
+  bool dry_run = false;  ///< the file stays as it is
+};
+
+struct PrunedSession {
+  std::uint64_t session = 0;
+  std::size_t stops = 0;
+  std::int64_t last_stamp_ns = 0;
+};
+
+struct Pruned {
+  std::vector<PrunedSession> sessions;  ///< whose stops go
+  std::size_t views_before = 0;         ///< in the map
+  std::size_t views = 0;
+  std::uintmax_t bytes_before = 0;  ///< of the file
+  std::uintmax_t bytes = 0;
+};
+
+/// Prunes a map database, which no map store has open, in its place. Throws like MapDatabase.
+Pruned prune(const std::filesystem::path& database, const PruneSettings& settings,
+             const topomap::GlobalMapConfig& config);
+
+/// The map with so many times of each place; nodes and branches are made anew where it changes.
+storage::MapDocument with_fewer_views(const storage::MapDocument& document, std::size_t times,
+                                      const topomap::GlobalMapConfig& config);
+
+}  // namespace topogeo::exchange

@@ -1,0 +1,292 @@
+#include "topogeo/localization/session/kept_views.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "topogeo/localization/matching/expected_overlap.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+
+namespace topogeo::localization {
+
+using geometry::Pose2;
+
+namespace {
+
+// As far as stops of one path lie apart: along another drive there is one that is nearer.
+constexpr double kNear_m = 1.0;
+// Of what a view saw, for another one to stand for it. An open door shows more than the rest.
+constexpr double kSeen = 0.8;
+// Thinned points, 0.2 m apart, where others see nothing any more: a cupboard. A person has fewer.
+constexpr std::uint32_t kGonePoints = 4;
+constexpr double kGoneTolerance_m = 0.3;
+constexpr std::int64_t kOneTime_ns = 3'600'000'000'000;
+// A session that goes on for months counts as several drives.
+constexpr std::uint32_t kDriveStops = 2000;
+// Measurements that hold a stop, as many as it has in a single drive.
+constexpr std::uint32_t kEnoughEdges = 6;
+
+/// What is compared of a stop.
+struct View {
+  Pose2 T_map_robot;
+  std::vector<SurfacePoint> points;
+  std::vector<SurfacePoint> outline;
+  RangeProfile profile;
+  std::uint32_t drive = 0;
+  std::uint32_t time = 0;
+
+  /// Whether this view shows what the other one did, whatever is there now.
+  [[nodiscard]] bool covers(const View& other) const {
+    const Pose2 T_this_other = geometry::between(T_map_robot, other.T_map_robot);
+    if (T_this_other.position_m().squaredNorm() > kNear_m * kNear_m) return false;
+    return expected_overlap(profile, other.outline, {T_this_other, Eigen::Matrix3d::Zero()},
+                            kSeen) >= kSeen;
+  }
+
+  /// The second condition is for walls that are seen at a flat angle.
+  [[nodiscard]] bool shows_nothing_at(const Eigen::Vector2d& point_m) const {
+    constexpr double kSquared_m2 = kGoneTolerance_m * kGoneTolerance_m;
+    return profile.view(point_m, kGoneTolerance_m) == RangeProfile::View::kFree &&
+           std::ranges::none_of(points, [&](const SurfacePoint& own) {
+             return (own.position_m - point_m).squaredNorm() < kSquared_m2;
+           });
+  }
+};
+
+/// Whether another drive begins at a stop.
+bool begins_drive(std::span<const topomap::LocalMap> maps, std::size_t stop) {
+  const topomap::StopId& here = maps[stop].stop;
+  const topomap::StopId& before = maps[stop - 1].stop;
+  return here.session != before.session || here.number / kDriveStops != before.number / kDriveStops;
+}
+
+bool one_drive(std::span<const topomap::LocalMap> maps) {
+  for (std::size_t i = 1; i < maps.size(); ++i) {
+    if (begins_drive(maps, i)) return false;
+  }
+  return true;
+}
+
+/// Which drive and which time each stop is of.
+void count_drives(std::span<const topomap::LocalMap> maps, std::vector<View>& views) {
+  std::uint32_t drive = 0;
+  std::uint32_t time = 0;
+  std::int64_t time_began_ns = maps.front().stamp_ns;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    if (i > 0 && begins_drive(maps, i)) {
+      ++drive;
+      const std::int64_t stamp_ns = maps[i].stamp_ns;
+      if (stamp_ns < time_began_ns || stamp_ns > time_began_ns + kOneTime_ns) {
+        ++time;
+        time_began_ns = stamp_ns;
+      }
+    }
+    views[i].drive = drive;
+    views[i].time = time;
+  }
+}
+
+std::vector<View> views_of(std::span<const topomap::LocalMap> maps,
+                           std::span<const topomap::StopPose> stops) {
+  std::vector<View> views(maps.size());
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    MatchFeatures features = extract_scan_features(maps[i].points, maps[i].T_robot_laser);
+    views[i].T_map_robot = stops[i].T_map_robot;
+    views[i].outline = outline_of(features.coarse);
+    views[i].points = std::move(features.coarse);
+    views[i].profile = std::move(features.profile);
+  }
+  count_drives(maps, views);
+  return views;
+}
+
+/// Decides stop by stop, from the oldest on.
+class Choice {
+ public:
+  Choice(std::vector<View> views, std::size_t times)
+      : views_(std::move(views)), times_(times), oldest_(views_.size(), false) {}
+
+  struct Verdict {
+    std::optional<std::uint32_t> by;  ///< none: it is kept
+    bool outdated = false;
+  };
+  Verdict judge(std::uint32_t stop) {
+    if (const auto same = of_this_time(stop)) return {same, false};
+    const std::vector<std::uint32_t> later = last_times(later_views(stop));
+    if (times(later) < times_) return {};
+    if (gone(stop, later)) return {later.back(), true};
+    for (std::uint32_t other = 0; other < stop; ++other) {
+      if (oldest_[other] && views_[other].drive != views_[stop].drive &&
+          views_[other].covers(views_[stop])) {
+        return {other, false};
+      }
+    }
+    oldest_[stop] = true;
+    return {};
+  }
+
+ private:
+  /// A view of an earlier drive at that time.
+  [[nodiscard]] std::optional<std::uint32_t> of_this_time(std::uint32_t stop) const {
+    const View& view = views_[stop];
+    for (std::uint32_t other = stop; other-- > 0 && views_[other].time == view.time;) {
+      if (views_[other].drive != view.drive && views_[other].covers(view)) return other;
+    }
+    return std::nullopt;
+  }
+
+  /// Of later times, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> later_views(std::uint32_t stop) const {
+    std::vector<std::uint32_t> later;
+    for (std::uint32_t other = stop + 1; other < views_.size(); ++other) {
+      if (views_[other].time != views_[stop].time && views_[other].covers(views_[stop])) {
+        later.push_back(other);
+      }
+    }
+    return later;
+  }
+
+  [[nodiscard]] std::size_t times(std::span<const std::uint32_t> stops) const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+      if (i == 0 || views_[stops[i]].time != views_[stops[i - 1]].time) ++count;
+    }
+    return count;
+  }
+
+  /// Those of them that are of the last times, as many as are kept.
+  [[nodiscard]] std::vector<std::uint32_t> last_times(std::vector<std::uint32_t> stops) const {
+    std::size_t first = stops.size();
+    for (std::size_t count = 0; first > 0; --first) {
+      const bool another =
+          first == stops.size() || views_[stops[first - 1]].time != views_[stops[first]].time;
+      if (another && ++count > times_) break;
+    }
+    stops.erase(stops.begin(), stops.begin() + static_cast<std::ptrdiff_t>(first));
+    return stops;
+  }
+
+  /// Whether none of the last times shows what the stop saw: a person goes, a door opens and
+  /// shuts.
+  [[nodiscard]] bool gone(std::uint32_t stop, std::span<const std::uint32_t> later) const {
+    const View& view = views_[stop];
+    std::vector<std::set<std::uint32_t>> missed(view.points.size());  // at which times
+    for (const std::uint32_t other : later) {
+      const Pose2 T_other_stop = geometry::between(views_[other].T_map_robot, view.T_map_robot);
+      const geometry::SinCos heading = geometry::sincos(T_other_stop.theta_rad);
+      for (std::size_t i = 0; i < view.points.size(); ++i) {
+        const SurfacePoint p = moved(view.points[i], T_other_stop, heading);
+        if (views_[other].shows_nothing_at(p.position_m)) missed[i].insert(views_[other].time);
+      }
+    }
+    const auto count =
+        std::ranges::count_if(missed, [&](const auto& at) { return at.size() >= times_; });
+    return count >= kGonePoints;
+  }
+
+  std::vector<View> views_;
+  std::size_t times_;
+  std::vector<bool> oldest_;  // kept though there are enough later views
+};
+
+}  // namespace
+
+KeptViews::KeptViews(std::span<const topomap::LocalMap> maps,
+                     std::span<const topomap::StopPose> stops, std::size_t times,
+                     std::size_t untouched)
+    : stops_(maps.size()), new_ids_(maps.size()) {
+  // Nothing can be dropped of a single drive.
+  const std::size_t last =
+      maps.empty() || one_drive(maps) ? 0 : maps.size() - std::min(untouched, maps.size());
+  Choice choice(last > 0 ? views_of(maps, stops) : std::vector<View>{}, times);
+  for (std::uint32_t i = 0; i < maps.size(); ++i) {
+    const Choice::Verdict verdict = i > 0 && i < last ? choice.judge(i) : Choice::Verdict{};
+    stops_[i] = {verdict.by.value_or(i), verdict.outdated};
+    if (verdict.by) continue;
+    new_ids_[i] = static_cast<std::uint32_t>(kept_.size());
+    kept_.push_back(i);
+  }
+  // What stands for a stop may have been dropped for another one, of a later time or of the same.
+  for (Stop& stop : stops_) {
+    while (stops_[stop.by].by != stop.by) stop.by = stops_[stop.by].by;
+  }
+}
+
+topomap::Trajectory kept_trajectory(const topomap::Trajectory& trajectory, const KeptViews& kept) {
+  topomap::Trajectory out;
+  out.version = trajectory.version + 1;
+  out.numbered_since = out.version;
+  for (const std::uint32_t stop : kept.kept()) {
+    out.stops.push_back(trajectory.stops[stop]);
+    out.stops.back().local_map_id = kept.new_id(stop);
+  }
+  for (std::uint32_t i = 0; i < trajectory.stops.size(); ++i) {
+    if (kept.is_kept(i) || kept.outdated(i)) continue;
+    topomap::StopPose& stands = out.stops[kept.new_id(i)];
+    stands.views += trajectory.stops[i].views;
+    stands.last_view_ns = std::max(stands.last_view_ns, trajectory.stops[i].last_seen_ns());
+  }
+  return out;
+}
+
+std::vector<topomap::LocalMap> kept_maps(std::span<const topomap::LocalMap> maps,
+                                         const KeptViews& kept) {
+  std::vector<topomap::LocalMap> out;
+  for (const std::uint32_t stop : kept.kept()) {
+    const auto id = static_cast<std::uint32_t>(out.size());
+    const bool follows = id == 0 || out.back().stop.next() == maps[stop].stop;
+    out.push_back(topomap::numbered(maps[stop], id, !follows));
+  }
+  return out;
+}
+
+std::vector<PoseGraphEdge> kept_edges(std::span<const PoseGraphEdge> edges,
+                                      std::span<const topomap::LocalMap> maps,
+                                      std::span<const topomap::StopPose> stops,
+                                      const KeptViews& kept) {
+  std::vector<PoseGraphEdge> out;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::vector<std::uint32_t> of_stop(kept.kept().size());
+  const auto add = [&](const PoseGraphEdge& edge) {
+    pairs.insert({edge.from, edge.to});
+    ++of_stop[edge.from];
+    ++of_stop[edge.to];
+    out.push_back(edge);
+  };
+  for (PoseGraphEdge edge : edges) {
+    if (!kept.is_kept(edge.from) || !kept.is_kept(edge.to)) continue;
+    edge.from = kept.new_id(edge.from);
+    edge.to = kept.new_id(edge.to);
+    add(edge);
+  }
+  // As far apart as the poses are. Matches led to the dropped stop and from there on.
+  const Eigen::Matrix3d more = 2.0 * usual_match_covariance();
+  for (const PoseGraphEdge& edge : edges) {
+    if (edge.kind == EdgeKind::kOdometry) continue;
+    if (kept.is_kept(edge.from) && kept.is_kept(edge.to)) continue;
+    const auto [a, b] = std::minmax({kept.stands_for(edge.from), kept.stands_for(edge.to)});
+    if (a == b || maps[a].stop.next() == maps[b].stop) continue;
+    const std::pair ids(kept.new_id(a), kept.new_id(b));
+    const bool enough = of_stop[ids.first] >= kEnoughEdges && of_stop[ids.second] >= kEnoughEdges;
+    if (enough || pairs.contains(ids)) continue;
+    add({ids.first, ids.second, EdgeKind::kRevisit,
+         geometry::between(stops[a].T_map_robot, stops[b].T_map_robot), edge.covariance + more});
+  }
+  return out;
+}
+
+StoredMap with_kept_views(const StoredMap& map, const KeptViews& kept) {
+  StoredMap out;
+  out.maps = kept_maps(map.maps, kept);
+  out.trajectory = kept_trajectory(map.trajectory, kept);
+  out.edges = kept_edges(edges_of(map), map.maps, map.trajectory.stops, kept);
+  for (const PoseGraphEdge& edge : out.edges) {
+    if (edge.kind != EdgeKind::kRevisit) continue;
+    out.loop_closures.push_back({edge.from, edge.to, edge.T_from_to});
+  }
+  if (map.edges.empty()) out.edges.clear();  // what was measured stays unknown
+  return out;
+}
+
+}  // namespace topogeo::localization
