@@ -29,6 +29,7 @@ std::uint64_t content_of(const msg::MapElement& element) {
     return hash.value();
   }
   hash.add(std::uint64_t{element.observations()});
+  hash.add(static_cast<std::uint64_t>(element.last_seen_ns()));
   hash.add(std::uint64_t{element.node_kind()});
   add(element.node_position());
   hash.add(std::uint64_t{element.node_a()} << 32U | element.node_b());
