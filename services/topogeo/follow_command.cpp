@@ -64,7 +64,7 @@ std::string text_of(const map_client::Change& change) {
                             element.is_virtual() ? ", virtual" : "");
 }
 
-nlohmann::ordered_json point_of(const msg::BranchPoint& point) {
+nlohmann::ordered_json json_point(const msg::BranchPoint& point) {
   return {point.x_m(), point.y_m(), point.clearance_m()};
 }
 
@@ -80,13 +80,14 @@ nlohmann::ordered_json json_of(const map_client::Change& change) {
   out["last_seen_ns"] = element.last_seen_ns();
   if (element.kind() == msg::kElementNode) {
     out["node_kind"] = node_kind_name(element);
-    out["point"] = point_of(element.node_position());
+    out["point"] = json_point(element.node_position());
   } else {
     out["node_a"] = element.node_a();
     out["node_b"] = element.node_b();
     out["is_virtual"] = element.is_virtual();
     out["points"] = nlohmann::ordered_json::array();
-    for (const msg::BranchPoint& point : element.points()) out["points"].push_back(point_of(point));
+    for (const msg::BranchPoint& point : element.points())
+      out["points"].push_back(json_point(point));
   }
   return out;
 }

@@ -18,9 +18,9 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/read_map.hpp"
 
-#include "drive.hpp"
 #include "program.hpp"
 #include "services/common/random_values.hpp"
+#include "stored_drive.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -137,7 +137,7 @@ class MapFollowers : public testing::Test {
   const bool udp_only_ = (use_udp_only(), true);
   std::string partition_ = "followers" + std::to_string(std::random_device{}());
   Scratch scratch_;
-  Drive drive_{own_domain(), partition_, "floor"};
+  StoredDrive drive_{own_domain(), partition_, "floor"};
   std::vector<std::unique_ptr<Subscriber>> subscribers_;
   int removed_ = 0;
   int moved_ = 0;
@@ -145,7 +145,7 @@ class MapFollowers : public testing::Test {
 
 TEST_F(MapFollowers, EndWithExactlyWhatTheStoreHolds) {
   constexpr double kBend_rad = 0.02;  // a metre at the end of fifty stops
-  const std::uint32_t part = drive_.stops() / 4;
+  const std::size_t part = drive_.stops() / 4;
   for (const auto& subscriber : subscribers_) {
     if (subscriber->kind() != Kind::kLate) subscriber->start();
   }

@@ -14,8 +14,8 @@
 #include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/random.hpp"
 
-#include "drive.hpp"
 #include "program.hpp"
+#include "stored_drive.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -39,7 +39,7 @@ class MapStoreLives : public testing::Test {
   const bool udp_only_ = (use_udp_only(), true);
   std::string partition_ = "lives" + std::to_string(std::random_device{}());
   Scratch scratch_;
-  Drive drive_;
+  StoredDrive drive_;
 };
 
 class MapStoreKilled : public MapStoreLives {

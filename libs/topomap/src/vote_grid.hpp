@@ -63,7 +63,7 @@ class VoteGrid {
 
    private:
     static constexpr std::size_t kBlocks =
-        static_cast<std::size_t>((kChunk / kBlock) * (kChunk / kBlock));
+        static_cast<std::size_t>(kChunk / kBlock) * static_cast<std::size_t>(kChunk / kBlock);
     std::array<std::uint8_t, kBlocks> slots_{};  // index in blocks_ + 1
     std::vector<Block> blocks_;
   };

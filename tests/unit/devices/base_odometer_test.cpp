@@ -88,7 +88,7 @@ class ResumedOdometerTest : public BaseOdometerTest {
     }
     next_.resume(*odometer_.state());
   }
-  static constexpr std::int64_t kLast_ns = 30 * 125 * kMs;
+  static constexpr std::int64_t kLast_ns = std::int64_t{30} * 125 * kMs;
   BaseOdometer next_{BaseSettings{}};
 };
 

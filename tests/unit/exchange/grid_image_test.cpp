@@ -186,7 +186,7 @@ TEST_F(GridImageFiles, PngAndBmpAreReadAsPgmIs) {
   const std::vector<std::uint8_t> colours = {254, 255, 253, 0, 0, 0, 205, 205, 205, 90, 100, 110};
   EXPECT_EQ(read(yaml, png_bytes(2, 2, PNG_FORMAT_RGB, colours)).values, pgm.values);
   // From below, blue first, rows of six bytes filled up to eight.
-  const auto row = [](std::vector<int> bytes) {
+  const auto row = [](const std::vector<int>& bytes) {
     std::string text;
     for (const int byte : bytes) text += static_cast<char>(byte);
     return text;

@@ -61,7 +61,7 @@ TEST(PoseGraphTest, ManyStopsAreSpreadWithoutAFactorization) {
   PoseGraph graph;
   double cost_of_truth = 0.0;  // no optimum is worse
   for (std::uint32_t i = 0; i < kStops; ++i) {
-    const double lap = i / kRound;
+    const std::uint32_t lap = i / kRound;
     graph.add_pose({truth[i].x_m + 0.002 * lap * (i > 0), truth[i].y_m, truth[i].theta_rad});
     if (i == 0) continue;
     Pose2 step = geometry::between(truth[i - 1], truth[i]);

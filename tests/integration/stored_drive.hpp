@@ -27,9 +27,9 @@ namespace topogeo::test {
 
 constexpr std::chrono::seconds kLongestWait{60};
 
-class Drive {
+class StoredDrive {
  public:
-  Drive(const std::string& domain, const std::string& partition, const std::string& name)
+  StoredDrive(const std::string& domain, const std::string& partition, const std::string& name)
       : participant_([&] {
           messaging::ParticipantOptions options;
           options.domain = static_cast<std::uint32_t>(std::stoul(domain));
@@ -87,7 +87,7 @@ class Drive {
     return done();
   }
   void run_for(std::chrono::milliseconds duration) { static_cast<void>(loop_.run_for(duration)); }
-  bool wait_for_stored(std::uint32_t stops) {
+  bool wait_for_stored(std::size_t stops) {
     return wait_until([&] { return stored_.session_stops() >= stops && stored_.stops() >= stops; });
   }
 
