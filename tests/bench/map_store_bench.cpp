@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <optional>
@@ -24,6 +23,7 @@
 #include "map_store/live_map.hpp"
 #include "map_store/map_archive.hpp"
 #include "map_store/map_input.hpp"
+#include "process_memory.hpp"
 
 using namespace topogeo;  // NOLINT(google-build-using-namespace)
 
@@ -111,15 +111,6 @@ double seconds(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Largest memory of the process so far.
-double memory_mb() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::atof(line.c_str() + 6) / 1024.0;
-  }
-  return 0.0;
-}
-
 void print(const std::string& what, double value, const char* unit, const char* target) {
   std::cout << fmt::format("{:52} {:9.2f} {:10} target {}\n", what, value, unit, target)
             << std::flush;
@@ -187,7 +178,7 @@ void serve(const std::filesystem::path& path, std::uint32_t count) {
   const double map_s = seconds([&] { running->archive.put(map); });
   print("a loop that moves everything: poses stored", poses_s, "s", "");
   print("  and the whole global map", poses_s + map_s, "s", "<= 3");
-  print("largest memory", memory_mb(), "MB", "<= 300");
+  print("largest memory", bench::largest_memory_mb(), "MB", "<= 300");
   running.reset();
   print("file", static_cast<double>(std::filesystem::file_size(path)) / 1e6, "MB", "<= 200");
 }

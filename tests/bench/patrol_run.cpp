@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,6 +23,7 @@
 
 #include "map_store/map_archive.hpp"
 #include "map_store/map_input.hpp"
+#include "process_memory.hpp"
 
 namespace topogeo::bench {
 namespace {
@@ -88,15 +88,6 @@ simulation::SimulatedLog drive_of(const PatrolOptions& options, std::size_t driv
   return simulation::simulate_log(floor_of(options, drive), simulation);
 }
 
-/// Of this process now, not at most.
-double memory_mb() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmRSS:")) return std::stod(line.substr(6)) / 1024.0;
-  }
-  return 0.0;
-}
-
 /// A map store without DDS: the messages of the localizer go in as they are sent.
 class Store {
  public:
@@ -141,15 +132,7 @@ class Store {
                       });
   }
 
-  [[nodiscard]] std::uintmax_t bytes() const {
-    std::uintmax_t bytes = 0;
-    for (const char* part : {"", "-wal"}) {
-      std::error_code error;
-      const std::uintmax_t size = std::filesystem::file_size(file_.string() + part, error);
-      if (!error) bytes += size;
-    }
-    return bytes;
-  }
+  [[nodiscard]] std::uintmax_t bytes() const { return storage::database_bytes(file_); }
   [[nodiscard]] const topomap::GlobalMap& map() const { return map_; }
   [[nodiscard]] const std::vector<topomap::LocalMap>& local_maps() const {
     return input_.local_maps();
@@ -200,7 +183,7 @@ class Patrol {
     drive.rms_m = rms_m(session);
     drive.map_rms_m = rms_m(std::nullopt);
     drive.file_bytes = store_.bytes();
-    drive.memory_mb = memory_mb();
+    drive.memory_mb = memory_now_mb();
     drive.cpu_s = support::process_cpu_s() - cpu_before_s;
     return drive;
   }

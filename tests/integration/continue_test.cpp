@@ -57,6 +57,17 @@ class ContinueTest : public testing::Test {
   json report(const std::string& out) {
     return json::parse(read_file(scratch_ / out / "report.json"));
   }
+  /// What `map --continue` and `run --continue` with so many workers say, in folders of these
+  /// names.
+  struct Both {
+    Outcome alone;
+    Outcome run;
+  };
+  Both map_and_run(const std::string& log, int workers) {
+    return {call({"map", "--log", log, "--continue", map_}, "alone"),
+            call({"run", "--log", log, "--continue", map_, "--workers", std::to_string(workers)},
+                 "run")};
+  }
   void expect_same_files(const std::string& a, const std::string& b) {
     for (const char* file : {"map.pb", "trajectory.tum", "odometry.tum"}) {
       EXPECT_TRUE(read_file(scratch_ / a / file) == read_file(scratch_ / b / file)) << file;
@@ -74,10 +85,8 @@ TEST_P(ContinueByWorkersTest, OverDdsItGivesTheBytesOfOneProcess) {
   const std::string before = read_file(map_);
   const std::string log = scratch_ / "second.clf.gz";
   write_part("floor", log, 0.6, 1.0);
-  const Outcome alone = call({"map", "--log", log, "--continue", map_}, "alone");
+  const auto [alone, run] = map_and_run(log, GetParam());
   ASSERT_EQ(alone.code, 0) << alone.err;
-  const Outcome run = call(
-      {"run", "--log", log, "--continue", map_, "--workers", std::to_string(GetParam())}, "run");
   ASSERT_EQ(run.code, 0) << run.err;
   expect_same_files("alone", "run");
   EXPECT_TRUE(read_file(map_) == before);
@@ -94,9 +103,8 @@ TEST_F(ContinueTest, ALogThatIsAddedToItsOwnMapIsAnotherSession) {
   make_map(0.4);
   const std::string log = scratch_ / "again.clf.gz";
   write_part("floor", log, 0.0, 0.4);
-  const Outcome alone = call({"map", "--log", log, "--continue", map_}, "alone");
+  const auto [alone, run] = map_and_run(log, 0);
   ASSERT_EQ(alone.code, 0) << alone.err;
-  const Outcome run = call({"run", "--log", log, "--continue", map_, "--workers", "0"}, "run");
   ASSERT_EQ(run.code, 0) << run.err;
   expect_same_files("alone", "run");
   const json continuation = report("run")["continuation"];
@@ -110,9 +118,8 @@ TEST_F(ContinueTest, WhereTheRobotIsNotFoundTheMapIsAsItWas) {
   make_map(0.3);
   const std::string log = scratch_ / "elsewhere.clf.gz";
   write_part("room", log, 0.0, 1.0);
-  const Outcome alone = call({"map", "--log", log, "--continue", map_}, "alone");
+  const auto [alone, run] = map_and_run(log, 1);
   ASSERT_EQ(alone.code, 0) << alone.err;
-  const Outcome run = call({"run", "--log", log, "--continue", map_, "--workers", "1"}, "run");
   ASSERT_EQ(run.code, 0) << run.err;
   for (const Outcome& outcome : {alone, run}) {
     EXPECT_THAT(outcome.err, HasSubstr("the robot did not find its place in the map ("));

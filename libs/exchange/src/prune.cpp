@@ -1,7 +1,6 @@
 #include "topogeo/exchange/prune.hpp"
 
 #include <algorithm>
-#include <system_error>
 #include <utility>
 
 #include "topogeo/localization/session/kept_views.hpp"
@@ -11,16 +10,6 @@
 
 namespace topogeo::exchange {
 namespace {
-
-std::uintmax_t size_of(const std::filesystem::path& database) {
-  std::uintmax_t bytes = 0;
-  for (const char* part : {"", "-wal"}) {
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(database.string() + part, error);
-    if (!error) bytes += size;
-  }
-  return bytes;
-}
 
 /// Those that never joined the map and are old enough.
 std::vector<PrunedSession> unjoined_sessions(const storage::MapDatabase& database,
@@ -76,7 +65,7 @@ storage::MapDocument with_fewer_views(const storage::MapDocument& document, std:
 Pruned prune(const std::filesystem::path& file, const PruneSettings& settings,
              const topomap::GlobalMapConfig& config) {
   Pruned pruned;
-  pruned.bytes_before = size_of(file);
+  pruned.bytes_before = storage::database_bytes(file);
   storage::MapDatabase database = settings.dry_run ? storage::MapDatabase::open_read_only(file)
                                                    : storage::MapDatabase::open_existing(file);
   pruned.sessions = unjoined_sessions(database, settings.older_ns);
@@ -99,7 +88,7 @@ Pruned prune(const std::filesystem::path& file, const PruneSettings& settings,
     }
     database.compact();
   }
-  pruned.bytes = settings.dry_run ? pruned.bytes_before : size_of(file);
+  pruned.bytes = settings.dry_run ? pruned.bytes_before : storage::database_bytes(file);
   return pruned;
 }
 

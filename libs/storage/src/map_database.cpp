@@ -1,6 +1,7 @@
 #include "topogeo/storage/map_database.hpp"
 
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <SQLiteCpp/Database.h>
@@ -320,6 +321,16 @@ void MapDatabase::copy_to(const std::filesystem::path& path) const try {
   copy.exec();
 } catch (const SQLite::Exception& error) {
   throw_named(path.string(), error);
+}
+
+std::uintmax_t database_bytes(const std::filesystem::path& path) {
+  std::uintmax_t bytes = 0;
+  for (const char* part : {"", "-wal"}) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path.string() + part, error);
+    if (!error) bytes += size;
+  }
+  return bytes;
 }
 
 }  // namespace topogeo::storage

@@ -185,4 +185,7 @@ class MapDatabase {
   std::uint64_t map_id_ = 0;
 };
 
+/// What a database takes on the disk, with its log of what is not in it yet; 0 where there is none.
+std::uintmax_t database_bytes(const std::filesystem::path& path);
+
 }  // namespace topogeo::storage
