@@ -15,7 +15,7 @@ start_host() {
   shift
   docker run -d --rm --name "$network-$host" --hostname "$host" --network "$network" --network-alias "$host" \
     --init --no-healthcheck -e TOPOGEO_DDS_PARTICIPANT=udp_only -e TOPOGEO_DOMAIN=0 \
-    -v "$work:/work" --user root "$@" "$image" sleep infinity > /dev/null
+    -v "$work:/exchange" --user root "$@" "$image" sleep infinity > /dev/null
   cleanups+=("docker rm -f $network-$host")
 }
 
@@ -27,7 +27,7 @@ on() {  # HOST COMMAND...
 start_on() {
   mkdir -p "$work/log"
   # shellcheck disable=SC2016
-  docker exec -d "$network-$1" sh -c 'echo $$ > "/run/$1.pid"; log=/work/log/$(hostname).$1; shift
+  docker exec -d "$network-$1" sh -c 'echo $$ > "/run/$1.pid"; log=/exchange/log/$(hostname).$1; shift
     exec "$@" >> "$log" 2>&1' sh "${@:2}"
 }
 
@@ -52,8 +52,8 @@ start_worker() { start_on "$1" ga_worker ga_worker --slots 1 --name "$1"; }
 
 start_service() {  # NAME, on the robot
   case $1 in
-    map_store) start_on robot map_store map_store --out "/work/$run" --title log.clf ;;
-    sensor_gateway) start_on robot sensor_gateway sensor_gateway --log /work/log.clf --rate "${rate:-lossless}" ;;
+    map_store) start_on robot map_store map_store --out "/exchange/$run" --title log.clf ;;
+    sensor_gateway) start_on robot sensor_gateway sensor_gateway --log /exchange/log.clf --rate "${rate:-lossless}" ;;
     localizer) start_on robot localizer localizer --replay --wait-workers "${workers:-2}" --wait-seconds 30 ;;
     local_mapper) start_on robot local_mapper local_mapper --replay ;;
     *) start_on robot "$1" "$1" ;;

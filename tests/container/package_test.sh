@@ -17,14 +17,14 @@ make_log 60 "$log"
 chmod 755 "$work"
 "$bin/topogeo" map --log "$log" --out "$work/here" > /dev/null 2>&1
 # shellcheck disable=SC2016
-docker run --rm -i --user root -v "$work:/work" $image bash -euo pipefail -c '
+docker run --rm -i --user root -v "$work:/exchange" $image bash -euo pipefail -c '
   [ "$(topogeo --version)" = "topogeo 0.1.0" ]
   cd /tmp
   # As the user of the services.
   install -d -o topogeo /tmp/out
   setpriv --reuid topogeo --regid topogeo --clear-groups env HOME=/tmp \
-    topogeo run --log /work/log.clf --out /tmp/out --workers 1 > /tmp/run.log 2>&1 || { cat /tmp/run.log; exit 1; }
-  cp /tmp/out/map.pb /tmp/out/trajectory.tum /work/
+    topogeo run --log /exchange/log.clf --out /tmp/out --workers 1 > /tmp/run.log 2>&1 || { cat /tmp/run.log; exit 1; }
+  cp /tmp/out/map.pb /tmp/out/trajectory.tum /exchange/
   for command in topogeo ga_worker topogeo-localizer topogeo-map-store topogeo-planner; do
     gzip -dc /usr/share/man/man1/$command.1.gz > /tmp/page
     grep -q "^.SH OPTIONS" /tmp/page || { echo "no manual page of $command"; exit 1; }
@@ -36,7 +36,7 @@ docker run --rm -i --user root -v "$work:/work" $image bash -euo pipefail -c '
   [ "${COMPREPLY[*]}" = status ]
   [ -e /etc/topogeo/topogeo.env ] && [ -e /usr/lib/systemd/system/topogeo.target ]
   apt-get purge -q -y topogeo topogeo-workers > /dev/null
-  left=$(find / -xdev -iname "*topogeo*" -not -path "/proc/*" -not -path "/tmp/*" -not -path "/work/*" \
+  left=$(find / -xdev -iname "*topogeo*" -not -path "/proc/*" -not -path "/tmp/*" -not -path "/exchange/*" \
     -not -path "/var/log/*" -not -path "/var/lib/apt/*" -not -path "/var/cache/*" -not -path "/home/robot/*")
   [ -z "$left" ] || { echo "left behind:"; echo "$left"; exit 1; }
 ' || fail "in the container"
