@@ -249,16 +249,16 @@ TEST_F(MappingSessionTest, AnotherSessionIsAnotherDriveThatFindsItsPlace) {
 }
 
 TEST_F(MappingSessionTest, TheMapOfAPatrolStopsGrowing) {
-  constexpr std::size_t kStops = 30;
-  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  constexpr std::size_t kStopsOfDay = 30;
+  constexpr std::int64_t kBetween_ns = 86'400'000'000'000;
   MappingSession session({}, pool_);
   std::uint64_t numbered_since = 0;
   std::size_t renewals = 0;
   for (std::uint64_t day = 1; day <= 7; ++day) {
-    for (std::size_t i = 0; i < kStops; ++i) {
+    for (std::size_t i = 0; i < kStopsOfDay; ++i) {
       topomap::LocalMap map = *driven_->maps[i];
       map.stop.session = day;
-      map.stamp_ns += static_cast<std::int64_t>(day) * kDay_ns;
+      map.stamp_ns += static_cast<std::int64_t>(day) * kBetween_ns;
       session.add(std::make_shared<const topomap::LocalMap>(map));
     }
     session.finish();
@@ -273,17 +273,17 @@ TEST_F(MappingSessionTest, TheMapOfAPatrolStopsGrowing) {
       EXPECT_EQ(trajectory.stops[i].stop, session.maps()[i]->stop);
       views += trajectory.stops[i].views;
     }
-    EXPECT_EQ(views, day * kStops) << "nothing has gone that is not there any more";
-    EXPECT_LE(session.maps().size(), 5 * kStops + kStops / 2);
+    EXPECT_EQ(views, day * kStopsOfDay) << "nothing has gone that is not there any more";
+    EXPECT_LE(session.maps().size(), 5 * kStopsOfDay + kStopsOfDay / 2);
   }
-  EXPECT_EQ(session.added_stops(), 7 * kStops);
+  EXPECT_EQ(session.added_stops(), 7 * kStopsOfDay);
   EXPECT_EQ(renewals, 2U) << "when the sixth and the seventh drive joined";
   EXPECT_LE(numbered_since, session.trajectory().version);
   // The last drive lies where the first did.
   const topomap::Trajectory trajectory = session.trajectory();
-  for (std::size_t i = 0; i < kStops; ++i) {
+  for (std::size_t i = 0; i < kStopsOfDay; ++i) {
     const Pose2 truth = geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[i]);
-    const Pose2 last = trajectory.stops[trajectory.stops.size() - kStops + i].T_map_robot;
+    const Pose2 last = trajectory.stops[trajectory.stops.size() - kStopsOfDay + i].T_map_robot;
     EXPECT_LT(geometry::between(truth, last).position_m().norm(), 0.1) << i;
   }
 }
