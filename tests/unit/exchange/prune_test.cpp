@@ -70,7 +70,7 @@ TEST_F(PruneTest, DropsWhatNeverJoinedButNotTheNewestSession) {
 }
 
 TEST_F(PruneTest, LeavesWhatIsNotOldEnough) {
-  const Pruned pruned = prune(file_, {.older_ns = 2 * kDay_ns}, {});
+  const Pruned pruned = prune(file_, {.older_ns = 2 * kDay_ns, .times = {}}, {});
   ASSERT_EQ(pruned.sessions.size(), 1U);
   EXPECT_THAT(waiting(), testing::ElementsAre(kYesterday, kNewest));
 }
