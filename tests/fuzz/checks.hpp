@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <stdexcept>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace topogeo::fuzz {
 
@@ -37,5 +39,15 @@ std::size_t check_sick_decoder(std::string_view bytes);
 /// cut in several ways, and through the driver. Returns how many messages the decoders found.
 /// Throws BrokenPromise.
 std::size_t check_mcp_decoder(std::string_view bytes);
+
+/// Takes `bytes` as the name of a topic, a line end and the payload of a sample, through what a
+/// reader of the topic does: the address filter, the decoding, the checks, the conversion, and what
+/// the services make of it. Returns 2 when they take it, 1 when they refuse it with
+/// std::invalid_argument, which becomes a fault of their status, 0 when the reader refuses it.
+/// Throws BrokenPromise.
+std::size_t check_message(std::string_view bytes);
+
+/// An input for check_message() of each topic, which its readers take.
+std::vector<std::string> sample_messages();
 
 }  // namespace topogeo::fuzz

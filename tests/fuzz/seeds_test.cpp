@@ -58,6 +58,10 @@ TEST(FuzzSeeds, BaseBytesPass) {
   expect_all_pass("mcp_decoder", [](const std::string& bytes) { check_mcp_decoder(bytes); });
 }
 
+TEST(FuzzSeeds, MessagesPass) {
+  expect_all_pass("message", [](const std::string& bytes) { check_message(bytes); });
+}
+
 // The checks are worth something only where the inputs reach the code behind the reader.
 TEST(FuzzSeeds, ReachTheMaps) {
   const auto maps = [](const char* name) {
@@ -89,6 +93,14 @@ TEST(FuzzSeeds, ReachTheTelegrams) {
   EXPECT_EQ(telegrams("late"), 1U);
   EXPECT_EQ(telegrams("false_header"), 2U);
   EXPECT_EQ(telegrams("commands"), 0U);
+}
+
+TEST(FuzzSeeds, ReachTheReceiversOfEachTopic) {
+  for (const std::string& message : sample_messages()) {
+    const std::string topic = message.substr(0, message.find('\n'));
+    EXPECT_EQ(check_message(message), 2U) << topic;
+    EXPECT_TRUE(std::filesystem::exists(seeds("message") / topic)) << topic;
+  }
 }
 
 }  // namespace

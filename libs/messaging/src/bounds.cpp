@@ -6,6 +6,10 @@ namespace topogeo::messaging {
 
 void BoundsCheck::schema(std::uint32_t version) {
   if (defect_ || version == msg::kSchemaVersion) return;
+  if (version == kUnreadable) {
+    defect_ = "bytes that are no message of this topic";
+    return;
+  }
   defect_ = path_ + "schema_version " + std::to_string(version) + ", allowed is " +
             std::to_string(msg::kSchemaVersion);
 }

@@ -15,6 +15,9 @@ namespace topogeo::messaging {
 
 using Defect = std::optional<std::string>;
 
+/// Schema version of a message whose bytes could not be read.
+inline constexpr std::uint32_t kUnreadable = 0xFFFFFFFF;
+
 /// Keeps the first defect that the visit of a message finds.
 class BoundsCheck {
  public:

@@ -15,6 +15,7 @@
 #include "topogeo/messaging/shared_memory.hpp"
 
 #include "address_filter.hpp"
+#include "fragments.hpp"
 #include "participant_core.hpp"
 
 namespace topogeo::messaging {
@@ -76,6 +77,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
     throw std::invalid_argument("DDS domain: " + std::to_string(options.domain) +
                                 ", allowed is 0 to 232");
   }
+  correct_fragments();
   load_profiles(options.profiles_file);
   std::string profile = options.profile;
   if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");

@@ -153,7 +153,10 @@ std::size_t ReaderCore::take(std::size_t limit, const Handler& handler) {
   dds::SampleInfo info;
   while (taken < limit) {
     const auto result = impl_->reader->take_next_sample(impl_->message, &info);
-    if (result == ReturnCode_t::RETCODE_NO_DATA) break;
+    if (result == ReturnCode_t::RETCODE_NO_DATA) {
+      impl_->lost.clear();  // nothing of theirs waits any more
+      break;
+    }
     if (result != ReturnCode_t::RETCODE_OK) {
       throw std::runtime_error(shared_->topic + ": DDS take failed with code " +
                                std::to_string(result()));

@@ -16,6 +16,10 @@
 
 namespace topogeo::service::detail {
 
+/// Of a trajectory and what belongs to it: as many instances as readers of their topics keep
+/// (deploy/dds_profiles.xml, state_reader). Receivers keep all segments.
+inline constexpr std::uint32_t kMostSegments = 32'768;
+
 /// Throws std::invalid_argument unless `size` fits the bound of the field.
 inline void check_bound(std::string_view field, std::size_t size, std::size_t bound) {
   if (size <= bound) return;
@@ -28,6 +32,10 @@ inline void check(bool condition, std::string_view field, std::string_view expec
   if (!condition) {
     throw std::invalid_argument(std::string(field) + ": expected " + std::string(expected));
   }
+}
+
+inline void check_segment(std::uint32_t segment) {
+  check(segment < kMostSegments, "segment", "less than " + std::to_string(kMostSegments));
 }
 
 inline double finite(double value, std::string_view field) {

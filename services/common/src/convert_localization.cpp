@@ -82,6 +82,7 @@ msg::LoopDecisions to_segment(std::span<const LoopDecision> decisions, std::uint
 }
 
 std::vector<LoopDecision> from_msg(const msg::LoopDecisions& message) {
+  detail::check_segment(message.segment());
   const std::uint64_t begin = std::uint64_t{message.segment()} * msg::kSegmentDecisions;
   check(message.total() > begin, "total", "more decisions than before this segment");
   const std::uint64_t size =

@@ -54,6 +54,7 @@ std::vector<msg::TrajectorySegment> to_segments(const topomap::Trajectory& traje
 }
 
 std::vector<topomap::StopPose> from_msg(const msg::TrajectorySegment& message) {
+  detail::check_segment(message.segment());
   const std::uint64_t begin = std::uint64_t{message.segment()} * msg::kSegmentStops;
   check(message.total_stops() > begin, "total_stops", "more stops than before this segment");
   const std::uint64_t size =
@@ -129,6 +130,7 @@ msg::MapEdges to_segment(std::span<const storage::MapEdge> edges, std::uint32_t 
 }
 
 std::vector<storage::MapEdge> from_msg(const msg::MapEdges& message) {
+  detail::check_segment(message.segment());
   const std::uint64_t begin = std::uint64_t{message.segment()} * msg::kSegmentEdges;
   check(message.segment() < edge_segment_count(message.total()), "segment",
         "less than the number of segments");

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "topogeo/messaging/message.hpp"
@@ -14,6 +16,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kAskPeriod{100};
 constexpr std::chrono::milliseconds kSilence{1000};
+/// Of an answer: 1.8 GB. The first piece makes room for all.
+constexpr std::uint32_t kMostPieces = 32'768;
 /// Without another piece of an answer: the store has gone, or a piece with it.
 constexpr std::chrono::seconds kPatience{2};
 
@@ -56,6 +60,12 @@ void StoreClient::send() {
 
 void StoreClient::on_piece(const msg::SnapshotPiece& piece) {
   if (!request_ || piece.request_id() != request_->request_id()) return;
+  const bool other_answer = !pieces_.empty() && piece.pieces() != pieces_.size();
+  if (piece.pieces() > kMostPieces || other_answer) {
+    throw std::invalid_argument(
+        "it is one of " + std::to_string(piece.pieces()) + ", expected " +
+        (other_answer ? std::to_string(pieces_.size()) : "at most " + std::to_string(kMostPieces)));
+  }
   last_heard_ = Clock::now();
   if (piece.pieces() > 0 && piece.piece() < piece.pieces()) {
     pieces_.resize(piece.pieces());

@@ -285,5 +285,34 @@ TEST_F(Delivery, PartitionsDoNotSeeEachOtherButTheWildcardSeesAll) {
   EXPECT_EQ(other.take([](const msg::Goal&, const SampleInfo&) {}), 0U);
 }
 
+// Each sample is cut into packets, and a reader that comes late gets it under its own address: Fast
+// DDS counts neither that nor the key (libs/messaging/src/fragments.cpp).
+TEST(DeliveryInPackets, LargeSamplesReachALateReader) {
+  constexpr std::uint32_t kMaps = 20;
+  ParticipantOptions options = options_in(random_partition());
+  options.profile = "udp_only";
+  const Participant sender(options);
+  const Participant receiver(options);
+  Writer<msg::LocalMap> writer(sender);
+  for (std::uint32_t id = 0; id < kMaps; ++id) {
+    auto map = message<msg::LocalMap>();
+    map.id(id);
+    map.branches().resize(100 + id);
+    for (msg::LocalBranch& branch : map.branches()) branch.points().resize(40);
+    ASSERT_TRUE(writer.write(map));
+  }
+  for (int late = 0; late < 2; ++late) {
+    Reader<msg::LocalMap> reader(receiver);
+    std::set<std::uint32_t> ids;
+    EXPECT_TRUE(eventually([&] {
+      reader.take([&](const msg::LocalMap& got, const SampleInfo&) {
+        EXPECT_EQ(got.branches().size(), 100U + got.id());
+        ids.insert(got.id());
+      });
+      return ids.size() == kMaps;
+    }));
+  }
+}
+
 }  // namespace
 }  // namespace topogeo::messaging

@@ -55,6 +55,8 @@ topomap::StopId from_msg(const msg::StopId& stop);
 
 /// Fills content_hash.
 msg::LocalMap to_msg(const topomap::LocalMap& map);
+/// All but content_hash, which is not checked.
+topomap::LocalMap content_from_msg(const msg::LocalMap& message);
 /// Checks content_hash, too.
 topomap::LocalMap from_msg(const msg::LocalMap& message);
 
