@@ -42,6 +42,9 @@ constexpr std::array<double, 9> kCosine = {1.0,
                                            -1.0 / 87178291200.0,
                                            1.0 / 20922789888000.0};
 
+// From here on the steps below leave the range of their numbers; no robot turns so often.
+constexpr double kManyTurns_rad = 1e9;
+
 // Arc tangent of t in [0, 1]: two halvings of the angle bring t below 0.2, where the series is
 // short.
 double atan_unit(double t) {
@@ -59,6 +62,10 @@ double atan_unit(double t) {
 }  // namespace
 
 SinCos sincos(double angle_rad) {
+  if (!(std::fabs(angle_rad) < kManyTurns_rad)) {
+    if (!std::isfinite(angle_rad)) return {std::nan(""), std::nan("")};
+    angle_rad = std::remainder(angle_rad, 2.0 * std::numbers::pi);  // exact, so the same everywhere
+  }
   const double quarter = std::nearbyint(angle_rad * (2.0 / std::numbers::pi));
   const double r = (angle_rad - quarter * kHalfPiHigh) - quarter * kHalfPiLow;
   const double u = r * r;

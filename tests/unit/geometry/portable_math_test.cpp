@@ -64,6 +64,17 @@ TEST(PortableMath, SineAndCosineOfQuarterTurns) {
   }
 }
 
+// Poses that strangers send may have such headings.
+TEST(PortableMath, SineAndCosineOfAnyNumberAreOnTheCircleOrNone) {
+  for (const double angle : {1e9, -3e12, 2.3e180, -std::numeric_limits<double>::max()}) {
+    const SinCos at = sincos(angle);
+    EXPECT_NEAR(at.sin * at.sin + at.cos * at.cos, 1.0, 1e-12) << angle;
+  }
+  const SinCos none = sincos(std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(none.sin) && std::isnan(none.cos));
+  EXPECT_TRUE(std::isnan(sincos(std::nan("")).sin));
+}
+
 TEST(PortableMath, ArcTangentFollowsLibm) {
   Uniform uniform;
   for (int i = 0; i < 200000; ++i) {
