@@ -51,7 +51,7 @@ install(PROGRAMS ${deploy}/security/make_keys DESTINATION ${data}/security COMPO
 install(FILES ${deploy}/security/permissions.txt DESTINATION ${data}/security COMPONENT topogeo)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)
-install(DIRECTORY ${deploy}/kubernetes DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
+install(DIRECTORY ${deploy}/kubernetes ${deploy}/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
 install(FILES ${deploy}/compose.yaml ${deploy}/devices.example.yaml
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
 

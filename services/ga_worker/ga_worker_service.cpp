@@ -317,6 +317,10 @@ void GaWorkerService::publish_status() {
   const auto set = [&](const char* name, std::uint64_t value) {
     service_status.set_counter(name, static_cast<double>(value));
   };
+  service_status.set_queue("tasks in hand", asked_.size());
+  service_status.set_queue("tasks without maps", intake_.waiting());
+  service_status.set_queue("answers to send", unsent_.size());
+  service_status.set_counter("busy_slots", status_.load() * status_.slots());
   set("slots", status_.slots());
   set("tasks_done", done_);
   set("failures", failures_);

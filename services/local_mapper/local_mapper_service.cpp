@@ -30,7 +30,7 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay, b
     begin();
     return;
   }
-  service_.status().set_state(msg::kServiceWaiting, "for the map store");
+  service_.status().wait_for("the map store");
   store_.emplace(service, [this](const msg::StoredMap& stored) { on_stored(stored); });
 }
 
@@ -76,7 +76,7 @@ void LocalMapperService::begin() {
       [this](const msg::Scan& scan) { on_scan(scan); },
       {.role = replay_ ? std::string(messaging::kReplayRole) : std::string(), .main_input = true});
   service_.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
-  service_.status().set_state(msg::kServiceWaiting, "for scans");
+  service_.status().wait_for("scans");
 }
 
 // What is stored comes from the map store when it is needed again. A log ends, and those who come
@@ -180,7 +180,7 @@ void LocalMapperService::publish_tracked() {
   const topomap::TrackedScan* scan = mapper_.last_tracked();
   if (scan == nullptr) return;
   if (!tracked_poses_.write(service::to_msg(*scan, mapper_.last_stop(), service_.robot_id()))) {
-    service_.status().add_to_counter("tracked_poses_not_sent");
+    service_.status().add_drops("tracked pose not sent");
   }
 }
 

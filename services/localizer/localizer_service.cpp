@@ -115,7 +115,7 @@ void LocalizerService::resume(ResumeFrom from) {
   }
   for (StopQueue::MapPointer& map : from.stops) queue_.add(std::move(map));
   ready_ = true;
-  service_.status().set_state(msg::kServiceWaiting, "for local maps");
+  service_.status().wait_for("local maps");
   schedule();
 }
 
@@ -161,7 +161,7 @@ void LocalizerService::send_pose() {
   live.trajectory_version = trajectory_.version();
   // One that cannot be sent now is old by the time it could.
   if (!poses_.write(service::to_msg(live, service_.robot_id()))) {
-    service_.status().add_to_counter("poses_not_sent");
+    service_.status().add_drops("pose not sent");
   }
 }
 
@@ -195,8 +195,7 @@ void LocalizerService::work() {
 void LocalizerService::wait_for_workers() {
   waited_ = true;
   if (options_.wait_workers == 0) return;
-  service_.status().set_state(msg::kServiceWaiting,
-                              "for " + std::to_string(options_.wait_workers) + " workers");
+  service_.status().wait_for(std::to_string(options_.wait_workers) + " workers");
   const std::size_t workers = pool_.wait_for_workers(
       options_.wait_workers, std::chrono::duration_cast<std::chrono::nanoseconds>(
                                  std::chrono::duration<double>(options_.wait_s)));
@@ -204,7 +203,7 @@ void LocalizerService::wait_for_workers() {
     spdlog::warn("{} of {} workers came within {} s, going on with them", workers,
                  options_.wait_workers, options_.wait_s);
   }
-  service_.status().set_state(msg::kServiceWaiting, "for local maps");
+  service_.status().wait_for("local maps");
 }
 
 void LocalizerService::step(const StopQueue::MapPointer& map) {
@@ -295,6 +294,7 @@ void LocalizerService::count() {
   const auto set = [&status](const std::string& name, std::uint64_t value) {
     status.set_counter(name, static_cast<double>(value));
   };
+  status.set_queue("local maps", queue_.waiting());
   set("local_maps", queue_.taken());
   set("stops", queue_.taken());
   set_slam_counters(**slam_, trajectory_.closures(), status);

@@ -75,6 +75,8 @@ class RemotePool : public localization::MatchPool {
   /// Stopped.
   std::size_t wait_for_workers(std::size_t count, std::chrono::nanoseconds patience);
 
+  /// Tasks of the batch in work that have no answer yet.
+  [[nodiscard]] std::size_t open_tasks() const { return board_.open_tasks(); }
   [[nodiscard]] std::size_t workers() const { return board_.workers(); }
   [[nodiscard]] const search_pool::BoardCounts& counts() const { return board_.counts(); }
   [[nodiscard]] const search_pool::RegistryCounts& registry_counts() const {

@@ -21,7 +21,7 @@ Resume::Resume(service::Service& service, bool exact, Handler on_ready)
       exact_(exact),
       on_ready_(std::move(on_ready)),
       client_(service, [this](const msg::StoredMap& stored) { on_stored(stored); }) {
-  service_.status().set_state(msg::kServiceWaiting, "for the map store");
+  service_.status().wait_for("the map store");
 }
 
 void Resume::on_stored(const msg::StoredMap& stored) {

@@ -39,6 +39,7 @@ void set_pool_counters(const RemotePool& pool, messaging::StatusPublisher& statu
   const auto set_ms = [&status](const std::string& name, search_pool::BoardTime time) {
     status.set_counter(name, std::chrono::duration<double, std::milli>(time).count());
   };
+  status.set_queue("match tasks", pool.open_tasks());
   set("workers", pool.workers());
   set("workers_lost", counts.workers_lost);
   set("workers_excluded", counts.workers_excluded);

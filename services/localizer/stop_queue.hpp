@@ -36,6 +36,7 @@ class StopQueue {
   /// So many local maps are in the session that the stream ends with.
   void end_at(std::uint64_t maps) { maps_in_session_ = maps; }
 
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   /// Local maps taken so far.
   [[nodiscard]] std::size_t taken() const { return taken_; }
   /// All of an ended stream have been taken.

@@ -113,7 +113,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   });
   acknowledge();
   count();
-  service_.status().set_state(msg::kServiceWaiting, "for local maps");
+  service_.status().wait_for("local maps");
 }
 
 template <class T, class Handler>
@@ -370,10 +370,6 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
 }
 
 void MapStoreService::report_losses() {
-  if (input_.dropped() > 0 && !reported_drops_) {
-    reported_drops_ = true;
-    spdlog::warn("local maps that have joined no map are dropped, see local_maps_dropped");
-  }
   const std::optional<topomap::StopId> lost = input_.lost();
   if (!lost || service_.status().state() == msg::kServiceFailed) return;
   const std::string what = "local map " + std::to_string(lost->number) +
@@ -384,17 +380,20 @@ void MapStoreService::report_losses() {
 
 void MapStoreService::count() {
   messaging::StatusPublisher& status = service_.status();
-  status.set_counter("local_maps", static_cast<double>(input_.local_maps().size()));
-  status.set_counter("local_maps_waiting", static_cast<double>(input_.waiting()));
-  status.set_counter("local_maps_dropped", static_cast<double>(input_.dropped()));
-  status.set_counter("trajectory_version", static_cast<double>(input_.version()));
-  status.set_counter("loop_closures", static_cast<double>(input_.usable_closures().size()));
-  status.set_counter("stored_local_maps",
-                     static_cast<double>(archive_.database().local_map_count()));
-  status.set_counter("local_maps_to_store", static_cast<double>(archive_.queued()));
-  status.set_counter("snapshots_served", static_cast<double>(snapshots_.served()));
-  status.set_counter("snapshots_refused", static_cast<double>(snapshots_.refused()));
-  status.set_counter("map_rebuilds", static_cast<double>(live_map_.rebuilds()));
+  const auto set = [&status](const char* name, std::uint64_t value) {
+    status.set_counter(name, static_cast<double>(value));
+  };
+  set("local_maps", input_.local_maps().size());
+  set("trajectory_version", input_.version());
+  set("loop_closures", input_.usable_closures().size());
+  set("stored_local_maps", archive_.database().local_map_count());
+  set("snapshots_served", snapshots_.served());
+  set("snapshots_refused", snapshots_.refused());
+  set("map_rebuilds", live_map_.rebuilds());
+  status.set_queue("local maps without pose", input_.waiting(), MapInput::kMostWaiting);
+  status.set_queue("local maps to store", archive_.queued(), MapArchive::kMostQueued);
+  status.set_queue("snapshot requests", snapshots_.waiting(), SnapshotQueue::kMostRequests);
+  status.set_drops("local map in no map", input_.dropped());
 }
 
 }  // namespace topogeo::map_store

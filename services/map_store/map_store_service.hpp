@@ -105,7 +105,6 @@ class MapStoreService {
   Clock::time_point next_hybrid_;
   Clock::time_point next_attempt_;  // to finish, after a failure
   bool finished_ = false;
-  bool reported_drops_ = false;
 };
 
 }  // namespace topogeo::map_store

@@ -37,6 +37,7 @@ class SnapshotQueue {
   /// Sends what can be sent now, for about `slice`. True when nothing is left.
   bool work(Clock::time_point now, std::chrono::milliseconds slice);
 
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   /// Whole answers, answers that say why there is none, and answers whose reader was given up.
   [[nodiscard]] std::uint64_t served() const { return served_; }
   [[nodiscard]] std::uint64_t refused() const { return refused_; }

@@ -111,7 +111,7 @@ bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
   std::optional<std::int64_t>& last_ns = last_ns_.at(static_cast<std::size_t>(source));
   if (last_ns && stamp_ns <= *last_ns) {
     // Odometry that came with a scan may be newer than what comes by itself.
-    if (source != Source::kOdometry) service_.status().add_to_counter("ignored: not newer");
+    if (source != Source::kOdometry) service_.status().add_drops("not newer");
     return false;
   }
   last_ns = stamp_ns;
@@ -138,7 +138,7 @@ void NavigatorService::on_goal(const msg::Goal& message) {
   const bool order = goal.kind == msg::kGoalCancel || goal.kind == msg::kGoalPause ||
                      goal.kind == msg::kGoalResume;
   if (order && goal.goal_id != 0 && (!goal_ || goal.goal_id != goal_->goal_id)) {
-    service_.status().add_to_counter("ignored: other goal");
+    service_.status().add_drops("other goal");
     return;
   }
   switch (goal.kind) {

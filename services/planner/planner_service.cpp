@@ -34,11 +34,18 @@ PlannerService::PlannerService(service::Service& service)
     service_.status().set_counter(counter, 0.0);
   }
   service_.status().set_state(msg::kServiceRunning);
+  note_what_is_missing();
+}
+
+void PlannerService::note_what_is_missing() {
+  const bool located = pose_ && localization::located(pose_->status.state);
+  service_.status().set_waits_for(!map_ ? "a map" : (located ? "" : "a pose"));
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
   const bool was_known = pose_ && localization::located(pose_->status.state);
   pose_ = service::from_msg(message);
+  note_what_is_missing();
   if (!localization::located(pose_->status.state)) return;
   const bool moved =
       refused_at_ &&
@@ -75,6 +82,7 @@ void PlannerService::take_map() {
   if (map == map_) return;  // the rest of the update is to come
   map_ = std::move(map);
   map_version_ = live_map_.version();
+  note_what_is_missing();
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("map_version", static_cast<double>(map_version_));
   status.set_counter("map_zones", map_ ? static_cast<double>(map_->zones().zones.size()) : 0.0);

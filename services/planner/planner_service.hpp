@@ -28,6 +28,7 @@ class PlannerService {
   void on_blockages(const msg::Blockages& message);
   /// Takes the mirrored map over, if it is whole and has changed, and plans again.
   void take_map();
+  void note_what_is_missing();
   /// Plans for the goal at hand, if there is one, and sends the answer.
   void plan();
 

@@ -204,9 +204,8 @@ void BaseChannel::count() {
   set("base_restarts", base.restarts);
   set("base_watchdog_expirations", base.watchdog_expirations);
   for (std::size_t i = 0; i < devices::kMcpDropKinds; ++i) {
-    if (base.drops[i] == 0) continue;
-    set("dropped: base " + std::string(devices::drop_name(static_cast<devices::McpDrop>(i))),
-        base.drops[i]);
+    status.set_drops("base " + std::string(devices::drop_name(static_cast<devices::McpDrop>(i))),
+                     base.drops[i]);
   }
 }
 

@@ -119,26 +119,27 @@ bool DeviceGateway::publish(const scan::Scan& scan) {
 
 void DeviceGateway::publish_state() {
   std::string text;
-  bool running = true;
+  std::string missing;
   if (laser_) {
     laser_->count();
-    running = running && laser_->running();
+    if (!laser_->running()) missing = "laser";
     text += "laser " + laser_->describe();
   }
   if (base_) {
     base_->count();
-    running = running && base_->ready();
+    if (!base_->ready()) missing += missing.empty() ? "base" : " and base";
     text += (text.empty() ? "base " : "; base ") + base_->describe();
   }
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("scan_latency_ms", static_cast<double>(latency_ns_) * 1e-6);
   status.set_counter("scan_latency_largest_ms", static_cast<double>(largest_latency_ns_) * 1e-6);
   status.set_counter("scan_wait_ms", static_cast<double>(wait_ns_) * 1e-6);
-  const msg::ServiceState state = running ? msg::kServiceRunning : msg::kServiceWaiting;
+  const msg::ServiceState state = missing.empty() ? msg::kServiceRunning : msg::kServiceWaiting;
   if (text == published_ && state == status.state()) return;
   published_ = text;
   spdlog::info("{}", text);
   status.set_state(state, text);
+  status.set_waits_for(missing);
 }
 
 void DeviceGateway::finish() {

@@ -171,7 +171,7 @@ void LaserChannel::count() {
   set("laser_port_opened", line_.statistics().opened);
   set("laser_searches", status.counters.searches);
   for (const auto& [drop, count] : drops_of(status.counters, line_.statistics(), gate_)) {
-    if (count > 0) set("dropped: " + drop, count);
+    publisher.set_drops(drop, count);
   }
 }
 

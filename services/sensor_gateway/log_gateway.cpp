@@ -52,8 +52,7 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
       stream_end_(service.advertise<msg::StreamEnd>()) {
   service_.status().set_counter("scans_sent", 0.0);
   service_.status().set_counter("scans_total", static_cast<double>(scans_total));
-  service_.status().set_state(msg::kServiceWaiting,
-                              "for " + std::to_string(readers_) + " readers of scans");
+  service_.status().wait_for(std::to_string(readers_) + " readers of scans");
   wait_for_readers();
 }
 
@@ -123,10 +122,8 @@ void LogGateway::count() {
   status.set_counter("scans_sent", static_cast<double>(sent_));
   const scan::CarmenLogStatistics& log = reader_.statistics();
   for (std::size_t i = 0; i < scan::kSkipReasonCount; ++i) {
-    if (log.skipped[i] == 0) continue;
     const auto reason = static_cast<scan::SkipReason>(i);
-    status.set_counter("skipped: " + std::string(scan::describe(reason)),
-                       static_cast<double>(log.skipped[i]));
+    status.set_drops(scan::describe(reason), log.skipped[i]);
   }
 }
 

@@ -5,9 +5,9 @@
 namespace topogeo::cli {
 namespace {
 
-/// Counters that grow while nothing is done end in "_s".
-bool is_time(std::string_view name) {
-  return name.ends_with("_s");
+/// Times and what the system gives a process change while nothing is done.
+bool is_work(std::string_view name) {
+  return !name.ends_with("_s") && name != "resident_bytes" && name != "open_files";
 }
 
 std::string text(const auto& bounded) {
@@ -48,7 +48,7 @@ std::string ServiceTable::progress_mark() const {
     if (row->service() == "ga_worker") continue;  // it may be busy for another run
     mark += fmt::format("{}={}", row->instance().c_str(), static_cast<int>(row->state()));
     for (const msg::Counter& c : row->counters()) {
-      if (!is_time(c.name().c_str())) mark += fmt::format(",{}={}", c.name().c_str(), c.value());
+      if (is_work(c.name().c_str())) mark += fmt::format(",{}={}", c.name().c_str(), c.value());
     }
     mark += ';';
   }

@@ -16,6 +16,8 @@ namespace {
 
 /// Names of services matter more: they keep that much more.
 constexpr std::size_t kMoreOfServices = 6;
+/// A fault this long ago is no reason for how a service is now.
+constexpr double kRecentError_s = 60.0;
 
 /// "0.3 s", "12 s", "5 min", "3 h".
 std::string age_text(double age_s) {
@@ -29,6 +31,12 @@ std::string age_text(double age_s) {
 
 std::string rate_text(double rate_per_s) {
   return rate_per_s < 10.0 ? fmt::format("{:.1f}", rate_per_s) : fmt::format("{:.0f}", rate_per_s);
+}
+
+std::string traffic_text(const msg::TopicTraffic& one) {
+  return fmt::format("{:<34} {}, {}/s{}", one.topic().c_str(), one.messages(),
+                     rate_text(one.rate_per_s()),
+                     one.waiting() == 0 ? "" : fmt::format(", {} waiting", one.waiting()));
 }
 
 }  // namespace
@@ -90,7 +98,22 @@ std::string StatusTable::reason(const Row& row, Clock::time_point now) {
   } else if (now - row.received > kSilent) {
     why = "no status for " + age;
   }
-  return why.empty() || message.empty() ? why + message : why + "; before: " + message;
+  std::string text = why.empty() || message.empty() ? why + message : why + "; before: " + message;
+  const auto add = [&text](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
+  const std::string waits_for = row.status.waits_for().to_string();
+  if (!waits_for.empty() && row.status.state() != msg::kServiceWaiting) {
+    add("needs " + waits_for);
+  }
+  const double error_age_s = last_error_age_s(row, now);
+  if (row.status.last_error().size() > 0 && row.status.state() != msg::kServiceFailed &&
+      error_age_s < kRecentError_s) {
+    add(age_text(error_age_s) + " ago: " + row.status.last_error().to_string());
+  }
+  return text;
+}
+
+double StatusTable::last_error_age_s(const Row& row, Clock::time_point now) {
+  return row.status.last_error_age_s() + std::chrono::duration<double>(now - row.received).count();
 }
 
 double StatusTable::input_age_s(const Row& row, Clock::time_point now) {
@@ -179,13 +202,34 @@ std::string StatusTable::details(Clock::time_point now) const {
     if (const std::string why = reason(*row, now); !why.empty()) add("reason", why);
     add("process", fmt::format("{} on {}, version {}, instance {}", s.process_id(),
                                s.host().c_str(), s.version().c_str(), s.instance().c_str()));
+    if (s.config_fingerprint() != 0) {
+      add("config", fmt::format("{:016x}", s.config_fingerprint()));
+    }
     add("up", age_text(s.uptime_s()));
+    if (s.waits_for().size() > 0) add("waits for", s.waits_for().to_string());
     if (s.inputs() > 0) {
       add("input", fmt::format("{} {}, {}/s, the last {} ago", s.inputs(), s.input().c_str(),
                                rate_text(s.input_rate_per_s()), age_text(input_age_s(*row, now))));
     }
     for (const msg::FaultCount& fault : s.faults()) {
       add("fault", fmt::format("{} {}", fault.count(), fault.reason().c_str()));
+    }
+    if (s.last_error().size() > 0) {
+      add("last error",
+          fmt::format("{} ago: {}", age_text(last_error_age_s(*row, now)), s.last_error().c_str()));
+    }
+    for (const msg::FaultCount& drop : s.drops()) {
+      add("dropped", fmt::format("{} {}", drop.count(), drop.reason().c_str()));
+    }
+    for (const msg::QueueDepth& queue : s.queues()) {
+      add("queue",
+          fmt::format("{:<34} {}{}", queue.name().c_str(), queue.depth(),
+                      queue.capacity() == 0 ? "" : fmt::format(" of {}", queue.capacity())));
+    }
+    for (const bool sent : {false, true}) {
+      for (const msg::TopicTraffic& one : s.traffic()) {
+        if (one.sent() == sent) add(sent ? "sent" : "received", traffic_text(one));
+      }
     }
     for (const msg::Counter& counter : s.counters()) {
       add("counter", fmt::format("{:<34} {:.10g}", counter.name().c_str(), counter.value()));
@@ -207,6 +251,10 @@ std::string StatusTable::json(Clock::time_point now) const {
         {"version", s.version().c_str()},
         {"state", state(*row, now)},
         {"message", s.message().c_str()},
+        {"waits_for", s.waits_for().c_str()},
+        {"last_error", s.last_error().c_str()},
+        {"last_error_age_s", nullptr},
+        {"config_fingerprint", fmt::format("{:016x}", s.config_fingerprint())},
         {"uptime_s", s.uptime_s()},
         {"silent_s", std::chrono::duration<double>(now - row->received).count()},
         {"input", s.input().c_str()},
@@ -215,10 +263,29 @@ std::string StatusTable::json(Clock::time_point now) const {
         {"input_age_s", nullptr},
         {"fault_count", s.fault_count()},
         {"faults", nlohmann::ordered_json::object()},
+        {"drops", nlohmann::ordered_json::object()},
+        {"queues", nlohmann::ordered_json::array()},
+        {"traffic", nlohmann::ordered_json::array()},
         {"counters", nlohmann::ordered_json::object()}};
     if (s.inputs() > 0) service["input_age_s"] = input_age_s(*row, now);
     for (const msg::FaultCount& fault : s.faults()) {
       service["faults"][fault.reason().c_str()] = fault.count();
+    }
+    if (s.last_error().size() > 0) service["last_error_age_s"] = last_error_age_s(*row, now);
+    for (const msg::FaultCount& drop : s.drops()) {
+      service["drops"][drop.reason().c_str()] = drop.count();
+    }
+    for (const msg::QueueDepth& queue : s.queues()) {
+      service["queues"].push_back({{"name", queue.name().c_str()},
+                                   {"depth", queue.depth()},
+                                   {"capacity", queue.capacity()}});
+    }
+    for (const msg::TopicTraffic& one : s.traffic()) {
+      service["traffic"].push_back({{"topic", one.topic().c_str()},
+                                    {"sent", one.sent()},
+                                    {"messages", one.messages()},
+                                    {"rate_per_s", one.rate_per_s()},
+                                    {"waiting", one.waiting()}});
     }
     for (const msg::Counter& counter : s.counters()) {
       service["counters"][counter.name().c_str()] = counter.value();

@@ -59,6 +59,7 @@ class StatusTable {
   [[nodiscard]] static bool unwell(const Row& row, Clock::time_point now);
   [[nodiscard]] static std::string state(const Row& row, Clock::time_point now);
   [[nodiscard]] static std::string reason(const Row& row, Clock::time_point now);
+  [[nodiscard]] static double last_error_age_s(const Row& row, Clock::time_point now);
   [[nodiscard]] static double input_age_s(const Row& row, Clock::time_point now);
   [[nodiscard]] std::vector<const Row*> ordered() const;
   /// Columns that are not the same everywhere.

@@ -130,6 +130,14 @@ bool GatewayOnDevices::wait_in_world(double duration_s) {
   return wait_for([&] { return truth_->time_s() > end_s; });
 }
 
+std::uint64_t GatewayOnDevices::drops(std::string_view reason) const {
+  if (!gateway_status_) return 0;
+  for (const msg::FaultCount& drop : gateway_status_->drops()) {
+    if (reason == drop.reason().c_str()) return drop.count();
+  }
+  return 0;
+}
+
 double GatewayOnDevices::counter(std::string_view name) const {
   if (!gateway_status_) return 0.0;
   for (const msg::Counter& entry : gateway_status_->counters()) {

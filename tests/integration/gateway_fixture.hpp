@@ -77,6 +77,7 @@ class GatewayOnDevices : public testing::Test {
   }
   /// Of the gateway's status; 0 if it has none of that name.
   [[nodiscard]] double counter(std::string_view name) const;
+  [[nodiscard]] std::uint64_t drops(std::string_view reason) const;
 
   // A killed program leaves a part of /dev/shm behind that others may still wait at.
   const bool udp_only_ = (use_udp_only(), true);

@@ -218,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(GatewayOnDevices, DropsAreCountedByReason) {
   start();
   strike(msg::kSimulatedBadCrc, msg::kSimulatedLaser, 1.0);
-  EXPECT_TRUE(wait_for([&] { return counter("dropped: bad checksum") > 0.0; }));
+  EXPECT_TRUE(wait_for([&] { return drops("bad checksum") > 0; }));
   EXPECT_TRUE(wait_for([&] { return !laser_status_->drops().empty(); }));
 }
 

@@ -196,6 +196,14 @@ int NavigatorOnRobot::wait_for_end(Program& program) {
   return end.get();
 }
 
+std::uint64_t NavigatorOnRobot::drops(std::string_view reason) const {
+  if (!service_status_) return 0;
+  for (const msg::FaultCount& drop : service_status_->drops()) {
+    if (reason == drop.reason().c_str()) return drop.count();
+  }
+  return 0;
+}
+
 double NavigatorOnRobot::counter(std::string_view name) const {
   if (!service_status_) return 0.0;
   for (const msg::Counter& counter : service_status_->counters()) {

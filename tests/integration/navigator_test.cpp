@@ -69,7 +69,7 @@ TEST_F(NavigatorOnRobot, ItsLastCommandIsToStand) {
 TEST_F(NavigatorOnRobot, WhatIsOfAnotherRobotOrUnusableDrivesNothing) {
   start();
   robot_id_ = "other";  // sensors and pose from here on
-  ASSERT_TRUE(wait_for([&] { return counter("ignored: other robot") > 0.0; }));
+  ASSERT_TRUE(wait_for([&] { return drops("other robot") > 0; }));
   send_goal(1, kGoal_m);
   ASSERT_TRUE(wait_for([&] { return status_->goal_id() == 1 && !is(msg::kNavigatorDriving); }));
   robot_id_ = "robot";

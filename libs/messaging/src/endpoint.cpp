@@ -111,6 +111,14 @@ int Endpoint::matched() const {
   return shared_->matched;
 }
 
+std::string_view Endpoint::topic() const {
+  return shared_->topic;
+}
+
+std::uint64_t Endpoint::messages() const {
+  return shared_->messages;
+}
+
 bool Endpoint::wait_for_matched(int count, std::chrono::nanoseconds timeout) const {
   std::unique_lock lock(shared_->mutex);
   return shared_->matched_changed.wait_for(lock, timeout,

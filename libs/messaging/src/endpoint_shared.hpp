@@ -2,7 +2,9 @@
 // program's.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <mutex>
 
@@ -25,6 +27,7 @@ struct Endpoint::Shared {
   void push_incompatible(const eprosima::fastdds::dds::IncompatibleQosStatus& status);
 
   const std::string topic;
+  std::atomic<std::uint64_t> messages = 0;
   mutable std::mutex mutex;
   mutable std::condition_variable matched_changed;
   int matched = 0;

@@ -211,6 +211,18 @@ void EventLoop::post(std::function<void()> handler) {
   impl_->wake();
 }
 
+std::vector<Traffic> EventLoop::traffic() const {
+  std::vector<Traffic> all;
+  for (const auto& source : impl_->sources) {
+    all.push_back(
+        {source->reader->topic(), false, source->reader->messages(), source->reader->waiting()});
+  }
+  for (const auto& writer : impl_->writers) {
+    all.push_back({writer->topic(), true, writer->messages(), 0});
+  }
+  return all;
+}
+
 void EventLoop::run() {
   impl_->run_until({});
 }

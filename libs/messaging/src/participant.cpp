@@ -95,10 +95,17 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                                : options.security;
   if (!security.empty()) {
     add_security(qos, security / options.identity);
-    refusals_ = std::make_unique<RefusalListener>();
+    secured_ = true;
+  }
+  if (options.observe) {
+    auto observer = std::make_unique<DiscoveryListener>();
+    observer_ = observer.get();
+    listener_ = std::move(observer);
+  } else if (secured_) {
+    listener_ = std::make_unique<RefusalListener>();
   }
   participant_ =
-      factory->create_participant(options.domain, qos, refusals_.get(), dds::StatusMask::none());
+      factory->create_participant(options.domain, qos, listener_.get(), dds::StatusMask::none());
   if (participant_ == nullptr && secured()) {
     throw std::runtime_error("DDS security: the material in '" +
                              (security / options.identity).string() + "' was refused" +
@@ -166,7 +173,11 @@ void ParticipantCore::remove_filtered(dds::ContentFilteredTopic& topic) {
 }
 
 std::vector<std::string> ParticipantCore::take_refusals() {
-  return refusals_ == nullptr ? std::vector<std::string>{} : refusals_->take();
+  return secured_ ? listener_->take() : std::vector<std::string>{};
+}
+
+std::vector<RemoteEndpoint> ParticipantCore::discovered() const {
+  return observer_ == nullptr ? std::vector<RemoteEndpoint>{} : observer_->endpoints();
 }
 
 std::string ParticipantCore::reason_of_denial() const {
@@ -177,6 +188,10 @@ std::string ParticipantCore::reason_of_denial() const {
 
 Participant::Participant(const ParticipantOptions& options)
     : core_(std::make_shared<ParticipantCore>(options)) {}
+
+std::vector<RemoteEndpoint> Participant::discovered() const {
+  return core_->discovered();
+}
 
 std::vector<std::string> Participant::take_refusals() const {
   return core_->take_refusals();

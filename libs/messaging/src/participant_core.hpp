@@ -18,7 +18,7 @@
 #include "topogeo/messaging/detail/endpoint.hpp"
 #include "topogeo/messaging/participant.hpp"
 
-#include "security.hpp"
+#include "discovery_listener.hpp"
 
 namespace topogeo::messaging {
 
@@ -41,13 +41,16 @@ class ParticipantCore {
                                                               const std::string& addressee);
   void remove_filtered(eprosima::fastdds::dds::ContentFilteredTopic& topic);
 
-  [[nodiscard]] bool secured() const { return refusals_ != nullptr; }
+  [[nodiscard]] bool secured() const { return secured_; }
   std::vector<std::string> take_refusals();
+  [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
   /// Why an endpoint was not made: what the plug-ins of security logged, empty without security.
   [[nodiscard]] std::string reason_of_denial() const;
 
  private:
-  std::unique_ptr<RefusalListener> refusals_;  // with security; called while participant_ lives
+  bool secured_ = false;
+  std::unique_ptr<RefusalListener> listener_;  // called while participant_ lives
+  DiscoveryListener* observer_ = nullptr;      // the listener of one that observes
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

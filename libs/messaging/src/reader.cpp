@@ -108,6 +108,7 @@ void ReaderCore::Impl::deliver(const dds::SampleInfo& dds_info, Endpoint::Shared
     shared.push(std::move(event));
     return;
   }
+  ++shared.messages;
   if (lost.contains(sample.writer)) {
     orphans.insert(sample.instance);
   } else {
@@ -180,6 +181,10 @@ bool ReaderCore::wait_for_data(std::chrono::nanoseconds timeout) {
   return impl_->reader->wait_for_unread_message(
       {static_cast<std::int32_t>(timeout.count() / kNanosecondsPerSecond),
        static_cast<std::uint32_t>(timeout.count() % kNanosecondsPerSecond)});
+}
+
+std::uint64_t ReaderCore::waiting() const {
+  return impl_->reader->get_unread_count();
 }
 
 void ReaderCore::take_events(const EventHandler& handler) {

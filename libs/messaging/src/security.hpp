@@ -37,7 +37,7 @@ std::string last_security_error();
 
 /// Remembers the peers that did not pass authentication: those that were refused, and those that
 /// have not finished it, because they do not accept us or have nothing to show.
-class RefusalListener final : public eprosima::fastdds::dds::DomainParticipantListener {
+class RefusalListener : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;

@@ -41,16 +41,27 @@ bool is_dead(const fs::path& lock, std::chrono::seconds age) {
 
 }  // namespace
 
-std::size_t remove_dead_segments(const fs::path& folder, std::chrono::seconds age) {
-  std::size_t removed = 0;
+std::vector<DeadSegment> find_dead_segments(const fs::path& folder, std::chrono::seconds age) {
+  std::vector<DeadSegment> dead;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string segment = segment_of(entry->path().filename().string());
     if (segment.empty() || !is_dead(entry->path(), age)) continue;
+    std::error_code unknown;
+    const std::uintmax_t bytes = fs::file_size(folder / segment, unknown);
+    dead.push_back({folder / segment, unknown ? 0 : bytes});
+  }
+  std::ranges::sort(dead, {}, &DeadSegment::file);
+  return dead;
+}
+
+std::size_t remove_dead_segments(const fs::path& folder, std::chrono::seconds age) {
+  std::size_t removed = 0;
+  for (const DeadSegment& segment : find_dead_segments(folder, age)) {
     std::error_code ignored;
-    if (fs::remove(folder / segment, ignored)) ++removed;
-    fs::remove(entry->path(), ignored);
+    if (fs::remove(segment.file, ignored)) ++removed;
+    fs::remove(segment.file.string() + "_el", ignored);
   }
   return removed;
 }

@@ -50,6 +50,7 @@ StatusPublisher::StatusPublisher(const Participant& participant, EventLoop& loop
   set_text(status_.host(), host, "host");
   status_.process_id(static_cast<std::uint32_t>(::getpid()));
   status_.started_ns(support::wall_clock_ns());
+  status_.config_fingerprint(identity.config_fingerprint);
   status_.state(msg::kServiceStarting);
   loop_.add(writer_);
   loop_.on_event([this](const Event& event) { on_event(event); });
@@ -72,9 +73,23 @@ StatusPublisher::~StatusPublisher() {
 
 void StatusPublisher::set_state(msg::ServiceState state, std::string_view message) {
   status_.state(state);
+  status_.waits_for() = "";
   set_text_cut(status_.message(), message);
+  if (state == msg::kServiceFailed) note_error(message);
   spdlog::debug("{}", text());
   publish();
+}
+
+void StatusPublisher::wait_for(std::string_view what) {
+  status_.state(msg::kServiceWaiting);
+  set_text_cut(status_.waits_for(), what);
+  set_text_cut(status_.message(), "for " + std::string(what));
+  spdlog::debug("{}", text());
+  publish();
+}
+
+void StatusPublisher::set_waits_for(std::string_view what) {
+  set_text_cut(status_.waits_for(), what);
 }
 
 std::string StatusPublisher::text() const {
@@ -106,6 +121,37 @@ void StatusPublisher::add_to_counter(const std::string& name, double amount) {
   set_counter(name, (found == counters_.end() ? 0.0 : found->second) + amount);
 }
 
+void StatusPublisher::add_drops(std::string_view reason, std::uint64_t amount) {
+  drops_of(reason) += amount;
+}
+
+void StatusPublisher::set_drops(std::string_view reason, std::uint64_t total) {
+  if (total > 0) drops_of(reason) = total;
+}
+
+std::uint64_t& StatusPublisher::drops_of(std::string_view reason) {
+  const bool room = drops_.size() + 1 < msg::kMaxDropKinds && reason.size() <= kMaxNameSize;
+  return drops_[std::string(drops_.contains(reason) || room ? reason : kOtherFaults)];
+}
+
+void StatusPublisher::set_queue(const std::string& name, std::uint64_t depth,
+                                std::uint64_t capacity) {
+  if (name.size() > kMaxNameSize) {
+    throw std::invalid_argument("queue '" + name + "': longer than " +
+                                std::to_string(kMaxNameSize) + " bytes");
+  }
+  if (!queues_.contains(name) && queues_.size() == msg::kMaxQueues) {
+    throw std::length_error("queue '" + name + "': more than " + std::to_string(msg::kMaxQueues) +
+                            " queues");
+  }
+  queues_[name] = {depth, capacity};
+}
+
+void StatusPublisher::note_error(std::string_view text) {
+  set_text_cut(status_.last_error(), text);
+  last_error_ = std::chrono::steady_clock::now();
+}
+
 void StatusPublisher::fault(std::string_view reason, std::string_view detail) {
   const bool known = faults_.contains(reason);
   const bool room = faults_.size() + 1 < msg::kMaxFaultKinds && reason.size() <= kMaxNameSize;
@@ -113,7 +159,7 @@ void StatusPublisher::fault(std::string_view reason, std::string_view detail) {
   const auto now = std::chrono::steady_clock::now();
   ++fault.count;
   status_.fault_count(status_.fault_count() + 1);
-  set_text_cut(status_.message(), std::string(reason) + ": " + std::string(detail));
+  note_error(std::string(reason) + ": " + std::string(detail));
   if (fault.count > 1 && now - fault.last_log < kLogPeriod) {
     ++fault.not_logged;
     return;
@@ -132,8 +178,10 @@ void StatusPublisher::on_event(const Event& event) {
     case EventKind::kSampleLost:
       if (is_replaceable(event.topic)) return;
       [[fallthrough]];
-    case EventKind::kIncompatibleQos:
     case EventKind::kInvalidSample:
+      add_drops(to_string(event.kind));
+      [[fallthrough]];
+    case EventKind::kIncompatibleQos:
     case EventKind::kDeadlineMissed:
       fault(to_string(event.kind), event.topic + (event.detail.empty() ? "" : ": ") + event.detail);
       return;
@@ -153,6 +201,21 @@ void StatusPublisher::publish() {
   status_.inputs(input_.total());
   status_.input_rate_per_s(input_.rate_per_s(now));
   status_.input_age_s(input_.age_s(now));
+  status_.last_error_age_s(status_.last_error().size() == 0
+                               ? 0.0
+                               : std::chrono::duration<double>(now - last_error_).count());
+  fill_counts();
+  fill_traffic(now);
+  if (on_publish_) on_publish_(status_);
+  // The next period sends again what could not be sent now.
+  if (writer_.write(status_)) status_.sequence_number(status_.sequence_number() + 1);
+}
+
+void StatusPublisher::on_publish(std::function<void(const msg::ServiceStatus&)> handler) {
+  on_publish_ = std::move(handler);
+}
+
+void StatusPublisher::fill_counts() {
   status_.counters().clear();
   for (const auto& [name, value] : counters_) {
     msg::Counter counter;
@@ -167,8 +230,41 @@ void StatusPublisher::publish() {
     count.count(fault.count);
     status_.faults().push_back(count);
   }
-  // The next period sends again what could not be sent now.
-  if (writer_.write(status_)) status_.sequence_number(status_.sequence_number() + 1);
+  status_.drops().clear();
+  for (const auto& [reason, total] : drops_) {
+    msg::FaultCount count;
+    set_text(count.reason(), reason, "drop");
+    count.count(total);
+    status_.drops().push_back(count);
+  }
+  status_.queues().clear();
+  for (const auto& [name, queue] : queues_) {
+    msg::QueueDepth depth;
+    set_text(depth.name(), name, "queue");
+    depth.depth(queue.depth);
+    depth.capacity(queue.capacity);
+    status_.queues().push_back(depth);
+  }
+}
+
+void StatusPublisher::fill_traffic(Time now) {
+  std::map<std::pair<std::string_view, bool>, Traffic> sums;
+  for (const Traffic& one : loop_.traffic()) {
+    Traffic& sum = sums[{one.topic.substr(one.topic.rfind('/') + 1), one.sent}];
+    sum.messages += one.messages;
+    sum.waiting += one.waiting;
+  }
+  status_.traffic().clear();
+  for (const auto& [key, sum] : sums) {
+    if (status_.traffic().size() == msg::kMaxTrafficTopics) return;
+    msg::TopicTraffic traffic;
+    set_text(traffic.topic(), key.first, "topic");
+    traffic.sent(key.second);
+    traffic.messages(sum.messages);
+    traffic.rate_per_s(rates_[key].add(now, sum.messages));
+    traffic.waiting(sum.waiting);
+    status_.traffic().push_back(traffic);
+  }
 }
 
 }  // namespace topogeo::messaging

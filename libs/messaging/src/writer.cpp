@@ -98,7 +98,10 @@ bool WriterCore::write(const void* message) {
   }
   // The API takes a mutable pointer but only serializes.
   const auto result = impl_->writer->write(const_cast<void*>(message), dds::HANDLE_NIL);  // NOLINT
-  if (result == ReturnCode_t::RETCODE_OK) return true;
+  if (result == ReturnCode_t::RETCODE_OK) {
+    ++shared_->messages;
+    return true;
+  }
   if (result == ReturnCode_t::RETCODE_TIMEOUT) return false;
   throw std::runtime_error(shared_->topic + ": DDS write failed with code " +
                            std::to_string(result()));

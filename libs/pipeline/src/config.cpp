@@ -60,6 +60,7 @@ support::ConfigSchema describe(Config& config) {
   markov::describe(config.navigator.markov.markov, schema);
   navigation::describe(config.exploration, schema);
   localization::describe(config.calibration, schema);
+  describe(config.metrics, schema);
   return schema;
 }
 

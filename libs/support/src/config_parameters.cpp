@@ -79,6 +79,13 @@ bool ConfigSchema::is_section(std::string_view path) const {
                              [&](const ConfigParameter& p) { return p.key.starts_with(prefix); });
 }
 
+void ConfigSchema::leave_out_of_fingerprint(std::string_view section) {
+  const std::string prefix = std::string(section) + ".";
+  for (ConfigParameter& p : parameters_) {
+    if (p.key.starts_with(prefix)) p.in_fingerprint = false;
+  }
+}
+
 void ConfigSchema::insert(ConfigParameter parameter) {
   const std::string& key = parameter.key;
   const auto refuse = [&](const std::string& why) {

@@ -197,6 +197,7 @@ EffectiveConfig effective(const ConfigSchema& schema) {
   Fnv1a hash;
   for (const ConfigParameter& p : schema.parameters()) {
     result.values.emplace_back(p.key, p.text());
+    if (!p.in_fingerprint) continue;
     for (const std::string& part : {p.key, result.values.back().second}) {
       hash.add(std::uint64_t{part.size()});
       hash.add(part);

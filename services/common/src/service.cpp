@@ -6,6 +6,7 @@
 
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/log.hpp"
+#include "topogeo/support/process_resources.hpp"
 #include "topogeo/support/version.hpp"
 
 namespace topogeo::service {
@@ -21,11 +22,29 @@ Service::Service(const Setup& setup, bool any_robot)
     : setup_(setup), participant_(make_participant(setup.options, setup.name)) {
   // Signals first: one that comes while the rest starts must end the program cleanly, too.
   signals_.emplace([this](int) { loop_.stop(); });
-  status_.emplace(
-      participant_, loop_,
-      messaging::ServiceIdentity{setup.name, setup.instance, any_robot ? "" : robot_id(),
-                                 std::string(support::kVersion)});
+  status_.emplace(participant_, loop_,
+                  messaging::ServiceIdentity{
+                      setup.name, setup.instance, any_robot ? "" : robot_id(),
+                      std::string(support::kVersion), setup.config.effective.fingerprint});
   loop_.add_timer(kTick, [this] { tick(); });
+  offer_metrics();
+}
+
+void Service::offer_metrics() {
+  const pipeline::MetricsConfig& config = setup_.config.config.metrics;
+  const std::string address = setup_.options.metrics_address.value_or(config.address);
+  if (setup_.options.metrics_port) {
+    metrics_ =
+        std::make_shared<MetricsEndpoint>(MetricsAddress{address, *setup_.options.metrics_port, 1});
+  } else if (config.port != 0) {
+    metrics_ =
+        std::make_shared<MetricsEndpoint>(metrics_address(address, config.port, setup_.name));
+  } else {
+    return;
+  }
+  spdlog::info("metrics at http://{}:{}/metrics", address, metrics_->port());
+  status_->on_publish(
+      [endpoint = metrics_](const msg::ServiceStatus& status) { endpoint->update(status); });
 }
 
 Service::~Service() {
@@ -44,6 +63,8 @@ void Service::run() {
 
 void Service::tick() {
   status_->set_counter("cpu_s", support::process_cpu_s());
+  status_->set_counter("resident_bytes", static_cast<double>(support::resident_bytes()));
+  status_->set_counter("open_files", static_cast<double>(support::open_files()));
   manager_.show(status_->text());
   for (const std::string& refusal : participant_.take_refusals()) {
     status_->fault("peer refused", refusal);
@@ -58,6 +79,7 @@ void Service::report_invalid(const messaging::TopicInfo& topic, std::uint64_t se
                              std::string_view why) {
   std::string name(messaging::short_name(topic));
   std::ranges::replace(name, '_', ' ');
+  status_->add_drops("invalid " + name);
   status_->fault("invalid " + name,
                  "number " + std::to_string(sequence_number) + ": " + std::string(why));
 }

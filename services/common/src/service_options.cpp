@@ -46,6 +46,16 @@ void add_service_options(command_line::Command& app, ServiceOptions& options) {
                  "mounting of the laser, m and rad, in place of the configured one")
       ->type_name("X,Y,YAW");
   app.add_option("--profiles", options.profiles_file, "file of QoS profiles, instead of built in");
+  constexpr std::uint32_t kLargestPort = 65535;
+  app.add_option("--metrics-port", options.metrics_port,
+                 "gives its figures to Prometheus at this HTTP port, 0: any that is free; default: "
+                 "what `metrics.port` of the configuration says, else none")
+      ->check(command_line::range(0U, kLargestPort))
+      ->type_name("PORT");
+  app.add_option("--metrics-address", options.metrics_address,
+                 "address it listens on there (default: 127.0.0.1; others have neither password "
+                 "nor encryption)")
+      ->type_name("ADDRESS");
   app.add_option("--log-level", options.log_level,
                  "least severe messages that are logged to stderr")
       ->check(command_line::one_of({"trace", "debug", "info", "warning", "error", "off"}))

@@ -175,6 +175,23 @@ void fill(msg::ServiceStatus& status) {
   set_text(fault.reason(), "nan_range", "reason");
   fault.count(2);
   status.faults().assign(1, fault);
+  status.drops().assign(2, fault);
+  set_text(status.waits_for(), "workers", "waits_for");
+  set_text(status.last_error(), "nan_range: beam 7", "last_error");
+  status.last_error_age_s(1.5);
+  status.config_fingerprint(0xFEDCBA9876543210ULL);
+  msg::TopicTraffic traffic;
+  set_text(traffic.topic(), "scan", "topic");
+  traffic.sent(true);
+  traffic.messages(17);
+  traffic.rate_per_s(0.5);
+  traffic.waiting(3);
+  status.traffic().assign(2, traffic);
+  msg::QueueDepth queue;
+  set_text(queue.name(), "match tasks", "name");
+  queue.depth(5);
+  queue.capacity(64);
+  status.queues().assign(1, queue);
 }
 
 void fill(msg::LivePose& live) {

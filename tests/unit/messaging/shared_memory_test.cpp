@@ -46,6 +46,10 @@ TEST_F(SharedMemory, TheSegmentsOfTheDeadAreRemovedAndNothingElse) {
   const support::FileDescriptor held(
       ::open((folder_ / "fastrtps_1123456789abcdef_el").c_str(), O_RDONLY));
   ASSERT_EQ(::flock(held.get(), LOCK_EX), 0);
+  const std::vector<DeadSegment> dead = find_dead_segments(folder_);
+  ASSERT_EQ(dead.size(), 1U);
+  EXPECT_EQ(dead[0].file, folder_ / "fastrtps_0123456789abcdef");
+  EXPECT_EQ(dead[0].bytes, 1U);
   EXPECT_EQ(remove_dead_segments(folder_), 1U);
   EXPECT_FALSE(exists("fastrtps_0123456789abcdef"));
   for (const char* name :

@@ -82,7 +82,74 @@ TEST_F(Status, LostSampleIsAFaultUnlessANewerStateReplacedIt) {
   status.on_event({EventKind::kSampleLost, std::string(kScan), {}, 1, ""});
   ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() > 0; }));
   EXPECT_EQ(seen_.fault_count(), 1U);
-  EXPECT_THAT(seen_.message().to_string(), testing::HasSubstr(std::string(kScan)));
+  EXPECT_THAT(seen_.last_error().to_string(), testing::HasSubstr(std::string(kScan)));
+}
+
+TEST_F(Status, WaitsForIsSetWithTheStateAndGoneWithTheNext) {
+  StatusPublisher status(sender_, loop_, identity_);
+  status.wait_for("local maps");
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.state() == msg::kServiceWaiting; }));
+  EXPECT_EQ(seen_.waits_for().to_string(), "local maps");
+  EXPECT_EQ(seen_.message().to_string(), "for local maps");
+  status.set_state(msg::kServiceRunning);
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.state() == msg::kServiceRunning; }));
+  EXPECT_EQ(seen_.waits_for().to_string(), "");
+  status.set_waits_for("a map");
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.waits_for() == "a map"; }));
+  EXPECT_EQ(seen_.state(), msg::kServiceRunning);
+}
+
+TEST_F(Status, LastErrorStaysBesideTheStateAndAges) {
+  StatusPublisher status(sender_, loop_, identity_);
+  status.set_state(msg::kServiceRunning, "at work");
+  status.fault("nan_range", "beam 7");
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.last_error_age_s() > 0.2; }));
+  EXPECT_EQ(seen_.last_error().to_string(), "nan_range: beam 7");
+  EXPECT_EQ(seen_.message().to_string(), "at work");
+  status.set_state(msg::kServiceFailed, "disk full");
+  ASSERT_TRUE(eventually_seen([](const auto& s) { return s.state() == msg::kServiceFailed; }));
+  EXPECT_EQ(seen_.last_error().to_string(), "disk full");
+}
+
+TEST_F(Status, TrafficDropsAndQueuesAreReported) {
+  identity_.config_fingerprint = 77;
+  StatusPublisher status(sender_, loop_, identity_);
+  const Writer<msg::Goal> goals_out(receiver_);
+  const Reader<msg::Goal> goals_in(sender_);
+  std::size_t handled = 0;
+  loop_.add<msg::Goal>(goals_in, [&](const msg::Goal&, const SampleInfo&) { ++handled; });
+  Writer<msg::Route> routes(sender_);
+  loop_.add(routes);
+  ASSERT_TRUE(routes.write(message<msg::Route>()));
+  Writer<msg::Goal> writer = goals_out;
+  ASSERT_TRUE(writer.write(message<msg::Goal>()));
+  status.add_drops("other robot");
+  status.add_drops("other robot", 2);
+  status.set_drops("stuck scan", 0);
+  status.set_drops("bad checksum", 5);
+  status.set_queue("tasks", 3, 64);
+  const auto of = [&](const std::string& topic) -> const msg::TopicTraffic* {
+    for (const msg::TopicTraffic& one : seen_.traffic()) {
+      if (topic == one.topic().c_str()) return &one;
+    }
+    return nullptr;
+  };
+  ASSERT_TRUE(eventually_seen(
+      [&](const auto&) { return of("goal") != nullptr && of("goal")->messages() == 1; }));
+  EXPECT_EQ(handled, 1U);
+  EXPECT_FALSE(of("goal")->sent());
+  ASSERT_NE(of("route"), nullptr);
+  EXPECT_TRUE(of("route")->sent());
+  EXPECT_EQ(of("route")->messages(), 1U);
+  ASSERT_NE(of("service_status"), nullptr) << "its own status is traffic, too";
+  ASSERT_EQ(seen_.drops().size(), 2U) << "what never happened is left out";
+  EXPECT_EQ(seen_.drops()[0].reason().to_string(), "bad checksum");
+  EXPECT_EQ(seen_.drops()[0].count(), 5U);
+  EXPECT_EQ(seen_.drops()[1].count(), 3U);
+  ASSERT_EQ(seen_.queues().size(), 1U);
+  EXPECT_EQ(seen_.queues()[0].depth(), 3U);
+  EXPECT_EQ(seen_.queues()[0].capacity(), 64U);
+  EXPECT_EQ(seen_.config_fingerprint(), 77U);
 }
 
 TEST_F(Status, BoundsHold) {
@@ -91,10 +158,15 @@ TEST_F(Status, BoundsHold) {
   EXPECT_THROW(status.set_counter("one more", 0.0), std::length_error);
   EXPECT_THROW(status.set_counter(std::string(49, 'c'), 0.0), std::invalid_argument);
   for (int i = 0; i < 40; ++i) status.fault(std::to_string(i), std::string(300, 'x'));
+  for (int i = 0; i < 70; ++i) status.add_drops(std::to_string(i));
+  for (int i = 0; i < 16; ++i) status.set_queue(std::to_string(i), 1);
+  EXPECT_THROW(status.set_queue("one more", 1), std::length_error);
+  EXPECT_THROW(status.set_queue(std::string(49, 'q'), 1), std::invalid_argument);
   ASSERT_TRUE(eventually_seen([](const auto& s) { return s.fault_count() == 40; }));
+  EXPECT_EQ(seen_.drops().size(), 64U);
   EXPECT_EQ(seen_.counters().size(), 64U);
   EXPECT_EQ(seen_.faults().size(), 32U);
-  EXPECT_EQ(seen_.message().size(), 255U);
+  EXPECT_EQ(seen_.last_error().size(), 255U);
   identity_.service = std::string(33, 's');
   EXPECT_THROW(StatusPublisher(sender_, loop_, identity_), std::invalid_argument);
 }

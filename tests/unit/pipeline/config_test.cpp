@@ -94,7 +94,7 @@ std::map<std::string, std::set<std::string>> owners_of_keys(Config& c) {
           c.hybrid_planner, c.navigator.smooth, c.navigator.detour);
   library("markov", c.navigator.markov.markov);
   library("navigation", c.navigator, c.exploration);
-  library("pipeline", c.local_mapper);
+  library("pipeline", c.local_mapper, c.metrics);
   return owners;
 }
 
@@ -108,6 +108,17 @@ TEST_F(ConfigTest, EveryKeyIsDeclaredByOneLibrary) {
     EXPECT_EQ(found->second.size(), 1U) << parameter.key;
   }
   EXPECT_EQ(owners.size(), schema.parameters().size());
+}
+
+TEST_F(ConfigTest, WhereFiguresAreGivenDoesNotTurnWorkersAway) {
+  Config config;
+  const support::EffectiveConfig before = support::effective(describe(config));
+  config.metrics.port = 9464;
+  const support::EffectiveConfig with_port = support::effective(describe(config));
+  EXPECT_EQ(with_port.fingerprint, before.fingerprint);
+  EXPECT_NE(with_port.values, before.values);
+  config.localizer.seed += 1;
+  EXPECT_NE(support::effective(describe(config)).fingerprint, before.fingerprint);
 }
 
 TEST_F(ConfigTest, TheTablesOfTheDocumentationAreThoseOfTheDeclarations) {

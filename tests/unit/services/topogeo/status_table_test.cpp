@@ -169,6 +169,63 @@ TEST(StatusTable, DetailsNameInputFaultsAndCounters) {
   EXPECT_THAT(table.details(kNow), Not(HasSubstr("localizer")));
 }
 
+/// With everything that a status can report.
+msg::ServiceStatus eventful() {
+  msg::ServiceStatus status = status_of("planner", msg::kServiceRunning);
+  messaging::set_text(status.waits_for(), "a map", "waits_for");
+  messaging::set_text(status.last_error(), "send blocked: scan 7", "last_error");
+  status.last_error_age_s(3.0);
+  status.config_fingerprint(0xBEEF);
+  msg::FaultCount drop;
+  messaging::set_text(drop.reason(), "other robot", "reason");
+  drop.count(12);
+  status.drops().push_back(drop);
+  msg::QueueDepth queue;
+  messaging::set_text(queue.name(), "goals", "name");
+  queue.depth(2);
+  queue.capacity(64);
+  status.queues().push_back(queue);
+  msg::TopicTraffic traffic;
+  messaging::set_text(traffic.topic(), "pose", "topic");
+  traffic.messages(900);
+  traffic.rate_per_s(24.6);
+  traffic.waiting(5);
+  status.traffic().push_back(traffic);
+  return status;
+}
+
+TEST(StatusTable, SaysWhatIsMissingAndTheLastErrorWhileItIsFresh) {
+  StatusTable table;
+  table.update(eventful(), info_of(1), kNow);
+  EXPECT_THAT(table.text(kNow), HasSubstr("needs a map; 3.0 s ago: send blocked: scan 7"));
+  EXPECT_TRUE(table.healthy(kNow));
+  msg::ServiceStatus later = eventful();
+  later.last_error_age_s(3000.0);
+  table.update(later, info_of(1), kNow);
+  EXPECT_THAT(table.text(kNow), Not(HasSubstr("send blocked")));
+  EXPECT_THAT(table.details(kNow), HasSubstr("last error 50 min ago: send blocked: scan 7"));
+}
+
+TEST(StatusTable, DetailsAndJsonHaveTrafficQueuesAndDrops) {
+  StatusTable table;
+  table.update(eventful(), info_of(1), kNow);
+  const std::string text = table.details(kNow);
+  EXPECT_THAT(text, HasSubstr("waits for  a map"));
+  EXPECT_THAT(text, HasSubstr("config     000000000000beef"));
+  EXPECT_THAT(text, HasSubstr("dropped    12 other robot"));
+  EXPECT_THAT(text, HasSubstr("2 of 64"));
+  EXPECT_THAT(text, HasSubstr("900, 25/s, 5 waiting"));
+  const auto json = nlohmann::json::parse(table.json(kNow)).at(0);
+  EXPECT_EQ(json["waits_for"], "a map");
+  EXPECT_EQ(json["last_error"], "send blocked: scan 7");
+  EXPECT_EQ(json["last_error_age_s"], 3.0);
+  EXPECT_EQ(json["config_fingerprint"], "000000000000beef");
+  EXPECT_EQ(json["drops"]["other robot"], 12);
+  EXPECT_EQ(json["queues"][0]["depth"], 2);
+  EXPECT_EQ(json["traffic"][0]["topic"], "pose");
+  EXPECT_EQ(json["traffic"][0]["waiting"], 5);
+}
+
 TEST(StatusTable, JsonHasTheFieldsOfTheMessage) {
   StatusTable table;
   table.update(fed(status_of("localizer", msg::kServiceRunning), "local_map", 2.5, 0.2), info_of(1),

@@ -5,12 +5,22 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string_view>
+#include <vector>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 
 namespace topogeo::messaging {
+
+/// Messages of one topic that came in or went out through a loop.
+struct Traffic {
+  std::string_view topic;  ///< whole name
+  bool sent = false;
+  std::uint64_t messages = 0;
+  std::uint64_t waiting = 0;  ///< received and not handled yet
+};
 
 /// All handlers run in the thread that calls run(); an exception of a handler leaves run(). Readers
 /// and writers that were added live at least as long as the loop. Add them before run() or from a
@@ -58,6 +68,10 @@ class EventLoop {
 
   /// Calls `handler` in the loop's thread. For other threads; not for signal handlers.
   void post(std::function<void()> handler);
+
+  /// Of all readers and writers of the loop, in the order in which they were added; the topic of
+  /// two of them stands there twice.
+  [[nodiscard]] std::vector<Traffic> traffic() const;
 
   /// Works until stop() is called. Calls handlers for what is there already.
   void run();

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/messaging/discovery.hpp"
+
 namespace topogeo::messaging {
 
 /// Partition of runs that name none.
@@ -27,6 +29,7 @@ struct ParticipantOptions {
   /// permissions, encryption. Empty: TOPOGEO_SECURITY of the environment; empty, too: no security.
   std::filesystem::path security;
   std::string identity = "topogeo";  ///< its folder there: name of the service or command
+  bool observe = false;              ///< remembers the endpoints of others for discovered()
 };
 
 class ParticipantCore;
@@ -41,6 +44,10 @@ class Participant {
   /// With security: a line for each peer that was refused since the last call and for each thing
   /// that a peer was denied.
   [[nodiscard]] std::vector<std::string> take_refusals() const;
+
+  /// The readers and writers of other participants that discovery has announced and that are still
+  /// there; none without `observe`. Endpoints of its own are not among them.
+  [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
 
   [[nodiscard]] const std::shared_ptr<ParticipantCore>& core() const { return core_; }
 

@@ -3,13 +3,16 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/input_meter.hpp"
 #include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/total_rate.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/status.h"
 
@@ -19,8 +22,9 @@ struct ServiceIdentity {
   std::string service;  ///< name of the executable, up to 32 bytes
   std::string
       instance;  ///< unique among running ones, up to 64 bytes; empty: "<host>-<process id>"
-  std::string robot_id;  ///< up to 32 bytes; empty for a service of every robot
-  std::string version;   ///< of the software, up to 48 bytes
+  std::string robot_id;                  ///< up to 32 bytes; empty for a service of every robot
+  std::string version;                   ///< of the software, up to 48 bytes
+  std::uint64_t config_fingerprint = 0;  ///< of the configuration; 0: it has none
 };
 
 /// Sends a ServiceStatus every half second and when the state changes. Lives in the thread of its
@@ -35,8 +39,13 @@ class StatusPublisher {
   /// 200 ms for readers to have it.
   ~StatusPublisher();
 
-  /// Sent at once. `message` is for people and may be empty.
+  /// Sent at once. `message` is for people and may be empty. Nothing is waited for any more. That
+  /// of kServiceFailed is the last error as well.
   void set_state(msg::ServiceState state, std::string_view message = {});
+  /// kServiceWaiting for `what`: an input, a peer. Sent at once.
+  void wait_for(std::string_view what);
+  /// What it needs to go on whatever its state; empty: nothing. Sent with the next period.
+  void set_waits_for(std::string_view what);
   [[nodiscard]] msg::ServiceState state() const { return status_.state(); }
   /// The state and its message, for people.
   [[nodiscard]] std::string text() const;
@@ -51,6 +60,14 @@ class StatusPublisher {
   void set_counter(const std::string& name, double value);
   void add_to_counter(const std::string& name, double amount = 1.0);
 
+  /// What came and is not worked on, by a fixed short text (up to 48 bytes, at most 64 of them;
+  /// further ones count as "other"). Sent with the next period, like queues.
+  void add_drops(std::string_view reason, std::uint64_t amount = 1);
+  void set_drops(std::string_view reason, std::uint64_t total);
+  /// Work that waits in the service; of a reader's own queue the traffic reports it. Throws
+  /// std::invalid_argument for a name over 48 bytes and std::length_error for the 17th name.
+  void set_queue(const std::string& name, std::uint64_t depth, std::uint64_t capacity = 0);
+
   /// Counts a fault and logs it, once per second for each reason at most. `reason` is a fixed short
   /// text (up to 48 bytes, at most 32 of them; further ones count as "other"), `detail` says what
   /// happened this time.
@@ -63,6 +80,8 @@ class StatusPublisher {
 
   /// Sends the status now.
   void publish();
+  /// Gets each status that is sent, in the thread of the loop.
+  void on_publish(std::function<void(const msg::ServiceStatus&)> handler);
 
  private:
   struct Fault {
@@ -70,6 +89,16 @@ class StatusPublisher {
     std::uint64_t not_logged = 0;  // since last_log
     std::chrono::steady_clock::time_point last_log;
   };
+  struct Queue {
+    std::uint64_t depth = 0;
+    std::uint64_t capacity = 0;
+  };
+  using Time = std::chrono::steady_clock::time_point;
+
+  void note_error(std::string_view text);
+  std::uint64_t& drops_of(std::string_view reason);
+  void fill_counts();
+  void fill_traffic(Time now);
 
   EventLoop& loop_;
   Writer<msg::ServiceStatus> writer_;
@@ -77,7 +106,12 @@ class StatusPublisher {
   InputMeter input_;
   std::map<std::string, double> counters_;
   std::map<std::string, Fault, std::less<>> faults_;
-  std::chrono::steady_clock::time_point start_;
+  std::map<std::string, std::uint64_t, std::less<>> drops_;
+  std::map<std::string, Queue> queues_;
+  std::map<std::pair<std::string_view, bool>, TotalRate> rates_;  // by topic and direction
+  Time start_;
+  Time last_error_;
+  std::function<void(const msg::ServiceStatus&)> on_publish_;
   std::uint64_t timer_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/pipeline/hybrid_map_config.hpp"
 #include "topogeo/pipeline/local_mapper_config.hpp"
+#include "topogeo/pipeline/metrics_config.hpp"
 #include "topogeo/planning/hybrid_planner_config.hpp"
 #include "topogeo/planning/planning_config.hpp"
 #include "topogeo/scan/carmen_log_config.hpp"
@@ -30,6 +31,7 @@ struct Config {
   navigation::NavigatorConfig navigator;
   navigation::TourConfig exploration;
   localization::OdometryCalibrationConfig calibration;
+  MetricsConfig metrics;
 };
 
 /// Every key of the file: what the libraries declare of their settings, one after the other.

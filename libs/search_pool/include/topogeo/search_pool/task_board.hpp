@@ -116,6 +116,8 @@ class TaskBoard {
   /// The task could not be sent after all.
   void not_sent(const Assignment& assignment, BoardTime now);
 
+  /// Tasks of the batch without answer.
+  [[nodiscard]] std::size_t open_tasks() const { return batch_.open(); }
   /// Workers that take tasks.
   [[nodiscard]] std::size_t workers() const { return workers_.count_usable(); }
   [[nodiscard]] std::vector<std::string> usable_workers() const { return workers_.usable(); }

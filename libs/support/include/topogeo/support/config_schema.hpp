@@ -27,6 +27,7 @@ struct ConfigParameter {
   std::string expected;  ///< "number between 0.1 and 5 m", for messages and the example file
   std::string default_text;
   bool is_text = false;  ///< strings: quoted in YAML
+  bool in_fingerprint = true;
 
   std::function<std::string()> text;  ///< current value; doubles in the shortest form that reads
                                       ///< back to the same value
@@ -56,6 +57,10 @@ class ConfigSchema {
   template <typename Enum>
   void add(const std::string& key, Enum* value,
            const std::vector<std::pair<std::string, Enum>>& names, const std::string& why);
+
+  /// The keys of a section that no result depends on: configurations that differ in them alone have
+  /// one fingerprint.
+  void leave_out_of_fingerprint(std::string_view section);
 
   /// In the order of declaration.
   [[nodiscard]] const std::vector<ConfigParameter>& parameters() const { return parameters_; }
@@ -113,7 +118,7 @@ void load_yaml_text(std::string_view text, const std::string& name, const Config
 /// What is in force.
 struct EffectiveConfig {
   std::vector<std::pair<std::string, std::string>> values;  ///< (key, value), order of declaration
-  std::uint64_t fingerprint = 0;  ///< 64-bit FNV-1a of the values; equal for equal configurations
+  std::uint64_t fingerprint = 0;  ///< 64-bit FNV-1a of the values that results depend on
 };
 EffectiveConfig effective(const ConfigSchema& schema);
 

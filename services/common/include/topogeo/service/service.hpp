@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,7 @@
 #include "topogeo/messaging/status_publisher.hpp"
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/messaging/writer.hpp"
+#include "topogeo/service/metrics_endpoint.hpp"
 #include "topogeo/service/service_options.hpp"
 
 namespace topogeo::service {
@@ -104,14 +106,16 @@ class Service {
   }
 
  private:
-  /// False, and counted as "ignored: other robot", for messages of other robots.
+  /// False, and counted as dropped for "other robot", for messages of other robots.
   template <class T>
   bool is_own(const T& message) {
     if (message.robot_id() == setup_.options.robot_id) return true;
-    status_->add_to_counter("ignored: other robot");
+    status_->add_drops("other robot");
     return false;
   }
 
+  /// Gives the status to Prometheus when the options or the configuration want it.
+  void offer_metrics();
   /// What the status and the service manager show besides what services report themselves.
   void tick();
   void report_blocked(std::string_view what);
@@ -124,6 +128,7 @@ class Service {
   std::optional<messaging::StatusPublisher> status_;
   std::optional<messaging::SignalStop> signals_;
   messaging::ServiceManager manager_{loop_};
+  std::shared_ptr<MetricsEndpoint> metrics_;  // the status has it, too, up to its end
 };
 
 }  // namespace topogeo::service

@@ -39,6 +39,8 @@ struct ServiceOptions {
   std::optional<std::string> laser;                      ///< see pipeline::parse_mounting
   std::filesystem::path profiles_file;                   ///< QoS profiles; empty: built in
   std::string log_level = "info";
+  std::optional<std::uint32_t> metrics_port;  ///< in place of the configured one; 0: any free one
+  std::optional<std::string> metrics_address;
 };
 
 /// Adds the flags of `options` to `app`; `options` must outlive it.

@@ -3,9 +3,11 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -24,6 +26,10 @@ class Endpoint {
   virtual ~Endpoint();
 
   [[nodiscard]] int matched() const;
+  /// Whole name.
+  [[nodiscard]] std::string_view topic() const;
+  /// Written, or handed over to the program, since the endpoint was made.
+  [[nodiscard]] std::uint64_t messages() const;
   bool wait_for_matched(int count, std::chrono::nanoseconds timeout) const;
   /// Hands over the events since the last call, oldest first, in this thread.
   virtual void take_events(const EventHandler& handler);
@@ -60,6 +66,8 @@ class ReaderCore final : public Endpoint {
 
   std::size_t take(std::size_t limit, const Handler& handler);
   bool wait_for_data(std::chrono::nanoseconds timeout);
+  /// Samples that came and were not taken yet.
+  [[nodiscard]] std::uint64_t waiting() const;
   void take_events(const EventHandler& handler) override;
 
  private:

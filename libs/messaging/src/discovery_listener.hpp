@@ -1,0 +1,40 @@
+// Remembers the readers and writers of other processes for a participant that wants to know them.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "topogeo/messaging/discovery.hpp"
+
+#include "security.hpp"
+
+namespace topogeo::messaging {
+
+/// Refusals as its base class; used for every participant that observes.
+class DiscoveryListener final : public RefusalListener {
+ public:
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+
+  /// Those that are there now, ordered by their ids.
+  std::vector<RemoteEndpoint> endpoints() const;
+
+ private:
+  /// Bounds the memory: a flood of strangers' endpoints is as good as this many.
+  static constexpr std::size_t kMostEndpoints = 65'536;
+
+  void put(const eprosima::fastrtps::rtps::GUID_t& guid, RemoteEndpoint endpoint);
+  void remove(const eprosima::fastrtps::rtps::GUID_t& guid);
+
+  mutable std::mutex endpoints_mutex_;
+  std::map<eprosima::fastrtps::rtps::GUID_t, RemoteEndpoint> endpoints_;
+  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> names_;  // of participants
+};
+
+}  // namespace topogeo::messaging
