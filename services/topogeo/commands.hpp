@@ -21,6 +21,8 @@ void add_demo_command(command_line::Command& app, int& exit_code);
 void add_simulator_command(command_line::Command& app, int& exit_code);
 void add_status_command(command_line::Command& app, int& exit_code);
 void add_workers_command(command_line::Command& app, int& exit_code);
+void add_top_command(command_line::Command& app, int& exit_code);
+void add_doctor_command(command_line::Command& app, int& exit_code);
 void add_follow_command(command_line::Command& app, int& exit_code);
 void add_explore_command(command_line::Command& app, int& exit_code);
 void add_goto_command(command_line::Command& app, int& exit_code);

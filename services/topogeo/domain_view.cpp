@@ -16,8 +16,9 @@ constexpr std::chrono::milliseconds kCollect{1200};
 constexpr std::chrono::milliseconds kSettled{800};
 constexpr std::chrono::milliseconds kLongest{3200};
 constexpr std::chrono::milliseconds kSlice{100};
-// Between two tables of --watch: as fast as people read them.
-constexpr std::chrono::milliseconds kAgain{1000};
+// Between two tables of --watch: a service that dies is found out after a second and is to be shown
+// within two.
+constexpr std::chrono::milliseconds kAgain{500};
 
 /// False when the loop was stopped.
 bool collect(messaging::EventLoop& loop, const std::function<std::size_t()>& count) {
@@ -48,13 +49,14 @@ void add_domain_options(command_line::Command& app, DomainView& view) {
 
 void add_view_options(command_line::Command& app, DomainView& view) {
   add_domain_options(app, view);
-  app.add_flag("--watch", view.watch, "again every second until Ctrl-C");
+  app.add_flag("--watch", view.watch, "again twice a second until Ctrl-C");
 }
 
 messaging::Participant join(const DomainView& view, const std::string& name,
-                            const std::string& identity) {
+                            const std::string& identity, bool observe) {
   messaging::ParticipantOptions options;
   options.identity = identity;
+  options.observe = observe;
   options.domain = view.domain;
   options.partition = view.partition;
   options.name = name;

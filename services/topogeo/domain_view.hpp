@@ -26,10 +26,11 @@ void add_domain_options(command_line::Command& app, DomainView& view);
 /// The same and --watch.
 void add_view_options(command_line::Command& app, DomainView& view);
 
-/// Joins the domain under a name that DDS tools show. `identity`: see ParticipantOptions. Throws
+/// Joins the domain under a name that DDS tools show. `identity`, `observe`: see
+/// ParticipantOptions. Throws
 /// like messaging::Participant.
 messaging::Participant join(const DomainView& view, const std::string& name,
-                            const std::string& identity = "topogeo");
+                            const std::string& identity = "topogeo", bool observe = false);
 
 /// Receives until all that publish their status have done so, then shows them; again and again with
 /// --watch, until Ctrl-C. `count`: how many there are so far. Returns whether there were any.

@@ -33,6 +33,8 @@ int run(int argc, const char* const* argv) {
   cli::add_simulator_command(app, exit_code);
   cli::add_status_command(app, exit_code);
   cli::add_workers_command(app, exit_code);
+  cli::add_top_command(app, exit_code);
+  cli::add_doctor_command(app, exit_code);
   cli::add_follow_command(app, exit_code);
   cli::add_goto_command(app, exit_code);
   cli::add_explore_command(app, exit_code);

@@ -45,10 +45,10 @@ struct SimulatorRequest {
 };
 
 int send_simulator_command(const SimulatorRequest& request) {
-  constexpr std::chrono::seconds kPatience{5};
+  constexpr std::chrono::seconds kSimulatorPatience{5};
   const messaging::Participant participant = join(request.view, "topogeo/simulator");
   messaging::Writer<msg::SimulatorCommand> commands(participant);
-  if (!commands.wait_for_matched(1, kPatience)) {
+  if (!commands.wait_for_matched(1, kSimulatorPatience)) {
     throw std::runtime_error(nothing_alive(request.view, "simulator"));
   }
   msg::SimulatorCommand command;
@@ -59,7 +59,7 @@ int send_simulator_command(const SimulatorRequest& request) {
   command.duration_s(request.duration_s);
   command.linear_mps(request.linear_mps);
   command.angular_radps(request.angular_radps);
-  if (!commands.write(command) || !commands.wait_for_acknowledgments(kPatience)) {
+  if (!commands.write(command) || !commands.wait_for_acknowledgments(kSimulatorPatience)) {
     throw std::runtime_error("the command could not be sent");
   }
   return service::kOk;

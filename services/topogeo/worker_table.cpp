@@ -18,10 +18,6 @@ constexpr std::size_t kMoreOfNames = 6;
 /// Kept free for the usual states, "  draining" the longest of them.
 constexpr std::size_t kStateWidth = 10;
 
-double silence_s(Clock::time_point received, Clock::time_point now) {
-  return std::chrono::duration<double>(now - received).count();
-}
-
 std::string duration_text(double duration_s) {
   const auto whole = static_cast<std::uint64_t>(std::max(0.0, duration_s));
   if (whole >= 3600)
@@ -49,19 +45,23 @@ void WorkerTable::forget_silent(Clock::time_point now) {
   std::erase_if(rows_, [&](const auto& row) { return now - row.second.received > kForget; });
 }
 
-std::string WorkerTable::state(const Row& row, Clock::time_point now) const {
-  const msg::WorkerStatus& status = row.status;
-  if (now - row.received > kSilent) {
-    return fmt::format("silent for {:.0f} s", silence_s(row.received, now));
+std::string worker_state(const msg::WorkerStatus& status, std::chrono::nanoseconds silence,
+                         const std::string& version, std::uint64_t matcher_fingerprint) {
+  if (silence > kWorkerSilent) {
+    return fmt::format("silent for {:.0f} s", std::chrono::duration<double>(silence).count());
   }
-  if (version_ != status.version().c_str()) {
-    return fmt::format("other version: {}, this is {}", status.version().c_str(), version_);
+  if (version != status.version().c_str()) {
+    return fmt::format("other version: {}, this is {}", status.version().c_str(), version);
   }
-  if (status.matcher_fingerprint() != matcher_fingerprint_) {
+  if (status.matcher_fingerprint() != matcher_fingerprint) {
     return "other build: computes differently";
   }
   if (status.draining()) return "draining";
   return status.tasks_in_hand() > 0 || status.load() > 0.0 ? "working" : "idle";
+}
+
+std::string WorkerTable::state(const Row& row, Clock::time_point now) const {
+  return worker_state(row.status, now - row.received, version_, matcher_fingerprint_);
 }
 
 std::vector<std::string> WorkerTable::lines(std::size_t longest_name) const {

@@ -16,6 +16,14 @@
 
 namespace topogeo::cli {
 
+/// What a worker is doing, or why it is not used, as seen by a program of `version` and
+/// `matcher_fingerprint`. `silence` is the time since its last status.
+std::string worker_state(const msg::WorkerStatus& status, std::chrono::nanoseconds silence,
+                         const std::string& version, std::uint64_t matcher_fingerprint);
+
+/// Workers publish twice a second; one that is silent for so long hangs or is cut off.
+inline constexpr std::chrono::milliseconds kWorkerSilent{1500};
+
 class WorkerTable {
  public:
   using Clock = std::chrono::steady_clock;
@@ -42,7 +50,7 @@ class WorkerTable {
   /// The same for programs: an array of objects, field names as in the IDL.
   [[nodiscard]] std::string json(Clock::time_point now) const;
 
-  static constexpr std::chrono::milliseconds kSilent{1500};
+  static constexpr std::chrono::milliseconds kSilent = kWorkerSilent;
   static constexpr std::chrono::seconds kForget{10};
 
  private:

@@ -1,0 +1,117 @@
+// topogeo doctor: what is wrong with this machine, and between the services of its domain.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/host.hpp"
+#include "topogeo/support/version.hpp"
+
+#include "commands.hpp"
+#include "domain_checks.hpp"
+#include "domain_view.hpp"
+#include "machine_checks.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+/// Of the package.
+constexpr const char* kInstalledMap = "/var/lib/topogeo/map";
+constexpr const char* kInstalledDevices = "/etc/topogeo/devices.yaml";
+
+struct DoctorOptions {
+  DomainView view;
+  std::optional<std::filesystem::path> map;
+  std::optional<std::filesystem::path> devices;
+  bool alone = false;
+  bool json = false;
+};
+
+MachineQuestions questions_of(const DoctorOptions& options) {
+  MachineQuestions questions;
+  questions.domain = options.view.domain;
+  questions.map_folder = options.map.value_or(
+      std::filesystem::exists(kInstalledMap) ? kInstalledMap : std::filesystem::current_path());
+  questions.devices = options.devices;
+  if (!questions.devices && std::filesystem::exists(kInstalledDevices)) {
+    questions.devices = kInstalledDevices;
+  }
+  return questions;
+}
+
+DomainFacts gather_domain_facts(const DomainView& view) {
+  DomainFacts facts;
+  facts.version = support::kVersion;
+  const messaging::Participant participant =
+      join(view, "topogeo doctor", "status", /*observe=*/true);
+  messaging::EventLoop loop;
+  std::map<messaging::Handle, msg::ServiceStatus> services;
+  loop.add<msg::ServiceStatus>(
+      messaging::Reader<msg::ServiceStatus>(participant),
+      [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+        services[info.instance] = status;
+        facts.clocks[status.host().to_string()].add(status.stamp_ns(), support::wall_clock_ns());
+      },
+      [&](const messaging::SampleInfo& info) { services.erase(info.instance); });
+  static_cast<void>(collect_and_show(
+      view, loop, [&] { return services.size(); }, [] {}));
+  for (auto& [instance, status] : services) facts.services.push_back(std::move(status));
+  facts.endpoints = participant.discovered();
+  return facts;
+}
+
+std::vector<Finding> examine_domain(const DomainView& view) {
+  try {
+    return run_checks(domain_checks(), gather_domain_facts(view));
+  } catch (const std::runtime_error& error) {
+    return {{"domain", Severity::kProblem,
+             "this program cannot join the domain: " + std::string(error.what()),
+             "services would fail in the same way",
+             "mend what is found above, or the file it names"}};
+  }
+}
+
+int examine(const DoctorOptions& options) {
+  // The machine first: a participant removes what the dead have left.
+  std::vector<Finding> findings =
+      run_checks(machine_checks(), gather_machine_facts(questions_of(options)));
+  if (!options.alone) {
+    for (Finding& finding : examine_domain(options.view)) findings.push_back(std::move(finding));
+  }
+  std::cout << (options.json ? findings_json(findings) : findings_text(findings));
+  return count(findings, Severity::kProblem) == 0 ? service::kOk : service::kFailure;
+}
+
+}  // namespace
+
+void add_doctor_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command = app.add_subcommand(
+      "doctor", "Find what is wrong on this machine and between the services on the network");
+  auto options = std::make_shared<DoctorOptions>();
+  add_domain_options(*command, options->view);
+  command
+      ->add_option("--map", options->map,
+                   "folder of the map (default: that of the package, else this folder)")
+      ->type_name("DIR");
+  command
+      ->add_option("--devices", options->devices,
+                   "file of the robot's devices (default: that of the package, else every USB "
+                   "serial port)")
+      ->type_name("FILE");
+  command->add_flag("--alone", options->alone, "this machine only: join no domain");
+  command->add_flag("--json", options->json,
+                    "for programs: severity, what, why and remedy of each");
+  command->footer(
+      "Run it as the user that the services run as, with their environment and options:\n"
+      "  sudo -u topogeo topogeo doctor\n"
+      "Exit code: 0 no problem (there may be hints), 1 at least one problem.");
+  command->callback([options, &exit_code] { exit_code = examine(*options); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,182 @@
+#include "domain_checks.hpp"
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using enum Severity;
+using Findings = std::vector<Finding>;
+
+/// Tables take a service for silent after 1.5 s, so clocks must agree better than people see.
+constexpr double kWrongClock_s = 0.5;
+constexpr double kPoorClock_s = 0.1;
+/// The first status of a service may be up to half a second old when it comes.
+constexpr std::size_t kLeastSamples = 2;
+
+std::string joined(const std::set<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + text;
+  return all;
+}
+
+std::string name_of(const msg::ServiceStatus& status) {
+  return status.service().to_string() + " on " + status.host().to_string();
+}
+
+std::string name_of(const messaging::RemoteEndpoint& endpoint) {
+  return endpoint.participant.empty() ? "an unnamed program" : "'" + endpoint.participant + "'";
+}
+
+// --- wire contract
+
+Findings check_wire(const DomainFacts& facts) {
+  std::map<std::uint32_t, std::set<std::string>> others;
+  for (const messaging::RemoteEndpoint& endpoint : facts.endpoints) {
+    const std::uint32_t version = messaging::wire_version(endpoint.topic);
+    if (version != 0 && version != facts.wire_version) others[version].insert(name_of(endpoint));
+  }
+  Findings found;
+  for (const auto& [version, programs] : others) {
+    found.push_back(
+        {"", kProblem,
+         fmt::format("{} speak version {} of the wire contract, this program version {}",
+                     joined(programs), version, facts.wire_version),
+         "programs of different versions do not hear each other",
+         "install the same version on all hosts, then restart the services"});
+  }
+  return found;
+}
+
+std::string good_wire(const DomainFacts& facts) {
+  return fmt::format("all programs speak version {}", facts.wire_version);
+}
+
+// --- versions
+
+Findings check_versions(const DomainFacts& facts) {
+  std::map<std::string, std::set<std::string>> others;
+  for (const msg::ServiceStatus& status : facts.services) {
+    if (status.version().to_string() == facts.version) continue;
+    others[status.version().to_string()].insert(name_of(status));
+  }
+  Findings found;
+  for (const auto& [version, services] : others) {
+    found.push_back(
+        {"", kProblem,
+         fmt::format("{} run version {}, this is {}", joined(services), version, facts.version),
+         "workers of another version get no tasks, and results may differ",
+         "install the same version on all hosts, then restart the services"});
+  }
+  return found;
+}
+
+std::string good_versions(const DomainFacts& facts) {
+  return fmt::format("{} services run version {}", facts.services.size(), facts.version);
+}
+
+// --- configurations
+
+Findings check_configurations(const DomainFacts& facts) {
+  std::map<std::string, std::map<std::uint64_t, std::set<std::string>>> by_robot;
+  for (const msg::ServiceStatus& status : facts.services) {
+    if (status.robot_id().size() == 0 || status.config_fingerprint() == 0) continue;
+    by_robot[status.robot_id().to_string()][status.config_fingerprint()].insert(name_of(status));
+  }
+  Findings found;
+  for (const auto& [robot, configurations] : by_robot) {
+    if (configurations.size() < 2) continue;
+    std::string what =
+        fmt::format("services of robot {} have {} configurations:", robot, configurations.size());
+    for (const auto& [fingerprint, services] : configurations) {
+      what += fmt::format(" {:016x} ({});", fingerprint, joined(services));
+    }
+    what.pop_back();
+    found.push_back({"", kProblem, what, "one of them works with settings that another contradicts",
+                     "give all the same --config, then restart them"});
+  }
+  return found;
+}
+
+std::string good_configurations(const DomainFacts& /*facts*/) {
+  return "the services of a robot have the same";
+}
+
+// --- quality of service
+
+Findings check_qos(const DomainFacts& facts) {
+  Findings found;
+  const std::string remedy =
+      "the same DDS profiles everywhere (--profiles, TOPOGEO_DDS_PROFILES), the same --replay";
+  for (const messaging::Mismatch& mismatch : messaging::find_mismatches(facts.endpoints)) {
+    if (messaging::wire_version(mismatch.writer.topic) == 0) continue;
+    found.push_back({"", kProblem,
+                     fmt::format("{}: writer {} and reader {} differ in {}", mismatch.writer.topic,
+                                 name_of(mismatch.writer), name_of(mismatch.reader), mismatch.what),
+                     "nothing of this topic gets from one to the other", remedy});
+  }
+  for (const msg::ServiceStatus& status : facts.services) {
+    for (const msg::FaultCount& fault : status.faults()) {
+      if (fault.reason() != "incompatible_qos") continue;
+      found.push_back({"", kProblem,
+                       fmt::format("{} has met {} peers that it cannot be connected with",
+                                   name_of(status), fault.count()),
+                       "nothing gets from one to the other", remedy});
+    }
+  }
+  return found;
+}
+
+std::string good_qos(const DomainFacts& facts) {
+  return fmt::format("{} readers and writers fit each other", facts.endpoints.size());
+}
+
+// --- clocks
+
+Findings check_clocks(const DomainFacts& facts) {
+  Findings found;
+  for (const auto& [host, clock] : facts.clocks) {
+    const double off_s = std::abs(clock.lag_s());
+    if (clock.samples() < kLeastSamples || off_s < kPoorClock_s) continue;
+    found.push_back(
+        {"", off_s < kWrongClock_s ? kHint : kProblem,
+         fmt::format("the clock of {} is {:.2f} s {} of this one", host, off_s,
+                     clock.lag_s() > 0.0 ? "behind" : "ahead"),
+         "certificates, logs and `topogeo status` go by it",
+         "run chrony on both, with one of them as the server where there is no internet"});
+  }
+  return found;
+}
+
+std::string good_clocks(const DomainFacts& facts) {
+  std::set<std::string> hosts;
+  for (const auto& [host, clock] : facts.clocks) hosts.insert(host);
+  return hosts.empty() ? "no service is there to compare with" : "agree with " + joined(hosts);
+}
+
+constexpr auto kDomainChecks = std::to_array<Check<DomainFacts>>({
+    {"wire contract", check_wire, good_wire},
+    {"versions", check_versions, good_versions},
+    {"configuration", check_configurations, good_configurations},
+    {"QoS", check_qos, good_qos},
+    {"clocks", check_clocks, good_clocks},
+});
+
+}  // namespace
+
+void ClockLag::add(std::int64_t stamp_ns, std::int64_t received_ns) {
+  constexpr double kNano_s = 1e-9;
+  const double lag_s = kNano_s * static_cast<double>(received_ns - stamp_ns);
+  lag_s_ = samples_ == 0 ? lag_s : std::min(lag_s_, lag_s);
+  ++samples_;
+}
+
+std::span<const Check<DomainFacts>> domain_checks() {
+  return kDomainChecks;
+}
+
+}  // namespace topogeo::cli

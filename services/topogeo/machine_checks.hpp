@@ -1,0 +1,14 @@
+// What can be wrong with a machine before any service runs on it.
+#pragma once
+
+#include <span>
+
+#include "doctor_report.hpp"
+#include "machine_facts.hpp"
+
+namespace topogeo::cli {
+
+/// Ports, multicast, route, buffers, shared memory, serial ports, disk, memory, limits.
+std::span<const Check<MachineFacts>> machine_checks();
+
+}  // namespace topogeo::cli

@@ -1,0 +1,241 @@
+#include "machine_facts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include <grp.h>
+#include <pwd.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "topogeo/messaging/shared_memory.hpp"
+#include "topogeo/support/atomic_file.hpp"
+
+#include "device_config.hpp"
+#include "network_probe.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Ports of a domain: its first one, that of the first program, and the distance of two domains.
+constexpr std::uint32_t kFirstPort = 7400;
+constexpr std::uint32_t kFirstOwnPort = 10;
+constexpr std::uint32_t kPortsOfDomain = 250;
+
+std::string first_line(const fs::path& file) {
+  std::ifstream input(file);
+  std::string line;
+  std::getline(input, line);
+  return line;
+}
+
+std::uint64_t number_in(const fs::path& file) {
+  std::uint64_t value = 0;
+  std::istringstream(first_line(file)) >> value;
+  return value;
+}
+
+std::string environment_text(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+std::string user_name() {
+  const passwd* user = ::getpwuid(::geteuid());
+  return user == nullptr ? std::to_string(::geteuid()) : user->pw_name;
+}
+
+/// Local ports of the sockets that the kernel lists.
+std::vector<std::uint32_t> udp_ports(const fs::path& proc) {
+  constexpr int kBase = 16;
+  std::vector<std::uint32_t> ports;
+  for (const char* table : {"net/udp", "net/udp6"}) {
+    std::ifstream input(proc / table);
+    std::string line;
+    std::getline(input, line);  // titles
+    while (std::getline(input, line)) {
+      // "  12: 0100007F:1CE8 00000000:0000 07 ..."
+      std::istringstream words(line);
+      std::string slot;
+      std::string local;
+      if (!(words >> slot >> local)) continue;
+      const std::size_t colon = local.find(':');
+      if (colon == std::string::npos) continue;
+      std::uint32_t port = 0;
+      const char* const end = local.data() + local.size();
+      if (std::from_chars(local.data() + colon + 1, end, port, kBase).ec == std::errc()) {
+        ports.push_back(port);
+      }
+    }
+  }
+  return ports;
+}
+
+void ask_for_ports(const FactSources& sources, MachineFacts& facts) {
+  const std::uint32_t first = kFirstPort + kPortsOfDomain * facts.domain;
+  facts.discovery_port = first;
+  facts.discovery_port_error = why_port_cannot_be_shared(first);
+  if (!facts.discovery_port_error.empty()) {
+    facts.discovery_port_owner = owner_of_udp_port(first, sources.proc);
+  }
+  const std::vector<std::uint32_t> ports = udp_ports(sources.proc);
+  facts.used_ports = static_cast<std::uint32_t>(std::ranges::count_if(ports, [&](auto port) {
+    return port >= first + kFirstOwnPort && port < first + kPortsOfDomain;
+  }));
+  std::istringstream range(first_line(sources.proc / "sys/net/ipv4/ip_local_port_range"));
+  range >> facts.first_ephemeral_port >> facts.last_ephemeral_port;
+}
+
+void ask_for_network(const FactSources& sources, MachineFacts& facts) {
+  facts.discovery_server = !environment_text("ROS_DISCOVERY_SERVER").empty();
+  facts.multicast = probe_multicast();
+  facts.multicast_route = has_multicast_route(sources.proc / "net/route");
+  facts.receive_buffer_bytes = number_in(sources.proc / "sys/net/core/rmem_default");
+  // Network namespaces of older kernels do not show it.
+  if (facts.receive_buffer_bytes == 0) facts.receive_buffer_bytes = receive_buffer_of_a_socket();
+}
+
+std::uint64_t free_bytes(const fs::path& folder) {
+  struct statvfs space {};
+  if (::statvfs(folder.c_str(), &space) != 0) return 0;
+  return static_cast<std::uint64_t>(space.f_bavail) * space.f_frsize;
+}
+
+std::string why_not_writable(const fs::path& folder) {
+  try {
+    support::check_writable_directory(folder);
+    return {};
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+void ask_for_shared_memory(const FactSources& sources, MachineFacts& facts) {
+  const std::string profile = environment_text("TOPOGEO_DDS_PARTICIPANT");
+  facts.uses_shared_memory = profile != "udp_only" && profile != "wan";
+  if (!fs::is_directory(sources.shared_memory)) {
+    facts.shared_memory_error = sources.shared_memory.string() + ": is no folder";
+    return;
+  }
+  facts.shared_memory_error = why_not_writable(sources.shared_memory);
+  facts.shared_memory_free_bytes = free_bytes(sources.shared_memory);
+  for (const messaging::DeadSegment& dead : messaging::find_dead_segments(sources.shared_memory)) {
+    ++facts.dead_segments;
+    facts.dead_bytes += dead.bytes;
+  }
+}
+
+SerialPortFacts serial_port(const fs::path& path, bool named) {
+  SerialPortFacts facts;
+  facts.path = path.string();
+  facts.named = named;
+  struct stat status {};
+  facts.exists = ::stat(path.c_str(), &status) == 0;
+  if (!facts.exists) return facts;
+  facts.accessible = ::access(path.c_str(), R_OK | W_OK) == 0;
+  const group* owner = ::getgrgid(status.st_gid);
+  facts.group = owner == nullptr ? std::to_string(status.st_gid) : owner->gr_name;
+  return facts;
+}
+
+void ask_for_devices(const MachineQuestions& questions, MachineFacts& facts) {
+  if (questions.devices) {
+    try {
+      const sensor_gateway::DeviceConfig config = sensor_gateway::load_devices(*questions.devices);
+      for (const std::string& port : {config.laser_port, config.base_port}) {
+        if (!port.empty()) facts.serial_ports.push_back(serial_port(port, true));
+      }
+    } catch (const std::exception& error) {
+      facts.devices_error = error.what();
+    }
+    return;
+  }
+  std::error_code error;
+  for (fs::directory_iterator entry(questions.sources.dev, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with("ttyUSB") && !name.starts_with("ttyACM")) continue;
+    facts.serial_ports.push_back(serial_port(entry->path(), false));
+  }
+  std::ranges::sort(facts.serial_ports, {}, &SerialPortFacts::path);
+}
+
+/// The nearest folder above that exists: a map folder is made when it is needed.
+fs::path existing_part(fs::path folder) {
+  folder = fs::absolute(folder);
+  while (!fs::exists(folder) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
+}
+
+void ask_for_disk(const fs::path& map_folder, MachineFacts& facts) {
+  const fs::path folder = existing_part(map_folder);
+  facts.map_folder = map_folder.string();
+  facts.map_folder_error = why_not_writable(folder);
+  facts.disk_free_bytes = free_bytes(folder);
+}
+
+/// The least of the limits that hold, those of all control groups above included.
+std::optional<std::uint64_t> memory_limit(const FactSources& sources) {
+  std::optional<std::uint64_t> least;
+  const auto take = [&](std::uint64_t bytes) { least = least ? std::min(*least, bytes) : bytes; };
+  constexpr std::string_view kUnified = "0::";
+  fs::path group;
+  std::ifstream groups(sources.proc / "self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (line.starts_with(kUnified)) group = line.substr(kUnified.size());
+  }
+  for (fs::path below = group.relative_path();; below = below.parent_path()) {
+    const std::string limit = first_line(sources.cgroup / below / "memory.max");
+    std::uint64_t bytes = 0;
+    if (std::istringstream(limit) >> bytes) take(bytes);
+    if (below.empty()) break;
+  }
+  rlimit address_space{};
+  if (::getrlimit(RLIMIT_AS, &address_space) == 0 && address_space.rlim_cur != RLIM_INFINITY) {
+    take(address_space.rlim_cur);
+  }
+  return least;
+}
+
+void ask_for_memory(const FactSources& sources, MachineFacts& facts) {
+  constexpr std::uint64_t kKilobyte = 1024;
+  constexpr std::string_view kAvailable = "MemAvailable:";
+  std::ifstream memory(sources.proc / "meminfo");
+  for (std::string line; std::getline(memory, line);) {
+    if (!line.starts_with(kAvailable)) continue;
+    std::istringstream(line.substr(kAvailable.size())) >> facts.memory_available_bytes;
+    facts.memory_available_bytes *= kKilobyte;
+  }
+  facts.memory_limit_bytes = memory_limit(sources);
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) == 0) facts.open_files_limit = files.rlim_cur;
+}
+
+}  // namespace
+
+MachineFacts gather_machine_facts(const MachineQuestions& questions) {
+  MachineFacts facts;
+  facts.user = user_name();
+  facts.domain = questions.domain;
+  ask_for_ports(questions.sources, facts);
+  ask_for_network(questions.sources, facts);
+  ask_for_shared_memory(questions.sources, facts);
+  ask_for_devices(questions, facts);
+  ask_for_disk(questions.map_folder, facts);
+  ask_for_memory(questions.sources, facts);
+  return facts;
+}
+
+}  // namespace topogeo::cli

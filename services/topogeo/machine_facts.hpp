@@ -1,0 +1,85 @@
+// What `topogeo doctor` has to know of the machine that it runs on.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace topogeo::cli {
+
+/// Of a network interface that is up and can do multicast.
+struct MulticastProbe {
+  std::string interface;
+  std::string error;  ///< why nothing came back; empty: it came
+};
+
+struct SerialPortFacts {
+  std::string path;
+  bool exists = false;
+  bool accessible = false;  ///< for the user that runs this program
+  std::string group;        ///< that the port belongs to
+  bool named = false;       ///< by the file of devices; else it was found in /dev
+};
+
+struct MachineFacts {
+  std::string user;
+
+  // ports: Object Management Group, DDSI-RTPS 2.3, chapter 9.6.1.1
+  std::uint32_t domain = 0;
+  std::uint32_t discovery_port = 0;        ///< UDP, shared by all programs of the domain
+  std::string discovery_port_error;        ///< why it cannot be shared; empty: it can
+  std::string discovery_port_owner;        ///< program that has it, where that is known
+  std::uint32_t used_ports = 0;            ///< of those that programs have for themselves
+  std::uint32_t first_ephemeral_port = 0;  ///< that the system gives to any program
+  std::uint32_t last_ephemeral_port = 0;
+
+  // network
+  bool discovery_server = false;  ///< multicast is not needed
+  std::vector<MulticastProbe> multicast;
+  bool multicast_route = false;
+  std::uint64_t receive_buffer_bytes = 0;  ///< of a UDP socket, net.core.rmem_default
+
+  // shared memory
+  bool uses_shared_memory = true;
+  std::string shared_memory_error;  ///< why no file can be made there; empty: it can
+  std::uint64_t shared_memory_free_bytes = 0;
+  std::uint64_t dead_segments = 0;
+  std::uint64_t dead_bytes = 0;
+
+  // devices
+  std::string devices_error;  ///< why the file that was named cannot be used
+  std::vector<SerialPortFacts> serial_ports;
+
+  // disk
+  std::string map_folder;
+  std::string map_folder_error;  ///< why it cannot be written; empty: it can
+  std::uint64_t disk_free_bytes = 0;
+
+  // memory and limits
+  std::uint64_t memory_available_bytes = 0;
+  std::optional<std::uint64_t> memory_limit_bytes;  ///< of the container, unit or shell
+  std::uint64_t open_files_limit = 0;
+};
+
+/// Where the facts are. Tests name other places.
+struct FactSources {
+  std::filesystem::path proc = "/proc";
+  std::filesystem::path cgroup = "/sys/fs/cgroup";
+  std::filesystem::path shared_memory = "/dev/shm";
+  std::filesystem::path dev = "/dev";
+};
+
+struct MachineQuestions {
+  std::uint32_t domain = 0;
+  std::filesystem::path map_folder;
+  std::optional<std::filesystem::path> devices;  ///< file of devices; none: ports found in /dev
+  FactSources sources;
+};
+
+/// Asks the system. Sends a packet to each interface and writes a file into the folder of the map
+/// and into shared memory, which it removes.
+MachineFacts gather_machine_facts(const MachineQuestions& questions);
+
+}  // namespace topogeo::cli

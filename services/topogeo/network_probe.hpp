@@ -1,0 +1,33 @@
+// Asks the network of this machine whether discovery can work.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "machine_facts.hpp"
+
+namespace topogeo::cli {
+
+/// Group of discovery: Object Management Group, DDSI-RTPS 2.3, chapter 9.6.1.4.
+inline constexpr const char* kDiscoveryGroup = "239.255.0.1";
+
+/// Why a UDP port cannot be opened beside the programs that share it; empty: it can.
+std::string why_port_cannot_be_shared(std::uint32_t port);
+
+/// "name (process id)" of a program with a socket at the port; empty when it cannot be found, as
+/// for programs of other users.
+std::string owner_of_udp_port(std::uint32_t port, const std::filesystem::path& proc);
+
+/// Sends a packet to the group of discovery on each interface that is up and can do multicast, on
+/// the loopback interface where there is no other, and waits up to a second for it to come back.
+std::vector<MulticastProbe> probe_multicast();
+
+/// Bytes that a new UDP socket can receive before they are taken; 0 when there can be no socket.
+std::uint64_t receive_buffer_of_a_socket();
+
+/// The routing table (the kernel's net/route) has an entry for the group of discovery.
+bool has_multicast_route(const std::filesystem::path& route_table);
+
+}  // namespace topogeo::cli

@@ -1,0 +1,350 @@
+// How services report their health: status, metrics, `topogeo top` and `topogeo doctor`, between
+// processes.
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <set>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/socket.h>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/planning.h"
+#include "topogeo/msg/status.h"
+#include "topogeo/msg/type_supports.h"
+#include "topogeo/service/status_metrics.hpp"
+#include "topogeo/support/file_descriptor.hpp"
+#include "topogeo/support/host.hpp"
+#include "topogeo/support/version.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Longer than anything takes on a busy machine.
+constexpr std::chrono::seconds kHealthPatience{60};
+
+class HealthTest : public testing::Test {
+ protected:
+  HealthTest() {
+    use_udp_only();  // some programs are killed
+    messaging::ParticipantOptions options;
+    options.domain = static_cast<std::uint32_t>(std::stoul(domain_));
+    options.partition = messaging::kAnyPartition;
+    options.name = "health test";
+    participant_.emplace(options);
+    loop_.add<msg::ServiceStatus>(
+        messaging::Reader<msg::ServiceStatus>(*participant_),
+        [this](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
+          statuses_[status.service().to_string()] = status;
+          names_[info.instance] = status.service().to_string();
+          for (const msg::Counter& counter : status.counters()) {
+            counters_.insert(counter.name().to_string());
+          }
+        },
+        [this](const messaging::SampleInfo& info) { gone_.insert(names_[info.instance]); });
+  }
+
+  std::unique_ptr<Program> start(const std::string& name, std::vector<std::string> words = {}) {
+    words.insert(words.end(), {"--domain", domain_});
+    return std::make_unique<Program>(scratch_, name, words);
+  }
+  /// Runs a command to its end.
+  int run(std::vector<std::string> words, std::string& out) {
+    words.insert(words.end(), {"--domain", domain_});
+    Program program(scratch_, "topogeo", words);
+    const int code = program.wait();
+    out = program.out() + program.err();
+    return code;
+  }
+  bool eventually(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + kHealthPatience;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      loop_.run_for(milliseconds(5));
+    }
+    return true;
+  }
+  bool eventually_in_state(const std::string& service, msg::ServiceState state) {
+    return eventually(
+        [&] { return statuses_.contains(service) && statuses_[service].state() == state; });
+  }
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  std::optional<messaging::Participant> participant_;
+  messaging::EventLoop loop_;
+  std::map<std::string, msg::ServiceStatus> statuses_;  // by service
+  std::map<messaging::Handle, std::string> names_;
+  std::set<std::string> counters_;
+  std::set<std::string> gone_;
+};
+
+// --- status
+
+TEST_F(HealthTest, AKilledServiceIsLostToItsReaders) {
+  const auto planner = start("planner");
+  ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
+  const auto killed = std::chrono::steady_clock::now();
+  planner->send_signal(SIGKILL);
+  ASSERT_TRUE(eventually([&] { return gone_.contains("planner"); }));
+  const double took_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - killed).count();
+  std::cout << "lost after " << took_ms << " ms\n";
+  RecordProperty("lost_after_ms", std::to_string(took_ms));
+}
+
+TEST_F(HealthTest, ServicesSayWhatTheyWaitForAndWhatConfigurationTheyHave) {
+  const auto mapper = start("local_mapper");
+  const auto planner = start("planner");
+  ASSERT_TRUE(eventually_in_state("local_mapper", msg::kServiceWaiting));
+  EXPECT_EQ(statuses_["local_mapper"].waits_for().to_string(), "the map store");
+  ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
+  ASSERT_TRUE(eventually([&] { return statuses_["planner"].waits_for() == "a map"; }));
+  EXPECT_NE(statuses_["planner"].config_fingerprint(), 0U);
+  EXPECT_EQ(statuses_["planner"].config_fingerprint(),
+            statuses_["local_mapper"].config_fingerprint());
+  EXPECT_THAT(statuses_["planner"].traffic(), testing::Not(IsEmpty()));
+}
+
+TEST_F(HealthTest, EveryCounterOfEveryServiceIsAMetric) {
+  std::filesystem::create_directories(scratch_ / "ports");
+  const std::string laser = (scratch_ / "ports" / "laser").string();
+  const std::string base = (scratch_ / "ports" / "base").string();
+  std::ofstream(scratch_ / "devices.yaml")
+      << "laser:\n  port: " << laser << "\nbase:\n  port: " << base << "\n";
+  const std::string log = (scratch_ / "drive.clf").string();
+  write_log("short", log);
+  const auto run = start(
+      "topogeo", {"run", "--log", log, "--out", (scratch_ / "out").string(), "--workers", "1"});
+  ASSERT_TRUE(eventually_in_state("map_store", msg::kServiceFinished));
+  EXPECT_EQ(run->wait(), 0) << run->err();
+  const auto simulator =
+      start("simulator", {"--world", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml",
+                          "--laser-port", laser, "--base-port", base});
+  const auto navigator = start("navigator");
+  const auto worker = start("ga_worker");
+  const auto gateway = start("sensor_gateway", {"--devices", (scratch_ / "devices.yaml").string()});
+  ASSERT_TRUE(eventually([&] { return counters_.contains("scan_latency_ms"); }));
+  for (const char* service : {"simulator", "navigator", "planner", "ga_worker", "localizer",
+                              "local_mapper", "map_store", "sensor_gateway"}) {
+    EXPECT_TRUE(eventually([&] { return statuses_.contains(service); })) << service;
+  }
+  for (const char* counter : {"tasks_sent", "stored_local_maps", "time_s", "slots", "commands"}) {
+    EXPECT_TRUE(eventually([&] { return counters_.contains(counter); })) << counter;
+  }
+  for (const std::string& counter : counters_) {
+    EXPECT_NE(service::find_metric(counter), nullptr)
+        << "'" << counter << "': declare it in services/common/src/counter_metrics.cpp";
+  }
+}
+
+// --- metrics
+
+/// Body and head of what a service gives at /metrics.
+std::string scrape(std::uint16_t port) {
+  const support::FileDescriptor line(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in peer{};
+  peer.sin_family = AF_INET;
+  peer.sin_port = htons(port);
+  peer.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::connect(line.get(), reinterpret_cast<const sockaddr*>(&peer), sizeof peer) != 0) return {};
+  const std::string request = "GET /metrics HTTP/1.0\r\n\r\n";
+  if (::send(line.get(), request.data(), request.size(), 0) < 0) return {};
+  std::string answer;
+  std::array<char, 4096> piece{};
+  for (ssize_t n = 0; (n = ::recv(line.get(), piece.data(), piece.size(), 0)) > 0;) {
+    answer.append(piece.data(), static_cast<std::size_t>(n));
+  }
+  return answer;
+}
+
+TEST_F(HealthTest, MetricsAreTheNumbersOfTheStatus) {
+  const auto planner = start("planner", {"--metrics-port", "0"});
+  planner->wait_for_error_text("/metrics");
+  const std::string log = planner->err();
+  const std::string before = "http://127.0.0.1:";
+  const auto port =
+      static_cast<std::uint16_t>(std::stoul(log.substr(log.find(before) + before.size())));
+  messaging::Writer<msg::Goal> goals(*participant_);
+  ASSERT_TRUE(goals.wait_for_matched(1, kHealthPatience));
+  msg::Goal goal;
+  messaging::set_header(goal, "robot", 0, 0);
+  goal.goal_id(1);
+  ASSERT_TRUE(goals.write(goal));
+  EXPECT_TRUE(eventually([&] {
+    return scrape(port).find("topogeo_goals_total{service=\"planner\",robot=\"robot\"") !=
+               std::string::npos &&
+           scrape(port).find("direction=\"received\"} 1") != std::string::npos;
+  })) << scrape(port);
+  EXPECT_THAT(scrape(port), AllOf(HasSubstr("topogeo_service_state"), HasSubstr("200 OK")));
+}
+
+TEST_F(HealthTest, ServicesGiveNoMetricsUnlessAskedAndRefuseATakenPort) {
+  const auto planner = start("planner");
+  ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
+  EXPECT_THAT(planner->err(), testing::Not(HasSubstr("/metrics")));
+  const auto first = start("navigator", {"--metrics-port", "0"});
+  first->wait_for_error_text("/metrics");
+  const std::string log = first->err();
+  const std::string before = "http://127.0.0.1:";
+  const std::size_t begin = log.find(before) + before.size();
+  const std::string port = log.substr(begin, log.find('/', begin) - begin);
+  const auto second = start("planner", {"--metrics-port", port});
+  EXPECT_EQ(second->wait(), 1);
+  EXPECT_THAT(second->err(), HasSubstr("metrics: cannot listen on 127.0.0.1, port " + port));
+}
+
+// --- top
+
+TEST_F(HealthTest, TopShowsThePool) {
+  std::string out;
+  EXPECT_EQ(run({"top", "--once"}, out), 1);
+  EXPECT_THAT(out, HasSubstr("no search worker is alive on domain " + domain_));
+  const auto worker = start("ga_worker", {"--slots", "3", "--name", "pc-2"});
+  const auto localizer = start("localizer", {"--standalone"});
+  ASSERT_TRUE(eventually_in_state("ga_worker", msg::kServiceRunning));
+  ASSERT_TRUE(eventually([&] {
+    for (const msg::Counter& counter : statuses_["localizer"].counters()) {
+      if (counter.name() == "workers" && counter.value() == 1.0) return true;
+    }
+    return false;
+  }));
+  EXPECT_EQ(run({"top", "--once"}, out), 0);
+  EXPECT_THAT(out, AllOf(HasSubstr("1 worker, 3 slots"), HasSubstr("pc-2"), HasSubstr("ROBOT")));
+  ASSERT_EQ(run({"top", "--once", "--json"}, out), 0);
+  const auto pool = nlohmann::json::parse(out);
+  EXPECT_EQ(pool["workers"][0]["name"], "pc-2");
+  EXPECT_EQ(pool["workers"][0]["fault_count"], 0);
+  EXPECT_EQ(pool["robots"][0]["workers"], 1.0);
+  EXPECT_EQ(pool["total"]["slots"], 3);
+}
+
+// --- doctor
+
+/// The texts of the problems that the report of a check has.
+std::vector<std::string> problems_of(const std::string& report, const std::string& check) {
+  std::vector<std::string> texts;
+  const auto parsed = nlohmann::json::parse(report);
+  for (const auto& finding : parsed["findings"]) {
+    if (finding["check"] == check && finding["severity"] == "problem") {
+      texts.push_back(finding["what"]);
+    }
+  }
+  return texts;
+}
+
+TEST_F(HealthTest, DoctorNamesAFolderThatCannotBeWritten) {
+  std::ofstream(scratch_ / "file") << "x";
+  std::string out;
+  EXPECT_EQ(
+      run({"doctor", "--alone", "--json", "--map", (scratch_ / "file" / "map").string()}, out), 1);
+  EXPECT_THAT(problems_of(out, "map folder"), testing::SizeIs(1)) << out;
+  run({"doctor", "--alone", "--json", "--map", (scratch_ / "map").string()}, out);
+  EXPECT_THAT(problems_of(out, "map folder"), IsEmpty()) << out;
+}
+
+TEST_F(HealthTest, DoctorHasNothingToSayOfServicesThatFit) {
+  const auto planner = start("planner");
+  const auto mapper = start("local_mapper");
+  ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
+  ASSERT_TRUE(eventually_in_state("local_mapper", msg::kServiceWaiting));
+  std::string out;
+  run({"doctor", "--json"}, out);
+  for (const char* check : {"wire contract", "versions", "configuration", "QoS", "clocks"}) {
+    EXPECT_THAT(problems_of(out, check), IsEmpty()) << check;
+  }
+}
+
+TEST_F(HealthTest, DoctorFindsOtherConfigurations) {
+  std::ofstream(scratch_ / "other.yaml") << "stop:\n  distance_m: 0.5\n";
+  const auto planner = start("planner");
+  const auto mapper = start("local_mapper", {"--config", (scratch_ / "other.yaml").string()});
+  ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
+  ASSERT_TRUE(eventually_in_state("local_mapper", msg::kServiceWaiting));
+  std::string out;
+  EXPECT_EQ(run({"doctor", "--json"}, out), 1);
+  EXPECT_THAT(problems_of(out, "configuration"),
+              testing::ElementsAre(HasSubstr("robot robot have 2 configurations")));
+}
+
+TEST_F(HealthTest, DoctorFindsAWrongClockAndAnotherVersion) {
+  constexpr std::int64_t kHour_ns = 3'600'000'000'000;
+  messaging::Writer<msg::ServiceStatus> statuses(*participant_);
+  msg::ServiceStatus status;
+  messaging::set_header(status, "robot", 0, 0);
+  messaging::set_service(status, "planner", "late-1");
+  messaging::set_text(status.host(), "late", "host");
+  messaging::set_text(status.version(), "0.0.1", "version");
+  // As a service whose clock is an hour behind.
+  loop_.add_timer(milliseconds(100), [&] {
+    status.stamp_ns(support::wall_clock_ns() - kHour_ns);
+    ASSERT_TRUE(statuses.write(status));
+  });
+  Program doctor(scratch_, "topogeo", {"doctor", "--json", "--domain", domain_});
+  std::thread publishing([&] { loop_.run(); });
+  EXPECT_EQ(doctor.wait(), 1);
+  loop_.stop();
+  publishing.join();
+  EXPECT_THAT(problems_of(doctor.out(), "clocks"),
+              testing::ElementsAre(HasSubstr("the clock of late is 3600.")));
+  EXPECT_THAT(problems_of(doctor.out(), "versions"),
+              testing::ElementsAre(HasSubstr("planner on late run version 0.0.1")));
+}
+
+TEST_F(HealthTest, DoctorFindsPeersThatCannotBeConnected) {
+  const messaging::Writer<msg::Goal> goals(*participant_, "command");  // not as readers want them
+  const auto planner = start("planner");
+  ASSERT_TRUE(eventually([&] { return statuses_["planner"].fault_count() > 0; }));
+  std::string out;
+  EXPECT_EQ(run({"doctor", "--json"}, out), 1);
+  EXPECT_THAT(problems_of(out, "QoS"), Contains(HasSubstr("goal: writer 'health test'")));
+  EXPECT_THAT(problems_of(out, "QoS"), Contains(HasSubstr("planner on")));
+}
+
+TEST_F(HealthTest, DoctorFindsAnotherWireVersion) {
+  namespace dds = eprosima::fastdds::dds;
+  auto* factory = dds::DomainParticipantFactory::get_instance();
+  dds::DomainParticipantQos qos;
+  qos.name("robot/old_planner");
+  dds::DomainParticipant* old =
+      factory->create_participant(static_cast<std::uint32_t>(std::stoul(domain_)), qos);
+  ASSERT_NE(old, nullptr);
+  const dds::TypeSupport type(new msg::GoalPubSubType);
+  type.register_type(old);
+  dds::Topic* topic = old->create_topic("topogeo/v9/goal", type.get_type_name(), {});
+  dds::Publisher* publisher = old->create_publisher({});
+  ASSERT_NE(publisher->create_datawriter(topic, {}), nullptr);
+  std::string out;
+  EXPECT_EQ(run({"doctor", "--json"}, out), 1);
+  EXPECT_THAT(problems_of(out, "wire contract"),
+              testing::ElementsAre(HasSubstr("'robot/old_planner' speak version 9")));
+  old->delete_contained_entities();
+  factory->delete_participant(old);
+}
+
+}  // namespace
+}  // namespace topogeo::test

@@ -1,0 +1,150 @@
+// Each fault between services that `topogeo doctor` has to find.
+#include "topogeo/domain_checks.hpp"
+
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "topogeo/messaging/message.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+msg::ServiceStatus service_on(const std::string& service, const std::string& host) {
+  msg::ServiceStatus status;
+  messaging::set_header(status, service == "ga_worker" ? "" : "r1", 0, 0);
+  messaging::set_service(status, service, host + "-1");
+  messaging::set_text(status.host(), host, "host");
+  messaging::set_text(status.version(), "1.2", "version");
+  status.config_fingerprint(7);
+  return status;
+}
+
+messaging::RemoteEndpoint scan_endpoint(const std::string& participant, bool writer) {
+  messaging::RemoteEndpoint endpoint;
+  endpoint.participant = participant;
+  endpoint.topic = "topogeo/v" + std::to_string(msg::kSchemaVersion) + "/scan";
+  endpoint.type = "Scan";
+  endpoint.writer = writer;
+  endpoint.qos.reliable = true;
+  return endpoint;
+}
+
+DomainFacts healthy_domain() {
+  DomainFacts facts;
+  facts.version = "1.2";
+  facts.services = {service_on("sensor_gateway", "robot"), service_on("localizer", "pc"),
+                    service_on("ga_worker", "pc2")};
+  facts.services[2].config_fingerprint(0);
+  facts.endpoints = {scan_endpoint("r1/sensor_gateway", true), scan_endpoint("r1/mapper", false)};
+  for (int i = 0; i < 3; ++i) facts.clocks["pc"].add(i * kSecond_ns, i * kSecond_ns + 2'000'000);
+  return facts;
+}
+
+std::vector<Finding> unwell(const DomainFacts& facts) {
+  std::vector<Finding> findings = run_checks(domain_checks(), facts);
+  std::erase_if(findings, [](const Finding& f) { return f.severity == Severity::kGood; });
+  return findings;
+}
+
+struct DomainFault {
+  const char* name;
+  const char* check;
+  Severity severity;
+  const char* what;
+  void (*inject)(DomainFacts& facts);
+};
+
+void set_clock(DomainFacts& facts, std::int64_t lag_ns) {
+  ClockLag clock;
+  for (int i = 0; i < 3; ++i) clock.add(0, lag_ns + i * 1'000'000);
+  facts.clocks["pc"] = clock;
+}
+
+const std::vector<DomainFault>& domain_faults() {
+  static const std::vector<DomainFault> kFaults = {
+      {"OtherWireVersion", "wire contract", Severity::kProblem,
+       "'r1/old' speak version 9 of the wire contract",
+       [](DomainFacts& f) {
+         f.endpoints.push_back(scan_endpoint("r1/old", true));
+         f.endpoints.back().topic = "topogeo/v9/scan";
+       }},
+      {"OtherVersion", "versions", Severity::kProblem, "ga_worker on pc2 run version 1.1",
+       [](DomainFacts& f) { messaging::set_text(f.services[2].version(), "1.1", "version"); }},
+      {"OtherConfiguration", "configuration", Severity::kProblem, "robot r1 have 2 configurations",
+       [](DomainFacts& f) { f.services[1].config_fingerprint(8); }},
+      {"QosOfAPair", "QoS", Severity::kProblem,
+       "writer 'r1/sensor_gateway' and reader 'r1/mapper' differ in reliability",
+       [](DomainFacts& f) { f.endpoints[0].qos.reliable = false; }},
+      {"QosThatAServiceHasMet", "QoS", Severity::kProblem, "localizer on pc has met 2 peers",
+       [](DomainFacts& f) {
+         msg::FaultCount fault;
+         messaging::set_text(fault.reason(), "incompatible_qos", "reason");
+         fault.count(2);
+         f.services[1].faults().push_back(fault);
+       }},
+      {"ClockBehind", "clocks", Severity::kProblem, "the clock of pc is 10.00 s behind",
+       [](DomainFacts& f) { set_clock(f, 10 * kSecond_ns); }},
+      {"ClockAhead", "clocks", Severity::kProblem, "the clock of pc is 3.00 s ahead",
+       [](DomainFacts& f) { set_clock(f, -3 * kSecond_ns); }},
+      {"ClockPoor", "clocks", Severity::kHint, "0.20 s behind",
+       [](DomainFacts& f) { set_clock(f, kSecond_ns / 5); }},
+  };
+  return kFaults;
+}
+
+TEST(DomainChecks, ServicesThatFitHaveNoFinding) {
+  EXPECT_THAT(unwell(healthy_domain()), IsEmpty());
+  EXPECT_THAT(unwell(DomainFacts{}), IsEmpty()) << "nobody is there";
+}
+
+class DomainFaultTest : public testing::TestWithParam<DomainFault> {};
+
+TEST_P(DomainFaultTest, IsFoundAndNothingElse) {
+  DomainFacts facts = healthy_domain();
+  GetParam().inject(facts);
+  const std::vector<Finding> found = unwell(facts);
+  ASSERT_EQ(found.size(), 1U) << findings_text(found);
+  EXPECT_EQ(found[0].check, GetParam().check);
+  EXPECT_EQ(found[0].severity, GetParam().severity);
+  EXPECT_THAT(found[0].what, HasSubstr(GetParam().what));
+  EXPECT_THAT(found[0].why, Not(IsEmpty()));
+  EXPECT_THAT(found[0].remedy, Not(IsEmpty()));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DomainFaultTest, testing::ValuesIn(domain_faults()),
+                         [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST(DomainChecks, EachHasAFaultThatIsInjected) {
+  std::set<std::string> injected;
+  for (const DomainFault& fault : domain_faults()) injected.insert(fault.check);
+  for (const Check<DomainFacts>& check : domain_checks()) {
+    EXPECT_TRUE(injected.contains(check.name)) << check.name;
+  }
+}
+
+TEST(DomainChecks, TopicsOfOthersAreNotOurs) {
+  DomainFacts facts = healthy_domain();
+  for (messaging::RemoteEndpoint& endpoint : facts.endpoints) endpoint.topic = "rt/scan";
+  facts.endpoints[0].qos.reliable = false;
+  EXPECT_THAT(unwell(facts), IsEmpty());
+}
+
+TEST(ClockLag, TheTimeAMessageTakesDoesNotCount) {
+  ClockLag clock;
+  clock.add(0, 700'000'000);  // an old one, as a late reader gets it
+  clock.add(kSecond_ns, kSecond_ns + 1'000'000);
+  clock.add(2 * kSecond_ns, 2 * kSecond_ns + 40'000'000);
+  EXPECT_DOUBLE_EQ(clock.lag_s(), 0.001);
+  EXPECT_EQ(clock.samples(), 3U);
+}
+
+}  // namespace
+}  // namespace topogeo::cli
