@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "topogeo/support/file_descriptor.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -142,7 +143,7 @@ std::string owner_of_udp_port(std::uint32_t port, const fs::path& proc) {
     std::ifstream input(entry->path() / "comm");
     std::string name;
     std::getline(input, name);
-    return name + " (" + process + ")";
+    return fmt::format("{} ({})", name, process);
   }
   return {};
 }

@@ -172,6 +172,7 @@ std::vector<MetricFamily> metrics_of(const msg::ServiceStatus& status) {
 
 std::vector<std::string> metric_names() {
   std::vector<std::string> names;
+  names.reserve(kFieldMetrics.size() + counter_metrics().size());
   for (const FieldMetric& field : kFieldMetrics) names.emplace_back(field.metric);
   for (const CounterMetric& metric : counter_metrics()) names.emplace_back(metric.metric);
   std::ranges::sort(names);
