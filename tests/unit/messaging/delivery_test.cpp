@@ -314,5 +314,33 @@ TEST(DeliveryInPackets, LargeSamplesReachALateReader) {
   }
 }
 
+TEST(DeliveryInPackets, OfLargeSamplesThatAreReplacedTheLastOnesArrive) {
+  constexpr std::uint32_t kInstances = 8;
+  constexpr std::uint64_t kSamples = 50;
+  ParticipantOptions options = options_in(random_partition());
+  options.profile = "udp_only";
+  const Participant sender(options);
+  const Participant receiver(options);
+  Writer<msg::TrajectorySegment> writer(sender);
+  Reader<msg::TrajectorySegment> reader(receiver);
+  ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    auto segment = message<msg::TrajectorySegment>(i);
+    segment.segment(static_cast<std::uint32_t>(i % kInstances));
+    segment.segment(0xFFFFFFF0U + segment.segment());
+    segment.stops().resize(msg::kSegmentStops);
+    ASSERT_TRUE(writer.write(segment));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  std::set<std::uint64_t> last;
+  EXPECT_TRUE(eventually([&] {
+    reader.take([&](const msg::TrajectorySegment& got, const SampleInfo&) {
+      EXPECT_EQ(got.stops().size(), msg::kSegmentStops);
+      if (got.sequence_number() + kInstances >= kSamples) last.insert(got.sequence_number());
+    });
+    return last.size() == kInstances;
+  })) << last.size();
+}
+
 }  // namespace
 }  // namespace topogeo::messaging
