@@ -14,7 +14,7 @@ set(TOPOGEO_LINT_UNITS
   services    "^services/"
   localizing  "^tests/unit/(geometry|scan|support|voronoi|topomap|localization|search_pool|pipeline)(/|$)"
   units       "^tests/unit/"
-  integration "^tests/(integration|fuzz)"
+  integration "^tests/(integration|faults|fuzz)"
   bench       "^tests/bench")
 
 # Call it when all targets exist. Generated files and files of no unit are left out.
@@ -109,8 +109,8 @@ function(topogeo_add_lint_unit name result targets)
   set(count 0)
   foreach(source IN LISTS ARGN)
     # Each program has a main(), each fuzzer its entry.
-    string(APPEND content "#define main main_${count}\n#define LLVMFuzzerTestOneInput fuzz_${count}\n"
-                          "#include \"${source}\"\n#undef main\n#undef LLVMFuzzerTestOneInput\n")
+    string(APPEND content "#define main main_${count}\n#define LLVMFuzzerTestOneInput fuzz_${count}\n#define LLVMFuzzerInitialize fuzz_start_${count}\n"
+                          "#include \"${source}\"\n#undef main\n#undef LLVMFuzzerTestOneInput\n#undef LLVMFuzzerInitialize\n")
     math(EXPR count "${count} + 1")
   endforeach()
   file(CONFIGURE OUTPUT ${file} CONTENT "${content}" @ONLY)

@@ -320,8 +320,8 @@ void receive(const msg::SnapshotPiece& message) {
 }
 
 /// The bytes of a payload, with the room that the middleware leaves behind them: none.
-struct Bytes {
-  explicit Bytes(std::string_view bytes)
+struct Arrived {
+  explicit Arrived(std::string_view bytes)
       : payload(static_cast<std::uint32_t>(std::max<std::size_t>(1, bytes.size()))) {
     std::ranges::copy(bytes, payload.data);
     payload.length = static_cast<std::uint32_t>(bytes.size());
@@ -341,7 +341,7 @@ template <class Message>
 std::size_t check_bytes(std::string_view bytes) {
   const messaging::TopicInfo& topic = messaging::TopicTraits<Message>::info();
   eprosima::fastdds::dds::TypeSupport type(topic.make_type());
-  Bytes input(bytes);
+  Arrived input(bytes);
   static_cast<void>(messaging::AddressFilter("worker").evaluate(input.payload, {}, {}));
   Message message;
   require(type.deserialize(&input.payload, &message), "a reader is never left with a sample");
@@ -350,7 +350,7 @@ std::size_t check_bytes(std::string_view bytes) {
   if (type->m_isGetKeyDefined) static_cast<void>(type.get_key(&message, &handle, true));
   const std::string sent = written(message, type);
   Message again;
-  Bytes arrived(sent);
+  Arrived arrived(sent);
   require(type.deserialize(&arrived.payload, &again), "what was sent can be read");
   require(written(again, type) == sent, "sending what was read changes nothing");
   try {
