@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/format.hpp"
@@ -83,9 +84,21 @@ void RemotePool::add_map(std::shared_ptr<const topomap::LocalMap> map) {
   maps_.add(std::move(map));
 }
 
+void RemotePool::add_field(std::shared_ptr<const localization::PlaceField> field) {
+  for (const auto& piece : field->pieces()) maps_.add(piece);
+  matcher_.add_field(std::move(field));
+}
+
 // --- the wait
 
 std::vector<MatchResult> RemotePool::match(std::span<const MatchTask> tasks) {
+  // A whole map of more pieces than a message names is searched here.
+  if (!tasks.empty() && tasks.front().places &&
+      tasks.front().places->pieces.size() > localization::PlaceField::kMostPieces) {
+    std::vector<MatchResult> results;
+    for (const MatchTask& task : tasks) results.push_back(matcher_.solve(task));
+    return results;
+  }
   board_.begin(tasks);
   try {
     work();
@@ -181,6 +194,7 @@ bool RemotePool::send(const TaskBoard::Assignment& assignment) {
 // --- the same work here
 
 void RemotePool::prepare(const MatchTask& task) {
+  if (task.places) return;  // add_field did
   for (const auto& [id, hash] : {std::pair{task.reference_map_id, task.reference_hash},
                                  std::pair{task.query_map_id, task.query_hash}}) {
     const topomap::LocalMap* map = maps_.find(id);

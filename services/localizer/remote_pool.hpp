@@ -67,6 +67,7 @@ class RemotePool : public localization::MatchPool {
   ~RemotePool() override;
 
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override;
+  void add_field(std::shared_ptr<const localization::PlaceField> field) override;
   /// Throws Stopped, and what Matcher::solve throws for a task that cannot be solved.
   std::vector<localization::MatchResult> match(
       std::span<const localization::MatchTask> tasks) override;

@@ -11,6 +11,11 @@
 //                     the client and the middleware, 0.25 ms of CPU time for each task, run at the
 //                     expense of the workers; pool/2_200x100 shows what is left of that with longer
 //                     searches.
+// message/K           600 bytes, as many as a task has, K of them in a message, from one
+// participant to
+//                     another of this process: CPU time of both for each of them. What tasks in
+//                     batches would save of the cost of a task.
+// board/W             the client's bookkeeping alone: a task to one of W workers and its answer.
 // pool/latency        one task at a time: median of the time through a pool of one real worker
 // minus
 //                     that of the same search in this process, all maps known everywhere.
@@ -20,15 +25,24 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/store.h"
+#include "topogeo/search_pool/task_board.hpp"
 #include "topogeo/support/cpu_time.hpp"
 
 #include "pool_peers.hpp"
@@ -77,7 +91,8 @@ void dispatch(benchmark::State& state, bool verify) {
   TaskSource source(maps_of_floor());
   PoolClient client(source.maps(), verify);
   Workers workers;
-  for (std::size_t i = 0; i < kProcesses; ++i) workers.start_stubs(client, kWorkers / kProcesses);
+  for (std::size_t i = 0; i < kProcesses; ++i)
+    workers.start_stubs(client.flags(), kWorkers / kProcesses);
   if (!have_workers(state, client, kWorkers)) return;
   // Until every worker has gone through the comparisons that a new one has to.
   for (int i = 0; i < 2; ++i) cost_of(client, source.next(kBatch, kStubTasks));
@@ -134,6 +149,78 @@ void speed_up(benchmark::State& state, std::uint32_t individuals, std::uint32_t 
   state.counters["tasks_per_s"] = kBatch / median(by_two_s);
   state.counters["client_cpu_us"] = 1e6 * cpu_s / (kBatch * kRounds);
   check(state, client);
+}
+
+void message(benchmark::State& state, std::size_t tasks_in_message) {
+  constexpr std::size_t kTaskBytes = 600;
+  constexpr std::size_t kTasks = 2048;
+  messaging::ParticipantOptions options;
+  options.domain = random_domain();
+  options.partition = "message";
+  options.name = "bench";
+  const messaging::Participant from(options);
+  const messaging::Participant to(options);
+  messaging::EventLoop loop;
+  messaging::Writer<msg::SnapshotPiece> writer(from);
+  messaging::Reader<msg::SnapshotPiece> reader(to);
+  std::size_t came = 0;
+  loop.add<msg::SnapshotPiece>(reader, [&](const msg::SnapshotPiece& piece, const auto&) {
+    came += piece.bytes().size() / kTaskBytes;
+    loop.stop();
+  });
+  while (writer.matched() == 0) static_cast<void>(loop.run_for(std::chrono::milliseconds(5)));
+  msg::SnapshotPiece piece;
+  messaging::set_header(piece, "robot", 0, 0);
+  messaging::set_client_id(piece, "bench");
+  piece.bytes().assign(kTaskBytes * tasks_in_message, std::uint8_t{1});
+  double cpu_s = 0.0;
+  for (auto _ : state) {
+    const double before_s = support::process_cpu_s();
+    came = 0;
+    for (std::size_t sent = 0; sent < kTasks; sent += tasks_in_message) {
+      if (!writer.write(piece)) state.SkipWithError("not sent");
+      // As in the pool, where few are under way to a worker.
+      while (came <= sent) static_cast<void>(loop.run_for(std::chrono::seconds(1)));
+    }
+    const double used_s = support::process_cpu_s() - before_s;
+    cpu_s += used_s;
+    state.SetIterationTime(used_s);
+  }
+  state.counters["cpu_us_a_task"] =
+      1e6 * cpu_s / static_cast<double>(kTasks * static_cast<std::size_t>(state.iterations()));
+}
+
+void board(benchmark::State& state, std::size_t workers) {
+  constexpr std::size_t kBatch = 1000;
+  search_pool::BoardConfig config;
+  config.probation = 0;
+  config.audit_every = 0;
+  search_pool::TaskBoard board(config);
+  search_pool::BoardTime now{0};
+  std::uint64_t next_id = 0;
+  for (std::size_t i = 0; i < workers; ++i) {
+    const std::string id = "worker#" + std::to_string(i);
+    board.worker_up(id, 1, now);
+    board.set_reachable(id, true);
+  }
+  const double before_s = support::process_cpu_s();
+  for (auto _ : state) {
+    std::vector<MatchTask> tasks(kBatch);
+    for (MatchTask& task : tasks) task.task_id = next_id++;
+    board.begin(tasks);
+    std::deque<search_pool::TaskBoard::Assignment> out;
+    while (!board.done()) {
+      now += std::chrono::microseconds(100);
+      while (auto assignment = board.next_remote(now)) out.push_back(*assignment);
+      localization::MatchResult result;
+      result.task_id = board.task(out.front().task).task_id;
+      board.answer(out.front().worker_id, std::move(result), now);
+      out.pop_front();
+    }
+    benchmark::DoNotOptimize(board.take_results());
+  }
+  state.counters["cpu_us_a_task"] = 1e6 * (support::process_cpu_s() - before_s) /
+                                    static_cast<double>(state.iterations()) / kBatch;
 }
 
 void latency(benchmark::State& state) {
@@ -206,6 +293,13 @@ void register_all() {
   add("pool/2", speed_up, 100, 50)->Iterations(1);
   add("pool/2_50x30", speed_up, 50, 30)->Iterations(1);
   add("pool/2_200x100", speed_up, 200, 100)->Iterations(1);
+  for (const std::size_t tasks : {1, 2, 4, 8, 16}) {
+    add(("message/" + std::to_string(tasks)).c_str(), message, tasks)->Iterations(3);
+  }
+  for (const std::size_t workers : {64, 256, 1000}) {
+    benchmark::RegisterBenchmark(("board/" + std::to_string(workers)).c_str(), board, workers)
+        ->Unit(benchmark::kMillisecond);
+  }
   add("pool/latency", latency)->Iterations(1);
   add("pool/late_map", late_map, true)->Iterations(kStarts);
   add("pool/late_map_asked", late_map, false)->Iterations(kStarts);

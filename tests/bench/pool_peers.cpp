@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <string_view>
 #include <thread>
@@ -57,10 +58,15 @@ std::vector<MatchTask> TaskSource::next(std::size_t count, std::uint64_t differe
   return tasks;
 }
 
-PoolClient::PoolClient(const Maps& maps, bool verify) {
+std::uint32_t random_domain() {
+  std::random_device device;
+  return 1 + device() % kDomains;
+}
+
+PoolClient::PoolClient(const Maps& maps, bool verify, std::uint32_t domain) {
   std::random_device device;
   const std::string number = std::to_string(device());
-  options_.domain = 1 + device() % kDomains;
+  options_.domain = domain;
   options_.partition = "bench-" + number;
   options_.name = "bench";
   participant_.emplace(options_);
@@ -77,14 +83,30 @@ PoolClient::PoolClient(const Maps& maps, bool verify) {
   for (const auto& map : maps) pool_->add_map(map);
 }
 
+std::vector<std::string> flags_of(std::uint32_t domain, const std::string& partition) {
+  return {"--domain", std::to_string(domain), "--partition", partition};
+}
+
 std::vector<std::string> PoolClient::flags() const {
-  return {"--domain", std::to_string(options_.domain), "--partition", options_.partition};
+  return flags_of(options_.domain, options_.partition);
 }
 
 void PoolClient::publish(const Maps& maps) {
   for (const auto& map : maps) {
     if (!map_writer_->write(service::to_msg(*map))) fault_ = "local map not sent";
   }
+}
+
+double Workers::cpu_s(std::size_t worker) const {
+  double sum_ns = 0.0;
+  const std::filesystem::path tasks =
+      "/proc/" + std::to_string(children_.at(worker).pid()) + "/task";
+  for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+    double run_ns = 0.0;
+    std::ifstream(task.path() / "schedstat") >> run_ns;
+    sum_ns += run_ns;
+  }
+  return 1e-9 * sum_ns;
 }
 
 Workers::~Workers() {
@@ -102,9 +124,10 @@ void Workers::start_real(const PoolClient& client) {
                          "/dev/null");
 }
 
-void Workers::start_stubs(const PoolClient& client, std::size_t count) {
-  std::vector<std::string> words = client.flags();
-  words.insert(words.end(), {"--stub-workers", std::to_string(count)});
+void Workers::start_stubs(std::vector<std::string> words, std::size_t count,
+                          std::chrono::microseconds cost) {
+  words.insert(words.end(), {"--stub-workers", std::to_string(count), "--cost-us",
+                             std::to_string(cost.count())});
   children_.emplace_back("stub workers", this_program(), words, "/dev/null");
 }
 

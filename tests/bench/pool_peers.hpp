@@ -55,11 +55,18 @@ class TaskSource {
 /// Different tasks that stub workers know the answers to.
 constexpr std::uint64_t kStubTasks = 60;
 
+/// A DDS domain that hardly any other program uses.
+std::uint32_t random_domain();
+
+/// Flags that let a service join.
+std::vector<std::string> flags_of(std::uint32_t domain, const std::string& partition);
+
 /// A localizer's end of the pool, in a partition of its own.
 class PoolClient {
  public:
   /// Knows the maps but sends them to nobody.
-  explicit PoolClient(const localization::test::Maps& maps, bool verify = true);
+  explicit PoolClient(const localization::test::Maps& maps, bool verify = true,
+                      std::uint32_t domain = random_domain());
 
   [[nodiscard]] localizer::RemotePool& pool() { return *pool_; }
   /// Flags that let a service meet this client.
@@ -88,8 +95,13 @@ class Workers {
 
   /// Starts a real worker of one slot.
   void start_real(const PoolClient& client);
-  /// Starts a process with `count` workers that answer without searching (stub_workers.hpp).
-  void start_stubs(const PoolClient& client, std::size_t count);
+  /// Starts a process with `count` workers that answer without searching (stub_workers.hpp), where
+  /// `flags` say; each answer takes so long.
+  void start_stubs(std::vector<std::string> flags, std::size_t count,
+                   std::chrono::microseconds cost = {});
+  [[nodiscard]] std::size_t size() const { return children_.size(); }
+  /// CPU time of the threads of a process, the one started as number `worker`.
+  [[nodiscard]] double cpu_s(std::size_t worker) const;
 
  private:
   std::vector<supervision::ChildProcess> children_;

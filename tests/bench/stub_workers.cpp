@@ -20,6 +20,7 @@
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/msg/match.h"
 #include "topogeo/msg/status.h"
+#include "topogeo/search_pool/fair_queue.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/version.hpp"
 
@@ -45,13 +46,15 @@ Answers solve_all() {
 class StubWorker {
  public:
   StubWorker(const messaging::Participant& participant, messaging::EventLoop& loop,
-             const std::string& worker_id, const Answers& answers)
+             const std::string& worker_id, const Answers& answers, std::chrono::microseconds cost)
       : answers_(answers),
+        loop_(loop),
+        cost_(cost),
         statuses_(participant),
         results_(participant),
         tasks_(participant, {.role = {}, .addressee = worker_id}) {
     loop.add<msg::MatchTask>(
-        tasks_, [this](const msg::MatchTask& task, const messaging::SampleInfo&) { answer(task); });
+        tasks_, [this](const msg::MatchTask& task, const messaging::SampleInfo&) { take(task); });
     messaging::set_header(status_, "", 0, 0);
     messaging::set_worker_id(status_, worker_id);
     messaging::set_text(status_.name(), "stub", "name");
@@ -68,7 +71,27 @@ class StubWorker {
 
  private:
   void announce() {
+    status_.tasks_done(sent_);
     if (!statuses_.write(status_)) std::cerr << "status not sent\n";
+  }
+
+  // One task after the other, clients in turn, as in a ga_worker of one slot.
+  void take(const msg::MatchTask& task) {
+    if (cost_.count() == 0) {
+      answer(task);
+      return;
+    }
+    queue_.push(task.client_id().to_string(), task);
+    if (!busy_) begin();
+  }
+
+  void begin() {
+    busy_ = !queue_.empty();
+    if (!busy_) return;
+    loop_.call_after(cost_, [this, task = *queue_.pop()] {
+      answer(task);
+      begin();
+    });
   }
 
   void answer(const msg::MatchTask& message) {
@@ -85,6 +108,10 @@ class StubWorker {
   }
 
   const Answers& answers_;
+  messaging::EventLoop& loop_;
+  std::chrono::microseconds cost_;
+  search_pool::FairQueue<msg::MatchTask> queue_;
+  bool busy_ = false;
   std::uint64_t sent_ = 0;
   messaging::Writer<msg::WorkerStatus> statuses_;
   messaging::Writer<msg::MatchResult> results_;
@@ -114,9 +141,10 @@ int run_stub_workers(int argc, char** argv) {
     const messaging::Participant participant(options);
     std::vector<std::unique_ptr<StubWorker>> workers;
     const std::size_t count = std::stoul(value_of(words, "--stub-workers"));
+    const std::chrono::microseconds cost{std::stol(value_of(words, "--cost-us"))};
     for (std::size_t i = 0; i < count; ++i) {
       const std::string worker_id = "stub#" + std::to_string(::getpid()) + "-" + std::to_string(i);
-      workers.push_back(std::make_unique<StubWorker>(participant, loop, worker_id, answers));
+      workers.push_back(std::make_unique<StubWorker>(participant, loop, worker_id, answers, cost));
     }
     loop.run();
     return 0;

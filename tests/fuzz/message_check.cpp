@@ -10,6 +10,7 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/topics.hpp"
@@ -190,6 +191,13 @@ void receive(const msg::MapCopy& message) {
 void receive(const msg::MatchTask& message) {
   localization::MatchTask task = service::from_msg(message);
   const topomap::LocalMap query = second_room();
+  if (task.places) {
+    const std::vector pieces{std::make_shared<const topomap::LocalMap>(room()),
+                             std::make_shared<const topomap::LocalMap>(query)};
+    const localization::PlaceField field(pieces, *task.places);
+    static_cast<void>(field.answer(*task.places));
+    return;
+  }
   const localization::MatchTask known = task_with(query);
   task.reference_map_id = known.reference_map_id;
   task.query_map_id = known.query_map_id;

@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "pool_fixture.hpp"
+#include "search_pool/worker_fixture.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -28,6 +29,72 @@ TEST_F(PoolTest, TwoWorkersGiveWhatOneProcessGives) {
   EXPECT_EQ(pool_->counts().sent, 60U);
   EXPECT_EQ(pool_->counts().in_process, 0U);
   EXPECT_THAT(faults_, IsEmpty());
+}
+
+class PlacesInPoolTest : public PoolTest {
+ protected:
+  void SetUp() override {
+    PoolTest::SetUp();
+    pool_->add_field(field_);
+    const std::vector<Eigen::Vector2d> seen{{0.2, -1.4}, {-0.2, -1.4}, {0.1, -1.4}};
+    for (const auto& question : field_->questions(seen)) {
+      MatchTask& task = tasks_.emplace_back();
+      task.task_id = tasks_.size();
+      task.query_map_id = maps_.front()->id;
+      task.places = question;
+    }
+  }
+  void expect_right(const std::vector<localization::MatchResult>& results) {
+    ASSERT_EQ(results.size(), tasks_.size());
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+      EXPECT_EQ(results[i].task_id, tasks_[i].task_id);
+      EXPECT_FALSE(results[i].seeds.empty());
+      EXPECT_EQ(results[i].seeds, field_->answer(*tasks_[i].places));
+    }
+  }
+
+  std::shared_ptr<const localization::PlaceField> field_ = search_pool::place_field();
+  std::vector<MatchTask> tasks_;
+};
+
+TEST_F(PlacesInPoolTest, WorkersSearchPartsOfTheWholeMap) {
+  expect_right(pool_->match(tasks_));
+  EXPECT_EQ(pool_->counts().in_process, tasks_.size());
+  start_worker("w1");
+  start_worker("w2");
+  ASSERT_EQ(pool_->wait_for_workers(2, kPatience), 2U);
+  for (MatchTask& task : tasks_) task.task_id += 100;
+  expect_right(pool_->match(tasks_));
+  EXPECT_EQ(pool_->counts().in_process, tasks_.size());
+  EXPECT_EQ(pool_->maps_sent(), 2 * field_->pieces().size());
+  EXPECT_THAT(faults_, IsEmpty());
+}
+
+TEST_F(PlacesInPoolTest, AWorkerWithAWrongScoreIsExcluded) {
+  FakeWorker wrong(partition_, loop_, "wrong", [&](FakeWorker& self, const msg::MatchTask& task) {
+    localization::MatchResult result;
+    result.seeds = field_->answer(*service::from_msg(task).places);
+    ++result.seeds.back().score;
+    self.answer(task, result);
+  });
+  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  expect_right(pool_->match(tasks_));
+  EXPECT_EQ(pool_->counts().workers_excluded, 1U);
+  EXPECT_THAT(faults_, Contains("wrong match result"));
+}
+
+// All scores are right, so only the search of the same part here shows it.
+TEST_F(PlacesInPoolTest, AWorkerThatLeavesOutTheBestSeedsIsExcluded) {
+  FakeWorker lazy(partition_, loop_, "lazy", [&](FakeWorker& self, const msg::MatchTask& task) {
+    localization::MatchResult result;
+    result.seeds = field_->answer(*service::from_msg(task).places);
+    result.seeds.erase(result.seeds.begin());
+    self.answer(task, result);
+  });
+  ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
+  expect_right(pool_->match(tasks_));
+  EXPECT_EQ(pool_->counts().workers_excluded, 1U);
+  EXPECT_THAT(faults_, Contains("different answers to a task"));
 }
 
 TEST_F(PoolTest, WithoutWorkersItSearchesItself) {

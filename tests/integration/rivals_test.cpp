@@ -118,8 +118,11 @@ TEST_F(Rivals, ARobotHasOneMapStore) {
 TEST_F(Rivals, ARobotHasOneLocalizer) {
   auto first = start("localizer", {"--standalone"});
   ASSERT_TRUE(works(*first));
+  const auto of_another_robot = start("localizer", {"--standalone", "--robot-id", "other"});
   auto second = start("localizer", {"--standalone"});
   expect_refused(*second, *first, "localizer");
+  EXPECT_TRUE(works(*of_another_robot));
+  EXPECT_EQ(status(*of_another_robot)->faults().size(), 0U);
   first = killed(std::move(first));
   const auto again = start("localizer", {"--standalone"});
   EXPECT_TRUE(works(*again)) << again->err();

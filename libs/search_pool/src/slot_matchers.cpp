@@ -1,7 +1,10 @@
 #include "topogeo/search_pool/slot_matchers.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
+#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/search_pool/map_cache.hpp"
 
 namespace topogeo::search_pool {
@@ -24,6 +27,12 @@ std::size_t feature_bytes(const topomap::LocalMap& map) {
 localization::MatchResult SlotMatchers::solve(const ReadyJob& job) {
   Kept& kept = of(job.job.client_id);
   const localization::MatchTask& task = job.job.task;
+  if (task.places) {
+    if (!kept.matcher.has_field(task.places->field_hash)) add_field(kept, job);
+    localization::MatchResult result = kept.matcher.solve(task);
+    make_room();
+    return result;
+  }
   if (!kept.matcher.has_map(task.reference_map_id, task.reference_hash)) {
     add_map(kept, job.reference);
   }
@@ -51,7 +60,7 @@ SlotMatchers::Kept& SlotMatchers::of(const std::string& client_id) {
   const auto found = std::find_if(kept_.begin(), kept_.end(),
                                   [&](const Kept& kept) { return kept.client_id == client_id; });
   if (found == kept_.end()) {
-    kept_.push_front({client_id, {}, 0, kGrid_bytes});
+    kept_.push_front({client_id, {}, 0, kGrid_bytes, 0});
   } else {
     kept_.splice(kept_.begin(), kept_, found);
   }
@@ -62,6 +71,13 @@ void SlotMatchers::add_map(Kept& kept, const MapPointer& map) {
   kept.matcher.add_map(*map);
   ++kept.maps;
   kept.bytes += feature_bytes(*map);
+}
+
+void SlotMatchers::add_field(Kept& kept, const ReadyJob& job) {
+  auto field = std::make_shared<const localization::PlaceField>(job.pieces, *job.job.task.places);
+  kept.bytes += field->bytes() - kept.field_bytes;
+  kept.field_bytes = field->bytes();
+  kept.matcher.add_field(std::move(field));
 }
 
 // A matcher cannot forget single maps. One that has grown too large goes whole: what it still needs

@@ -7,18 +7,61 @@
 
 namespace topogeo::search_pool {
 
+namespace {
+
+bool is_complete(const ReadyJob& job) {
+  if (!job.job.task.places) return job.reference && job.query;
+  return std::ranges::find(job.pieces, nullptr) == job.pieces.end();
+}
+
+/// Gives the job a map that it lacks. True when it wanted it.
+bool give(ReadyJob& job, std::uint64_t hash, const MapPointer& map) {
+  const localization::MatchTask& task = job.job.task;
+  bool wanted = false;
+  const auto take = [&](std::uint64_t meant, MapPointer& to) {
+    if (meant != hash) return;
+    to = map;
+    wanted = true;
+  };
+  if (!task.places) {
+    take(task.reference_hash, job.reference);
+    take(task.query_hash, job.query);
+    return wanted;
+  }
+  for (std::size_t i = 0; i < job.pieces.size(); ++i) {
+    take(task.places->pieces[i].content_hash, job.pieces[i]);
+  }
+  return wanted;
+}
+
+}  // namespace
+
 template <class Action>
 void TaskIntake::for_each_lack(const ReadyJob& job, Action action) {
   const localization::MatchTask& task = job.job.task;
+  if (task.places) {
+    for (std::size_t i = 0; i < job.pieces.size(); ++i) {
+      const auto& piece = task.places->pieces[i];
+      if (!job.pieces[i]) action(Lack{job.job.client_id, piece.content_hash}, piece.map_id);
+    }
+    return;
+  }
   if (!job.reference) action(Lack{job.job.client_id, task.reference_hash}, task.reference_map_id);
   if (!job.query) action(Lack{job.job.client_id, task.query_hash}, task.query_map_id);
 }
 
 std::optional<ReadyJob> TaskIntake::add(MatchJob job, Time now) {
-  MapPointer reference = maps_.find(job.task.reference_hash);
-  MapPointer query = maps_.find(job.task.query_hash);
-  ReadyJob ready{std::move(job), std::move(reference), std::move(query)};
-  if (ready.reference && ready.query) return ready;
+  ReadyJob ready{std::move(job), {}, {}, {}};
+  const localization::MatchTask& task = ready.job.task;
+  if (task.places) {
+    for (const auto& piece : task.places->pieces) {
+      ready.pieces.push_back(maps_.find(piece.content_hash));
+    }
+  } else {
+    ready.reference = maps_.find(task.reference_hash);
+    ready.query = maps_.find(task.query_hash);
+  }
+  if (is_complete(ready)) return ready;
   for_each_lack(ready, [&](const Lack& lack, std::uint32_t /*map_id*/) {
     requested_.try_emplace(lack, now + options_.first_request);
   });
@@ -32,11 +75,8 @@ std::vector<ReadyJob> TaskIntake::add_map(MapPointer map) {
   bool wanted = false;
   for (auto it = waiting_.begin(); it != waiting_.end();) {
     ReadyJob& job = it->job;
-    const localization::MatchTask& task = job.job.task;
-    if (task.reference_hash == hash) job.reference = map;
-    if (task.query_hash == hash) job.query = map;
-    wanted = wanted || task.reference_hash == hash || task.query_hash == hash;
-    if (job.reference && job.query) {
+    wanted |= give(job, hash, map);
+    if (is_complete(job)) {
       ready.push_back(std::move(job));
       it = waiting_.erase(it);
     } else {

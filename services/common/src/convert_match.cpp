@@ -70,6 +70,50 @@ localization::MatchSolution from_solution(const msg::MatchSolution& solution) {
   return {from_msg(solution.T_reference_query()), finite(solution.fitness(), "solution.fitness")};
 }
 
+msg::PlaceQuestion to_question(const localization::PlaceQuestion& question) {
+  check_bound("places.points", question.points.size(), msg::kMaxPlacePoints);
+  check_bound("places.pieces", question.pieces.size(), msg::kMaxPlacePieces);
+  msg::PlaceQuestion out;
+  out.field_hash(question.field_hash);
+  out.wall_pieces(question.wall_pieces);
+  out.margin_m(question.margin_m);
+  out.first_heading(question.first_heading);
+  out.headings(question.headings);
+  for (const topomap::ScanPoint& point : question.points) {
+    msg::PlacePoint& to = out.points().emplace_back();
+    to.x_m(point.x_m);
+    to.y_m(point.y_m);
+  }
+  for (const auto& piece : question.pieces) {
+    msg::PlacePiece& to = out.pieces().emplace_back();
+    to.map_id(piece.map_id);
+    to.content_hash(piece.content_hash);
+  }
+  return out;
+}
+
+std::shared_ptr<const localization::PlaceQuestion> from_question(
+    const msg::PlaceQuestion& question) {
+  if (question.pieces().empty()) return nullptr;
+  auto out = std::make_shared<localization::PlaceQuestion>();
+  out->field_hash = question.field_hash();
+  out->wall_pieces = question.wall_pieces();
+  out->margin_m = finite(question.margin_m(), "places.margin_m");
+  // A margin gives memory: no laser reaches a kilometre.
+  constexpr double kWidestMargin_m = 1000.0;
+  check(out->margin_m >= 0.0 && out->margin_m <= kWidestMargin_m, "places.margin_m", "0 to 1000");
+  out->first_heading = question.first_heading();
+  out->headings = question.headings();
+  for (const msg::PlacePoint& point : question.points()) {
+    out->points.push_back({static_cast<float>(finite(point.x_m(), "places.points")),
+                           static_cast<float>(finite(point.y_m(), "places.points"))});
+  }
+  for (const msg::PlacePiece& piece : question.pieces()) {
+    out->pieces.push_back({piece.map_id(), piece.content_hash()});
+  }
+  return out;
+}
+
 }  // namespace
 
 msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& address) {
@@ -99,6 +143,7 @@ msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& a
   out.solutions_wanted(task.solutions_wanted);
   out.gate(to_gate(task.gate));
   out.seed(task.seed);
+  if (task.places) out.places(to_question(*task.places));
   return out;
 }
 
@@ -125,6 +170,7 @@ localization::MatchTask from_msg(const msg::MatchTask& message) {
   out.solutions_wanted = message.solutions_wanted();
   out.gate = from_gate(message.gate());
   out.seed = message.seed();
+  out.places = from_question(message.places());
   return out;
 }
 
@@ -153,6 +199,13 @@ msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddr
   out.seed(result.seed);
   out.verdict(static_cast<msg::MatchVerdict>(result.verdict));
   out.reason(static_cast<msg::MatchReason>(result.reason));
+  check_bound("seeds", result.seeds.size(), msg::kMaxPlaceSeeds);
+  for (const localization::PlaceSeed& seed : result.seeds) {
+    msg::PlaceSeed& to = out.seeds().emplace_back();
+    to.score(seed.score);
+    to.heading(seed.heading);
+    to.cell(seed.cell);
+  }
   return out;
 }
 
@@ -180,6 +233,9 @@ localization::MatchResult from_msg(const msg::MatchResult& message) {
   out.seed = message.seed();
   out.verdict = static_cast<localization::Verdict>(message.verdict());
   out.reason = static_cast<localization::Reason>(message.reason());
+  for (const msg::PlaceSeed& seed : message.seeds()) {
+    out.seeds.push_back({seed.score(), seed.heading(), seed.cell()});
+  }
   return out;
 }
 

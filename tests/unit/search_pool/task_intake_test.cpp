@@ -131,5 +131,30 @@ TEST_F(TaskIntakeTest, ForgetsAClientThatIsGone) {
   EXPECT_EQ(due.requests[0].client_id, "stays");
 }
 
+TEST_F(TaskIntakeTest, APartOfASearchWaitsForAllPiecesOfTheMap) {
+  const auto field = place_field();
+  ASSERT_EQ(field->pieces().size(), 2U);
+  EXPECT_FALSE(intake_.add(place_job(*field, 1), at(0)));
+  const TaskIntake::Due due = intake_.check(at(20));
+  ASSERT_THAT(due.requests, SizeIs(2));
+  EXPECT_EQ(due.requests[0].map_id, localization::PlaceField::kFirstPiece);
+  EXPECT_EQ(due.requests[1].map_id, localization::PlaceField::kFirstPiece + 1);
+  EXPECT_THAT(intake_.add_map(field->pieces()[1]), IsEmpty());
+  EXPECT_THAT(intake_.check(at(1000)).requests, SizeIs(1));
+  const auto ready = intake_.add_map(field->pieces()[0]);
+  ASSERT_THAT(ready, SizeIs(1));
+  EXPECT_EQ(ready[0].pieces, field->pieces());
+  EXPECT_TRUE(intake_.add(place_job(*field, 2), at(1000)));
+}
+
+TEST_F(TaskIntakeTest, APieceThatDoesNotComeIsNamed) {
+  const auto field = place_field();
+  intake_.add_map(field->pieces()[0]);
+  EXPECT_FALSE(intake_.add(place_job(*field, 1), at(0)));
+  const TaskIntake::Due due = intake_.check(at(2000));
+  ASSERT_THAT(due.given_up, SizeIs(1));
+  EXPECT_THAT(due.given_up[0].why, HasSubstr("local map 2147483649 ("));
+}
+
 }  // namespace
 }  // namespace topogeo::search_pool

@@ -8,8 +8,10 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "topogeo/geometry/portable_math.hpp"
+#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/search_pool/match_job.hpp"
 
 namespace topogeo::search_pool {
@@ -54,7 +56,35 @@ inline MatchJob job(const MapPointer& reference, const MapPointer& query, std::u
 
 inline ReadyJob ready_job(const MapPointer& reference, const MapPointer& query, std::uint64_t id,
                           const std::string& client_id = "client") {
-  return {job(reference, query, id, client_id), reference, query};
+  return {job(reference, query, id, client_id), reference, query, {}};
+}
+
+/// A whole map of one square room and a row of free cells in its middle, which travels as two
+/// pieces.
+inline std::shared_ptr<const localization::PlaceField> place_field(double margin_m = 2.0) {
+  std::vector<topomap::ScanPoint> walls;
+  for (int i = 0; i < 60; ++i) {
+    const float t = 0.05F * static_cast<float>(i);
+    walls.insert(walls.end(), {{t, 0.0F}, {t, 3.0F}, {0.0F, t}, {3.0F, t}});
+  }
+  auto field = std::make_shared<localization::PlaceField>(walls, margin_m);
+  const auto columns = static_cast<std::size_t>(field->grid().columns());
+  std::vector<std::uint8_t> free(columns * static_cast<std::size_t>(field->grid().rows()), 0);
+  const auto row = static_cast<std::size_t>(field->grid().row(1.5));
+  const auto first = static_cast<std::size_t>(field->grid().column(1.2));
+  for (std::size_t i = 0; i < 3; ++i) free[row * columns + first + i] = 1;
+  field->set_free(free);
+  return field;
+}
+
+/// A part of a search of it.
+inline MatchJob place_job(const localization::PlaceField& field, std::uint64_t id,
+                          const std::string& client_id = "client") {
+  MatchJob result{id, client_id, "robot", 0, {}};
+  result.task.task_id = id;
+  const std::vector<Eigen::Vector2d> seen{{0.2, -1.4}, {-0.2, -1.4}};
+  result.task.places = field.questions(seen).front();
+  return result;
 }
 
 inline bool same(const localization::MatchSolution& a, const localization::MatchSolution& b) {

@@ -120,5 +120,23 @@ TEST_F(SlotMatchersTest, StaysWithinItsMemoryWithEverNewMapsOfOneClient) {
   expect_right(matchers, ready_job(room(0, 0.0), room(1, 0.2), 0));
 }
 
+TEST_F(SlotMatchersTest, KeepsOneWholeMapOfEachClient) {
+  SlotMatchers matchers(std::size_t{64} << 20U);
+  const auto answer = [&](const localization::PlaceField& field, const std::string& client) {
+    ReadyJob job{place_job(field, 1, client), {}, {}, field.pieces()};
+    return matchers.solve(job).seeds;
+  };
+  const auto one = place_field(2.0);
+  const auto other = place_field(3.0);
+  EXPECT_EQ(answer(*one, "a"), one->answer(*place_job(*one, 1).task.places));
+  const std::size_t bytes = matchers.bytes();
+  EXPECT_EQ(answer(*one, "a"), answer(*one, "a"));
+  EXPECT_EQ(matchers.bytes(), bytes);
+  EXPECT_EQ(answer(*other, "a"), other->answer(*place_job(*other, 1).task.places));
+  EXPECT_EQ(matchers.bytes(), bytes + other->bytes() - one->bytes());
+  EXPECT_EQ(answer(*one, "b"), answer(*one, "a"));
+  EXPECT_EQ(matchers.size(), 2U);
+}
+
 }  // namespace
 }  // namespace topogeo::search_pool

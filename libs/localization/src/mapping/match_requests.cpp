@@ -1,8 +1,10 @@
 #include "topogeo/localization/mapping/match_requests.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "topogeo/localization/mapping/search_space.hpp"
+#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {
@@ -26,8 +28,46 @@ MatchTask MatchRequests::make(std::uint32_t reference_id, std::uint32_t query_id
   task.reference_hash = reference.hash;
   task.query_hash = query.hash;
   task.seed = support::derive_seed(config_.seed, reference.robot_id,
-                                   {reference_id, query_id, task.task_id});
+                                   {reference_id, query_id, next_match_++});
   return task;
+}
+
+MatchTask MatchRequests::place_task(const std::shared_ptr<const PlaceQuestion>& question,
+                                    std::uint32_t query_id) {
+  MatchTask task;
+  task.task_id = next_task_++;
+  task.query_map_id = query_id;
+  task.query_hash = maps_.at(query_id).hash;
+  task.places = question;
+  return task;
+}
+
+std::vector<std::vector<PlaceSeed>> MatchRequests::ask(
+    std::span<const std::shared_ptr<const PlaceQuestion>> questions, std::uint32_t query_id) {
+  if (questions.empty()) return {};
+  std::vector<MatchTask> tasks;
+  for (const auto& question : questions) tasks.push_back(place_task(question, query_id));
+  std::vector<std::vector<PlaceSeed>> answers;
+  for (MatchResult& result : pool_.match(tasks)) answers.push_back(std::move(result.seeds));
+  return answers;
+}
+
+std::vector<MatchSolution> MatchRequests::climb(
+    const std::shared_ptr<const PlaceQuestion>& question, std::span<const geometry::Pose2> poses,
+    std::uint32_t query_id) {
+  std::vector<MatchTask> tasks;
+  while (!poses.empty()) {
+    const auto some = poses.first(std::min(poses.size(), PlaceField::kTaskPoses));
+    poses = poses.subspan(some.size());
+    tasks.push_back(place_task(question, query_id));
+    tasks.back().initial_individuals.assign(some.begin(), some.end());
+  }
+  if (tasks.empty()) return {};
+  std::vector<MatchSolution> climbed;
+  for (const MatchResult& result : pool_.match(tasks)) {
+    climbed.insert(climbed.end(), result.solutions.begin(), result.solutions.end());
+  }
+  return climbed;
 }
 
 std::vector<MatchResult> MatchRequests::run(std::span<const MatchTask> tasks) {

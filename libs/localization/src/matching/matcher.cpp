@@ -9,6 +9,7 @@
 
 #include "topogeo/localization/matching/genetic_search.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/localization/places/place_field.hpp"
 
 #include "match_evidence.hpp"
 #include "match_rivals.hpp"
@@ -86,7 +87,33 @@ const Reference& Matcher::reference(std::uint32_t id, std::uint64_t hash) {
   return references_.front().reference;
 }
 
+bool Matcher::has_field(std::uint64_t hash) const {
+  return field_ != nullptr && field_->hash() == hash;
+}
+
+const PlaceField& Matcher::field(const PlaceQuestion& question) const {
+  if (!has_field(question.field_hash)) throw std::out_of_range("the whole map is not known");
+  return *field_;
+}
+
 MatchResult Matcher::solve(const MatchTask& task) {
+  if (task.places) {
+    MatchResult result;
+    result.task_id = task.task_id;
+    result.status = MatchStatus::kSolved;
+    const PlaceField& whole_map = field(*task.places);
+    if (task.initial_individuals.size() > PlaceField::kTaskPoses) {
+      throw std::invalid_argument(
+          "place question: " + std::to_string(task.initial_individuals.size()) +
+          " poses, at most " + std::to_string(PlaceField::kTaskPoses));
+    }
+    if (task.places->headings == 0) {
+      result.solutions = whole_map.climb_from(*task.places, task.initial_individuals);
+    } else {
+      result.seeds = whole_map.answer(*task.places);
+    }
+    return result;
+  }
   check(task);
   const MatchFeatures& query = known(task.query_map_id, task.query_hash).features;
   const Reference& against = reference(task.reference_map_id, task.reference_hash);

@@ -1,12 +1,11 @@
 #include "topogeo/localization/tracking/global_localization.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
@@ -19,21 +18,11 @@ namespace {
 
 // These depend on each other and on the time that a search may take (benchmark relocalize/csail),
 // so none is a setting.
-constexpr double kCoarseCell_m = 0.25;   // a scan may be off by half of it and still score
-constexpr double kCoarseWidth_m = 0.60;  // of the kernel: spans the 5 degrees between headings
-constexpr double kFineCell_m = 0.05;     // as the cells of the global map
-constexpr double kFineWidth_m = 0.30;    // of the kernel: spans a coarse cell
 constexpr double kThinned_m = 0.05;      // of the map's points
 constexpr double kRobotRadius_m = 0.20;  // a scan comes from no place nearer to a wall
 constexpr double kSeenFree_m = 8.0;      // how far from a stop a scan may come from
-constexpr int kHeadings = 72;            // 5 degrees apart
-constexpr int kHeadingsOfSector = 18;    // the best heading of each sector is kept for each cell
-constexpr int kSectors = kHeadings / kHeadingsOfSector;
-constexpr std::size_t kCoarsePoints = 64;  // of the scan, compared with the coarse field
-constexpr std::size_t kFinePoints = 120;   // and with the fine one
-constexpr std::size_t kClimbing = 300;     // best seeds that climb in the fine field
-constexpr std::size_t kAligned = 8;        // best climbed places that are aligned point to line
-constexpr double kNearStop_m = 6.0;        // a stored stop this near sees most of what a scan does
+constexpr std::size_t kAligned = 8;      // best climbed places that are aligned point to line
+constexpr double kNearStop_m = 6.0;      // a stored stop this near sees most of what a scan does
 
 // The answer to one scan. The limits were chosen on logs with known poses (tests/bench,
 // topogeo_relocalization) so that no wrong place is accepted.
@@ -87,6 +76,16 @@ std::vector<Eigen::Vector2d> thinned(std::vector<Eigen::Vector2d> points_m) {
   return out;
 }
 
+/// As they are sent, so that the field is the same everywhere.
+std::vector<topomap::ScanPoint> as_sent(const std::vector<Eigen::Vector2d>& points_m) {
+  std::vector<topomap::ScanPoint> out;
+  out.reserve(points_m.size());
+  for (const Eigen::Vector2d& p : points_m) {
+    out.push_back({static_cast<float>(p.x()), static_cast<float>(p.y())});
+  }
+  return out;
+}
+
 std::vector<Eigen::Vector2d> map_points(std::span<const topomap::LocalMap> maps,
                                         const topomap::Trajectory& trajectory) {
   std::vector<Eigen::Vector2d> points_m;
@@ -134,138 +133,73 @@ GlobalLocalizer::GlobalLocalizer(std::span<const topomap::LocalMap> maps,
       longest_m = std::max(longest_m, std::sqrt(double{p.x_m} * p.x_m + double{p.y_m} * p.y_m));
     }
   }
-  coarse_ = KernelGrid(points_m, kCoarseCell_m, kCoarseWidth_m, longest_m + 1.0);
-  fine_ = KernelGrid(points_m, kFineCell_m, kFineWidth_m, 1.0);
-  find_free_cells();
+  auto field = std::make_shared<PlaceField>(as_sent(points_m), longest_m + 1.0);
+  field->set_free(free_cells(*field));
+  field_ = std::move(field);
 }
 
 // Cells that a stop saw free and that have room for a robot.
-void GlobalLocalizer::find_free_cells() {
-  const auto columns = static_cast<std::size_t>(coarse_.columns());
-  std::vector<std::uint8_t> free(columns * static_cast<std::size_t>(coarse_.rows()), 0);
+std::vector<std::uint8_t> GlobalLocalizer::free_cells(const PlaceField& field) const {
+  const KernelGrid& grid = field.grid();
+  const auto columns = static_cast<std::size_t>(grid.columns());
+  std::vector<std::uint8_t> free(columns * static_cast<std::size_t>(grid.rows()), 0);
   // The robot's circle touches nothing: the kernel at this distance from a point.
-  const double u = 1.0 - kRobotRadius_m * kRobotRadius_m / (kFineWidth_m * kFineWidth_m);
+  const double u =
+      1.0 - kRobotRadius_m * kRobotRadius_m / (PlaceField::kFineWidth_m * PlaceField::kFineWidth_m);
   const int occupied = static_cast<int>(255.0 * u * u);
   for (const StoredStop& stop : stops_) {
-    const int reach = static_cast<int>(kSeenFree_m / coarse_.cell_m());
-    const int c = coarse_.column(stop.T_map_robot.x_m);
-    const int r = coarse_.row(stop.T_map_robot.y_m);
+    const int reach = static_cast<int>(kSeenFree_m / grid.cell_m());
+    const int c = grid.column(stop.T_map_robot.x_m);
+    const int r = grid.row(stop.T_map_robot.y_m);
     const Pose2 T_robot_map = geometry::inverse(stop.T_map_robot);
     const geometry::SinCos turn = geometry::sincos(T_robot_map.theta_rad);
-    for (int y = std::max(0, r - reach); y <= std::min(coarse_.rows() - 1, r + reach); ++y) {
-      for (int x = std::max(0, c - reach); x <= std::min(coarse_.columns() - 1, c + reach); ++x) {
+    for (int y = std::max(0, r - reach); y <= std::min(grid.rows() - 1, r + reach); ++y) {
+      for (int x = std::max(0, c - reach); x <= std::min(grid.columns() - 1, c + reach); ++x) {
         std::uint8_t& cell =
             free[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)];
         if (cell != 0) continue;
-        const Eigen::Vector2d p = coarse_.centre_m(x, y);
+        const Eigen::Vector2d p = grid.centre_m(x, y);
         const Eigen::Vector2d q(T_robot_map.x_m + turn.cos * p.x() - turn.sin * p.y(),
                                 T_robot_map.y_m + turn.sin * p.x() + turn.cos * p.y());
         const bool here = std::abs(x - c) <= 1 && std::abs(y - r) <= 1;
         if (!here && stop.profile.view(q, kRobotRadius_m) != RangeProfile::View::kFree) continue;
-        if (here || fine_.at(p.x(), p.y()) < occupied) cell = 1;
+        if (here || field.fine().at(p.x(), p.y()) < occupied) cell = 1;
       }
     }
   }
-  for (int y = 0; y < coarse_.rows(); ++y) {
-    for (int x = 0; x < coarse_.columns();) {
-      const auto at = [&](int column) {
-        return free[static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(column)] != 0;
-      };
-      if (!at(x)) {
-        ++x;
-        continue;
-      }
-      int end = x;
-      while (end < coarse_.columns() && at(end)) ++end;
-      runs_.push_back({y, x, end - x, seed_cells_});
-      seed_cells_ += static_cast<std::size_t>(end - x);
-      x = end;
-    }
-  }
+  return free;
 }
 
-Pose2 GlobalLocalizer::pose_of(const Seed& seed) const {
-  const auto after =
-      std::upper_bound(runs_.begin(), runs_.end(), std::size_t{seed.cell},
-                       [](std::size_t cell, const Run& run) { return cell < run.first_seed; });
-  const Run& run = *(after - 1);
-  const Eigen::Vector2d p =
-      coarse_.centre_m(run.first_column + static_cast<int>(seed.cell - run.first_seed), run.row);
-  return {
-      p.x(), p.y(),
-      geometry::wrap_angle(2.0 * std::numbers::pi / kHeadings * static_cast<double>(seed.heading))};
+std::vector<std::shared_ptr<const PlaceQuestion>> GlobalLocalizer::questions(
+    const std::vector<SurfacePoint>& seen) const {
+  return field_->questions(positions_of(spread(seen, PlaceField::kSearchedPoints)));
 }
 
-std::vector<GlobalLocalizer::Seed> GlobalLocalizer::best_seeds(
-    std::span<const Eigen::Vector2d> points_m) const {
-  std::vector<Seed> seeds(seed_cells_ * kSectors);
-  std::vector<std::uint16_t> sums;
-  struct Offset {
-    int column;
-    int row;
-  };
-  std::vector<Offset> offsets(points_m.size());
-  for (int heading = 0; heading < kHeadings; ++heading) {
-    const geometry::SinCos r = geometry::sincos(2.0 * std::numbers::pi / kHeadings * heading);
-    for (std::size_t i = 0; i < points_m.size(); ++i) {
-      const Eigen::Vector2d& p = points_m[i];
-      offsets[i] = {
-          static_cast<int>(std::floor((r.cos * p.x() - r.sin * p.y()) / coarse_.cell_m() + 0.5)),
-          static_cast<int>(std::floor((r.sin * p.x() + r.cos * p.y()) / coarse_.cell_m() + 0.5))};
-    }
-    for (const Run& run : runs_) {
-      const auto cells = static_cast<std::size_t>(run.cells);
-      sums.assign(cells, 0);
-      for (const Offset& offset : offsets) {
-        const int row = run.row + offset.row;
-        const int column = run.first_column + offset.column;
-        if (row < 0 || row >= coarse_.rows() || column < 0 ||
-            column + run.cells > coarse_.columns()) {
-          continue;
-        }
-        const std::uint8_t* from = coarse_.row_data(row) + column;
-        std::uint16_t* to = sums.data();
-        for (std::size_t k = 0; k < cells; ++k) to[k] = static_cast<std::uint16_t>(to[k] + from[k]);
-      }
-      Seed* const best = seeds.data() +
-                         static_cast<std::size_t>(heading / kHeadingsOfSector) * seed_cells_ +
-                         run.first_seed;
-      for (std::size_t k = 0; k < cells; ++k) {
-        if (sums[k] <= best[k].score) continue;
-        best[k] = {sums[k], static_cast<std::uint16_t>(heading),
-                   static_cast<std::uint32_t>(run.first_seed + k)};
-      }
-    }
-  }
-  const std::size_t kept = std::min(kClimbing, seeds.size());
-  std::partial_sort(seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(kept), seeds.end(),
-                    [](const Seed& a, const Seed& b) {
-                      return std::tie(b.score, a.cell, a.heading) <
-                             std::tie(a.score, b.cell, b.heading);
-                    });
-  seeds.resize(kept);
-  return seeds;
+std::shared_ptr<const PlaceQuestion> GlobalLocalizer::climbing_question(
+    const std::vector<SurfacePoint>& seen) const {
+  return field_->climbing_question(positions_of(spread(seen, PlaceField::kClimbingPoints)));
 }
 
-std::vector<Climbed> GlobalLocalizer::places(const std::vector<SurfacePoint>& seen,
-                                             std::size_t count) const {
-  const std::vector<Eigen::Vector2d> coarse = positions_of(spread(seen, kCoarsePoints));
-  const std::vector<Eigen::Vector2d> fine = positions_of(spread(seen, kFinePoints));
-  std::vector<Climbed> climbed;
-  for (const Seed& seed : best_seeds(coarse)) {
-    if (seed.score > 0) climbed.push_back(climb(fine_, fine, pose_of(seed)));
-  }
-  std::stable_sort(climbed.begin(), climbed.end(),
-                   [](const Climbed& a, const Climbed& b) { return a.value > b.value; });
-  std::vector<Climbed> distinct;
-  for (const Climbed& place : climbed) {
-    if (distinct.size() == count) break;
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Climbed& other) {
-      return same_global_place(other.T_map_robot, place.T_map_robot);
+std::vector<Pose2> GlobalLocalizer::starts(std::span<const std::vector<PlaceSeed>> answers) const {
+  std::vector<Pose2> poses;
+  for (const PlaceSeed& seed : best_of(answers)) poses.push_back(field_->pose_of(seed));
+  return poses;
+}
+
+std::vector<Climbed> GlobalLocalizer::distinct(std::vector<MatchSolution> climbed,
+                                               std::size_t count) {
+  std::stable_sort(
+      climbed.begin(), climbed.end(),
+      [](const MatchSolution& a, const MatchSolution& b) { return a.fitness > b.fitness; });
+  std::vector<Climbed> places;
+  for (const MatchSolution& place : climbed) {
+    if (places.size() == count) break;
+    const bool known = std::any_of(places.begin(), places.end(), [&](const Climbed& other) {
+      return same_global_place(other.T_map_robot, place.T_reference_query);
     });
-    if (!known) distinct.push_back(place);
+    if (!known) places.push_back({place.T_reference_query, place.fitness});
   }
-  return distinct;
+  return places;
 }
 
 std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& T_map_robot,
@@ -301,7 +235,7 @@ std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& 
 }
 
 double GlobalLocalizer::fitness(const MatchFeatures& query, const Pose2& T_map_robot) const {
-  return mean_kernel(fine_, positions_of(query.coarse), T_map_robot);
+  return mean_kernel(field_->fine(), positions_of(query.coarse), T_map_robot);
 }
 
 // Aligns a place with the stop that sees it best, and measures what is seen there.
@@ -347,9 +281,11 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
   GlobalAnswer answer;
   const MatchFeatures query = extract_scan_features(points, T_robot_laser);
   if (query.coarse.size() < kFewestQueryPoints) return answer;
+  std::vector<std::vector<PlaceSeed>> answers;
+  for (const auto& question : questions(query.coarse)) answers.push_back(field_->answer(*question));
   std::vector<GlobalPose> found;
-  for (const Climbed& place : places(query.coarse, kAligned))
-    found.push_back(aligned(query, place));
+  const auto climbed = field_->climb_from(*climbing_question(query.coarse), starts(answers));
+  for (const Climbed& place : distinct(climbed, kAligned)) found.push_back(aligned(query, place));
   const auto value = [](const GlobalPose& p) {
     return p.fitness * std::max(0.1, 1.0 - p.violations);
   };

@@ -193,8 +193,7 @@ void MapLocalizer::look_around(const DriveStop& stop) {
   if (stop.features.coarse.size() >= kFewestSearched) {
     if (continued_.pose()) search_.expect(continued_.pose()->T_a_b);
     std::vector<Pose2> T_map_places;
-    for (const Climbed& place :
-         matching_.places().places(matching_.query().whole.surface, kPlaces)) {
+    for (const Climbed& place : matching_.search(stop, kPlaces)) {
       T_map_places.push_back(place.T_map_robot);
     }
     search_.propose(T_map_places);

@@ -27,6 +27,7 @@ StoredMapMatching::StoredMapMatching(const LocalizerConfig& config,
   for (const topomap::LocalMap& local_map : map_->maps) {
     requests_.add_map(std::shared_ptr<const topomap::LocalMap>(map_, &local_map));
   }
+  requests_.add_field(places_.field());
 }
 
 DriveStop StoredMapMatching::add(const topomap::LocalMap& map, std::uint32_t number,
@@ -68,6 +69,14 @@ MatchTask StoredMapMatching::task(const DriveStop& stop, std::size_t stored,
   const UncertainPose T_map_stored{places_.stops()[stored].T_map_robot, Eigen::Matrix3d::Zero()};
   return requests_.make(stop.map->id, map_->maps[stored].id,
                         compose(inverse(T_map_robot), T_map_stored));
+}
+
+std::vector<Climbed> StoredMapMatching::search(const DriveStop& stop, std::size_t count) {
+  const std::vector<SurfacePoint>& seen = query_.whole.surface;
+  const auto answers = requests_.ask(places_.questions(seen), stop.map->id);
+  return GlobalLocalizer::distinct(
+      requests_.climb(places_.climbing_question(seen), places_.starts(answers), stop.map->id),
+      count);
 }
 
 UncertainPose StoredMapMatching::measured(std::size_t stored, const MatchResult& result) const {

@@ -25,10 +25,17 @@ class RequestedPool : public MatchPool {
       result.task_id = task.task_id;
       result.evaluations = 10;
       result.reason = task.task_id == 0 ? Reason::kNone : Reason::kDoubtful;
+      if (!task.places) continue;
+      place_tasks.push_back(task);
+      result.seeds = {{static_cast<std::uint16_t>(task.task_id), 0, 0}};
+      for (const geometry::Pose2& pose : task.initial_individuals) {
+        result.solutions.push_back({pose, 0.5});
+      }
     }
     return results;
   }
   std::vector<MapPointer> maps;
+  std::vector<MatchTask> place_tasks;
   int batches = 0;
 };
 
@@ -63,6 +70,41 @@ TEST(MatchRequests, NamesMapsAndSeedsByRobotIdsAndNumber) {
   EXPECT_EQ(task.half_width, match_task(config, kPredicted).half_width);
   EXPECT_EQ(requests.make(8, 3, kPredicted).task_id, 41U);
   EXPECT_EQ(requests.next_task(), 42U);
+}
+
+TEST(MatchRequests, PartsOfASearchAreNumberedOnAndChangeNoSeed) {
+  LocalizerConfig config;
+  config.seed = 17;
+  RequestedPool pool;
+  MatchRequests requests(config, pool);
+  requests.add_map(map_of(8, "one"));
+  requests.add_map(map_of(3, "two"));
+  const MatchTask before = requests.make(8, 3, kPredicted);
+  const auto question = std::make_shared<const PlaceQuestion>();
+  const std::vector<std::shared_ptr<const PlaceQuestion>> questions(3, question);
+  const auto answers = requests.ask(questions, 3);
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[2].front().score, 3U) << "by the number of its task";
+  std::vector<geometry::Pose2> poses(90);
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].x_m = static_cast<double>(i);
+  const std::vector<MatchSolution> climbed = requests.climb(question, poses, 3);
+  ASSERT_EQ(climbed.size(), poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(climbed[i].T_reference_query, poses[i]);
+  }
+  EXPECT_EQ(pool.place_tasks.size(), 6U);
+  for (const MatchTask& task : pool.place_tasks) {
+    EXPECT_EQ(task.query_map_id, 3U);
+    EXPECT_LE(task.initial_individuals.size(), 38U);
+  }
+  EXPECT_EQ(pool.batches, 2);
+  EXPECT_TRUE(requests.ask({}, 3).empty());
+  EXPECT_TRUE(requests.climb(question, {}, 3).empty());
+  EXPECT_EQ(pool.batches, 2);
+  EXPECT_EQ(requests.counts().tasks, 0U);
+  const MatchTask after = requests.make(8, 3, kPredicted);
+  EXPECT_EQ(after.task_id, before.task_id + 7);
+  EXPECT_EQ(after.seed, support::derive_seed(17, "one", {8, 3, 1}));
 }
 
 TEST(MatchRequests, CountsWhatComesBack) {

@@ -76,6 +76,35 @@ TEST_P(Conversions, MatchTaskIsExact) {
   EXPECT_EQ(back.initial_individuals, task.initial_individuals);
   EXPECT_EQ(back.solutions_wanted, task.solutions_wanted);
   EXPECT_EQ(back.seed, task.seed);
+  EXPECT_EQ(back.places, nullptr);
+}
+
+TEST_P(Conversions, PlaceQuestionIsExact) {
+  localization::PlaceQuestion question;
+  question.field_hash = random_.next_u64();
+  for (int i = 0; i < 5; ++i) question.pieces.push_back({any_u32(random_), random_.next_u64()});
+  question.wall_pieces = 3;
+  question.margin_m = 8.1;
+  question.points = {{1.5F, -2.25F}, {0.1F, 3.0F}};
+  question.first_heading = 18;
+  question.headings = 6;
+  localization::MatchTask task;
+  task.places = std::make_shared<const localization::PlaceQuestion>(question);
+  const auto back = from_msg(to_msg(task, {"robot", 1, 2, "worker", "client", "0.1", 3})).places;
+  ASSERT_NE(back, nullptr);
+  EXPECT_EQ(back->field_hash, question.field_hash);
+  ASSERT_EQ(back->pieces.size(), question.pieces.size());
+  for (std::size_t i = 0; i < question.pieces.size(); ++i) {
+    EXPECT_EQ(back->pieces[i].map_id, question.pieces[i].map_id);
+    EXPECT_EQ(back->pieces[i].content_hash, question.pieces[i].content_hash);
+  }
+  EXPECT_EQ(back->wall_pieces, 3U);
+  EXPECT_EQ(back->margin_m, 8.1);
+  ASSERT_EQ(back->points.size(), 2U);
+  EXPECT_EQ(back->points[1].x_m, 0.1F);
+  EXPECT_EQ(back->points[0].y_m, -2.25F);
+  EXPECT_EQ(back->first_heading, 18U);
+  EXPECT_EQ(back->headings, 6U);
 }
 
 TEST_P(Conversions, MatchResultIsExact) {
@@ -83,6 +112,7 @@ TEST_P(Conversions, MatchResultIsExact) {
   result.task_id = random_.next_u64();
   result.status = static_cast<localization::MatchStatus>(random_.below(2));
   for (int i = 0; i < 3; ++i) result.solutions.push_back({any_pose(random_), any_double(random_)});
+  result.seeds = {{65535, 71, any_u32(random_)}, {1, 0, 0}};
   result.T_reference_query = any_pose(random_);
   result.covariance = any_matrix(random_);
   for (double* value :
@@ -98,6 +128,7 @@ TEST_P(Conversions, MatchResultIsExact) {
   const localization::MatchResult back = from_msg(to_msg(result, {"robot", 1, 2, "w", "c", "", 0}));
   EXPECT_EQ(back.task_id, result.task_id);
   EXPECT_EQ(back.status, result.status);
+  EXPECT_EQ(back.seeds, result.seeds);
   ASSERT_EQ(back.solutions.size(), result.solutions.size());
   for (std::size_t i = 0; i < back.solutions.size(); ++i) {
     EXPECT_EQ(back.solutions[i].T_reference_query, result.solutions[i].T_reference_query);
@@ -310,6 +341,11 @@ TEST(ConversionBounds, WhatDoesNotFitIsRefusedByName) {
   localization::MatchTask task;
   task.initial_individuals.resize(257);
   EXPECT_THAT(refusal([&] { to_msg(task, {}); }), HasSubstr("initial_individuals has 257"));
+  localization::PlaceQuestion question;
+  question.pieces.resize(1025);
+  localization::MatchTask search;
+  search.places = std::make_shared<const localization::PlaceQuestion>(question);
+  EXPECT_THAT(refusal([&] { to_msg(search, {}); }), HasSubstr("places.pieces has 1025"));
   EXPECT_THAT(refusal([&] {
                 to_msg(localization::MatchTask{}, {"r", 0, 0, std::string(65, 'w'), "", "", 0});
               }),

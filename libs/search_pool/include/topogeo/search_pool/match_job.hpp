@@ -1,9 +1,10 @@
-// A match task inside a worker, from its arrival to its result.
+// A task inside a worker, from its arrival to its result.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -25,6 +26,7 @@ struct ReadyJob {
   MatchJob job;
   MapPointer reference;
   MapPointer query;
+  std::vector<MapPointer> pieces;  ///< of a whole map, instead of both (PlaceQuestion::pieces)
 };
 
 }  // namespace topogeo::search_pool

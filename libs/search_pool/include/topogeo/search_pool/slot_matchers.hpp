@@ -32,10 +32,12 @@ class SlotMatchers {
     localization::Matcher matcher;
     std::size_t maps = 0;
     std::size_t bytes = 0;
+    std::size_t field_bytes = 0;  // of them, of the whole map that places are searched for in
   };
 
   Kept& of(const std::string& client_id);
   static void add_map(Kept& kept, const MapPointer& map);
+  static void add_field(Kept& kept, const ReadyJob& job);
   void make_room();
 
   std::size_t capacity_bytes_;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "topogeo/localization/mapping/localizer_config.hpp"
@@ -24,18 +25,30 @@ class MatchRequests {
   /// Makes a local map known to the pool, under its id.
   void add_map(std::shared_ptr<const topomap::LocalMap> map);
 
+  /// Makes a whole map known to the pool.
+  void add_field(std::shared_ptr<const PlaceField> field) { pool_.add_field(std::move(field)); }
+
   /// The next task: match_task() for two maps that have been added. Its seed follows from the seed
-  /// of the run, the robot of the reference map, both ids and the number of the task. Throws
+  /// of the run, the robot of the reference map, both ids and the number of the match. Throws
   /// std::out_of_range for a map that was not added.
   MatchTask make(std::uint32_t reference_id, std::uint32_t query_id,
                  const UncertainPose& T_reference_query);
+
+  /// The answers to parts of a search of the whole map by a stop that has been added; they do not
+  /// count as matches. Throws like MatchPool::match and make().
+  std::vector<std::vector<PlaceSeed>> ask(
+      std::span<const std::shared_ptr<const PlaceQuestion>> questions, std::uint32_t query_id);
+
+  /// Where poses climb to, in their order. Throws like ask().
+  std::vector<MatchSolution> climb(const std::shared_ptr<const PlaceQuestion>& question,
+                                   std::span<const geometry::Pose2> poses, std::uint32_t query_id);
 
   /// The results in the order of the tasks; none asks nothing of the pool. Throws like
   /// MatchPool::match.
   std::vector<MatchResult> run(std::span<const MatchTask> tasks);
 
   /// Numbers the tasks on from there. No number may occur twice in one pool.
-  void number_from(std::uint64_t next_task) { next_task_ = next_task; }
+  void number_from(std::uint64_t next_task) { next_task_ = next_match_ = next_task; }
   [[nodiscard]] std::uint64_t next_task() const { return next_task_; }
 
   [[nodiscard]] const MatchCounts& counts() const { return counts_; }
@@ -46,10 +59,14 @@ class MatchRequests {
     std::string robot_id;
   };
 
+  MatchTask place_task(const std::shared_ptr<const PlaceQuestion>& question,
+                       std::uint32_t query_id);
+
   LocalizerConfig config_;
   MatchPool& pool_;
   std::map<std::uint32_t, KnownMap> maps_;  // by id
   std::uint64_t next_task_ = 0;
+  std::uint64_t next_match_ = 0;  // the same without those of ask(): seeds do not depend on them
   MatchCounts counts_;
 };
 

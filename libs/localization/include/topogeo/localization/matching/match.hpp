@@ -20,6 +20,30 @@
 
 namespace topogeo::localization {
 
+/// Where in a whole map points may lie that were seen from one place; a part of that search (see
+/// PlaceField).
+struct PlaceQuestion {
+  struct Piece {
+    std::uint32_t map_id = 0;
+    std::uint64_t content_hash = 0;
+  };
+  std::uint64_t field_hash = 0;            ///< of the whole map
+  std::vector<Piece> pieces;               ///< of it, as they are sent
+  std::uint32_t wall_pieces = 0;           ///< so many of them, the first ones, are walls
+  double margin_m = 0.0;                   ///< around the walls
+  std::vector<topomap::ScanPoint> points;  ///< in the robot frame
+  std::uint32_t first_heading = 0;         ///< from which on the part searches ...
+  std::uint32_t headings = 0;              ///< ... so many; 0: poses are to climb instead
+};
+
+/// A cell of the map, and how well the points fit with the robot there.
+struct PlaceSeed {
+  std::uint16_t score = 0;
+  std::uint16_t heading = 0;
+  std::uint32_t cell = 0;  ///< counted through the free cells of the map
+  friend bool operator==(const PlaceSeed&, const PlaceSeed&) = default;
+};
+
 struct MatchTask {
   std::uint64_t task_id = 0;  ///< unique within one run of one robot
   std::uint32_t reference_map_id = 0;
@@ -37,6 +61,10 @@ struct MatchTask {
   std::uint32_t solutions_wanted = 3;  ///< n best distinct solutions, 1 to 40
   GateConfig gate;
   std::uint64_t seed = 0;
+  /// Not null: a part of a search of the whole map instead of a match; nothing above counts but the
+  /// task_id, as the stop that asks the query, and initial_individuals as the poses that climb,
+  /// T_map_robot.
+  std::shared_ptr<const PlaceQuestion> places;
 };
 
 struct MatchSolution {
@@ -94,7 +122,12 @@ struct MatchResult {
   std::uint64_t seed = 0;  ///< of the task
   Verdict verdict = Verdict::kRejected;
   Reason reason = Reason::kNothingInCommon;
+  /// Best first: the answer to MatchTask::places, and all of it; but `solutions` when poses were to
+  /// climb, in their order.
+  std::vector<PlaceSeed> seeds;
 };
+
+class PlaceField;
 
 /// Works on match tasks: in this process or on as many machines as there are.
 class MatchPool {
@@ -106,6 +139,10 @@ class MatchPool {
 
   /// Makes a local map known, to be named in tasks from now on.
   virtual void add_map(std::shared_ptr<const topomap::LocalMap> map) = 0;
+
+  /// Makes a whole map known, to be named in PlaceQuestion::field_hash from now on, instead of the
+  /// one before. Pools that get no such tasks need none.
+  virtual void add_field(std::shared_ptr<const PlaceField> /*field*/) {}
 
   /// Results in the order of the tasks, whatever the order in which they were worked on. Every map
   /// that a task names must have been added before. Throws std::runtime_error when it cannot

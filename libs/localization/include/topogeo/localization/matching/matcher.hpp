@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "topogeo/localization/matching/fitness_forms.hpp"
@@ -26,6 +27,10 @@ class Matcher {
 
   /// True when a map of this id and content is known.
   [[nodiscard]] bool has_map(std::uint32_t id, std::uint64_t hash) const;
+
+  /// Keeps the whole map for tasks that search in it, instead of the one before.
+  void add_field(std::shared_ptr<const PlaceField> field) { field_ = std::move(field); }
+  [[nodiscard]] bool has_field(std::uint64_t hash) const;
 
   /// Throws std::out_of_range when a map that the task names is not known or has another content,
   /// std::invalid_argument when a number in the task is not finite, the covariance not positive
@@ -51,8 +56,10 @@ class Matcher {
 
   const KnownMap& known(std::uint32_t id, std::uint64_t hash) const;
   const Reference& reference(std::uint32_t id, std::uint64_t hash);
+  const PlaceField& field(const PlaceQuestion& question) const;
 
   std::map<std::uint32_t, KnownMap> maps_;
+  std::shared_ptr<const PlaceField> field_;
   std::list<CachedReference>
       references_;  // most recently used first; grids are large, so only a few
   // What a match works with, kept for its memory.
@@ -70,6 +77,9 @@ std::uint64_t matcher_fingerprint();
 class InProcessPool : public MatchPool {
  public:
   void add_map(std::shared_ptr<const topomap::LocalMap> map) override { matcher_.add_map(*map); }
+  void add_field(std::shared_ptr<const PlaceField> field) override {
+    matcher_.add_field(std::move(field));
+  }
   std::vector<MatchResult> match(std::span<const MatchTask> tasks) override;
 
  private:

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
+#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/localization/tracking/map_field.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/topomap/trajectory.hpp"
@@ -60,11 +62,20 @@ class GlobalLocalizer {
   [[nodiscard]] GlobalAnswer find(std::span<const topomap::ScanPoint> points,
                                   const geometry::Pose2& T_robot_laser) const;
 
-  /// The places that find() would compare more closely: the `count` best distinct ones by the fine
-  /// field alone, not aligned. For those who match them with stored maps themselves. `seen`: points
-  /// in the robot frame, of one scan or of several metres of path.
-  [[nodiscard]] std::vector<Climbed> places(const std::vector<SurfacePoint>& seen,
-                                            std::size_t count) const;
+  /// What find() does before it compares places closely, for those who have others do the work: the
+  /// questions to field() about what was seen, points in the robot frame, of one scan or of
+  /// several metres of path; ...
+  [[nodiscard]] std::vector<std::shared_ptr<const PlaceQuestion>> questions(
+      const std::vector<SurfacePoint>& seen) const;
+  /// ... where to climb from by their answers, and what is asked then; ...
+  [[nodiscard]] std::vector<geometry::Pose2> starts(
+      std::span<const std::vector<PlaceSeed>> answers) const;
+  [[nodiscard]] std::shared_ptr<const PlaceQuestion> climbing_question(
+      const std::vector<SurfacePoint>& seen) const;
+  /// ... and the `count` best distinct ones of the places that were climbed to.
+  [[nodiscard]] static std::vector<Climbed> distinct(std::vector<MatchSolution> climbed,
+                                                     std::size_t count);
+  [[nodiscard]] const std::shared_ptr<const PlaceField>& field() const { return field_; }
 
   /// Index of the stored stop from which most of a scan is seen; nothing is seen from any: the
   /// nearest one. `share` takes how much, [0, 1].
@@ -77,30 +88,12 @@ class GlobalLocalizer {
                                const geometry::Pose2& T_map_robot) const;
 
  private:
-  /// Cells beside each other in one row of the coarse grid from which a scan may come.
-  struct Run {
-    int row = 0;
-    int first_column = 0;
-    int cells = 0;
-    std::size_t first_seed = 0;  ///< cells of the runs before
-  };
-  struct Seed {
-    std::uint16_t score = 0;
-    std::uint16_t heading = 0;
-    std::uint32_t cell = 0;  ///< counted through the runs
-  };
-
-  void find_free_cells();
-  [[nodiscard]] std::vector<Seed> best_seeds(std::span<const Eigen::Vector2d> points_m) const;
-  [[nodiscard]] geometry::Pose2 pose_of(const Seed& seed) const;
+  [[nodiscard]] std::vector<std::uint8_t> free_cells(const PlaceField& field) const;
   [[nodiscard]] GlobalPose aligned(const MatchFeatures& query, const Climbed& place) const;
 
   std::span<const topomap::LocalMap> maps_;
   std::vector<StoredStop> stops_;
-  KernelGrid coarse_;
-  KernelGrid fine_;
-  std::vector<Run> runs_;
-  std::size_t seed_cells_ = 0;
+  std::shared_ptr<const PlaceField> field_;
 };
 
 /// Two poses are one place when they are nearer than 0.5 m and 15 degrees.

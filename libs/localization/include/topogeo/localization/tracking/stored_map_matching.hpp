@@ -47,6 +47,9 @@ class StoredMapMatching {
   [[nodiscard]] std::vector<MatchCandidate> candidates(const DriveStop& stop,
                                                        const UncertainPose& T_map_robot,
                                                        std::size_t count) const;
+  /// The places of the whole map that fit what was seen over the last metres up to this stop: the
+  /// `count` best ones. The pool searches.
+  std::vector<Climbed> search(const DriveStop& stop, std::size_t count);
   /// A task for the stop and a stored one, by index. A search space wider than the configuration
   /// allows is cut: the whole map is searched otherwise.
   MatchTask task(const DriveStop& stop, std::size_t stored, const UncertainPose& T_map_robot);
@@ -54,8 +57,6 @@ class StoredMapMatching {
   /// T_map_robot by a match with a stored stop.
   [[nodiscard]] UncertainPose measured(std::size_t stored, const MatchResult& result) const;
 
-  /// What was seen over the last metres of the drive.
-  [[nodiscard]] const PlaceQuery& query() const { return query_; }
   [[nodiscard]] std::size_t stored_stops() const { return map_->maps.size(); }
   [[nodiscard]] const GlobalLocalizer& places() const { return places_; }
   [[nodiscard]] MatchRequests& requests() { return requests_; }

@@ -1,0 +1,123 @@
+// A whole map as places are searched for in it: how near everything is to what the laser saw, and
+// the cells that a scan may come from (docs/algorithms.md, "Localization in a finished map (own)").
+//
+// A search tries every cell in 72 headings. Headings are independent of each other, so a search is
+// cut into tasks of a few of them; the best seeds climb in a finer grid, a few in each task. Any
+// machine can work on these that has the field: it travels as
+// pieces in the form of local maps, which workers ask for, check and keep by their content like all
+// others. The cut does not depend on the number of workers, and the seeds of the tasks together are
+// those of one search of all headings.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/tracking/map_field.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+class PlaceField {
+ public:
+  static constexpr std::uint32_t kHeadings = 72;             ///< 5 degrees apart
+  static constexpr std::uint32_t kTaskHeadings = 6;          ///< of one task
+  static constexpr std::size_t kSeeds = 300;                 ///< of a search, and of a task at most
+  static constexpr std::size_t kSearchedPoints = 64;         ///< at most
+  static constexpr std::size_t kClimbingPoints = 120;        ///< at most
+  static constexpr std::size_t kTaskPoses = 38;              ///< that climb in one task, at most
+  static constexpr double kFineWidth_m = 0.30;               ///< of fine(): spans a cell of grid()
+  static constexpr std::size_t kMostPieces = 1024;           ///< a larger field is not sent
+  static constexpr std::uint32_t kFirstPiece = 0x80000000U;  ///< id of one; no stop has it
+
+  /// `walls`: points in the map frame, 5 cm apart. Scans come from at most `margin_m` beyond.
+  PlaceField(std::vector<topomap::ScanPoint> walls, double margin_m);
+  /// The same field of its pieces, in order. Throws std::invalid_argument for pieces of none.
+  PlaceField(std::span<const std::shared_ptr<const topomap::LocalMap>> pieces,
+             const PlaceQuestion& question);
+
+  /// States from which cells of grid() a scan may come, a byte for each; makes the pieces.
+  void set_free(std::span<const std::uint8_t> free);
+
+  [[nodiscard]] const KernelGrid& grid() const { return grid_; }
+  [[nodiscard]] const std::vector<std::shared_ptr<const topomap::LocalMap>>& pieces() const {
+    return pieces_;
+  }
+  /// Of everything that an answer depends on.
+  [[nodiscard]] std::uint64_t hash() const { return hash_; }
+  /// About what it takes in memory without its pieces.
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// In which poses climb: of cells of 5 cm.
+  [[nodiscard]] const KernelGrid& fine() const { return fine_; }
+
+  /// The questions that together search all headings for points in the robot frame, kSearchedPoints
+  /// of them at most.
+  [[nodiscard]] std::vector<std::shared_ptr<const PlaceQuestion>> questions(
+      std::span<const Eigen::Vector2d> points_m) const;
+  /// The best seeds of a question, best first; of each cell the best heading. Throws
+  /// std::invalid_argument for a question of another field or about headings that do not exist.
+  [[nodiscard]] std::vector<PlaceSeed> answer(const PlaceQuestion& question) const;
+  /// The question where poses climb to, with kClimbingPoints at most.
+  [[nodiscard]] std::shared_ptr<const PlaceQuestion> climbing_question(
+      std::span<const Eigen::Vector2d> points_m) const;
+  /// Where poses climb to, in their order, with the mean kernel value there. Throws like answer().
+  [[nodiscard]] std::vector<MatchSolution> climb_from(const PlaceQuestion& question,
+                                                      std::span<const geometry::Pose2> poses) const;
+
+  /// What is wrong with an answer, for people; empty when its scores are right to the last bit.
+  /// That there is no better seed only a second answer shows.
+  [[nodiscard]] std::string verify(const PlaceQuestion& question,
+                                   std::span<const PlaceSeed> seeds) const;
+  [[nodiscard]] std::string verify(const PlaceQuestion& question,
+                                   std::span<const geometry::Pose2> poses,
+                                   std::span<const MatchSolution> climbed) const;
+
+  /// T_map_robot.
+  [[nodiscard]] geometry::Pose2 pose_of(const PlaceSeed& seed) const;
+
+ private:
+  /// Cells beside each other in one row.
+  struct Run {
+    int row = 0;
+    int first_column = 0;
+    int cells = 0;
+    std::size_t first_seed = 0;  ///< cells of the runs before
+  };
+  struct Offset {
+    int column = 0;
+    int row = 0;
+  };
+
+  void add_run(int row, int first_column, int cells);
+  void make_pieces();
+  [[nodiscard]] PlaceQuestion question_about(std::span<const Eigen::Vector2d> points_m) const;
+  void check(const PlaceQuestion& question) const;
+  void check_points(const PlaceQuestion& question, std::size_t most) const;
+  [[nodiscard]] const Run& run_of(std::uint32_t cell) const;
+  [[nodiscard]] std::vector<Offset> offsets(const PlaceQuestion& question,
+                                            std::uint32_t heading) const;
+  [[nodiscard]] bool inside(const Run& run, const Offset& offset) const;
+
+  std::vector<topomap::ScanPoint> walls_;
+  double margin_m_;
+  KernelGrid grid_;
+  KernelGrid fine_;
+  std::vector<Run> runs_;
+  std::size_t cells_ = 0;
+  std::vector<std::shared_ptr<const topomap::LocalMap>> pieces_;
+  std::vector<std::uint64_t> piece_hashes_;
+  std::uint64_t hash_ = 0;
+};
+
+/// The best seeds of all: of each cell the best heading in each quarter turn.
+std::vector<PlaceSeed> best_of(std::span<const std::vector<PlaceSeed>> answers);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,231 @@
+// How fast a lost robot searches the whole of a large map, by the number of search workers.
+//
+//   topogeo_lost_robot [--path M] [--starts N] [--stops K] [--workers W] [--map FILE]
+//
+// A floor is mapped in one drive and driven again with other noise; the robot is lost at N stops of
+// the second drive, evenly spread, and adds K stops from each of them while it searches, without a
+// pose to begin with. "By CPU": CPU time of the localizer, and that of the workers shared evenly
+// among them, together; that is what a search takes on idle cores, where the localizer waits
+// meanwhile, and other programs do not change it. Everything is real: the localizer's end of the
+// pool, DDS, workers in processes of one slot. The poses of all stops must be the same bytes with
+// any number of workers.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/localization/matching/identical.hpp"
+#include "topogeo/localization/tracking/map_localizer.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/simulation/random_floors.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/support/cpu_time.hpp"
+
+#include "pool_peers.hpp"
+
+namespace {
+
+using namespace topogeo;
+using MapPointer = std::shared_ptr<const topomap::LocalMap>;
+
+struct LostOptions {
+  double path_m = 2000.0;
+  std::size_t blocks = 4;
+  std::size_t starts = 12;
+  std::size_t stops = 5;
+  std::size_t least_workers = 0;
+  std::size_t most_workers = 2;
+  std::filesystem::path map;
+};
+
+simulation::SimulatedLog drive(const LostOptions& options, std::uint64_t seed) {
+  simulation::SimulationOptions simulation;
+  simulation.seed = seed;
+  simulation.scan_step_m = 0.5;
+  simulation.scan_step_rad = 45.0 * std::numbers::pi / 180.0;
+  simulation.odometry = simulation::b21_odometry(seed);
+  return simulation::simulate_log(simulation::large_floor(1, options.path_m, options.blocks),
+                                  simulation);
+}
+
+std::shared_ptr<const localization::StoredMap> make_map(const LostOptions& options,
+                                                        const pipeline::Config& config) {
+  if (!options.map.empty() && std::filesystem::exists(options.map)) {
+    return pipeline::load_stored_map(options.map);
+  }
+  pipeline::MappingRun mapping(config, "robot");
+  for (const scan::Scan& scan : drive(options, 1).scans) mapping.add(scan);
+  const storage::MapDocument document = mapping.finish();
+  if (!options.map.empty()) storage::write_map_file(options.map, document);
+  return pipeline::stored_map(document);
+}
+
+std::vector<MapPointer> stops_of(const LostOptions& options, const pipeline::Config& config) {
+  pipeline::LocalMapper mapper(config.local_mapper, "robot");
+  std::vector<MapPointer> stops;
+  for (const scan::Scan& scan : drive(options, 2).scans) {
+    if (auto map = mapper.add(scan)) {
+      stops.push_back(std::make_shared<const topomap::LocalMap>(std::move(*map)));
+    }
+  }
+  return stops;
+}
+
+/// The stops at which the robot is lost and those that follow: each start a session of its own.
+std::vector<std::vector<MapPointer>> drives_of(const LostOptions& options,
+                                               const std::vector<MapPointer>& stops) {
+  std::vector<std::vector<MapPointer>> drives;
+  for (std::size_t i = 0; i < options.starts; ++i) {
+    const std::size_t first = i * (stops.size() - options.stops) / options.starts;
+    std::vector<MapPointer>& drive = drives.emplace_back();
+    for (std::size_t k = 0; k < options.stops; ++k) {
+      auto map = std::make_shared<topomap::LocalMap>(*stops.at(first + k));
+      map->stop = {1000 + i, static_cast<std::uint32_t>(k)};
+      drive.push_back(std::move(map));
+    }
+  }
+  return drives;
+}
+
+struct Result {
+  std::vector<double> wall_ms;  // of each stop that was searched for
+  double cpu_s = 0.0;           // of this process, meanwhile
+  double workers_s = 0.0;       // of all workers, meanwhile
+  std::size_t found = 0;
+  std::vector<localization::LocalizedStop> stops;
+};
+
+std::vector<double> cpu_of(const bench::Workers& workers) {
+  std::vector<double> cpu_s;
+  for (std::size_t i = 0; i < workers.size(); ++i) cpu_s.push_back(workers.cpu_s(i));
+  return cpu_s;
+}
+
+Result search(const LostOptions& options, localization::MapLocalizer& localizer,
+              const std::vector<std::vector<MapPointer>>& drives, const bench::Workers& workers) {
+  Result result;
+  for (const std::vector<MapPointer>& drive : drives) {
+    localizer.search();
+    bool found = false;
+    for (const MapPointer& stop : drive) {
+      const std::vector<double> workers_before_s = cpu_of(workers);
+      const double before_s = support::process_cpu_s();
+      const bench::Clock::time_point start = bench::Clock::now();
+      localizer.add(stop);
+      if (!found) {
+        result.wall_ms.push_back(1e3 * bench::seconds_since(start));
+        result.cpu_s += support::process_cpu_s() - before_s;
+        for (std::size_t i = 0; i < workers.size(); ++i) {
+          result.workers_s += workers.cpu_s(i) - workers_before_s[i];
+        }
+      }
+      found |= localizer.status().state == localization::LocalizationState::kTracking;
+    }
+    result.found += found ? 1 : 0;
+  }
+  const std::size_t count = options.starts * options.stops;
+  result.stops.assign(localizer.stops().end() - static_cast<std::ptrdiff_t>(count),
+                      localizer.stops().end());
+  return result;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+bool same(const Result& a, const Result& b) {
+  return std::equal(a.stops.begin(), a.stops.end(), b.stops.begin(), b.stops.end(),
+                    [](const auto& s, const auto& t) {
+                      return localization::identical(s.T_map_robot, t.T_map_robot) &&
+                             s.status.state == t.status.state;
+                    });
+}
+
+void run(const LostOptions& options) {
+  const pipeline::Config config;
+  const auto map = make_map(options, config);
+  const auto drives = drives_of(options, stops_of(options, config));
+  std::printf("map of %zu stops; %zu starts of %zu stops\n", map->maps.size(), options.starts,
+              options.stops);
+  std::printf(
+      "| workers | found | stops searched | ms a stop, median | mean | most | "
+      "CPU of the localizer, ms a stop | times as fast as one |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  Result first;
+  double one_ms = 0.0;
+  double one_cpu_s = 0.0;
+  for (std::size_t workers = options.least_workers; workers <= options.most_workers; ++workers) {
+    bench::PoolClient client({});
+    bench::Workers processes;
+    for (std::size_t i = 0; i < workers; ++i) processes.start_real(client);
+    if (client.pool().wait_for_workers(workers, bench::kPatience) < workers) {
+      throw std::runtime_error("the workers did not come; " + client.fault());
+    }
+    localization::MapLocalizer localizer(config.localizer, map, client.pool());
+    search(options, localizer, drives, processes);  // the workers ask for what they need
+    const Result result = search(options, localizer, drives, processes);
+    if (!client.fault().empty()) throw std::runtime_error(client.fault());
+    if (first.stops.empty()) first = result;
+    if (!same(first, result)) throw std::runtime_error("other poses with other workers");
+    double sum_ms = 0.0;
+    for (const double ms : result.wall_ms) sum_ms += ms;
+    const double cpu_s =
+        result.cpu_s + result.workers_s / static_cast<double>(std::max<std::size_t>(1, workers));
+    if (workers == 1) {
+      one_ms = sum_ms;
+      one_cpu_s = cpu_s;
+    }
+    const auto count = static_cast<double>(result.wall_ms.size());
+    std::printf(
+        "| %zu | %zu of %zu | %zu | %.1f | %.1f | %.1f | %.1f | %.1f | %.2f | %.2f |\n", workers,
+        result.found, options.starts, result.wall_ms.size(), median(result.wall_ms), sum_ms / count,
+        *std::max_element(result.wall_ms.begin(), result.wall_ms.end()), 1e3 * result.cpu_s / count,
+        1e3 * result.workers_s / count, one_ms / sum_ms, one_cpu_s / cpu_s);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  command_line::Command app{"how fast a lost robot searches a large map"};
+  LostOptions options;
+  app.add_option("--path", options.path_m, "metres of the drive that makes the map")
+      ->capture_default_str()
+      ->check(command_line::range(50.0, 20'000.0));
+  app.add_option("--blocks", options.blocks, "of the floor along each side")
+      ->capture_default_str()
+      ->check(command_line::range(1, 40));
+  app.add_option("--starts", options.starts, "places at which the robot is lost")
+      ->capture_default_str()
+      ->check(command_line::range(1, 1000));
+  app.add_option("--stops", options.stops, "that it drives from each of them")
+      ->capture_default_str()
+      ->check(command_line::range(1, 100));
+  app.add_option("--least-workers", options.least_workers, "of the first row")
+      ->capture_default_str()
+      ->check(command_line::range(0, 64));
+  app.add_option("--workers", options.most_workers, "of the last row")
+      ->capture_default_str()
+      ->check(command_line::range(0, 64));
+  app.add_option("--map", options.map, "map.pb of the floor: read, or written if it is not there");
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "topogeo_lost_robot: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,322 @@
+// Services that run for long: does anything grow?
+//
+//   topogeo_soak [--hours H] [--rate R] [--workers N] [--csv FILE]
+//
+// A floor is mapped in one drive and driven there and back in it for H hours of robot time, which
+// the services follow R times faster: sensor gateway, local mapper, localizer, map store,
+// planner, navigator and N workers, as processes. Sampled while they work: resident memory, open
+// files and threads of each, shared memory, and the disk that the results take. The first third is
+// warm-up: caches and histories fill. After it the memory of each service must stay within 5 % of
+// what it was at the end of the warm-up, with 1 MB for what one sample differs from the next; open
+// files and shared memory must not grow at all; and when all have ended, nothing of them must be
+// left in shared memory. Exits with 1 when something grew.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/pipeline/mapping_run.hpp"
+#include "topogeo/scan/carmen_log_writer.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/supervision/child_process.hpp"
+#include "topogeo/world/world.hpp"
+
+namespace {
+
+using namespace topogeo;
+using Clock = std::chrono::steady_clock;
+using Path = std::filesystem::path;
+
+struct SoakOptions {
+  double hours = 1.0;
+  std::string rate = "25";
+  std::size_t workers = 2;
+  Path csv;
+};
+
+/// What a process has, by /proc.
+struct Usage {
+  double rss_mb = 0.0;
+  std::size_t files = 0;
+  std::size_t threads = 0;
+};
+
+struct Sample {
+  double at_s = 0.0;
+  std::map<std::string, Usage> services;  // by name
+  double shared_mb = 0.0;
+  std::size_t shared_files = 0;
+  double disk_mb = 0.0;
+};
+
+std::size_t entries(const Path& folder) {
+  std::error_code gone;
+  std::size_t count = 0;
+  for (std::filesystem::directory_iterator it(folder, gone), end; !gone && it != end;
+       it.increment(gone)) {
+    ++count;
+  }
+  return count;
+}
+
+/// Space that the files of a folder take, MB.
+double space_mb(const Path& folder) {
+  std::error_code gone;
+  double bytes = 0.0;
+  for (std::filesystem::recursive_directory_iterator it(folder, gone), end; !gone && it != end;
+       it.increment(gone)) {
+    struct stat status {};
+    if (::lstat(it->path().c_str(), &status) == 0) {
+      bytes += 512.0 * static_cast<double>(status.st_blocks);
+    }
+  }
+  return bytes / 1048576.0;
+}
+
+Usage usage_of(const std::string& pid) {
+  Usage usage;
+  std::ifstream status("/proc/" + pid + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmRSS:")) usage.rss_mb = std::stod(line.substr(6)) / 1024.0;
+    if (line.starts_with("Threads:")) usage.threads = std::stoul(line.substr(8));
+  }
+  usage.files = entries("/proc/" + pid + "/fd");
+  return usage;
+}
+
+/// There and back through the floor for so long.
+world::World laps_of(world::World world, double hours) {
+  const std::vector<Eigen::Vector2d> there = world.tour_m;
+  double lap_m = 0.0;
+  for (std::size_t i = 1; i < there.size(); ++i) lap_m += 2.0 * (there[i] - there[i - 1]).norm();
+  const double path_m = hours * 3600.0 * simulation::SimulationOptions{}.drive.speed_m_per_s;
+  world.tour_m.clear();
+  for (double driven_m = 0.0; driven_m < path_m; driven_m += lap_m) {
+    world.tour_m.insert(world.tour_m.end(), there.begin(), there.end() - 1);
+    world.tour_m.insert(world.tour_m.end(), there.rbegin(), there.rend() - 1);
+  }
+  world.tour_m.push_back(there.front());
+  return world;
+}
+
+simulation::SimulatedLog drive(const world::World& world, std::uint64_t seed) {
+  simulation::SimulationOptions options;
+  options.seed = seed;
+  options.scan_step_m = 0.5;
+  options.scan_step_rad = 20.0 * std::numbers::pi / 180.0;
+  return simulation::simulate_log(world, options);
+}
+
+/// Writes map and log; returns the robot time of the log.
+double prepare(const SoakOptions& options, const Path& work) {
+  const world::World world =
+      world::load_world(std::string(TOPOGEO_SOURCE_DIR) + "/tests/data/floor.world.yaml");
+  pipeline::MappingRun mapping({}, "robot");
+  for (const scan::Scan& scan : drive(world, 1).scans) mapping.add(scan);
+  storage::write_map_file(work / "map.pb", mapping.finish());
+  const simulation::SimulatedLog log = drive(laps_of(world, options.hours), 2);
+  scan::CarmenLogWriter writer(work / "laps.clf");
+  for (const scan::Scan& scan : log.scans) writer.write(scan);
+  writer.close();
+  const double robot_s =
+      1e-9 * static_cast<double>(log.scans.back().stamp_ns - log.scans.front().stamp_ns);
+  std::printf("%zu scans, %.2f h of robot time\n", log.scans.size(), robot_s / 3600.0);
+  std::fflush(stdout);
+  return robot_s;
+}
+
+/// The services of a robot that follows a finished map.
+std::vector<supervision::ChildProcess> start(const SoakOptions& options, const Path& work) {
+  const Path bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const std::string id = std::to_string(::getpid());
+  const std::vector<std::string> common{"--domain", std::to_string(100 + ::getpid() % 100),
+                                        "--partition", "soak-" + id};
+  std::vector<supervision::ChildProcess> services;
+  const auto add = [&](const std::string& service, std::vector<std::string> words) {
+    words.insert(words.end(), common.begin(), common.end());
+    const std::string number = std::to_string(services.size());
+    services.emplace_back(service, bin / service, words, work / (service + number + ".log"));
+  };
+  add("map_store", {"--map", work / "map.pb"});
+  add("planner", {});
+  add("navigator", {});
+  for (std::size_t i = 0; i < options.workers; ++i) add("ga_worker", {"--slots", "1"});
+  add("localizer", {"--replay", "--map", work / "map.pb", "--csv", work / "end.csv",
+                    "--wait-workers", std::to_string(options.workers)});
+  add("local_mapper", {"--replay"});
+  add("sensor_gateway", {"--log", work / "laps.clf", "--rate", options.rate});
+  return services;
+}
+
+/// Until the localizer has written what it does at the end of the log.
+std::vector<Sample> run(const SoakOptions& options, const Path& work) {
+  std::vector<supervision::ChildProcess> services = start(options, work);
+  std::vector<Sample> samples;
+  const Clock::time_point begin = Clock::now();
+  constexpr std::chrono::milliseconds kPeriod{100};
+  while (!std::filesystem::exists(work / "end.csv")) {
+    std::this_thread::sleep_for(kPeriod);
+    Sample& sample = samples.emplace_back();
+    sample.at_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    for (supervision::ChildProcess& service : services) {
+      if (const auto& exit = service.poll()) {
+        throw std::runtime_error(service.name() + " " + supervision::describe(*exit) + ": " +
+                                 service.last_line());
+      }
+      std::string name = service.name();
+      for (int i = 2; sample.services.contains(name); ++i) {
+        name = service.name() + " " + std::to_string(i);
+      }
+      sample.services[name] = usage_of(std::to_string(service.pid()));
+    }
+    sample.shared_mb = space_mb("/dev/shm");
+    sample.shared_files = entries("/dev/shm");
+    sample.disk_mb = space_mb(work);
+  }
+  for (supervision::ChildProcess& service : services) service.send_signal(SIGTERM);
+  for (supervision::ChildProcess& service : services) service.wait();
+  return samples;
+}
+
+/// The middle one of what some samples have.
+template <class Value>
+double middle(const std::vector<Sample>& samples, std::size_t first, std::size_t count,
+              Value value) {
+  std::vector<double> values;
+  for (std::size_t i = first; i < std::min(first + count, samples.size()); ++i) {
+    values.push_back(value(samples[i]));
+  }
+  std::sort(values.begin(), values.end());
+  return values.at(values.size() / 2);
+}
+
+class Report {
+ public:
+  explicit Report(const std::vector<Sample>& samples)
+      : samples_(samples),
+        warm_(samples.size() / 3),
+        few_(std::max<std::size_t>(1, samples.size() / 20)) {}
+
+  /// A row; the value may grow by `share` and `most` after the warm-up.
+  template <class Value>
+  void row(const std::string& name, Value value, double share, double most) {
+    const double warm = middle(samples_, warm_, few_, value);
+    const double last = middle(samples_, samples_.size() - few_, few_, value);
+    double peak = 0.0;
+    for (std::size_t i = warm_; i < samples_.size(); ++i) {
+      peak = std::max(peak, middle(samples_, i, few_, value));
+    }
+    const bool grew = peak > warm * (1.0 + share) + most;
+    flat_ &= !grew;
+    std::printf("| %s | %.1f | %.1f | %.1f | %s |\n", name.c_str(), warm, peak, last,
+                grew ? "GREW" : "flat");
+  }
+  [[nodiscard]] bool flat() const { return flat_; }
+
+ private:
+  const std::vector<Sample>& samples_;
+  std::size_t warm_;
+  std::size_t few_;
+  bool flat_ = true;
+};
+
+bool report(const std::vector<Sample>& samples) {
+  if (samples.size() < 30) throw std::runtime_error("too short a run to tell: drive longer");
+  Report report(samples);
+  std::printf("| what | after warm-up | most | at the end | |\n|---|---|---|---|---|\n");
+  for (const auto& [name, usage] : samples[samples.size() / 3].services) {
+    const auto of = [&name = name](const Sample& sample) {
+      const auto found = sample.services.find(name);
+      return found == sample.services.end() ? Usage{} : found->second;
+    };
+    report.row(
+        name + ", memory MB", [&](const Sample& s) { return of(s).rss_mb; }, 0.05, 1.0);
+    report.row(
+        name + ", open files", [&](const Sample& s) { return static_cast<double>(of(s).files); },
+        0.0, 0.0);
+    report.row(
+        name + ", threads", [&](const Sample& s) { return static_cast<double>(of(s).threads); },
+        0.0, 0.0);
+  }
+  report.row(
+      "shared memory, MB", [](const Sample& s) { return s.shared_mb; }, 0.05, 1.0);
+  report.row(
+      "shared memory, files", [](const Sample& s) { return static_cast<double>(s.shared_files); },
+      0.0, 0.0);
+  report.row(
+      "disk, MB", [](const Sample& s) { return s.disk_mb; }, 0.05, 1.0);
+  return report.flat();
+}
+
+void write_csv(const Path& file, const std::vector<Sample>& samples) {
+  std::ofstream out(file);
+  out << "at_s,name,rss_mb,files,threads\n";
+  for (const Sample& sample : samples) {
+    for (const auto& [name, usage] : sample.services) {
+      out << sample.at_s << ',' << name << ',' << usage.rss_mb << ',' << usage.files << ','
+          << usage.threads << '\n';
+    }
+    out << sample.at_s << ",shared memory," << sample.shared_mb << ',' << sample.shared_files
+        << ",\n";
+    out << sample.at_s << ",disk," << sample.disk_mb << ",,\n";
+  }
+}
+
+bool soak(const SoakOptions& options) {
+  const Path work = std::filesystem::temp_directory_path() / ("soak-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(work);
+  const double shared_mb = space_mb("/dev/shm");
+  const std::size_t shared_files = entries("/dev/shm");
+  const double robot_s = prepare(options, work);
+  const Clock::time_point start = Clock::now();
+  const std::vector<Sample> samples = run(options, work);
+  const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  std::printf("%.0f s, %.0f times faster than the robot; %zu samples\n", wall_s, robot_s / wall_s,
+              samples.size());
+  if (!options.csv.empty()) write_csv(options.csv, samples);
+  bool good = report(samples);
+  const bool left = entries("/dev/shm") > shared_files || space_mb("/dev/shm") > shared_mb + 0.01;
+  std::printf("left in shared memory at the end: %s\n", left ? "SOMETHING" : "nothing");
+  good &= !left;
+  if (good) std::filesystem::remove_all(work);
+  return good;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  command_line::Command app{"services that run for long: does anything grow?"};
+  SoakOptions options;
+  app.add_option("--hours", options.hours, "of robot time; a night: 10")
+      ->capture_default_str()
+      ->check(command_line::range(0.05, 1000.0));
+  app.add_option("--rate", options.rate, "times faster than the robot, or lossless")
+      ->capture_default_str();
+  app.add_option("--workers", options.workers, "search workers")
+      ->capture_default_str()
+      ->check(command_line::range(0, 16));
+  app.add_option("--csv", options.csv, "write all samples there");
+  if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
+  try {
+    return soak(options) ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "topogeo_soak: %s\n", error.what());
+    return 2;
+  }
+}
