@@ -45,7 +45,7 @@ namespace dds = eprosima::fastdds::dds;
 using std::chrono::milliseconds;
 
 /// What any service may take after a long log.
-constexpr std::size_t kMostMemory_mb = 150;
+constexpr std::size_t kMostMemoryMb = 150;
 
 std::size_t memory_mb(pid_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/statm");
@@ -144,7 +144,7 @@ class StrangersTest : public testing::Test {
   void finish() {
     EXPECT_EQ(run_->wait(), 0) << run_->err();
     EXPECT_TRUE(read_file(scratch_ / "out/map.pb") == read_file(scratch_ / "alone/map.pb"));
-    EXPECT_LE(most_memory_mb_, kMostMemory_mb);
+    EXPECT_LE(most_memory_mb_, kMostMemoryMb);
     RecordProperty("most_memory_mb", static_cast<int>(most_memory_mb_));
   }
 

@@ -129,7 +129,7 @@ void navigate(const Input& input) {
   navigator.set_goal({1, false});
   navigator.add(navigation::OdometrySample{kNow_ns, {}});
   navigator.add(input);
-  for (int i = 0; i < 3; ++i) {
+  for (std::int64_t i = 0; i < 3; ++i) {
     const geometry::Velocity velocity = navigator.step(kNow_ns + i * 50'000'000);
     require(std::isfinite(velocity.linear_m_per_s) && std::isfinite(velocity.angular_rad_per_s),
             "velocities are finite");
@@ -294,7 +294,7 @@ void receive(const msg::Route& message) {
   fix.stamp_ns = kNow_ns;
   fix.tracking = fix.located = true;
   fix.T_map_robot = {0.5, 0.5, 0.0};
-  for (int i = 0; i < 3; ++i) {
+  for (std::int64_t i = 0; i < 3; ++i) {
     const std::int64_t now_ns = kNow_ns + i * 50'000'000;
     navigator.add(navigation::OdometrySample{now_ns, {}});
     if (i == 0) navigator.add(fix);
