@@ -100,9 +100,14 @@ void Localizer::append(MapPointer map) {
     matching_.add(std::move(map), 0.0);
   } else {
     const std::optional<UncertainPose> gap = std::exchange(gap_, std::nullopt);
-    const UncertainPose step =
+    UncertainPose step =
         gap ? *gap
             : odometry_between_stops(matching_.map(last()).T_odom_robot, *map, config_.odometry);
+    recorded_step_.reset();
+    if (!gap) {
+      recorded_step_ = step.T_a_b;
+      step.T_a_b = scale_.corrected(step.T_a_b);
+    }
     odometry_steps_.push_back(step);
     const std::uint32_t stop = graph_.add_pose(graph_.poses().back() * step.T_a_b);
     // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
@@ -134,7 +139,9 @@ std::vector<StepMatch> Localizer::match_recent() {
       graph_.add_edge(match.edge);
     }
     if (match.accepted() && match.edge.from + 1 == last()) {
-      odometry_.add(odometry_steps_.back(), {match.edge.T_from_to, match.edge.covariance});
+      const UncertainPose matched{match.edge.T_from_to, match.edge.covariance};
+      odometry_.add(odometry_steps_.back(), matched);
+      if (recorded_step_) scale_.add(*recorded_step_, matched);
     }
   }
   return evidence;

@@ -345,7 +345,7 @@ StopMatch StopMatching::judged(const MatchTask& task, const MatchResult& result,
       result.status == MatchStatus::kSolved
           ? without_prior(result.T_reference_query,
                           kind == EdgeKind::kRevisit ? data_covariance(result) : result.covariance,
-                          {task.T_reference_query, task.covariance.inverse()})
+                          weak_prior({task.T_reference_query, task.covariance.inverse()}))
           : task.T_reference_query;
   StopMatch match;
   match.edge = {task.query_map_id, task.reference_map_id, kind, geometry::inverse(T_later_earlier),

@@ -23,7 +23,8 @@ using geometry::Pose2;
 constexpr std::size_t kCachedReferences = 16;  // of about 150 kB
 constexpr std::size_t kRefined = 3;  // places that are refined before the winner is chosen
 
-// Refines the `starts` and takes the one with the largest fitness as the result's pose. Its second
+// Refines the `starts`, takes the one with the largest fitness and gives it free of the prior as
+// the result's pose. Its second
 // is the pose elsewhere that the maps allow best, whatever odometry predicts.
 void choose(const MatchContext& context, const std::vector<MatchSolution>& starts,
             MatchResult& result) {
@@ -37,6 +38,11 @@ void choose(const MatchContext& context, const std::vector<MatchSolution>& start
     if (refined[i].fitness > refined[best].fitness) best = i;
   }
   result.T_reference_query = refined[best].T_reference_query;
+  const Alignment released =
+      align(context.reference, context.query, result.T_reference_query, weak_prior(prior));
+  if (released.converged && same_place(released.T_reference_query, result.T_reference_query)) {
+    result.T_reference_query = released.T_reference_query;
+  }
   result.second = strongest_rival(context, result.T_reference_query);
   const CombinedFitness& combined = context.forms.combined();
   for (std::size_t i = 0; i < starts.size(); ++i) {

@@ -201,6 +201,13 @@ Alignment align(const Reference& reference, const MatchFeatures& query, const Po
   return result;
 }
 
+PosePrior weak_prior(const PosePrior& prior) {
+  // Fixed, as above. A tenth still holds what the scans do not know: along a bare corridor the
+  // position.
+  constexpr double kShare = 0.1;
+  return {prior.T_reference_query, kShare * prior.information};
+}
+
 Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                     const PosePrior& prior) {
   // Fixed: a linear step is right for no more.

@@ -21,6 +21,7 @@
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/loop_closing.hpp"
 #include "topogeo/localization/mapping/odometry_monitor.hpp"
+#include "topogeo/localization/mapping/odometry_scale.hpp"
 #include "topogeo/localization/mapping/optimization_schedule.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
@@ -110,8 +111,11 @@ class Localizer : public Slam {
   LoopClosing loops_;
   OptimizationSchedule schedule_;
   OdometryMonitor odometry_;
+  OdometryScale scale_;
   StateMonitor monitor_;
-  /// To each stop from the one before, as configured; nothing for the first and for stored ones.
+  std::optional<geometry::Pose2> recorded_step_;  // to the last stop, before scale_ corrected it
+  /// To each stop from the one before, with the configured covariance; nothing for the first and
+  /// for stored ones.
   std::vector<UncertainPose> odometry_steps_;
   std::size_t stored_stops_ = 0;      // that were there before the first own one
   std::optional<UncertainPose> gap_;  // to the next stop, where no odometry leads to it

@@ -49,6 +49,10 @@ struct Alignment {
 Alignment align(const Reference& reference, const MatchFeatures& query,
                 const geometry::Pose2& T_first_guess, const PosePrior& prior);
 
+/// The prior that a match ends with. The whole one leads to the place; there it would choose which
+/// points lie together, and a door frame would be where odometry wants it.
+PosePrior weak_prior(const PosePrior& prior);
+
 /// The pose by the scans alone: align() ends where scans and prior balance, so whoever uses the
 /// prior as a measurement of its own would count it twice. `covariance` is that of the scans at
 /// T_aligned. One Newton step away from the prior, which is exact as long as the scans' information
