@@ -367,7 +367,7 @@ class Garbage {
   support::Random random_{7};
 };
 
-// Not run: Fast DDS 2.9.1 does not survive it each time (one of three runs: a segmentation fault of
+// Not run: Fast DDS 2.9.1 does not survive it each time (one of two runs: a segmentation fault of
 // `topogeo run`). deploy/README.md asks for a firewall.
 TEST_F(StrangersTest, DISABLED_GarbageAtThePortsIsDropped) {
   const auto domain = static_cast<std::uint16_t>(std::stoul(domain_));
