@@ -52,7 +52,7 @@ struct LoadOptions {
   bool floods = false;
 };
 
-double quantile(std::vector<double> values, double share) {
+double latency_quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
@@ -97,7 +97,7 @@ int run_robot(const LoadOptions& options, double start_s) {
               static_cast<double>(answered) / wall_s, asked - answered,
               static_cast<unsigned long long>(after.resent - before.resent),
               static_cast<unsigned long long>(after.in_process - before.in_process),
-              quantile(batch_ms, 0.5), quantile(batch_ms, 0.99),
+              latency_quantile(batch_ms, 0.5), latency_quantile(batch_ms, 0.99),
               1e6 * (support::process_cpu_s() - cpu_s) / static_cast<double>(answered));
   if (!client.fault().empty()) std::printf("fault: %s\n", client.fault().c_str());
   return 0;

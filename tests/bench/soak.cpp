@@ -57,7 +57,7 @@ struct Usage {
   std::size_t threads = 0;
 };
 
-struct Sample {
+struct Footprint {
   double at_s = 0.0;
   std::map<std::string, Usage> services;  // by name
   double shared_mb = 0.0;
@@ -165,14 +165,14 @@ std::vector<supervision::ChildProcess> start(const SoakOptions& options, const P
 }
 
 /// Until the localizer has written what it does at the end of the log.
-std::vector<Sample> run(const SoakOptions& options, const Path& work) {
+std::vector<Footprint> run(const SoakOptions& options, const Path& work) {
   std::vector<supervision::ChildProcess> services = start(options, work);
-  std::vector<Sample> samples;
+  std::vector<Footprint> samples;
   const Clock::time_point begin = Clock::now();
   constexpr std::chrono::milliseconds kPeriod{100};
   while (!std::filesystem::exists(work / "end.csv")) {
     std::this_thread::sleep_for(kPeriod);
-    Sample& sample = samples.emplace_back();
+    Footprint& sample = samples.emplace_back();
     sample.at_s = std::chrono::duration<double>(Clock::now() - begin).count();
     for (supervision::ChildProcess& service : services) {
       if (const auto& exit = service.poll()) {
@@ -196,7 +196,7 @@ std::vector<Sample> run(const SoakOptions& options, const Path& work) {
 
 /// The middle one of what some samples have.
 template <class Value>
-double middle(const std::vector<Sample>& samples, std::size_t first, std::size_t count,
+double middle(const std::vector<Footprint>& samples, std::size_t first, std::size_t count,
               Value value) {
   std::vector<double> values;
   for (std::size_t i = first; i < std::min(first + count, samples.size()); ++i) {
@@ -208,7 +208,7 @@ double middle(const std::vector<Sample>& samples, std::size_t first, std::size_t
 
 class Report {
  public:
-  explicit Report(const std::vector<Sample>& samples)
+  explicit Report(const std::vector<Footprint>& samples)
       : samples_(samples),
         warm_(samples.size() / 3),
         few_(std::max<std::size_t>(1, samples.size() / 20)) {}
@@ -230,44 +230,44 @@ class Report {
   [[nodiscard]] bool flat() const { return flat_; }
 
  private:
-  const std::vector<Sample>& samples_;
+  const std::vector<Footprint>& samples_;
   std::size_t warm_;
   std::size_t few_;
   bool flat_ = true;
 };
 
-bool report(const std::vector<Sample>& samples) {
+bool report(const std::vector<Footprint>& samples) {
   if (samples.size() < 30) throw std::runtime_error("too short a run to tell: drive longer");
   Report report(samples);
   std::printf("| what | after warm-up | most | at the end | |\n|---|---|---|---|---|\n");
   for (const auto& [name, usage] : samples[samples.size() / 3].services) {
-    const auto of = [&name = name](const Sample& sample) {
+    const auto of = [&name = name](const Footprint& sample) {
       const auto found = sample.services.find(name);
       return found == sample.services.end() ? Usage{} : found->second;
     };
     report.row(
-        name + ", memory MB", [&](const Sample& s) { return of(s).rss_mb; }, 0.05, 1.0);
+        name + ", memory MB", [&](const Footprint& s) { return of(s).rss_mb; }, 0.05, 1.0);
     report.row(
-        name + ", open files", [&](const Sample& s) { return static_cast<double>(of(s).files); },
+        name + ", open files", [&](const Footprint& s) { return static_cast<double>(of(s).files); },
         0.0, 0.0);
     report.row(
-        name + ", threads", [&](const Sample& s) { return static_cast<double>(of(s).threads); },
+        name + ", threads", [&](const Footprint& s) { return static_cast<double>(of(s).threads); },
         0.0, 0.0);
   }
   report.row(
-      "shared memory, MB", [](const Sample& s) { return s.shared_mb; }, 0.05, 1.0);
+      "shared memory, MB", [](const Footprint& s) { return s.shared_mb; }, 0.05, 1.0);
   report.row(
-      "shared memory, files", [](const Sample& s) { return static_cast<double>(s.shared_files); },
-      0.0, 0.0);
+      "shared memory, files",
+      [](const Footprint& s) { return static_cast<double>(s.shared_files); }, 0.0, 0.0);
   report.row(
-      "disk, MB", [](const Sample& s) { return s.disk_mb; }, 0.05, 1.0);
+      "disk, MB", [](const Footprint& s) { return s.disk_mb; }, 0.05, 1.0);
   return report.flat();
 }
 
-void write_csv(const Path& file, const std::vector<Sample>& samples) {
+void write_csv(const Path& file, const std::vector<Footprint>& samples) {
   std::ofstream out(file);
   out << "at_s,name,rss_mb,files,threads\n";
-  for (const Sample& sample : samples) {
+  for (const Footprint& sample : samples) {
     for (const auto& [name, usage] : sample.services) {
       out << sample.at_s << ',' << name << ',' << usage.rss_mb << ',' << usage.files << ','
           << usage.threads << '\n';
@@ -285,7 +285,7 @@ bool soak(const SoakOptions& options) {
   const std::size_t shared_files = entries("/dev/shm");
   const double robot_s = prepare(options, work);
   const Clock::time_point start = Clock::now();
-  const std::vector<Sample> samples = run(options, work);
+  const std::vector<Footprint> samples = run(options, work);
   const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   std::printf("%.0f s, %.0f times faster than the robot; %zu samples\n", wall_s, robot_s / wall_s,
               samples.size());

@@ -23,9 +23,9 @@ using geometry::Pose2;
 constexpr std::size_t kCachedReferences = 16;  // of about 150 kB
 constexpr std::size_t kRefined = 3;  // places that are refined before the winner is chosen
 
-// Refines the `starts`, takes the one with the largest fitness and gives it free of the prior as
-// the result's pose. Its second
-// is the pose elsewhere that the maps allow best, whatever odometry predicts.
+// Refines the `starts`, takes the one with the largest fitness and gives it as free of the prior as
+// weak_prior() leaves it as the result's pose. Its second is the pose elsewhere that the maps allow
+// best, whatever odometry predicts.
 void choose(const MatchContext& context, const std::vector<MatchSolution>& starts,
             MatchResult& result) {
   const PosePrior prior{context.task.T_reference_query, context.task.covariance.inverse()};

@@ -225,6 +225,17 @@ Pose2 without_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
           geometry::wrap_angle(T_aligned.theta_rad + step.z())};
 }
 
+// H (T - z) + w P (T - p) = 0 at T, H (T' - z) + P (T' - p) = 0 at T'; their difference without z.
+Pose2 with_prior(const Pose2& T_aligned, const Eigen::Matrix3d& covariance,
+                 const PosePrior& prior) {
+  const Eigen::Vector3d rest = (prior.information - weak_prior(prior).information) *
+                               geometry::difference(T_aligned, prior.T_reference_query);
+  const Eigen::Matrix3d both = covariance.inverse() + prior.information;
+  const Eigen::Vector3d step = both.inverse() * rest;
+  return {T_aligned.x_m - step.x(), T_aligned.y_m - step.y(),
+          geometry::wrap_angle(T_aligned.theta_rad - step.z())};
+}
+
 Refinement refine(const Reference& reference, const MatchFeatures& query,
                   const Pose2& T_first_guess, const PosePrior& prior) {
   const Alignment aligned = align(reference, query, T_first_guess, prior);

@@ -2,6 +2,11 @@
 
 #include <utility>
 
+#include <Eigen/LU>
+
+#include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -34,6 +39,12 @@ std::vector<ThesisMatch> ThesisMatching::match(const ThesisMap& map,
     found.earlier = tasks[i].query_map_id;
     found.result = std::move(results[i]);
     if (found.result.status == MatchStatus::kSolved) {
+      // The map of the thesis knows odometry by its matches alone.
+      if (!found.result.covariance.isZero(0.0)) {
+        found.result.T_reference_query =
+            with_prior(found.result.T_reference_query, data_covariance(found.result),
+                       {tasks[i].T_reference_query, tasks[i].covariance.inverse()});
+      }
       found.T_earlier_new = {
           geometry::inverse(found.result.T_reference_query),
           geometry::inverse_covariance(found.result.T_reference_query, found.result.covariance)};

@@ -162,6 +162,23 @@ TEST(RefinementTest, TakesThePullOfThePriorOutAgain) {
   EXPECT_NEAR(found.theta_rad, z.z(), 1e-12);
 }
 
+TEST(RefinementTest, TakesTheWholePriorInsteadOfTheWeakOne) {
+  Eigen::Matrix3d H;
+  H << 900, 40, -15, 40, 400, 30, -15, 30, 2500;
+  const PosePrior prior{{1.12, 1.91, 0.328}, Eigen::Vector3d(200, 300, 800).asDiagonal()};
+  const Eigen::Vector3d p(1.12, 1.91, 0.328);
+  const Eigen::Vector3d z(1.00, 2.00, 0.300);
+  const Eigen::Matrix3d W = weak_prior(prior).information;
+  EXPECT_TRUE(W.isApprox(0.1 * prior.information));
+  EXPECT_EQ(weak_prior(prior).T_reference_query, prior.T_reference_query);
+  const Eigen::Vector3d weak = (H + W).inverse() * (H * z + W * p);
+  const Eigen::Vector3d whole = (H + prior.information).inverse() * (H * z + prior.information * p);
+  const Pose2 found = with_prior({weak.x(), weak.y(), weak.z()}, H.inverse(), prior);
+  EXPECT_NEAR(found.x_m, whole.x(), 1e-12);
+  EXPECT_NEAR(found.y_m, whole.y(), 1e-12);
+  EXPECT_NEAR(found.theta_rad, whole.z(), 1e-12);
+}
+
 TEST(RefinementTest, WithoutPriorComesBackToWhatTheScansSay) {
   const Reference reference = make_reference(test::features_at(test::l_room(), {}));
   const Pose2 truth{0.4, -0.3, 0.3};

@@ -64,7 +64,7 @@ struct DomainFault {
 
 void set_clock(DomainFacts& facts, std::int64_t lag_ns) {
   ClockLag clock;
-  for (int i = 0; i < 3; ++i) clock.add(0, lag_ns + i * 1'000'000);
+  for (int i = 0; i < 3; ++i) clock.add(0, lag_ns + std::int64_t{i} * 1'000'000);
   facts.clocks["pc"] = clock;
 }
 

@@ -142,6 +142,7 @@ class MatchPool {
 
   /// Makes a whole map known, to be named in PlaceQuestion::field_hash from now on, instead of the
   /// one before. Pools that get no such tasks need none.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pools that need one keep it
   virtual void add_field(std::shared_ptr<const PlaceField> /*field*/) {}
 
   /// Results in the order of the tasks, whatever the order in which they were worked on. Every map

@@ -61,6 +61,11 @@ PosePrior weak_prior(const PosePrior& prior);
 geometry::Pose2 without_prior(const geometry::Pose2& T_aligned, const Eigen::Matrix3d& covariance,
                               const PosePrior& prior);
 
+/// The pose where scans and the whole prior balance, from the one where the scans balance with
+/// weak_prior(): for those who have no other use of the prior. `covariance` as above, not zero.
+geometry::Pose2 with_prior(const geometry::Pose2& T_aligned, const Eigen::Matrix3d& covariance,
+                           const PosePrior& prior);
+
 /// A refined pose and the evidence for it.
 struct Refinement : PoseEvidence {
   geometry::Pose2 T_reference_query;
