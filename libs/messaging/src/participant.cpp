@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
 #include "topogeo/messaging/shared_memory.hpp"
 
@@ -70,6 +72,20 @@ Entity* require(Entity* entity, const std::string& what) {
   return entity;
 }
 
+// The messages by which secured participants get to know each other carry certificates, and Fast
+// DDS 2.9.1 does not finish where those are cut into packets.
+void send_whole_certificates(dds::DomainParticipantQos& qos) {
+  constexpr std::uint32_t kLargestMessage_bytes = 65500;
+  for (auto& transport : qos.transport().user_transports) {
+    const auto* udp =
+        dynamic_cast<const eprosima::fastdds::rtps::UDPv4TransportDescriptor*>(transport.get());
+    if (udp == nullptr) continue;
+    auto whole = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>(*udp);
+    whole->maxMessageSize = kLargestMessage_bytes;
+    transport = std::move(whole);
+  }
+}
+
 }  // namespace
 
 ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
@@ -95,6 +111,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                                : options.security;
   if (!security.empty()) {
     add_security(qos, security / options.identity);
+    send_whole_certificates(qos);
     secured_ = true;
   }
   if (options.observe) {
