@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -57,32 +56,6 @@ std::string user_name() {
   return user == nullptr ? std::to_string(::geteuid()) : user->pw_name;
 }
 
-/// Local ports of the sockets that the kernel lists.
-std::vector<std::uint32_t> udp_ports(const fs::path& proc) {
-  constexpr int kBase = 16;
-  std::vector<std::uint32_t> ports;
-  for (const char* table : {"net/udp", "net/udp6"}) {
-    std::ifstream input(proc / table);
-    std::string line;
-    std::getline(input, line);  // titles
-    while (std::getline(input, line)) {
-      // "  12: 0100007F:1CE8 00000000:0000 07 ..."
-      std::istringstream words(line);
-      std::string slot;
-      std::string local;
-      if (!(words >> slot >> local)) continue;
-      const std::size_t colon = local.find(':');
-      if (colon == std::string::npos) continue;
-      std::uint32_t port = 0;
-      const char* const end = local.data() + local.size();
-      if (std::from_chars(local.data() + colon + 1, end, port, kBase).ec == std::errc()) {
-        ports.push_back(port);
-      }
-    }
-  }
-  return ports;
-}
-
 void ask_for_ports(const FactSources& sources, MachineFacts& facts) {
   const std::uint32_t first = kFirstPort + kPortsOfDomain * facts.domain;
   facts.discovery_port = first;
@@ -90,10 +63,11 @@ void ask_for_ports(const FactSources& sources, MachineFacts& facts) {
   if (!facts.discovery_port_error.empty()) {
     facts.discovery_port_owner = owner_of_udp_port(first, sources.proc);
   }
-  const std::vector<std::uint32_t> ports = udp_ports(sources.proc);
-  facts.used_ports = static_cast<std::uint32_t>(std::ranges::count_if(ports, [&](auto port) {
-    return port >= first + kFirstOwnPort && port < first + kPortsOfDomain;
-  }));
+  const std::vector<UdpSocket> sockets = udp_sockets(sources.proc);
+  facts.used_ports =
+      static_cast<std::uint32_t>(std::ranges::count_if(sockets, [&](const UdpSocket& socket) {
+        return socket.port >= first + kFirstOwnPort && socket.port < first + kPortsOfDomain;
+      }));
   std::istringstream range(first_line(sources.proc / "sys/net/ipv4/ip_local_port_range"));
   range >> facts.first_ephemeral_port >> facts.last_ephemeral_port;
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -85,20 +87,9 @@ std::string why_no_echo(in_addr interface) {
 /// "socket:[12345]" of the sockets at a port.
 std::vector<std::string> sockets_at(std::uint32_t port, const fs::path& proc) {
   std::vector<std::string> sockets;
-  for (const char* table : {"net/udp", "net/udp6"}) {
-    std::ifstream input(proc / table);
-    std::string line;
-    std::getline(input, line);  // titles
-    while (std::getline(input, line)) {
-      std::istringstream words(line);
-      const std::vector<std::string> fields{std::istream_iterator<std::string>(words), {}};
-      constexpr std::size_t kLocal = 1;
-      constexpr std::size_t kInode = 9;
-      if (fields.size() <= kInode) continue;
-      const std::size_t colon = fields[kLocal].find(':');
-      if (colon == std::string::npos) continue;
-      if (std::stoul(fields[kLocal].substr(colon + 1), nullptr, kHexadecimal) != port) continue;
-      sockets.push_back("socket:[" + fields[kInode] + "]");
+  for (const UdpSocket& socket : udp_sockets(proc)) {
+    if (socket.port == port && !socket.inode.empty()) {
+      sockets.push_back("socket:[" + socket.inode + "]");
     }
   }
   return sockets;
@@ -117,6 +108,35 @@ bool has_one_of(const fs::path& descriptors, const std::vector<std::string>& soc
 }
 
 }  // namespace
+
+std::vector<UdpSocket> udp_sockets(const fs::path& proc) {
+  std::vector<UdpSocket> sockets;
+  for (const char* table : {"net/udp", "net/udp6"}) {
+    std::ifstream input(proc / table);
+    std::string line;
+    std::getline(input, line);  // titles
+    while (std::getline(input, line)) {
+      // "  12: 0100007F:1CE8 00000000:0000 07 ..."
+      std::istringstream words(line);
+      const std::vector<std::string> fields{std::istream_iterator<std::string>(words), {}};
+      constexpr std::size_t kLocal = 1;
+      constexpr std::size_t kInode = 9;
+      if (fields.size() <= kLocal) continue;
+      const std::string& local = fields[kLocal];
+      const std::size_t colon = local.find(':');
+      if (colon == std::string::npos) continue;
+      UdpSocket socket;
+      const char* const end = local.data() + local.size();
+      if (std::from_chars(local.data() + colon + 1, end, socket.port, kHexadecimal).ec !=
+          std::errc()) {
+        continue;
+      }
+      if (fields.size() > kInode) socket.inode = fields[kInode];
+      sockets.push_back(std::move(socket));
+    }
+  }
+  return sockets;
+}
 
 std::string why_port_cannot_be_shared(std::uint32_t port) {
   const support::FileDescriptor socket = udp_socket();

@@ -13,6 +13,14 @@ namespace topogeo::cli {
 /// Group of discovery: Object Management Group, DDSI-RTPS 2.3, chapter 9.6.1.4.
 inline constexpr const char* kDiscoveryGroup = "239.255.0.1";
 
+struct UdpSocket {
+  std::uint32_t port = 0;  ///< of this machine
+  std::string inode;       ///< by which programs name it; empty where the kernel does not say
+};
+
+/// All that the kernel lists in net/udp and net/udp6.
+std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc);
+
 /// Why a UDP port cannot be opened beside the programs that share it; empty: it can.
 std::string why_port_cannot_be_shared(std::uint32_t port);
 

@@ -1,6 +1,5 @@
 // Maps a long drive through a large synthetic floor and reports what each step costs against the
 // length of the log: a CSV file, a picture and a summary.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -26,6 +25,7 @@
 #include "topogeo/topomap/trajectory.hpp"
 
 #include "cost_picture.hpp"
+#include "sample_quantile.hpp"
 
 namespace {
 
@@ -57,11 +57,6 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
 void write_log(const std::filesystem::path& file, const simulation::SimulatedLog& log) {
   scan::CarmenLogWriter writer(file);
   for (const scan::Scan& scan : log.scans) writer.write(scan);
@@ -78,8 +73,9 @@ void report(const std::string& what, const std::vector<bench::StepCost>& steps, 
   }
   if (costs_ms.empty()) return;
   std::printf("%s: mean %.2f ms, median %.2f, 95 %% %.2f, 99 %% %.2f, most %.1f\n", what.c_str(),
-              sum_ms / static_cast<double>(costs_ms.size()), quantile(costs_ms, 0.5),
-              quantile(costs_ms, 0.95), quantile(costs_ms, 0.99), quantile(costs_ms, 1.0));
+              sum_ms / static_cast<double>(costs_ms.size()), bench::sample_quantile(costs_ms, 0.5),
+              bench::sample_quantile(costs_ms, 0.95), bench::sample_quantile(costs_ms, 0.99),
+              bench::sample_quantile(costs_ms, 1.0));
 }
 
 // The steps over the kilometre that ends here.

@@ -35,6 +35,7 @@
 #include "topogeo/support/cpu_time.hpp"
 
 #include "pool_peers.hpp"
+#include "sample_quantile.hpp"
 #include "stub_workers.hpp"
 
 namespace {
@@ -51,11 +52,6 @@ struct LoadOptions {
   std::uint32_t domain = 0;  // of a robot: 0 in the program that starts all
   bool floods = false;
 };
-
-double latency_quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
 
 /// All wait until this second of the steady clock, which the processes of a host share.
 void wait_for_start(double start_s) {
@@ -97,7 +93,7 @@ int run_robot(const LoadOptions& options, double start_s) {
               static_cast<double>(answered) / wall_s, asked - answered,
               static_cast<unsigned long long>(after.resent - before.resent),
               static_cast<unsigned long long>(after.in_process - before.in_process),
-              latency_quantile(batch_ms, 0.5), latency_quantile(batch_ms, 0.99),
+              bench::sample_quantile(batch_ms, 0.5), bench::sample_quantile(batch_ms, 0.99),
               1e6 * (support::process_cpu_s() - cpu_s) / static_cast<double>(answered));
   if (!client.fault().empty()) std::printf("fault: %s\n", client.fault().c_str());
   return 0;
