@@ -82,8 +82,12 @@ void GaWorkerService::fill_status() {
 
 void GaWorkerService::listen() {
   service_.loop().on_event([this](const messaging::Event& event) { on_event(event); });
-  service_.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { keep(map); },
-                                    {.any_robot = true});
+  service_.subscribe<msg::LocalMap>(
+      [this](const msg::LocalMap& map) {
+        intake_.published(map.robot_id().to_string(), map.stamp_ns());
+        keep(map);
+      },
+      {.any_robot = true});
   service_.subscribe<msg::MapCopy>(
       [this](const msg::MapCopy& copy) {
         if (intake_.lacks(copy.local_map().content_hash())) keep(copy.local_map());

@@ -23,7 +23,8 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay, b
       tracked_poses_(service.advertise<msg::TrackedPose>()),
       ends_out_(service.advertise<msg::StreamEnd>()),
       replay_(replay) {
-  for (const char* counter : {"scans", "local_maps", "tracked_scans", "matched_scans"}) {
+  for (const char* counter :
+       {"scans", "local_maps", "local_maps_kept", "tracked_scans", "matched_scans"}) {
     service_.status().set_counter(counter, 0.0);
   }
   if (standalone) {
@@ -34,15 +35,13 @@ LocalMapperService::LocalMapperService(service::Service& service, bool replay, b
   store_.emplace(service, [this](const msg::StoredMap& stored) { on_stored(stored); });
 }
 
-namespace {
-
-// A reader that is behind has them all the same; about 4 MB.
-constexpr std::size_t kKeptWhenStored = 256;
-
-}  // namespace
-
 void LocalMapperService::on_stored(const msg::StoredMap& stored) {
-  if (begun_) release(stored);
+  if (stored.session() == msg::kNothingIsStored) {
+    sent_.set_nothing_stored();
+  } else {
+    sent_.set_stored(stored.session(), stored.session_stops());
+  }
+  release();
   if (begun_ || stored_) return;
   // A log that is added to its own map is another session (as in MappingRun).
   if (replay_ && stored.stops() > 0) mapper_.set_session_salt(stored.map_id());
@@ -79,19 +78,17 @@ void LocalMapperService::begin() {
   service_.status().wait_for("scans");
 }
 
-// What is stored comes from the map store when it is needed again. A log ends, and those who come
-// late find all of it.
-void LocalMapperService::release(const msg::StoredMap& stored) {
-  if (replay_ || sent_.empty() || stored.session() != sent_.back().session) return;
-  while (sent_.size() > kKeptWhenStored) {
-    const topomap::StopId stop = sent_.front();
-    if (stop.session == stored.session() && stop.number >= stored.session_stops()) return;
+// What is stored comes from the map store when it is needed again.
+void LocalMapperService::release() {
+  const bool readers_have_all =
+      sent_.depends_on_readers() && local_maps_.wait_for_acknowledgments({});
+  for (const topomap::StopId& stop : sent_.take_old(readers_have_all)) {
     msg::LocalMap gone;
     gone.session(stop.session);
     gone.id(stop.number);
     local_maps_.dispose(gone);
-    sent_.pop_front();
   }
+  service_.status().set_counter("local_maps_kept", static_cast<double>(sent_.size()));
 }
 
 void LocalMapperService::on_scan(const msg::Scan& message) {
@@ -164,12 +161,13 @@ void LocalMapperService::publish(const topomap::LocalMap& map) {
   matched_ += static_cast<std::uint64_t>(
       std::count_if(map.track.begin(), map.track.end(),
                     [](const topomap::TrackedScan& scan) { return scan.matched; }));
+  release();  // by now readers have had the time to take the one before
   try {
     if (!service_.send(local_maps_, service::to_msg(map), "local map")) return;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(error.what());  // no fault of the scan; the run cannot go on without
   }
-  sent_.push_back(map.stop);
+  sent_.add(map.stop);
   service_.status().set_counter("local_maps", static_cast<double>(++maps_));
   service_.status().set_counter("tracked_scans", static_cast<double>(tracked_));
   service_.status().set_counter("matched_scans", static_cast<double>(matched_));

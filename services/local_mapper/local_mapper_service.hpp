@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <optional>
 
@@ -13,6 +12,8 @@
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/store_client.hpp"
+
+#include "sent_maps.hpp"
 
 namespace topogeo::local_mapper {
 
@@ -33,8 +34,8 @@ class LocalMapperService {
   };
 
   void on_stored(const msg::StoredMap& stored);
-  /// Forgets local maps that are stored.
-  void release(const msg::StoredMap& stored);
+  /// Forgets local maps that late readers need not get from here.
+  void release();
   void on_last_stop(const service::StoreClient::Answer& answer);
   /// Nothing is read before it is known with which session to go on.
   void begin();
@@ -63,7 +64,7 @@ class LocalMapperService {
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::optional<Geometry> geometry_;
   std::uint64_t maps_ = 0;
-  std::deque<topomap::StopId> sent_;  // that late readers get, oldest first
+  SentMaps sent_;
   std::uint64_t tracked_ = 0;
   std::uint64_t matched_ = 0;
   std::optional<std::uint64_t> scans_in_stream_;

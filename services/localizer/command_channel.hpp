@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <string>
 
-#include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/trajectory.h"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/service.hpp"
 
 #include "localizer_commands.hpp"
+#include "reply_sender.hpp"
 
 namespace topogeo::localizer {
 
@@ -30,14 +28,11 @@ class CommandChannel {
 
  private:
   void on_command(const msg::LocalizationCommand& message);
-  void reply(std::uint64_t request_id, const std::string& client_id, const CommandAnswer& answer,
-             std::int64_t stamp_ns);
 
   service::Service& service_;
   std::function<void()> on_arrival_;
-  messaging::Writer<msg::LocalizationReply> replies_;
+  ReplySender replies_;
   std::deque<service::LocalizationCommand> waiting_;
-  std::uint64_t sequence_ = 0;
 };
 
 }  // namespace topogeo::localizer

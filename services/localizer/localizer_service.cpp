@@ -10,12 +10,12 @@
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/atomic_file.hpp"
-#include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
-#include "topogeo/support/version.hpp"
 
+#include "pool_options.hpp"
 #include "run_counters.hpp"
 #include "run_summary.hpp"
+#include "stop_input.hpp"
 
 namespace topogeo::localizer {
 
@@ -23,23 +23,6 @@ namespace {
 
 /// Twice for each status, so that none shows figures older than that.
 constexpr std::chrono::milliseconds kCountPeriod{250};
-
-/// Different for every process that ever ran, as far as workers can remember.
-std::string unique_client_id() {
-  const auto start = std::chrono::system_clock::now().time_since_epoch();
-  return support::process_name() + "-" +
-         std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(start).count());
-}
-
-RemotePoolOptions pool_options(const service::Service& service) {
-  RemotePoolOptions options;
-  options.robot_id = service.robot_id();
-  options.client_id = unique_client_id();
-  options.version = support::kVersion;
-  options.config_fingerprint = service.setup().config.effective.fingerprint;
-  options.stopping = [] { return service::Service::stopping(); };
-  return options;
-}
 
 localization::SlamSession make_slam(const service::Service& service,
                                     const LocalizerOptions& options, localization::MatchPool& pool,
@@ -86,6 +69,12 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
   });
   service.subscribe<msg::StreamEnd>([this](const msg::StreamEnd& end) { on_stream_end(end); });
   service.loop().add_timer(kCountPeriod, [this] { set_pool_counters(pool_, service_.status()); });
+  if (!options.standalone) {
+    missing_.emplace(service, queue_, options.replay || !options.map, [this] { schedule(); });
+    service.loop().add_timer(kCountPeriod, [this] {
+      if (ready_ && !finished_) missing_->check();
+    });
+  }
   slam_.emplace(make_slam(service, options, pool_, optimizer_));
   count();
   if (options.standalone || options.map || options.continued) {
@@ -120,19 +109,7 @@ void LocalizerService::resume(ResumeFrom from) {
 }
 
 void LocalizerService::on_map(const msg::LocalMap& message) {
-  const std::string name = "local map " + std::to_string(message.id());
-  const StopQueue::Arrival arrival =
-      queue_.arrival({message.session(), message.id()}, message.content_hash());
-  if (arrival == StopQueue::Arrival::kOtherRun) {
-    service_.status().fault("local map of another run", name);
-  }
-  if (arrival != StopQueue::Arrival::kNew) return;
-  if (finished_) {
-    service_.status().fault("local map after the end", name);
-    return;
-  }
-  queue_.add(std::make_shared<const topomap::LocalMap>(service::from_msg(message)));
-  schedule();
+  if (add_stop(service_, message, finished_, queue_)) schedule();
 }
 
 void LocalizerService::on_stream_end(const msg::StreamEnd& message) {

@@ -18,6 +18,7 @@
 #include "background_optimizer.hpp"
 #include "command_channel.hpp"
 #include "live_pose_estimate.hpp"
+#include "missing_stops.hpp"
 #include "odometry_chain.hpp"
 #include "remote_pool.hpp"
 #include "resume.hpp"
@@ -73,6 +74,7 @@ class LocalizerService {
 
   std::optional<Resume> resume_;  // until it is known where to go on
   StopQueue queue_;
+  std::optional<MissingStops> missing_;  // unless it is standalone
   OdometryChain odometry_;
   std::size_t known_stops_ = 0;  // to be added again: others have their poses already
   LivePoseEstimate live_;

@@ -1,6 +1,7 @@
 // Corrects the pose of every stop by matching its local map against earlier ones.
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
@@ -9,11 +10,13 @@
 #include "topogeo/service/sole_service.hpp"
 
 #include "localizer_service.hpp"
+#include "shared_localizer_service.hpp"
 
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
   localizer::LocalizerOptions options;
   std::string initial_pose;
+  std::vector<std::string> robots;
   return service::run_service(
       argc, argv, "localizer", "Corrects the trajectory by matching local maps.",
       [&](command_line::Command& app) {
@@ -37,6 +40,7 @@ int main(int argc, char** argv) {
         app.add_flag("--standalone", options.standalone,
                      "there is no map store: begin a new map at once instead of waiting for what "
                      "it has");
+        service::add_robots_option(app, robots);
         app.add_flag("--replay", options.replay,
                      "the stops come from a log: after a restart add all of them again, so that "
                      "the map is the same");
@@ -52,6 +56,18 @@ int main(int argc, char** argv) {
           if (!initial_pose.empty()) options.initial_pose = pipeline::parse_pose(initial_pose);
         } catch (const std::invalid_argument& error) {
           throw service::UsageError(error.what());
+        }
+        if (!robots.empty()) {
+          if (options.map || options.continued || options.replay || options.wait_workers > 0) {
+            throw service::UsageError(
+                "--with-robots goes on with the map of the map store: --map, --continue, --replay "
+                "and --wait-workers do not go with it");
+          }
+          service::Service service(service::with_robots(setup, robots));
+          const service::SoleService sole(service);
+          const localizer::SharedLocalizerService localizer(service, options.standalone);
+          service.run();
+          return;
         }
         service::Service service(setup);
         const service::SoleService sole(service);

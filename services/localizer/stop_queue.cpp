@@ -31,7 +31,7 @@ StopQueue::MapPointer StopQueue::take() {
   }
   for (const std::uint64_t session : sessions_) {
     if (last_ && session == last_->session) continue;
-    if (MapPointer first = take({session, 0})) return first;
+    if (MapPointer first = take(first_of(session))) return first;
   }
   return nullptr;
 }
@@ -48,8 +48,39 @@ StopQueue::MapPointer StopQueue::take(const topomap::StopId& stop) {
   return map;
 }
 
+topomap::StopId StopQueue::first_of(std::uint64_t session) const {
+  const auto first = first_.find(session);
+  return {session, first == first_.end() ? 0 : first->second};
+}
+
+bool StopQueue::gap_at(const topomap::StopId& stop) const {
+  const auto next = waiting_.lower_bound(stop);
+  return next != waiting_.end() && next->first.session == stop.session && next->first != stop;
+}
+
+std::optional<topomap::StopId> StopQueue::missing() const {
+  std::vector<topomap::StopId> wanted;  // any of them can be taken next
+  if (last_) wanted.push_back(last_->next());
+  for (const std::uint64_t session : sessions_) {
+    if (!last_ || session != last_->session) wanted.push_back(first_of(session));
+  }
+  const auto is_here = [this](const topomap::StopId& stop) { return waiting_.contains(stop); };
+  if (std::any_of(wanted.begin(), wanted.end(), is_here)) return std::nullopt;
+  const auto gap = std::find_if(wanted.begin(), wanted.end(),
+                                [this](const topomap::StopId& stop) { return gap_at(stop); });
+  return gap == wanted.end() ? std::nullopt : std::optional(*gap);
+}
+
+topomap::StopId StopQueue::begin_late(std::uint64_t session) {
+  const auto here = waiting_.lower_bound({session, 0});
+  if (here == waiting_.end() || here->first.session != session) return first_of(session);
+  first_[session] = here->first.number;
+  return here->first;
+}
+
 void StopQueue::end_session(std::uint64_t session) {
   over_.insert(session);
+  first_.erase(session);
   std::erase(sessions_, session);
   hashes_.clear();
   std::erase_if(waiting_, [&](const auto& entry) { return entry.first.session == session; });

@@ -33,6 +33,12 @@ class StopQueue {
   /// The next local map: of the session that is on, or else the first stop of one that came later;
   /// null when neither has come yet.
   MapPointer take();
+  /// The stop that take() waits for although later ones of its session are here: its sender sends
+  /// them in order, so that it does not come any more.
+  [[nodiscard]] std::optional<topomap::StopId> missing() const;
+  /// A session that has not begun begins with the first of its stops that is here, which is
+  /// returned.
+  topomap::StopId begin_late(std::uint64_t session);
   /// So many local maps are in the session that the stream ends with.
   void end_at(std::uint64_t maps) { maps_in_session_ = maps; }
 
@@ -44,11 +50,15 @@ class StopQueue {
 
  private:
   MapPointer take(const topomap::StopId& stop);
+  /// The stop that a session begins with.
+  [[nodiscard]] topomap::StopId first_of(std::uint64_t session) const;
+  [[nodiscard]] bool gap_at(const topomap::StopId& stop) const;
   /// Another session is on: what is left of this one is not wanted any more.
   void end_session(std::uint64_t session);
 
   std::map<topomap::StopId, MapPointer> waiting_;
   std::vector<std::uint64_t> sessions_;              // in the order in which they came
+  std::map<std::uint64_t, std::uint32_t> first_;     // numbers, by session; others begin with 0
   std::map<topomap::StopId, std::uint64_t> hashes_;  // of those taken of the session that is on
   std::set<std::uint64_t> over_;                     // sessions
   std::size_t taken_ = 0;

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <malloc.h>
+
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
@@ -68,6 +70,7 @@ struct StoreOptions {
   std::optional<std::filesystem::path> continued;
   std::optional<std::filesystem::path> map;
   map_store::DrawingOptions drawing;
+  std::vector<std::string> robots;
 
   /// Shows a map that there is, takes nothing in.
   [[nodiscard]] bool serves() const { return map || (drawing.drawing && store.directory.empty()); }
@@ -91,6 +94,7 @@ void add_options(command_line::Command& app, StoreOptions& options) {
                  "nothing written")
       ->type_name("FILE");
   add_drawing_options(app, options.drawing);
+  service::add_robots_option(app, options.robots);
 }
 
 /// Shows a stored map, a drawing, or both.
@@ -131,7 +135,7 @@ void keep(const service::Setup& setup, StoreOptions options) {
   if (store.database.empty()) store.database = store.directory / "map.sqlite";
   if (store.title.empty()) store.title = setup.options.robot_id;
   const std::vector<support::FileLock> locks = lock(store);
-  service::Service service(setup);
+  service::Service service(service::with_robots(setup, options.robots));
   const service::SoleService sole(service);
   const std::uint64_t seed = setup.config.config.localizer.seed;
   storage::MapDatabase database =
@@ -145,9 +149,18 @@ void keep(const service::Setup& setup, StoreOptions options) {
   running.end();
 }
 
+/// Memory that is needed for a moment, as when the live map is drawn up or a snapshot is made, goes
+/// back to the system at once. By default the heap keeps it, up to 32 MB a block, and the blocks
+/// that stay lie between: 310 MB instead of 257 MB with the map of topogeo_map_store_bench.
+void give_back_large_blocks() {
+  constexpr int kLarge_bytes = 256 * 1024;
+  ::mallopt(M_MMAP_THRESHOLD, kLarge_bytes);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  give_back_large_blocks();
   StoreOptions options;
   return service::run_service(
       argc, argv, "map_store", "Stores local maps and trajectory and makes the global map.",

@@ -110,6 +110,11 @@ void MapArchive::put(const storage::MapDrawing& drawing) {
   database_.put_drawing(drawing);
 }
 
+void MapArchive::put(const std::vector<storage::RefusedMerge>& refused) {
+  check_file();
+  database_.put_refused_merges(refused);
+}
+
 void MapArchive::check_file() {
   const std::uint64_t there = file_number(path_);
   if (there == file_) return;

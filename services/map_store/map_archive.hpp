@@ -49,6 +49,7 @@ class MapArchive {
   void put(const std::vector<storage::MapEdge>& edges);
   void put(const topomap::GlobalMap& map);
   void put(const storage::MapDrawing& drawing);
+  void put(const std::vector<storage::RefusedMerge>& refused);
 
   [[nodiscard]] const storage::MapDatabase& database() const { return database_; }
 

@@ -14,7 +14,8 @@ MapInput::MapInput(Stored stored)
     : local_maps_(std::move(stored.local_maps)),
       first_kept_(std::move(stored.first_kept)),
       closures_(std::move(stored.closures)),
-      stored_edges_(std::move(stored.edges)) {
+      stored_edges_(std::move(stored.edges)),
+      refused_merges_(std::move(stored.refused_merges)) {
   for (const topomap::LocalMap& map : local_maps_) remember(map);
   if (!stored.trajectory.stops.empty()) {
     closures_version_ = stored.trajectory.version;
@@ -23,6 +24,11 @@ MapInput::MapInput(Stored stored)
     }
   }
   for (topomap::LocalMap& map : stored.waiting) add(std::move(map));
+}
+
+void MapInput::add(const storage::RefusedMerge& refused) {
+  if (std::ranges::find(refused_merges_, refused) != refused_merges_.end()) return;
+  refused_merges_.push_back(refused);
 }
 
 void MapInput::remember(const topomap::LocalMap& map) {

@@ -26,6 +26,7 @@ class MapInput {
     topomap::Trajectory trajectory = {};
     std::vector<topomap::LoopClosure> closures = {};
     std::vector<storage::MapEdge> edges = {};
+    std::vector<storage::RefusedMerge> refused_merges = {};
     std::vector<topomap::LocalMap> waiting = {};  ///< as they were sent, in the order of arrival
     std::map<std::uint64_t, std::uint32_t> first_kept = {};  ///< see storage::SessionState
   };
@@ -50,6 +51,7 @@ class MapInput {
   void add(const msg::TrajectorySegment& message);
   void add(const msg::LoopClosures& message);
   void add(const msg::MapEdges& message);
+  void add(const storage::RefusedMerge& refused);
   /// The end of the localizer's stream; the last one counts.
   void set_end(const msg::StreamEnd& message) { end_ = message; }
 
@@ -71,6 +73,10 @@ class MapInput {
   [[nodiscard]] std::vector<storage::MapEdge> usable_edges() const;
   /// Grows with each change of them.
   [[nodiscard]] std::uint64_t edge_changes() const { return edge_changes_; }
+  /// Each once; none leaves them.
+  [[nodiscard]] const std::vector<storage::RefusedMerge>& refused_merges() const {
+    return refused_merges_;
+  }
   [[nodiscard]] std::uint64_t version() const { return trajectory_.version(); }
 
   /// The final trajectory, when everything that the end of the stream names is here: all maps, all
@@ -117,6 +123,7 @@ class MapInput {
   std::vector<storage::MapEdge> stored_edges_;  // until newer ones have come
   service::EdgeAssembly edges_;
   std::uint64_t edge_changes_ = 0;
+  std::vector<storage::RefusedMerge> refused_merges_;
   std::optional<Renewal> renewal_;
   std::uint64_t renewal_numbers_ = 0;  // numbered_since of renewal_
   std::optional<msg::StreamEnd> end_;

@@ -48,13 +48,14 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
                hybrid.zones().zones.size(), hybrid.places().size());
 }
 
-// No session goes on here: a local mapper begins one.
+// No session goes on here: a local mapper begins one and keeps little of it.
 void MapServer::announce() {
   msg::StoredMap message;
   messaging::set_header(message, service_.robot_id(), stamp_ns_, 0);
   message.map_id(document_.map_id);
   message.stops(static_cast<std::uint32_t>(document_.trajectory.stops.size()));
   message.earlier_stops(message.stops());
+  message.session(msg::kNothingIsStored);
   announced_ = stored_out_.write(message);
 }
 

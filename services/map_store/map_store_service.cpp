@@ -52,6 +52,7 @@ MapInput::Stored stored_input(const storage::MapDatabase& database, storage::Map
   stored.trajectory = std::move(document.trajectory);
   stored.closures = std::move(document.loop_closures);
   stored.edges = std::move(document.edges);
+  stored.refused_merges = std::move(document.refused_merges);
   for (const topomap::StopId& stop : database.waiting_stops()) {
     if (auto map = database.stop(stop)) stored.waiting.push_back(std::move(*map));
   }
@@ -73,12 +74,13 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       elements_(service),
       hybrid_(service),
       ends_out_(service.advertise<msg::StreamEnd>()),
-      stored_out_(service.advertise<msg::StoredMap>()),
+      acknowledged_(service),
       pieces_out_(service.advertise<msg::SnapshotPiece>()),
       snapshots_(
           service.robot_id(),
           [this](const auto& request, const auto& sink) { write_snapshot(request, sink); },
           [this](const msg::SnapshotPiece& piece) { return send_piece(piece); }) {
+  stored_refusals_ = input_.refused_merges().size();
   if (!options_.drawing.empty()) archive_.put(options_.drawing);
   // There is a map before any scan, be it empty; one that has to be fused first comes when it is.
   if (hybrid_pending_ || input_.local_maps().empty()) {
@@ -86,16 +88,21 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
   }
   if (options_.drawing.grid && !hybrid_pending_) hybrid_pending_.emplace();
   listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); },
-                        {.main_input = true});
+                        {.team = true, .main_input = true});
   listen<msg::TrajectorySegment>(
       [this](const msg::TrajectorySegment& segment) { input_.add(segment); });
   listen<msg::LoopClosures>([this](const msg::LoopClosures& closures) { input_.add(closures); });
   listen<msg::MapEdges>([this](const msg::MapEdges& edges) { input_.add(edges); });
+  listen<msg::MergeProposal>([this](const msg::MergeProposal& proposal) {
+    if (proposal.state() != msg::kMergeRefused) return;
+    input_.add(storage::RefusedMerge{service::from_msg(proposal.stop()),
+                                     service::from_msg(proposal.other_stop())});
+  });
   listen<msg::StreamEnd>([this](const msg::StreamEnd& end) {
     if (end.stage() == msg::kStageLocalizer) input_.set_end(end);
   });
   service_.subscribe<msg::SnapshotRequest>(
-      [this](const msg::SnapshotRequest& request) { snapshots_.add(request); });
+      [this](const msg::SnapshotRequest& request) { snapshots_.add(request); }, {.team = true});
   service_.loop().add_timer(kStorePeriod, [this] {
     if (!finished_) store();
     finish_if_complete();
@@ -111,7 +118,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       work_on_live_map();
     }
   });
-  acknowledge();
+  acknowledged_.publish(archive_.database());
   count();
   service_.status().wait_for("local maps");
 }
@@ -132,6 +139,7 @@ void MapStoreService::on_local_map(const msg::LocalMap& message) {
     service_.status().set_state(msg::kServiceRunning);
   }
   topomap::LocalMap map = service::from_msg(message);
+  acknowledged_.name_session(map.stop.session, map.robot_id);
   archive_.add(map);
   if (input_.add(std::move(map)) == MapInput::Arrival::kDifferent) {
     service_.status().fault("local map differs",
@@ -148,10 +156,14 @@ bool MapStoreService::store(bool all) {
       status.fault("local map differs",
                    "another map " + std::to_string(stop.number) + " is in the map file");
     }
-    acknowledge();
+    acknowledged_.publish(archive_.database());
     archive_.put(input_.local_maps(), input_.newest_trajectory(), input_.usable_closures());
     store_edges(all);
-    acknowledge();
+    if (input_.refused_merges().size() != stored_refusals_) {
+      archive_.put(input_.refused_merges());
+      stored_refusals_ = input_.refused_merges().size();
+    }
+    acknowledged_.publish(archive_.database());
     if (storing_fails_) {
       spdlog::info("the map is stored again");
       status.set_state(msg::kServiceRunning);
@@ -180,38 +192,6 @@ void MapStoreService::storing_failed(const std::string& why) {
   service_.status().set_state(msg::kServiceFailed, why);
   storing_fails_ = true;
   next_store_ = Clock::now() + kStoreRetryPeriod;
-}
-
-void MapStoreService::acknowledge() {
-  const storage::MapDatabase& database = archive_.database();
-  const std::vector<storage::SessionState> sessions = database.sessions();
-  const auto newest = std::find_if(sessions.rbegin(), sessions.rend(),
-                                   [](const auto& session) { return !session.is_over; });
-  const storage::SessionState none;
-  const storage::SessionState& session = newest == sessions.rend() ? none : *newest;
-  msg::StoredMap message = stored_;
-  message.map_id(database.map_id());
-  message.stops(database.local_map_count());
-  message.earlier_stops(database.local_map_count() - session.joined);
-  if (session.id != stored_.session() || session.stops != stored_.session_stops()) {
-    message.session(session.id);
-    message.session_stops(session.stops);
-    const auto last =
-        session.stops > 0 ? database.stop({session.id, session.stops - 1}) : std::nullopt;
-    const topomap::LocalMap stop = last.value_or(topomap::LocalMap{});
-    message.stamp_ns(stop.stamp_ns);
-    message.content_hash(last ? topomap::content_hash(stop) : 0);
-    message.T_odom_robot(service::to_msg(stop.T_odom_robot));
-    message.odometry_epoch(stop.odometry_epoch);
-  }
-  if (acknowledgements_ > 0 && message == stored_) return;
-  messaging::set_header(message, service_.robot_id(), message.stamp_ns(), acknowledgements_);
-  if (!stored_out_.write(message)) {
-    service_.status().fault("acknowledgement not sent", std::to_string(message.session_stops()));
-    return;
-  }
-  ++acknowledgements_;
-  stored_ = message;
 }
 
 void MapStoreService::write_snapshot(const msg::SnapshotRequest& request,
@@ -331,6 +311,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
   document.global_map = pipeline::fuse(config.global_map, document.local_maps, trajectory);
   document.drawing = options_.drawing;
   document.map_id = archive_.database().map_id();
+  document.refused_merges = input_.refused_merges();
   return document;
 }
 

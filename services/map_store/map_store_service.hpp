@@ -10,6 +10,7 @@
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
+#include "topogeo/msg/merge.h"
 #include "topogeo/msg/store.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
@@ -23,6 +24,7 @@
 #include "map_archive.hpp"
 #include "map_input.hpp"
 #include "snapshot_queue.hpp"
+#include "stored_channel.hpp"
 
 namespace topogeo::map_store {
 
@@ -59,7 +61,6 @@ class MapStoreService {
   bool store(bool all = false);
   void store_edges(bool now);
   void storing_failed(const std::string& why);
-  void acknowledge();
   void write_snapshot(const msg::SnapshotRequest& request, const SnapshotQueue::Sink& sink);
   /// False when it is not sent.
   bool send_piece(const msg::SnapshotPiece& piece);
@@ -89,15 +90,14 @@ class MapStoreService {
   HybridPublisher hybrid_;
 
   messaging::Writer<msg::StreamEnd> ends_out_;
-  messaging::Writer<msg::StoredMap> stored_out_;
+  StoredChannel acknowledged_;
   messaging::Writer<msg::SnapshotPiece> pieces_out_;
   SnapshotQueue snapshots_;
 
-  std::uint64_t acknowledgements_ = 0;
-  msg::StoredMap stored_;         // as it was sent last
   Clock::time_point next_store_;  // after a failure
   Clock::time_point next_edges_;
   std::uint64_t stored_edges_ = 0;  // changes of them that are stored
+  std::size_t stored_refusals_ = 0;
   bool storing_fails_ = false;
   std::size_t published_maps_ = 0;
   std::uint64_t published_version_ = 0;

@@ -6,11 +6,13 @@
 
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
-  return service::run_service(argc, argv, "navigator",
-                              "Drives to goals along the planner's routes.", {},
-                              [](const service::Setup& setup) {
-                                service::Service service(setup);
-                                const navigator::NavigatorService navigator(service);
-                                service.run();
-                              });
+  std::string map_robot;
+  return service::run_service(
+      argc, argv, "navigator", "Drives to goals along the planner's routes.",
+      [&](command_line::Command& app) { service::add_map_option(app, map_robot); },
+      [&](const service::Setup& setup) {
+        service::Service service(service::with_map_of(setup, map_robot));
+        const navigator::NavigatorService navigator(service);
+        service.run();
+      });
 }

@@ -26,36 +26,31 @@ std::optional<service::Goal> goal_from(const msg::Goal& message, msg::Route& ref
   }
 }
 
-planning::Closures closures(const planning::GridFrame& frame,
-                            std::span<const Eigen::Vector2d> blocked_m) {
-  planning::Closures closed;
-  for (const Eigen::Vector2d& point_m : blocked_m) {
-    if (const auto cell = frame.cell_of(point_m)) closed.cells.push_back(*cell);
-  }
-  return closed;
-}
-
 }  // namespace
 
-msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
+msg::Route answer(const msg::Goal& goal, const planning::PlanningMaps& maps,
                   const std::optional<service::LivePose>& pose,
                   std::span<const Eigen::Vector2d> blocked_m,
-                  const planning::HybridPlannerConfig& config) {
+                  const planning::GoalPlannerConfig& config) {
   msg::Route refusal;
   const auto wanted = goal_from(goal, refusal);
   if (!wanted) return refusal;
-  if (map == nullptr) return no_route(msg::kRouteNoMap, "no map yet");
-  if (map->zones().zones.empty()) {
-    return no_route(msg::kRouteNoMap, "the map has no zone: nowhere on it is room for the robot");
+  if (maps.hybrid == nullptr && maps.graph == nullptr) {
+    return no_route(msg::kRouteNoMap, "no map yet");
+  }
+  if (!maps.any()) {
+    return no_route(msg::kRouteNoMap,
+                    maps.graph == nullptr
+                        ? "the map has no zone: nowhere on it is room for the robot"
+                        : "the map has no zone and no branch: nowhere on it is room for the robot");
   }
   if (!pose) return no_route(msg::kRouteNoPose, "the robot has no pose yet");
   if (!localization::located(pose->status.state)) {
     return no_route(msg::kRouteNoPose,
                     std::string("the robot's pose is not known: ") + to_string(pose->status.state));
   }
-  const planning::HybridRoute route =
-      planning::HybridPlanner(*map, config)
-          .plan(pose->T_map_robot.position_m(), wanted->target, closures(map->frame(), blocked_m));
+  const planning::HybridRoute route = planning::plan_to_goal(maps, pose->T_map_robot.position_m(),
+                                                             wanted->target, blocked_m, config);
   return service::to_msg(route, pose->T_map_robot.theta_rad, wanted->heading_rad);
 }
 

@@ -7,18 +7,18 @@
 #include <Eigen/Core>
 
 #include "topogeo/msg/planning.h"
-#include "topogeo/planning/hybrid_planner.hpp"
+#include "topogeo/planning/goal_planner.hpp"
 #include "topogeo/service/conversions.hpp"
 
 namespace topogeo::planner {
 
-/// The answer to a goal of a position, node or place, without header, goal_id and versions. `map`
-/// and `pose` are empty while there is none; `blocked_m` are points (map frame) of obstacles
+/// The answer to a goal of a position, node or place, without header, goal_id and versions. What
+/// there is none of is empty in `maps`, and `pose`; `blocked_m` are points (map frame) of obstacles
 /// that are not on the map; points outside of the map are ignored. Everything that can be wrong is
 /// a status of the answer. Throws std::invalid_argument when the route does not fit a message.
-msg::Route answer(const msg::Goal& goal, const planning::HybridMap* map,
+msg::Route answer(const msg::Goal& goal, const planning::PlanningMaps& maps,
                   const std::optional<service::LivePose>& pose,
                   std::span<const Eigen::Vector2d> blocked_m,
-                  const planning::HybridPlannerConfig& config = {});
+                  const planning::GoalPlannerConfig& config = {});
 
 }  // namespace topogeo::planner

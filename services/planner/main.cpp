@@ -6,10 +6,13 @@
 
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
-  return service::run_service(argc, argv, "planner", "Answers goals with routes on the map.", {},
-                              [](const service::Setup& setup) {
-                                service::Service service(setup);
-                                const planner::PlannerService planner(service);
-                                service.run();
-                              });
+  std::string map_robot;
+  return service::run_service(
+      argc, argv, "planner", "Answers goals with routes on the map.",
+      [&](command_line::Command& app) { service::add_map_option(app, map_robot); },
+      [&](const service::Setup& setup) {
+        service::Service service(service::with_map_of(setup, map_robot));
+        const planner::PlannerService planner(service);
+        service.run();
+      });
 }

@@ -1,5 +1,6 @@
 #include "planner_service.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <string>
@@ -21,16 +22,26 @@ constexpr std::chrono::milliseconds kMapPeriod{100};
 /// A robot that could not begin where it was may be able to from this far.
 constexpr double kMoved_m = 0.1;
 
+bool is_on_branches(const msg::Route& route) {
+  return std::ranges::any_of(route.parts(), [](const msg::RoutePart& part) {
+    return part.on() == msg::kPlannedOnBranch || part.on() == msg::kPlannedOnVirtualBranch;
+  });
+}
+
 }  // namespace
 
 PlannerService::PlannerService(service::Service& service)
-    : service_(service), live_map_(service), routes_(service.advertise<msg::Route>()) {
+    : service_(service),
+      live_map_(service),
+      live_graph_(service),
+      routes_(service.advertise<msg::Route>()) {
   service.subscribe<msg::LivePose>([this](const msg::LivePose& pose) { on_pose(pose); },
                                    {.main_input = true});
   service.subscribe<msg::Blockages>([this](const msg::Blockages& report) { on_blockages(report); });
   service.subscribe<msg::Goal>([this](const msg::Goal& goal) { on_goal(goal); });
-  service.loop().add_timer(kMapPeriod, [this] { take_map(); });
-  for (const char* counter : {"goals", "routes_found", "routes_refused", "map_version"}) {
+  service.loop().add_timer(kMapPeriod, [this] { take_maps(); });
+  for (const char* counter :
+       {"goals", "routes_found", "routes_on_branches", "routes_refused", "map_version"}) {
     service_.status().set_counter(counter, 0.0);
   }
   service_.status().set_state(msg::kServiceRunning);
@@ -39,7 +50,7 @@ PlannerService::PlannerService(service::Service& service)
 
 void PlannerService::note_what_is_missing() {
   const bool located = pose_ && localization::located(pose_->status.state);
-  service_.status().set_waits_for(!map_ ? "a map" : (located ? "" : "a pose"));
+  service_.status().set_waits_for(!map_ && !graph_ ? "a map" : (located ? "" : "a pose"));
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
@@ -66,36 +77,59 @@ void PlannerService::on_goal(const msg::Goal& message) {
   }
   service_.status().add_to_counter("goals");
   goal_.reset();  // the one before needs no answer on a newer map
-  take_map();
+  take_maps();
   goal_ = message;
   plan();
 }
 
-void PlannerService::take_map() {
+void PlannerService::take_maps() {
+  const bool map_changed = take_map();
+  const bool graph_changed = take_graph();
+  if (!map_changed && !graph_changed) return;
+  note_what_is_missing();
+  // A robot on its way along the grid is not to be sent another route for each new branch.
+  if (map_changed || !map_ || refused_at_ || on_branches_) plan();
+}
+
+bool PlannerService::take_graph() {
+  std::shared_ptr<const topomap::GlobalMap> graph;
+  try {
+    graph = live_graph_.map();
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("invalid map", error.what());
+    return false;
+  }
+  if (graph == graph_) return false;
+  graph_ = std::move(graph);
+  service_.status().set_counter("map_branches", static_cast<double>(graph_->branches.size()));
+  return true;
+}
+
+bool PlannerService::take_map() {
   std::shared_ptr<const planning::HybridMap> map;
   try {
     map = live_map_.map();
   } catch (const std::invalid_argument& error) {
     service_.status().fault("invalid hybrid map", error.what());
-    return;
+    return false;
   }
-  if (map == map_) return;  // the rest of the update is to come
+  if (map == map_) return false;  // the rest of the update is to come
   map_ = std::move(map);
   map_version_ = live_map_.version();
-  note_what_is_missing();
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("map_version", static_cast<double>(map_version_));
   status.set_counter("map_zones", map_ ? static_cast<double>(map_->zones().zones.size()) : 0.0);
   status.set_counter("map_nodes", map_ ? static_cast<double>(map_->nodes().size()) : 0.0);
-  plan();
+  return true;
 }
 
 void PlannerService::plan() {
   if (!goal_) return;
   msg::Route route;
   try {
-    route = answer(*goal_, map_.get(), pose_, blockages_.points_m,
-                   service_.setup().config.config.hybrid_planner);
+    const pipeline::Config& config = service_.setup().config.config;
+    route = answer(*goal_, {map_.get(), graph_.get()}, pose_, blockages_.points_m,
+                   {config.planner, config.hybrid_planner, config.planning});
   } catch (const std::invalid_argument& error) {
     service_.status().fault("route not sent", error.what());
     return;
@@ -106,10 +140,13 @@ void PlannerService::plan() {
   messaging::set_header(route, service_.robot_id(), pose_ ? pose_->stamp_ns : goal_->stamp_ns(),
                         sent_++);
   route.goal_id(goal_->goal_id());
-  route.map_version(map_version_);
+  route.map_version(map_ ? map_version_ : 0);
+  route.graph_version(graph_ ? graph_->version : 0);
   route.blockages_version(blockages_.version);
   if (!service_.send(routes_, route, "route")) return;
   service_.status().add_to_counter(found ? "routes_found" : "routes_refused");
+  on_branches_ = is_on_branches(route);
+  if (on_branches_) service_.status().add_to_counter("routes_on_branches");
   spdlog::debug("goal {}: {}", goal_->goal_id(),
                 found ? std::to_string(route.length_m()) + " m" : route.message().to_string());
 }

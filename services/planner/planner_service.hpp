@@ -1,5 +1,5 @@
-// Answers goals with routes on the live hybrid map, and again when the map, the blockages, or
-// whether the pose is known has changed.
+// Answers goals with routes on the live map, its grid and zones or its nodes and branches, and
+// again when the map, the blockages, or whether the pose is known has changed.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/service/live_graph.hpp"
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service.hpp"
 
@@ -26,8 +27,10 @@ class PlannerService {
   void on_pose(const msg::LivePose& message);
   void on_goal(const msg::Goal& message);
   void on_blockages(const msg::Blockages& message);
-  /// Takes the mirrored map over, if it is whole and has changed, and plans again.
-  void take_map();
+  /// Takes the mirrored maps over, if they are whole and have changed, and plans again.
+  void take_maps();
+  bool take_map();
+  bool take_graph();
   void note_what_is_missing();
   /// Plans for the goal at hand, if there is one, and sends the answer.
   void plan();
@@ -35,13 +38,16 @@ class PlannerService {
   service::Service& service_;
   std::shared_ptr<const planning::HybridMap> map_;
   std::uint64_t map_version_ = 0;
+  std::shared_ptr<const topomap::GlobalMap> graph_;
   std::optional<service::LivePose> pose_;
   navigation::BlockageReport blockages_;
+  bool on_branches_ = false;                   // the last answer
   std::optional<msg::Goal> goal_;              // active
   std::optional<geometry::Pose2> refused_at_;  // where the last answer was a refusal
   std::uint64_t sent_ = 0;
 
   service::LiveHybridMap live_map_;
+  service::LiveGraph live_graph_;
   messaging::Writer<msg::Route> routes_;
 };
 

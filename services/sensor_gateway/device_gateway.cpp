@@ -61,7 +61,9 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
     base_.emplace(service_, config, time_, remembered, std::move(hooks));
   }
   if (!config.laser_port.empty()) {
-    laser_.emplace(service_, config, time_, gate_,
+    const std::filesystem::path laser_memory =
+        memory.empty() ? memory : std::filesystem::path(memory.string() + ".laser");
+    laser_.emplace(service_, config, time_, gate_, laser_memory,
                    [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }
   timer_ = service_.loop().add_timer(kStatePeriod, [this] { publish_state(); });

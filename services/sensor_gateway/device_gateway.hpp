@@ -24,7 +24,8 @@ namespace topogeo::sensor_gateway {
 class DeviceGateway {
  public:
   /// Scans are numbered and published from when `readers` of them are there. In the file `memory`
-  /// (empty: none) it keeps where odometry and numbers are, to go on there when it starts again.
+  /// (empty: none) it keeps where odometry and numbers are, to go on there when it starts again,
+  /// and in MEMORY.laser at which rate the laser sends.
   DeviceGateway(service::Service& service, const DeviceConfig& config, int readers,
                 const std::filesystem::path& memory = {});
   DeviceGateway(const DeviceGateway&) = delete;

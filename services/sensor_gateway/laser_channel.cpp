@@ -57,15 +57,18 @@ std::string_view name(msg::LaserState state) {
 
 LaserChannel::LaserChannel(service::Service& service, const DeviceConfig& config,
                            const HostTime& time, ScanGate& gate,
+                           const std::filesystem::path& memory,
                            std::function<void(std::int64_t)> on_scans)
     : service_(service),
       time_(time),
       gate_(gate),
+      memory_(memory),
       on_scans_(std::move(on_scans)),
       driver_(config.laser),
       statuses_(service.advertise<msg::LaserStatus>()),
       line_(service.loop(), driver_, PortOptions{config.laser_port},
             [this](std::int64_t now_ns) { after_driver(now_ns); }) {
+  if (const auto remembered = memory_.load()) driver_.resume(*remembered);
   timer_ = service_.loop().add_timer(kLaserStatusPeriod, [this] { publish_status(); });
 }
 
@@ -83,7 +86,10 @@ void LaserChannel::after_driver(std::int64_t now_ns) {
     recent_ns_.push_back(now_ns);
     gate_.add(std::move(scan), now_ns);
   }
-  if (!scans.empty()) on_scans_(now_ns);
+  if (!scans.empty()) {
+    on_scans_(now_ns);
+    memory_.store(driver_.status().line);
+  }
   if (state(driver_.status()) != published_state_) publish_status();
 }
 

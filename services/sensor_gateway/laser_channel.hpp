@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -14,6 +15,7 @@
 
 #include "device_config.hpp"
 #include "host_time.hpp"
+#include "laser_memory.hpp"
 #include "scan_gate.hpp"
 #include "serial_line.hpp"
 
@@ -22,9 +24,11 @@ namespace topogeo::sensor_gateway {
 /// Lives in the loop of its service.
 class LaserChannel {
  public:
-  /// `gate` gets the scans; then `on_scans` is called.
+  /// `gate` gets the scans; then `on_scans` is called. In the file `memory` (empty: none) it keeps
+  /// at which rate the laser sends.
   LaserChannel(service::Service& service, const DeviceConfig& config, const HostTime& time,
-               ScanGate& gate, std::function<void(std::int64_t now_ns)> on_scans);
+               ScanGate& gate, const std::filesystem::path& memory,
+               std::function<void(std::int64_t now_ns)> on_scans);
   LaserChannel(const LaserChannel&) = delete;
   LaserChannel& operator=(const LaserChannel&) = delete;
   LaserChannel(LaserChannel&&) = delete;
@@ -46,6 +50,7 @@ class LaserChannel {
   service::Service& service_;
   const HostTime& time_;
   ScanGate& gate_;
+  LaserMemory memory_;
   std::function<void(std::int64_t)> on_scans_;
   devices::PlsDriver driver_;
   messaging::Writer<msg::LaserStatus> statuses_;

@@ -73,7 +73,8 @@ void add_options_to(command_line::Command& app, Options& options) {
       ->needs(devices);
   app.add_option("--memory", options.memory,
                  "file that keeps where the odometry is, so that it goes on when the gateway is "
-                 "started again; best in /run, as it is written all the time")
+                 "started again; best in /run, as it is written all the time. FILE.laser keeps the "
+                 "rate of the laser")
       ->needs(devices)
       ->type_name("FILE");
 }

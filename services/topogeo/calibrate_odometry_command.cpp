@@ -221,8 +221,7 @@ void add_calibrate_odometry_command(command_line::Command& app, int& exit_code) 
       ->add_option("--reference", options->reference,
                    "true trajectory of the robot (TUM) to measure by; without it scans are matched")
       ->type_name("FILE");
-  command->add_option("--config", options->config, "configuration (YAML); see `topogeo config`")
-      ->type_name("FILE");
+  add_config_option(*command, options->config);
   command
       ->add_option("--out", options->out,
                    "configuration to write with the values found; with --config all of its values")

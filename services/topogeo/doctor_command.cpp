@@ -22,7 +22,7 @@ namespace topogeo::cli {
 namespace {
 
 /// Of the package.
-constexpr const char* kInstalledMap = "/var/lib/topogeo/map";
+constexpr const char* kInstalledState = "/var/lib/topogeo";  // the packages make it
 constexpr const char* kInstalledDevices = "/etc/topogeo/devices.yaml";
 
 struct DoctorOptions {
@@ -36,8 +36,9 @@ struct DoctorOptions {
 MachineQuestions questions_of(const DoctorOptions& options) {
   MachineQuestions questions;
   questions.domain = options.view.domain;
-  questions.map_folder = options.map.value_or(
-      std::filesystem::exists(kInstalledMap) ? kInstalledMap : std::filesystem::current_path());
+  questions.map_folder = options.map.value_or(std::filesystem::exists(kInstalledState)
+                                                  ? std::filesystem::path(kInstalledState) / "map"
+                                                  : std::filesystem::current_path());
   questions.devices = options.devices;
   if (!questions.devices && std::filesystem::exists(kInstalledDevices)) {
     questions.devices = kInstalledDevices;

@@ -201,12 +201,8 @@ void add_dvl_command(command_line::Command& app, int& exit_code) {
       ->excludes(count)
       ->check(command_line::positive_number())
       ->type_name("N");
-  command->add_option("--width", options->width_px, "of the picture, pixels")
-      ->check(command_line::range(400U, 16384U))
-      ->type_name("PX")
-      ->capture_default_str();
-  command->add_option("--config", options->config, "configuration (YAML); see `topogeo config`")
-      ->type_name("FILE");
+  add_width_option(*command, options->width_px);
+  add_config_option(*command, options->config);
   command->callback([options, &exit_code] { exit_code = draw(*options); });
 }
 

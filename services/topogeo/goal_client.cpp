@@ -153,6 +153,7 @@ planning::HybridRoute route_to_draw(const msg::Route& route) {
   for (const msg::BranchPoint& point : route.points()) {
     out.points_m.emplace_back(point.x_m(), point.y_m());
   }
+  out.parts = service::route_parts_from_msg(route);
   return out;
 }
 

@@ -24,6 +24,20 @@ msg::GoalKind kind_of(const planning::Target& target) {
   return std::holds_alternative<std::string>(target) ? msg::kGoalPlace : msg::kGoalPosition;
 }
 
+/// "through 3 zones and 2 borders", or how much of it follows branches.
+std::string planned_on(const msg::Route& route) {
+  const planning::HybridRoute drawn = route_to_draw(route);
+  const double branch_m = planning::length_on(drawn, planning::PlannedOn::kBranch);
+  const double virtual_m = planning::length_on(drawn, planning::PlannedOn::kVirtualBranch);
+  if (branch_m + virtual_m == 0.0) {
+    return fmt::format("through {} zones and {} borders", route.zones().size(),
+                       route.node_ids().size());
+  }
+  std::string text = fmt::format("{:.1f} m of it along branches", branch_m + virtual_m);
+  if (virtual_m > 0.0) text += fmt::format(", {:.1f} m of these virtual", virtual_m);
+  return text;
+}
+
 }  // namespace
 
 void check_picture(const std::optional<std::filesystem::path>& picture) {
@@ -81,10 +95,8 @@ void GoalSession::send() {
 void GoalSession::tick() {
   if (client_.route() && !route_printed_) {
     route_printed_ = true;
-    progress_.print(fmt::format("the route to {} is {:.1f} m long, through {} zones and {} borders",
-                                options_.target, client_.route()->length_m(),
-                                client_.route()->zones().size(),
-                                client_.route()->node_ids().size()));
+    progress_.print(fmt::format("the route to {} is {:.1f} m long, {}", options_.target,
+                                client_.route()->length_m(), planned_on(*client_.route())));
   }
   if (client_.route() && options_.picture && !drawn_) draw_route();
   if (client_.taken()) progress_.show(*client_.status(), support::monotonic_s());

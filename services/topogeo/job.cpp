@@ -68,9 +68,20 @@ void print_error(std::ostream& out, const char* name, const pipeline::Trajectory
 
 }  // namespace
 
-void add_common_options(command_line::Command& app, JobOptions& options) {
-  app.add_option("--config", options.config, "configuration (YAML); see `topogeo config`")
+void add_config_option(command_line::Command& app, std::optional<std::filesystem::path>& config) {
+  app.add_option("--config", config, "configuration (YAML); see `topogeo config`")
       ->type_name("FILE");
+}
+
+void add_width_option(command_line::Command& app, std::uint32_t& width_px) {
+  app.add_option("--width", width_px, "of the picture, pixels")
+      ->check(command_line::range(400U, 16384U))
+      ->type_name("PX")
+      ->capture_default_str();
+}
+
+void add_common_options(command_line::Command& app, JobOptions& options) {
+  add_config_option(app, options.config);
   app.add_option("--robot,--robot-id", options.robot_id, "name of the robot, up to 32 bytes")
       ->check([](const std::string& id) {
         return id.empty() || id.size() > kLongestRobotId ? "expected 1 to 32 bytes" : "";

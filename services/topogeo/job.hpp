@@ -28,6 +28,10 @@ struct JobOptions {
   std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either
 };
 
+/// Adds --config.
+void add_config_option(command_line::Command& app, std::optional<std::filesystem::path>& config);
+/// Adds --width, of a picture.
+void add_width_option(command_line::Command& app, std::uint32_t& width_px);
 /// Adds --config and --robot, which every mapping command has.
 void add_common_options(command_line::Command& app, JobOptions& options);
 /// Adds --log, --out and --reference as well.

@@ -1,29 +1,21 @@
 // topogeo localizer: commands to a running localizer, and its answers.
-#include <chrono>
 #include <iostream>
 #include <memory>
-#include <optional>
-#include <random>
 #include <stdexcept>
 #include <string>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/session/slam_session.hpp"
-#include "topogeo/messaging/message.hpp"
-#include "topogeo/messaging/reader.hpp"
-#include "topogeo/messaging/writer.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/service_options.hpp"
-#include "topogeo/support/host.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"
+#include "localizer_request.hpp"
 
 namespace topogeo::cli {
 namespace {
-
-using std::chrono::milliseconds;
 
 struct LocalizerRequest {
   DomainView view;
@@ -33,40 +25,16 @@ struct LocalizerRequest {
   double wait_s = 5.0;
 };
 
-/// Sends the command and waits for its answer, which is printed. Throws std::runtime_error when
-/// nobody answers.
-int send_localizer_command(const LocalizerRequest& request, service::LocalizationCommand command) {
-  command.client_id = support::process_name();
-  command.request_id = std::random_device{}();
-  const messaging::Participant participant = join(request.view, "topogeo/localizer");
-  messaging::Writer<msg::LocalizationCommand> commands(participant);
-  messaging::Reader<msg::LocalizationReply> replies(participant);
-  const milliseconds patience(static_cast<std::int64_t>(1000.0 * request.wait_s));
-  if (!commands.wait_for_matched(1, patience) || !replies.wait_for_matched(1, patience)) {
-    throw std::runtime_error(nothing_alive(request.view, "localizer"));
-  }
-  if (!commands.write(service::to_msg(command, request.robot_id, 0, 0))) {
-    throw std::runtime_error("the command could not be sent");
-  }
-  std::optional<msg::LocalizationReply> reply;
-  const auto end = std::chrono::steady_clock::now() + patience;
-  while (!reply && std::chrono::steady_clock::now() < end) {
-    if (!replies.wait_for_data(milliseconds(100))) continue;
-    replies.take([&](const msg::LocalizationReply& message, const messaging::SampleInfo& info) {
-      if (info.valid && message.request_id() == command.request_id &&
-          message.client_id() == command.client_id.c_str()) {
-        reply = message;
-      }
-    });
-  }
-  if (!reply) {
-    throw std::runtime_error("no localizer of robot '" + request.robot_id + "' answered within " +
-                             std::to_string(patience.count()) + " ms");
-  }
-  (reply->accepted() ? std::cout : std::cerr)
-      << (reply->accepted() ? "accepted: " : "topogeo: refused: ") << reply->message().c_str()
+/// Prints the reply. Throws std::runtime_error when nobody answers.
+int send_localizer_command(const LocalizerRequest& request,
+                           const service::LocalizationCommand& command) {
+  const msg::LocalizationReply reply =
+      ask_localizer({request.view, request.robot_id, request.wait_s},
+                    service::to_msg(command, request.robot_id, 0, 0));
+  (reply.accepted() ? std::cout : std::cerr)
+      << (reply.accepted() ? "accepted: " : "topogeo: refused: ") << reply.message().c_str()
       << '\n';
-  return reply->accepted() ? service::kOk : service::kFailure;
+  return reply.accepted() ? service::kOk : service::kFailure;
 }
 
 void add_request_options(command_line::Command& app, LocalizerRequest& request) {

@@ -153,7 +153,7 @@ std::string good_buffers(const MachineFacts& facts) {
 
 Findings check_shared_memory(const MachineFacts& facts) {
   if (!facts.uses_shared_memory) return {};
-  const std::string without = "or go without: TOPOGEO_DDS_PARTICIPANT=udp_only";
+  const std::string without = "or go without: no TOPOGEO_DDS_PARTICIPANT=local";
   if (!facts.shared_memory_error.empty()) {
     return {problem(fmt::format("no file can be made there: {}", facts.shared_memory_error),
                     "services of a host exchange scans and maps there",
@@ -182,7 +182,7 @@ Findings check_shared_memory(const MachineFacts& facts) {
 }
 
 std::string good_shared_memory(const MachineFacts& facts) {
-  if (!facts.uses_shared_memory) return "not used: TOPOGEO_DDS_PARTICIPANT";
+  if (!facts.uses_shared_memory) return "not used, as TOPOGEO_DDS_PARTICIPANT is not `local`";
   return fmt::format("{} are free, nothing is left behind", mega(facts.shared_memory_free_bytes));
 }
 

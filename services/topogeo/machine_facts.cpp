@@ -98,7 +98,7 @@ std::string why_not_writable(const fs::path& folder) {
 
 void ask_for_shared_memory(const FactSources& sources, MachineFacts& facts) {
   const std::string profile = environment_text("TOPOGEO_DDS_PARTICIPANT");
-  facts.uses_shared_memory = profile != "udp_only" && profile != "wan";
+  facts.uses_shared_memory = profile == "local";
   if (!fs::is_directory(sources.shared_memory)) {
     facts.shared_memory_error = sources.shared_memory.string() + ": is no folder";
     return;

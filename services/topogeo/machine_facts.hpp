@@ -42,7 +42,7 @@ struct MachineFacts {
   std::uint64_t receive_buffer_bytes = 0;  ///< of a UDP socket, net.core.rmem_default
 
   // shared memory
-  bool uses_shared_memory = true;
+  bool uses_shared_memory = false;
   std::string shared_memory_error;  ///< why no file can be made there; empty: it can
   std::uint64_t shared_memory_free_bytes = 0;
   std::uint64_t dead_segments = 0;

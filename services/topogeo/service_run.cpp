@@ -51,7 +51,9 @@ ServiceRun::ServiceRun(const RunOptions& options)
 
 ServiceRun::~ServiceRun() {
   std::error_code ignored;
-  std::filesystem::remove(odometry_memory(partition_), ignored);
+  for (const char* file : {"", ".laser"}) {
+    std::filesystem::remove(odometry_memory(partition_).string() + file, ignored);
+  }
 }
 
 void ServiceRun::start(const RunOptions& options, Hooks hooks) {

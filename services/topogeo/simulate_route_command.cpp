@@ -13,7 +13,7 @@
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
-#include "topogeo/planning/hybrid_planner.hpp"
+#include "topogeo/planning/goal_planner.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 #include "topogeo/render/route_picture.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -37,27 +37,49 @@ struct SimulateRouteOptions {
   std::optional<std::filesystem::path> picture;
 };
 
+struct Floor {
+  planning::HybridMap map;
+  topomap::GlobalMap graph;
+};
+
 /// A world file (.world.yaml), a grid (.yaml) or a map file as the hybrid map that robots would
 /// have of it.
-planning::HybridMap read_source(const SimulateRouteOptions& options,
-                                const pipeline::HybridMapConfig& config) {
-  const storage::MapDocument floor =
+Floor read_source(const SimulateRouteOptions& options, const pipeline::HybridMapConfig& config) {
+  storage::MapDocument floor =
       pipeline::read_floor(options.source, options.zones, config.grid.resolution_m);
-  return pipeline::make_hybrid_map(pipeline::parts_of(floor), config);
+  planning::HybridMap map = pipeline::make_hybrid_map(pipeline::parts_of(floor), config);
+  return {std::move(map), std::move(floor.global_map)};
 }
 
-/// The cell of each --block. Throws service::UsageError for one that is off the map.
-std::vector<planning::Cell> blocked_cells(const std::vector<std::string>& blocks,
-                                          const planning::GridFrame& frame) {
+/// What stands where --block says.
+struct Blocks {
+  std::vector<Eigen::Vector2d> points_m;
   std::vector<planning::Cell> cells;
-  for (const std::string& block : blocks) {
-    const auto cell = frame.cell_of(point_for("--block", block));
+};
+
+/// Throws service::UsageError for one that is off the map.
+Blocks blocks_of(const std::vector<std::string>& texts, const planning::GridFrame& frame) {
+  Blocks blocks;
+  for (const std::string& text : texts) {
+    blocks.points_m.push_back(point_for("--block", text));
+    const auto cell = frame.cell_of(blocks.points_m.back());
     if (!cell) {
-      throw service::UsageError(fmt::format("--block = '{}': is outside of the map", block));
+      throw service::UsageError(fmt::format("--block = '{}': is outside of the map", text));
     }
-    cells.push_back(*cell);
+    blocks.cells.push_back(*cell);
   }
-  return cells;
+  return blocks;
+}
+
+/// The metres on virtual branches and beside branches come with their own line: they are the last
+/// resort.
+void print_parts(const planning::HybridRoute& route) {
+  const double virtual_m = planning::length_on(route, planning::PlannedOn::kVirtualBranch);
+  const double branch_m = planning::length_on(route, planning::PlannedOn::kBranch);
+  if (branch_m + virtual_m == 0.0) return;
+  std::cout << fmt::format("along branches {:.2f} m, virtual ones {:.2f} m, off them {:.2f} m\n",
+                           branch_m, virtual_m,
+                           planning::length_on(route, planning::PlannedOn::kOffBranch));
 }
 
 void print_steps(const planning::HybridRoute& route, double heading_rad) {
@@ -100,22 +122,23 @@ int simulate_route(const SimulateRouteOptions& options) {
       throw service::UsageError(error.what());
     }
   }();
-  const auto map = [&] {
+  const Floor floor = [&] {
     try {
       return read_source(options, config.hybrid_map);
     } catch (const std::exception& error) {
       throw service::BadInputError(error.what());
     }
   }();
-  planning::Closures closed;
-  closed.cells = blocked_cells(options.blocks, map.frame());
-  const planning::HybridRoute route = planning::HybridPlanner(map, config.hybrid_planner)
-                                          .plan(from_m, target_of(options.to), closed);
+  const Blocks blocks = blocks_of(options.blocks, floor.map.frame());
+  const planning::HybridRoute route = planning::plan_to_goal(
+      {&floor.map, &floor.graph}, from_m, target_of(options.to), blocks.points_m,
+      {config.planner, config.hybrid_planner, config.planning});
   if (format) {
     const std::string title =
         fmt::format("{}: {} to {}", options.source.filename().string(), options.from, options.to);
     support::write_file_atomically(
-        *options.picture, render::route_picture(map, route, title, *format, {}, closed.cells));
+        *options.picture,
+        render::route_picture(floor.map, route, title, *format, {}, blocks.cells, &floor.graph));
   }
   if (!route.found()) {
     std::cerr << "topogeo: no route: " << route.reason;
@@ -126,6 +149,7 @@ int simulate_route(const SimulateRouteOptions& options) {
     std::cerr << '\n';
     return service::kFailure;
   }
+  print_parts(route);
   print_steps(route, options.heading_deg * std::numbers::pi / 180.0);
   return service::kOk;
 }
@@ -157,7 +181,7 @@ void add_simulate_route_command(command_line::Command& app, int& exit_code) {
       ->allow_extra_args(false);
   command
       ->add_option("--config", options->config,
-                   "configuration (YAML), for its hybrid_map and hybrid_planner")
+                   "configuration (YAML), for its hybrid_map, hybrid_planner, planning and planner")
       ->type_name("FILE");
   command->add_option("--zones", options->zones, "drawn zones and places (YAML)")
       ->type_name("FILE");

@@ -16,6 +16,7 @@ void add_store_command(command_line::Command& app, int& exit_code) {
   add_store_export_command(*store, exit_code);
   add_store_import_command(*store, exit_code);
   add_store_join_commands(*store, exit_code);
+  add_store_merge_commands(*store, exit_code);
   add_store_prune_command(*store, exit_code);
   add_store_snapshot_commands(*store, exit_code);
 }

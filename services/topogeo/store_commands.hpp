@@ -9,6 +9,7 @@ void add_store_inspect_commands(command_line::Command& store, int& exit_code);
 void add_store_export_command(command_line::Command& store, int& exit_code);
 void add_store_import_command(command_line::Command& store, int& exit_code);
 void add_store_join_commands(command_line::Command& store, int& exit_code);
+void add_store_merge_commands(command_line::Command& store, int& exit_code);
 void add_store_prune_command(command_line::Command& store, int& exit_code);
 void add_store_snapshot_commands(command_line::Command& store, int& exit_code);
 

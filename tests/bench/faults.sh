@@ -8,7 +8,8 @@
 #
 # Driving ("drive ..."): the robot, a simulated one, has the gateway and the navigator, pc1 all else. Time until it
 # stands after the fault; recovery until it drives again; whether it arrives, or drives on, without a collision. Where
-# the navigator freezes the goal is given up, so it stays where it is.
+# the navigator freezes the goal is given up, so it stays where it is. "drive flood": pc2 sends packets of strangers to
+# both; the largest memory of a service stands in place of the recovery.
 #
 #   tests/bench/faults.sh [BUILD] [FAULT...]     all faults: about eight minutes
 #   tests/bench/faults.sh build "loss 5" "cut pc1" "drive cut"
@@ -22,10 +23,11 @@ cut_s=10
 # more are for a machine that has other work.
 most_to_stand_ms=6000
 most_when_frozen_ms=3500
+most_memory_mb=150
 faults=("$@")
 [ $# -gt 0 ] || faults=(none "loss 1" "loss 5" "loss 20" "delay 100" "reorder 10" "duplicate 20" "cut robot"
   "cut pc1" "cut pc2" "freeze worker" "clock robot" "clock pc1" "clock pc2"
-  "drive none" "drive loss" "drive cut" "drive frozen")
+  "drive none" "drive loss" "drive cut" "drive frozen" "drive flood")
 
 need_programs
 need python3
@@ -118,6 +120,13 @@ stood_after() {  # MS: milliseconds until it stood for good
     "$work/drive_watch.log"
 }
 
+largest_memory_mb() {
+  local name
+  for name in "${!pids[@]}"; do
+    awk '/^VmHWM/ { print int($2 / 1024) }' "/proc/${pids[$name]}/status" 2> /dev/null
+  done | sort -n | tail -n 1
+}
+
 drive() {  # FAULT; sets took, recovery and equal
   local victim from most
   took=-
@@ -129,6 +138,7 @@ drive() {  # FAULT; sets took, recovery and equal
   case $1 in
     none) ;;
     loss) network loss 20 ;;
+    flood) start_on pc2 stranger_flood "$build/tests/stranger_flood" 10.213.8.1 10.213.8.2 ;;
     cut | frozen)
       most=$most_to_stand_ms
       from=$(now_ms)
@@ -155,9 +165,14 @@ drive() {  # FAULT; sets took, recovery and equal
       fi
       ;;
   esac
-  if [ "$1" = none ] || [ "$1" = loss ]; then
+  if [ "$1" = none ] || [ "$1" = loss ] || [ "$1" = flood ]; then
     equal="no: does not arrive"
     eventually 120 arrived || return 0
+  fi
+  if [ "$1" = flood ]; then
+    recovery="$(largest_memory_mb) MB"
+    equal="no: takes $recovery"
+    [ "$(largest_memory_mb)" -le $most_memory_mb ] || return 0
   fi
   equal="no: $(awk 'END { print $4 }' "$work/drive_watch.log") collisions"
   [ "$equal" != "no: 0 collisions" ] || equal=yes

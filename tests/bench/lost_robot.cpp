@@ -111,7 +111,8 @@ std::vector<double> cpu_of(const bench::Workers& workers) {
 }
 
 Result search(const LostOptions& options, localization::MapLocalizer& localizer,
-              const std::vector<std::vector<MapPointer>>& drives, const bench::Workers& workers) {
+              const std::vector<std::vector<MapPointer>>& drives, bench::PoolClient& client,
+              const bench::Workers& workers) {
   Result result;
   for (const std::vector<MapPointer>& drive : drives) {
     localizer.search();
@@ -120,6 +121,7 @@ Result search(const LostOptions& options, localization::MapLocalizer& localizer,
       const std::vector<double> workers_before_s = cpu_of(workers);
       const double before_s = support::process_cpu_s();
       const bench::Clock::time_point start = bench::Clock::now();
+      client.publish({stop});  // as the local mapper does
       localizer.add(stop);
       if (!found) {
         result.wall_ms.push_back(1e3 * bench::seconds_since(start));
@@ -173,8 +175,8 @@ void run(const LostOptions& options) {
       throw std::runtime_error("the workers did not come; " + client.fault());
     }
     localization::MapLocalizer localizer(config.localizer, map, client.pool());
-    search(options, localizer, drives, processes);  // the workers ask for what they need
-    const Result result = search(options, localizer, drives, processes);
+    search(options, localizer, drives, client, processes);  // the workers ask for what they need
+    const Result result = search(options, localizer, drives, client, processes);
     if (!client.fault().empty()) throw std::runtime_error(client.fault());
     if (first.stops.empty()) first = result;
     if (!same(first, result)) throw std::runtime_error("other poses with other workers");

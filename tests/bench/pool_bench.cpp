@@ -158,7 +158,9 @@ void message(benchmark::State& state, std::size_t tasks_in_message) {
   options.domain = random_domain();
   options.partition = "message";
   options.name = "bench";
+  options.identity = "map_store";
   const messaging::Participant from(options);
+  options.identity = "localizer";
   const messaging::Participant to(options);
   messaging::EventLoop loop;
   messaging::Writer<msg::SnapshotPiece> writer(from);

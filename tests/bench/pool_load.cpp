@@ -1,18 +1,23 @@
 // The search pool under load: many worker processes and several robots that want different things.
 //
 //   topogeo_pool_load [--workers W] [--robots R] [--cost-us C] [--seconds S] [--per-process N]
+//                     [--server]
 //
 // Every worker is a process with a participant of its own (unless N are put into one), whose
 // search is stubbed: a right answer after a fixed time. Every robot is a process, too, with all
 // that a localizer does with tasks: it checks every answer and searches a share of them again. The
 // first robot floods the pool with batches of 1,000 tasks, the others ask for a dozen at a time, as
-// steps of a drive do. All have a partition of their own and begin together.
+// steps of a drive do. All have a partition of their own and begin together. With --server they
+// find each other by a discovery server, as deploy/SCALING.md wants it of more than 16
+// participants: 68 that do by multicast leave two cores no time for tasks.
 //
 // Prints a row for each robot and what each worker did. A task that is lost would be sent again
 // ("resent") or searched by the robot ("here"), and every batch is counted.
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -49,6 +54,7 @@ struct LoadOptions {
   std::size_t cost_us = 5000;
   double seconds = 10.0;
   std::size_t per_process = 1;
+  bool server = false;
   std::uint32_t domain = 0;  // of a robot: 0 in the program that starts all
   bool floods = false;
 };
@@ -108,6 +114,7 @@ class DoneByWorker {
           options.domain = domain;
           options.partition = messaging::kAnyPartition;
           options.name = "load";
+          options.identity = "status";
           return options;
         }()),
         statuses_(participant_) {
@@ -126,7 +133,19 @@ class DoneByWorker {
   std::map<std::string, std::uint64_t> done_;
 };
 
+/// A discovery server on this host, which all participants made from here on use.
+supervision::ChildProcess start_server() {
+  constexpr const char* kPort = "11811";
+  if (::setenv("ROS_DISCOVERY_SERVER", (std::string("127.0.0.1:") + kPort).c_str(), 1) != 0) {
+    throw std::runtime_error("the environment cannot be set");
+  }
+  return {"discovery server", "/usr/bin/fast-discovery-server",
+          std::vector<std::string>{"-i", "0", "-l", "127.0.0.1", "-p", kPort}, "/dev/null"};
+}
+
 void run_all(const LoadOptions& options) {
+  std::optional<supervision::ChildProcess> server;
+  if (options.server) server.emplace(start_server());
   const std::uint32_t domain = bench::random_domain();
   DoneByWorker done(domain);
   bench::Workers workers;
@@ -194,6 +213,7 @@ void run_all(const LoadOptions& options) {
               *std::min_element(each.begin(), each.end()),
               *std::max_element(each.begin(), each.end()), 1e6 * cpu_s / sum);
   std::filesystem::remove_all(out);
+  if (server) server->send_signal(SIGTERM);
 }
 
 }  // namespace
@@ -223,6 +243,7 @@ int main(int argc, char** argv) {
   app.add_option("--per-process", options.per_process, "workers in a process")
       ->capture_default_str()
       ->check(command_line::range(1, 64));
+  app.add_flag("--server", options.server, "discovery by a server (package fastdds-tools)");
   app.add_option("--robot-of", options.domain, "be a robot there");
   app.add_option("--start-s", start_s, "of a robot: when to begin, s of the steady clock");
   app.add_flag("--floods", options.floods, "of a robot");

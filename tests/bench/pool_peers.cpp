@@ -69,8 +69,12 @@ PoolClient::PoolClient(const Maps& maps, bool verify, std::uint32_t domain) {
   options_.domain = domain;
   options_.partition = "bench-" + number;
   options_.name = "bench";
+  // Where traffic is protected (TOPOGEO_SECURITY), nobody may write both tasks and local maps.
+  options_.identity = "local_mapper";
+  map_participant_.emplace(options_);
+  map_writer_.emplace(*map_participant_);
+  options_.identity = "localizer";
   participant_.emplace(options_);
-  map_writer_.emplace(*participant_);
   localizer::RemotePoolOptions pool;
   pool.robot_id = "robot";
   pool.client_id = "bench-" + number;

@@ -79,8 +79,9 @@ class PoolClient {
  private:
   std::string fault_;
   messaging::ParticipantOptions options_;
-  std::optional<messaging::Participant> participant_;
+  std::optional<messaging::Participant> map_participant_;
   std::optional<messaging::Writer<msg::LocalMap>> map_writer_;
+  std::optional<messaging::Participant> participant_;
   messaging::EventLoop loop_;
   std::optional<localizer::RemotePool> pool_;
 };

@@ -4,7 +4,7 @@
 #
 #   tests/bench/restart.sh [ROUNDS]
 #
-# Over shared memory, as within a host; with TOPOGEO_DDS_PARTICIPANT=udp_only over UDP.
+# Over UDP, as by default; with TOPOGEO_DDS_PARTICIPANT=local over shared memory.
 set -euo pipefail
 rounds=${1:-10}
 bin=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../build/bin" && pwd)

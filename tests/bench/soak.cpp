@@ -1,15 +1,18 @@
 // Services that run for long: does anything grow?
 //
-//   topogeo_soak [--hours H] [--rate R] [--workers N] [--csv FILE]
+//   topogeo_soak [--hours H] [--rate R] [--workers N] [--warm-up SHARE] [--csv FILE]
 //
 // A floor is mapped in one drive and driven there and back in it for H hours of robot time, which
 // the services follow R times faster: sensor gateway, local mapper, localizer, map store,
 // planner, navigator and N workers, as processes. Sampled while they work: resident memory, open
-// files and threads of each, shared memory, and the disk that the results take. The first third is
-// warm-up: caches and histories fill. After it the memory of each service must stay within 5 % of
-// what it was at the end of the warm-up, with 1 MB for what one sample differs from the next; open
-// files and shared memory must not grow at all; and when all have ended, nothing of them must be
-// left in shared memory. Exits with 1 when something grew.
+// files and threads of each, shared memory, and the disk that the results take. The first half is
+// warm-up (another share with --warm-up): caches and histories fill, the last of them the 1,024
+// stops of a drive that the localizer keeps. Where the machine is too slow for the rate, this
+// program, a reader of the scans like the services, holds the log up until the localizer has caught
+// up: what waits in its queue is no growth. After it the memory of each service must stay within 5
+// % of what it was at the end of the warm-up, with 1 MB for what one sample differs from the next;
+// open files and shared memory must not grow at all; and when all have ended, nothing of them must
+// be left in shared memory. Exits with 1 when something grew.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -23,13 +26,17 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/status.h"
 #include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/scan/carmen_log_writer.hpp"
 #include "topogeo/simulation/simulate_log.hpp"
@@ -47,6 +54,7 @@ struct SoakOptions {
   double hours = 1.0;
   std::string rate = "25";
   std::size_t workers = 2;
+  double warm_up = 0.5;
   Path csv;
 };
 
@@ -141,12 +149,53 @@ double prepare(const SoakOptions& options, const Path& work) {
   return robot_s;
 }
 
-/// The services of a robot that follows a finished map.
+messaging::ParticipantOptions own_domain() {
+  messaging::ParticipantOptions options;
+  options.domain = static_cast<std::uint32_t>(100 + ::getpid() % 100);
+  options.partition = "soak-" + std::to_string(::getpid());
+  options.name = std::string("soak");
+  return options;
+}
+
+/// Reads the scans, but only while the localizer keeps up with the local mapper, by their status: a
+/// reader with a full history holds the log up for all.
+class Pace {
+ public:
+  Pace() {
+    loop_.add<msg::ServiceStatus>(statuses_, [this](const msg::ServiceStatus& status, const auto&) {
+      const std::string service = status.service().to_string();
+      for (const msg::Counter& counter : status.counters()) {
+        const std::string name = counter.name().to_string();
+        if (service == "local_mapper" && name == "local_maps") made_ = counter.value();
+        if (service == "localizer" && name == "stops") localized_ = counter.value();
+      }
+    });
+  }
+
+  void keep(std::chrono::milliseconds duration) {
+    constexpr std::chrono::milliseconds kPeriod{10};  // the history takes 128 scans
+    constexpr double kMostBehind = 20.0;              // stops; those of 256 scans follow
+    for (const auto end = Clock::now() + duration; Clock::now() < end;) {
+      static_cast<void>(loop_.run_for(kPeriod));
+      scans_.take_events([](const messaging::Event&) {});
+      if (made_ - localized_ < kMostBehind) scans_.take([](const msg::Scan&, const auto&) {});
+    }
+  }
+
+ private:
+  messaging::Participant participant_{own_domain()};
+  messaging::Reader<msg::ServiceStatus> statuses_{participant_};
+  messaging::Reader<msg::Scan> scans_{participant_, {.role = std::string(messaging::kReplayRole)}};
+  messaging::EventLoop loop_;
+  double made_ = 0.0;
+  double localized_ = 0.0;
+};
+
+/// The services of a robot that follows a finished map, the source of its scans last.
 std::vector<supervision::ChildProcess> start(const SoakOptions& options, const Path& work) {
   const Path bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::string id = std::to_string(::getpid());
-  const std::vector<std::string> common{"--domain", std::to_string(100 + ::getpid() % 100),
-                                        "--partition", "soak-" + id};
+  const std::vector<std::string> common{"--domain", std::to_string(own_domain().domain),
+                                        "--partition", own_domain().partition};
   std::vector<supervision::ChildProcess> services;
   const auto add = [&](const std::string& service, std::vector<std::string> words) {
     words.insert(words.end(), common.begin(), common.end());
@@ -160,18 +209,20 @@ std::vector<supervision::ChildProcess> start(const SoakOptions& options, const P
   add("localizer", {"--replay", "--map", work / "map.pb", "--csv", work / "end.csv",
                     "--wait-workers", std::to_string(options.workers)});
   add("local_mapper", {"--replay"});
-  add("sensor_gateway", {"--log", work / "laps.clf", "--rate", options.rate});
+  // Local mapper, navigator and this program.
+  add("sensor_gateway", {"--log", work / "laps.clf", "--rate", options.rate, "--readers", "3"});
   return services;
 }
 
 /// Until the localizer has written what it does at the end of the log.
 std::vector<Footprint> run(const SoakOptions& options, const Path& work) {
+  Pace pace;
   std::vector<supervision::ChildProcess> services = start(options, work);
   std::vector<Footprint> samples;
   const Clock::time_point begin = Clock::now();
   constexpr std::chrono::milliseconds kPeriod{100};
   while (!std::filesystem::exists(work / "end.csv")) {
-    std::this_thread::sleep_for(kPeriod);
+    pace.keep(kPeriod);
     Footprint& sample = samples.emplace_back();
     sample.at_s = std::chrono::duration<double>(Clock::now() - begin).count();
     for (supervision::ChildProcess& service : services) {
@@ -208,10 +259,8 @@ double middle(const std::vector<Footprint>& samples, std::size_t first, std::siz
 
 class Report {
  public:
-  explicit Report(const std::vector<Footprint>& samples)
-      : samples_(samples),
-        warm_(samples.size() / 3),
-        few_(std::max<std::size_t>(1, samples.size() / 20)) {}
+  Report(const std::vector<Footprint>& samples, std::size_t warm)
+      : samples_(samples), warm_(warm), few_(std::max<std::size_t>(1, samples.size() / 20)) {}
 
   /// A row; the value may grow by `share` and `most` after the warm-up.
   template <class Value>
@@ -219,7 +268,7 @@ class Report {
     const double warm = middle(samples_, warm_, few_, value);
     const double last = middle(samples_, samples_.size() - few_, few_, value);
     double peak = 0.0;
-    for (std::size_t i = warm_; i < samples_.size(); ++i) {
+    for (std::size_t i = warm_; i + few_ <= samples_.size(); ++i) {
       peak = std::max(peak, middle(samples_, i, few_, value));
     }
     const bool grew = peak > warm * (1.0 + share) + most;
@@ -236,11 +285,12 @@ class Report {
   bool flat_ = true;
 };
 
-bool report(const std::vector<Footprint>& samples) {
+bool report(const std::vector<Footprint>& samples, double warm_up) {
   if (samples.size() < 30) throw std::runtime_error("too short a run to tell: drive longer");
-  Report report(samples);
+  const auto warm = static_cast<std::size_t>(warm_up * static_cast<double>(samples.size()));
+  Report report(samples, warm);
   std::printf("| what | after warm-up | most | at the end | |\n|---|---|---|---|---|\n");
-  for (const auto& [name, usage] : samples[samples.size() / 3].services) {
+  for (const auto& [name, usage] : samples[warm].services) {
     const auto of = [&name = name](const Footprint& sample) {
       const auto found = sample.services.find(name);
       return found == sample.services.end() ? Usage{} : found->second;
@@ -290,7 +340,7 @@ bool soak(const SoakOptions& options) {
   std::printf("%.0f s, %.0f times faster than the robot; %zu samples\n", wall_s, robot_s / wall_s,
               samples.size());
   if (!options.csv.empty()) write_csv(options.csv, samples);
-  bool good = report(samples);
+  bool good = report(samples, options.warm_up);
   const bool left = entries("/dev/shm") > shared_files || space_mb("/dev/shm") > shared_mb + 0.01;
   std::printf("left in shared memory at the end: %s\n", left ? "SOMETHING" : "nothing");
   good &= !left;
@@ -311,6 +361,9 @@ int main(int argc, char** argv) {
   app.add_option("--workers", options.workers, "search workers")
       ->capture_default_str()
       ->check(command_line::range(0, 16));
+  app.add_option("--warm-up", options.warm_up, "share of the run after which nothing may grow")
+      ->capture_default_str()
+      ->check(command_line::range(0.1, 0.9));
   app.add_option("--csv", options.csv, "write all samples there");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <exception>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -22,6 +23,7 @@
 #include "topogeo/msg/status.h"
 #include "topogeo/search_pool/fair_queue.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/service/participant_id.hpp"
 #include "topogeo/support/version.hpp"
 
 #include "pool_peers.hpp"
@@ -43,18 +45,47 @@ Answers solve_all() {
   return answers;
 }
 
+/// The clients whose readers of answers all workers of this process are connected with.
+class Clients {
+ public:
+  Clients(messaging::EventLoop& loop, std::size_t workers) : workers_(workers) {
+    loop.on_event([this](const messaging::Event& event) {
+      if (event.topic != messaging::kMatchResult) return;
+      std::size_t& readers = readers_[service::participant_of(event.peer)];
+      if (event.kind == messaging::EventKind::kMatched) ++readers;
+      if (event.kind == messaging::EventKind::kUnmatched && readers > 0) --readers;
+    });
+  }
+  [[nodiscard]] bool connected(const service::ParticipantId& client) const {
+    const auto found = readers_.find(client);
+    return found != readers_.end() && found->second == workers_;
+  }
+
+ private:
+  std::size_t workers_;
+  std::map<service::ParticipantId, std::size_t> readers_;
+};
+
 class StubWorker {
  public:
   StubWorker(const messaging::Participant& participant, messaging::EventLoop& loop,
-             const std::string& worker_id, const Answers& answers, std::chrono::microseconds cost)
+             const std::string& worker_id, const Answers& answers, const Clients& clients,
+             std::chrono::microseconds cost)
       : answers_(answers),
+        clients_(clients),
         loop_(loop),
         cost_(cost),
         statuses_(participant),
         results_(participant),
         tasks_(participant, {.role = {}, .addressee = worker_id}) {
-    loop.add<msg::MatchTask>(
-        tasks_, [this](const msg::MatchTask& task, const messaging::SampleInfo&) { take(task); });
+    loop.add(results_);
+    loop.add<msg::MatchTask>(tasks_,
+                             [this](const msg::MatchTask& task, const messaging::SampleInfo& info) {
+                               take({task, service::participant_of(info.writer)});
+                             });
+    loop.on_event([this](const messaging::Event&) {
+      std::erase_if(unsent_, [this](const Asked& asked) { return answered(asked); });
+    });
     messaging::set_header(status_, "", 0, 0);
     messaging::set_worker_id(status_, worker_id);
     messaging::set_text(status_.name(), "stub", "name");
@@ -75,26 +106,38 @@ class StubWorker {
     if (!statuses_.write(status_)) std::cerr << "status not sent\n";
   }
 
+  struct Asked {
+    msg::MatchTask task;
+    service::ParticipantId client;
+  };
+
   // One task after the other, clients in turn, as in a ga_worker of one slot.
-  void take(const msg::MatchTask& task) {
+  void take(const Asked& asked) {
     if (cost_.count() == 0) {
-      answer(task);
+      answer(asked);
       return;
     }
-    queue_.push(task.client_id().to_string(), task);
+    queue_.push(asked.task.client_id().to_string(), asked);
     if (!busy_) begin();
   }
 
   void begin() {
     busy_ = !queue_.empty();
     if (!busy_) return;
-    loop_.call_after(cost_, [this, task = *queue_.pop()] {
-      answer(task);
+    loop_.call_after(cost_, [this, asked = *queue_.pop()] {
+      answer(asked);
       begin();
     });
   }
 
-  void answer(const msg::MatchTask& message) {
+  // As a ga_worker: an answer to a client whose reader is not connected yet would be lost.
+  void answer(const Asked& asked) {
+    if (!answered(asked)) unsent_.push_back(asked);
+  }
+
+  bool answered(const Asked& asked) {
+    if (!clients_.connected(asked.client)) return false;
+    const msg::MatchTask& message = asked.task;
     const localization::MatchTask task = service::from_msg(message);
     localization::MatchResult result = answers_.at(task.seed);
     result.task_id = task.task_id;
@@ -105,12 +148,15 @@ class StubWorker {
     address.worker_id = message.worker_id().to_string();
     address.client_id = message.client_id().to_string();
     if (!results_.write(service::to_msg(result, address))) std::cerr << "result not sent\n";
+    return true;
   }
 
   const Answers& answers_;
+  const Clients& clients_;
   messaging::EventLoop& loop_;
   std::chrono::microseconds cost_;
-  search_pool::FairQueue<msg::MatchTask> queue_;
+  search_pool::FairQueue<Asked> queue_;
+  std::vector<Asked> unsent_;
   bool busy_ = false;
   std::uint64_t sent_ = 0;
   messaging::Writer<msg::WorkerStatus> statuses_;
@@ -138,13 +184,16 @@ int run_stub_workers(int argc, char** argv) {
     const Answers answers = solve_all();
     messaging::EventLoop loop;
     const messaging::SignalStop signals([&](int) { loop.stop(); });
+    options.identity = "ga_worker";
     const messaging::Participant participant(options);
     std::vector<std::unique_ptr<StubWorker>> workers;
     const std::size_t count = std::stoul(value_of(words, "--stub-workers"));
     const std::chrono::microseconds cost{std::stol(value_of(words, "--cost-us"))};
+    const Clients clients(loop, count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::string worker_id = "stub#" + std::to_string(::getpid()) + "-" + std::to_string(i);
-      workers.push_back(std::make_unique<StubWorker>(participant, loop, worker_id, answers, cost));
+      workers.push_back(
+          std::make_unique<StubWorker>(participant, loop, worker_id, answers, clients, cost));
     }
     loop.run();
     return 0;

@@ -39,21 +39,28 @@ need_programs() {
   done
 }
 
+# Two calls of Ninja in one folder would spoil each other's work.
+lock_build() { exec 8> "$build/.packages.lock"; flock 8; }
+unlock_build() { exec 8>&-; }
+
+make_manuals() {  # with the build locked
+  ninja -C "$build" manuals > "$work/ninja.log" 2>&1 || { cat "$work/ninja.log"; fail "manual pages"; }
+}
+
 # Packages of the programs as they are now.
 need_packages() {
   need dpkg-shlibdeps
   need_programs
-  exec 8> "$build/.packages.lock"
-  flock 8
+  lock_build
   local newest
   newest=$(find "$bin" "$source_dir/cmake" "$source_dir/deploy" -newer "$build/packages/topogeo_0.1.0_amd64.deb" -type f \
     2> /dev/null | head -n 1) || true
   if [ ! -e "$build/packages/topogeo_0.1.0_amd64.deb" ] || [ -n "$newest" ]; then
     step "making packages"
-    ninja -C "$build" manuals > "$work/ninja.log" 2>&1 || { cat "$work/ninja.log"; fail "manual pages"; }
+    make_manuals
     (cd "$build" && cpack > "$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
   fi
-  exec 8>&-
+  unlock_build
 }
 
 need_engine() {
@@ -73,6 +80,10 @@ need_image() {
   key=$(sha256sum "$build"/packages/*.deb "$source_dir"/deploy/{Dockerfile,health,install-packages} |
     sha256sum | cut -c1-16)
   if [ "$(docker image inspect -f '{{ index .Config.Labels "key" }}' $image 2> /dev/null)" != "$key" ]; then
+    local base=${BASE:-debian:bookworm}
+    docker image inspect "$base" > /dev/null 2>&1 || timeout 120 docker pull -q "$base" > /dev/null 2>&1 ||
+      "$source_dir/deploy/base-image.sh" "$base" > "$work/base.log" 2>&1 ||
+      { tail -n 5 "$work/base.log"; skip "no base image can be pulled or made"; }
     step "making the image"
     "$source_dir/deploy/image" $image --label key="$key" > "$work/image.log" 2>&1 ||
       { tail -n 30 "$work/image.log"; fail "the image cannot be made"; }

@@ -95,11 +95,12 @@ if unshare -n test -e /proc/sys/net/core/rmem_default; then
   expect healthy 'UDP buffers' ok '4194 KB'
 fi
 
-examine small_memory 'mount -t tmpfs -o size=4m,mode=1777 tmpfs /dev/shm'
+examine small_memory 'export TOPOGEO_DDS_PARTICIPANT=local; mount -t tmpfs -o size=4m,mode=1777 tmpfs /dev/shm'
 expect small_memory 'shared memory' problem '4 MB are free'
 
 # A segment whose program was killed: nobody holds the lock beside it.
 examine left_behind '
+  export TOPOGEO_DDS_PARTICIPANT=local
   head -c 4000000 /dev/zero > /dev/shm/fastrtps_0123456789abcdef
   touch -d "1 hour ago" /dev/shm/fastrtps_0123456789abcdef_el'
 expect left_behind 'shared memory' problem '1 segments (4 MB)'

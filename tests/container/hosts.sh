@@ -45,8 +45,8 @@ no_multicast_on() {  # HOST
 }
 
 # Number of workers that have done something, and of those that are there.
-workers_done() { on robot topogeo workers 2> /dev/null | awk 'NR > 1 && $5 ~ /^[0-9]+$/ && $5 > 0' | wc -l; }
-workers_there() { on robot topogeo workers 2> /dev/null | awk 'NR > 1 && $5 ~ /^[0-9]+$/' | wc -l; }
+workers_done() { on robot topogeo workers 2> /dev/null | awk '$4 == "%" && $5 ~ /^[0-9]+$/ && $5 > 0' | wc -l; }
+workers_there() { on robot topogeo workers 2> /dev/null | awk '$4 == "%" && $5 ~ /^[0-9]+$/' | wc -l; }
 
 start_worker() { start_on "$1" ga_worker ga_worker --slots 1 --name "$1"; }
 

@@ -5,9 +5,11 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_programs
 step "installing"
-ninja -C "$build" manuals > /dev/null
+lock_build
+make_manuals
 DESTDIR=$work/root cmake --install "$build" --strip > "$work/install.log" 2>&1 ||
   { tail -n 5 "$work/install.log"; fail "cmake --install"; }
+unlock_build
 prefix=$work/root$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$build/CMakeCache.txt")
 
 step "units"

@@ -47,11 +47,34 @@ secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --out "$work/run"
 same_results "$work/run" "$work/alone"
 grep -q ' 0 sent to workers' "$work/run.log" && fail "the workers had no work"
 
+# What the services themselves send must not look like a stranger's.
+drops_unprotected() { status "$keys/robot" planner | grep unprotected_packet; }
+
+step "without multicast"
+# A network of its own: lo has no route for multicast there. Two addresses of hosts, as two hosts would have.
+if unshare --net true 2> /dev/null; then
+  # shellcheck disable=SC2016  # the words of the inner shell
+  TOPOGEO_SECURITY=$keys/robot TOPOGEO_PEERS='127.0.0.1;localhost' unshare --net bash -c \
+    'ip link set lo up && exec "$0" run --log "$1" --out "$2"' "$bin/topogeo" "$work/log.clf" "$work/peers" \
+    > "$work/peers.log" 2>&1 || { cat "$work/peers.log"; fail "the secured run without multicast"; }
+  same_results "$work/peers" "$work/alone"
+fi
+ROS_DISCOVERY_SERVER=127.0.0.1:11811 status "$keys/robot" > "$work/servers" && fail "security with servers"
+grep -q "carry no security" "$work/servers" || { cat "$work/servers"; fail "no clear error with servers"; }
+
 step "strangers"
 start "$keys/robot" planner
 planner=$pid
 eventually 20 status "$keys/robot" > /dev/null || fail "the owner gets no status"
 status "$keys/pc1" > /dev/null || fail "another host of the owner gets no status"
+drops_unprotected && fail "the owner's packets are taken for a stranger's"
+# A heartbeat that is not encrypted, as if a peer had sent it, to each participant that this host may have.
+heartbeat='RTPS\x02\x02\x01\x0f\x01\x0f\x09\x09\x09\x09\x09\x09\x09\x09\x09\x09\x07\x01\x1c\x00\x00\x00\x00\x00'
+heartbeat+='\x00\x00\x01\x02\x00\x00\x00\x00\xe8\x03\x00\x00\x00\x00\x00\x00\xe8\x03\x00\x00\x01\x00\x00\x00'
+for number in {0..9}; do
+  printf '%b' "$heartbeat" > "/dev/udp/127.0.0.1/$((7411 + 250 * domain + 2 * number))" || true
+done
+eventually 10 drops_unprotected || fail "a plain message in the name of a peer is not refused"
 before=$(refused)
 status "" > "$work/plain" && fail "a stranger without certificate gets a status"
 eventually 10 more_refused_than "$before" || fail "the stranger without certificate is not counted"
@@ -76,6 +99,8 @@ cp -r "$keys/pc1" "$work/stolen"
 "$make_keys" "$keys" revoke pc1 status
 "$make_keys" "$keys" list > "$work/list"
 grep -q '^pc1/status .*, revoked$' "$work/list" || fail "the list does not show what is revoked"
+told_of_list() { status "$keys/robot" planner | grep "new revocations" > /dev/null; }
+eventually 10 told_of_list || fail "a running service does not notice a new list"
 pid=$planner
 stop
 start "$keys/robot" planner  # reads the list of revoked certificates at its start

@@ -40,6 +40,12 @@ std::size_t check_sick_decoder(std::string_view bytes);
 /// Throws BrokenPromise.
 std::size_t check_mcp_decoder(std::string_view bytes);
 
+/// Takes `bytes` as a packet of RTPS, as a payload of discovery and as one of a handshake, through
+/// what stands before the parser of the middleware. What passes must hold what it states, wherever
+/// the middleware follows it. Returns the submessages of a packet that passes, and one for each of
+/// the three that does. Throws BrokenPromise.
+std::size_t check_packet_parser(std::string_view bytes);
+
 /// Takes `bytes` as the name of a topic, a line end and the payload of a sample, through what a
 /// reader of the topic does: the address filter, the decoding, the checks, the conversion, and what
 /// the services make of it. Returns 2 when they take it, 1 when they refuse it with

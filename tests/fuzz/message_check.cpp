@@ -281,7 +281,7 @@ void receive(const msg::Goal& message) {
   service::LivePose pose;
   pose.status.state = localization::LocalizationState::kTracking;
   pose.T_map_robot = {0.5, 0.5, 0.0};
-  static_cast<void>(planner::answer(message, &floor(), pose, {}));
+  static_cast<void>(planner::answer(message, {.hybrid = &floor()}, pose, {}));
 }
 
 void receive(const msg::Route& message) {
@@ -312,7 +312,7 @@ void receive(const msg::Blockages& message) {
   msg::Goal goal;
   goal.kind(msg::kGoalPlace);
   messaging::set_text(goal.place(), "left", "place");
-  static_cast<void>(planner::answer(goal, &floor(), pose, report.points_m));
+  static_cast<void>(planner::answer(goal, {.hybrid = &floor()}, pose, report.points_m));
 }
 
 void receive(const msg::LocalizationCommand& message) {
@@ -462,7 +462,7 @@ void fill(msg::Route& message) {
   msg::Goal goal;
   goal.target().x_m(1.5);
   goal.target().y_m(0.5);
-  message = planner::answer(goal, &floor(), pose, {});
+  message = planner::answer(goal, {.hybrid = &floor()}, pose, {});
 }
 
 void fill(msg::LocalizationCommand& message) {

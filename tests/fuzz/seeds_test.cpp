@@ -62,6 +62,10 @@ TEST(FuzzSeeds, MessagesPass) {
   expect_all_pass("message", [](const std::string& bytes) { check_message(bytes); });
 }
 
+TEST(FuzzSeeds, PacketsPass) {
+  expect_all_pass("packet", [](const std::string& bytes) { check_packet_parser(bytes); });
+}
+
 // The checks are worth something only where the inputs reach the code behind the reader.
 TEST(FuzzSeeds, ReachTheMaps) {
   const auto maps = [](const char* name) {
@@ -93,6 +97,12 @@ TEST(FuzzSeeds, ReachTheTelegrams) {
   EXPECT_EQ(telegrams("late"), 1U);
   EXPECT_EQ(telegrams("false_header"), 2U);
   EXPECT_EQ(telegrams("commands"), 0U);
+}
+
+TEST(FuzzSeeds, ReachTheSubmessages) {
+  for (const auto& entry : std::filesystem::directory_iterator(seeds("packet"))) {
+    EXPECT_GT(check_packet_parser(content(entry.path())), 0U) << entry.path();
+  }
 }
 
 TEST(FuzzSeeds, ReachTheReceiversOfEachTopic) {

@@ -28,7 +28,7 @@ namespace topogeo::test {
 
 class GatewayOnDevices : public testing::Test {
  protected:
-  static constexpr std::chrono::seconds kPatience{60};
+  static constexpr std::chrono::seconds kPatience{60 * kTimeFactor};
 
   GatewayOnDevices();
 

@@ -1,5 +1,6 @@
 // topogeo run --sim --goto: all services on emulated devices, sent to a place of a stored map.
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -34,6 +35,23 @@ TEST(Goto, ASimulatedRobotIsSentToAPointOfAStoredMap) {
   ASSERT_FALSE(truth.empty());
   EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(3.0, 0.0)).norm(), 0.3);
   EXPECT_FALSE(std::filesystem::is_symlink(out + "/base.port"));
+}
+
+TEST(Goto, AlongBranchesWhereTheConfigurationSaysSo) {
+  use_udp_only();
+  const Scratch scratch;
+  write_log("floor", scratch / "floor.clf");
+  Program map(scratch, "topogeo",
+              {"map", "--log", scratch / "floor.clf", "--out", scratch / "map"});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+  std::ofstream(scratch / "graph.yaml") << "planner:\n  on: graph\n";
+  Program run(scratch, "topogeo",
+              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml", "--map",
+               scratch / "map/map.pb", "--goto", "2.5,0", "--config", scratch / "graph.yaml",
+               "--out", scratch / "out", "--workers", "0", "--domain", own_domain()});
+  ASSERT_EQ(run.wait(280.0), 0) << run.err();
+  EXPECT_THAT(run.err(), HasSubstr("m of it along branches"));
+  EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));
 }
 
 TEST(Explore, ASimulatedRobotMapsARoomByItself) {

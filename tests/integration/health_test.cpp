@@ -45,7 +45,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// Longer than anything takes on a busy machine.
-constexpr std::chrono::seconds kHealthPatience{60};
+constexpr std::chrono::seconds kHealthPatience{60 * kTimeFactor};
 
 class HealthTest : public testing::Test {
  protected:

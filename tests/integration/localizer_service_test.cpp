@@ -4,9 +4,12 @@
 
 #include "topogeo/localization/mapping/localizer.hpp"
 #include "topogeo/msg/sensor.h"
+#include "topogeo/msg/store.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
+#include "topogeo/pipeline/mapping_run.hpp"
 #include "topogeo/service/trajectory_assembly.hpp"
+#include "topogeo/storage/map_file.hpp"
 
 #include "pool_fixture.hpp"
 
@@ -158,6 +161,71 @@ TEST_F(LocalizerTest, TheLivePoseFollowsTheOdometryBetweenStops) {
   EXPECT_NEAR(pose.T_map_robot.y_m, -0.1, 1e-12);
   EXPECT_NEAR(pose.T_map_robot.theta_rad, 0.2, 1e-12);
   EXPECT_GT(pose.covariance(0, 0), 0.0);
+}
+
+/// A map of the room, and a localizer for it that comes when the sender of the local maps does not
+/// keep the first half any more.
+class LateLocalizer : public LocalizerTest {
+ protected:
+  LateLocalizer() {
+    pipeline::MappingRun run({}, "robot");
+    const world::World world =
+        world::load_world(std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml");
+    for (const scan::Scan& scan : simulation::simulate_log(world, {}).scans) run.add(scan);
+    storage::write_map_file(map_file_, run.finish());
+    loop_.add<msg::StoredMap>(stored_in_,
+                              [this](const auto& message, const auto&) { stored_ = message; });
+  }
+
+  std::unique_ptr<Program> start_late(std::vector<std::string> words) {
+    for (std::size_t i = 0; i < maps_.size() / 2; ++i) {
+      map_writer_.dispose(service::to_msg(*maps_[i]));
+    }
+    words.insert(words.end(),
+                 {"--map", map_file_, "--domain", own_domain(), "--partition", partition_});
+    return std::make_unique<Program>(scratch_, "localizer", words);
+  }
+
+  const std::filesystem::path map_file_ = scratch_ / "map.pb";
+  messaging::Reader<msg::StoredMap> stored_in_{participant_};
+  std::optional<msg::StoredMap> stored_;
+};
+
+TEST_F(LateLocalizer, GetsTheFirstStopsOfALogFromTheMapStore) {
+  const auto store = start("map_store", {"--out", scratch_ / "out"});
+  for (const auto& map : maps_) publish(*map);
+  ASSERT_TRUE(wait_until([&] { return stored_ && stored_->session_stops() == maps_.size(); }));
+  const auto localizer = start_late({"--replay"});
+  end_stream();
+  ASSERT_TRUE(wait_until([&] { return end_.has_value(); })) << localizer->err();
+  EXPECT_EQ(end_->count(), maps_.size());
+  ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+  EXPECT_EQ(last_status_->fault_count(), 0U);
+}
+
+TEST_F(LateLocalizer, GoesOnWithoutThemWhereNothingIsStored) {
+  const auto store = start("map_store", {"--map", map_file_});
+  for (const auto& map : maps_) publish(*map);
+  ASSERT_TRUE(wait_until([&] { return stored_.has_value(); }));
+  EXPECT_EQ(stored_->session(), msg::kNothingIsStored);
+  EXPECT_EQ(stored_->session_stops(), 0U);
+  const auto localizer = start_late({"--replay"});
+  end_stream();
+  ASSERT_TRUE(wait_until([&] { return end_.has_value(); })) << localizer->err();
+  EXPECT_EQ(end_->count(), maps_.size() - maps_.size() / 2);
+  ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+  ASSERT_EQ(last_status_->faults().size(), 1U);
+  EXPECT_EQ(last_status_->faults()[0].reason().to_string(), "local maps missing");
+}
+
+TEST_F(LateLocalizer, NeedsNoneOfThemWhileTheRobotDrives) {
+  for (const auto& map : maps_) publish(*map);
+  const auto localizer = start_late({});  // no map store either
+  end_stream();
+  ASSERT_TRUE(wait_until([&] { return end_.has_value(); })) << localizer->err();
+  EXPECT_EQ(end_->count(), maps_.size() - maps_.size() / 2);
+  ASSERT_TRUE(wait_until([&] { return last_status_->state() == msg::kServiceFinished; }));
+  EXPECT_EQ(last_status_->fault_count(), 0U);
 }
 
 TEST_F(LocalizerTest, AStopWhileItWaitsForWorkersOrMapsEndsItCleanly) {

@@ -32,7 +32,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Longer than anything takes on a busy machine.
-constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kStorePatience{60 * kTimeFactor};
 
 /// Two rooms of 4 x 4 m with a door between them, seen from the door, and a name for each.
 storage::MapDocument two_rooms() {
@@ -90,7 +90,7 @@ struct LateReader {
   }
 
   bool wait() {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
+    const auto end = std::chrono::steady_clock::now() + kStorePatience;
     while (!(hybrid.map() && follower.map()) && std::chrono::steady_clock::now() < end) {
       static_cast<void>(loop.run_for(std::chrono::milliseconds(20)));
     }
@@ -227,7 +227,7 @@ TEST_F(MapStoreShows, TheMapOfADriveWithItsPlaces) {
   end.version(expected.trajectory.version);
   ASSERT_TRUE(ends.write(end));
   store.wait_for_error_text("local maps, ");  // the final line
-  const auto patience = std::chrono::steady_clock::now() + kPatience;
+  const auto patience = std::chrono::steady_clock::now() + kStorePatience;
   const planning::HybridMap hybrid = pipeline::make_hybrid_map(pipeline::parts_of(expected), {});
   const auto is_final = [&] {
     const auto map = reader.hybrid.map();

@@ -33,7 +33,7 @@ namespace topogeo::test {
 
 class NavigatorOnRobot : public testing::Test {
  protected:
-  static constexpr std::chrono::seconds kPatience{60};
+  static constexpr std::chrono::seconds kPatience{60 * kTimeFactor};
   static constexpr const char* kPartition = "navigator-test";
 
   NavigatorOnRobot();

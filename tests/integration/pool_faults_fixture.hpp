@@ -28,7 +28,7 @@
 namespace topogeo::test {
 
 /// Longer than anything takes on a busy machine.
-constexpr std::chrono::seconds kFaultPatience{30};
+constexpr std::chrono::seconds kFaultPatience{30 * kTimeFactor};
 
 /// The first part of a drive through the simulated floor, once past a place that it has seen.
 class Drive {

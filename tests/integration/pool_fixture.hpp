@@ -38,7 +38,7 @@
 namespace topogeo::test {
 
 /// Longer than anything takes on a busy machine.
-constexpr std::chrono::seconds kPatience{30};
+constexpr std::chrono::seconds kPatience{30 * kTimeFactor};
 
 using Maps = std::vector<std::shared_ptr<const topomap::LocalMap>>;
 

@@ -284,18 +284,21 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
     return second.received > 0;
   }));
   ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored == received_by(second); }));
-  const std::uint64_t not_received = sent - received_by(second);
+  // One of those before may still be on its way.
+  const std::uint64_t received_before = received_by(second);
   const std::vector<MatchTask> tasks = tasks_on(maps_, 30);
   expect_same(tasks, pool_->match(tasks));
   sent += 30;
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= sent - not_received; }));
+  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= received_before + 30; }));
   loop_.run_for(milliseconds(100));
+  const std::uint64_t received = received_by(second);
   EXPECT_THAT(faults_, ElementsAre("two workers of one id"));
   EXPECT_EQ(pool_->workers(), 1U);
   EXPECT_EQ(pool_->counts().in_process, 0U);
   EXPECT_EQ(received_by(first), sent);
-  EXPECT_EQ(received_by(second), sent - not_received) << "both receive what goes to the id";
-  EXPECT_EQ(pool_->counts().ignored, sent - not_received);
+  EXPECT_GE(received, received_before + 30) << "both receive what goes to the id";
+  EXPECT_LE(received, sent);
+  EXPECT_EQ(pool_->counts().ignored, received);
 
   lies = false;
   first.leave();
@@ -304,10 +307,10 @@ TEST_F(PoolTrustTest, OfTwoProcessesWithOneIdOnlyTheFirstCounts) {
   const std::vector<MatchTask> more = tasks_on(maps_, 10, 1000);
   expect_same(more, pool_->match(more));
   EXPECT_EQ(pool_->counts().in_process, 0U);
-  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= sent - not_received + 10; }))
+  ASSERT_TRUE(wait_until([&] { return pool_->counts().ignored >= received + 10; }))
       << "those of the first, which still receives";
   loop_.run_for(milliseconds(100));
-  EXPECT_EQ(pool_->counts().ignored, sent - not_received + 10);
+  EXPECT_EQ(pool_->counts().ignored, received + 10);
   EXPECT_EQ(faults_.size(), 1U);
 }
 

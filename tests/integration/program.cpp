@@ -27,9 +27,10 @@ namespace {
 constexpr std::chrono::milliseconds kPoll{10};
 constexpr int kSignalBase = 128;
 
-/// Asks `done` again and again; false after `timeout_s`.
+/// Asks `done` again and again; false after `timeout_s` times kTimeFactor.
 bool wait_until(double timeout_s, const std::function<bool()>& done) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+  const std::chrono::duration<double> patience(timeout_s * kTimeFactor);
+  const auto end = std::chrono::steady_clock::now() + patience;
   while (!done()) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(kPoll);

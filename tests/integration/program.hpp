@@ -10,6 +10,8 @@
 
 #include "topogeo/simulation/simulate_log.hpp"
 
+#include "time_factor.hpp"
+
 namespace topogeo::test {
 
 /// A directory of its own for each test, removed at the end.
@@ -36,7 +38,8 @@ class Program {
   Program& operator=(const Program&) = delete;
   ~Program();
 
-  /// Exit code, or 128 + signal. Throws std::runtime_error when it does not end within `timeout_s`.
+  /// Exit code, or 128 + signal. Throws std::runtime_error when it does not end within `timeout_s`,
+  /// times kTimeFactor as all waits here.
   int wait(double timeout_s = 110.0);
 
   /// Waits until its standard error contains `text`. Throws std::runtime_error when it ends before,

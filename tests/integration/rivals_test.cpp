@@ -51,7 +51,7 @@ class Rivals : public testing::Test {
   }
   template <class Condition>
   bool eventually(Condition condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60 * kTimeFactor);
     while (!condition() && std::chrono::steady_clock::now() < end) {
       static_cast<void>(loop_.run_for(std::chrono::milliseconds(5)));
     }

@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr milliseconds kPatience{20'000};
+constexpr milliseconds kPatience{20'000 * test::kTimeFactor};
 
 /// Keeps what it receives and sends what the test puts there.
 class NotingDriver final : public devices::SerialDriver {

@@ -25,7 +25,7 @@
 
 namespace topogeo::test {
 
-constexpr std::chrono::seconds kLongestWait{60};
+constexpr std::chrono::seconds kLongestWait{60 * kTimeFactor};
 
 class StoredDrive {
  public:

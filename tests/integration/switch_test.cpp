@@ -52,12 +52,19 @@ class SwitchTest : public ::testing::Test {
     }
   }
   std::string send_command(msg::LocalizationCommandKind kind) {
+    ++requests_;
+    return send_again(kind);
+  }
+  /// The request of the last number.
+  std::string send_again(msg::LocalizationCommandKind kind) {
     service::LocalizationCommand command;
     command.kind = kind;
     command.client_id = "test";
-    command.request_id = ++requests_;
+    command.request_id = requests_;
+    last_reply_.reset();
     EXPECT_TRUE(commands_.write(service::to_msg(command, "robot", 0, requests_)));
     EXPECT_TRUE(wait_until([&] { return last_reply_ && last_reply_->request_id() == requests_; }));
+    if (!last_reply_) return "no reply";
     return (last_reply_->accepted() ? "accepted: " : "refused: ") +
            last_reply_->message().to_string();
   }
@@ -105,6 +112,9 @@ TEST_F(SwitchTest, TheMapStopsGrowingAndGoesOn) {
   drive(0, leave);
   EXPECT_EQ(send_command(msg::kCommandSwitchToLocalization),
             "accepted: the map of " + std::to_string(leave) + " stops stays as it is");
+  EXPECT_EQ(send_again(msg::kCommandSwitchToLocalization),
+            "accepted: the map of " + std::to_string(leave) + " stops stays as it is")
+      << "carried out once, told as often as it is asked for";
   ASSERT_TRUE(wait_until([&] { return stops_in_map() == leave; }));
   const std::uint64_t version = assembly_.version();
   drive(leave, resume);

@@ -26,6 +26,7 @@
 #include "topogeo/support/version.hpp"
 
 #include "search_pool/worker_fixture.hpp"
+#include "time_factor.hpp"
 
 namespace topogeo::test {
 
@@ -70,7 +71,7 @@ class WorkerClient {
 
   /// False when `condition` does not come true in the longest time that anything takes.
   bool wait_until(const std::function<bool()>& condition) {
-    constexpr std::chrono::seconds kPatience{30};
+    constexpr std::chrono::seconds kPatience{30 * kTimeFactor};
     const auto end = std::chrono::steady_clock::now() + kPatience;
     while (!condition() && std::chrono::steady_clock::now() < end) run_loop();
     return condition();

@@ -301,9 +301,11 @@ TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
   EXPECT_FALSE(idle.host().to_string().empty());
   double most_load = 0.0;
   std::uint32_t most_in_hand = 0;
+  std::uint32_t most_clients = 0;  // those of the last seconds, which the queue may outlast
   peer->on_status = [&](const msg::WorkerStatus& status) {
     most_load = std::max(most_load, status.load());
     most_in_hand = std::max(most_in_hand, status.tasks_in_hand());
+    most_clients = std::max(most_clients, status.clients());
   };
   // A queue that lasts until a status has counted it, however fast the machine.
   MatchTask long_task = task(*zero_, *one_, 0);
@@ -325,7 +327,7 @@ TEST_F(WorkerTest, TellsWhatItIsAndDoes) {
   EXPECT_LE(most_load, 1.0);
   EXPECT_EQ(done.tasks_in_hand(), 0U);
   EXPECT_GT(done.tasks_per_s(), 0.0);
-  EXPECT_EQ(done.clients(), 1U);
+  EXPECT_EQ(most_clients, 1U);
   EXPECT_EQ(done.failures(), 0U);
   EXPECT_GT(done.uptime_s(), idle.uptime_s());
 }

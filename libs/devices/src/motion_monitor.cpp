@@ -15,8 +15,13 @@ constexpr std::int64_t kJoystickRest_ns = 1'000'000'000;
 /// A single report may have a speed that was garbled on the line.
 constexpr unsigned kUncommandedReports = 2;
 
-bool stalls(std::uint16_t status, bool commanded, bool stands) {
-  return commanded && stands && phase_of(status) == McpPhase::kAccelerate;
+/// A motion is slow up to so many times what counts as standstill: a base that follows slow
+/// commands, each a little faster, accelerates and stands in one report after the other.
+constexpr double kSlow = 3.0;
+
+bool stalls(std::uint16_t status, double commanded, double standstill, bool stands) {
+  return std::abs(commanded) > kSlow * standstill && stands &&
+         phase_of(status) == McpPhase::kAccelerate;
 }
 
 /// Phases of a motor that has ended what was commanded, or never began.
@@ -83,8 +88,11 @@ void MotionMonitor::take(const McpReport& report, const BaseMotion& motion, std:
       phase_of(translate) == McpPhase::kDecelerate || phase_of(rotate) == McpPhase::kDecelerate;
   limp_ = phase_of(translate) == McpPhase::kLimp || phase_of(rotate) == McpPhase::kLimp;
 
-  const bool stalled = stalls(translate, motion.translates(), linear_stands) ||
-                       stalls(rotate, motion.rotates(), angular_stands);
+  const BaseVelocity& aim = motion.aim();
+  const bool stalled = stalls(translate, motion.translates() ? aim.linear_mps : 0.0,
+                              settings_.standstill_mps, linear_stands) ||
+                       stalls(rotate, motion.rotates() ? aim.angular_radps : 0.0,
+                              settings_.standstill_radps, angular_stands);
   stalls_ = stalled ? stalls_ + 1 : 0;
 
   const bool uncommanded = linear_.excess(linear_mps, now_ns) > settings_.uncommanded_mps ||

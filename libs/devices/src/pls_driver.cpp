@@ -27,6 +27,12 @@ PlsDriver::PlsDriver(PlsSettings settings)
       setup_(settings_, line_, exchange_),
       supervisor_(settings_, line_, exchange_) {}
 
+void PlsDriver::resume(const LineSettings& line) {
+  line_.expect(line);
+  // At another rate than wanted the sensor is set up anew, in case it follows now.
+  configured_ = line.baud == settings_.baud;
+}
+
 void PlsDriver::opened(std::int64_t now_ns) {
   ++status_.counters.openings;
   search_.reset();

@@ -28,7 +28,7 @@ std::string line_name(const LineSettings& line) {
 }
 
 void PlsSearch::start(bool listen_first, std::int64_t now_ns) {
-  const bool listen = listen_first && line_.known();
+  const bool listen = (listen_first || line_.expected()) && line_.known();
   candidates_ = planned();
   if (listen) candidates_.insert(candidates_.begin(), *line_.known());
   candidate_ = 0;
@@ -70,6 +70,11 @@ void PlsSearch::try_line(const LineSettings& line, bool listen_only, std::int64_
 
 bool PlsSearch::tick(std::int64_t now_ns) {
   if (now_ns < due_ns()) return true;
+  if (line_.expected()) {
+    line_.doubt();
+    start(false, now_ns);
+    return true;
+  }
   if (++candidate_ < candidates_.size()) {
     try_line(candidates_[candidate_], false, now_ns);
     return true;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -13,11 +14,16 @@
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 
+#include "topogeo/messaging/revocations.hpp"
 #include "topogeo/messaging/shared_memory.hpp"
 
 #include "address_filter.hpp"
-#include "fragments.hpp"
+#include "fast_dds/filter_info.hpp"
+#include "fast_dds/fragments.hpp"
+#include "fast_dds/host_sending.hpp"
+#include "fast_dds/packet_shield.hpp"
 #include "participant_core.hpp"
 
 namespace topogeo::messaging {
@@ -72,6 +78,25 @@ Entity* require(Entity* entity, const std::string& what) {
   return entity;
 }
 
+// Hosts to announce oneself to where there is no multicast: addresses or names, with ';' between.
+void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
+  using eprosima::fastrtps::rtps::IPLocator;
+  std::istringstream list(hosts);
+  for (std::string host; std::getline(list, host, ';');) {
+    if (host.empty()) continue;
+    const auto addresses = IPLocator::resolveNameDNS(host);
+    if (addresses.first.empty()) {
+      throw std::runtime_error("TOPOGEO_PEERS: '" + host + "' has no IPv4 address");
+    }
+    for (const std::string& address : addresses.first) {
+      eprosima::fastrtps::rtps::Locator_t locator;  // UDP; without a port: those of the domain
+      IPLocator::setIPv4(locator, address);
+      qos.wire_protocol().builtin.initialPeersList.push_back(locator);
+    }
+  }
+  // With any peer given the middleware leaves the multicast address out.
+}
+
 // The messages by which secured participants get to know each other carry certificates, and Fast
 // DDS 2.9.1 does not finish where those are cut into packets.
 void send_whole_certificates(dds::DomainParticipantQos& qos) {
@@ -94,6 +119,9 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                                 ", allowed is 0 to 232");
   }
   correct_fragments();
+  keep_filter_info_out();
+  send_to_each_host_apart();
+  shield_packets();
   load_profiles(options.profiles_file);
   std::string profile = options.profile;
   if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");
@@ -106,10 +134,12 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                              "' is not in the profiles file");
   }
   qos.name(options.name);
+  add_peers(qos, environment("TOPOGEO_PEERS"));
   const std::filesystem::path security =
       options.security.empty() ? std::filesystem::path(environment("TOPOGEO_SECURITY"))
                                : options.security;
   if (!security.empty()) {
+    revocations_ = RevocationList(security / options.identity);  // before the middleware reads it
     add_security(qos, security / options.identity);
     send_whole_certificates(qos);
     secured_ = true;
@@ -193,6 +223,10 @@ std::vector<std::string> ParticipantCore::take_refusals() {
   return secured_ ? listener_->take() : std::vector<std::string>{};
 }
 
+bool ParticipantCore::take_new_revocations() {
+  return revocations_.take_change();
+}
+
 std::vector<RemoteEndpoint> ParticipantCore::discovered() const {
   return observer_ == nullptr ? std::vector<RemoteEndpoint>{} : observer_->endpoints();
 }
@@ -212,6 +246,10 @@ std::vector<RemoteEndpoint> Participant::discovered() const {
 
 std::vector<std::string> Participant::take_refusals() const {
   return core_->take_refusals();
+}
+
+bool take_new_revocations(const Participant& participant) {
+  return participant.core()->take_new_revocations();
 }
 
 }  // namespace topogeo::messaging

@@ -19,6 +19,7 @@
 #include "topogeo/messaging/participant.hpp"
 
 #include "discovery_listener.hpp"
+#include "revocation_list.hpp"
 
 namespace topogeo::messaging {
 
@@ -43,12 +44,14 @@ class ParticipantCore {
 
   [[nodiscard]] bool secured() const { return secured_; }
   std::vector<std::string> take_refusals();
+  bool take_new_revocations();
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
   /// Why an endpoint was not made: what the plug-ins of security logged, empty without security.
   [[nodiscard]] std::string reason_of_denial() const;
 
  private:
   bool secured_ = false;
+  RevocationList revocations_;
   std::unique_ptr<RefusalListener> listener_;  // called while participant_ lives
   DiscoveryListener* observer_ = nullptr;      // the listener of one that observes
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;

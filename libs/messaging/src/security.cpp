@@ -1,6 +1,7 @@
 #include "security.hpp"
 
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -96,6 +97,12 @@ std::string text_of(const rtps::GuidPrefix_t& prefix) {
 }  // namespace
 
 void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& folder) {
+  const char* const servers = std::getenv("ROS_DISCOVERY_SERVER");
+  if (servers != nullptr && *servers != '\0') {
+    throw std::runtime_error(std::string("DDS security: ROS_DISCOVERY_SERVER is '") + servers +
+                             "', but discovery servers of Fast DDS 2.9 carry no security; unset it "
+                             "and name the hosts in TOPOGEO_PEERS where there is no multicast");
+  }
   keep_security_races_away();
   forward_log();
   auto& properties = qos.properties().properties();
@@ -153,8 +160,10 @@ void RefusalListener::onParticipantAuthentication(dds::DomainParticipant* /*part
 void RefusalListener::report(const rtps::GuidPrefix_t& prefix, const std::string& what) {
   const auto known = peers_.find(prefix);
   if (refusals_.size() == kMaxRefusals) refusals_.pop_front();
-  refusals_.push_back("'" + (known == peers_.end() ? std::string("unnamed") : known->second.name) +
-                      "' (" + text_of(prefix) + ") " + what);
+  std::string line = "'";
+  line.append(known == peers_.end() ? std::string("unnamed") : known->second.name);
+  line.append("' (").append(text_of(prefix)).append(") ").append(what);
+  refusals_.push_back(std::move(line));
 }
 
 std::vector<std::string> RefusalListener::take() {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/strangers.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
 
@@ -216,6 +217,10 @@ void StatusPublisher::on_publish(std::function<void(const msg::ServiceStatus&)> 
 }
 
 void StatusPublisher::fill_counts() {
+  const StrangerCounts strangers = stranger_counts();
+  set_drops("invalid_packet", strangers.invalid_packets);
+  set_drops("unprotected_packet", strangers.unprotected_packets);
+  set_drops("unknown_topic", strangers.unknown_topics);
   status_.counters().clear();
   for (const auto& [name, value] : counters_) {
     msg::Counter counter;

@@ -7,6 +7,7 @@
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 
 #include "endpoint_shared.hpp"
+#include "fast_dds/separate_sending.hpp"
 #include "participant_core.hpp"
 
 namespace topogeo::messaging::detail {
@@ -84,6 +85,7 @@ WriterCore::WriterCore(const Participant& participant, const TopicInfo& topic,
                              " with profile '" + profile + "'" +
                              impl_->participant->reason_of_denial());
   }
+  if (!topic.addressee.empty()) send_heartbeats_to_addressees(*impl_->writer);
 }
 
 WriterCore::~WriterCore() {

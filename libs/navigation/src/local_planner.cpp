@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "topogeo/navigation/path_follower.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 constexpr double kWishedBeside_m = 0.3;  // free beside the body, where there is room
 constexpr double kLeastBeside_m = 0.07;  // the same in tight bends
 constexpr double kNear_m = 0.3;          // so near to the goal the path is straight
+constexpr double kReach_m = 10.0;        // along a path: a scan shows no more
 
 /// Each obstacle with four points around it.
 std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_m, double by_m) {
@@ -25,6 +27,35 @@ std::vector<Eigen::Vector2d> widened(std::span<const Eigen::Vector2d> obstacles_
     points_m.emplace_back(obstacle_m - Eigen::Vector2d(0.0, by_m));
   }
   return points_m;
+}
+
+/// The robot, and what comes of a line after the place nearest to it and `ahead_m` more; the end in
+/// any case.
+std::vector<Eigen::Vector2d> rest_of(std::span<const Eigen::Vector2d> points_m,
+                                     const Eigen::Vector2d& robot_m, double ahead_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double passed_m = 0.0;
+  double at_m = 0.0;
+  for (std::size_t i = 0; i + 1 < points_m.size(); ++i) {
+    const Eigen::Vector2d line_m = points_m[i + 1] - points_m[i];
+    const double length2 = line_m.squaredNorm();
+    const double share =
+        length2 > 0.0 ? std::clamp((robot_m - points_m[i]).dot(line_m) / length2, 0.0, 1.0) : 0.0;
+    const double off_m = (points_m[i] + share * line_m - robot_m).norm();
+    if (off_m < nearest_m) {
+      nearest_m = off_m;
+      at_m = passed_m + share * line_m.norm();
+    }
+    passed_m += line_m.norm();
+  }
+  std::vector<Eigen::Vector2d> rest_m{robot_m};
+  passed_m = 0.0;
+  for (std::size_t i = 1; i < points_m.size(); ++i) {
+    passed_m += (points_m[i] - points_m[i - 1]).norm();
+    if (passed_m > at_m + ahead_m) rest_m.push_back(points_m[i]);
+  }
+  if (rest_m.size() == 1) rest_m.push_back(points_m.back());
+  return rest_m;
 }
 
 }  // namespace
@@ -42,8 +73,48 @@ std::vector<planning::PathSample> LocalPlanner::shape(
   return planning::smooth_path(space, points_m, config_.smooth);
 }
 
+std::vector<planning::PathSample> LocalPlanner::along_route(const RouteKeeper& route,
+                                                            const Eigen::Vector2d& robot_m) const {
+  constexpr double kJoin_m = 0.5;  // so far ahead it is back on a route that it is beside of
+  const std::vector<Eigen::Vector2d> points_m = rest_of(route.route().points_m, robot_m, kJoin_m);
+  if (config_.motion == MotionStyle::kPrimitives) return straight_path(points_m);
+  constexpr double kCorner_rad = 0.9;  // as in shape()
+  const auto rounded_m = rounded(points_m);
+  if (!stays_in(*route.space(), rounded_m)) return {};
+  return samples_of(rounded_m, kCorner_rad);
+}
+
 LocalPath LocalPlanner::plan(const RouteKeeper& route, const Eigen::Vector2d& robot_m,
-                             std::span<const Eigen::Vector2d> obstacles_m) const {
+                             std::span<const Eigen::Vector2d> obstacles_m,
+                             const std::optional<SeenScan>& scan) const {
+  LocalPath on_grid = plan_on_grid(route, robot_m, obstacles_m);
+  if (!on_grid.path.empty() || !scan) return on_grid;
+  LocalPath on_branches = plan_on_branches(*scan, route, robot_m, obstacles_m);
+  return on_branches.path.empty() ? on_grid : on_branches;
+}
+
+LocalPath LocalPlanner::plan_on_branches(const SeenScan& scan, const RouteKeeper& route,
+                                         const Eigen::Vector2d& robot_m,
+                                         std::span<const Eigen::Vector2d> obstacles_m) const {
+  LocalPath local;
+  const auto detour = detour_along_branches(scan, route.route().points_m, robot_m, obstacles_m,
+                                            *route.space(), config_);
+  if (!detour) return local;
+  local.path = straight_path(detour->points_m);
+  if (config_.motion == MotionStyle::kSmooth) {
+    constexpr double kCorner_rad = 0.9;  // as in shape()
+    const auto smooth = samples_of(rounded(detour->points_m), kCorner_rad);
+    if (!blocked(smooth, 0.0, robot_m, obstacles_m, kReach_m)) local.path = smooth;
+  }
+  if (blocked(local.path, 0.0, robot_m, obstacles_m, kReach_m)) return {};
+  local.status = planning::DetourStatus::kFound;
+  local.on_branches = true;
+  local.on_virtual = detour->is_virtual;
+  return local;
+}
+
+LocalPath LocalPlanner::plan_on_grid(const RouteKeeper& route, const Eigen::Vector2d& robot_m,
+                                     std::span<const Eigen::Vector2d> obstacles_m) const {
   LocalPath local;
   if ((route.goal_m() - robot_m).norm() < kNear_m) {
     const std::array<Eigen::Vector2d, 2> line = {robot_m, route.goal_m()};
@@ -51,7 +122,7 @@ LocalPath LocalPlanner::plan(const RouteKeeper& route, const Eigen::Vector2d& ro
     local.path = straight_path(line);
     return local;
   }
-  const planning::FreeSpace& space = route.map()->space();
+  const planning::FreeSpace& space = *route.space();
   const auto detour_round = [&](std::span<const Eigen::Vector2d> avoided_m) {
     return planning::plan_detour(space, route.cells(), robot_m, route.goal_m(), avoided_m,
                                  config_.detour);
@@ -64,6 +135,10 @@ LocalPath LocalPlanner::plan(const RouteKeeper& route, const Eigen::Vector2d& ro
   planning::Detour detour = detour_round(widened(obstacles_m, space.frame().resolution_m));
   if (!found(detour) && !obstacles_m.empty()) detour = detour_round(obstacles_m);
   local.status = detour.status;
+  if (detour.status == planning::DetourStatus::kClear && route.on_branches()) {
+    local.path = along_route(route, robot_m);
+    if (!local.path.empty()) return local;
+  }
   if (found(detour)) local.path = shape(space, detour.points_m, obstacles_m);
   return local;
 }

@@ -13,6 +13,7 @@
 #include "topogeo/planning/local_detour.hpp"
 #include "topogeo/planning/motion_primitives.hpp"
 
+#include "branch_detour.hpp"
 #include "route_keeper.hpp"
 
 namespace topogeo::navigation {
@@ -20,6 +21,8 @@ namespace topogeo::navigation {
 struct LocalPath {
   planning::DetourStatus status = planning::DetourStatus::kLost;
   std::vector<planning::PathSample> path;  ///< when clear or found
+  bool on_branches = false;                ///< found along branches of the scan
+  bool on_virtual = false;                 ///< along virtual ones
 };
 
 /// The place on a path where the robot would touch an obstacle.
@@ -32,10 +35,11 @@ class LocalPlanner {
  public:
   explicit LocalPlanner(const NavigatorConfig& config) : config_(config) {}
 
-  /// The path from the robot to the goal, round the obstacles (map frame). `route` has a map and a
-  /// route.
+  /// The path from the robot to the goal, round the obstacles (map frame): on the grid, and where
+  /// that has none along branches of the scan, if there is one. `route` has a floor and a route.
   [[nodiscard]] LocalPath plan(const RouteKeeper& route, const Eigen::Vector2d& robot_m,
-                               std::span<const Eigen::Vector2d> obstacles_m) const;
+                               std::span<const Eigen::Vector2d> obstacles_m,
+                               const std::optional<SeenScan>& scan = {}) const;
 
   /// The first place after `from_m` along a path where the body would come too near to one of the
   /// obstacles; nothing when there is none within `reach_m`. An obstacle that the robot is near to
@@ -46,6 +50,15 @@ class LocalPlanner {
                                                  double reach_m) const;
 
  private:
+  [[nodiscard]] LocalPath plan_on_grid(const RouteKeeper& route, const Eigen::Vector2d& robot_m,
+                                       std::span<const Eigen::Vector2d> obstacles_m) const;
+  /// Without a path where the branches lead nowhere, or too near to an obstacle.
+  [[nodiscard]] LocalPath plan_on_branches(const SeenScan& scan, const RouteKeeper& route,
+                                           const Eigen::Vector2d& robot_m,
+                                           std::span<const Eigen::Vector2d> obstacles_m) const;
+  /// Along a route on branches as it is; empty where there is no room.
+  [[nodiscard]] std::vector<planning::PathSample> along_route(const RouteKeeper& route,
+                                                              const Eigen::Vector2d& robot_m) const;
   [[nodiscard]] std::vector<planning::PathSample> shape(
       const planning::FreeSpace& space, std::span<const Eigen::Vector2d> points_m,
       std::span<const Eigen::Vector2d> obstacles_m) const;

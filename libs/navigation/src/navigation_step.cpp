@@ -30,7 +30,7 @@ NavigationStep::NavigationStep(const NavigatorConfig& settings)
 geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
   now_ns = std::max(now_ns, at_ns);
   locate();
-  surroundings.update(status.T_map_robot ? routes.map() : nullptr, poses.keeper(), now_ns);
+  surroundings.update(status.T_map_robot ? routes.space() : nullptr, poses.keeper(), now_ns);
   if (goal.arrived()) return stop(NavigatorState::kArrived, HaltReason::kNone, status.message);
   if (!goal.order()) {
     return goal.cancelled() ? stop(NavigatorState::kIdle, HaltReason::kCancelled, "cancelled")
@@ -40,11 +40,12 @@ geometry::Velocity NavigationStep::step(std::int64_t at_ns) {
   const HaltReason reason = halted(message);
   if (reason != HaltReason::kNone) return halt(reason, std::move(message));
   if (!status.T_map_robot) return relocalize();
-  if (routes.map() == nullptr) {
+  if (routes.map() == nullptr) take_route();
+  if (routes.space() == nullptr) {
     return stop(NavigatorState::kStopped, HaltReason::kNoMap, "no map has come yet");
   }
   const geometry::Pose2 pose = *status.T_map_robot;
-  if (!routes.map()->frame().cell_of(pose.position_m())) {
+  if (!routes.space()->frame().cell_of(pose.position_m())) {
     return stop(
         NavigatorState::kStopped, HaltReason::kOutsideMap,
         fmt::format("the robot is at {:.2f}, {:.2f}, which is not on the map", pose.x_m, pose.y_m));
@@ -122,6 +123,8 @@ void NavigationStep::take_route() {
       return;
     case RouteAnswer::kTaken:
       ++status.routes;
+      // Without a map what was seen belongs to the cells around the route before.
+      if (routes.map() == nullptr) surroundings.forget();
       wait.forget();
       base.release();
       driver.trust_route();
@@ -207,7 +210,10 @@ bool NavigationStep::find_path(const RouteDriver::Scene& scene) {
 }
 
 void NavigationStep::begin_path() {
-  status.detours += driver.take_detours();
+  const RouteDriver::Detours detours = driver.take_detours();
+  status.detours += detours.all;
+  status.branch_detours += detours.on_branches;
+  status.virtual_detours += detours.on_virtual;
   poses.set_path(driver.follower().path(), routes.route().nodes_m);
   routes.stop_waiting();
 }
@@ -226,7 +232,7 @@ void NavigationStep::describe_wait() {
     const auto& pose = status.T_map_robot;
     const Eigen::Vector2d robot_m = pose ? pose->position_m() : Eigen::Vector2d::Zero();
     surroundings.report(block ? block->obstacle_m : robot_m,
-                        block ? kAround_m : config.detour.half_side_m, routes.map()->frame(),
+                        block ? kAround_m : config.detour.half_side_m, routes.space()->frame(),
                         now_ns);
     wait.set_reported(now_ns);
   }

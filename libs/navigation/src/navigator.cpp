@@ -28,7 +28,7 @@ void Navigator::set_map(std::shared_ptr<const planning::HybridMap> map, std::uin
   if (!state.routes.has_route()) return;
   const PathFollower& follower = state.driver.follower();
   if (on_map && follower.has_path() &&
-      passable(now->space(), follower.path(), follower.progress_m())) {
+      passable(*state.routes.space(), follower.path(), follower.progress_m())) {
     return;
   }
   state.routes.drop(state.now_ns);

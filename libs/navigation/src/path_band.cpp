@@ -121,6 +121,16 @@ void relax(std::vector<Eigen::Vector2d>& path_m, const Field& field, double leas
 
 }  // namespace
 
+bool stays_in(const planning::FreeSpace& space, const std::vector<Eigen::Vector2d>& path_m) {
+  constexpr double kEnds_m = 0.4;
+  return std::ranges::all_of(path_m, [&](const Eigen::Vector2d& point_m) {
+    const auto cell = space.frame().cell_of(point_m);
+    const bool at_end =
+        (point_m - path_m.front()).norm() < kEnds_m || (point_m - path_m.back()).norm() < kEnds_m;
+    return cell && (at_end || space.passable(*cell));
+  });
+}
+
 std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> points_m,
                                   std::span<const Eigen::Vector2d> obstacles_m,
@@ -151,17 +161,22 @@ std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
   }
   relax(path_m, field, config.least_m);
   path_m = evenly(path_m);
-  constexpr double kEnds_m =
-      0.4;  // robot and goal may be in forbidden cells, and so the path there
-  for (const Eigen::Vector2d& point_m : path_m) {
-    const auto cell = space.frame().cell_of(point_m);
-    const bool at_end =
-        (point_m - path_m.front()).norm() < kEnds_m || (point_m - path_m.back()).norm() < kEnds_m;
-    if (!cell || (!at_end && !space.passable(*cell))) return {};
-  }
+  if (!stays_in(space, path_m)) return {};
   return path_m;
 }
 
+std::vector<Eigen::Vector2d> rounded(std::span<const Eigen::Vector2d> points_m) {
+  constexpr int kRounds = 8;  // corners are cut by about a step of the line
+  std::vector<Eigen::Vector2d> path_m = evenly(dense(points_m));
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Eigen::Vector2d> next_m = path_m;
+    for (std::size_t i = 1; i + 1 < path_m.size(); ++i) {
+      next_m[i] = 0.5 * path_m[i] + 0.25 * (path_m[i - 1] + path_m[i + 1]);
+    }
+    path_m = std::move(next_m);
+  }
+  return path_m;
+}
 std::vector<planning::PathSample> samples_of(std::span<const Eigen::Vector2d> points_m,
                                              double corner_rad) {
   std::vector<Eigen::Vector2d> kept_m;

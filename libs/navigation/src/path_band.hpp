@@ -25,6 +25,13 @@ std::vector<Eigen::Vector2d> band(const planning::FreeSpace& space,
                                   std::span<const Eigen::Vector2d> obstacles_m,
                                   const BandConfig& config);
 
+/// A line with its corners rounded, and otherwise where it was; of two points or more.
+std::vector<Eigen::Vector2d> rounded(std::span<const Eigen::Vector2d> points_m);
+
+/// Whether a line stays in passable cells. Its first and last 0.4 m need not: robot and goal may be
+/// in forbidden ones.
+bool stays_in(const planning::FreeSpace& space, const std::vector<Eigen::Vector2d>& path_m);
+
 /// Samples of a dense polyline with the curvature of the circle through three points each; corners
 /// sharper than `corner_rad` are turned on the spot.
 std::vector<planning::PathSample> samples_of(std::span<const Eigen::Vector2d> points_m,

@@ -46,8 +46,8 @@ bool RouteDriver::just_planned(std::int64_t now_ns) const {
 }
 
 bool RouteDriver::find_path(const Scene& scene) {
-  LocalPath local =
-      planner_.plan(scene.route, scene.T_map_robot.position_m(), scene.obstacles.standing_m());
+  LocalPath local = planner_.plan(scene.route, scene.T_map_robot.position_m(),
+                                  scene.obstacles.standing_m(), scene.obstacles.scan);
   planned_ns_ = scene.now_ns;
   cut_off_ = local.status == planning::DetourStatus::kLost;
   if (local.path.empty()) return false;
@@ -56,7 +56,9 @@ bool RouteDriver::find_path(const Scene& scene) {
       local.path.back().distance_m > follower_.rest_m() + kLong_m) {
     return false;
   }
-  if (local.status == planning::DetourStatus::kFound) ++detours_;
+  if (local.status == planning::DetourStatus::kFound) ++detours_.all;
+  if (local.on_branches) ++detours_.on_branches;
+  if (local.on_virtual) ++detours_.on_virtual;
   follower_.follow(std::move(local.path), scene.route.route().heading_rad);
   needs_path_ = false;
   doubts_route_ = false;
@@ -89,7 +91,7 @@ double RouteDriver::speed_past_obstacles(const Scene& scene, bool& another_path)
 }
 
 double RouteDriver::speed_in_zones(const Scene& scene) const {
-  const planning::FreeSpace& space = scene.route.map()->space();
+  const planning::FreeSpace& space = *scene.route.space();
   double most = config_.follower.speed_m_per_s;
   if (!space.rules().guides()) return most;
   const double brake = kObstacleBrake * config_.follower.acceleration_m_per_s2;

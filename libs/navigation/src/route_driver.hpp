@@ -67,8 +67,13 @@ class RouteDriver {
   /// another path.
   Step follow(const Scene& scene, bool held);
 
+  struct Detours {
+    std::uint32_t all = 0;
+    std::uint32_t on_branches = 0;  ///< of these along branches of a scan
+    std::uint32_t on_virtual = 0;   ///< of these along virtual ones
+  };
   /// Detours taken since the last call.
-  std::uint32_t take_detours() { return std::exchange(detours_, 0); }
+  Detours take_detours() { return std::exchange(detours_, {}); }
   /// What is in the way; nothing when nothing was in the last step along the path.
   [[nodiscard]] const std::optional<PathBlock>& block() const { return block_; }
   /// The same, for people.
@@ -88,7 +93,7 @@ class RouteDriver {
   bool cut_off_ = false;         ///< the last search for a path did not even begin
   std::int64_t planned_ns_ = 0;  ///< last search for a path
   std::optional<PathBlock> block_;
-  std::uint32_t detours_ = 0;
+  Detours detours_;
 };
 
 }  // namespace topogeo::navigation

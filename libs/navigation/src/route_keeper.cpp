@@ -6,6 +6,7 @@
 
 #include "elapsed.hpp"
 #include "path_distance.hpp"
+#include "route_floor.hpp"
 
 namespace topogeo::navigation {
 namespace {
@@ -34,7 +35,7 @@ std::vector<planning::Cell> cells_under(const planning::GridFrame& frame,
 bool RouteKeeper::set_map(std::shared_ptr<const planning::HybridMap> map, std::uint64_t version) {
   map_ = std::move(map);
   map_version_ = version;
-  if (!map_) {
+  if (!map_ && !on_branches()) {
     forget();
     return true;
   }
@@ -57,6 +58,7 @@ void RouteKeeper::cancel() {
 
 void RouteKeeper::forget() {
   cells_.clear();
+  floor_.reset();
   route_ = {};
 }
 
@@ -66,9 +68,13 @@ void RouteKeeper::drop(std::int64_t now_ns) {
 }
 
 bool RouteKeeper::take(const RoutePlan& route) {
-  std::vector<planning::Cell> cells = cells_under(map_->frame(), route.points_m);
+  std::shared_ptr<const planning::FreeSpace> floor;
+  if (navigation::on_branches(route)) floor = floor_of(route, map_ ? &map_->space() : nullptr);
+  const planning::GridFrame& frame = floor ? floor->frame() : map_->frame();
+  std::vector<planning::Cell> cells = cells_under(frame, route.points_m);
   if (cells.empty()) return false;
   route_ = route;
+  floor_ = std::move(floor);
   cells_ = std::move(cells);
   return true;
 }
@@ -87,13 +93,15 @@ bool RouteKeeper::fits(const RoutePlan& route) const {
 bool RouteKeeper::usable(const RoutePlan& route, std::uint64_t least_blockages_version) const {
   if (route.map_version > map_version_) return false;
   if (route.blockages_version < least_blockages_version) return false;
-  return route.map_version == map_version_ || (route.found && fits(route));
+  if (!map_) return route.found && navigation::on_branches(route);
+  if (route.map_version == map_version_) return true;
+  return route.found && (navigation::on_branches(route) || fits(route));
 }
 
 RouteAnswer RouteKeeper::take_offer(const Use& use) {
   constexpr double kSameGoal_m = 0.01;
   constexpr double kSamePath_m = 0.35;  // smoothing takes a path that far off its route
-  if (!offered_ || !map_ || !usable(*offered_, use.least_blockages_version)) {
+  if (!offered_ || !usable(*offered_, use.least_blockages_version)) {
     return RouteAnswer::kKept;
   }
   const RoutePlan route = *std::exchange(offered_, std::nullopt);

@@ -29,6 +29,14 @@ class RouteKeeper {
   /// has no point on the new map.
   bool set_map(std::shared_ptr<const planning::HybridMap> map, std::uint64_t version);
   [[nodiscard]] const planning::HybridMap* map() const { return map_.get(); }
+  /// The floor to drive on: that of the map, as the route in hand opens it (floor_of). Null while
+  /// there is neither a map nor a route along branches.
+  [[nodiscard]] const planning::FreeSpace* space() const {
+    if (floor_) return floor_.get();
+    return map_ ? &map_->space() : nullptr;
+  }
+  /// Whether the route in hand follows branches.
+  [[nodiscard]] bool on_branches() const { return floor_ != nullptr; }
 
   /// A new goal: forgets all routes and waits for one from now on.
   void expect(std::int64_t now_ns);
@@ -75,8 +83,9 @@ class RouteKeeper {
   std::optional<RoutePlan> offered_;  ///< the last one for the goal that was not taken yet
   std::string refused_;
   RoutePlan route_;
-  std::vector<planning::Cell> cells_;  ///< of the route, neighbours each
-  std::int64_t goal_ns_ = 0;           ///< when the goal was given
+  std::vector<planning::Cell> cells_;                 ///< of the route, neighbours each
+  std::shared_ptr<const planning::FreeSpace> floor_;  ///< of a route along branches
+  std::int64_t goal_ns_ = 0;                          ///< when the goal was given
   std::optional<std::int64_t> waits_ns_;
 };
 

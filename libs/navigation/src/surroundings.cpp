@@ -7,14 +7,15 @@ void Surroundings::add(const ScanPoints& scan) {
   if (scans_.size() < kMost) scans_.push_back(scan);
 }
 
-void Surroundings::update(const planning::HybridMap* map, const PoseKeeper& poses,
+void Surroundings::update(const planning::FreeSpace* space, const PoseKeeper& poses,
                           std::int64_t now_ns) {
   for (const ScanPoints& scan : scans_) {
-    if (map == nullptr) break;
+    if (space == nullptr) break;
     const auto T_map_robot = poses.T_map_robot(scan.stamp_ns);
     if (!T_map_robot) continue;
-    memory_.add(scan, *T_map_robot, map->space());
+    memory_.add(scan, *T_map_robot, *space);
     blockade_.see(scan, *T_map_robot);
+    if (scan.scan) newest_ = SeenScan{scan.scan, scan.T_robot_laser, *T_map_robot};
   }
   scans_.clear();
   blockade_.expire(now_ns);
@@ -23,6 +24,7 @@ void Surroundings::update(const planning::HybridMap* map, const PoseKeeper& pose
 void Surroundings::forget() {
   memory_.clear();
   contacts_.clear();
+  newest_.reset();
 }
 
 SeenObstacles Surroundings::seen(std::int64_t now_ns) const {
@@ -37,6 +39,7 @@ SeenObstacles Surroundings::seen(std::int64_t now_ns) const {
   for (const Obstacle& obstacle : obstacles) {
     if (!obstacle.stands) seen.points_m.push_back(obstacle.point_m);
   }
+  seen.scan = newest_;
   return seen;
 }
 

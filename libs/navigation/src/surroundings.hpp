@@ -4,15 +4,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "topogeo/navigation/navigator_inputs.hpp"
-#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/planning/free_space.hpp"
 
 #include "blockade.hpp"
+#include "branch_detour.hpp"
 #include "contact_memory.hpp"
 #include "obstacle_memory.hpp"
 #include "pose_keeper.hpp"
@@ -23,6 +25,7 @@ namespace topogeo::navigation {
 struct SeenObstacles {
   std::vector<Eigen::Vector2d> points_m;  ///< map frame
   std::size_t standing = 0;
+  std::optional<SeenScan> scan;  ///< the newest
 
   [[nodiscard]] std::span<const Eigen::Vector2d> standing_m() const {
     return std::span(points_m).first(standing);
@@ -40,9 +43,9 @@ class Surroundings {
     contacts_.add(contact_m, now_ns);
   }
 
-  /// Once in each step: what the scans since the last one show. `map` null: there is no map, or the
-  /// pose is not known.
-  void update(const planning::HybridMap* map, const PoseKeeper& poses, std::int64_t now_ns);
+  /// Once in each step: what the scans since the last one show. `space` null: there is no map, or
+  /// the pose is not known.
+  void update(const planning::FreeSpace* space, const PoseKeeper& poses, std::int64_t now_ns);
 
   /// Where something was seen means nothing any more: the pose was wrong, or the map is another.
   void forget();
@@ -62,6 +65,7 @@ class Surroundings {
   ContactMemory contacts_;
   Blockade blockade_;
   std::vector<ScanPoints> scans_;
+  std::optional<SeenScan> newest_;
 };
 
 }  // namespace topogeo::navigation

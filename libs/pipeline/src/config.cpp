@@ -11,6 +11,8 @@ namespace {
 void share_values(Config& c) {
   mount_laser(c, c.local_mapper.T_robot_laser);
   c.local_mapper.tracker.odometry = c.localizer.odometry;
+  c.navigator.voronoi = c.local_mapper.voronoi;
+  c.navigator.local_map = c.local_mapper.local_map;
   c.calibration.fallback = c.localizer.odometry;
   c.calibration.seed = c.localizer.seed;
 }
@@ -49,6 +51,7 @@ support::ConfigSchema describe(Config& config) {
   localization::describe(config.local_mapper.tracker, schema);
   localization::describe(config.localizer, schema);
   topomap::describe(config.global_map, schema);
+  planning::describe(config.planner, schema);
   planning::describe(config.planning, schema);
   planning::describe(config.hybrid_map.grid, schema);
   planning::describe(config.hybrid_map.inflation, schema);

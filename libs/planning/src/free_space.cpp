@@ -108,6 +108,14 @@ FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config,
   }
 }
 
+FreeSpace FreeSpace::opened(std::span<const Cell> freed, std::span<const Cell> entered) const {
+  OccupancyGrid grid = grid_;
+  for (const Cell& cell : freed) grid.set(cell, CellState::kFree);
+  FreeSpace space(std::move(grid), config_, rules_.zones());
+  for (const Cell& cell : entered) space.passable_[frame().index(cell)] = 1;
+  return space;
+}
+
 double FreeSpace::clearance_m(const Cell& cell) const {
   const std::int32_t squared = squared_[frame().index(cell)];
   if (squared == kNoObstacle) return std::numeric_limits<double>::infinity();

@@ -6,10 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "topogeo/planning/motion_primitives.hpp"
-#include "topogeo/planning/place_names.hpp"
-
 #include "closed_cells.hpp"
+#include "goal_target.hpp"
 #include "route_ends.hpp"
 #include "route_query.hpp"
 
@@ -40,52 +38,6 @@ std::vector<ZoneId> zones_along(const HybridMap& map, const std::vector<Cell>& c
   return zones;
 }
 
-struct Goal {
-  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
-  HybridRoute failure;
-  bool known = true;
-};
-
-std::string no_such_place(const HybridMap& map, const std::string& name) {
-  std::string reason = "no place has the name '" + name + "'";
-  if (map.places().empty()) return reason + ", the map has none";
-  constexpr std::size_t kMostNames = 5;
-  reason += map.places().size() > kMostNames ? "; similar are" : "; there are";
-  const char* before = " '";
-  for (const std::string& similar : similar_names(map.places(), name, kMostNames)) {
-    reason += before + similar + "'";
-    before = ", '";
-  }
-  return reason;
-}
-
-Goal resolve(const HybridMap& map, const Target& to) {
-  Goal goal;
-  if (const auto* point = std::get_if<Eigen::Vector2d>(&to)) {
-    goal.point_m = *point;
-  } else if (const auto* node = std::get_if<NodeNumber>(&to)) {
-    goal.known = node->id < map.nodes().size();
-    if (goal.known) {
-      // Its position is on the border; the cell on one side of it surely is passable.
-      goal.point_m = map.frame().center_m(map.nodes()[node->id].cells[0]);
-    } else {
-      goal.failure = no_route(RouteStatus::kUnknownNode,
-                              "no node has the number " + std::to_string(node->id) +
-                                  ", there are " + std::to_string(map.nodes().size()));
-    }
-  } else {
-    const std::string& name = std::get<std::string>(to);
-    const Place* place = find_place(map.places(), name);
-    goal.known = place != nullptr;
-    if (goal.known) {
-      goal.point_m = place->position_m;
-    } else {
-      goal.failure = no_route(RouteStatus::kUnknownPlace, no_such_place(map, name));
-    }
-  }
-  return goal;
-}
-
 }  // namespace
 
 std::string_view describe(RouteStatus status) {
@@ -96,6 +48,19 @@ std::string_view describe(RouteStatus status) {
   return index < kWords.size() ? kWords.at(index) : "unknown status";
 }
 
+double length_on(const HybridRoute& route, PlannedOn on) {
+  double sum_m = 0.0;
+  for (std::size_t k = 0; k < route.parts.size(); ++k) {
+    if (route.parts[k].on != on) continue;
+    const std::size_t end =
+        k + 1 < route.parts.size() ? route.parts[k + 1].first_point : route.points_m.size() - 1;
+    for (std::size_t i = route.parts[k].first_point; i < end; ++i) {
+      sum_m += (route.points_m[i + 1] - route.points_m[i]).norm();
+    }
+  }
+  return sum_m;
+}
+
 HybridPlanner::HybridPlanner(const HybridMap& map, const HybridPlannerConfig& config)
     : map_(map), config_(config) {
   check(config);
@@ -104,7 +69,7 @@ HybridPlanner::HybridPlanner(const HybridMap& map, const HybridPlannerConfig& co
 HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
                                 const Closures& closed) const {
   check_closures(map_, closed);
-  const Goal goal = resolve(map_, to);
+  const GoalTarget goal = resolve(&map_, to);
   if (!goal.known) return goal.failure;
   if (!from_m.allFinite() || !goal.point_m.allFinite()) {
     return no_route(RouteStatus::kInvalidPoint, "start or goal is not finite");
@@ -132,6 +97,7 @@ HybridRoute HybridPlanner::plan(const Eigen::Vector2d& from_m, const Target& to,
       route.zones = zones_along(map_, route.cells);
       route.points_m = query.straightened(route.cells, from_m, goal.point_m);
       measure(cells, map_.frame(), route);
+      route.parts = {{PlannedOn::kGrid, 0, 0}};
       return route;
     }
     route = no_route(RouteStatus::kUnreachable,
@@ -170,6 +136,7 @@ HybridRoute plan_on_grid(const FreeSpace& space, const Eigen::Vector2d& from_m,
   route.cells = std::move(path->cells);
   route.points_m = straighten(space, route.cells, from_m, to_m);
   measure(nothing, space.frame(), route);
+  route.parts = {{PlannedOn::kGrid, 0, 0}};
   return route;
 }
 

@@ -1,6 +1,8 @@
 #include "topogeo/planning/occupancy_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/support/check_range.hpp"
@@ -47,6 +49,24 @@ void check(const GridFrame& frame) {
   check_range("grid: origin x", origin.x_m, -kMaxCoordinate_m, kMaxCoordinate_m, "m");
   check_range("grid: origin y", origin.y_m, -kMaxCoordinate_m, kMaxCoordinate_m, "m");
   check_range("grid: origin yaw", origin.theta_rad, -kMaxYaw_rad, kMaxYaw_rad, "rad");
+}
+
+GridFrame frame_around(std::span<const Eigen::Vector2d> points_m, double margin_m) {
+  constexpr double kCell_m = 0.1;
+  constexpr double kMostAlong = 2000.0;
+  Eigen::Vector2d low_m = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high_m = -low_m;
+  for (const Eigen::Vector2d& point_m : points_m) {
+    low_m = low_m.cwiseMin(point_m);
+    high_m = high_m.cwiseMax(point_m);
+  }
+  const Eigen::Vector2d side_m = high_m - low_m + Eigen::Vector2d::Constant(2.0 * margin_m);
+  GridFrame frame;
+  frame.resolution_m = std::clamp(side_m.maxCoeff() / kMostAlong, kCell_m, kMaxResolution_m);
+  frame.columns = static_cast<std::int32_t>(side_m.x() / frame.resolution_m) + 1;
+  frame.rows = static_cast<std::int32_t>(side_m.y() / frame.resolution_m) + 1;
+  frame.T_map_grid = {low_m.x() - margin_m, low_m.y() - margin_m, 0.0};
+  return frame;
 }
 
 OccupancyGrid::OccupancyGrid(const GridFrame& frame, CellState fill) : frame_(frame) {

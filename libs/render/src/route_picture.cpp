@@ -50,7 +50,7 @@ class RouteDrawing {
   }
 
   void draw(cairo_t* cr, const planning::HybridRoute& route, const std::string& title,
-            std::span<const Cell> filled) const {
+            std::span<const Cell> filled, const topomap::GlobalMap* graph) const {
     start_page(cr);
     set_colour(cr, kInk);
     draw_text(cr, title, kRouteMargin_px, kRouteHeader_px - 14.0, 16.0);
@@ -59,6 +59,7 @@ class RouteDrawing {
     for (const Cell& cell : filled) {
       if (map_.frame().contains(cell)) draw_run(cr, cell, 1);
     }
+    if (graph != nullptr) draw_branches(cr, *graph);
     for (const planning::BorderNode& node : map_.nodes()) {
       circle(cr, to_px(node.position_m), 2.5);
       fill_and_edge(cr, kDoor, kWhite, 0.5);
@@ -112,12 +113,50 @@ class RouteDrawing {
     cairo_restore(cr);
   }
 
+  static void set_dash(cairo_t* cr, planning::PlannedOn on) {
+    constexpr std::array<double, 2> kDashes{8.0, 5.0};
+    constexpr std::array<double, 2> kDots{2.0, 4.0};
+    if (on == planning::PlannedOn::kVirtualBranch) {
+      cairo_set_dash(cr, kDashes.data(), 2, 0.0);
+    } else if (on == planning::PlannedOn::kOffBranch) {
+      cairo_set_dash(cr, kDots.data(), 2, 0.0);
+    } else {
+      cairo_set_dash(cr, nullptr, 0, 0.0);
+    }
+  }
+
+  void draw_points(cairo_t* cr, const planning::HybridRoute& route, std::size_t first,
+                   std::size_t last) const {
+    move_to(cr, to_px(route.points_m[first]));
+    for (std::size_t i = first; i <= last; ++i) line_to(cr, to_px(route.points_m[i]));
+    cairo_stroke(cr);
+  }
+
+  void draw_branches(cairo_t* cr, const topomap::GlobalMap& graph) const {
+    set_colour(cr, kBranch);
+    cairo_set_line_width(cr, 1.0);
+    for (const topomap::MapBranch& branch : graph.branches) {
+      if (branch.points.empty()) continue;
+      set_dash(cr, branch.is_virtual ? planning::PlannedOn::kVirtualBranch
+                                     : planning::PlannedOn::kBranch);
+      move_to(cr, to_px(branch.points.front().position_m));
+      for (const topomap::BranchPoint& p : branch.points) line_to(cr, to_px(p.position_m));
+      cairo_stroke(cr);
+    }
+    cairo_set_dash(cr, nullptr, 0, 0.0);
+  }
+
   void draw_route(cairo_t* cr, const planning::HybridRoute& route) const {
     set_colour(cr, kCorrected);
     cairo_set_line_width(cr, 2.5);
-    move_to(cr, to_px(route.points_m.front()));
-    for (const Eigen::Vector2d& point_m : route.points_m) line_to(cr, to_px(point_m));
-    cairo_stroke(cr);
+    if (route.parts.empty()) draw_points(cr, route, 0, route.points_m.size() - 1);
+    for (std::size_t k = 0; k < route.parts.size(); ++k) {
+      const std::size_t end =
+          k + 1 < route.parts.size() ? route.parts[k + 1].first_point : route.points_m.size() - 1;
+      set_dash(cr, route.parts[k].on);
+      draw_points(cr, route, route.parts[k].first_point, end);
+    }
+    cairo_set_dash(cr, nullptr, 0, 0.0);
     circle(cr, to_px(route.points_m.front()), 6.0);
     fill_and_edge(cr, kWhite, kCorrected, 2.0);
     circle(cr, to_px(route.points_m.back()), 6.0);
@@ -132,11 +171,12 @@ class RouteDrawing {
 
 std::string route_picture(const HybridMap& map, const planning::HybridRoute& route,
                           const std::string& title, PictureFormat format,
-                          const PictureOptions& options, std::span<const Cell> filled) {
+                          const PictureOptions& options, std::span<const Cell> filled,
+                          const topomap::GlobalMap* graph) {
   check(options);
   const RouteDrawing drawing(map, options.max_width_px);
   return draw_page(format, options.max_width_px, drawing.height_px(),
-                   [&](cairo_t* cr) { drawing.draw(cr, route, title, filled); });
+                   [&](cairo_t* cr) { drawing.draw(cr, route, title, filled, graph); });
 }
 
 }  // namespace topogeo::render

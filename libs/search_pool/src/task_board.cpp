@@ -206,6 +206,7 @@ Reception TaskBoard::answer(const std::string& worker_id, MatchResult result, Bo
   Worker* worker = workers_.find(worker_id);
   if (worker != nullptr) {
     worker->last_life = now;
+    worker->forgotten = 0;
     if (const auto sent = WorkerLoads::take(*worker, task_id)) {
       workers_.note_answer_time(now - *sent);
     }
@@ -292,6 +293,7 @@ void TaskBoard::refuse(const std::string& worker_id, std::uint64_t task_id, Refu
   Worker* worker = workers_.find(worker_id);
   if (worker == nullptr || !WorkerLoads::take(*worker, task_id)) return;
   worker->last_life = now;
+  worker->forgotten = 0;
   take_from(worker_id, *worker, task_id);
   switch (refusal) {
     case Refusal::kMapMissing:
@@ -326,9 +328,9 @@ void TaskBoard::take_all_from(const std::string& worker_id, Worker& worker) {
 
 void TaskBoard::forget_lost(BoardTime now) {
   for (auto& [id, worker] : workers_.all()) {
-    while (workers_.has_forgotten(worker, now)) {
-      take_from(id, worker, worker.in_hand.front().task_id);
-    }
+    if (!workers_.has_forgotten(worker, now)) continue;
+    ++worker.forgotten;
+    while (!worker.in_hand.empty()) take_from(id, worker, worker.in_hand.front().task_id);
   }
 }
 

@@ -9,6 +9,9 @@ namespace topogeo::search_pool {
 
 namespace {
 
+/// Whose newest maps are remembered. To forget one costs a wait.
+constexpr std::size_t kMostRobots = 256;
+
 bool is_complete(const ReadyJob& job) {
   if (!job.job.task.places) return job.reference && job.query;
   return std::ranges::find(job.pieces, nullptr) == job.pieces.end();
@@ -62,11 +65,29 @@ std::optional<ReadyJob> TaskIntake::add(MatchJob job, Time now) {
     ready.query = maps_.find(task.query_hash);
   }
   if (is_complete(ready)) return ready;
-  for_each_lack(ready, [&](const Lack& lack, std::uint32_t /*map_id*/) {
-    requested_.try_emplace(lack, now + options_.first_request);
+  const std::uint32_t newest = std::max(task.reference_map_id, task.query_map_id);
+  for_each_lack(ready, [&](const Lack& lack, std::uint32_t map_id) {
+    const bool may_come = !task.places && map_id == newest && !is_past(ready.job);
+    const Time due = may_come ? now + options_.first_request : now;
+    Asking& asking = requested_.try_emplace(lack, Asking{due, false}).first->second;
+    if (!asking.asked) asking.next = std::min(asking.next, due);
   });
   waiting_.push_back({std::move(ready), now + options_.patience});
   return {};
+}
+
+void TaskIntake::published(const std::string& robot_id, std::int64_t stamp_ns) {
+  if (published_ns_.size() >= kMostRobots && !published_ns_.contains(robot_id)) {
+    published_ns_.clear();
+  }
+  std::int64_t& newest_ns = published_ns_.try_emplace(robot_id, stamp_ns).first->second;
+  newest_ns = std::max(newest_ns, stamp_ns);
+}
+
+// A localizer that follows a stored map numbers what was published anew, which changes its content.
+bool TaskIntake::is_past(const MatchJob& job) const {
+  const auto newest = published_ns_.find(job.robot_id);
+  return newest != published_ns_.end() && newest->second >= job.stamp_ns;
 }
 
 std::vector<ReadyJob> TaskIntake::add_map(MapPointer map) {
@@ -107,9 +128,9 @@ TaskIntake::Due TaskIntake::check(Time now) {
   if (!due.given_up.empty()) forget_requests();
   for (const Waiting& waiting : waiting_) {
     for_each_lack(waiting.job, [&](const Lack& lack, std::uint32_t map_id) {
-      Time& next = requested_.at(lack);
-      if (next > now) return;
-      next = now + options_.request_period;
+      Asking& asking = requested_.at(lack);
+      if (asking.next > now) return;
+      asking = {now + options_.request_period, true};
       due.requests.push_back(
           {lack.first, waiting.job.job.robot_id, waiting.job.job.stamp_ns, map_id, lack.second});
     });
@@ -120,7 +141,7 @@ TaskIntake::Due TaskIntake::check(Time now) {
 std::optional<TaskIntake::Time> TaskIntake::next_check() const {
   if (waiting_.empty()) return {};
   Time next = waiting_.front().until;
-  for (const auto& [lack, time] : requested_) next = std::min(next, time);
+  for (const auto& [lack, asking] : requested_) next = std::min(next, asking.next);
   return next;
 }
 

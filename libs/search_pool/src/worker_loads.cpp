@@ -104,8 +104,12 @@ std::optional<BoardTime> WorkerLoads::next_straggler(BoardTime now) const {
 }
 
 bool WorkerLoads::has_forgotten(const Worker& worker, BoardTime now) const {
+  BoardTime after = options_.forget_after;
+  for (std::uint32_t n = 0; n < worker.forgotten && after < options_.longest_forget_after; ++n) {
+    after = std::min(2 * after, options_.longest_forget_after);
+  }
   return !worker.in_hand.empty() &&
-         now - worker.in_hand.front().sent >= std::max(options_.forget_after, 2 * straggler_time_);
+         now - worker.in_hand.front().sent >= std::max(after, 2 * straggler_time_);
 }
 
 }  // namespace topogeo::search_pool

@@ -60,9 +60,7 @@ void check_document(const MapDocument& document) {
   for (std::size_t i = 0; i < map_count; ++i) {
     const topomap::LocalMap& map = document.local_maps[i];
     if (map.id != i) fail("local map {} stands at place {}", map.id, i);
-    if (map.robot_id != document.robot_id) {
-      fail("local map {} is of robot '{}', expected '{}'", i, map.robot_id, document.robot_id);
-    }
+    if (map.robot_id.empty()) fail("local map {} is of no robot", i);
   }
   const auto& stops = document.trajectory.stops;
   if (stops.size() > map_count) {

@@ -304,4 +304,15 @@ std::string deterministic_bytes(const google::protobuf::MessageLite& message) {
   return bytes;
 }
 
+void to_proto(const RefusedMerge& refused, proto::RefusedMerge* out) {
+  out->set_session(refused.stop.session);
+  out->set_number(refused.stop.number);
+  out->set_other_session(refused.other.session);
+  out->set_other_number(refused.other.number);
+}
+
+RefusedMerge from_proto(const proto::RefusedMerge& in) {
+  return {{in.session(), in.number()}, {in.other_session(), in.other_number()}};
+}
+
 }  // namespace topogeo::storage

@@ -28,11 +28,13 @@ void to_proto(const planning::DrawnZone& zone, proto::DrawnZone* out);
 void to_proto(const planning::OccupancyGrid& grid, proto::DrawnGrid* out);
 /// What is drawn must have passed check(MapDrawing).
 void to_proto(const MapDrawing& drawing, proto::Drawing* out);
+void to_proto(const RefusedMerge& refused, proto::RefusedMerge* out);
 
 topomap::LocalMap from_proto(const proto::LocalMap& in);
 topomap::StopPose from_proto(const proto::StopPose& in);
 topomap::LoopClosure from_proto(const proto::LoopClosure& in);
 MapEdge from_proto(const proto::MapEdge& in);
+RefusedMerge from_proto(const proto::RefusedMerge& in);
 topomap::MapNode from_proto(const proto::MapNode& in);
 topomap::MapBranch from_proto(const proto::MapBranch& in);
 geometry::Pose2 from_proto(const proto::Pose2& in, const char* what);

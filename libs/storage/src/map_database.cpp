@@ -148,10 +148,10 @@ std::vector<topomap::StopId> MapDatabase::put_stops(std::span<const topomap::Loc
 
 std::vector<topomap::StopId> MapDatabase::write_stops(std::span<const topomap::LocalMap> stops) {
   for (const topomap::LocalMap& map : stops) {
-    if (map.robot_id == robot_id_ && map.stop.session != 0) continue;
+    if (!map.robot_id.empty() && map.stop.session != 0) continue;
     throw std::invalid_argument(
-        fmt::format("{}: stop {} of session {:016x} of robot '{}', expected a session of '{}'",
-                    name_, map.stop.number, map.stop.session, map.robot_id, robot_id_));
+        fmt::format("{}: stop {} of session {:016x} of robot '{}', expected a session of a robot",
+                    name_, map.stop.number, map.stop.session, map.robot_id));
   }
   std::vector<topomap::StopId> different = stops_->put(stops, false);
   if (map_id_ == 0 && !stops.empty()) write_map_id(map_id_of(stops.front().stop.session));
@@ -215,6 +215,10 @@ void MapDatabase::put_drawing(const MapDrawing& drawing) {
   change([&] { tables_->write_drawing(drawing); });
 }
 
+void MapDatabase::put_refused_merges(std::span<const RefusedMerge> refused) {
+  change([&] { tables_->write_refused_merges(refused); });
+}
+
 void MapDatabase::put_document(const MapDocument& document) {
   require_valid(name_, "map to be stored: ", [&] { check_document(document); });
   change([&] { write_document(identified(document)); });
@@ -239,6 +243,7 @@ void MapDatabase::write_document(const MapDocument& document) {
   tables_->write_edges(document.edges, stops_->joined());
   tables_->write_global_map(document.global_map);
   tables_->write_drawing(document.drawing);
+  if (!document.refused_merges.empty()) tables_->write_refused_merges(document.refused_merges);
 }
 
 MapDocument MapDatabase::load() const try {

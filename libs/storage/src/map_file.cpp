@@ -83,6 +83,9 @@ MapDocument document_from_proto(const proto::MapFile& in) {
   if (in.has_drawing()) document.drawing = from_proto(in.drawing());
   document.map_id = in.map_id();
   for (const auto& edge : in.edges()) document.edges.push_back(from_proto(edge));
+  for (const auto& refused : in.refused_merges()) {
+    document.refused_merges.push_back(from_proto(refused));
+  }
   check_document(document);
   name_stops(document);
   return document;

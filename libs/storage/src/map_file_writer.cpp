@@ -49,6 +49,9 @@ void MapFileWriter::finish(const MapDocument& rest) {
   if (!rest.drawing.empty()) to_proto(rest.drawing, fields.mutable_drawing());
   fields.set_map_id(rest.map_id);
   for (const MapEdge& edge : rest.edges) to_proto(edge, fields.add_edges());
+  for (const RefusedMerge& refused : rest.refused_merges) {
+    to_proto(refused, fields.add_refused_merges());
+  }
   write(fields);
   // The checksum has the largest number, so it comes last. It is written by hand because Protobuf
   // would leave out a checksum of zero.

@@ -1,6 +1,7 @@
 #include "map_tables.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -151,6 +152,31 @@ void MapTables::load(MapDocument& document) const {
   std::vector<planning::OccupancyGrid> grids;
   read_table<proto::DrawnGrid>(database_, file_, "drawn_grid", grids);
   if (!grids.empty()) document.drawing.grid = std::move(grids.front());
+  document.refused_merges = refused_merges();
+}
+
+// Few and short: a value of their own, so that programs of before read the file as well.
+void MapTables::write_refused_merges(std::span<const RefusedMerge> refused) {
+  std::string text;
+  for (const RefusedMerge& merge : refused) {
+    text += fmt::format("{:016x} {} {:016x} {}\n", merge.stop.session, merge.stop.number,
+                        merge.other.session, merge.other.number);
+  }
+  write_meta(database_, "refused_merges", text);
+}
+
+std::vector<RefusedMerge> MapTables::refused_merges() const {
+  std::istringstream text(read_meta_or_empty(database_, "refused_merges"));
+  std::vector<RefusedMerge> out;
+  RefusedMerge merge;
+  while (text >> std::hex >> merge.stop.session >> std::dec >> merge.stop.number >> std::hex >>
+         merge.other.session >> std::dec >> merge.other.number) {
+    out.push_back(merge);
+  }
+  if (!text.eof()) {
+    throw std::runtime_error(file_ + ": damaged (refused_merges is no list of pairs of stops)");
+  }
+  return out;
 }
 
 void MapTables::read_hashes(const char* table, BlobHashes& hashes) {

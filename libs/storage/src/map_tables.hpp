@@ -32,6 +32,7 @@ class MapTables {
   void write_edges(const std::vector<MapEdge>& edges, std::uint32_t stops);
   void write_global_map(const topomap::GlobalMap& map);
   void write_drawing(const MapDrawing& drawing);
+  void write_refused_merges(std::span<const RefusedMerge> refused);
 
   /// All of a map but its local maps, not checked as a whole.
   void load(MapDocument& document) const;
@@ -40,6 +41,7 @@ class MapTables {
   [[nodiscard]] std::uint64_t numbered_since() const { return numbered_since_; }
 
  private:
+  [[nodiscard]] std::vector<RefusedMerge> refused_merges() const;
   void read_hashes(const char* table, BlobHashes& hashes);
 
   SQLite::Database& database_;

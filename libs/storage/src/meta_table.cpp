@@ -45,4 +45,10 @@ std::uint64_t read_meta_number_or(SQLite::Database& database, const std::string&
   return statement.executeStep() ? read_meta_number(database, key) : otherwise;
 }
 
+std::string read_meta_or_empty(SQLite::Database& database, const std::string& key) {
+  SQLite::Statement statement(database, "SELECT value FROM meta WHERE key = ?");
+  statement.bind(1, key);
+  return statement.executeStep() ? text_at(statement, 0) : std::string();
+}
+
 }  // namespace topogeo::storage

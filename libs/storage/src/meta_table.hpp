@@ -17,7 +17,10 @@ std::string read_meta(SQLite::Database& database, const std::string& key);
 /// The same, also when it is no number.
 std::uint64_t read_meta_number(SQLite::Database& database, const std::string& key);
 
-/// The same, but `otherwise` when there is none.
+/// The value of the key; empty when there is none.
+std::string read_meta_or_empty(SQLite::Database& database, const std::string& key);
+
+/// As read_meta_number(), but `otherwise` when there is none.
 std::uint64_t read_meta_number_or(SQLite::Database& database, const std::string& key,
                                   std::uint64_t otherwise);
 

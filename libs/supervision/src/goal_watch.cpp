@@ -9,6 +9,8 @@ using navigation::NavigatorStatus;
 
 /// A navigator publishes its status five times a second, so that fifty are missing by then.
 constexpr double kSilent_s = 10.0;
+/// One that starts again has no goal until it has heard of the last one. Beyond, it was cancelled.
+constexpr double kStartsAgain_s = 5.0;
 
 std::string text_of(const NavigatorStatus& status) {
   return status.message.empty() ? "the navigator gave no reason" : status.message;
@@ -23,11 +25,14 @@ void GoalWatch::add(const RouteAnswer& answer) {
 void GoalWatch::add(const NavigatorStatus& status, double now_s) {
   alive_s_ = now_s;
   if (status.goal_id != goal_id_) {
-    replaced_ = taken_;
+    if (!taken_) return;
+    if (!without_s_) without_s_ = now_s;
+    replaced_ = status.goal_id != 0 || now_s - *without_s_ > kStartsAgain_s;
     return;
   }
   taken_ = true;
   replaced_ = false;
+  without_s_.reset();
   if (status.state == NavigatorState::kDriving || status.reason == HaltReason::kPaused) {
     driven_s_ = now_s;
   }

@@ -35,6 +35,7 @@ navigation::ScanPoints to_scan_points(const scan::Scan& scan,
   out.stamp_ns = scan.stamp_ns;
   out.T_odom_robot = scan.T_odom_robot;
   out.T_robot_laser = T_robot_laser;
+  out.scan = std::make_shared<const scan::Scan>(scan);
   out.points_m.reserve(scan.ranges_m.size());
   for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
     if (scan.ranges_m[i] <= scan::Scan::kNoReturn) continue;
@@ -83,6 +84,8 @@ msg::NavigatorStatus to_msg(const navigation::NavigatorStatus& status, std::stri
   out.free_ahead_m(status.free_ahead_m);
   out.detours(status.detours);
   out.routes(status.routes);
+  out.branch_detours(status.branch_detours);
+  out.virtual_detours(status.virtual_detours);
   out.guard_stops(status.guard_stops);
   return out;
 }
@@ -104,6 +107,8 @@ navigation::NavigatorStatus from_msg(const msg::NavigatorStatus& message) {
   out.free_ahead_m = finite(message.free_ahead_m(), "free_ahead_m");
   out.detours = message.detours();
   out.routes = message.routes();
+  out.branch_detours = message.branch_detours();
+  out.virtual_detours = message.virtual_detours();
   out.guard_stops = message.guard_stops();
   return out;
 }

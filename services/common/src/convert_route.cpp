@@ -76,6 +76,7 @@ msg::Route to_msg(const planning::HybridRoute& route, double start_heading_rad,
   check_bound("zones", route.zones.size(), msg::kMaxRouteNodes);
   check_bound("node_ids", route.nodes.size(), msg::kMaxRouteNodes);
   check_bound("points", route.points_m.size(), msg::kMaxRoutePoints);
+  check_bound("parts", route.parts.size(), msg::kMaxRouteNodes);
   out.length_m(route.length_m);
   out.cost_m(route.cost_m);
   out.min_clearance_m(route.min_clearance_m);
@@ -83,6 +84,12 @@ msg::Route to_msg(const planning::HybridRoute& route, double start_heading_rad,
   out.node_ids(route.nodes);
   for (std::size_t i = 0; i < route.points_m.size(); ++i) {
     out.points().push_back(detail::to_branch_point(route.points_m[i], route.clearances_m.at(i)));
+  }
+  for (const planning::RoutePart& part : route.parts) {
+    msg::RoutePart& entry = out.parts().emplace_back();
+    entry.on(static_cast<msg::PlannedOn>(part.on));  // same values, see planning.idl
+    entry.branch_id(part.branch_id);
+    entry.first_point(static_cast<std::uint32_t>(part.first_point));
   }
   const auto primitives =
       planning::motion_primitives(route.points_m, start_heading_rad, final_heading_rad);
@@ -93,6 +100,19 @@ msg::Route to_msg(const planning::HybridRoute& route, double start_heading_rad,
     entry.amount(primitive.amount);
   }
   return out;
+}
+
+std::vector<planning::RoutePart> route_parts_from_msg(const msg::Route& message) {
+  std::vector<planning::RoutePart> parts;
+  for (const msg::RoutePart& part : message.parts()) {
+    check(part.on() <= msg::kPlannedOffBranch, "parts.on", "0 to 3");
+    const bool ascends = parts.empty() || part.first_point() >= parts.back().first_point;
+    check(ascends && part.first_point() < message.points().size(), "parts.first_point",
+          "ascending numbers of points");
+    parts.push_back(
+        {static_cast<planning::PlannedOn>(part.on()), part.branch_id(), part.first_point()});
+  }
+  return parts;
 }
 
 navigation::RoutePlan route_plan_from_msg(const msg::Route& message,
@@ -109,7 +129,10 @@ navigation::RoutePlan route_plan_from_msg(const msg::Route& message,
   check(!message.points().empty(), "points", "at least 1 point");
   for (const msg::BranchPoint& point : message.points()) {
     plan.points_m.emplace_back(finite(point.x_m(), "points"), finite(point.y_m(), "points"));
+    check(point.clearance_m() >= 0.0, "points.clearance_m", "a number from 0");
+    plan.clearances_m.push_back(point.clearance_m());
   }
+  plan.parts = route_parts_from_msg(message);
   for (const std::uint32_t node : message.node_ids()) {
     if (map == nullptr || node >= map->nodes().size()) continue;
     plan.nodes_m.push_back(map->nodes()[node].position_m);

@@ -47,6 +47,7 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     // local mapper
     {"scans", "topogeo_scans_total", kTotal, "scans worked on"},
     {"local_maps", "topogeo_local_maps", kGauge, "local maps made, taken in or held"},
+    {"local_maps_kept", "topogeo_local_maps_kept", kGauge, "local maps kept for late readers"},
     {"tracked_scans", "topogeo_tracked_scans_total", kTotal, "scans between stops"},
     {"matched_scans", "topogeo_matched_scans_total", kTotal,
      "scans between stops whose pose is that of a match"},
@@ -144,6 +145,8 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     // planner and navigator
     {"goals", "topogeo_goals_total", kTotal, "goals taken"},
     {"routes_found", "topogeo_routes_total", kTotal, "answers to goals", "result=found"},
+    {"routes_on_branches", "topogeo_routes_on_branches_total", kTotal,
+     "routes found along branches of the topo-geometric map"},
     {"routes_refused", "topogeo_routes_total", kTotal, "answers to goals", "result=refused"},
     {"routes", "topogeo_routes_taken_total", kTotal, "routes that were followed"},
     {"arrivals", "topogeo_arrivals_total", kTotal, "goals that were reached"},

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <exception>
 
+#include "topogeo/messaging/revocations.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/process_resources.hpp"
@@ -51,6 +52,10 @@ Service::~Service() {
   status_->set_counter("cpu_s", support::process_cpu_s());
 }
 
+bool Service::shares_map(const std::string& robot) const {
+  return std::ranges::find(setup_.options.other_robots, robot) != setup_.options.other_robots.end();
+}
+
 void Service::run() {
   try {
     loop_.run();
@@ -68,6 +73,10 @@ void Service::tick() {
   manager_.show(status_->text());
   for (const std::string& refusal : participant_.take_refusals()) {
     status_->fault("peer refused", refusal);
+  }
+  if (messaging::take_new_revocations(participant_)) {
+    status_->fault("new revocations",
+                   "restart: what they revoke is refused from the next start on");
   }
 }
 

@@ -1,7 +1,12 @@
 #include "topogeo/service/service_options.hpp"
 
+#include <charconv>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <set>
+#include <string_view>
+#include <utility>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
@@ -15,12 +20,33 @@ namespace {
 constexpr std::uint32_t kLargestDomain = 232;  // of DDS over UDP, whose ports follow from it
 constexpr std::size_t kLongestRobotId = 32;    // idl
 
+std::string_view environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// Containers are set by their environment; an empty variable says nothing.
+void take_environment(pipeline::MetricsConfig& metrics) {
+  constexpr std::uint32_t kLargestFirstPort = 65000;  // as of `metrics.port`
+  if (const std::string_view text = environment("TOPOGEO_METRICS_PORT"); !text.empty()) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metrics.port);
+    if (error != std::errc() || end != text.data() + text.size() ||
+        metrics.port > kLargestFirstPort) {
+      throw UsageError("TOPOGEO_METRICS_PORT: expected a port from 0 to 65000, got '" +
+                       std::string(text) + "'");
+    }
+  }
+  const std::string_view address = environment("TOPOGEO_METRICS_ADDRESS");
+  if (!address.empty()) metrics.address = address;
+}
+
 /// The fingerprint stays that of the file: search workers elsewhere have just that.
 pipeline::LoadedConfig load(const ServiceOptions& options) {
   try {
     pipeline::LoadedConfig loaded = pipeline::load_config(options.config);
     if (options.laser)
       pipeline::mount_laser(loaded.config, pipeline::parse_mounting(*options.laser));
+    take_environment(loaded.config.metrics);
     return loaded;
   } catch (const std::exception& error) {
     throw UsageError(error.what());
@@ -49,7 +75,8 @@ void add_service_options(command_line::Command& app, ServiceOptions& options) {
   constexpr std::uint32_t kLargestPort = 65535;
   app.add_option("--metrics-port", options.metrics_port,
                  "gives its figures to Prometheus at this HTTP port, 0: any that is free; default: "
-                 "what `metrics.port` of the configuration says, else none")
+                 "what TOPOGEO_METRICS_PORT of the environment or `metrics.port` of the "
+                 "configuration says, else none")
       ->check(command_line::range(0U, kLargestPort))
       ->type_name("PORT");
   app.add_option("--metrics-address", options.metrics_address,
@@ -60,6 +87,39 @@ void add_service_options(command_line::Command& app, ServiceOptions& options) {
                  "least severe messages that are logged to stderr")
       ->check(command_line::one_of({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
+}
+
+void add_robots_option(command_line::Command& app, std::vector<std::string>& robots) {
+  app.add_option("--with-robots", robots,
+                 "other robots that map the same floor into the same map, separated by commas; the "
+                 "map is that of --robot")
+      ->delimiter(',')
+      ->type_name("ROBOT,...");
+}
+
+void add_map_option(command_line::Command& app, std::string& robot) {
+  app.add_option("--map-of", robot,
+                 "robot whose map is used, where several robots share one; default: --robot")
+      ->type_name("ROBOT");
+}
+
+Setup with_map_of(Setup setup, std::string robot) {
+  setup.options.map_robot = std::move(robot);
+  return setup;
+}
+
+Setup with_robots(Setup setup, std::vector<std::string> robots) {
+  std::set<std::string> all{setup.options.robot_id};
+  for (const std::string& robot : robots) {
+    if (robot.empty() || robot.size() > kLongestRobotId) {
+      throw UsageError("--with-robots: expected names of 1 to 32 bytes, got '" + robot + "'");
+    }
+    if (!all.insert(robot).second) {
+      throw UsageError("--with-robots: expected each robot once, got '" + robot + "' again");
+    }
+  }
+  setup.options.other_robots = std::move(robots);
+  return setup;
 }
 
 messaging::Participant make_participant(const ServiceOptions& options, const std::string& service) {

@@ -49,8 +49,11 @@ SoleService::SoleService(Service& service) : service_(service) {
   if (stopped) service_.loop().stop();
 }
 
-void SoleService::compare(const msg::ServiceStatus& other) {
+void SoleService::compare(const msg::ServiceStatus& received) {
   const msg::ServiceStatus& own = service_.status().message();
+  // It works for the robots that share the map, too.
+  msg::ServiceStatus other = received;
+  if (service_.shares_map(other.robot_id().to_string())) other.robot_id(own.robot_id());
   if (!are_rivals(other, own) || other.state() == msg::kServiceStopped) return;
   const std::string fault = fmt::format("second {}", own.service().c_str());
   if (!refused_.empty()) {

@@ -27,9 +27,10 @@ StoreClient::StoreClient(Service& service, std::function<void(const msg::StoredM
     : service_(service),
       client_id_(fmt::format("{}-{:08x}", support::process_name(), std::random_device{}())),
       requests_(service.advertise<msg::SnapshotRequest>()) {
-  service.subscribe<msg::StoredMap>(std::move(on_stored));
+  service.subscribe<msg::StoredMap>(std::move(on_stored), {.team = true});
   service.subscribe<msg::SnapshotPiece>(
-      [this](const msg::SnapshotPiece& piece) { on_piece(piece); }, {.addressee = client_id_});
+      [this](const msg::SnapshotPiece& piece) { on_piece(piece); },
+      {.addressee = client_id_, .any_robot = true});
   timer_ = service.loop().add_timer(kAskPeriod, [this] { tick(); });
 }
 

@@ -13,6 +13,7 @@
 #include "local_map.h"
 #include "map_update.h"
 #include "match.h"
+#include "merge.h"
 #include "motion.h"
 #include "planning.h"
 #include "sensor.h"

@@ -51,6 +51,14 @@ TEST_F(MotionMonitorTest, AccelerationWithoutSpeedIsAStallWhenItLasts) {
   EXPECT_FALSE(monitor_.stalled());
 }
 
+TEST_F(MotionMonitorTest, SlowMotionThatFollowsItsCommandsIsNoEmergencyStop) {
+  for (const double speed_mps : {0.01, 0.02, 0.03}) {
+    command(speed_mps);
+    report(speed_mps / 3.0, McpPhase::kAccelerate);
+  }
+  EXPECT_FALSE(monitor_.stalled());
+}
+
 TEST_F(MotionMonitorTest, MotionWithoutACommandIsTheJoystickUntilItHasRestedForASecond) {
   report(0.3, McpPhase::kConstant);
   EXPECT_FALSE(monitor_.joystick()) << "a single report may be wrong";

@@ -58,6 +58,49 @@ INSTANTIATE_TEST_SUITE_P(Rates, PlsStartUp,
                                             ::testing::Values(9600U, 19200U, 38400U, 500'000U),
                                             ::testing::Bool()));
 
+TEST(PlsDriver, HearsASensorAtOnceThatGoesOnSendingWhereItWasRemembered) {
+  PlsOnLine pls;
+  pls.emulator.set_up(500'000, true, 0);
+  pls.driver.resume({500'000, Parity::kEven});
+  pls.line.plug_in();
+  // The rest of a scan that was being sent, and a whole one.
+  ASSERT_TRUE(pls.run_for_scans(1, 100 * kMillisecond_ns)) << pls.driver.status().reason;
+  EXPECT_EQ(pls.driver.status().state, PlsState::kRunning);
+  pls.run_for(kSecond_ns);
+  EXPECT_EQ(pls.wrong_scans, 0U);
+  EXPECT_EQ(pls.driver.status().counters.unsolicited, 0U);
+}
+
+/// Where the sensor was remembered, and where it is.
+using Remembered = std::tuple<LineSettings, std::uint32_t, bool>;
+class PlsElsewhere : public ::testing::TestWithParam<Remembered> {};
+
+TEST_P(PlsElsewhere, IsFoundAllTheSame) {
+  const auto [remembered, baud, streaming] = GetParam();
+  PlsOnLine pls;
+  pls.emulator.set_up(baud, streaming, 0);
+  pls.driver.resume(remembered);
+  pls.line.plug_in();
+  ASSERT_TRUE(pls.run_for_scans(3, 12 * kSecond_ns)) << pls.driver.status().reason;
+  EXPECT_EQ(pls.driver.status().line, (LineSettings{500'000, Parity::kEven}));
+  EXPECT_EQ(pls.driver.status().software, "P 01.23") << "it was set up anew";
+  EXPECT_EQ(pls.wrong_scans, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lines, PlsElsewhere,
+                         ::testing::Combine(::testing::Values(LineSettings{500'000, Parity::kEven},
+                                                              LineSettings{38400, Parity::kEven},
+                                                              LineSettings{9600, Parity::kNone}),
+                                            ::testing::Values(9600U, 19200U), ::testing::Bool()));
+
+TEST(PlsDriver, SetsUpASensorThatWasSwitchedOffMeanwhile) {
+  PlsOnLine pls;
+  pls.driver.resume({500'000, Parity::kEven});
+  pls.line.plug_in();
+  ASSERT_TRUE(pls.run_for_scans(1, 2 * kSecond_ns)) << pls.driver.status().reason;
+  EXPECT_EQ(pls.driver.status().line.baud, 500'000U);
+}
+
 /// Rate of the line, time of a scan of 732 bytes of 11 bits.
 class PlsRate : public ::testing::TestWithParam<std::uint32_t> {};
 

@@ -1,6 +1,8 @@
 // What reaches whom: late readers, slow readers, disposals, addressees, partitions.
 #include <map>
+#include <memory>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "fixture.hpp"
@@ -210,6 +212,29 @@ TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
   EXPECT_TRUE(writer.wait_for_acknowledgments(kPatience));
 }
 
+// What the filter of each reader says once stood in every message, which then fitted into no
+// packet.
+TEST_F(Delivery, ATaskReachesOneOfVeryManyWorkers) {
+  constexpr std::size_t kWorkers = 64;
+  Writer<msg::MatchTask> writer(sender_);
+  std::vector<std::unique_ptr<Reader<msg::MatchTask>>> workers;
+  for (std::size_t i = 0; i < kWorkers; ++i) {
+    workers.push_back(std::make_unique<Reader<msg::MatchTask>>(
+        receiver_, ReaderOptions{.addressee = "worker " + std::to_string(i)}));
+  }
+  ASSERT_TRUE(writer.wait_for_matched(static_cast<int>(kWorkers), kPatience));
+  auto task = message<msg::MatchTask>();
+  set_worker_id(task, "worker 63");
+  ASSERT_TRUE(writer.write(task));
+  std::size_t taken = 0;
+  EXPECT_TRUE(eventually([&] {
+    workers.back()->take([&](const msg::MatchTask&, const SampleInfo&) { ++taken; });
+    return taken == 1;
+  }));
+  workers.front()->take([&](const msg::MatchTask&, const SampleInfo&) { ++taken; });
+  EXPECT_EQ(taken, 1U);
+}
+
 /// Addressed messages reach whom they are for, however the fields before the address are aligned.
 template <class T, class SetAddressee>
 void expect_addressed(const Participant& sender, const Participant& receiver,
@@ -286,7 +311,7 @@ TEST_F(Delivery, PartitionsDoNotSeeEachOtherButTheWildcardSeesAll) {
 }
 
 // Each sample is cut into packets, and a reader that comes late gets it under its own address: Fast
-// DDS counts neither that nor the key (libs/messaging/src/fragments.cpp).
+// DDS counts neither that nor the key (libs/messaging/src/fast_dds/fragments.cpp).
 TEST(DeliveryInPackets, LargeSamplesReachALateReader) {
   constexpr std::uint32_t kMaps = 20;
   ParticipantOptions options = options_in(random_partition());

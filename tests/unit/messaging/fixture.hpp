@@ -17,10 +17,12 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/types.h"
 
+#include "time_factor.hpp"
+
 namespace topogeo::messaging {
 
 /// Long enough for a busy machine; nothing waits so long when it works.
-constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kPatience{60 * test::kTimeFactor};
 
 inline std::string random_partition() {
   std::random_device device;

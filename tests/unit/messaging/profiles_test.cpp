@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <string>
 
 #include "fixture.hpp"
 
@@ -41,16 +42,40 @@ TEST(Profiles, BuiltInTextIsTheFileOfDeploy) {
   EXPECT_EQ(built_in_profiles(), text);
 }
 
-TEST(Profiles, UdpOnlyParticipantTalksToTheDefaultOne) {
-  const std::string partition = random_partition();
-  ParticipantOptions udp = options_in(partition);
-  udp.profile = "udp_only";
-  const Participant sender(udp);
-  const Participant receiver(options_in(partition));
-  Writer<msg::Goal> writer(sender);
-  Reader<msg::Goal> reader(receiver);
-  ASSERT_TRUE(writer.write(message<msg::Goal>()));
-  EXPECT_TRUE(reader.wait_for_data(kPatience));
+TEST(Profiles, ParticipantsOfAllTransportsHearEachOther) {
+  for (const char* profile : {"local", "udp_only", "wan"}) {
+    for (const bool default_sends : {false, true}) {
+      const std::string partition = random_partition();
+      ParticipantOptions named = options_in(partition);
+      named.profile = profile;
+      const Participant sender(default_sends ? options_in(partition) : named);
+      const Participant receiver(default_sends ? named : options_in(partition));
+      Writer<msg::Goal> writer(sender);
+      Reader<msg::Goal> reader(receiver);
+      ASSERT_TRUE(writer.write(message<msg::Goal>()));
+      EXPECT_TRUE(reader.wait_for_data(kPatience)) << profile << " " << default_sends;
+    }
+  }
+}
+
+// Programs of several users, or that end soon, jam the shared memory of Fast DDS 2.9.1.
+TEST(Profiles, ByDefaultNothingIsPutIntoSharedMemory) {
+  // Of this process alone: other programs make segments at any time.
+  const auto has_segments = [] {
+    std::ifstream mapped("/proc/self/maps");
+    for (std::string line; std::getline(mapped, line);)
+      if (line.find("/fastrtps_") != std::string::npos) return true;
+    return false;
+  };
+  const auto has_segments_with = [&](const ParticipantOptions& options) {
+    const Participant participant(options);
+    return has_segments();
+  };
+  ASSERT_FALSE(has_segments());
+  ParticipantOptions options = options_in(random_partition());
+  EXPECT_FALSE(has_segments_with(options));
+  options.profile = "local";
+  EXPECT_TRUE(has_segments_with(options));
 }
 
 TEST(Profiles, MistakesAreErrors) {

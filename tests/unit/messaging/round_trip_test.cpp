@@ -258,6 +258,22 @@ void fill(msg::LocalizationReply& reply) {
   set_text(reply.message(), "searching", "message");
 }
 
+void fill(msg::MergeProposal& proposal) {
+  proposal.number(3);
+  proposal.state(msg::kMergeRefused);
+  set_text(proposal.robot(), "b", "robot");
+  set_text(proposal.other_robot(), "a", "other_robot");
+  proposal.T_other_own(pose(4.0));
+  proposal.confidence(0.75);
+}
+
+void fill(msg::MergeAnswer& answer) {
+  answer.request_id(7);
+  set_client_id(answer, "operator-1");
+  answer.number(3);
+  answer.accepted(true);
+}
+
 void fill(msg::MapElement& element) {
   element.kind(msg::kElementBranch);
   element.id(4);

@@ -44,7 +44,7 @@ TEST_F(RouteDriverTest, DrivesAlongAPathThatItHasFound) {
   ASSERT_TRUE(driver.find_path(scene(kSecond_ns)));
   EXPECT_FALSE(driver.needs_path());
   EXPECT_FALSE(driver.doubts_route());
-  EXPECT_EQ(driver.take_detours(), 0U);
+  EXPECT_EQ(driver.take_detours().all, 0U);
   const RouteDriver::Step step = driver.follow(scene(kSecond_ns), false);
   EXPECT_GT(step.follower.command.linear_m_per_s, 0.0);
   EXPECT_FALSE(step.another_path);
@@ -60,8 +60,8 @@ TEST_F(RouteDriverTest, GoesRoundWhatStandsInItsPath) {
   const RouteDriver::Step step = driver.follow(scene(2 * kSecond_ns), false);
   EXPECT_TRUE(step.another_path);
   EXPECT_FALSE(driver.block());
-  EXPECT_EQ(driver.take_detours(), 1U);
-  EXPECT_EQ(driver.take_detours(), 0U);
+  EXPECT_EQ(driver.take_detours().all, 1U);
+  EXPECT_EQ(driver.take_detours().all, 0U);
 }
 
 TEST_F(RouteDriverTest, StopsBeforeWhatMovesInItsPath) {

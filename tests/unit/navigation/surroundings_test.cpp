@@ -22,7 +22,7 @@ class SurroundingsTest : public testing::Test {
       fix.tracking = true;
       poses.add(fix);
       surroundings.add(scan_of_post(2.0, now_ns));
-      surroundings.update(map.get(), poses, now_ns);
+      surroundings.update(&map->space(), poses, now_ns);
     }
   }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "topogeo/planning/grid_sources.hpp"
-#include "topogeo/planning/hybrid_planner.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::navigation {
@@ -54,11 +53,11 @@ TestDrive::TestDrive(world::World floor, const DriveSettings& drive)
     : world(std::move(floor)),
       settings(drive),
       robot(world, options_of(drive)),
-      map(map_of(world)),
+      map(map_of(world, drive.noise_m)),
       navigator(drive.navigator),
       delayed_(static_cast<std::size_t>(drive.delay_steps)),
       random_(drive.seed) {
-  navigator.set_map(map, map_version);
+  if (settings.map_comes) navigator.set_map(map, map_version);
 }
 
 void TestDrive::go_to(const Eigen::Vector2d& to_m, std::optional<double> looking_rad) {
@@ -67,18 +66,27 @@ void TestDrive::go_to(const Eigen::Vector2d& to_m, std::optional<double> looking
   navigator.set_goal({++goal_id, look_around});
 }
 
+planning::HybridRoute TestDrive::plan(const planning::HybridMap& floor) const {
+  const Eigen::Vector2d from_m = robot.T_world_robot().position_m();
+  if (!settings.graph) return planning::HybridPlanner(floor).plan(from_m, goal_m);
+  return planning::plan_to_goal({settings.map_comes ? &floor : nullptr, settings.graph.get()},
+                                from_m, goal_m, navigator.blockages().points_m,
+                                {{planning::PlanFirstOn::kGraph}, {}, {}});
+}
+
 void TestDrive::send_route() {
   const BlockageReport& blockages = navigator.blockages();
   const auto closed = map_of(world, blockages.points_m);
-  const auto found = planning::HybridPlanner(blockages.points_m.empty() ? *map : *closed)
-                         .plan(robot.T_world_robot().position_m(), goal_m);
+  const auto found = plan(blockages.points_m.empty() ? *map : *closed);
   RoutePlan route;
   route.goal_id = goal_id;
-  route.map_version = map_version;
+  route.map_version = settings.map_comes ? map_version : 0;
   route.blockages_version = blockages.version;
   route.found = found.found();
   route.reason = found.reason;
   route.points_m = found.points_m;
+  route.clearances_m = found.clearances_m;
+  route.parts = found.parts;
   route.heading_rad = heading_rad;
   for (const std::uint32_t node : found.nodes)
     route.nodes_m.push_back(map->nodes()[node].position_m);
@@ -97,6 +105,13 @@ void TestDrive::send_sensors() {
     ScanPoints scan;
     scan.stamp_ns = now_ns;
     scan.T_odom_robot = T_odom;
+    auto whole = std::make_shared<scan::Scan>();
+    whole->stamp_ns = now_ns;
+    whole->angle_min_rad = beams.angle_min_rad;
+    whole->angle_step_rad = beams.angle_step_rad;
+    whole->ranges_m = ranges_m;
+    whole->T_odom_robot = T_odom;
+    if (settings.scans_whole) scan.scan = whole;
     for (std::size_t i = 0; i < ranges_m.size(); ++i) {
       if (ranges_m[i] <= scan::Scan::kNoReturn) continue;
       const double angle_rad = beams.angle_min_rad + static_cast<double>(i) * beams.angle_step_rad;

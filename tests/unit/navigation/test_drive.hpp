@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/navigation/navigator.hpp"
-#include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/planning/goal_planner.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
 
 namespace topogeo::navigation {
@@ -28,6 +28,12 @@ struct DriveSettings {
   bool noise = false;  ///< of laser, sonars, odometry and pose fixes
   std::uint64_t seed = 1;
   int delay_steps = 3;  ///< until the base obeys
+  bool map_comes = true;
+  bool scans_whole = true;  ///< false: their points alone, so that there is no local map
+  /// The planner plans along its branches first, and on the map where these have no route.
+  std::shared_ptr<const topomap::GlobalMap> graph{};
+  /// Cells of the map that hold something which is not there.
+  std::vector<Eigen::Vector2d> noise_m{};
 };
 
 class TestDrive {
@@ -85,6 +91,7 @@ class TestDrive {
   std::uint64_t answered_map_ = 0;
   std::uint64_t answered_blockages_ = 0;
   support::Random random_;
+  planning::HybridRoute plan(const planning::HybridMap& floor) const;
   int steps_ = 0;
 };
 

@@ -90,8 +90,8 @@ std::map<std::string, std::set<std::string>> owners_of_keys(Config& c) {
   library("voronoi", c.local_mapper.voronoi);
   library("topomap", c.local_mapper.local_map, c.global_map);
   library("localization", c.local_mapper.tracker, c.localizer, c.calibration);
-  library("planning", c.planning, c.hybrid_map.grid, c.hybrid_map.inflation, c.hybrid_map.zones,
-          c.hybrid_planner, c.navigator.smooth, c.navigator.detour);
+  library("planning", c.planner, c.planning, c.hybrid_map.grid, c.hybrid_map.inflation,
+          c.hybrid_map.zones, c.hybrid_planner, c.navigator.smooth, c.navigator.detour);
   library("markov", c.navigator.markov.markov);
   library("navigation", c.navigator, c.exploration);
   library("pipeline", c.local_mapper, c.metrics);

@@ -59,16 +59,45 @@ TEST_F(TaskBoardTest, TheTimeOfAStragglerFollowsSlowTasks) {
   EXPECT_THAT(send_all(milliseconds(18'000)), ElementsAre(std::pair{1U, "b"}));
 }
 
-TEST_F(TaskBoardTest, AWorkerThatNeverAnswersIsTriedAgainAfterAWhile) {
+TEST_F(TaskBoardTest, AWorkerThatNeverAnswersIsTriedEverMoreSeldom) {
   up("a");
-  begin(2);
-  send_all(seconds(0));
-  local(seconds(1));
-  expect_results(2);
-  first_id_ = 200;
-  begin(1);
-  EXPECT_THAT(send_all(seconds(29)), IsEmpty());
-  EXPECT_THAT(send_all(seconds(30)), ElementsAre(std::pair{0U, "a"}));
+  const auto tried_at = [&](BoardTime now) {
+    first_id_ += 100;
+    begin(2);
+    const bool tried = !send_all(now).empty();
+    board_.abandon();
+    return tried;
+  };
+  BoardTime sent{0};
+  ASSERT_TRUE(tried_at(sent));
+  for (const int pause_s : {2, 4, 8, 16, 30, 30}) {
+    sent += seconds(pause_s);
+    EXPECT_FALSE(tried_at(sent - milliseconds(1))) << pause_s;
+    EXPECT_TRUE(tried_at(sent)) << pause_s;
+  }
+  answer("a", 0, sent + milliseconds(1));
+  EXPECT_FALSE(tried_at(sent + seconds(2) - milliseconds(1))) << "it owes the other answer";
+  EXPECT_TRUE(tried_at(sent + seconds(2))) << "it has answered meanwhile";
+}
+
+// A robot that begins before its workers know where to send answers loses one of each of them.
+TEST_F(TaskBoardTest, WorkersOfWhichEachOwesAnAnswerAreSoonUsedAgain) {
+  constexpr std::size_t kWorkers = 64;
+  for (std::size_t i = 0; i < kWorkers; ++i) up("worker" + std::to_string(i));
+  begin(kWorkers);
+  EXPECT_EQ(send_all(seconds(0)).size(), kWorkers);
+  EXPECT_EQ(local(milliseconds(250)).size(), kWorkers) << "none has answered";
+  expect_results(kWorkers);
+  std::size_t here = 0;
+  BoardTime now = milliseconds(300);
+  for (; now < seconds(10); now += milliseconds(20)) {
+    first_id_ += 100;
+    begin(12);
+    for (const auto& [task, worker] : send_all(now)) answer(worker, task, now + milliseconds(5));
+    here += local(now + milliseconds(5)).size();
+    expect_results(12);
+  }
+  EXPECT_EQ(here, 12U * (2000 - 300) / 20) << "all of two seconds, and none later";
 }
 
 TEST_F(TaskBoardTest, AnAnswerThatNobodyAskedForIsIgnored) {

@@ -52,6 +52,20 @@ TEST_F(MapDatabaseFile, GivesBackTheSameMapFile) {
   EXPECT_EQ(in_pieces, map_file_bytes(document));
 }
 
+TEST_F(MapDatabaseFile, KeepsRefusedMerges) {
+  MapDocument document = identified(sample_document(2));
+  document.refused_merges = {{{0xfedcba9876543210ULL, 7}, {3, 4000000000U}}};
+  store(document);
+  EXPECT_EQ(open().load().refused_merges, document.refused_merges);
+  document.refused_merges.push_back({{1, 2}, {3, 4}});
+  open().put_refused_merges(document.refused_merges);
+  EXPECT_EQ(read_map(path()).refused_merges, document.refused_merges);
+  EXPECT_EQ(parse_map_file(map_file_bytes(document), "file").refused_merges,
+            document.refused_merges);
+  execute("UPDATE meta SET value = '12 seven' WHERE key = 'refused_merges'");
+  EXPECT_THAT(opening_error(), HasSubstr("refused_merges is no list of pairs of stops"));
+}
+
 TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
   MapDocument document = identified(sample_document(3));
   store(document);
@@ -96,7 +110,7 @@ TEST_F(MapDatabaseFile, RefusesWhatDoesNotFitAndStaysAsItWas) {
   other = sample_local_map(3);
   EXPECT_THROW(database.put_stops({&other, 1}), std::invalid_argument) << "it has no session";
   other.stop = {7, 3};
-  other.robot_id = "robot-2";
+  other.robot_id = "";
   EXPECT_THROW(database.put_stops({&other, 1}), std::invalid_argument);
   EXPECT_THROW(database.put_document(document), std::invalid_argument) << "it has stops";
 

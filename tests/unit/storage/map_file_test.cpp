@@ -119,7 +119,7 @@ TEST_F(MapFile, RefusesToWriteAMapThatContradictsItself) {
     EXPECT_THROW(map_file_bytes(document), std::invalid_argument);
   };
   refused([](MapDocument& d) { d.local_maps[1].id = 5; });
-  refused([](MapDocument& d) { d.local_maps[1].robot_id = "robot-2"; });
+  refused([](MapDocument& d) { d.local_maps[1].robot_id = ""; });
   refused([](MapDocument& d) { d.local_maps.pop_back(); });
   refused([](MapDocument& d) { d.trajectory.stops[0].local_map_id = 1; });
   refused([](MapDocument& d) { d.loop_closures[0].later_id = 3; });

@@ -74,6 +74,18 @@ TEST(GoalWatch, SeesThatAnotherGoalCameOrTheNavigatorWent) {
   EXPECT_THAT(watch.check(2.0)->reason, HasSubstr("another goal"));
 }
 
+TEST(GoalWatch, ANavigatorThatStartsAgainGetsTheGoalAgain) {
+  GoalWatch watch(7, 60.0, 0.0);
+  watch.add(status(NavigatorState::kDriving), 1.0);
+  watch.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 3.0);
+  EXPECT_FALSE(watch.check(3.0));
+  watch.add(status(NavigatorState::kDriving), 4.0);
+  watch.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 20.0);
+  EXPECT_FALSE(watch.check(20.0));
+  watch.add(status(NavigatorState::kIdle, HaltReason::kNone, "", 0), 26.0);
+  EXPECT_THAT(watch.check(26.0)->reason, HasSubstr("cancelled"));
+}
+
 TEST(GoalProgress, ShowsHowFarItIs) {
   NavigatorStatus now = status(NavigatorState::kDriving);
   now.driven_m = 3.0;

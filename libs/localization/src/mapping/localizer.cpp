@@ -9,6 +9,8 @@
 #include "topogeo/localization/mapping/drive_join.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 
+#include "link_covariances.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -19,30 +21,6 @@ namespace {
 // By an optimisation after the end of a log: a stop that moved less sees the same places.
 constexpr double kMovedAtEnd_m = 0.1;
 constexpr double kMovedAtEnd_rad = 0.02;
-
-// Of all links between a stop and earlier ones, the covariance by which it is known best: relative
-// to the earlier stop.
-Eigen::Matrix3d best_link_to(const PoseGraph& graph, std::uint32_t stop) {
-  std::optional<Eigen::Matrix3d> best;
-  for (const auto& [from, covariance] : graph.links_to(stop)) {
-    if (!best || PoseGraph::path_cost(covariance) < PoseGraph::path_cost(*best)) best = covariance;
-  }
-  return best.value();  // odometry always leads here
-}
-
-// The same in the map frame, through the covariances of the earlier stops.
-Eigen::Matrix3d covariance_in_map(const PoseGraph& graph,
-                                  std::span<const Eigen::Matrix3d> covariances,
-                                  std::uint32_t stop) {
-  std::optional<Eigen::Matrix3d> best;
-  for (const auto& [from, link] : graph.links_to(stop)) {
-    const Eigen::Matrix3d covariance = geometry::compose_covariance(
-        graph.poses()[from], covariances[from],
-        geometry::between(graph.poses()[from], graph.poses()[stop]), link);
-    if (!best || PoseGraph::path_cost(covariance) < PoseGraph::path_cost(*best)) best = covariance;
-  }
-  return best.value();
-}
 
 // Only these can have come near to others.
 std::vector<std::uint32_t> moved_stops(std::span<const Pose2> before,
@@ -75,9 +53,7 @@ bool Localizer::add(MapPointer map) {
     return false;
   }
   const bool moved = apply(schedule_.fetch(stop));
-  std::vector<StepMatch> evidence = match_recent();
-  graph_.place_last_pose();
-  covariances_[stop] = covariance_in_map(graph_, covariances_, stop);
+  std::vector<StepMatch> evidence = place_last();
   const std::vector<StepMatch> of_loops = match_revisited({&stop, 1});
   evidence.insert(evidence.end(), of_loops.begin(), of_loops.end());
   judge_state(std::move(evidence));
@@ -91,23 +67,27 @@ std::uint32_t Localizer::last() const {
   return static_cast<std::uint32_t>(matching_.size() - 1);
 }
 
+// Nothing when its session is another than that of the first stop: that may be of another robot.
+const LocalMap* Localizer::first_of_session(const LocalMap& map) const {
+  const LocalMap& first = matching_.map(0);
+  return first.stop.session == map.stop.session ? &first : nullptr;
+}
+
 void Localizer::append(MapPointer map) {
   const bool first = matching_.size() == 0;
-  check_next(*map, matching_.size(), first ? nullptr : &matching_.map(0));
+  check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
   if (first) {
     graph_.add_pose(Pose2{});
     odometry_steps_.emplace_back();
+    recorded_steps_.emplace_back();
     matching_.add(std::move(map), 0.0);
   } else {
     const std::optional<UncertainPose> gap = std::exchange(gap_, std::nullopt);
     UncertainPose step =
         gap ? *gap
             : odometry_between_stops(matching_.map(last()).T_odom_robot, *map, config_.odometry);
-    recorded_step_.reset();
-    if (!gap) {
-      recorded_step_ = step.T_a_b;
-      step.T_a_b = scale_.corrected(step.T_a_b);
-    }
+    recorded_steps_.push_back({gap ? std::nullopt : std::optional(step.T_a_b), scale_.factor()});
+    if (!gap) step.T_a_b = scaled(step.T_a_b, scale_.factor());
     odometry_steps_.push_back(step);
     const std::uint32_t stop = graph_.add_pose(graph_.poses().back() * step.T_a_b);
     // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
@@ -122,6 +102,13 @@ void Localizer::append(MapPointer map) {
 }
 
 // Places the last stop relative to recent ones.
+std::vector<StepMatch> Localizer::place_last() {
+  std::vector<StepMatch> evidence = match_recent();
+  graph_.place_last_pose();
+  covariances_[last()] = covariance_in_map(graph_, covariances_, last());
+  return evidence;
+}
+
 std::vector<StepMatch> Localizer::match_recent() {
   const std::vector<StopMatch> matches = matching_.match_recent(graph_);
   // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
@@ -141,7 +128,8 @@ std::vector<StepMatch> Localizer::match_recent() {
     if (match.accepted() && match.edge.from + 1 == last()) {
       const UncertainPose matched{match.edge.T_from_to, match.edge.covariance};
       odometry_.add(odometry_steps_.back(), matched);
-      if (recorded_step_) scale_.add(*recorded_step_, matched);
+      const std::optional<Pose2>& recorded = recorded_steps_.back().T_before_stop;
+      if (recorded) scale_.add(*recorded, matched);
     }
   }
   return evidence;
@@ -247,11 +235,26 @@ void Localizer::update_covariances(const GraphSolution& solution) {
   }
 }
 
+// By what was learned of the scale of odometry while they and the steps after them were driven:
+// when they were, the first ones had none of it.
+void Localizer::rescale_steps() {
+  for (std::uint32_t stop = 1; stop <= last(); ++stop) {
+    const std::optional<Pose2>& recorded = recorded_steps_[stop].T_before_stop;
+    const std::size_t learned = std::min<std::size_t>(stop + OdometryScale::kMemory, last());
+    if (recorded) graph_.correct_step(stop, scaled(*recorded, recorded_steps_[learned].scale));
+  }
+}
+
 void Localizer::optimize_now() {
   apply(schedule_.fetch_now());
+  rescale_steps();
   schedule_.want_whole();
   schedule_.start(last(), graph_, loops_.waiting());
   apply(schedule_.fetch_now());
+}
+
+void Localizer::compare_stored(std::uint32_t first) {
+  close_all_loops(std::max(1U, first));
 }
 
 void Localizer::finish() {
@@ -260,8 +263,13 @@ void Localizer::finish() {
   // Stops of a stored map were compared with each other when it was made.
   const std::size_t first = std::max<std::size_t>(1, stored_stops_);
   if (first >= matching_.size()) return;
+  close_all_loops(static_cast<std::uint32_t>(first));
+}
+
+// Of the stops from this one on, and of all that are moved by it.
+void Localizer::close_all_loops(std::uint32_t first) {
   std::vector<std::uint32_t> again(matching_.size() - first);
-  std::iota(again.begin(), again.end(), static_cast<std::uint32_t>(first));
+  std::iota(again.begin(), again.end(), first);
   for (std::uint32_t pass = 0; pass < config_.final_passes; ++pass) {
     if (close_more_loops(again) == 0) break;
     const std::vector<Pose2> before = graph_.poses();
@@ -298,16 +306,18 @@ Localizer::Localizer(const LocalizerConfig& config, MatchPool& pool, GraphOptimi
 
 void Localizer::restore(MapPointer map, const topomap::StopPose& pose) {
   const bool first = matching_.size() == 0;
-  check_next(*map, matching_.size(), first ? nullptr : &matching_.map(0));
+  check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
   StepEvidence known;  // what is in the map is right by definition
   known.points = map->points.size();
   double distance_m = 0.0;
   if (!first) {
     const Pose2 step = geometry::between(graph_.poses().back(), pose.T_map_robot);
     distance_m = std::sqrt(step.position_m().squaredNorm());
+    if (map->starts_drive) distance_m += 2.0 * config_.recent_way_m;  // as in append()
   }
   matching_.add(std::move(map), distance_m);
   odometry_steps_.emplace_back();
+  recorded_steps_.emplace_back();
   graph_.add_pose(pose.T_map_robot);
   covariances_.push_back(pose.covariance);
   monitor_.restart(1.0);
@@ -321,7 +331,12 @@ void Localizer::join(std::span<const MapPointer> drive,
   matching_.forget_solutions();
   monitor_.restart(confidence);
   const auto first = static_cast<std::uint32_t>(matching_.size());
-  for (const MapPointer& map : drive) add(map);
+  // As if it were alone: where odometry has its first stops, far from the last one, others may be.
+  for (const MapPointer& map : drive) {
+    append(map);
+    ++version_;
+    judge_state(place_last());
+  }
   // The matches by which the drive was found, as far as it was not matched there again.
   for (const StoredMatch& match : matches_of_last) {
     const PoseGraphEdge loop = loop_of(match, last());
@@ -336,10 +351,7 @@ void Localizer::join(std::span<const MapPointer> drive,
     matching_.skip(loop);
   }
   optimize_now();
-  // Now that the drive has its place: what else of the map did it see?
-  std::vector<std::uint32_t> joined(matching_.size() - first);
-  std::iota(joined.begin(), joined.end(), first);
-  if (close_more_loops(joined) > 0) optimize_now();
+  close_all_loops(first);  // now that the drive has its place
 }
 
 // --- state

@@ -46,6 +46,10 @@ void describe_tasks(LocalizerConfig& l, support::ConfigSchema& schema) {
              "too");
   schema.add("localizer.final_passes", &l.final_passes, 0U, 20U, "",
              "rounds of matching between places that lie near each other after the end of a log");
+  schema.add("localizer.merge", &l.merge,
+             {{"auto", MergePolicy::kAuto}, {"ask", MergePolicy::kAsk}},
+             "of robots that map one floor at a time, auto: their maps become one as soon as they "
+             "have seen the same place; ask: when somebody agrees (topogeo store merges)");
 }
 
 }  // namespace

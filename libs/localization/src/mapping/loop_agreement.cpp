@@ -9,6 +9,7 @@
 
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/places/place_recognition.hpp"
 
 namespace topogeo::localization {
 
@@ -25,6 +26,9 @@ constexpr double kAgree = 7.8;     // 95 % of right pairs (chi-square, three deg
 constexpr double kCountedApart_m = 0.75;
 constexpr double kLeastShare = 0.6;
 constexpr double kMostShare = 1.5;
+// Of a window, for each metre of path that it alone holds: all of it counts as the most that a stop
+// does.
+constexpr double kShareOfWindow = kMostShare / PlaceRecognition::kQuery_m;
 // Less than of a robot that may be anywhere in a map (AgreementWeights::kWanted): here a prediction
 // speaks, too. More is wanted of a set that this one speaks against: per logarithm of the squared
 // Mahalanobis distance, because it is wrong by far more often than a Gaussian says.
@@ -114,19 +118,39 @@ LoopAgreement::Set LoopAgreement::set_around(std::size_t seed, std::span<const s
 }
 
 // The best of each later stop, by how far it is from the one before: what one stop sees is one
-// piece of evidence.
+// piece of evidence. Windows of successive stops hold nearly the same views: one counts by the path
+// that none before it had.
 double LoopAgreement::weight_of(const Set& set, std::span<const double> path_m) const {
-  std::map<std::uint32_t, double> of_stop;
+  struct Evidence {
+    double stop = 0.0;
+    double window = 0.0;
+    std::uint32_t first_of_window = 0;
+  };
+  std::map<std::uint32_t, Evidence> of_stop;
   for (const std::size_t i : set) {
-    double& weight = of_stop[hypotheses_[i].match.edge.to];
-    weight = std::max(weight, hypotheses_[i].weight);
+    const StopMatch& match = hypotheses_[i].match;
+    Evidence& evidence = of_stop[match.edge.to];
+    if (match.source == ProposalSource::kWindow) {
+      evidence.window = std::max(evidence.window, hypotheses_[i].weight);
+      evidence.first_of_window = match.first_of_window;
+    } else {
+      evidence.stop = std::max(evidence.stop, hypotheses_[i].weight);
+    }
   }
   double sum = 0.0;
   std::optional<double> before_m;
-  for (const auto& [stop, weight] : of_stop) {
+  double windows_until_m = path_m.front();
+  for (const auto& [stop, evidence] : of_stop) {
     const double apart_m = before_m ? path_m[stop] - *before_m : kCountedApart_m;
     before_m = path_m[stop];
-    sum += weight * std::clamp(apart_m / kCountedApart_m, kLeastShare, kMostShare);
+    const double share = std::clamp(apart_m / kCountedApart_m, kLeastShare, kMostShare);
+    double window = 0.0;
+    if (evidence.window > 0.0) {
+      const double from_m = std::max(windows_until_m, path_m[evidence.first_of_window]);
+      windows_until_m = path_m[stop];
+      window = evidence.window * kShareOfWindow * (path_m[stop] - from_m);
+    }
+    sum += std::max(evidence.stop * share, window);
   }
   return sum;
 }
@@ -221,11 +245,11 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       if (weight < kOverRival * rival) continue;
       const bool as_predicted = surprise_of(set) <= geometry::kMahalanobis2Of99Percent;
       for (const std::size_t i : set) {
-        // A window that slid along a corridor agrees with the others, but not with the prediction
-        // that they agree with.
+        // What slid along a corridor agrees with the others, but not with the prediction that they
+        // agree with. Windows slide most easily: where they move nothing, stops measure better.
         const StopMatch& match = hypotheses_[i].match;
-        if (as_predicted && match.source == ProposalSource::kWindow &&
-            match.surprise() > geometry::kMahalanobis2Of99Percent) {
+        if (as_predicted && (match.source == ProposalSource::kWindow ||
+                             match.surprise() > geometry::kMahalanobis2Of99Percent)) {
           continue;
         }
         if (!hypotheses_[i].accepted) {

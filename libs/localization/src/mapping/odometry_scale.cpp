@@ -13,8 +13,6 @@ constexpr double kMostTurn_rad = 0.2;   // in a turn wheels slip
 constexpr double kLeastKnown_m = 0.04;  // matches that know less lean towards odometry
 constexpr double kLargestError = 0.25;  // of the way: more is a blow, not a scale
 constexpr double kNoise_m = 0.06;       // of odometry after a metre, growing with the root of it
-// Steps after which an older one counts a third: the floor changes, and tyres lose air.
-constexpr double kMemory = 500.0;
 
 }  // namespace
 
@@ -32,13 +30,13 @@ void OdometryScale::add(const Pose2& T_by_odometry, const UncertainPose& T_by_ma
   const double mean_m = 0.5 * (matched_m + way_m);
   if (std::fabs(matched_m - way_m) > kLargestError * mean_m) return;
   const double weight = 1.0 / (variance_m2 + kNoise_m * kNoise_m * mean_m);
-  constexpr double kFading = 1.0 - 1.0 / kMemory;
+  constexpr double kFading = 1.0 - 1.0 / static_cast<double>(kMemory);
   matched_ = kPrior + kFading * (matched_ - kPrior) + weight * matched_m;
   driven_ = kPrior + kFading * (driven_ - kPrior) + weight * way_m;
 }
 
-Pose2 OdometryScale::corrected(const Pose2& T_by_odometry) const {
-  return {factor() * T_by_odometry.x_m, factor() * T_by_odometry.y_m, T_by_odometry.theta_rad};
+Pose2 scaled(const Pose2& T_by_odometry, double factor) {
+  return {factor * T_by_odometry.x_m, factor * T_by_odometry.y_m, T_by_odometry.theta_rad};
 }
 
 }  // namespace topogeo::localization

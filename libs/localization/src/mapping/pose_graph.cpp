@@ -103,6 +103,13 @@ OptimizationSummary PoseGraph::optimize() {
   return least_squares(poses_, held, edges_);
 }
 
+void PoseGraph::correct_step(std::uint32_t stop, const Pose2& T_before_stop) {
+  for (const std::uint32_t i : edges_at_.at(stop)) {
+    PoseGraphEdge& edge = edges_[i];
+    if (edge.kind == EdgeKind::kOdometry && edge.to == stop) edge.T_from_to = T_before_stop;
+  }
+}
+
 void PoseGraph::remove_edges(std::span<const PoseGraphEdge> like) {
   const auto removed =
       std::stable_partition(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) {

@@ -318,6 +318,7 @@ StopMatch StopMatching::window_match(const PoseGraph& graph, std::uint32_t stop,
   match.T_later_earlier = inverse({place.aligned.T_a_b, covariance});
   match.predicted = place.predicted;
   match.source = ProposalSource::kWindow;
+  match.first_of_window = place.first_of_query;
   match.reason = Reason::kDoubtful;
   match.fitness = place.value;
   match.overlap = place.seen;

@@ -11,6 +11,8 @@
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 
+#include "../matching/match_evidence.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -31,7 +33,7 @@ constexpr double kFootprint_m = 10.0;     // from the anchor of a submap to wher
 // Bounds the time of a step, however large the map is: the most likely submaps are searched.
 constexpr std::size_t kMostSubmaps = 40;
 constexpr double kLeastScore = 0.30;
-constexpr std::size_t kPlacesOfSubmap = 3;  // compared; the best one is proposed
+constexpr std::size_t kPlacesOfSubmap = 3;  // compared
 // Of the comparison as a whole: points this far apart; one is there when the submap has one this
 // near, and contradicts it where a stop of the submap saw past it.
 constexpr double kAlignedSpacing_m = 0.10;
@@ -255,18 +257,27 @@ std::vector<PlaceRecognition::Target> PlaceRecognition::targets(
   return targets;
 }
 
-std::optional<PlaceProposal> PlaceRecognition::best_of(const Target& target,
+// Those of a submap that differ after they were aligned, best first. All of them: the one that has
+// most in view is often one along the corridor, where less of it lies beyond the submap.
+std::vector<PlaceProposal> PlaceRecognition::places_in(const Target& target,
                                                        const PlaceQuery& query) {
-  std::optional<PlaceProposal> best;
+  std::vector<PlaceProposal> found;
   for (const CoarseMatch& match : search_coarsely(map_of(target.submap), query.coarse_m,
                                                   target.window, kLeastScore, kPlacesOfSubmap)) {
     PlaceProposal proposal = proposal_in(target.submap, match.T_map_points);
     proposal.predicted = target.predicted;
     align_with(target.submap, query.whole, proposal);
-    if (proposal.seen < kLeastSeen) continue;
-    if (!best || better(proposal, *best)) best = proposal;
+    if (proposal.seen >= kLeastSeen) found.push_back(proposal);
   }
-  return best;
+  std::stable_sort(found.begin(), found.end(), better);
+  std::vector<PlaceProposal> places;
+  for (const PlaceProposal& proposal : found) {
+    const bool known = std::any_of(places.begin(), places.end(), [&](const PlaceProposal& other) {
+      return same_place(other.T_anchor_robot, proposal.T_anchor_robot);
+    });
+    if (!known) places.push_back(proposal);
+  }
+  return places;
 }
 
 PlaceProposal PlaceRecognition::proposal_in(std::size_t submap, const Pose2& T_anchor_robot) const {
@@ -290,10 +301,10 @@ std::vector<PlaceProposal> PlaceRecognition::propose(const PoseGraph& graph, std
   const Query seen = query(graph, stop);
   const PlaceQuery asked(seen.points);
   for (const Target& target : likely) {
-    std::optional<PlaceProposal> best = best_of(target, asked);
-    if (!best) continue;
-    best->first_of_query = seen.first_stop;
-    found.push_back(*best);
+    for (PlaceProposal& place : places_in(target, asked)) {
+      place.first_of_query = seen.first_stop;
+      found.push_back(std::move(place));
+    }
   }
   std::stable_sort(found.begin(), found.end(), better);
   return found;

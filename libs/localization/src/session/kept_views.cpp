@@ -22,8 +22,6 @@ constexpr double kSeen = 0.8;
 constexpr std::uint32_t kGonePoints = 4;
 constexpr double kGoneTolerance_m = 0.3;
 constexpr std::int64_t kOneTime_ns = 3'600'000'000'000;
-// A session that goes on for months counts as several drives.
-constexpr std::uint32_t kDriveStops = 2000;
 // Measurements that hold a stop, as many as it has in a single drive.
 constexpr std::uint32_t kEnoughEdges = 6;
 
@@ -55,26 +53,29 @@ struct View {
 };
 
 /// Whether another drive begins at a stop.
-bool begins_drive(std::span<const topomap::LocalMap> maps, std::size_t stop) {
+bool begins_drive(std::span<const topomap::LocalMap> maps, std::size_t stop,
+                  std::uint32_t stops_of_drive) {
   const topomap::StopId& here = maps[stop].stop;
   const topomap::StopId& before = maps[stop - 1].stop;
-  return here.session != before.session || here.number / kDriveStops != before.number / kDriveStops;
+  return here.session != before.session ||
+         here.number / stops_of_drive != before.number / stops_of_drive;
 }
 
-bool one_drive(std::span<const topomap::LocalMap> maps) {
+bool one_drive(std::span<const topomap::LocalMap> maps, std::uint32_t stops_of_drive) {
   for (std::size_t i = 1; i < maps.size(); ++i) {
-    if (begins_drive(maps, i)) return false;
+    if (begins_drive(maps, i, stops_of_drive)) return false;
   }
   return true;
 }
 
 /// Which drive and which time each stop is of.
-void count_drives(std::span<const topomap::LocalMap> maps, std::vector<View>& views) {
+void count_drives(std::span<const topomap::LocalMap> maps, std::uint32_t stops_of_drive,
+                  std::vector<View>& views) {
   std::uint32_t drive = 0;
   std::uint32_t time = 0;
   std::int64_t time_began_ns = maps.front().stamp_ns;
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    if (i > 0 && begins_drive(maps, i)) {
+    if (i > 0 && begins_drive(maps, i, stops_of_drive)) {
       ++drive;
       const std::int64_t stamp_ns = maps[i].stamp_ns;
       if (stamp_ns < time_began_ns || stamp_ns > time_began_ns + kOneTime_ns) {
@@ -88,7 +89,7 @@ void count_drives(std::span<const topomap::LocalMap> maps, std::vector<View>& vi
 }
 
 std::vector<View> views_of(std::span<const topomap::LocalMap> maps,
-                           std::span<const topomap::StopPose> stops) {
+                           std::span<const topomap::StopPose> stops, std::uint32_t stops_of_drive) {
   std::vector<View> views(maps.size());
   for (std::size_t i = 0; i < maps.size(); ++i) {
     MatchFeatures features = extract_scan_features(maps[i].points, maps[i].T_robot_laser);
@@ -97,7 +98,7 @@ std::vector<View> views_of(std::span<const topomap::LocalMap> maps,
     views[i].points = std::move(features.coarse);
     views[i].profile = std::move(features.profile);
   }
-  count_drives(maps, views);
+  count_drives(maps, stops_of_drive, views);
   return views;
 }
 
@@ -194,12 +195,13 @@ class Choice {
 
 KeptViews::KeptViews(std::span<const topomap::LocalMap> maps,
                      std::span<const topomap::StopPose> stops, std::size_t times,
-                     std::size_t untouched)
+                     std::size_t untouched, std::uint32_t stops_of_drive)
     : stops_(maps.size()), new_ids_(maps.size()) {
   // Nothing can be dropped of a single drive.
-  const std::size_t last =
-      maps.empty() || one_drive(maps) ? 0 : maps.size() - std::min(untouched, maps.size());
-  Choice choice(last > 0 ? views_of(maps, stops) : std::vector<View>{}, times);
+  const std::size_t last = maps.empty() || one_drive(maps, stops_of_drive)
+                               ? 0
+                               : maps.size() - std::min(untouched, maps.size());
+  Choice choice(last > 0 ? views_of(maps, stops, stops_of_drive) : std::vector<View>{}, times);
   for (std::uint32_t i = 0; i < maps.size(); ++i) {
     const Choice::Verdict verdict = i > 0 && i < last ? choice.judge(i) : Choice::Verdict{};
     stops_[i] = {verdict.by.value_or(i), verdict.outdated};

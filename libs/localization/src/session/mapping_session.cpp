@@ -1,33 +1,15 @@
 #include "topogeo/localization/session/mapping_session.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "topogeo/localization/session/make_slam.hpp"
+#include "topogeo/localization/session/slam_counts.hpp"
 
 namespace topogeo::localization {
-
-namespace {
-
-// In succession, after a search, before a drive joins the map. A room that is taken for another one
-// is tracked while the robot turns in it, but not much further (continue_test).
-constexpr std::uint32_t kTrackedStops = 3;
-constexpr double kTrackedDistance_m = 4.0;
-// Of what should look alike (contradiction()), where doors have changed and people are about; a
-// corridor that is taken for another one differs more.
-constexpr double kContradicted = 0.3;      // in the mean over that distance
-constexpr double kContradictedOnce = 0.5;  // by one stop
-
-void add_to(SlamCounts& sum, const SlamCounts& more) {
-  sum.tasks += more.tasks;
-  sum.evaluations += more.evaluations;
-  for (std::size_t i = 0; i < kReasons; ++i) sum.reasons[i] += more.reasons[i];
-  sum.steps_in_doubt += more.steps_in_doubt;
-}
-
-}  // namespace
 
 MappingSession::MappingSession(const LocalizerConfig& config, MatchPool& pool,
                                GraphOptimizer* optimizer)
@@ -59,7 +41,12 @@ void MappingSession::take_map(const std::shared_ptr<const StoredMap>& map) {
   for (const topomap::LocalMap& stored : map->maps) maps_.push_back(MapPointer(map, &stored));
   stands_for_ = map->trajectory.stops;
   numbered_since_ = map->trajectory.numbered_since;
-  renew_at_ = std::max(kLongDrive, 2 * maps_.size());
+  renew_at_ = std::max(long_drive_.stops, 2 * maps_.size());
+}
+
+void MappingSession::set_long_drive(const LongDrive& limits) {
+  long_drive_ = limits;
+  renew_at_ = std::max(long_drive_.stops, 2 * maps_.size());
 }
 
 void MappingSession::go_on() {
@@ -70,7 +57,11 @@ void MappingSession::go_on() {
 bool MappingSession::add(MapPointer map) {
   const bool same_session = last_id_ && last_id_->session == map->stop.session;
   if (same_session) check_follows(map->stop, *last_id_);
-  if (!maps_.empty()) check_robot(*map, *maps_.front());
+  const auto is_of_robot = [&](const MapPointer& held) { return held->robot_id == map->robot_id; };
+  if (!maps_.empty() && std::ranges::none_of(maps_, is_of_robot)) {
+    throw std::invalid_argument("localizer: a stop of robot '" + map->robot_id +
+                                "', of which the map has none");
+  }
   if (last_id_ && !same_session) begin_drive(*map);
   last_id_ = map->stop;
   ++stops_;
@@ -80,8 +71,7 @@ bool MappingSession::add(MapPointer map) {
 // The follower finds out by itself that the robot may be anywhere.
 void MappingSession::begin_drive(const topomap::LocalMap& map) {
   waiting_.clear();
-  searched_ = false;
-  tracked_ = {};
+  confirmation_.begin();
   if (follower_ || maps_.empty()) return;
   if (localizer_ == nullptr) {
     throw std::invalid_argument("localizer: stop " + std::to_string(map.stop.number) +
@@ -115,33 +105,13 @@ void MappingSession::add_to_map(MapPointer map) {
 
 bool MappingSession::follow(const MapPointer& map) {
   follower_->add(map);
-  const bool found = confirmed();
+  const bool found = confirmation_.add(*follower_);
   if (!mapping_) return false;
   waiting_.push_back(map);
   if (waiting_.size() > kMostWaiting) waiting_.erase(waiting_.begin());
   follower_->forget_stops(kMostWaiting);
   if (found) join();
   return found;
-}
-
-// True when the last stop is tracked and matched, and so were enough stops before it where the
-// place was found by a search: in one look a room of another building can look like one of the map.
-bool MappingSession::confirmed() {
-  const std::optional<TrackedStep>& step = follower_->last_step();
-  const bool tracked = follower_->status().state == LocalizationState::kTracking && step &&
-                       !step->accepted.empty() &&
-                       contradiction(step->evidence) <= kContradictedOnce;
-  if (!step) searched_ = true;
-  if (!tracked) {
-    tracked_ = {};
-    return false;
-  }
-  ++tracked_.stops;
-  tracked_.distance_m += step->evidence.distance_m;
-  tracked_.contradiction += contradiction(step->evidence);
-  const bool alike = tracked_.contradiction <= kContradicted * tracked_.stops;
-  return alike && (!searched_ ||
-                   (tracked_.stops >= kTrackedStops && tracked_.distance_m >= kTrackedDistance_m));
 }
 
 void MappingSession::join() {
@@ -162,10 +132,11 @@ std::optional<MappingSession::Renewed> MappingSession::renew(std::size_t untouch
   if (keeps_all_) return std::nullopt;
   localizer_->settle();
   std::shared_ptr<const StoredMap> before = map_so_far();
-  KeptViews kept(before->maps, before->trajectory.stops, kKeptTimes, untouched);
+  KeptViews kept(before->maps, before->trajectory.stops, kKeptTimes, untouched,
+                 long_drive_.stops_of_drive);
   if (kept.dropped() == 0) return std::nullopt;
   const std::uint64_t next_task = localizer_->next_task();
-  add_to(counts_before_, mapper_->counts());
+  add_counts(counts_before_, mapper_->counts());
   take_map(std::make_shared<const StoredMap>(with_kept_views(*before, kept)));
   localizer_->number_tasks_from(next_task);
   return Renewed{std::move(before), std::move(kept)};
@@ -189,9 +160,8 @@ std::vector<StoredMatch> MappingSession::renewed(std::vector<StoredMatch> matche
 
 // The robot is followed from its last stop on, and with the next one that is matched it maps again.
 void MappingSession::renew_long_drive() {
-  constexpr std::size_t kUntouched = 100;  // the place where the robot is, and loops under way
-  const auto by = renew(kUntouched);
-  renew_at_ = std::max(kLongDrive, maps_.size() + kLongDrive / 2);
+  const auto by = renew(long_drive_.untouched);
+  renew_at_ = std::max(long_drive_.stops, maps_.size() + long_drive_.stops / 2);
   if (!by) return;
   start_following(map_so_far());
   follower_->start_after(*maps_.back(), mapper_->trajectory().stops.back().T_map_robot);
@@ -237,13 +207,12 @@ void MappingSession::start_following(std::shared_ptr<const StoredMap> map) {
   const std::uint64_t next_task = localizer_ != nullptr ? localizer_->next_task() : counts().tasks;
   follower_ = std::make_unique<MapLocalizer>(config_, std::move(map), pool_);
   follower_->number_tasks_from(next_task);
-  searched_ = false;
-  tracked_ = {};
+  confirmation_.begin();
 }
 
 void MappingSession::end_following() {
   localizer_->number_tasks_from(follower_->next_task());
-  add_to(counts_before_, follower_->counts());
+  add_counts(counts_before_, follower_->counts());
   follower_.reset();
 }
 
@@ -271,8 +240,8 @@ std::optional<topomap::StopPose> MappingSession::last_stop() const {
 
 SlamCounts MappingSession::counts() const {
   SlamCounts counts = mapper_->counts();
-  add_to(counts, counts_before_);
-  if (follower_) add_to(counts, follower_->counts());
+  add_counts(counts, counts_before_);
+  if (follower_) add_counts(counts, follower_->counts());
   return counts;
 }
 

@@ -18,6 +18,12 @@ constexpr double kMargin_rad = 0.05;
 constexpr double kOverContradicted = 2.0;
 constexpr double kLeast_m = 15.0;
 constexpr double kMost_m = 40.0;
+// Whole scans that the map must know, together, and how much of them it contradicts where the robot
+// is not: of right places it is 0 to 15 %, with changed doors and people, of wrong ones 20 % or
+// more (tests/bench/RESULTS.md, "Kidnapped robots").
+constexpr double kLeastKnown = 1.0;
+constexpr double kMostContradicted = 0.2;
+constexpr double kBetweenViews_m = 0.5;  // of path between two views that count
 
 }  // namespace
 
@@ -35,10 +41,24 @@ void ContinuedPlace::move(const DriveStep& step) {
 void ContinuedPlace::track(const UncertainPose& T_map_robot, double distance_m) {
   pose_ = T_map_robot;
   tracked_m_ += distance_m;
+  seen_ = {};
+  since_m_ = kBetweenViews_m;
+}
+
+void ContinuedPlace::compare(const KnownView& view, double distance_m) {
+  since_m_ += distance_m;
+  if (!pose_ || since_m_ < kBetweenViews_m) return;
+  since_m_ = 0.0;
+  seen_.there += view.there;
+  seen_.contradicted += view.contradicted;
+  if (seen_.known() >= kLeastKnown && seen_.contradicted > kMostContradicted * seen_.known()) {
+    pose_.reset();
+  }
 }
 
 void ContinuedPlace::forget() {
   pose_.reset();
+  seen_ = {};
   tracked_m_ = 0.0;
 }
 

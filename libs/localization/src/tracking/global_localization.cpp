@@ -23,6 +23,10 @@ constexpr double kRobotRadius_m = 0.20;  // a scan comes from no place nearer to
 constexpr double kSeenFree_m = 8.0;      // how far from a stop a scan may come from
 constexpr std::size_t kAligned = 8;      // best climbed places that are aligned point to line
 constexpr double kNearStop_m = 6.0;      // a stored stop this near sees most of what a scan does
+// Of a point of a scan, as of windows of places (PlaceRecognition): on what the map has, and where
+// a stop saw past it.
+constexpr double kKnownWithin_m = 0.20;
+constexpr double kSeenPast_m = 0.35;
 
 // The answer to one scan. The limits were chosen on logs with known poses (tests/bench,
 // topogeo_relocalization) so that no wrong place is accepted.
@@ -33,6 +37,13 @@ constexpr double kLargestDoubt = 2.2;      // and one with more, as by `gate.lar
 constexpr double kLargestRivalry =
     0.85;  // fitness of the best pose elsewhere over that of the best
 constexpr std::size_t kFewestQueryPoints = 25;  // of the scan, thinned; fewer prove nothing
+
+/// Of the fine field at this distance from a point, which is less than its width.
+int occupied_within(double distance_m) {
+  const double u =
+      1.0 - distance_m * distance_m / (PlaceField::kFineWidth_m * PlaceField::kFineWidth_m);
+  return static_cast<int>(255.0 * u * u);
+}
 
 /// At most about `count`, spread over the scan.
 std::vector<SurfacePoint> spread(const std::vector<SurfacePoint>& points, std::size_t count) {
@@ -143,10 +154,7 @@ std::vector<std::uint8_t> GlobalLocalizer::free_cells(const PlaceField& field) c
   const KernelGrid& grid = field.grid();
   const auto columns = static_cast<std::size_t>(grid.columns());
   std::vector<std::uint8_t> free(columns * static_cast<std::size_t>(grid.rows()), 0);
-  // The robot's circle touches nothing: the kernel at this distance from a point.
-  const double u =
-      1.0 - kRobotRadius_m * kRobotRadius_m / (PlaceField::kFineWidth_m * PlaceField::kFineWidth_m);
-  const int occupied = static_cast<int>(255.0 * u * u);
+  const int occupied = occupied_within(kRobotRadius_m);  // the robot's circle touches nothing
   for (const StoredStop& stop : stops_) {
     const int reach = static_cast<int>(kSeenFree_m / grid.cell_m());
     const int c = grid.column(stop.T_map_robot.x_m);
@@ -232,6 +240,32 @@ std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& 
   }
   share = outline.empty() ? 0.0 : static_cast<double>(most) / static_cast<double>(outline.size());
   return best;
+}
+
+KnownView GlobalLocalizer::known_view(const MatchFeatures& query, const Pose2& T_map_robot) const {
+  KnownView view;
+  if (query.coarse.empty()) return view;
+  const geometry::SinCos heading = geometry::sincos(T_map_robot.theta_rad);
+  const double each = 1.0 / static_cast<double>(query.coarse.size());
+  for (const SurfacePoint& point : query.coarse) {
+    const SurfacePoint p = moved(point, T_map_robot, heading);
+    if (field_->fine().at(p.position_m.x(), p.position_m.y()) >= occupied_within(kKnownWithin_m)) {
+      view.there += each;
+      continue;
+    }
+    const bool seen_past = std::any_of(stops_.begin(), stops_.end(), [&](const StoredStop& stop) {
+      if ((stop.T_map_robot.position_m() - p.position_m).squaredNorm() >
+          kSeenFree_m * kSeenFree_m) {
+        return false;
+      }
+      const Pose2 T_stop_map = geometry::inverse(stop.T_map_robot);
+      const SurfacePoint q = moved(p, T_stop_map, geometry::sincos(T_stop_map.theta_rad));
+      return stop.profile.view_of_face(q.position_m, q.normal, kSeenPast_m) ==
+             RangeProfile::View::kFree;
+    });
+    if (seen_past) view.contradicted += each;
+  }
+  return view;
 }
 
 double GlobalLocalizer::fitness(const MatchFeatures& query, const Pose2& T_map_robot) const {

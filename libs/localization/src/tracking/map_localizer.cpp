@@ -5,7 +5,10 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "topogeo/localization/matching/match_gate.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
 #include "topogeo/localization/tracking/pose_fusion.hpp"
 
 namespace topogeo::localization {
@@ -28,9 +31,14 @@ bool agree(const UncertainPose& predicted, const UncertainPose& measured) {
          geometry::kMahalanobis2Of99Percent;
 }
 
-topomap::StopPose pose_of(const LocalizedStop& stop) {
-  return {stop.stop.number, stop.stamp_ns, stop.T_map_robot,
-          stop.covariance,  stop.stop,     located(stop.status.state)};
+/// `index`: of the stop in the trajectory, which may have several sessions.
+topomap::StopPose pose_of(const LocalizedStop& stop, std::size_t index) {
+  return {static_cast<std::uint32_t>(index),
+          stop.stamp_ns,
+          stop.T_map_robot,
+          stop.covariance,
+          stop.stop,
+          located(stop.status.state)};
 }
 
 }  // namespace
@@ -57,6 +65,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
     accepted = track(stop);
   } else {
     if (stop.follows) search_.move(stop.step.T_before_now, stop.step.distance_m);
+    compare_continued(stop);
     look_around(stop);
     accepted = decide();
   }
@@ -103,6 +112,10 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
       step.accepted.push_back({stored[i].id,
                                inverse(UncertainPose{result.T_reference_query, result.covariance}),
                                result.fitness});
+      const Pose2 T_scans =
+          without_prior(result.T_reference_query, data_covariance(result),
+                        weak_prior({tasks[i].T_reference_query, tasks[i].covariance.inverse()}));
+      step.scans_alone.push_back(inverse(UncertainPose{T_scans, result.covariance}));
     } else if (result.reason == Reason::kDoubtful || result.reason == Reason::kSecondSolution) {
       uncertain.push_back(measured);
     }
@@ -115,6 +128,8 @@ std::uint32_t MapLocalizer::track(const DriveStop& stop) {
   monitored_ = true;
   if (status_.state == LocalizationState::kTracking && !step.accepted.empty()) {
     continued_.track(pose_, stop.step.distance_m);
+  } else {
+    compare_continued(stop);
   }
   if (status_.state == LocalizationState::kLost) {
     begin_search();
@@ -171,6 +186,13 @@ double MapLocalizer::better_elsewhere(const DriveStop& stop) const {
   }
   const double here = places.fitness(stop.features, pose_.T_a_b);
   return std::max(0.0, answer.poses.front().fitness - here);
+}
+
+// The view of a stop that is not tracked from where the drive leads to.
+void MapLocalizer::compare_continued(const DriveStop& stop) {
+  if (!continued_.pose()) return;
+  continued_.compare(matching_.places().known_view(stop.features, continued_.pose()->T_a_b),
+                     stop.step.distance_m);
 }
 
 // --- searching
@@ -297,13 +319,15 @@ void MapLocalizer::forget_stops(std::size_t most) {
 topomap::Trajectory MapLocalizer::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = added_;
-  for (const LocalizedStop& stop : stops_) trajectory.stops.push_back(pose_of(stop));
+  for (const LocalizedStop& stop : stops_) {
+    trajectory.stops.push_back(pose_of(stop, trajectory.stops.size()));
+  }
   return trajectory;
 }
 
 std::optional<topomap::StopPose> MapLocalizer::last_stop() const {
   if (stops_.empty()) return std::nullopt;
-  return pose_of(stops_.back());
+  return pose_of(stops_.back(), stops_.size() - 1);
 }
 
 const std::vector<LoopDecision>& MapLocalizer::loop_decisions() const {

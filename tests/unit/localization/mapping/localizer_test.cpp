@@ -118,6 +118,30 @@ TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
   EXPECT_EQ(outcome.trajectory.stops[0].T_map_robot, Pose2{});
 }
 
+// While the first steps were driven nothing was known of the scale of odometry.
+TEST(LocalizerTest, InTheEndAllStepsHaveTheScaleThatWasLearnedOnTheDrive) {
+  const test::Maps& maps = round_trip().maps;
+  InProcessPool pool;
+  Localizer localizer({}, pool);
+  for (const auto& map : maps) localizer.add(map);
+  const auto scales = [&] {
+    std::vector<double> ratios;
+    for (const PoseGraphEdge& edge : localizer.graph().edges()) {
+      if (edge.kind != EdgeKind::kOdometry) continue;
+      const Pose2 recorded =
+          geometry::between(maps[edge.from]->T_odom_robot, maps[edge.to]->T_odom_robot);
+      const double recorded_m = recorded.position_m().norm();
+      if (recorded_m > 0.1) ratios.push_back(edge.T_from_to.position_m().norm() / recorded_m);
+    }
+    return ratios;
+  };
+  ASSERT_NEAR(scales().front(), 1.0, 1e-9);
+  const double learned = scales().back();
+  ASSERT_GT(std::fabs(learned - 1.0), 1e-4);
+  localizer.finish();
+  for (const double scale : scales()) EXPECT_NEAR(scale, learned, 1e-9);
+}
+
 TEST(LocalizerTest, WithoutRevisitsNoLoopIsClosed) {
   LocalizerConfig config;
   config.revisit_matches = 0;

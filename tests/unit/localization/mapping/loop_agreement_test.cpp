@@ -148,7 +148,7 @@ TEST_F(LoopAgreementTest, AFewThatContradictAreOutvoted) {
 }
 
 // Half a metre along the corridor against a prediction that all others agree with.
-TEST_F(LoopAgreementTest, AWindowThatAloneContradictsThePredictionIsLeftOut) {
+TEST_F(LoopAgreementTest, WhatAloneContradictsThePredictionIsLeftOut) {
   const auto predicted = [](StopMatch match, double off_m) {
     match.predicted = {{match.edge.T_from_to.x_m, match.edge.T_from_to.y_m - off_m, 0.0},
                        spread_of(0.1, 0.05)};
@@ -157,14 +157,45 @@ TEST_F(LoopAgreementTest, AWindowThatAloneContradictsThePredictionIsLeftOut) {
   for (std::uint32_t i = 0; i < 6; ++i) {
     agreement_.add(predicted(match(i, 30 + i, 1.0), 0.1), path_m_);
   }
-  StopMatch window = predicted(match(6, 36, 1.0), 0.5);
-  window.source = ProposalSource::kWindow;
-  agreement_.add(window, path_m_);
-  StopMatch stop = predicted(match(7, 37, 1.0), 0.5);
-  agreement_.add(stop, path_m_);
+  agreement_.add(predicted(match(6, 36, 1.0), 0.5), path_m_);
   const std::vector<StopMatch> all = accepted();
-  EXPECT_EQ(all.size(), 7U);
+  EXPECT_EQ(all.size(), 6U);
   for (const StopMatch& one : all) EXPECT_NE(one.edge.from, 6U);
+}
+
+// Of a place where the robot is expected stops measure better.
+TEST_F(LoopAgreementTest, WindowsAreTakenOnlyWhereTheySurprise) {
+  for (const bool surprising : {false, true}) {
+    LoopAgreement agreement;
+    for (std::uint32_t i = 0; i < 12; ++i) {
+      StopMatch one = match(i, 30 + i, 1.0);
+      one.predicted = {{30.0, surprising ? 0.0 : 1.0, 0.0}, spread_of(0.2, 0.02)};
+      if (i % 2 == 1) {
+        one.source = ProposalSource::kWindow;
+        one.first_of_window = 25 + i;
+      }
+      agreement.add(one, path_m_);
+    }
+    EXPECT_EQ(agreement.accepted(graph_, path_m_).size(), surprising ? 12U : 6U);
+  }
+}
+
+// Windows of 5 m that end 1 m apart hold nearly the same; five of them hold no more than 9 m.
+TEST_F(LoopAgreementTest, WindowsCountByThePathThatNoOtherHolds) {
+  const auto windows = [&](std::uint32_t first, std::uint32_t count, std::uint32_t apart) {
+    LoopAgreement agreement;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      StopMatch window = match(apart * i, first + apart * i, 1.0);
+      window.source = ProposalSource::kWindow;
+      window.first_of_window = window.edge.to - 5;
+      window.predicted = {{1.0 * first, 0.0, 0.0}, spread_of(0.25, 0.02)};
+      agreement.add(window, path_m_);
+    }
+    return agreement.accepted(graph_, path_m_).size();
+  };
+  EXPECT_EQ(windows(30, 7, 1), 0U);
+  EXPECT_EQ(windows(30, 4, 5), 4U);    // 20 m, none twice
+  EXPECT_EQ(windows(30, 16, 1), 16U);  // the same 20 m
 }
 
 TEST_F(LoopAgreementTest, AgainstAGoodPredictionMoreAreWanted) {

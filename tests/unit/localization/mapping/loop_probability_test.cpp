@@ -80,13 +80,14 @@ TEST(LoopProbability, EvidenceAgainstAMatchLowersIt) {
   EXPECT_LT(loop_probability(other), loop_probability(doubtful()));
 }
 
-TEST(LoopProbability, AgreementRaisesIt) {
+TEST(LoopProbability, AgreementDoublesTheOddsAtLeast) {
+  const auto odds = [](double probability) { return probability / (1.0 - probability); };
   for (LoopEvidence match : {doubtful(), window()}) {
     match.surprise = 20.0;
     const double alone = loop_probability(match);
     match.agreement = 4.0;
     const double together = loop_probability(match);
-    EXPECT_LT(1.0 - together, 0.5 * (1.0 - alone));
+    EXPECT_GT(odds(together), 2.0 * odds(alone));
   }
 }
 

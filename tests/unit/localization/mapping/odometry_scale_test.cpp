@@ -28,14 +28,14 @@ TEST(OdometryScaleTest, CorrectsNothingBeforeItKnows) {
   const OdometryScale scale;
   EXPECT_EQ(scale.factor(), 1.0);
   const Pose2 step{0.7, -0.1, 0.3};
-  EXPECT_EQ(scale.corrected(step), step);
+  EXPECT_EQ(scaled(step, scale.factor()), step);
 }
 
 TEST(OdometryScaleTest, FindsWaysThatAreTooLongOrTooShort) {
   for (const double truth : {0.97, 1.02, 1.03}) {
     const OdometryScale scale = learned(1000, truth, 0.03, 0.02);
     EXPECT_NEAR(scale.factor() * truth, 1.0, 0.005) << truth;
-    const Pose2 step = scale.corrected({truth, 0.5 * truth, 0.1});
+    const Pose2 step = scaled({truth, 0.5 * truth, 0.1}, scale.factor());
     EXPECT_NEAR(step.x_m, 1.0, 0.005);
     EXPECT_NEAR(step.y_m, 0.5, 0.0025);
     EXPECT_EQ(step.theta_rad, 0.1);

@@ -49,6 +49,25 @@ TEST(PoseGraphTest, DisagreementIsTheSquaredMahalanobisDistance) {
 }
 
 // Laps of a round of 100 stops, more than are factorized, each shifted by what odometry adds up to.
+TEST(PoseGraphTest, AStepOfOdometryIsCorrectedAndNothingElse) {
+  PoseGraph graph;
+  for (int i = 0; i < 3; ++i) graph.add_pose({1.0 * i, 0, 0});
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    graph.add_edge({i, i + 1, EdgeKind::kOdometry, {1, 0, 0}, diagonal(0.1, 0.1)});
+    graph.add_edge({i, i + 1, EdgeKind::kSequential, {1.1, 0, 0}, diagonal(0.1, 0.1)});
+  }
+  graph.correct_step(1, {1.2, 0.1, 0});
+  ASSERT_EQ(graph.edges().size(), 4U);
+  EXPECT_EQ(graph.edges()[0].T_from_to, (Pose2{1.2, 0.1, 0}));
+  EXPECT_EQ(graph.edges()[1].T_from_to, (Pose2{1.1, 0, 0}));
+  EXPECT_EQ(graph.edges()[2].T_from_to, (Pose2{1, 0, 0}));
+  EXPECT_EQ(graph.edges()[0].covariance, diagonal(0.1, 0.1));
+  ASSERT_TRUE(graph.optimize().usable);
+  // Between the two, which count the same but for the loss of the match.
+  EXPECT_NEAR(graph.poses()[1].x_m, 1.15, 0.003);
+  EXPECT_NEAR(graph.poses()[2].x_m, 1.15 + 1.05, 0.006);
+}
+
 TEST(PoseGraphTest, ManyStopsAreSpreadWithoutAFactorization) {
   constexpr std::uint32_t kRound = 100;
   constexpr std::uint32_t kStops = 6100;

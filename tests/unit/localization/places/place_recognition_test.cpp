@@ -16,10 +16,17 @@ namespace {
 using geometry::Pose2;
 
 /// Rays against the corridor y = -1 ... 1 whose left wall has niches that are all different.
-topomap::LocalMap scan_at(const Pose2& T_world_robot) {
-  const auto left_m = [](double x_m) {
-    return std::fmod(std::fabs(x_m), 3.7) < 0.9 + 0.03 * x_m ? 1.6 : 1.0;
-  };
+bool niche(double x_m) {
+  return std::fmod(std::fabs(x_m), 3.7) < 0.9 + 0.03 * x_m;
+}
+
+/// Two metres apart, all alike but the one before 9 m, which is wider.
+bool niche_of_many(double x_m) {
+  return std::fmod(std::fabs(x_m), 2.0) < 0.7 || (x_m > 8.0 && x_m < 9.0);
+}
+
+topomap::LocalMap scan_at(const Pose2& T_world_robot, bool (*has_niche)(double x_m)) {
+  const auto left_m = [&](double x_m) { return has_niche(x_m) ? 1.6 : 1.0; };
   topomap::LocalMap map;
   for (int i = 0; i < 360; ++i) {
     const double angle = T_world_robot.theta_rad + i * M_PI / 180.0;
@@ -40,7 +47,7 @@ class PlaceRecognitionTest : public testing::Test {
   /// The robot is at `truth`, the graph estimates it at `estimate`; the step there is known that
   /// well.
   void stop(const Pose2& truth, const Pose2& estimate, double path_m, double step_sigma = 0.01) {
-    const topomap::LocalMap map = scan_at(truth);
+    const topomap::LocalMap map = scan_at(truth, has_niche_);
     places_.add(std::make_shared<const StopView>(
                     view_of(extract_scan_features(map.points, map.T_robot_laser))),
                 path_m);
@@ -63,6 +70,7 @@ class PlaceRecognitionTest : public testing::Test {
     return places_.propose(graph_, last, last - 8, relative, 0.25);
   }
 
+  bool (*has_niche_)(double x_m) = niche;
   PlaceRecognition places_;
   PoseGraph graph_;
   std::uint32_t stops_ = 0;
@@ -86,6 +94,29 @@ TEST_F(PlaceRecognitionTest, ProposesTheStretchThatTheRobotIsBackOn) {
   EXPECT_NEAR(T_world_robot.theta_rad, 0.0, 0.05);
   EXPECT_GT(best.value, 0.88);
   EXPECT_FALSE(best.aligned.covariance.isZero(0.0));
+}
+
+// A shift by one niche fits nearly as well; whichever has more in view, the right one is among the
+// proposals of the same submap.
+TEST_F(PlaceRecognitionTest, ProposesAllPlacesOfASubmapThatLookAlike) {
+  has_niche_ = niche_of_many;
+  for (int i = 0; i <= 36; ++i) stop({0.7 * i, 0.0, 0.0}, {0.7 * i, 0.0, 0.0}, 0.7 * i);
+  for (int i = 0; i < 9; ++i) {
+    const double x_m = 4.0 + 0.7 * i;
+    stop({x_m, 0.1, 0.0}, {x_m + 1.0, 0.1, 0.0}, 25.9 + 0.7 * i);
+  }
+  bool right_among_others = false;
+  const std::vector<PlaceProposal> found = propose(1.5);
+  for (const PlaceProposal& place : found) {
+    const Pose2 T_world_robot = graph_.poses()[place.anchor] * place.T_anchor_robot;
+    if (std::fabs(T_world_robot.x_m - 9.6) > 0.15) continue;
+    for (const PlaceProposal& other : found) {
+      const Eigen::Vector2d apart_m =
+          other.T_anchor_robot.position_m() - place.T_anchor_robot.position_m();
+      right_among_others |= other.anchor == place.anchor && apart_m.norm() > 1.5;
+    }
+  }
+  EXPECT_TRUE(right_among_others);
 }
 
 // What was seen before a step that is hardly known would be found where it was, whatever the robot

@@ -8,7 +8,7 @@
 
 #include "topogeo/localization/matching/matcher.hpp"
 
-#include "localization/simulated_maps.hpp"
+#include "localization/session/robot_drives.hpp"
 
 namespace topogeo::localization {
 namespace {
@@ -248,6 +248,20 @@ TEST_F(MappingSessionTest, AnotherSessionIsAnotherDriveThatFindsItsPlace) {
   EXPECT_LT(largest_error_m(after), 0.25);
 }
 
+// The second drive begins in a part of the floor that the map has not, 40 m before it comes to
+// where the first one began. By odometry its first stops lie across other corridors.
+TEST_F(MappingSessionTest, ADriveThatMeetsTheMapLateIsComparedWithItOnceItHasItsPlace) {
+  MappingSession session({}, pool_);
+  for (const auto& given : test::one_after_the_other(test::drive_a().maps, test::drive_b().maps)) {
+    topomap::LocalMap map = *given;
+    map.robot_id = "robot";
+    session.add(std::make_shared<const topomap::LocalMap>(std::move(map)));
+  }
+  session.finish();
+  EXPECT_EQ(session.unmapped_stops(), 0U);
+  EXPECT_LT(test::largest_error_m(session.trajectory()), 0.25);
+}
+
 TEST_F(MappingSessionTest, TheMapOfAPatrolStopsGrowing) {
   constexpr std::size_t kStopsOfDay = 30;
   constexpr std::int64_t kBetween_ns = 86'400'000'000'000;
@@ -285,6 +299,65 @@ TEST_F(MappingSessionTest, TheMapOfAPatrolStopsGrowing) {
     const Pose2 truth = geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[i]);
     const Pose2 last = trajectory.stops[trajectory.stops.size() - kStopsOfDay + i].T_map_robot;
     EXPECT_LT(geometry::between(truth, last).position_m().norm(), 0.1) << i;
+  }
+}
+
+// A robot that is never switched off: stop after stop of one session, back and forth along the same
+// path, two hours each way, with limits of a fortieth.
+TEST_F(MappingSessionTest, TheMapOfADriveWithoutEndStopsGrowing) {
+  constexpr std::size_t kWay = 25;
+  constexpr std::size_t kWays = 16;
+  constexpr std::int64_t kOfWay_ns = 7'200'000'000'000;
+  const MappingSession::LongDrive limits{
+      .stops = 4 * kWay, .stops_of_drive = 2 * kWay, .untouched = 10};
+  MappingSession session({}, pool_);
+  session.set_long_drive(limits);
+  std::size_t most = 0;
+  std::size_t renewals = 0;
+  std::uint64_t numbered_since = 0;
+  std::uint32_t number = 0;
+  Pose2 T_odom_last;
+  for (std::size_t way = 0; way < kWays; ++way) {
+    for (std::size_t k = 0; k < kWay; ++k) {
+      const std::size_t i = way % 2 == 0 ? k : kWay - 1 - k;
+      topomap::LocalMap map = *driven_->maps[i];
+      map.id = number;
+      map.stop = {7, number++};
+      map.stamp_ns =
+          static_cast<std::int64_t>(way) * kOfWay_ns + 1'000'000'000 * static_cast<std::int64_t>(k);
+      // What is on the way between two stops was on the way there, not back.
+      map.track.clear();
+      map.T_previous_robot = geometry::between(T_odom_last, map.T_odom_robot);
+      T_odom_last = map.T_odom_robot;
+      session.add(std::make_shared<const topomap::LocalMap>(map));
+      most = std::max(most, session.maps().size());
+      const topomap::Trajectory trajectory = session.trajectory();
+      renewals += trajectory.numbered_since != numbered_since ? 1 : 0;
+      numbered_since = trajectory.numbered_since;
+      const auto& stops = trajectory.stops;
+      ASSERT_EQ(stops.size(), session.maps().size());
+      const bool ascend =
+          std::adjacent_find(stops.begin(), stops.end(), [](const auto& a, const auto& b) {
+            return a.stop.number >= b.stop.number;
+          }) == stops.end();
+      ASSERT_TRUE(ascend) << number;
+      ASSERT_EQ(session.maps().front()->stop.number, 0U) << "the origin stays";
+    }
+  }
+  session.finish();
+  EXPECT_EQ(session.unmapped_stops(), 0U);
+  EXPECT_EQ(session.added_stops(), kWays * kWay);
+  EXPECT_GE(renewals, 2U);
+  // The oldest views, those of the last three times, and what has come since the last renewal.
+  EXPECT_LE(most, (1 + kKeptTimes) * limits.stops_of_drive + limits.stops / 2);
+  const topomap::Trajectory trajectory = session.trajectory();
+  for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
+    const std::uint32_t stop = trajectory.stops[i].stop.number;
+    const std::size_t way = stop / kWay;
+    const std::size_t place = way % 2 == 0 ? stop % kWay : kWay - 1 - stop % kWay;
+    const Pose2 truth = geometry::between(driven_->T_world_robot[0], driven_->T_world_robot[place]);
+    EXPECT_LT(geometry::between(truth, trajectory.stops[i].T_map_robot).position_m().norm(), 0.15)
+        << stop;
   }
 }
 

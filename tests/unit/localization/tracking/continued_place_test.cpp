@@ -105,6 +105,45 @@ TEST(ContinuedPlace, WantsTwiceAsMuchOfWhatItContradicts) {
   EXPECT_EQ(place.wanted_m(elsewhere), 15.0);
 }
 
+TEST(ContinuedPlace, EndsWhereTheMapContradictsWhatIsSeen) {
+  ContinuedPlace place;
+  place.track(kTracked, 1.0);
+  place.compare({0.4, 0.2}, 1.0);
+  EXPECT_TRUE(place.pose());  // one scan, and not all of it known
+  place.compare({0.5, 0.1}, 1.0);
+  EXPECT_FALSE(place.pose());
+}
+
+TEST(ContinuedPlace, GoesOnWhereTheMapKnowsNothing) {
+  ContinuedPlace place;
+  place.track(kTracked, 1.0);
+  for (int i = 0; i < 50; ++i) place.compare({0.0, 0.01}, 1.0);
+  EXPECT_TRUE(place.pose());
+}
+
+TEST(ContinuedPlace, GoesOnWhereDoorsAndPeopleHaveChanged) {
+  ContinuedPlace place;
+  place.track(kTracked, 1.0);
+  for (int i = 0; i < 50; ++i) place.compare({0.75, 0.15}, 1.0);
+  EXPECT_TRUE(place.pose());
+}
+
+TEST(ContinuedPlace, CountsAViewOnce) {
+  ContinuedPlace place;
+  place.track(kTracked, 1.0);
+  for (int i = 0; i < 4; ++i) place.compare({0.4, 0.2}, 0.1);
+  EXPECT_TRUE(place.pose());
+}
+
+TEST(ContinuedPlace, BeginsAnewWhereItIsTracked) {
+  ContinuedPlace place;
+  place.track(kTracked, 1.0);
+  place.compare({0.4, 0.2}, 1.0);
+  place.track(kTracked, 1.0);
+  place.compare({0.4, 0.2}, 1.0);
+  EXPECT_TRUE(place.pose());
+}
+
 TEST(ContinuedPlace, ForgetsWhenItIsTold) {
   ContinuedPlace place;
   place.track(kTracked, 1.0);

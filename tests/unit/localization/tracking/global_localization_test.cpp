@@ -99,6 +99,25 @@ TEST(GlobalLocalizer, AMapWithoutStopsOrPointsIsAnError) {
   EXPECT_THROW(GlobalLocalizer(blind, trajectory), std::invalid_argument);
 }
 
+// The oracle: at its true pose the map has what a scan shows, in a wrong one it has seen past it,
+// and beyond its walls it knows nothing.
+TEST(GlobalLocalizer, KnowsWhatAScanShowsAndContradictsItElsewhere) {
+  const FinishedMap map("floor");
+  const GlobalLocalizer localizer(map.maps, map.trajectory);
+  const topomap::LocalMap& stop = map.maps[20];
+  const MatchFeatures scan = extract_scan_features(stop.points, stop.T_robot_laser);
+  const Pose2& T_right = map.trajectory.stops[20].T_map_robot;
+  const KnownView right = localizer.known_view(scan, T_right);
+  EXPECT_GT(right.known(), 0.95);
+  EXPECT_LT(right.contradicted, 0.03);
+  const KnownView turned = localizer.known_view(scan, T_right * Pose2{0.0, 0.0, 0.8});
+  EXPECT_GT(turned.contradicted, 0.2 * turned.known());
+  EXPECT_LE(turned.known(), 1.0 + 1e-9);
+  const KnownView outside = localizer.known_view(scan, Pose2{500.0, 0.0, 0.0});
+  EXPECT_EQ(outside.known(), 0.0);
+  EXPECT_EQ(localizer.known_view({}, T_right).known(), 0.0);
+}
+
 TEST(KernelGrid, IsFullAtAPointAndNothingBeyondItsWidth) {
   const std::vector<Eigen::Vector2d> points{{1.0, 2.0}};
   const KernelGrid grid(points, 0.05, 0.3, 1.0);

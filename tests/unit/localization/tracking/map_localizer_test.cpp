@@ -1,7 +1,9 @@
 #include "topogeo/localization/tracking/map_localizer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -87,6 +89,34 @@ TEST_F(MapLocalizerTest, FollowsAnotherDriveFromAnInitialPose) {
     EXPECT_GT(localizer.status().confidence, 0.8) << i;
   }
   EXPECT_EQ(localizer.searches(), 0U);
+}
+
+// What was predicted is a measurement of its own to whoever uses them.
+TEST_F(MapLocalizerTest, MatchesByTheScansAloneDoNotDependOnWhatWasPredicted) {
+  const Eigen::Matrix3d surely = Eigen::Vector3d(0.0025, 0.0025, 0.0004).asDiagonal();
+  double largest_m = 0.0;
+  std::size_t compared = 0;
+  for (const std::size_t stop : {5U, 12U, 30U, 48U}) {
+    std::vector<TrackedStep> steps;
+    for (const double off_m : {-0.1, 0.1}) {
+      InProcessPool pool;
+      MapLocalizer localizer({}, stored_, pool);
+      localizer.set_pose(drive_->T_world_robot[stop] * Pose2{off_m, 0.0, 0.0}, surely);
+      add(localizer, stop, {});
+      steps.push_back(*localizer.last_step());
+    }
+    for (std::size_t i = 0; i < steps[0].accepted.size(); ++i) {
+      for (std::size_t k = 0; k < steps[1].accepted.size(); ++k) {
+        if (steps[0].accepted[i].stop != steps[1].accepted[k].stop) continue;
+        const Pose2 apart =
+            geometry::between(steps[0].scans_alone[i].T_a_b, steps[1].scans_alone[k].T_a_b);
+        largest_m = std::max(largest_m, apart.position_m().norm());
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GE(compared, 4U);
+  EXPECT_LT(largest_m, 0.02);
 }
 
 TEST_F(MapLocalizerTest, FindsItselfWithoutAPose) {
@@ -187,6 +217,10 @@ TEST_F(MapLocalizerTest, AnotherSessionIsSearchedFor) {
   EXPECT_EQ(localizer.searches(), 1U);
   EXPECT_FALSE(localizer.status().state == LocalizationState::kTracking && !right(localizer, 30))
       << "the odometry of one session says nothing of another";
+  const topomap::Trajectory trajectory = localizer.trajectory();
+  EXPECT_EQ(trajectory.stops.back().stop, elsewhere.stop);
+  EXPECT_EQ(trajectory.stops.back().local_map_id, trajectory.stops.size() - 1)
+      << "numbered as the trajectory is, whatever the sessions";
 }
 
 // Two wings that are copies of each other. The map has the first one; the robot goes through that

@@ -23,6 +23,8 @@ TEST(NavigationConversions, AStatusComesBackAsItWas) {
   status.free_ahead_m = 4.0;
   status.detours = 2;
   status.routes = 3;
+  status.branch_detours = 5;
+  status.virtual_detours = 4;
   status.guard_stops = 1;
   const msg::NavigatorStatus message = to_msg(status, "r2", 42, 9);
   EXPECT_EQ(message.state(), msg::kNavigatorBlocked);
@@ -42,6 +44,8 @@ TEST(NavigationConversions, AStatusComesBackAsItWas) {
   EXPECT_EQ(back.free_ahead_m, 4.0);
   EXPECT_EQ(back.detours, 2U);
   EXPECT_EQ(back.routes, 3U);
+  EXPECT_EQ(back.branch_detours, 5U);
+  EXPECT_EQ(back.virtual_detours, 4U);
   EXPECT_EQ(back.guard_stops, 1U);
 }
 

@@ -78,6 +78,8 @@ planning::HybridRoute found_route() {
   route.min_clearance_m = 0.4;
   route.zones = {4, 2};
   route.nodes = {1, 99};
+  route.parts = {{planning::PlannedOn::kOffBranch, 0, 0},
+                 {planning::PlannedOn::kVirtualBranch, 17, 1}};
   return route;
 }
 
@@ -174,6 +176,8 @@ TEST(RouteConversion, GivesTheNavigatorThePlacesOfNodesThatTheMapHas) {
   EXPECT_EQ(plan.reason, "");
   EXPECT_EQ(plan.heading_rad, 0.25);
   EXPECT_EQ(plan.points_m, found_route().points_m);
+  EXPECT_EQ(plan.clearances_m, found_route().clearances_m);
+  EXPECT_EQ(plan.parts, found_route().parts);
   EXPECT_THAT(plan.nodes_m, ElementsAre(map.nodes()[1].position_m));
   EXPECT_THAT(route_plan_from_msg(message, nullptr).nodes_m, IsEmpty());
 }
@@ -181,6 +185,19 @@ TEST(RouteConversion, GivesTheNavigatorThePlacesOfNodesThatTheMapHas) {
 TEST(RouteConversion, RefusesAFoundRouteThatLeadsNowhere) {
   msg::Route message = to_msg(found_route(), 0.0, std::nullopt);
   message.points()[1].x_m(kNoNumber);
+  EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument);
+  message.points()[1].x_m(3.0);
+  EXPECT_NO_THROW(route_plan_from_msg(message, nullptr));
+  message.parts()[1].first_point(3);
+  EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument) << "no such point";
+  message.parts()[1].first_point(1);
+  message.parts()[0].first_point(2);
+  EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument) << "descends";
+  message.parts()[0].first_point(0);
+  message.parts()[0].on(static_cast<msg::PlannedOn>(4));
+  EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument);
+  message.parts().clear();
+  message.points()[1].clearance_m(-1.0);
   EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument);
   message.points().clear();
   EXPECT_THROW(route_plan_from_msg(message, nullptr), std::invalid_argument);

@@ -1,7 +1,9 @@
 #include "topogeo/service/service_options.hpp"
 
+#include <cstdlib>
 #include <functional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -49,6 +51,55 @@ TEST(RunService, DefaultsAreAsDocumented) {
   EXPECT_EQ(outcome.setup.options.domain, 0U);
   EXPECT_EQ(outcome.setup.options.partition, "topogeo");
   EXPECT_EQ(outcome.setup.options.robot_id, "robot");
+}
+
+struct MetricsEnvironment {
+  MetricsEnvironment(const char* port, const char* address) {
+    ::setenv("TOPOGEO_METRICS_PORT", port, 1);
+    ::setenv("TOPOGEO_METRICS_ADDRESS", address, 1);
+  }
+  ~MetricsEnvironment() {
+    ::unsetenv("TOPOGEO_METRICS_PORT");
+    ::unsetenv("TOPOGEO_METRICS_ADDRESS");
+  }
+};
+
+TEST(RunService, TheEnvironmentOfAContainerAsksForMetrics) {
+  EXPECT_EQ(run({}).setup.config.config.metrics.port, 0U);
+  const auto plain = run({}).setup.config.effective.fingerprint;
+  {
+    const MetricsEnvironment asked("9464", "0.0.0.0");
+    const Outcome outcome = run({});
+    EXPECT_EQ(outcome.setup.config.config.metrics.port, 9464U);
+    EXPECT_EQ(outcome.setup.config.config.metrics.address, "0.0.0.0");
+    EXPECT_EQ(outcome.setup.config.effective.fingerprint, plain);
+  }
+  {
+    const MetricsEnvironment unset("", "");
+    EXPECT_EQ(run({}).setup.config.config.metrics.port, 0U);
+    EXPECT_EQ(run({}).setup.config.config.metrics.address, "127.0.0.1");
+  }
+  for (const char* wrong : {"port", "9464x", "-1", "65001"}) {
+    const MetricsEnvironment asked(wrong, "");
+    const Outcome outcome = run({});
+    EXPECT_EQ(outcome.code, kUsage);
+    EXPECT_FALSE(outcome.ran);
+    EXPECT_THAT(outcome.told, HasSubstr("TOPOGEO_METRICS_PORT: expected a port"));
+    EXPECT_THAT(outcome.told, HasSubstr(wrong));
+  }
+}
+
+TEST(RunService, RobotsThatShareAMapHaveNamesOfTheirOwn) {
+  const auto setup = run({"--robot-id", "a"}).setup;
+  EXPECT_EQ(with_robots(setup, {"b", "c"}).options.other_robots,
+            (std::vector<std::string>{"b", "c"}));
+  EXPECT_TRUE(with_robots(setup, {}).options.other_robots.empty());
+  const std::vector<std::vector<std::string>> all_wrong = {
+      {"a"}, {"b", "b"}, {""}, {std::string(33, 'b')}};
+  for (const std::vector<std::string>& wrong : all_wrong) {
+    EXPECT_THROW(with_robots(setup, wrong), UsageError);
+  }
+  EXPECT_EQ(with_map_of(setup, "b").options.map_robot, "b");
 }
 
 TEST(RunService, HelpAndVersionEndWell) {

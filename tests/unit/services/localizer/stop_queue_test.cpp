@@ -45,6 +45,39 @@ TEST(StopQueue, DistinguishesARepeatedMapFromThatOfAnotherRun) {
   EXPECT_EQ(queue.arrival({kSession, 1}, hash), Arrival::kNew);
 }
 
+TEST(StopQueue, NamesTheStopThatItWaitsForInVain) {
+  StopQueue queue;
+  EXPECT_FALSE(queue.missing());
+  queue.add(queued_map(5));
+  EXPECT_EQ(queue.missing(), (topomap::StopId{kSession, 0}));
+  queue.add(queued_map(0));
+  EXPECT_FALSE(queue.missing()) << "it has something to do";
+  queue.take();
+  EXPECT_EQ(queue.missing(), (topomap::StopId{kSession, 1}));
+  queue.add(queued_map(1));
+  queue.take();
+  EXPECT_EQ(queue.missing(), (topomap::StopId{kSession, 2}));
+  queue.add(queued_map(0, kLater));
+  EXPECT_FALSE(queue.missing()) << "another session can begin";
+}
+
+TEST(StopQueue, BeginsASessionLateWhenItIsTo) {
+  StopQueue queue;
+  EXPECT_EQ(queue.begin_late(kSession), (topomap::StopId{kSession, 0})) << "nothing is here";
+  queue.add(queued_map(5));
+  queue.add(queued_map(6));
+  queue.add(queued_map(9));
+  EXPECT_EQ(queue.begin_late(kSession), (topomap::StopId{kSession, 5}));
+  EXPECT_FALSE(queue.missing());
+  EXPECT_EQ(queue.take()->id, 5U);
+  EXPECT_EQ(queue.take()->id, 6U);
+  EXPECT_EQ(queue.take(), nullptr);
+  EXPECT_EQ(queue.missing(), (topomap::StopId{kSession, 7})) << "one that is on has no gaps";
+  EXPECT_EQ(queue.arrival({kSession, 3}, 1), Arrival::kRepeated) << "it comes too late";
+  queue.end_at(7);
+  EXPECT_TRUE(queue.finished());
+}
+
 TEST(StopQueue, GoesOverToASessionThatCameLater) {
   StopQueue queue;
   queue.add(queued_map(0));

@@ -89,7 +89,8 @@ TEST(Answer, RouteThroughTheDoorWithItsMotions) {
   msg::Goal goal = goal_at(9.05, 2.05);
   goal.has_heading(true);
   goal.heading_rad(-std::numbers::pi / 2);
-  const msg::Route route = answer(goal, &map, pose_at(1.55, 2.05, std::numbers::pi / 2), {});
+  const msg::Route route =
+      answer(goal, {&map, nullptr}, pose_at(1.55, 2.05, std::numbers::pi / 2), {});
   ASSERT_EQ(route.status(), msg::kRouteFound) << route.message().to_string();
   EXPECT_EQ(route.message().to_string(), "");
   EXPECT_NEAR(route.length_m(), 7.5, 1e-9);
@@ -114,11 +115,11 @@ TEST(Answer, RouteThroughTheDoorWithItsMotions) {
 TEST(Answer, PlacesAreFoundByTheirNamesCapitalsOrNot) {
   const planning::HybridMap map = floor_map();
   for (const char* name : {"Desk", "desk", "DESK"}) {
-    const msg::Route route = answer(goal_place(name), &map, pose_at(3.05, 2.05), {});
+    const msg::Route route = answer(goal_place(name), {&map, nullptr}, pose_at(3.05, 2.05), {});
     ASSERT_EQ(route.status(), msg::kRouteFound) << name;
     EXPECT_EQ(route.points().back().x_m(), 1.55);
   }
-  const msg::Route route = answer(goal_node(0), &map, pose_at(3.05, 2.05), {});
+  const msg::Route route = answer(goal_node(0), {&map, nullptr}, pose_at(3.05, 2.05), {});
   EXPECT_EQ(route.status(), msg::kRouteFound);
 }
 
@@ -126,7 +127,7 @@ TEST(Answer, NoRouteHasItsReason) {
   const planning::HybridMap map = floor_map();
   const auto pose = pose_at(1.55, 2.05);
   const auto status = [&](const msg::Goal& goal, const char* reason) {
-    const msg::Route route = answer(goal, &map, pose, {});
+    const msg::Route route = answer(goal, {&map, nullptr}, pose, {});
     EXPECT_THAT(route.message().to_string(), HasSubstr(reason));
     EXPECT_TRUE(route.points().empty());
     EXPECT_TRUE(route.primitives().empty());
@@ -148,25 +149,70 @@ TEST(Answer, NoRouteHasItsReason) {
 
 TEST(Answer, ARefusedGoalHasThePlaceNextToIt) {
   const planning::HybridMap map = floor_map();
-  const msg::Route route = answer(goal_at(6.05, 0.55), &map, pose_at(1.55, 2.05), {});
+  const msg::Route route = answer(goal_at(6.05, 0.55), {&map, nullptr}, pose_at(1.55, 2.05), {});
   ASSERT_TRUE(route.has_nearest_reachable());
   EXPECT_NEAR(route.nearest_reachable().x_m(), 6.05, 0.46);
   const msg::Goal there = goal_at(route.nearest_reachable().x_m(), route.nearest_reachable().y_m());
-  EXPECT_EQ(answer(there, &map, pose_at(1.55, 2.05), {}).status(), msg::kRouteFound);
+  EXPECT_EQ(answer(there, {&map, nullptr}, pose_at(1.55, 2.05), {}).status(), msg::kRouteFound);
+}
+
+// A branch through the middle of both rooms and the door between them.
+topomap::GlobalMap branch_map() {
+  topomap::GlobalMap graph;
+  graph.nodes.push_back({1, topomap::NodeKind::kReal, {1.0, 2.05}, 0.5, 1});
+  graph.nodes.push_back({2, topomap::NodeKind::kReal, {9.05, 2.05}, 0.5, 1});
+  topomap::MapBranch branch;
+  branch.id = 4;
+  branch.node_a = 1;
+  branch.node_b = 2;
+  branch.points = {{{1.0, 2.05}, 0.5}, {{9.05, 2.05}, 0.5}};
+  graph.branches.push_back(branch);
+  return graph;
+}
+
+TEST(Answer, WithoutAGridTheRouteFollowsBranchesAndSaysSo) {
+  const topomap::GlobalMap graph = branch_map();
+  const msg::Route route = answer(goal_at(9.05, 2.05), {nullptr, &graph}, pose_at(1.55, 2.25), {});
+  ASSERT_EQ(route.status(), msg::kRouteFound) << route.message().to_string();
+  ASSERT_THAT(route.parts(), SizeIs(2));
+  EXPECT_EQ(route.parts()[0].on(), msg::kPlannedOffBranch);
+  EXPECT_EQ(route.parts()[1].on(), msg::kPlannedOnBranch);
+  EXPECT_EQ(route.parts()[1].branch_id(), 4U);
+  EXPECT_EQ(route.points().back().x_m(), 9.05);
+  EXPECT_FALSE(route.primitives().empty());
+  EXPECT_EQ(answer(goal_place("Desk"), {nullptr, &graph}, pose_at(1.55, 2.25), {}).status(),
+            msg::kRouteUnknownPlace);
+  const topomap::GlobalMap nothing;
+  EXPECT_EQ(answer(goal_at(9.05, 2.05), {nullptr, &nothing}, pose_at(1.55, 2.25), {}).status(),
+            msg::kRouteNoMap);
+}
+
+TEST(Answer, TheGridIsAskedFirstUnlessTheConfigurationNamesTheGraph) {
+  const planning::HybridMap map = floor_map();
+  const topomap::GlobalMap graph = branch_map();
+  planning::GoalPlannerConfig config;
+  const auto first_part = [&] {
+    const msg::Route route =
+        answer(goal_at(9.05, 2.05), {&map, &graph}, pose_at(1.55, 2.05), {}, config);
+    return route.parts().at(0).on();
+  };
+  EXPECT_EQ(first_part(), msg::kPlannedOnGrid);
+  config.planner.on = planning::PlanFirstOn::kGraph;
+  EXPECT_EQ(first_part(), msg::kPlannedOnBranch);
 }
 
 TEST(Answer, WithoutMapOrPoseThereIsNone) {
   const planning::HybridMap map = floor_map();
   const msg::Goal goal = goal_at(3.05, 2.05);
-  EXPECT_EQ(answer(goal, nullptr, pose_at(1.55, 2.05), {}).status(), msg::kRouteNoMap);
-  EXPECT_EQ(answer(goal, &map, std::nullopt, {}).status(), msg::kRouteNoPose);
+  EXPECT_EQ(answer(goal, {}, pose_at(1.55, 2.05), {}).status(), msg::kRouteNoMap);
+  EXPECT_EQ(answer(goal, {&map, nullptr}, std::nullopt, {}).status(), msg::kRouteNoPose);
   auto lost = pose_at(1.55, 2.05);
   lost->status.state = localization::LocalizationState::kLost;
-  const msg::Route route = answer(goal, &map, lost, {});
+  const msg::Route route = answer(goal, {&map, nullptr}, lost, {});
   EXPECT_EQ(route.status(), msg::kRouteNoPose);
   EXPECT_THAT(route.message().to_string(), HasSubstr("LOST"));
   lost->status.state = localization::LocalizationState::kAmbiguous;
-  EXPECT_EQ(answer(goal, &map, lost, {}).status(), msg::kRouteFound);
+  EXPECT_EQ(answer(goal, {&map, nullptr}, lost, {}).status(), msg::kRouteFound);
 }
 
 TEST(Answer, AMapWithoutZonesIsNone) {
@@ -174,7 +220,7 @@ TEST(Answer, AMapWithoutZonesIsNone) {
   frame.columns = frame.rows = 5;
   const planning::FreeSpace space{planning::OccupancyGrid(frame)};
   const planning::HybridMap map(space, planning::zones_by_width(space));
-  const msg::Route route = answer(goal_at(0.25, 0.25), &map, pose_at(0.15, 0.15), {});
+  const msg::Route route = answer(goal_at(0.25, 0.25), {&map, nullptr}, pose_at(0.15, 0.15), {});
   EXPECT_EQ(route.status(), msg::kRouteNoMap);
   EXPECT_THAT(route.message().to_string(), HasSubstr("no zone"));
 }
@@ -182,27 +228,29 @@ TEST(Answer, AMapWithoutZonesIsNone) {
 TEST(Answer, ARobotBesideTheMapOrInAWallCannotBegin) {
   const planning::HybridMap map = floor_map();
   const msg::Goal goal = goal_at(3.05, 2.05);
-  EXPECT_EQ(answer(goal, &map, pose_at(-2.0, 2.0), {}).status(), msg::kRouteStartOutside);
-  EXPECT_EQ(answer(goal, &map, pose_at(6.05, 0.5), {}).status(), msg::kRouteStartOccupied);
-  EXPECT_EQ(answer(goal, &map, pose_at(0.25, 2.05), {}).status(), msg::kRouteFound)
+  EXPECT_EQ(answer(goal, {&map, nullptr}, pose_at(-2.0, 2.0), {}).status(),
+            msg::kRouteStartOutside);
+  EXPECT_EQ(answer(goal, {&map, nullptr}, pose_at(6.05, 0.5), {}).status(),
+            msg::kRouteStartOccupied);
+  EXPECT_EQ(answer(goal, {&map, nullptr}, pose_at(0.25, 2.05), {}).status(), msg::kRouteFound)
       << "too near to a wall, but off it";
 }
 
 TEST(Answer, ADoorThatIsShutNowCutsTheOtherRoomOff) {
   const planning::HybridMap map = floor_map();
   const msg::Goal goal = goal_place("window");
-  const msg::Route open = answer(goal, &map, pose_at(1.55, 2.05), {});
+  const msg::Route open = answer(goal, {&map, nullptr}, pose_at(1.55, 2.05), {});
   EXPECT_EQ(open.status(), msg::kRouteFound);
   std::vector<Eigen::Vector2d> blocked_m = shut_door_m();
   blocked_m.emplace_back(-500.0, 3.0);  // beyond the map
-  const msg::Route shut = answer(goal, &map, pose_at(1.55, 2.05), blocked_m);
+  const msg::Route shut = answer(goal, {&map, nullptr}, pose_at(1.55, 2.05), blocked_m);
   EXPECT_EQ(shut.status(), msg::kRouteUnreachable);
   EXPECT_THAT(shut.message().to_string(), HasSubstr("closed now"));
   ASSERT_TRUE(shut.has_nearest_reachable());
   EXPECT_LT(shut.nearest_reachable().x_m(), 6.0);
   EXPECT_GT(shut.nearest_reachable().x_m(), 5.5);
   // Before the door, the robot still gets away.
-  EXPECT_EQ(answer(goal_place("Desk"), &map, pose_at(5.85, 2.05), blocked_m).status(),
+  EXPECT_EQ(answer(goal_place("Desk"), {&map, nullptr}, pose_at(5.85, 2.05), blocked_m).status(),
             msg::kRouteFound);
 }
 

@@ -26,6 +26,7 @@ MachineFacts healthy() {
   facts.multicast = {{"eth0", ""}};
   facts.multicast_route = true;
   facts.receive_buffer_bytes = 1'048'576;
+  facts.uses_shared_memory = true;
   facts.shared_memory_free_bytes = 2'000'000'000;
   facts.serial_ports = {{"/dev/ttyUSB0", true, true, "dialout", true}};
   facts.map_folder = "/var/lib/topogeo/map";
@@ -76,7 +77,7 @@ const std::vector<MachineFault>& machine_faults() {
        [](MachineFacts& f) { f.receive_buffer_bytes = 65'536; }},
       {"PoorBuffers", "UDP buffers", Severity::kHint, "212 KB", "sysctl",
        [](MachineFacts& f) { f.receive_buffer_bytes = 212'992; }},
-      {"NoSharedMemory", "shared memory", Severity::kProblem, "read-only", "udp_only",
+      {"NoSharedMemory", "shared memory", Severity::kProblem, "read-only", "PARTICIPANT=local",
        [](MachineFacts& f) { f.shared_memory_error = "/dev/shm: read-only file system"; }},
       {"LeftBehind", "shared memory", Severity::kProblem, "3 segments (12 MB)",
        "rm /dev/shm/fastrtps_",

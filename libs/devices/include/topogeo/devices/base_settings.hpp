@@ -58,7 +58,8 @@ struct BaseSettings {
   std::uint16_t error_delay_ticks = 0x80;
 
   /// As many reports in succession of acceleration and standstill, though motion was
-  /// commanded, are an emergency stop: no message for it is known. >= 2
+  /// commanded at more than three times standstill, are an emergency stop: no message for it is
+  /// known. >= 2
   unsigned stalled_reports = 3;
   /// Slower than this counts as standstill; encoder noise of a base at rest reaches 256
   /// counts/s.

@@ -30,6 +30,10 @@ class PlsDriver final : public SerialDriver {
   /// Throws std::invalid_argument when a setting is out of range.
   explicit PlsDriver(PlsSettings settings);
 
+  /// Another driver had the sensor send scans over this line, and ended: the sensor may still do
+  /// so. To be called before the port is opened. A line that is wrong costs one try more.
+  void resume(const LineSettings& line);
+
   void opened(std::int64_t now_ns) override;
   void lost(std::int64_t now_ns) override;
   void receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns) override;

@@ -33,7 +33,22 @@ class PlsLine {
   [[nodiscard]] LineSettings power_on() const;
 
   /// A telegram came: it proves the settings.
-  void heard() { known_ = line_; }
+  void heard() {
+    known_ = line_;
+    expected_ = false;
+  }
+  /// It was heard there before this began: that counts until it is heard elsewhere or doubted.
+  void expect(const LineSettings& line) {
+    known_ = line;
+    expected_ = true;
+  }
+  /// It is known by expect() alone.
+  [[nodiscard]] bool expected() const { return expected_; }
+  /// It is not where it was expected.
+  void doubt() {
+    known_.reset();
+    expected_ = false;
+  }
   /// Where the sensor was heard last.
   [[nodiscard]] const std::optional<LineSettings>& known() const { return known_; }
 
@@ -66,6 +81,7 @@ class PlsLine {
   SickDecoder decoder_;
   LineSettings line_;
   std::optional<LineSettings> known_;
+  bool expected_ = false;
   std::vector<LineOrder> orders_;
   std::uint64_t drops_before_ = 0;
   std::int64_t last_byte_ns_ = 0;

@@ -19,7 +19,7 @@ class PlsSearch {
   PlsSearch(const PlsSettings& settings, PlsLine& line) : settings_(settings), line_(line) {}
 
   /// Tries the first candidate. `listen_first`: where the sensor was heard last, without a
-  /// question, which would stop its scans.
+  /// question, which would stop its scans; always where it is only expected.
   void start(bool listen_first, std::int64_t now_ns);
   /// Tries the next candidate when the present one has been silent for long enough. False when it
   /// was the last: the search was without success.

@@ -8,6 +8,8 @@
 #include "topogeo/navigation/guard_config.hpp"
 #include "topogeo/planning/detour_config.hpp"
 #include "topogeo/planning/motion_config.hpp"
+#include "topogeo/topomap/local_map_config.hpp"
+#include "topogeo/voronoi/voronoi_config.hpp"
 
 namespace topogeo::navigation {
 
@@ -55,10 +57,13 @@ struct NavigatorConfig {
   PoseSource pose_source = PoseSource::kLocalizer;
   bool markov_by_laser = false;  ///< ranges for Markov localization from the laser, not the sonars
   MarkovTrackerConfig markov;
+  /// Of the local map of the moment, by which detours lead; the same as the local mapper's.
+  voronoi::VoronoiConfig voronoi;
+  topomap::LocalMapConfig local_map;
 };
 
-/// Declares what this library has in the sections `navigator`, `markov` and `guard`; path, detour
-/// and Markov model are declared by the libraries of their settings.
+/// Declares what this library has in the sections `navigator`, `markov` and `guard`; path, detour,
+/// Markov model and local map are declared by the libraries of their settings.
 void describe(NavigatorConfig& config, support::ConfigSchema& schema);
 
 /// Throws std::invalid_argument naming key, value and range, also for the parts of other libraries.

@@ -12,6 +12,8 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
+#include "topogeo/planning/route_parts.hpp"
+#include "topogeo/scan/scan.hpp"
 
 namespace topogeo::navigation {
 
@@ -37,6 +39,8 @@ struct ScanPoints {
   geometry::Pose2 T_odom_robot;
   geometry::Pose2 T_robot_laser;
   std::vector<Eigen::Vector2d> points_m;
+  /// The scan itself, for the local map of the moment; null: there is none.
+  std::shared_ptr<const scan::Scan> scan{};
 };
 
 /// One sonar's reading.
@@ -63,10 +67,12 @@ struct RoutePlan {
   std::uint64_t map_version = 0;
   std::uint64_t blockages_version = 0;  ///< of the blockages that it avoids
   bool found = false;
-  std::string reason;                     ///< one line for people; empty when found
-  std::vector<Eigen::Vector2d> points_m;  ///< map frame, straightened, from start to goal
-  std::vector<Eigen::Vector2d> nodes_m;   ///< border nodes along it, in order, map frame
-  std::optional<double> heading_rad;      ///< wanted at the goal, map frame
+  std::string reason;                        ///< one line for people; empty when found
+  std::vector<Eigen::Vector2d> points_m;     ///< map frame, straightened, from start to goal
+  std::vector<double> clearances_m{};        ///< of the points; needed for those on branches
+  std::vector<planning::RoutePart> parts{};  ///< on what it was planned; empty: the grid
+  std::vector<Eigen::Vector2d> nodes_m;      ///< border nodes along it, in order, map frame
+  std::optional<double> heading_rad;         ///< wanted at the goal, map frame
 };
 
 /// A goal of which the navigator needs only the number: the route follows.
@@ -117,10 +123,12 @@ struct NavigatorStatus {
   double rest_s = 0.0;        ///< until the arrival, about
   std::optional<geometry::Pose2> T_map_robot;  ///< now; nothing while it is not known
   geometry::Velocity command;                  ///< that the last step() gave
-  double free_ahead_m = 0.0;      ///< nothing is nearer in the direction of motion, at most 5
-  std::uint32_t detours = 0;      ///< round what is not on the map, since the goal was given
-  std::uint32_t routes = 0;       ///< taken over for the goal
-  std::uint32_t guard_stops = 0;  ///< how often the collision guard has stopped it since then
+  double free_ahead_m = 0.0;          ///< nothing is nearer in the direction of motion, at most 5
+  std::uint32_t detours = 0;          ///< round what is not on the map, since the goal was given
+  std::uint32_t branch_detours = 0;   ///< of these along branches of the scan
+  std::uint32_t virtual_detours = 0;  ///< of these along virtual ones
+  std::uint32_t routes = 0;           ///< taken over for the goal
+  std::uint32_t guard_stops = 0;      ///< how often the collision guard has stopped it since then
 };
 
 /// What stands in the way and is not on the map; the planner is to find a route that avoids it.

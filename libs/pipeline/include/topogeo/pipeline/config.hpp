@@ -26,6 +26,7 @@ struct Config {
   localization::LocalizerConfig localizer;
   topomap::GlobalMapConfig global_map;
   planning::PlanningConfig planning;
+  planning::PlannerConfig planner;
   HybridMapConfig hybrid_map;
   planning::HybridPlannerConfig hybrid_planner;
   navigation::NavigatorConfig navigator;

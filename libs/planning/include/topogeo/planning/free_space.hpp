@@ -24,6 +24,11 @@ class FreeSpace {
   explicit FreeSpace(OccupancyGrid grid, const InflationConfig& config = {},
                      std::span<const DrawnZone> zones = {});
 
+  /// The same floor where something better than the grid shows that it is open: `freed` cells are
+  /// free, and the robot's middle may be in `entered` ones, too, however near to an obstacle they
+  /// are. All must lie inside.
+  [[nodiscard]] FreeSpace opened(std::span<const Cell> freed, std::span<const Cell> entered) const;
+
   [[nodiscard]] const OccupancyGrid& grid() const { return grid_; }
   [[nodiscard]] const GridFrame& frame() const { return grid_.frame(); }
   [[nodiscard]] const InflationConfig& inflation() const { return config_; }

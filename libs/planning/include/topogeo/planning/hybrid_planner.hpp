@@ -20,6 +20,7 @@
 
 #include "topogeo/planning/hybrid_map.hpp"
 #include "topogeo/planning/hybrid_planner_config.hpp"
+#include "topogeo/planning/route_parts.hpp"
 
 namespace topogeo::planning {
 
@@ -74,9 +75,14 @@ struct HybridRoute {
   std::vector<ZoneId> zones;         ///< in the order of the path
   std::vector<std::uint32_t> nodes;  ///< in order; empty when it stays in one zone
   std::vector<std::uint32_t> edges;  ///< between them
+  /// On what it was planned. A route along branches (goal_planner.hpp) has neither cells nor zones.
+  std::vector<RoutePart> parts;
 
   [[nodiscard]] bool found() const { return status == RouteStatus::kFound; }
 };
+
+/// Length of the parts of a route that were planned on one thing, metres.
+double length_on(const HybridRoute& route, PlannedOn on);
 
 /// Plans on one map, which must outlive it.
 class HybridPlanner {

@@ -63,6 +63,11 @@ struct GridFrame {
 /// Throws std::invalid_argument naming the field, the value and the range that it must lie in.
 void check(const GridFrame& frame);
 
+/// The frame of a grid of 0.1 m cells, parallel to the map frame, that reaches `margin_m` beyond
+/// all points (map frame; at least one). Where a side would have more than 2,000 of them cells are
+/// larger, up to 1 m.
+GridFrame frame_around(std::span<const Eigen::Vector2d> points_m, double margin_m);
+
 class OccupancyGrid {
  public:
   /// Every cell `fill`. Throws std::invalid_argument as `check`.

@@ -1,6 +1,8 @@
 // Settings of route planning on nodes and branches.
 #pragma once
 
+#include <cstdint>
+
 namespace topogeo::support {
 class ConfigSchema;
 }
@@ -12,6 +14,19 @@ struct PlanningConfig {
   double min_clearance_m = 0.3;  ///< a branch is closed where its clearance is less, unless it is
                                  ///< virtual; the radius of a B21 is 0.2625 m
 };
+
+/// What a route is planned on first; on the other where there is none.
+enum class PlanFirstOn : std::uint8_t {
+  kHybrid = 0,  ///< grid and zones (MACONDO, III.3)
+  kGraph = 1,   ///< nodes and branches (Thesis, 1.1)
+};
+
+struct PlannerConfig {
+  PlanFirstOn on = PlanFirstOn::kHybrid;
+};
+
+/// Declares the section `planner`.
+void describe(PlannerConfig& config, support::ConfigSchema& schema);
 
 /// Declares the section `planning`.
 void describe(PlanningConfig& config, support::ConfigSchema& schema);

@@ -22,8 +22,12 @@ struct BoardConfig {
   double straggler_factor = 20.0;
   /// How long a worker that did not hold a map, or could not be sent to, gets nothing.
   BoardTime rest = std::chrono::seconds(5);
-  /// A worker that lost a task gets new ones after so long.
-  BoardTime forget_after = std::chrono::seconds(30);
+  /// A worker that owes an answer is taken to have lost the task after so long, and gets new ones:
+  /// longer than a machine stalls that has other work, short beside a drive.
+  BoardTime forget_after = std::chrono::seconds(2);
+  /// Twice as long each time that it has answered nothing since, up to this: tasks for a worker
+  /// that hangs wait for the time of a straggler.
+  BoardTime longest_forget_after = std::chrono::seconds(30);
   /// So many first answers of every worker are compared with the answer of this process,
   std::uint32_t probation = 3;
   /// and one in so many of the later ones, chosen by the task's id; 0: none.

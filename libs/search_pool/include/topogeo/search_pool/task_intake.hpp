@@ -19,7 +19,10 @@ namespace topogeo::search_pool {
 
 struct IntakeOptions {
   std::size_t map_bytes = std::size_t{32} << 20U;  ///< that all maps together may take
-  /// Maps travel on another topic than the tasks that name them, so one that lacks may come soon.
+  /// Maps travel on another topic than the tasks that name them, so the newest that a task names
+  /// may come soon, unless its robot has published one of that time already. Older ones, which were
+  /// published before the worker came or are stored, and pieces of a whole map are asked for at
+  /// once.
   std::chrono::nanoseconds first_request = std::chrono::milliseconds(20);
   std::chrono::nanoseconds request_period = std::chrono::milliseconds(500);
   std::chrono::nanoseconds patience = std::chrono::seconds(2);  ///< with a map that lacks
@@ -54,6 +57,8 @@ class TaskIntake {
   std::optional<ReadyJob> add(MatchJob job, Time now);
   /// Keeps the map and returns the jobs that have waited for it alone, oldest first.
   std::vector<ReadyJob> add_map(MapPointer map);
+  /// Tells of a map that a robot has published, whether a task names it or not.
+  void published(const std::string& robot_id, std::int64_t stamp_ns);
   /// True when a job waits for a map of this content.
   [[nodiscard]] bool lacks(std::uint64_t content_hash) const;
   /// What is to be done at `now`: each map that lacks is asked for once per period and client.
@@ -73,17 +78,24 @@ class TaskIntake {
     ReadyJob job;
     Time until;
   };
+  struct Asking {
+    Time next;           // when to ask (again)
+    bool asked = false;  // already
+  };
   using Lack = std::pair<std::string, std::uint64_t>;  // client and content
 
   template <class Action>  // (Lack, map id)
   static void for_each_lack(const ReadyJob& job, Action action);
+  /// True when the map of a task will not come by itself any more.
+  [[nodiscard]] bool is_past(const MatchJob& job) const;
   /// Forgets the requests for maps that no job waits for any more.
   void forget_requests();
 
   IntakeOptions options_;
   MapCache maps_;
-  std::list<Waiting> waiting_;      // oldest first
-  std::map<Lack, Time> requested_;  // when to ask (again)
+  std::list<Waiting> waiting_;  // oldest first
+  std::map<Lack, Asking> requested_;
+  std::map<std::string, std::int64_t> published_ns_;  // the newest of each robot
 };
 
 }  // namespace topogeo::search_pool

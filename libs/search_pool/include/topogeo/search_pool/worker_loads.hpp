@@ -28,6 +28,7 @@ struct Worker {
   BoardTime last_life{0};
   std::uint64_t answers = 0;    ///< that were the first ones to their tasks
   std::uint64_t unchecked = 0;  ///< of these, in batches that are over, never compared
+  std::uint32_t forgotten = 0;  ///< how often it lost what it had in hand since its last answer
   std::vector<InHand> in_hand;  ///< oldest first
 };
 
@@ -60,7 +61,8 @@ class WorkerLoads {
   [[nodiscard]] BoardTime straggler_time() const { return straggler_time_; }
   /// When the next task becomes a straggler; nothing when none is out that is not one already.
   [[nodiscard]] std::optional<BoardTime> next_straggler(BoardTime now) const;
-  /// True when the worker's oldest task is so old that no answer will come.
+  /// True when the worker's oldest task is so old that no answer will come. Then the others are
+  /// stragglers, too.
   [[nodiscard]] bool has_forgotten(const Worker& worker, BoardTime now) const;
 
  private:

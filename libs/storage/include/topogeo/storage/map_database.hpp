@@ -79,7 +79,7 @@ class MapDatabase {
   /// Stores stops as they were sent, in any order: their ids are their numbers in their sessions.
   /// Those that are stored already, or were dropped, change nothing. Returns those that differ from
   /// the one stored under their number, which stays. Throws std::invalid_argument when a stop is of
-  /// another robot or of no session; nothing is stored then.
+  /// no robot or of no session; nothing is stored then.
   std::vector<topomap::StopId> put_stops(std::span<const topomap::LocalMap> stops);
 
   /// Gives the next numbers of the map to these stops. Throws std::invalid_argument when one is not
@@ -121,6 +121,9 @@ class MapDatabase {
 
   /// Makes this the drawing of the map. Throws std::invalid_argument where check(MapDrawing) does.
   void put_drawing(const MapDrawing& drawing);
+
+  /// Makes these the merges that were refused.
+  void put_refused_merges(std::span<const RefusedMerge> refused);
 
   /// Puts a whole map into a database without stops, identified() first. Throws
   /// std::invalid_argument when there are stops or the map contradicts itself.

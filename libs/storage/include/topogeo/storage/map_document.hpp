@@ -32,6 +32,15 @@ struct MapEdge {
   friend bool operator==(const MapEdge&, const MapEdge&) = default;
 };
 
+/// Two stops that do not show one place, as a person has said who was asked whether the maps of two
+/// robots are to be joined there. They need not be in the map.
+struct RefusedMerge {
+  topomap::StopId stop;
+  topomap::StopId other;
+
+  friend bool operator==(const RefusedMerge&, const RefusedMerge&) = default;
+};
+
 struct MapDocument {
   std::string robot_id;
   std::uint64_t seed = 0;
@@ -42,6 +51,7 @@ struct MapDocument {
   MapDrawing drawing;
   std::uint64_t map_id = 0;    ///< the same in all states of a map; 0: it has none
   std::vector<MapEdge> edges;  ///< that the trajectory was made of; empty: not known
+  std::vector<RefusedMerge> refused_merges = {};
 };
 
 /// The document with a session for all its stops and a map id: those that it lacks follow from its

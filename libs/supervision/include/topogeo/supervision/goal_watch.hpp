@@ -43,6 +43,7 @@ class GoalWatch {
   double driven_s_;  // the robot drove, or was paused
   bool taken_ = false;
   bool replaced_ = false;
+  std::optional<double> without_s_;  // since when the navigator has not had the goal
   RouteAnswer answer_;
   std::optional<navigation::NavigatorStatus> status_;
 };

@@ -185,6 +185,8 @@ Goal from_msg(const msg::Goal& message);
 /// is infinite when there is no obstacle at all.
 msg::Route to_msg(const planning::HybridRoute& route, double start_heading_rad,
                   std::optional<double> final_heading_rad);
+/// On what the parts of a route were planned; refuses those of points that it does not have.
+std::vector<planning::RoutePart> route_parts_from_msg(const msg::Route& message);
 /// What a navigator has to know of a route. The nodes are where they lie on `map`; those that it
 /// does not have, and all when it is null, are left out: give the map of the route's version, or
 /// none.

@@ -16,13 +16,13 @@ namespace topogeo::service {
 
 class LiveHybridMap {
  public:
-  /// Of the robot of a service, in its loop.
+  /// Of the robot whose map a service uses, in its loop.
   explicit LiveHybridMap(Service& service) {
     service.subscribe<msg::GridTile>(
         [this](const msg::GridTile& tile, const messaging::SampleInfo& info) { put(tile, info); },
-        {}, [this](const messaging::SampleInfo& info) { remove_tile(info); });
+        {.of_map = true}, [this](const messaging::SampleInfo& info) { remove_tile(info); });
     service.subscribe<msg::HybridMap>(
-        [this](const msg::HybridMap& summary) { mirror_.put(summary); }, {},
+        [this](const msg::HybridMap& summary) { mirror_.put(summary); }, {.of_map = true},
         [this](const messaging::SampleInfo& info) { remove_summary(info); });
   }
 

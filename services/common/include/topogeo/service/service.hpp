@@ -27,7 +27,9 @@ namespace topogeo::service {
 struct Subscription {
   std::string role = {};       ///< see messaging::ReaderOptions
   std::string addressee = {};  ///< see messaging::ReaderOptions
-  bool any_robot = false;      ///< false: those of other robots are counted and ignored
+  bool any_robot = false;      ///< false: those of other robots are counted and ignored ...
+  bool team = false;           ///< ... but for those of the robots that share the map
+  bool of_map = false;         ///< those of the robot whose map is used, in place of the own ones
   bool main_input = false;     ///< what the service works on: rate and age are in its status
 };
 
@@ -43,6 +45,8 @@ class Service {
 
   [[nodiscard]] const Setup& setup() const { return setup_; }
   [[nodiscard]] const std::string& robot_id() const { return setup_.options.robot_id; }
+  /// One of the robots of Setup::options.other_robots.
+  [[nodiscard]] bool shares_map(const std::string& robot) const;
   [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
   [[nodiscard]] messaging::EventLoop& loop() { return loop_; }
   [[nodiscard]] messaging::StatusPublisher& status() { return *status_; }
@@ -66,9 +70,10 @@ class Service {
     loop_.add<T>(
         reader,
         [this, handler = std::move(handler), any_robot = subscription.any_robot,
+         team = subscription.team, of_map = subscription.of_map,
          main_input = subscription.main_input](const T& message,
                                                const messaging::SampleInfo& info) {
-          if (!any_robot && !is_own(message)) return;
+          if (!any_robot && !is_own(message, team, of_map)) return;
           if (main_input)
             status_->count_input(messaging::short_name(messaging::TopicTraits<T>::info()));
           try {
@@ -108,8 +113,11 @@ class Service {
  private:
   /// False, and counted as dropped for "other robot", for messages of other robots.
   template <class T>
-  bool is_own(const T& message) {
-    if (message.robot_id() == setup_.options.robot_id) return true;
+  bool is_own(const T& message, bool team, bool of_map) {
+    const ServiceOptions& options = setup_.options;
+    const bool other_map = of_map && !options.map_robot.empty();
+    if (message.robot_id() == (other_map ? options.map_robot : options.robot_id)) return true;
+    if (team && shares_map(message.robot_id().to_string())) return true;
     status_->add_drops("other robot");
     return false;
   }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/participant.hpp"
@@ -35,6 +36,8 @@ struct ServiceOptions {
   std::uint32_t domain = 0;                              ///< DDS domain, 0 to 232
   std::string partition = messaging::kDefaultPartition;  ///< runs of different ones never meet
   std::string robot_id = "robot";                        ///< 1 to 32 bytes
+  std::vector<std::string> other_robots;                 ///< that share the map of robot_id
+  std::string map_robot;                                 ///< whose map is used; empty: robot_id's
   std::optional<std::filesystem::path> config;           ///< YAML; none: the defaults
   std::optional<std::string> laser;                      ///< see pipeline::parse_mounting
   std::filesystem::path profiles_file;                   ///< QoS profiles; empty: built in
@@ -56,6 +59,16 @@ struct Setup {
   ServiceOptions options;
   pipeline::LoadedConfig config;
 };
+
+/// Adds --with-robots, for services that keep one map of several robots.
+void add_robots_option(command_line::Command& app, std::vector<std::string>& robots);
+/// Adds --map-of, for services that use a map.
+void add_map_option(command_line::Command& app, std::string& robot);
+/// The setup with the map of that robot; empty: with its own.
+Setup with_map_of(Setup setup, std::string robot);
+/// The setup with these robots beside its own. Throws UsageError when one has no usable name or
+/// stands there twice.
+Setup with_robots(Setup setup, std::vector<std::string> robots);
 
 /// The main function of a service. Parses the command line (`add_options` adds the service's own
 /// flags), sets up logging, loads the configuration and calls `body`, which returns when the

@@ -26,7 +26,7 @@ class SoleService {
   SoleService& operator=(const SoleService&) = delete;
 
  private:
-  void compare(const msg::ServiceStatus& other);
+  void compare(const msg::ServiceStatus& received);
 
   Service& service_;
   bool listening_ = true;           // before it works

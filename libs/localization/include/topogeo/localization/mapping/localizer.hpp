@@ -51,9 +51,9 @@ class Localizer : public Slam {
 
   /// A drive to which no odometry leads from the last stop has found itself in the map: its stops
   /// so far, numbered on from those of the map, and matches of the last of them, at least one,
-  /// which are right with this probability. The stops are mapped like others and placed by the
-  /// matches, backwards from the last. Throws std::invalid_argument without stops or matches and
-  /// like add().
+  /// which are right with this probability. The stops are matched with each other, placed by the
+  /// matches, backwards from the last, and then compared with the map. Throws
+  /// std::invalid_argument without stops or matches and like add().
   void join(std::span<const MapPointer> drive, std::span<const StoredMatch> matches_of_last,
             double confidence);
 
@@ -71,6 +71,10 @@ class Localizer : public Slam {
   /// After the last map: matches all places that lie near each other by now and were not compared
   /// yet, and optimises, until nothing changes. Maps may follow all the same.
   void finish() override;
+
+  /// The same with the stops of a stored map from this one on, which finish() leaves alone: for a
+  /// map whose parts were made apart.
+  void compare_stored(std::uint32_t first);
 
   [[nodiscard]] topomap::Trajectory trajectory() const override;
   [[nodiscard]] std::optional<topomap::StopPose> last_stop() const override;
@@ -91,8 +95,10 @@ class Localizer : public Slam {
   [[nodiscard]] std::uint32_t last() const;
   [[nodiscard]] topomap::StopPose pose_of(std::size_t stop) const;
 
+  [[nodiscard]] const topomap::LocalMap* first_of_session(const topomap::LocalMap& map) const;
   void append(MapPointer map);
   void restore(MapPointer map, const topomap::StopPose& pose);
+  std::vector<StepMatch> place_last();
   std::vector<StepMatch> match_recent();
   std::vector<StepMatch> match_revisited(std::span<const std::uint32_t> stops);
   [[nodiscard]] bool as_odometry_says(const PoseGraphEdge& match) const;
@@ -101,7 +107,9 @@ class Localizer : public Slam {
 
   bool apply(const std::optional<OptimizationSchedule::Finished>& finished);
   void update_covariances(const GraphSolution& solution);
+  void rescale_steps();
   void optimize_now();
+  void close_all_loops(std::uint32_t first);
   std::size_t close_more_loops(std::span<const std::uint32_t> stops);
 
   LocalizerConfig config_;
@@ -113,7 +121,12 @@ class Localizer : public Slam {
   OdometryMonitor odometry_;
   OdometryScale scale_;
   StateMonitor monitor_;
-  std::optional<geometry::Pose2> recorded_step_;  // to the last stop, before scale_ corrected it
+  struct RecordedStep {
+    std::optional<geometry::Pose2>
+        T_before_stop;   // none at the begin of a drive, nor in a stored map
+    double scale = 1.0;  // as known then
+  };
+  std::vector<RecordedStep> recorded_steps_;  // to each stop
   /// To each stop from the one before, with the configured covariance; nothing for the first and
   /// for stored ones.
   std::vector<UncertainPose> odometry_steps_;

@@ -18,6 +18,12 @@ enum class LocalizerMode : std::uint8_t {
   kThesis = 1,  ///< ThesisLocalizer: the forward and backward correction of the thesis alone
 };
 
+/// What becomes of the maps of two robots that have seen the same place (SharedMap).
+enum class MergePolicy : std::uint8_t {
+  kAuto = 0,  ///< they become one
+  kAsk = 1,   ///< the same when somebody agrees
+};
+
 struct LocalizerConfig {
   LocalizerMode mode = LocalizerMode::kGraph;  ///< which make_slam() makes
   std::uint64_t seed = 1;
@@ -37,6 +43,7 @@ struct LocalizerConfig {
   double unaided_correction_rad = 0.1;
   std::uint32_t optimization_delay = 2;
   std::uint32_t final_passes = 3;
+  MergePolicy merge = MergePolicy::kAuto;
   GateConfig gate;
   ThesisConfig thesis;
 };

@@ -5,10 +5,15 @@
 // robot came, and a systematic error of two percent bends every corridor of the map by it.
 #pragma once
 
+#include <cstddef>
+
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/matching/odometry_model.hpp"
 
 namespace topogeo::localization {
+
+/// A step as it should be: its position times a factor.
+geometry::Pose2 scaled(const geometry::Pose2& T_by_odometry, double factor);
 
 class OdometryScale {
  public:
@@ -17,11 +22,11 @@ class OdometryScale {
   /// deviation of 0.04 m or less.
   void add(const geometry::Pose2& T_by_odometry, const UncertainPose& T_by_match);
 
-  /// The step as it should be: its position times factor().
-  [[nodiscard]] geometry::Pose2 corrected(const geometry::Pose2& T_by_odometry) const;
-
   /// The ways of matches over those of odometry; 1 before there is a match.
   [[nodiscard]] double factor() const { return matched_ / driven_; }
+
+  /// Steps after which an older one counts a third: the floor changes, and tyres lose air.
+  static constexpr std::size_t kMemory = 500;
 
  private:
   // Begun as if one metre were known to 1 %: forty steps, so that the noise of a few bends no map.

@@ -96,6 +96,10 @@ class PoseGraph {
   /// results repeat.
   OptimizationSummary optimize();
 
+  /// Replaces what odometry measured of the step to a stop, which must have one before; the
+  /// covariances stay.
+  void correct_step(std::uint32_t stop, const geometry::Pose2& T_before_stop);
+
   /// Removes all edges that are of the same kind between the same stops as one of these.
   void remove_edges(std::span<const PoseGraphEdge> like);
 

@@ -1,6 +1,7 @@
 // What a match of two stops gave, as far as the map is concerned.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "topogeo/localization/mapping/loop_decision.hpp"
@@ -17,6 +18,7 @@ struct StopMatch {
   UncertainPose T_later_earlier;  ///< the same, with the covariance of the match itself
   UncertainPose predicted;        ///< of edge.T_from_to, before the match
   ProposalSource source = ProposalSource::kPrediction;
+  std::uint32_t first_of_window = 0;  ///< of a window: the first stop whose view it holds
   Verdict verdict = Verdict::kRejected;
   Reason reason = Reason::kNothingInCommon;
   double fitness = 0.0;  ///< [0, 1]

@@ -74,7 +74,8 @@ class PlaceRecognition {
   void add(std::shared_ptr<const StopView> view, double path_m);
 
   /// Submaps of stops before `first_recent` that lie where `stop` may be, searched by what was seen
-  /// over the last metres up to it; best first. `relative`: of the stops, seen from `stop`. Where a
+  /// over the last metres up to it; best first, of a submap all places that fit about as well.
+  /// `relative`: of the stops, seen from `stop`. Where a
   /// stop is known better than `least_sigma_m` on both axes its submap is left out.
   std::vector<PlaceProposal> propose(const PoseGraph& graph, std::uint32_t stop,
                                      std::uint32_t first_recent,
@@ -106,7 +107,7 @@ class PlaceRecognition {
   [[nodiscard]] std::vector<Target> targets(std::uint32_t first_recent,
                                             std::span<const UncertainPose> relative,
                                             double least_sigma_m) const;
-  std::optional<PlaceProposal> best_of(const Target& target, const PlaceQuery& query);
+  std::vector<PlaceProposal> places_in(const Target& target, const PlaceQuery& query);
   void align_with(std::size_t submap, const MatchFeatures& query, PlaceProposal& proposal);
   void count_seen(const Submap& submap, const Reference& reference, const MatchFeatures& query,
                   PlaceProposal& proposal) const;

@@ -21,13 +21,17 @@ namespace topogeo::localization {
 /// How many times are kept of a place, besides the oldest view of it.
 inline constexpr std::size_t kKeptTimes = 3;
 
+/// A session that goes on for months counts as several drives, of so many stops each.
+inline constexpr std::uint32_t kStopsOfDrive = 2000;
+
 class KeptViews {
  public:
   /// Of the stops of a map; `maps[i]` is of `stops[i]`. The last `untouched` ones and the first
   /// one, the origin of the map, are kept. Drives alone in the map stay whole: a view is dropped
   /// only where another drive has the same.
   KeptViews(std::span<const topomap::LocalMap> maps, std::span<const topomap::StopPose> stops,
-            std::size_t times = kKeptTimes, std::size_t untouched = 0);
+            std::size_t times = kKeptTimes, std::size_t untouched = 0,
+            std::uint32_t stops_of_drive = kStopsOfDrive);
 
   /// Stops that are kept, ascending; their places here are their new ids.
   [[nodiscard]] const std::vector<std::uint32_t>& kept() const { return kept_; }

@@ -20,6 +20,7 @@
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/mapping/stored_map.hpp"
 #include "topogeo/localization/session/kept_views.hpp"
+#include "topogeo/localization/session/place_confirmation.hpp"
 #include "topogeo/localization/tracking/map_localizer.hpp"
 
 namespace topogeo::localization {
@@ -30,8 +31,12 @@ class MappingSession : public Slam {
 
   /// A drive that does not find its place joins the map with so many stops, the newest ones.
   static constexpr std::size_t kMostWaiting = 1024;
-  /// A drive alone has so many stops before views of it leave the map that it has shown twice.
-  static constexpr std::size_t kLongDrive = 4000;
+  /// A drive that goes on and on counts as several, and views leave the map while it does.
+  struct LongDrive {
+    std::size_t stops = 4000;                      ///< of the map, before any view leaves it
+    std::uint32_t stops_of_drive = kStopsOfDrive;  ///< of what counts as one drive
+    std::size_t untouched = 100;  ///< stops where the robot is, and of loops under way
+  };
 
   /// Begins an empty map. The pool and the optimizer must outlive the session.
   MappingSession(const LocalizerConfig& config, MatchPool& pool,
@@ -48,6 +53,9 @@ class MappingSession : public Slam {
 
   /// No view leaves the map, whatever others show.
   void keep_all_views() { keeps_all_ = true; }
+
+  /// Other limits, before the first stop.
+  void set_long_drive(const LongDrive& limits);
 
   /// The next stop of the drive. The numbers of a session count on from the first that comes,
   /// whatever becomes of its stops; throws std::invalid_argument otherwise, or when it is of
@@ -105,7 +113,6 @@ class MappingSession : public Slam {
   [[nodiscard]] std::shared_ptr<const StoredMap> map_so_far() const;
   bool map_stop(const MapPointer& map);
   bool follow(const MapPointer& map);
-  bool confirmed();
   void join();
   /// Views that others show as well leave the map, but none of the last `untouched` ones. Returns
   /// what was kept of which stops, if any left.
@@ -137,15 +144,10 @@ class MappingSession : public Slam {
   std::uint64_t numbered_since_ = 0;           // see topomap::Trajectory
   std::size_t stored_stops_ = 0;
   std::size_t added_ = 0;
-  std::size_t renew_at_ = kLongDrive;
+  LongDrive long_drive_;
+  std::size_t renew_at_ = long_drive_.stops;
   bool keeps_all_ = false;
-  bool searched_ = false;  // the place is known by a search
-  struct Tracked {
-    std::uint32_t stops = 0;     // in succession, the last one included
-    double distance_m = 0.0;     // driven to them
-    double contradiction = 0.0;  // sum over them
-  };
-  Tracked tracked_;
+  PlaceConfirmation confirmation_;   // of what the follower says
   std::vector<MapPointer> waiting_;  // to join the map, as they came
   SlamCounts counts_before_;         // of followers and mappers that have gone
 };

@@ -45,6 +45,13 @@ struct GlobalAnswer {
   std::vector<GlobalPose> poses;  ///< distinct, best first
 };
 
+/// Shares of the points of a scan.
+struct KnownView {
+  double there = 0.0;         ///< where the map has something
+  double contradicted = 0.0;  ///< where a stop of the map saw past
+  [[nodiscard]] double known() const { return there + contradicted; }
+};
+
 /// A stored stop as global localization needs it.
 struct StoredStop {
   std::uint32_t id = 0;
@@ -86,6 +93,9 @@ class GlobalLocalizer {
   /// Share of scan points on what the map has, softly, [0, 1].
   [[nodiscard]] double fitness(const MatchFeatures& query,
                                const geometry::Pose2& T_map_robot) const;
+  /// What the stored stops say of a scan as it would be taken from a pose.
+  [[nodiscard]] KnownView known_view(const MatchFeatures& query,
+                                     const geometry::Pose2& T_map_robot) const;
 
  private:
   [[nodiscard]] std::vector<std::uint8_t> free_cells(const PlaceField& field) const;

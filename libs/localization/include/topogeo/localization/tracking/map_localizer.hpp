@@ -48,6 +48,9 @@ struct TrackedStep {
   StepEvidence evidence;
   std::vector<geometry::Pose2> measured;  ///< T_map_robot by each of the matches
   std::vector<StoredMatch> accepted;      ///< those of them that are accepted
+  /// T_stop_robot of these by the scans alone, without what was predicted: for a pose graph, which
+  /// has the prediction as a measurement of its own.
+  std::vector<UncertainPose> scans_alone;
 };
 
 class MapLocalizer : public Slam {
@@ -108,6 +111,7 @@ class MapLocalizer : public Slam {
   std::vector<bool> agreeing(std::span<const MatchTask> tasks, std::span<const MatchResult> results,
                              std::span<const MatchCandidate> stored);
   [[nodiscard]] double better_elsewhere(const DriveStop& stop) const;
+  void compare_continued(const DriveStop& stop);
   void begin_search();
   void look_around(const DriveStop& stop);
   void match_hypotheses(const DriveStop& stop);

@@ -6,9 +6,8 @@
 // time. Should a library have no such function, nothing calls this one.
 #include <mutex>
 
-#include <dlfcn.h>
-
-#include "security.hpp"
+#include "../security.hpp"
+#include "library_function.hpp"
 
 namespace {
 
@@ -26,9 +25,7 @@ extern "C" void topogeo_match_builtin_endpoints(void* manager, const void* parti
 extern "C" void topogeo_match_builtin_endpoints(void* manager, const void* participant) {
   using Function = void (*)(void*, const void*);
   static std::mutex mutex;
-  // The next definition is that of the library.
-  static const auto next =
-      reinterpret_cast<Function>(::dlsym(RTLD_NEXT, kSymbol));  // NOLINT(*-reinterpret-cast)
+  static const auto next = topogeo::messaging::library_function<Function>(kSymbol);
   if (next == nullptr) return;
   const std::lock_guard lock(mutex);
   next(manager, participant);

@@ -1,0 +1,21 @@
+// How well the pose of a stop is known by its links to earlier ones.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "topogeo/localization/mapping/pose_graph.hpp"
+
+namespace topogeo::localization {
+
+/// Of all links between a stop and earlier ones, the covariance by which it is known best: relative
+/// to the earlier stop. The stop has at least one.
+Eigen::Matrix3d best_link_to(const PoseGraph& graph, std::uint32_t stop);
+
+/// The same in the map frame, through the covariances of the earlier stops.
+Eigen::Matrix3d covariance_in_map(const PoseGraph& graph,
+                                  std::span<const Eigen::Matrix3d> covariances, std::uint32_t stop);
+
+}  // namespace topogeo::localization

@@ -1,0 +1,104 @@
+#include "topogeo/localization/session/meeting.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "topogeo/localization/session/slam_counts.hpp"
+
+namespace topogeo::localization {
+
+namespace {
+
+// Another copy of a map costs as much as looking through all of it: a sixteenth more stops are
+// worth that, and of a small map a few stops.
+constexpr std::size_t kFewStops = 8;
+constexpr std::size_t kShare = 16;
+// What is kept of a robot that is followed while nobody has agreed to join the maps.
+constexpr std::size_t kMostSightings = 3072;
+
+bool followed(const MapLocalizer& follower) {
+  return follower.status().state == LocalizationState::kTracking;
+}
+
+}  // namespace
+
+Meeting::Meeting(const LocalizerConfig& config, std::unique_ptr<MatchPool> pool)
+    : config_(config), pool_(std::move(pool)) {}
+
+bool Meeting::wants_map(std::size_t stops) const {
+  return stops > 0 && (!follower_ || stops >= renew_at_ || stops < map_->maps.size());
+}
+
+void Meeting::set_map(std::shared_ptr<const StoredMap> map,
+                      std::span<const MapPointer> last_stops) {
+  std::optional<geometry::Pose2> T_map_last;
+  if (follower_ && followed(*follower_)) {
+    // Where it is relative to a stop that it was matched with, which may have moved since.
+    const geometry::Pose2 before = follower_->last_stop()->T_map_robot;
+    T_map_last = before;
+    for (const Sighting& sighting : newest()) {
+      const auto same = std::ranges::find_if(
+          map->maps, [&](const topomap::LocalMap& held) { return held.stop == sighting.other; });
+      if (same == map->maps.end()) continue;
+      T_map_last = map->trajectory.stops[same->id].T_map_robot * sighting.T_other_stop.T_a_b;
+      break;
+    }
+  }
+  if (follower_) add_counts(counts_before_, follower_->counts());
+  map_ = std::move(map);
+  renew_at_ = map_->maps.size() + std::max(kFewStops, map_->maps.size() / kShare);
+  follower_ = std::make_unique<MapLocalizer>(config_, map_, *pool_);
+  if (T_map_last) {
+    follower_->start_after(*last_, *T_map_last);
+    return;
+  }
+  forget();
+  for (const MapPointer& stop : last_stops) add(stop);
+}
+
+void Meeting::expect(const MapPointer& last, const UncertainPose& T_map_robot) {
+  if (followed(*follower_)) return;
+  if (follower_->stops().empty()) follower_->start_after(*last, T_map_robot.T_a_b);
+  follower_->set_pose(T_map_robot.T_a_b, T_map_robot.covariance);
+}
+
+bool Meeting::add(const MapPointer& map) {
+  follow(map);
+  return confirmation_.add(*follower_);
+}
+
+void Meeting::follow(const MapPointer& map) {
+  follower_->add(map);
+  follower_->forget_stops(kFewStops);
+  last_ = map;
+  if (!followed(*follower_)) sightings_.clear();
+  if (sightings_.size() > kMostSightings) {
+    sightings_.erase(sightings_.begin(), sightings_.begin() + kMostSightings / 2);
+  }
+  newest_ = sightings_.size();
+  if (!tracked_well(*follower_)) return;
+  const TrackedStep& step = *follower_->last_step();
+  for (std::size_t i = 0; i < step.accepted.size(); ++i) {
+    const StoredMatch& match = step.accepted[i];
+    sightings_.push_back(
+        {map->stop, map_->maps[match.stop].stop, step.scans_alone[i], match.fitness});
+  }
+}
+
+std::span<const Sighting> Meeting::newest() const {
+  return std::span(sightings_).subspan(newest_);
+}
+
+void Meeting::forget() {
+  confirmation_.begin_searched();
+  sightings_.clear();
+  newest_ = 0;
+}
+
+SlamCounts Meeting::counts() const {
+  SlamCounts counts = follower_ ? follower_->counts() : SlamCounts{};
+  add_counts(counts, counts_before_);
+  return counts;
+}
+
+}  // namespace topogeo::localization

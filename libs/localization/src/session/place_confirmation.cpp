@@ -1,0 +1,41 @@
+#include "topogeo/localization/session/place_confirmation.hpp"
+
+#include <optional>
+
+namespace topogeo::localization {
+
+namespace {
+
+// In succession, after a search, before a drive joins the map. A room that is taken for another one
+// is tracked while the robot turns in it, but not much further (continue_test).
+constexpr std::uint32_t kTrackedStops = 3;
+constexpr double kTrackedDistance_m = 4.0;
+// Of what should look alike (contradiction()), where doors have changed and people are about; a
+// corridor that is taken for another one differs more.
+constexpr double kContradicted = 0.3;      // in the mean over that distance
+constexpr double kContradictedOnce = 0.5;  // by one stop
+
+}  // namespace
+
+bool tracked_well(const MapLocalizer& follower) {
+  const std::optional<TrackedStep>& step = follower.last_step();
+  return follower.status().state == LocalizationState::kTracking && step &&
+         !step->accepted.empty() && contradiction(step->evidence) <= kContradictedOnce;
+}
+
+bool PlaceConfirmation::add(const MapLocalizer& follower) {
+  const std::optional<TrackedStep>& step = follower.last_step();
+  if (!step) searched_ = true;
+  if (!tracked_well(follower)) {
+    stops_ = 0;
+    distance_m_ = contradiction_ = 0.0;
+    return false;
+  }
+  ++stops_;
+  distance_m_ += step->evidence.distance_m;
+  contradiction_ += contradiction(step->evidence);
+  const bool alike = contradiction_ <= kContradicted * stops_;
+  return alike && (!searched_ || (stops_ >= kTrackedStops && distance_m_ >= kTrackedDistance_m));
+}
+
+}  // namespace topogeo::localization

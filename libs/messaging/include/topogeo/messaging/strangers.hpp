@@ -1,0 +1,22 @@
+// What came in of peers that keep no rules or are none of ours.
+#pragma once
+
+#include <cstdint>
+
+namespace topogeo::messaging {
+
+struct StrangerCounts {
+  /// Packets kept from the middleware: no RTPS, or something in them that no peer of good will
+  /// sends.
+  std::uint64_t invalid_packets = 0;
+  /// Messages that came plain where security wants them encrypted: a stranger in the name of a
+  /// peer. Kept from their reader or writer.
+  std::uint64_t unprotected_packets = 0;
+  /// Announcements of readers and writers of topics that topogeo does not have.
+  std::uint64_t unknown_topics = 0;
+};
+
+/// Of all participants of this process since its start. From any thread.
+[[nodiscard]] StrangerCounts stranger_counts();
+
+}  // namespace topogeo::messaging

@@ -1,0 +1,46 @@
+// One search for the relative pose of two stops, with all that led to its answer: for looking at.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/matching/error_ellipse.hpp"
+#include "topogeo/localization/matching/match.hpp"
+#include "topogeo/localization/matching/odometry_model.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::pipeline {
+
+/// What the fitness of a pose consists of, each in [0, 1].
+struct FitnessParts {
+  double scan = 0.0;         ///< points on points
+  double topological = 0.0;  ///< nodes and branches
+  double prior = 0.0;        ///< likelihood by odometry, at most 1
+};
+
+struct StopSearch {
+  localization::MatchTask task;
+  localization::ErrorEllipse ellipse;  ///< of the prediction, search_probability
+  localization::MatchResult result;
+  std::vector<FitnessParts> solutions;  ///< of result.solutions
+  FitnessParts refined;
+};
+
+/// Throws std::invalid_argument unless both are among so many stops, and are two.
+void check_stops(std::size_t stops, std::size_t reference, std::size_t query);
+
+/// Odometry from stop `reference` to stop `query` of a drive, through all between; also backwards.
+/// Throws like check_stops(), and std::invalid_argument where no odometry leads.
+localization::UncertainPose predict_by_odometry(std::span<const topomap::LocalMap> stops,
+                                                std::size_t reference, std::size_t query,
+                                                const localization::OdometryNoise& noise);
+
+/// Searches the stop `query` around where it is predicted in the frame of the stop `reference`, as
+/// a localizer of this configuration does. Throws like predict_by_odometry() and Matcher::solve().
+StopSearch search_stop(const topomap::LocalMap& reference, const topomap::LocalMap& query,
+                       const localization::UncertainPose& T_reference_query,
+                       const localization::LocalizerConfig& config);
+
+}  // namespace topogeo::pipeline

@@ -1,0 +1,78 @@
+#include "topogeo/pipeline/stop_search.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "topogeo/localization/mapping/search_space.hpp"
+#include "topogeo/localization/matching/fitness_forms.hpp"
+#include "topogeo/localization/matching/matcher.hpp"
+#include "topogeo/support/hash.hpp"
+
+namespace topogeo::pipeline {
+
+using localization::UncertainPose;
+
+void check_stops(std::size_t stops, std::size_t reference, std::size_t query) {
+  for (const std::size_t stop : {reference, query}) {
+    if (stop < stops) continue;
+    throw std::invalid_argument("there is no stop " + std::to_string(stop) + ", only " +
+                                std::to_string(stops));
+  }
+  if (reference == query) throw std::invalid_argument("a stop is not searched in itself");
+}
+
+UncertainPose predict_by_odometry(std::span<const topomap::LocalMap> stops, std::size_t reference,
+                                  std::size_t query, const localization::OdometryNoise& noise) {
+  check_stops(stops.size(), reference, query);
+  UncertainPose T_first_last;
+  const std::size_t first = std::min(reference, query);
+  for (std::size_t i = first + 1; i <= std::max(reference, query); ++i) {
+    if (stops[i].starts_drive || stops[i].odometry_epoch != stops[i - 1].odometry_epoch) {
+      throw std::invalid_argument("no odometry leads from stop " + std::to_string(i - 1) +
+                                  " to stop " + std::to_string(i));
+    }
+    T_first_last =
+        compose(T_first_last, odometry_between_stops(stops[i - 1].T_odom_robot, stops[i], noise));
+  }
+  return reference < query ? T_first_last : inverse(T_first_last);
+}
+
+StopSearch search_stop(const topomap::LocalMap& reference, const topomap::LocalMap& query,
+                       const UncertainPose& T_reference_query,
+                       const localization::LocalizerConfig& config) {
+  StopSearch search;
+  UncertainPose predicted = T_reference_query;
+  predicted.covariance = localization::invertible(predicted.covariance);
+  search.task = localization::match_task(config, predicted);
+  search.task.reference_map_id = reference.id;
+  search.task.query_map_id = query.id;
+  search.task.reference_hash = topomap::content_hash(reference);
+  search.task.query_hash = topomap::content_hash(query);
+  support::Fnv1a seed;
+  seed.add(config.seed);
+  seed.add(search.task.reference_hash);
+  seed.add(search.task.query_hash);
+  search.task.seed = seed.value();
+  search.ellipse = localization::error_ellipse(predicted.covariance.topLeftCorner<2, 2>(),
+                                               localization::ellipse_k2(config.search_probability));
+  localization::Matcher matcher;
+  matcher.add_map(reference);
+  matcher.add_map(query);
+  search.result = matcher.solve(search.task);
+
+  const localization::Reference features =
+      localization::make_reference(localization::extract_features(reference));
+  const localization::MatchFeatures query_features = localization::extract_features(query);
+  const localization::CombinedFitness fitness(features, query_features, search.task);
+  const auto parts_at = [&](const geometry::Pose2& T) {
+    return FitnessParts{fitness.scan()(T), fitness.topological()(T), fitness.prior()(T)};
+  };
+  for (const localization::MatchSolution& solution : search.result.solutions) {
+    search.solutions.push_back(parts_at(solution.T_reference_query));
+  }
+  search.refined = parts_at(search.result.T_reference_query);
+  return search;
+}
+
+}  // namespace topogeo::pipeline

@@ -1,0 +1,19 @@
+// The point that a goal means.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "topogeo/planning/hybrid_planner.hpp"
+
+namespace topogeo::planning {
+
+struct GoalTarget {
+  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+  HybridRoute failure;  ///< where it is not known
+  bool known = true;
+};
+
+/// `map` null: there is none, so that only points are known.
+GoalTarget resolve(const HybridMap* map, const Target& to);
+
+}  // namespace topogeo::planning

@@ -1,0 +1,19 @@
+// Proposals to make the maps of two robots one, between messages and localization.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "topogeo/localization/session/merge_proposals.hpp"
+#include "topogeo/msg/merge.h"
+
+namespace topogeo::service {
+
+/// `robot_id`: whose map it is.
+msg::MergeProposal to_msg(const localization::MergeProposal& proposal, std::string_view robot_id,
+                          std::int64_t stamp_ns, std::uint64_t sequence_number);
+/// Throws std::invalid_argument naming the field and what was expected. Of the match only the two
+/// stops come back.
+localization::MergeProposal from_msg(const msg::MergeProposal& message);
+
+}  // namespace topogeo::service

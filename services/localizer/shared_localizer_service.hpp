@@ -1,0 +1,72 @@
+// Wires localization::SharedMap to topics: the local maps of several robots in, one trajectory out,
+// a live pose for each robot, and proposals to join their maps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "topogeo/localization/session/shared_map.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/service/service.hpp"
+
+#include "live_pose_estimate.hpp"
+#include "merge_channel.hpp"
+#include "odometry_chain.hpp"
+#include "remote_pool.hpp"
+#include "shared_resume.hpp"
+#include "stop_queue.hpp"
+#include "trajectory_publisher.hpp"
+
+namespace topogeo::localizer {
+
+/// Lives in the loop of its service.
+class SharedLocalizerService {
+ public:
+  /// `standalone`: there is no map store, a new map is begun at once.
+  SharedLocalizerService(service::Service& service, bool standalone);
+
+ private:
+  struct Robot {
+    StopQueue queue = {};
+    OdometryChain odometry = {};
+    LivePoseEstimate live;
+    bool ended = false;  // its stream
+  };
+
+  void resume(SharedResumeFrom from);
+  void on_map(const msg::LocalMap& message);
+  void on_stream_end(const msg::StreamEnd& message);
+  void send_pose(const std::string& robot);
+  /// Has the work done outside of message handlers, which the pool needs.
+  void schedule();
+  void work();
+  void answer_merges();
+  /// One stop of each robot that has some; false when none has.
+  bool step_all();
+  void finish();
+  void publish(bool whole);
+  void count();
+
+  service::Service& service_;
+  RemotePool pool_;
+  std::optional<localization::SharedMap> map_;
+  std::map<std::string, Robot> robots_;
+  MergeChannel merges_;
+  TrajectoryPublisher trajectory_;
+  messaging::Writer<msg::LivePose> poses_;
+  messaging::Writer<msg::StreamEnd> ends_out_;
+  std::optional<SharedResume> resume_;  // until it is known where to go on
+  std::int64_t stamp_ns_ = 0;           // of the newest stop
+  bool ready_ = false;                  // it is known where to go on
+  bool scheduled_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace topogeo::localizer

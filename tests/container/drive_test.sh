@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# A simulated robot drives to "room A" with its services on three hosts, and goes on driving while each service is
+# replaced by one of a newer image.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/hosts.sh"
+
+need python3
+need_image
+chmod 777 "$work"
+cat > "$work/places.yaml" <<'YAML'
+places:
+  - {name: room A, at: [3, 0]}
+  - {name: room B, at: [0.4, 0.2]}
+YAML
+make_network
+for host in robot pc1 pc2; do start_host "$host"; done
+
+release=$image
+
+# run HOST SERVICE [OPTIONS]: a container of the release in the network of the host, as compose.yaml makes them.
+# Those of the robot see the pseudo-terminals of the simulator.
+run() {
+  docker run -d --name "$network-$1-$2" --network "container:$network-$1" --init --no-healthcheck --user root \
+    -e TOPOGEO_METRICS_PORT="${metrics:-}" -v "$work:/exchange" -v /dev/pts:/dev/pts "$release" "${@:2}" > /dev/null
+  cleanups+=("docker rm -f $network-$1-$2")
+}
+
+run_service() {
+  case $1 in
+    sensor_gateway)
+      run robot sensor_gateway --devices /exchange/devices.yaml --laser-port /exchange/laser \
+        --base-port /exchange/base --memory /exchange/odometry
+      ;;
+    local_mapper | navigator) run robot "$1" ;;
+    map_store) run pc1 map_store --out /exchange/map --places /exchange/places.yaml ;;
+    ga_worker) run pc2 ga_worker --name pc2 ;;
+    *) metrics=9464 run pc1 "$1" ;;
+  esac
+}
+
+container_of() { docker ps -a --format '{{ .Names }}' | grep -E "^$network-(robot|pc1|pc2)-$1\$"; }
+
+# state SERVICE: what its status says, "-" where there is none.
+state() {
+  on robot topogeo status "$1" --json 2> /dev/null |
+    python3 -c 'import json, sys
+services = json.load(sys.stdin)
+print(services[-1]["state"], services[-1]["message"]) if services else print("-")' || echo -
+}
+is_in_state() { state "$1" | grep -q "$2"; }
+lives() { [ "$(state "$1")" != - ] && ! is_in_state "$1" 'lost\|silent\|failed'; }
+show() { docker logs "$(container_of "$1")" 2>&1 | tail -n 15; }
+
+step "the services of a robot on three hosts"
+cp "$source_dir/tests/data/room.world.yaml" "$work"
+run robot simulator --world /exchange/room.world.yaml --laser-port /exchange/laser --base-port /exchange/base
+"$bin/topogeo" config --devices > "$work/devices.yaml"
+services='sensor_gateway local_mapper localizer map_store planner navigator ga_worker'
+for service in $services; do run_service "$service"; done
+eventually 60 test -L "$work/laser" || { show simulator; fail "the simulator makes no ports"; }
+plans() { is_in_state planner '^running' && ! is_in_state planner 'needs'; }
+eventually 120 plans || { on robot topogeo status; show sensor_gateway; fail "the planner gets no map"; }
+
+# drive PLACE: to its end, until it is there.
+drive() {
+  on robot topogeo goto "$1" --wait-seconds 60 --patience 120 > "$work/goto.log" 2>&1 ||
+    { tail -n 5 "$work/goto.log"; on robot topogeo status; fail "the robot does not get to $1"; }
+}
+drive "room A"
+step "the robot is in room A"
+
+step "metrics"
+# shellcheck disable=SC2016  # expanded in the container
+on pc1 bash -c 'exec 3<> /dev/tcp/127.0.0.1/9468; printf "GET /metrics HTTP/1.0\r\n\r\n" >&3; cat <&3' \
+  > "$work/metrics"
+grep -q '^topogeo_service_state{.*planner.*"running".* 1$' "$work/metrics" ||
+  { head -n 20 "$work/metrics"; fail "the planner has no metrics"; }
+
+step "each service replaced by one of a newer image"
+printf 'FROM %s\nLABEL release=newer\n' "$image" | docker build -q -t "$image-newer" - > /dev/null 2>&1
+cleanups+=("docker rmi $image-newer")
+release=$image-newer
+# To and fro, as long as there is something to replace.
+(
+  trap 'exit 0' TERM
+  while :; do
+    for place in "room B" "room A"; do
+      docker exec "$network-robot" topogeo goto "$place" --wait-seconds 60 --patience 120 >> "$work/tour.log" 2>&1 &
+      wait $! || exit 1
+      [ ! -e "$work/replaced" ] || exit 0
+    done
+  done
+) &
+tour=$!
+cleanups+=("kill $tour")
+drives() { is_in_state navigator driving; }
+for service in $services; do
+  eventually 90 drives || { on robot topogeo status; cat "$work/tour.log"; fail "the robot stands before $service"; }
+  old=$(container_of "$service")
+  docker stop "$old" > /dev/null
+  docker rm "$old" > /dev/null
+  run_service "$service"
+  eventually 60 lives "$service" || { show "$service"; fail "the newer $service does not come up"; }
+  step "$service"
+done
+eventually 90 drives || { on robot topogeo status; cat "$work/tour.log"; fail "the robot stands with newer services"; }
+touch "$work/replaced"
+wait $tour || { tail -n 5 "$work/tour.log"; on robot topogeo status; fail "a drive failed"; }
+drive "room A"
+for service in $services; do
+  [ "$(docker inspect -f '{{ index .Config.Labels "release" }}' "$(container_of "$service")")" = newer ] ||
+    fail "$service is not of the newer image"
+done
+on robot topogeo status > "$work/status" || { cat "$work/status"; fail "not all services are well"; }
+collisions=$(on robot topogeo status simulator --json |
+  python3 -c 'import json, sys; print(json.load(sys.stdin)[0]["counters"]["collisions"])')
+[ "${collisions%.*}" = 0 ] || fail "the robot ran into something $collisions times"
+step "the end"

@@ -1,0 +1,280 @@
+// Two robots map one floor at a time into one map store, with one localizer for both: their maps
+// become one when they have seen the same place, or when somebody agrees; whatever is killed.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/local_map.h"
+#include "topogeo/msg/store.h"
+#include "topogeo/msg/stream.h"
+#include "topogeo/pipeline/local_mapper.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/simulation/simulate_log.hpp"
+#include "topogeo/storage/map_file.hpp"
+#include "topogeo/storage/read_map.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/world/world.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using geometry::Pose2;
+using testing::HasSubstr;
+
+/// The stops of a robot that drives through the floor, and its true poses.
+struct FloorDrive {
+  FloorDrive(const std::string& robot, const std::vector<Eigen::Vector2d>& tour_m) {
+    world::World world = world::load_world(std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml");
+    world.tour_m = tour_m;
+    const simulation::SimulatedLog log = simulation::simulate_log(world, {});
+    pipeline::LocalMapper mapper({}, robot, robot == "a" ? 1 : 2);
+    const auto keep = [&](const std::optional<topomap::LocalMap>& map) {
+      if (!map) return;
+      stops.push_back(*map);
+      T_world_robot.push_back(log.T_world_robot[map->sequence]);
+    };
+    for (const scan::Scan& scan : log.scans) keep(mapper.add(scan));
+    keep(mapper.finish());
+  }
+  std::vector<topomap::LocalMap> stops;
+  std::vector<Pose2> T_world_robot;
+};
+
+class SharedMapServices : public testing::Test {
+ protected:
+  SharedMapServices() {
+    loop_.add<msg::StoredMap>(stored_, [this](const msg::StoredMap& stored, const auto&) {
+      newest_[stored.robot_id().to_string()] = stored;
+    });
+  }
+
+  [[nodiscard]] std::vector<std::string> domain() const {
+    return {"--domain", own_domain(), "--partition", partition_};
+  }
+  [[nodiscard]] std::unique_ptr<Program> start(const std::string& name,
+                                               std::vector<std::string> words) const {
+    words.insert(words.end(), {"--robot-id", "a", "--with-robots", "b"});
+    for (const std::string& word : domain()) words.push_back(word);
+    return std::make_unique<Program>(scratch_, name, words);
+  }
+  [[nodiscard]] std::unique_ptr<Program> start_store() const {
+    return start("map_store", {"--out", (scratch_ / "out").string()});
+  }
+  [[nodiscard]] std::unique_ptr<Program> start_localizer(const std::string& merge = "auto") const {
+    const std::filesystem::path config = scratch_ / "config.yaml";
+    std::ofstream(config) << "localizer:\n  merge: " << merge << '\n';
+    return start("localizer", {"--config", config.string()});
+  }
+  /// What `topogeo store ...` prints; it ends with that code.
+  std::string store_command(std::vector<std::string> words, int code = 0) const {
+    words.insert(words.begin(), "store");
+    Program program(scratch_, "topogeo", words);
+    EXPECT_EQ(program.wait(), code) << program.err();
+    return program.out() + program.err();
+  }
+  std::string merge_command(std::vector<std::string> words, int code = 0) const {
+    words.insert(words.end(), {"--robot-id", "a"});
+    for (const std::string& word : domain()) words.push_back(word);
+    return store_command(std::move(words), code);
+  }
+
+  template <class Condition>
+  bool eventually(Condition condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(90 * kTimeFactor);
+    while (!condition() && std::chrono::steady_clock::now() < end) {
+      static_cast<void>(loop_.run_for(std::chrono::milliseconds(10)));
+    }
+    return condition();
+  }
+  [[nodiscard]] std::uint32_t stops_in_map() { return newest_["a"].stops(); }
+  [[nodiscard]] bool stored(const std::string& robot, std::size_t stops) {
+    return newest_[robot].session_stops() >= stops;
+  }
+
+  /// The stops of both in turn, up to so many of each.
+  void send(std::size_t stops) {
+    for (; sent_ < stops; ++sent_) {
+      for (const FloorDrive* drive : {&a_, &b_}) {
+        if (sent_ >= drive->stops.size()) continue;
+        EXPECT_TRUE(maps_.write(service::to_msg(drive->stops[sent_])));
+      }
+    }
+  }
+  void send_all() {
+    send(std::max(a_.stops.size(), b_.stops.size()));
+    for (const FloorDrive* drive : {&a_, &b_}) {
+      msg::StreamEnd end;
+      messaging::set_header(end, drive->stops.front().robot_id, 0, 0);
+      end.stage(msg::kStageLocalMapper);
+      end.count(drive->stops.size());
+      end.last_id(drive->stops.size() - 1);
+      EXPECT_TRUE(ends_.write(end));
+    }
+  }
+  /// Largest distance of a stop from its true place, the first one at its true one.
+  [[nodiscard]] double largest_error_m(const storage::MapDocument& map) const {
+    const auto truth = [&](const topomap::LocalMap& stop) {
+      const FloorDrive& drive = stop.robot_id == "a" ? a_ : b_;
+      return drive.T_world_robot[stop.stop.number];
+    };
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < map.trajectory.stops.size(); ++i) {
+      const Pose2 T_true = geometry::between(truth(map.local_maps[0]), truth(map.local_maps[i]));
+      const Pose2 T = geometry::between(map.trajectory.stops[0].T_map_robot,
+                                        map.trajectory.stops[i].T_map_robot);
+      largest_m = std::max(largest_m, geometry::between(T_true, T).position_m().norm());
+    }
+    return largest_m;
+  }
+
+  const bool udp_only_ = (use_udp_only(), true);
+  std::string partition_ = "shared" + std::to_string(std::random_device{}());
+  Scratch scratch_;
+  FloorDrive a_{"a", {{1.3, 1.2}, {15.0, 1.15}, {28.9, 1.2}, {28.9, 12.0}}};
+  FloorDrive b_{"b", {{1.3, 9.6}, {1.3, 1.2}, {15.0, 1.15}, {24.0, 1.2}}};
+  messaging::Participant participant_{[this] {
+    messaging::ParticipantOptions options;
+    options.domain = static_cast<std::uint32_t>(std::stoul(own_domain()));
+    options.partition = partition_;
+    options.name = "robots";
+    return options;
+  }()};
+  messaging::Writer<msg::LocalMap> maps_{participant_};
+  messaging::Writer<msg::StreamEnd> ends_{participant_};
+  messaging::Reader<msg::StoredMap> stored_{participant_};
+  messaging::EventLoop loop_;
+  std::map<std::string, msg::StoredMap> newest_;  // by robot
+  std::size_t sent_ = 0;
+};
+
+TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
+  auto store = start_store();
+  auto localizer = start_localizer();
+  const std::size_t part = 2 * b_.stops.size() / 3;
+  send(part);
+  ASSERT_TRUE(eventually([&] { return stops_in_map() >= part + part / 2; }))
+      << stops_in_map() << " of " << 2 * part << "; " << localizer->err();
+  localizer->send_signal(SIGKILL);
+  EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
+  send(part + 3);
+  ASSERT_TRUE(eventually([&] { return stored("a", part + 3) && stored("b", part + 3); }));
+  store->send_signal(SIGKILL);
+  EXPECT_EQ(store->wait(), 128 + SIGKILL);
+  localizer = start_localizer();  // waits for the store
+  store = start_store();
+  localizer->wait_for_error_text("goes on with a map of ");
+  send_all();
+  store->wait_for_error_text("local maps, ");  // the final line
+  const storage::MapDocument map = storage::read_map_file(scratch_ / "out" / "map.pb");
+  EXPECT_EQ(map.robot_id, "a");
+  ASSERT_EQ(map.trajectory.stops.size(), a_.stops.size() + b_.stops.size()) << localizer->err();
+  EXPECT_LT(largest_error_m(map), 0.3);
+  for (const std::string robot : {"a", "b"}) {
+    EXPECT_EQ(std::ranges::count(map.local_maps, robot, &topomap::LocalMap::robot_id),
+              static_cast<std::ptrdiff_t>((robot == "a" ? a_ : b_).stops.size()));
+  }
+  for (auto* program : {localizer.get(), store.get()}) {
+    program->send_signal(SIGTERM);
+    EXPECT_EQ(program->wait(), 0) << program->err();
+  }
+  const std::string database = (scratch_ / "out" / "map.sqlite").string();
+  EXPECT_THAT(store_command({"check", database}), HasSubstr("no fault found"));
+  // Was it wrong?
+  const std::string split = (scratch_ / "split.pb").string();
+  store_command({"remove-session", database, fmt::format("{:016x}", b_.stops.front().stop.session),
+                 "--out", split});
+  const storage::MapDocument alone = storage::read_map_file(split);
+  EXPECT_EQ(alone.trajectory.stops.size(), a_.stops.size());
+  EXPECT_LT(largest_error_m(alone), 0.3);
+}
+
+TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
+  const auto store = start_store();
+  auto localizer = start_localizer("ask");
+  send(b_.stops.size());
+  const auto shows = [&](const std::string& text) {
+    return eventually([&] {
+      return merge_command({"merges", "--json"}).find(text) != std::string::npos;
+    });
+  };
+  ASSERT_TRUE(shows("\"state\": \"open\""));
+  ASSERT_TRUE(eventually([&] { return stored("b", b_.stops.size()); }));
+  EXPECT_LE(stops_in_map(), a_.stops.size());
+  EXPECT_THAT(merge_command({"accept", "7"}, 1), HasSubstr("no merge 7 was proposed"));
+  EXPECT_THAT(merge_command({"merges"}), HasSubstr("1  open: stop "));
+  Program status(scratch_, "topogeo", {"status", "--domain", own_domain(), "--json"});
+  EXPECT_EQ(status.wait(), 0);
+  EXPECT_THAT(status.out(), HasSubstr("topogeo store accept 1"));
+  // What nobody has answered is proposed again by a localizer that starts again.
+  localizer->send_signal(SIGKILL);
+  EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
+  localizer = start_localizer("ask");
+  ASSERT_TRUE(shows("\"state\": \"open\""));
+  EXPECT_THAT(merge_command({"accept", "1"}), HasSubstr("the maps are one"));
+  EXPECT_TRUE(eventually([&] { return stops_in_map() > a_.stops.size(); }));
+  EXPECT_TRUE(shows("\"state\": \"accepted\""));
+  EXPECT_THAT(merge_command({"refuse", "1"}, 1), HasSubstr("not open any more"));
+}
+
+// Refused 5 m after `b` came to where `a` began, when it has not been 10 m further by the restart.
+TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
+  const auto store = start_store();
+  auto localizer = start_localizer("ask");
+  const auto proposals = [&] { return merge_command({"merges", "--json"}); };
+  std::size_t stops = 0;
+  while (stops < b_.stops.size() && proposals().find("\"state\": \"open\"") == std::string::npos) {
+    send(stops += 2);
+    ASSERT_TRUE(eventually([&] { return stored("b", std::min(stops, b_.stops.size())); }));
+  }
+  ASSERT_LT(stops + 4, b_.stops.size());
+  EXPECT_THAT(merge_command({"refuse", "1"}), HasSubstr("the maps stay apart"));
+  const std::string refused = proposals();
+  const std::string database = (scratch_ / "out" / "map.sqlite").string();
+  ASSERT_TRUE(eventually([&] { return storage::read_map(database).refused_merges.size() == 1; }));
+  localizer->send_signal(SIGKILL);
+  EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
+  localizer = start_localizer("ask");
+  localizer->wait_for_error_text("adds ");
+  send(stops + 2);
+  ASSERT_TRUE(eventually([&] { return stored("b", stops + 2) && stops_in_map() >= stops + 2; }));
+  EXPECT_EQ(proposals(), "[]\n") << refused;
+  send_all();  // it comes to places further away
+  EXPECT_TRUE(
+      eventually([&] { return proposals().find("\"state\": \"open\"") != std::string::npos; }));
+}
+
+TEST_F(SharedMapServices, ASecondLocalizerOfOneOfTheRobotsIsReported) {
+  const auto store = start_store();
+  const auto localizer = start_localizer();
+  localizer->wait_for_error_text("");
+  Program usage(scratch_, "localizer", {"--with-robots", "b,b"});
+  EXPECT_EQ(usage.wait(), 2);
+  EXPECT_THAT(usage.err(), HasSubstr("expected each robot once, got 'b' again"));
+  std::vector<std::string> words{"--robot-id", "b", "--with-robots", "a", "--standalone"};
+  for (const std::string& word : domain()) words.push_back(word);
+  ASSERT_TRUE(eventually([&] { return !newest_.empty(); }));
+  Program second(scratch_, "localizer", words);
+  EXPECT_EQ(second.wait(), 1) << second.err();
+  EXPECT_THAT(second.err(), HasSubstr("another localizer works for robot"));
+}
+
+}  // namespace
+}  // namespace topogeo::test
