@@ -5,6 +5,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
+#include "topogeo/service/service_options.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -38,9 +39,7 @@ bool collect(messaging::EventLoop& loop, const std::function<std::size_t()>& cou
 }  // namespace
 
 void add_domain_options(command_line::Command& app, DomainView& view) {
-  app.add_option("--domain", view.domain, "DDS domain")
-      ->check(command_line::range(0U, 232U))
-      ->capture_default_str();
+  service::add_domain_option(app, view.domain);
   app.add_option("--partition", view.partition, "only what lives in this partition; *: all")
       ->capture_default_str();
   app.add_option("--profiles", view.profiles_file, "QoS profiles instead of the built-in ones")

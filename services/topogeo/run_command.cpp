@@ -118,9 +118,7 @@ void add_run_options(command_line::Command& app, RunOptions& options) {
                  "search workers to wait for (5 s) before the first step, those on other machines "
                  "included (default: as many as --workers)")
       ->check(command_line::range(0U, 1024U));
-  app.add_option("--domain", options.domain, "DDS domain")
-      ->check(command_line::range(0U, 232U))
-      ->capture_default_str();
+  service::add_domain_option(app, options.domain);
   app.add_option("--rate", options.rate,
                  "lossless (as fast as it goes), realtime or a factor of real time")
       ->check(check_rate)

@@ -32,6 +32,16 @@ eventually() {
   done
 }
 
+# A DDS domain that no other test has, for all that is started from here on: a worker serves each partition of its
+# domain, and this machine hears what containers say to a bridge.
+claim_domain() {
+  for domain in {1..100}; do
+    exec 5>> "${TMPDIR:-/tmp}/topogeo_test_domain_$domain.lock"
+    ! flock -n 5 || { export TOPOGEO_DOMAIN=$domain; return; }
+  done
+  fail "no free DDS domain from 1 to 100"
+}
+
 need_programs() {
   local program
   for program in topogeo navigator simulator ga_worker; do

@@ -5,6 +5,7 @@
 network=topogeo-test-$$
 
 make_network() {
+  claim_domain
   docker network create "$network" > /dev/null
   cleanups+=("docker network rm $network")
 }
@@ -14,7 +15,7 @@ start_host() {
   local host=$1
   shift
   docker run -d --rm --name "$network-$host" --hostname "$host" --network "$network" --network-alias "$host" \
-    --init --no-healthcheck -e TOPOGEO_DDS_PARTICIPANT=udp_only -e TOPOGEO_DOMAIN=0 \
+    --init --no-healthcheck -e TOPOGEO_DDS_PARTICIPANT=udp_only -e TOPOGEO_DOMAIN \
     -v "$work:/exchange" --user root "$@" "$image" sleep infinity > /dev/null
   cleanups+=("docker rm -f $network-$host")
 }

@@ -63,10 +63,11 @@ if ! { cmake -S "$source_dir/tests/container/subscriber" -B "$work/subscriber" -
   tail -n 30 "$work/subscriber.log"
   fail "the subscriber does not compile"
 fi
+claim_domain
 partition=install-test-$$
 "$prefix/bin/topogeo-planner" --partition "$partition" --log-level off &
 cleanups+=("kill $!")
-heard=$(timeout 60 "$work/subscriber/subscriber" "$partition") || fail "the subscriber heard nothing"
+heard=$(timeout 60 "$work/subscriber/subscriber" "$TOPOGEO_DOMAIN" "$partition") || fail "the subscriber heard nothing"
 [ "$heard" = planner ] || fail "the subscriber heard '$heard'"
 
 step "signs of life for systemd"

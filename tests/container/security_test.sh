@@ -9,14 +9,13 @@ need_programs
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 make_keys=$source_dir/deploy/security/make_keys
 keys=$work/keys
-# A domain of its own: the participants of other tests would be strangers, too.
-domain=$((100 + $$ % 100))
+claim_domain  # the participants of other tests would be strangers, too
 partition=security-$$
 
 secured() { TOPOGEO_SECURITY=$1 "${@:2}"; }
-status() { secured "$1" "$bin/topogeo" status --domain $domain --partition $partition "${@:2}" 2>&1; }
+status() { secured "$1" "$bin/topogeo" status --partition $partition "${@:2}" 2>&1; }
 start() {  # FOLDER SERVICE OPTIONS...
-  TOPOGEO_SECURITY=$1 "$bin/$2" --domain $domain --partition $partition --log-level debug "${@:3}" \
+  TOPOGEO_SECURITY=$1 "$bin/$2" --partition $partition --log-level debug "${@:3}" \
     > "$work/$2.log" 2>&1 &
   pid=$!
   cleanups+=("kill $pid")
@@ -42,7 +41,7 @@ diff "$work/topics" "$work/written" || fail "topics (<) and the table of permiss
 step "a whole run"
 make_log 80 "$work/log.clf"
 "$bin/topogeo" map --log "$work/log.clf" --out "$work/alone" > /dev/null 2>&1
-secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --out "$work/run" --domain $domain > "$work/run.log" 2>&1 ||
+secured "$keys/robot" "$bin/topogeo" run --log "$work/log.clf" --out "$work/run" > "$work/run.log" 2>&1 ||
   { cat "$work/run.log"; fail "the secured run"; }
 same_results "$work/run" "$work/alone"
 grep -q ' 0 sent to workers' "$work/run.log" && fail "the workers had no work"
@@ -72,7 +71,7 @@ drops_unprotected && fail "the owner's packets are taken for a stranger's"
 heartbeat='RTPS\x02\x02\x01\x0f\x01\x0f\x09\x09\x09\x09\x09\x09\x09\x09\x09\x09\x07\x01\x1c\x00\x00\x00\x00\x00'
 heartbeat+='\x00\x00\x01\x02\x00\x00\x00\x00\xe8\x03\x00\x00\x00\x00\x00\x00\xe8\x03\x00\x00\x01\x00\x00\x00'
 for number in {0..9}; do
-  printf '%b' "$heartbeat" > "/dev/udp/127.0.0.1/$((7411 + 250 * domain + 2 * number))" || true
+  printf '%b' "$heartbeat" > "/dev/udp/127.0.0.1/$((7411 + 250 * TOPOGEO_DOMAIN + 2 * number))" || true
 done
 eventually 10 drops_unprotected || fail "a plain message in the name of a peer is not refused"
 before=$(refused)
@@ -81,7 +80,7 @@ eventually 10 more_refused_than "$before" || fail "the stranger without certific
 status "$keys/robot" > "$work/named"
 grep -q "peer refused: 'topogeo" "$work/named" || fail "the stranger is not named"
 before=$(refused)
-TOPOGEO_SECURITY=$work/foreign/pc1 "$bin/topogeo" status --domain $domain --partition $partition --watch \
+TOPOGEO_SECURITY=$work/foreign/pc1 "$bin/topogeo" status --partition $partition --watch \
   > "$work/foreign.log" 2>&1 &
 pid=$!
 cleanups+=("kill $pid")
@@ -115,7 +114,7 @@ stop
 step "a worker that writes the map"
 mkdir "$work/thief"
 cp -r "$keys/pc1/ga_worker" "$work/thief/map_store"
-secured "$work/thief" "$bin/map_store" --out "$work/thief/out" --domain $domain --partition $partition \
+secured "$work/thief" "$bin/map_store" --out "$work/thief/out" --partition $partition \
   > "$work/thief.log" 2>&1 && fail "a worker may write the map"
 grep -q "denied by security" "$work/thief.log" || { cat "$work/thief.log"; fail "no clear error"; }
 # Its own side no longer forbids it: a governance without access control, as if its program were changed.

@@ -4,6 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_image
+claim_domain
 machine=topogeo-machine-$$
 
 step "a machine with systemd"
@@ -13,7 +14,7 @@ printf 'FROM %s\nUSER root\nRUN apt-get update -q && apt-get install -q -y --no-
 cleanups+=("docker rm -f $machine")
 boot() {
   docker rm -f $machine > /dev/null 2>&1 || true
-  docker run -d --name $machine --hostname robot --no-healthcheck --tmpfs /run --tmpfs /run/lock "$@" \
+  docker run -d --name $machine --hostname robot -e TOPOGEO_DOMAIN --no-healthcheck --tmpfs /run --tmpfs /run/lock "$@" \
     "$image-systemd" /sbin/init > "$work/boot.log" 2>&1
 }
 here() { docker exec $machine "$@"; }
@@ -28,6 +29,7 @@ state() { here systemctl show -P "$2" "$1"; }
 is_state() { [ "$(state "$1" "$2")" = "$3" ]; }
 
 step "a wrong file of devices"
+here sed -i "s/^TOPOGEO_DOMAIN=.*/TOPOGEO_DOMAIN=$TOPOGEO_DOMAIN/" /etc/topogeo/topogeo.env /etc/topogeo/worker.env
 here sh -c 'topogeo config --devices > /etc/topogeo/devices.yaml'
 here systemctl enable --now topogeo.target topogeo-worker@1 > /dev/null 2>&1
 eventually 30 is_state topogeo-sensor-gateway ActiveState failed || fail "a gateway without ports goes on"
@@ -35,7 +37,7 @@ here journalctl -u topogeo-sensor-gateway --no-pager | grep -q "expected at leas
 
 step "a laser and a base"
 docker cp "$source_dir/tests/data/room.world.yaml" $machine:/root/ > /dev/null
-docker exec -d $machine /usr/libexec/topogeo/simulator --domain 9 --world /root/room.world.yaml --laser-port /root/laser \
+docker exec -d $machine /usr/libexec/topogeo/simulator --domain 101 --world /root/room.world.yaml --laser-port /root/laser \
   --base-port /root/base
 eventually 20 here test -L /root/base || fail "the simulator makes no ports"
 # shellcheck disable=SC2016  # expanded in the container
@@ -49,7 +51,7 @@ here systemctl restart topogeo.target
 # All seven, as root and as the user of the services.
 all_run() { here topogeo status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 7 ]; }
 eventually 90 all_run || { cat "$work/status"; fail "not all services are well"; }
-here sudo -u topogeo topogeo status > /dev/null || fail "not all services are well for their user"
+here sudo -u topogeo --preserve-env=TOPOGEO_DOMAIN topogeo status > /dev/null || fail "not all services are well for their user"
 eventually 30 here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
 
 step "what dies or hangs"

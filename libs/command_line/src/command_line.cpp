@@ -88,6 +88,11 @@ Option* Option::capture_default_str() {
   return this;
 }
 
+Option* Option::environment(const std::string& variable) {
+  option_->envname(variable);
+  return this;
+}
+
 Option* Option::default_str(const std::string& text) {
   option_->default_str(text);
   return this;

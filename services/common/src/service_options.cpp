@@ -55,10 +55,15 @@ pipeline::LoadedConfig load(const ServiceOptions& options) {
 
 }  // namespace
 
-void add_service_options(command_line::Command& app, ServiceOptions& options) {
-  app.add_option("--domain", options.domain, "DDS domain")
+void add_domain_option(command_line::Command& app, std::uint32_t& domain) {
+  app.add_option("--domain", domain, "DDS domain")
       ->check(command_line::range(std::uint32_t{0}, kLargestDomain))
+      ->environment("TOPOGEO_DOMAIN")
       ->capture_default_str();
+}
+
+void add_service_options(command_line::Command& app, ServiceOptions& options) {
+  add_domain_option(app, options.domain);
   app.add_option("--partition", options.partition,
                  "only services of one partition meet, * meets all")
       ->capture_default_str();

@@ -1,5 +1,6 @@
-// Prints the name of the first service whose status arrives.
+// Prints the name of the first service whose status arrives: subscriber DOMAIN PARTITION.
 #include <iostream>
+#include <string>
 
 #include <topogeo/messaging/participant.hpp>
 #include <topogeo/messaging/reader.hpp>
@@ -7,7 +8,8 @@
 
 int main(int, char** argv) {
   topogeo::messaging::ParticipantOptions options;
-  options.partition = argv[1];
+  options.domain = static_cast<std::uint32_t>(std::stoul(argv[1]));
+  options.partition = argv[2];
   const topogeo::messaging::Participant participant(options);
   topogeo::messaging::Reader<topogeo::msg::ServiceStatus> reader(participant);
   bool heard = false;

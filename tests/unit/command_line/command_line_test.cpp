@@ -232,6 +232,23 @@ TEST(CommandLine, CallbacksMayThrow) {
   EXPECT_THROW(parse(command, {}), std::domain_error);
 }
 
+TEST(CommandLine, TakesValuesOfTheEnvironment) {
+  const auto parsed = [](const std::vector<const char*>& words) {
+    Command command("a test");
+    std::uint32_t workers = 2;
+    command.add_option("--workers", workers)->check(range(0U, 9U))->environment("TEST_WORKERS");
+    EXPECT_FALSE(parse(command, words));
+    return workers;
+  };
+  EXPECT_EQ(parsed({}), 2U);
+  ::setenv("TEST_WORKERS", "5", 1);
+  EXPECT_EQ(parsed({}), 5U);
+  EXPECT_EQ(parsed({"--workers", "7"}), 7U);
+  ::setenv("TEST_WORKERS", "many", 1);
+  EXPECT_THROW(parsed({}), UsageError);
+  ::unsetenv("TEST_WORKERS");
+}
+
 TEST(CommandLine, PrintsHelpAndVersion) {
   Command command("What it does.", "program");
   std::uint32_t workers = 2;

@@ -81,6 +81,8 @@ class Option {
   /// Help shows the value that the variable has now as the default.
   Option* capture_default_str();
   Option* default_str(const std::string& text);
+  /// Where the option is not given, its value is that of this variable of the environment, if set.
+  Option* environment(const std::string& variable);
   /// One value contains several, with this between them.
   Option* delimiter(char separator);
   /// Of an option stored in a vector: whether it takes all values up to the next option, or one

@@ -46,6 +46,9 @@ struct ServiceOptions {
   std::optional<std::string> metrics_address;
 };
 
+/// Adds --domain, a DDS domain from 0 to 232, whose default is that of TOPOGEO_DOMAIN.
+void add_domain_option(command_line::Command& app, std::uint32_t& domain);
+
 /// Adds the flags of `options` to `app`; `options` must outlive it.
 void add_service_options(command_line::Command& app, ServiceOptions& options);
 
