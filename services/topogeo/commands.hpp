@@ -13,6 +13,7 @@ inline constexpr int kSignalBase = 128;
 void add_run_command(command_line::Command& app, int& exit_code);
 void add_map_command(command_line::Command& app, int& exit_code);
 void add_match_command(command_line::Command& app, int& exit_code);
+void add_reproduce_command(command_line::Command& app, int& exit_code);
 void add_localize_command(command_line::Command& app, int& exit_code);
 void add_localizer_command(command_line::Command& app, int& exit_code);
 void add_base_command(command_line::Command& app, int& exit_code);

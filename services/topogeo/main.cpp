@@ -43,6 +43,7 @@ int run(int argc, const char* const* argv) {
   cli::add_simulate_route_command(app, exit_code);
   cli::add_dvl_command(app, exit_code);
   cli::add_match_command(app, exit_code);
+  cli::add_reproduce_command(app, exit_code);
   cli::add_config_command(app, exit_code);
   cli::add_calibrate_laser_command(app, exit_code);
   cli::add_calibrate_odometry_command(app, exit_code);

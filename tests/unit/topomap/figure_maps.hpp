@@ -11,13 +11,15 @@
 #include <Eigen/Core>
 
 #include "topogeo/topomap/local_map_builder.hpp"
+#include "topogeo/topomap/thesis_local_map.hpp"
 
 #include "voronoi/figure_scenes.hpp"
 
 namespace topogeo::figure_scenes {
 
-/// The Thesis's search for states with thresholds for its figures, and its range limit.
-topomap::LocalMapConfig source_map_config();
+inline topomap::LocalMapConfig source_map_config() {
+  return topomap::thesis_local_map();
+}
 
 struct MapSeen : NamedNodes {         // names like "real A|B|C"
   std::vector<std::string> branches;  ///< sorted

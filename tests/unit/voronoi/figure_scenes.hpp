@@ -18,6 +18,7 @@
 #include "topogeo/scan/scan.hpp"
 #include "topogeo/simulation/laser.hpp"
 #include "topogeo/voronoi/local_voronoi.hpp"
+#include "topogeo/voronoi/thesis_voronoi.hpp"
 #include "topogeo/world/world.hpp"
 
 namespace topogeo::figure_scenes {
@@ -46,11 +47,12 @@ simulation::BeamPattern full_turn();
 scan::Scan scan_of(const world::World& world, const geometry::Pose2& T_world_laser,
                    const simulation::BeamPattern& beams = half_turn());
 
-/// The rules of the Thesis with its range limit and its cells. The Thesis prints no thresholds:
-/// 0.3 m splits the objects of its figures, and 0.55 m is just over the width of its robot.
-voronoi::VoronoiConfig source_config();
-/// The same without the rules after the split at discontinuities (steps 2 to 5).
-voronoi::VoronoiConfig only_splitting();
+inline voronoi::VoronoiConfig source_config() {
+  return voronoi::thesis_voronoi();
+}
+inline voronoi::VoronoiConfig only_splitting() {
+  return voronoi::thesis_splitting_alone();
+}
 
 struct NamedNode {
   std::string name;

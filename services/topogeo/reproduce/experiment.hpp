@@ -1,0 +1,93 @@
+// One row of the reproduction: a figure or table of a publication and what makes its counterpart.
+//
+// To add one: a function that measures and draws with a Report, and a line in the list of its
+// chapter (chapter4.cpp, ...).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "topogeo/render/figure.hpp"
+
+#include "reproduce/measured.hpp"
+
+namespace topogeo::reproduce {
+
+class SharedRuns;
+
+struct ReportPicture {
+  std::string file;  ///< name inside of the folder of all results
+  std::string caption;
+};
+
+/// Collects what an experiment measures; writes its pictures.
+class Report {
+ public:
+  /// `folder` exists; pictures are <experiment>.png and <experiment>_<part>.png in it.
+  Report(std::filesystem::path folder, std::string experiment, SharedRuns& runs);
+
+  void add(Value value) { values_.push_back(std::move(value)); }
+  /// For people alone.
+  void show(std::string name, double measured, std::string unit = "");
+  /// Equal to what is printed.
+  void printed(std::string name, double measured, double expected, std::string unit = "",
+               double tolerance = 1e-9);
+  /// Equal to what was worked out by hand.
+  void worked_out(std::string name, double measured, double expected, std::string unit = "",
+                  double tolerance = 1e-9);
+  /// The smaller or the larger the better.
+  void at_most(std::string name, double measured, double printed, std::string unit = "",
+               double tolerance = 0.0);
+  void at_least(std::string name, double measured, double printed, std::string unit = "",
+                double tolerance = 0.0);
+  /// A statement of the publication that holds or not.
+  void states(std::string statement, bool holds);
+
+  void add(Table table) { tables_.push_back(std::move(table)); }
+  void note(std::string text) { notes_.push_back(std::move(text)); }
+  void draw(const render::Figure& figure, const std::string& caption = "",
+            const std::string& part = "");
+  /// Bytes of a PNG file that something else drew.
+  void keep_picture(const std::string& bytes, const std::string& caption,
+                    const std::string& part = "");
+
+  [[nodiscard]] const std::vector<Value>& values() const { return values_; }
+  [[nodiscard]] const std::vector<Table>& tables() const { return tables_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  [[nodiscard]] const std::vector<ReportPicture>& pictures() const { return pictures_; }
+  /// Drives that several experiments look at.
+  [[nodiscard]] SharedRuns& runs() { return *runs_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::string experiment_;
+  SharedRuns* runs_;
+  std::vector<Value> values_;
+  std::vector<Table> tables_;
+  std::vector<std::string> notes_;
+  std::vector<ReportPicture> pictures_;
+};
+
+struct Experiment {
+  std::string name;         ///< "figure-4.8": of files and on the command line
+  std::string publication;  ///< short name of docs/algorithms.md
+  std::string number;       ///< "Figure 4.8"
+  std::string caption;      ///< what is shown, in our words
+  void (*run)(Report&) = nullptr;
+  std::string why{};    ///< the known reason for differences, in case that there are any
+  bool drives = false;  ///< takes seconds: it simulates whole drives
+};
+
+/// All of them, in the order of the publications; names are unique.
+const std::vector<Experiment>& experiments();
+
+// Of a chapter each.
+std::vector<Experiment> chapter4();
+std::vector<Experiment> chapter5();
+std::vector<Experiment> chapter6();
+std::vector<Experiment> chapter7();
+std::vector<Experiment> chapter8();
+std::vector<Experiment> macondo();
+
+}  // namespace topogeo::reproduce

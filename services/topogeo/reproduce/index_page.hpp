@@ -1,0 +1,36 @@
+// The results of all experiments as a page for people and as JSON for programs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "reproduce/experiment.hpp"
+
+namespace topogeo::reproduce {
+
+struct Outcome {
+  const Experiment* experiment = nullptr;
+  std::vector<Value> values;
+  std::vector<Table> tables;
+  std::vector<std::string> notes;
+  std::vector<ReportPicture> pictures;
+  double wall_s = 0.0;
+  std::string failure{};  ///< what was thrown; empty: nothing
+
+  /// That of the values; differs where the experiment failed.
+  [[nodiscard]] Verdict verdict() const;
+  /// "equal", "better" or "differs because ...", computed from the values.
+  [[nodiscard]] std::string verdict_text() const;
+};
+
+/// The bytes of index.html; the files of pictures are relative to it.
+std::string index_page(const std::vector<Outcome>& outcomes);
+/// The bytes of index.json.
+std::string index_json(const std::vector<Outcome>& outcomes);
+
+/// Runs one; pictures go to `folder`, which exists. A failure becomes an outcome.
+Outcome run_experiment(const Experiment& experiment, const std::filesystem::path& folder,
+                       SharedRuns& runs);
+
+}  // namespace topogeo::reproduce

@@ -1,0 +1,27 @@
+#include "reproduce/worlds.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace topogeo::reproduce {
+namespace {
+
+const WorldText* find_world(std::string_view name) {
+  const std::vector<WorldText>& all = world_texts();
+  const auto at = std::ranges::find(all, name, &WorldText::name);
+  return at == all.end() ? nullptr : &*at;
+}
+
+}  // namespace
+
+bool has_world(std::string_view name) {
+  return find_world(name) != nullptr;
+}
+
+world::World world_named(std::string_view name) {
+  const WorldText* found = find_world(name);
+  if (found == nullptr) throw std::invalid_argument("no world " + std::string(name));
+  return world::parse_world(std::string(found->text), std::string(name));
+}
+
+}  // namespace topogeo::reproduce

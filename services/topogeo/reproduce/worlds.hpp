@@ -1,0 +1,25 @@
+// The worlds of the experiments: the scenes of tests/data/figures and the replicas of
+// tests/data/thesis, compiled in so that they are wherever the program is.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/world/world.hpp"
+
+namespace topogeo::reproduce {
+
+struct WorldText {
+  std::string_view name;  ///< of the file, without .world.yaml
+  std::string_view text;
+};
+
+/// All of them, by name.
+const std::vector<WorldText>& world_texts();
+
+/// Throws std::invalid_argument for a name that is not there.
+world::World world_named(std::string_view name);
+bool has_world(std::string_view name);
+
+}  // namespace topogeo::reproduce

@@ -1,0 +1,119 @@
+// Every experiment is run where that takes no drive; what it measures is compared with what is
+// published, and the page and its JSON have its row.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "reproduce/experiment.hpp"
+#include "reproduce/index_page.hpp"
+#include "reproduce/shared_runs.hpp"
+#include "reproduce/worlds.hpp"
+
+namespace topogeo::reproduce {
+namespace {
+
+const Experiment& experiment_named(const std::string& name) {
+  const auto at = std::ranges::find(experiments(), name, &Experiment::name);
+  if (at == experiments().end()) throw std::invalid_argument("no experiment " + name);
+  return *at;
+}
+
+class ExperimentRuns : public testing::Test {
+ protected:
+  ExperimentRuns() {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~ExperimentRuns() override { std::filesystem::remove_all(folder_); }
+
+  Outcome run(const std::string& name) {
+    return run_experiment(experiment_named(name), folder_, runs_);
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("reproduce_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  SharedRuns runs_;
+};
+
+TEST(Experiments, HaveNamesOfTheirOwnAndSayWhatTheyShow) {
+  std::set<std::string> names;
+  for (const Experiment& experiment : experiments()) {
+    EXPECT_TRUE(names.insert(experiment.name).second) << experiment.name;
+    EXPECT_FALSE(experiment.caption.empty()) << experiment.name;
+    EXPECT_FALSE(experiment.number.empty()) << experiment.name;
+    EXPECT_NE(experiment.run, nullptr) << experiment.name;
+  }
+}
+
+TEST(Experiments, ScenesOfTheFiguresAreCompiledIn) {
+  EXPECT_TRUE(has_world("figure_4_08"));
+  EXPECT_FALSE(has_world("figure_9_99"));
+  EXPECT_THROW(static_cast<void>(world_named("figure_9_99")), std::invalid_argument);
+  EXPECT_FALSE(world_named("figure_5_07").segments.empty());
+}
+
+TEST_F(ExperimentRuns, LightOnesCompareAndDraw) {
+  for (const Experiment& experiment : experiments()) {
+    if (experiment.drives) continue;
+    const Outcome outcome = run(experiment.name);
+    EXPECT_EQ(outcome.failure, "") << experiment.name;
+    EXPECT_TRUE(std::ranges::any_of(outcome.values,
+                                    [](const Value& value) {
+                                      return value.relation != Relation::kShown &&
+                                             value.expected.has_value();
+                                    }))
+        << experiment.name << " compares nothing";
+    for (const ReportPicture& picture : outcome.pictures) {
+      EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / picture.file)) << picture.file;
+    }
+  }
+}
+
+// The rules of chapters 4 and 5 are reproduced without a difference, but for times.
+TEST_F(ExperimentRuns, FiguresOfScenesAgree) {
+  for (const Experiment& experiment : experiments()) {
+    const bool scene = experiment.number.find(" 4.") != std::string::npos ||
+                       experiment.number.find(" 5.") != std::string::npos;
+    if (!scene || experiment.name == "figure-4.18") continue;
+    const Outcome outcome = run(experiment.name);
+    EXPECT_NE(outcome.verdict(), Verdict::kDiffers)
+        << experiment.name << ": " << outcome.verdict_text();
+  }
+}
+
+TEST_F(ExperimentRuns, ThePageAndItsJsonHaveARowOfEach) {
+  const std::vector<Outcome> outcomes{run("figure-4.10"), run("table-4.1")};
+  const auto json = nlohmann::json::parse(index_json(outcomes));
+  ASSERT_EQ(json["experiments"].size(), 2U);
+  const auto& row = json["experiments"][0];
+  EXPECT_EQ(row["name"], "figure-4.10");
+  EXPECT_EQ(row["number"], "Figure 4.10");
+  EXPECT_EQ(row["verdict"], "equal");
+  EXPECT_EQ(row["pictures"][0]["file"], "pictures/figure-4.10.png");
+  EXPECT_EQ(row["values"][0]["measured"], 6.0);
+  EXPECT_EQ(row["values"][0]["expected"], 6.0);
+  const std::string page = index_page(outcomes);
+  EXPECT_THAT(page, testing::HasSubstr("id=\"table-4.1\""));
+  EXPECT_THAT(page, testing::HasSubstr("src=\"pictures/figure-4.10.png\""));
+}
+
+TEST_F(ExperimentRuns, AFailureIsARowOfItsOwn) {
+  const Experiment failing{.name = "failing",
+                           .publication = "Thesis",
+                           .number = "Figure 0",
+                           .caption = "nothing",
+                           .run = [](Report&) { throw std::runtime_error("<no laser>"); }};
+  const Outcome outcome = run_experiment(failing, folder_, runs_);
+  EXPECT_EQ(outcome.verdict(), Verdict::kDiffers);
+  EXPECT_EQ(outcome.verdict_text(), "differs because it failed: <no laser>");
+  EXPECT_THAT(index_page({outcome}), testing::HasSubstr("&lt;no laser&gt;"));
+}
+
+}  // namespace
+}  // namespace topogeo::reproduce
