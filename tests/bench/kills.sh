@@ -46,7 +46,7 @@ row() {  # NAME KILLS: result of a drive
     END { if (n) printf "%d times at work again after %.1f s, at most %.1f s", n, sum / n, most }')
   echo "$1: $2 kills; $times; $corrected; $stops"
   [ -s "$out/$1.clf" ] && [ -s "$out/$1/truth.tum" ] || return 0
-  "$bin/topogeo" map "$out/$1.clf" --out "$out/$1-again" > "$out/$1-again.out" 2>&1 || true
+  "$bin/topogeo" map --log "$out/$1.clf" --out "$out/$1-again" > "$out/$1-again.out" 2>&1 || true
   for map in "$out/$1" "$out/$1-again"; do
     echo "  $(basename "$map"): $("$bin/topogeo" compare "$map/trajectory.tum" "$out/$1/truth.tum" |
       grep -o 'ate.*' | head -1)"

@@ -21,6 +21,7 @@
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
+#include "topogeo/msg/status.h"
 #include "topogeo/msg/store.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/pipeline/local_mapper.hpp"
@@ -64,6 +65,11 @@ class SharedMapServices : public testing::Test {
     loop_.add<msg::StoredMap>(stored_, [this](const msg::StoredMap& stored, const auto&) {
       newest_[stored.robot_id().to_string()] = stored;
     });
+    loop_.add<msg::WorkerStatus>(
+        messaging::Reader<msg::WorkerStatus>(participant_),
+        [this](const msg::WorkerStatus& worker, const messaging::SampleInfo& info) {
+          if (info.valid) tasks_done_ = std::max(tasks_done_, worker.tasks_done());
+        });
   }
 
   [[nodiscard]] std::vector<std::string> domain() const {
@@ -162,6 +168,7 @@ class SharedMapServices : public testing::Test {
   messaging::Reader<msg::StoredMap> stored_{participant_};
   messaging::EventLoop loop_;
   std::map<std::string, msg::StoredMap> newest_;  // by robot
+  std::uint64_t tasks_done_ = 0;                  // most of a worker
   std::size_t sent_ = 0;
 };
 
@@ -204,6 +211,40 @@ TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
   const storage::MapDocument alone = storage::read_map_file(split);
   EXPECT_EQ(alone.trajectory.stops.size(), a_.stops.size());
   EXPECT_LT(largest_error_m(alone), 0.3);
+}
+
+TEST_F(SharedMapServices, MakeTheSameBytesWithAnyNumberOfWorkers) {
+  auto store = start_store();
+  send_all();
+  ASSERT_TRUE(
+      eventually([&] { return stored("a", a_.stops.size()) && stored("b", b_.stops.size()); }));
+  store->send_signal(SIGTERM);
+  EXPECT_EQ(store->wait(), 0) << store->err();
+  // All is there before the localizer is, so that no moment of arrival has an effect.
+  const std::filesystem::path out = scratch_ / "out";
+  std::filesystem::copy(out, scratch_ / "kept");
+  std::vector<std::string> maps;
+  for (const std::size_t workers : {0U, 2U}) {
+    std::filesystem::remove_all(out);
+    std::filesystem::copy(scratch_ / "kept", out);
+    std::vector<std::unique_ptr<Program>> pool;
+    for (std::size_t i = 0; i < workers; ++i) {
+      pool.push_back(std::make_unique<Program>(scratch_, "ga_worker", domain()));
+    }
+    store = start_store();
+    const auto localizer = start_localizer();
+    localizer->wait_for_error_text("adds ");
+    send_all();
+    store->wait_for_error_text("local maps, ");  // the final line
+    maps.push_back(read_file(out / "map.pb"));
+    if (workers > 0) {
+      EXPECT_TRUE(eventually([&] { return tasks_done_ > 0; }));
+    }
+    store->send_signal(SIGTERM);
+    EXPECT_EQ(store->wait(), 0) << store->err();
+  }
+  EXPECT_FALSE(maps[0].empty());
+  EXPECT_TRUE(maps[0] == maps[1]);
 }
 
 TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
