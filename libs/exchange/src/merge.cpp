@@ -1,6 +1,7 @@
 #include "topogeo/exchange/merge.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -215,6 +216,8 @@ MergedMap merge(const storage::MapDocument& a, const storage::MapDocument& b,
   document.trajectory = merger.map().trajectory;
   document.loop_closures = merger.map().loop_closures;
   document.edges = pipeline::map_edges(merger.map().edges);
+  document.refused_merges = a.refused_merges;
+  std::ranges::copy(b.refused_merges, std::back_inserter(document.refused_merges));
   for (std::size_t i = 0; i < document.local_maps.size(); ++i) {
     document.local_maps[i].robot_id = a.robot_id;
     document.local_maps[i].stop = merger.names()[i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <stdexcept>
 
 #include "topogeo/localization/mapping/pose_graph.hpp"
@@ -80,6 +81,10 @@ storage::MapDocument without_session(const storage::MapDocument& document, std::
   out.seed = document.seed;
   out.map_id = document.map_id;
   out.drawing = document.drawing;
+  std::ranges::copy_if(document.refused_merges, std::back_inserter(out.refused_merges),
+                       [&](const storage::RefusedMerge& refused) {
+                         return refused.stop.session != session && refused.other.session != session;
+                       });
   std::vector<std::int64_t> new_ids(document.local_maps.size(), kRemoved);
   for (std::size_t i = 0; i < document.local_maps.size(); ++i) {
     const topomap::LocalMap& map = document.local_maps[i];

@@ -166,6 +166,8 @@ const MergedMap& merged_parts() {
     storage::MapDocument b = second_part().map;
     a.drawing.places = {{"dock", {1.0, 0.5}}};
     b.drawing.places = {{"dock", {9.0, 9.0}}, {"lab", {0.5, 0.25}}};
+    a.refused_merges = {{{1, 2}, {3, 4}}};
+    b.refused_merges = {{{5, 6}, {7, 8}}};
     return merge(a, b, pipeline::load_config({}).config);
   }();
   return kMerged;
@@ -194,6 +196,9 @@ TEST(Merge, BothOrdersGiveTheSameMap) {
   EXPECT_TRUE(
       contradictions(storage::parse_map_file(storage::map_file_bytes(ab.document), "ab")).empty());
   EXPECT_EQ(summarize(ab.document).sessions, 2U);
+  EXPECT_THAT(ab.document.refused_merges,
+              testing::ElementsAre(storage::RefusedMerge{{1, 2}, {3, 4}},
+                                   storage::RefusedMerge{{5, 6}, {7, 8}}));
 }
 
 TEST(Merge, TheResultIsAsTrueAsItsParts) {

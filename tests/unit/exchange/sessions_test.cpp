@@ -35,6 +35,7 @@ storage::MapDocument two_sessions() {
                     {2, 3, {1.0, 0.0, 0.0}, covariance},
                     {2, 5, {3.0, 0.0, 0.0}, covariance},
                     {3, 5, {3.0, 0.0, 0.0}, covariance}};
+  document.refused_merges = {{{kMonday, 0}, {kMonday, 2}}, {{kMonday, 1}, {kTuesday, 3}}};
   document.loop_closures = {{0, 3, {3.0, 0.0, 0.0}}, {2, 5, {3.0, 0.0, 0.0}}};
   return document;
 }
@@ -67,6 +68,8 @@ TEST(Sessions, OneThatIsRemovedLeavesNoTrace) {
   // The pose goes back to where the other measurements have it.
   EXPECT_NEAR(map.trajectory.stops[3].T_map_robot.x_m, 5.0, 1e-3);
   EXPECT_EQ(map.trajectory.stops[0].T_map_robot, geometry::Pose2{});
+  EXPECT_THAT(map.refused_merges,
+              testing::ElementsAre(storage::RefusedMerge{{kMonday, 0}, {kMonday, 2}}));
   const std::string bytes = storage::map_file_bytes(map);
   EXPECT_EQ(sessions_of(storage::parse_map_file(bytes, "f")).size(), 1U);
 }
