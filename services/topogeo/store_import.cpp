@@ -21,6 +21,7 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "job.hpp"
 #include "store_commands.hpp"
 #include "store_files.hpp"
 
@@ -148,7 +149,7 @@ void add_store_import_command(command_line::Command& store, int& exit_code) {
       ->add_option("--pose", options->pose,
                    "where the origin of the file is in the map; default: 0,0,0")
       ->type_name("X,Y,DEG");
-  command->add_option("--config", options->config, "configuration (YAML)")->type_name("FILE");
+  add_config_option(*command, options->config);
   command->add_option("--robot,--robot-id", options->robot_id, "of a map without --into")
       ->capture_default_str();
   command->add_flag("--with-stops", options->with_stops,

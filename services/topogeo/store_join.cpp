@@ -21,6 +21,7 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "job.hpp"
 #include "store_commands.hpp"
 #include "store_files.hpp"
 
@@ -173,7 +174,7 @@ void add_store_join_commands(command_line::Command& store, int& exit_code) {
   command->add_option("map", options->map, kWhat)->required()->type_name("MAP");
   command->add_option("foreign", options->foreign, kWhat)->required()->type_name("FOREIGN");
   command->add_flag("--json", options->json, "print all numbers as JSON");
-  command->add_option("--config", options->config, "configuration (YAML)")->type_name("FILE");
+  add_config_option(*command, options->config);
   command->footer(
       "Prints where the origin of FOREIGN is in MAP, for the option --pose of `store import`.\n"
       "Exit codes: 0 found, 1 ambiguous or not found, 3 unusable input.");
@@ -186,7 +187,7 @@ void add_store_join_commands(command_line::Command& store, int& exit_code) {
       ->type_name("A");
   merge->add_option("b", maps->b, "map file or database")->required()->type_name("B");
   merge->add_option("--out", maps->out, "map file to write (map.pb)")->required()->type_name("MAP");
-  merge->add_option("--config", maps->config, "configuration (YAML)")->type_name("FILE");
+  add_config_option(*merge, maps->config);
   merge->footer(
       "The maps are aligned, then the drives of the smaller one are mapped into the other. A and "
       "B\n"
@@ -204,7 +205,7 @@ void add_store_join_commands(command_line::Command& store, int& exit_code) {
   remove->add_option("--out", removed->out, "map file to write (map.pb)")
       ->required()
       ->type_name("MAP");
-  remove->add_option("--config", removed->config, "configuration (YAML)")->type_name("FILE");
+  add_config_option(*remove, removed->config);
   remove->callback([removed, &exit_code] { exit_code = store_remove_session(*removed); });
 }
 

@@ -13,6 +13,7 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "job.hpp"
 #include "store_commands.hpp"
 #include "store_files.hpp"
 
@@ -97,7 +98,7 @@ void add_store_prune_command(command_line::Command& store, int& exit_code) {
       ->type_name("DAYS");
   command->add_flag("--dry-run", options->dry_run, "print what would go, change nothing");
   command->add_option("--out", options->out, "map file to write (map.pb)")->type_name("MAP");
-  command->add_option("--config", options->config, "configuration (YAML)")->type_name("FILE");
+  add_config_option(*command, options->config);
   command->footer(
       "Stop the map store before its database is pruned: it goes on with what it had.\n"
       "Exit codes: 0 done, 3 unusable input.");
