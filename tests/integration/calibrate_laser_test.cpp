@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "command_test.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -27,17 +28,9 @@ struct Part {
   double spread = 0.0;
 };
 
-class CalibrateLaserTest : public testing::Test {
+class CalibrateLaserTest : public CommandTest {
  protected:
-  /// Exit code of `topogeo calibrate-laser WORDS...`.
-  int calibrate(std::vector<std::string> words) {
-    words.insert(words.begin(), "calibrate-laser");
-    Program program(scratch_, "topogeo", words);
-    const int code = program.wait();
-    out_ = program.out();
-    err_ = program.err();
-    return code;
-  }
+  CalibrateLaserTest() : CommandTest("calibrate-laser") {}
 
   [[nodiscard]] Part part(const std::string& name) const {
     std::istringstream lines(out_);
@@ -75,14 +68,11 @@ class CalibrateLaserTest : public testing::Test {
     EXPECT_LT(yaw.spread, 1.0);
   }
 
-  Scratch scratch_;
   std::filesystem::path log_ = scratch_ / "log.clf.gz";
-  std::string out_;
-  std::string err_;
 };
 
 TEST_F(CalibrateLaserTest, HasHelpWithAnExample) {
-  ASSERT_EQ(calibrate({"--help"}), 0);
+  ASSERT_EQ(run({"--help"}), 0);
   EXPECT_THAT(out_, HasSubstr("Usage: topogeo calibrate-laser"));
   EXPECT_THAT(out_, HasSubstr("topogeo calibrate-laser drive.clf.gz --out robot.yaml"));
 }
@@ -92,7 +82,7 @@ TEST_F(CalibrateLaserTest, FindsALaserAtTheFrontAndMapsWithIt) {
   const std::filesystem::path truth = scratch_ / "truth.tum";
   const std::filesystem::path out = scratch_ / "laser.yaml";
   write_simulated("floor", mounting, 3, truth);
-  ASSERT_EQ(calibrate({log_, "--out", out}), 0) << err_;
+  ASSERT_EQ(run({log_, "--out", out}), 0) << err_;
   expect_mounting(mounting);
   EXPECT_THAT(read_file(out), HasSubstr("laser:\n  x_m: "));
   EXPECT_THAT(out_, HasSubstr(read_file(out).substr(read_file(out).find("laser:"))));
@@ -116,7 +106,7 @@ TEST_F(CalibrateLaserTest, FindsALaserAtTheFrontAndMapsWithIt) {
 TEST_F(CalibrateLaserTest, FindsALaserInACornerThatLooksAside) {
   const Pose2 mounting{-0.1, 0.25, -0.2};
   write_simulated("floor", mounting, 4);
-  ASSERT_EQ(calibrate({log_}), 0) << err_;
+  ASSERT_EQ(run({log_}), 0) << err_;
   expect_mounting(mounting);
 }
 
@@ -126,7 +116,7 @@ TEST_F(CalibrateLaserTest, StartsFromTheConfigurationAndKeepsTheRestOfIt) {
   const std::filesystem::path out = scratch_ / "robot.yaml";
   write_simulated("floor", mounting, 5);
   std::ofstream(config) << "stop: {distance_m: 0.9}\nlaser: {yaw_rad: 1.5}\n";
-  ASSERT_EQ(calibrate({log_, "--config", config, "--out", out}), 0) << err_;
+  ASSERT_EQ(run({log_, "--config", config, "--out", out}), 0) << err_;
   expect_mounting(mounting);
   Program shown(scratch_, "topogeo", {"config", "--config", out});
   ASSERT_EQ(shown.wait(), 0) << shown.err();
@@ -141,7 +131,7 @@ TEST_F(CalibrateLaserTest, AnExactlyKnownMountingIsFoundAgainWithoutAnyNoise) {
   options.laser.dropout_probability = 0.0;
   options.odometry = {0.0, 0.0, 0.0, 0.0, 0.0};
   write_log("floor", log_, {}, options);
-  ASSERT_EQ(calibrate({log_}), 0) << err_;
+  ASSERT_EQ(run({log_}), 0) << err_;
   EXPECT_NEAR(part("x").value, 0.15, 0.003);
   EXPECT_NEAR(part("y").value, 0.0, 0.003);
   EXPECT_NEAR(part("yaw").value, 0.0, 0.1);
@@ -149,14 +139,14 @@ TEST_F(CalibrateLaserTest, AnExactlyKnownMountingIsFoundAgainWithoutAnyNoise) {
 
 TEST_F(CalibrateLaserTest, UnusableInputIsNamed) {
   write_simulated("room", {}, 1);
-  EXPECT_EQ(calibrate({log_}), 3);  // too short
+  EXPECT_EQ(run({log_}), 3);  // too short
   EXPECT_THAT(err_, HasSubstr("log.clf.gz: too little motion: of "));
-  EXPECT_EQ(calibrate({scratch_ / "none.clf"}), 3);
+  EXPECT_EQ(run({scratch_ / "none.clf"}), 3);
   EXPECT_THAT(err_, HasSubstr("none.clf"));
   std::ofstream(scratch_ / "bad.yaml") << "laser: {x_m: 9}\n";
-  EXPECT_EQ(calibrate({log_, "--config", scratch_ / "bad.yaml"}), 2);
+  EXPECT_EQ(run({log_, "--config", scratch_ / "bad.yaml"}), 2);
   EXPECT_THAT(err_, HasSubstr("laser.x_m"));
-  EXPECT_EQ(calibrate({log_, "--out", scratch_ / "no" / "x.yaml"}), 1);
+  EXPECT_EQ(run({log_, "--out", scratch_ / "no" / "x.yaml"}), 1);
   EXPECT_THAT(err_, HasSubstr("x.yaml"));
 }
 

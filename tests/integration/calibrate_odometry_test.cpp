@@ -14,6 +14,7 @@
 
 #include "topogeo/simulation/odometry.hpp"
 
+#include "command_test.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -63,17 +64,9 @@ double systematic(const std::string& out, const std::string& name) {
   return 0.0;
 }
 
-class CalibrateOdometryTest : public testing::Test {
+class CalibrateOdometryTest : public CommandTest {
  protected:
-  /// Exit code of `topogeo calibrate-odometry WORDS...`.
-  int calibrate(std::vector<std::string> words) {
-    words.insert(words.begin(), "calibrate-odometry");
-    Program program(scratch_, "topogeo", words);
-    const int code = program.wait();
-    out_ = program.out();
-    err_ = program.err();
-    return code;
-  }
+  CalibrateOdometryTest() : CommandTest("calibrate-odometry") {}
 
   /// What the drift of simulation::OdometryDrift amounts to.
   void expect_simulated_drift() {
@@ -98,14 +91,10 @@ class CalibrateOdometryTest : public testing::Test {
     EXPECT_NEAR(systematic(out_, "turn"), 0.0, 1.0);
     EXPECT_NEAR(systematic(out_, "ahead"), 0.0, 0.02);
   }
-
-  Scratch scratch_;
-  std::string out_;
-  std::string err_;
 };
 
 TEST_F(CalibrateOdometryTest, HasHelpWithAnExample) {
-  ASSERT_EQ(calibrate({"--help"}), 0);
+  ASSERT_EQ(run({"--help"}), 0);
   EXPECT_THAT(out_, HasSubstr("Usage: topogeo calibrate-odometry"));
   EXPECT_THAT(out_, HasSubstr("topogeo calibrate-odometry drive.clf.gz --out robot.yaml"));
 }
@@ -114,7 +103,7 @@ TEST_F(CalibrateOdometryTest, FindsTheDriftOfTheSimulationByMatching) {
   const std::string log = scratch_ / "log.clf.gz";
   const std::string out = scratch_ / "robot.yaml";
   write_log("floor", log);
-  ASSERT_EQ(calibrate({log, "--out", out}), 0) << err_;
+  ASSERT_EQ(run({log, "--out", out}), 0) << err_;
   expect_simulated_drift();
   EXPECT_THAT(err_, HasSubstr("matching"));
   EXPECT_THAT(read_file(out), HasSubstr("odometry:\n  translation_m2_per_m: "));
@@ -134,7 +123,7 @@ TEST_F(CalibrateOdometryTest, FindsTheSameByTheTruthAndKeepsTheRestOfAConfigurat
   const std::string out = scratch_ / "robot.yaml";
   write_log("floor", log, truth);
   std::ofstream(config) << "stop: {distance_m: 1.25}\nodometry: {lateral_m2_per_m: 0.5}\n";
-  ASSERT_EQ(calibrate({log, "--reference", truth, "--config", config, "--out", out}), 0) << err_;
+  ASSERT_EQ(run({log, "--reference", truth, "--config", config, "--out", out}), 0) << err_;
   expect_simulated_drift();
   Program shown(scratch_, "topogeo", {"config", "--config", out});
   ASSERT_EQ(shown.wait(), 0) << shown.err();
@@ -145,7 +134,7 @@ TEST_F(CalibrateOdometryTest, FindsTheSameByTheTruthAndKeepsTheRestOfAConfigurat
 TEST_F(CalibrateOdometryTest, ALogThatIsTooShortIsToldWithNumbers) {
   const std::string log = scratch_ / "log.clf.gz";
   write_log("room", log);
-  const int code = calibrate({log});
+  const int code = run({log});
   ASSERT_EQ(code, 3) << out_;
   EXPECT_THAT(err_, HasSubstr("log.clf.gz: too little motion: of "));
   EXPECT_THAT(err_, HasSubstr("expected at least 20"));
@@ -155,22 +144,22 @@ TEST_F(CalibrateOdometryTest, UnusableInputIsNamed) {
   const std::string log = scratch_ / "log.clf.gz";
   const std::string reference = scratch_ / "reference.tum";
   write_log("room", log);
-  EXPECT_EQ(calibrate({scratch_ / "none.clf"}), 3);
+  EXPECT_EQ(run({scratch_ / "none.clf"}), 3);
   EXPECT_THAT(err_, HasSubstr("none.clf"));
-  EXPECT_EQ(calibrate({log, "--reference", scratch_ / "none.tum"}), 3);
+  EXPECT_EQ(run({log, "--reference", scratch_ / "none.tum"}), 3);
   EXPECT_THAT(err_, HasSubstr("none.tum"));
   std::ofstream(reference) << "1.0 2.0 three\n";
-  EXPECT_EQ(calibrate({log, "--reference", reference}), 3);
+  EXPECT_EQ(run({log, "--reference", reference}), 3);
   EXPECT_THAT(err_, HasSubstr("reference.tum:1"));
   std::ofstream(reference) << "90000 0 0 0 0 0 0 1\n90001 1 0 0 0 0 0 1\n";
-  EXPECT_EQ(calibrate({log, "--reference", reference}), 3);
+  EXPECT_EQ(run({log, "--reference", reference}), 3);
   EXPECT_THAT(err_, HasSubstr("reference.tum: no two stops of the log lie within its time"));
   std::ofstream(scratch_ / "bad.yaml") << "stop:\n  distance_m: -1\n";
-  EXPECT_EQ(calibrate({log, "--config", scratch_ / "bad.yaml"}), 2);
+  EXPECT_EQ(run({log, "--config", scratch_ / "bad.yaml"}), 2);
   EXPECT_THAT(err_, HasSubstr("stop.distance_m"));
-  EXPECT_EQ(calibrate({log, "--out", scratch_ / "no" / "x.yaml"}), 1);
+  EXPECT_EQ(run({log, "--out", scratch_ / "no" / "x.yaml"}), 1);
   EXPECT_THAT(err_, HasSubstr("x.yaml"));
-  EXPECT_EQ(calibrate({}), 2);
+  EXPECT_EQ(run({}), 2);
   EXPECT_THAT(err_, StartsWith("topogeo: "));
 }
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "command_test.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -28,50 +29,40 @@ constexpr const char* kEstimate =
     "12.01 5 7 0 0 0 0.707106781 0.707106781\n13.0 5 8.3 0 0 0 0.707106781 0.707106781\n";
 constexpr const char* kRelations = "10 11 1.1 0 0 0 0 0.1\n10 60 9 0 0 0 0 0\n";
 
-class CompareTest : public testing::Test {
+class CompareTest : public CommandTest {
  protected:
-  CompareTest() : estimate_(scratch_ / "estimate.tum"), reference_(scratch_ / "reference.tum") {
+  CompareTest()
+      : CommandTest("compare"),
+        estimate_(scratch_ / "estimate.tum"),
+        reference_(scratch_ / "reference.tum") {
     std::ofstream(estimate_) << kEstimate;
     std::ofstream(reference_) << kReference;
     std::ofstream(relations_) << kRelations;
   }
 
-  /// Exit code of `topogeo compare WORDS...`.
-  int compare(std::vector<std::string> words) {
-    words.insert(words.begin(), "compare");
-    Program program(scratch_, "topogeo", words);
-    const int code = program.wait();
-    out_ = program.out();
-    err_ = program.err();
-    return code;
-  }
-
-  Scratch scratch_;
   std::filesystem::path estimate_;
   std::filesystem::path reference_;
   std::filesystem::path relations_ = scratch_ / "relations";
-  std::string out_;
-  std::string err_;
 };
 
 TEST_F(CompareTest, PrintsTheFiguresOfTheEvaluationTool) {
   // Along the line the aligned errors are those about their mean: positions 0, 1, 2, 3.3 less 0, 1,
   // 2, 3 less the mean 0.075: rms sqrt((3 * 0.075^2 + 0.225^2) / 4) = 0.1299.
-  ASSERT_EQ(compare({estimate_, reference_}), 0) << err_;
+  ASSERT_EQ(run({estimate_, reference_}), 0) << err_;
   EXPECT_EQ(out_,
             "matched 1.000  path 3 m\n"
             "ate     0.130 m\n"
             "local   0.100 m 0.00 deg over 3 pairs\n"
             "loop    none\n"
             "end     0.300 m\n");
-  ASSERT_EQ(compare({estimate_, reference_, "--relations", relations_}), 0) << err_;
+  ASSERT_EQ(run({estimate_, reference_, "--relations", relations_}), 0) << err_;
   EXPECT_THAT(out_, HasSubstr("relations (2 in the file)\n"
                               "  all   0.1000 +- 0.0000 m  5.730 +- 0.000 deg over 1 pairs\n"
                               "  far   none\n"));
 }
 
 TEST_F(CompareTest, JsonHasTheSameFiguresUnrounded) {
-  ASSERT_EQ(compare({estimate_, reference_, "--relations", relations_, "--json"}), 0) << err_;
+  ASSERT_EQ(run({estimate_, reference_, "--relations", relations_, "--json"}), 0) << err_;
   const json figures = json::parse(out_);
   EXPECT_EQ(figures["matched"], 1.0);
   EXPECT_NEAR(figures["ate"], 0.12990381, 1e-8);
@@ -88,9 +79,9 @@ TEST_F(CompareTest, JsonHasTheSameFiguresUnrounded) {
 
 TEST_F(CompareTest, TheLargestTimeApartCanBeSet) {
   // Without the pose that is 10 ms late three remain.
-  ASSERT_EQ(compare({estimate_, reference_, "--max-dt", "0.001"}), 0) << err_;
+  ASSERT_EQ(run({estimate_, reference_, "--max-dt", "0.001"}), 0) << err_;
   EXPECT_THAT(out_, HasSubstr("matched 0.750"));
-  EXPECT_EQ(compare({estimate_, reference_, "--max-dt", "-1"}), 2);
+  EXPECT_EQ(run({estimate_, reference_, "--max-dt", "-1"}), 2);
 }
 
 TEST_F(CompareTest, AConfigurationMovesTheEstimateToTheLaser) {
@@ -100,18 +91,18 @@ TEST_F(CompareTest, AConfigurationMovesTheEstimateToTheLaser) {
   std::ofstream(reference_) << "10 0.4 0 0 0 0 0 1\n11 0 0.4 0 0 0 0.707106781 0.707106781\n"
                                "12 -0.4 0 0 0 0 1 0\n";
   std::ofstream(scratch_ / "laser.yaml") << "laser: {x_m: 0.4}\n";
-  ASSERT_EQ(compare({estimate_, reference_}), 0) << err_;
+  ASSERT_EQ(run({estimate_, reference_}), 0) << err_;
   EXPECT_THAT(out_, testing::Not(HasSubstr("ate     0.000 m")));
-  ASSERT_EQ(compare({estimate_, reference_, "--config", scratch_ / "laser.yaml"}), 0) << err_;
+  ASSERT_EQ(run({estimate_, reference_, "--config", scratch_ / "laser.yaml"}), 0) << err_;
   EXPECT_THAT(out_, HasSubstr("ate     0.000 m"));
   EXPECT_THAT(out_, HasSubstr("end     0.000 m"));
   std::ofstream(scratch_ / "laser.yaml") << "laser: {x_m: 40}\n";
-  EXPECT_EQ(compare({estimate_, reference_, "--config", scratch_ / "laser.yaml"}), 2);
+  EXPECT_EQ(run({estimate_, reference_, "--config", scratch_ / "laser.yaml"}), 2);
 }
 
 TEST_F(CompareTest, UnusableFilesAreToldWithTheirLine) {
   const auto refused = [&](const std::vector<std::string>& words, const std::string& message) {
-    EXPECT_EQ(compare(words), 3) << out_;
+    EXPECT_EQ(run(words), 3) << out_;
     EXPECT_THAT(err_, StartsWith("topogeo: "));
     EXPECT_THAT(err_, HasSubstr(message));
     EXPECT_EQ(err_.find('\n'), err_.size() - 1) << err_;
@@ -131,7 +122,7 @@ TEST_F(CompareTest, UnusableFilesAreToldWithTheirLine) {
   std::ofstream(bad) << "900 0 0 0 0 0 0 1\n901 0 0 0 0 0 0 1\n902 0 0 0 0 0 0 1\n";
   refused({bad, reference_}, "reference.tum: only 0 poses match in time (within 0.05 s), expected");
   EXPECT_THAT(err_, HasSubstr("the estimate covers 900.000 to 902.000 s"));
-  EXPECT_EQ(compare({estimate_}), 2);
+  EXPECT_EQ(run({estimate_}), 2);
 }
 
 TEST_F(CompareTest, LoopsOfAMapAreCountedFromItsReport) {
@@ -142,7 +133,7 @@ TEST_F(CompareTest, LoopsOfAMapAreCountedFromItsReport) {
   Program map(scratch_, "topogeo", {"map", "--log", log, "--out", out});
   ASSERT_EQ(map.wait(), 0) << map.err();
 
-  ASSERT_EQ(compare({out / "map.pb", truth, "--loops", "--json"}), 0) << err_;
+  ASSERT_EQ(run({out / "map.pb", truth, "--loops", "--json"}), 0) << err_;
   const json loops = json::parse(out_);
   EXPECT_GT(loops["revisits"], 0);
   EXPECT_GT(loops["tried"], 0);
@@ -159,9 +150,9 @@ TEST_F(CompareTest, LoopsOfAMapAreCountedFromItsReport) {
   EXPECT_LT(loops["reliability"]["brier_score"], 0.1);
 
   std::filesystem::rename(out / "report.json", scratch_ / "other.json");
-  EXPECT_EQ(compare({out / "map.pb", truth, "--loops"}), 3);
+  EXPECT_EQ(run({out / "map.pb", truth, "--loops"}), 3);
   EXPECT_THAT(err_, HasSubstr("report.json: does not exist"));
-  ASSERT_EQ(compare({out / "map.pb", truth, "--loops", "--report", scratch_ / "other.json"}), 0)
+  ASSERT_EQ(run({out / "map.pb", truth, "--loops", "--report", scratch_ / "other.json"}), 0)
       << err_;
   EXPECT_THAT(out_, HasSubstr("accepted  " + loops["accepted"].dump() + "\n"));
   EXPECT_THAT(out_, HasSubstr("prediction  accepted "));
@@ -169,11 +160,11 @@ TEST_F(CompareTest, LoopsOfAMapAreCountedFromItsReport) {
 }
 
 TEST_F(CompareTest, AMapIsComparedByItsLoopsAlone) {
-  EXPECT_EQ(compare({"map.pb", reference_}), 2);
+  EXPECT_EQ(run({"map.pb", reference_}), 2);
   EXPECT_THAT(err_, HasSubstr("map.pb is a map, expected a trajectory (TUM)"));
-  EXPECT_EQ(compare({estimate_, reference_, "--report", "report.json"}), 2);
-  EXPECT_EQ(compare({"map.pb", reference_, "--loops", "--relations", relations_}), 2);
-  EXPECT_EQ(compare({estimate_, reference_, "--loops"}), 3);
+  EXPECT_EQ(run({estimate_, reference_, "--report", "report.json"}), 2);
+  EXPECT_EQ(run({"map.pb", reference_, "--loops", "--relations", relations_}), 2);
+  EXPECT_EQ(run({estimate_, reference_, "--loops"}), 3);
   EXPECT_THAT(err_, HasSubstr("estimate.tum: "));
 }
 
@@ -186,7 +177,7 @@ TEST_F(CompareTest, AgreesWithTheFiguresOfMapWithAReference) {
   ASSERT_EQ(map.wait(), 0) << map.err();
   for (const auto& [name, file] :
        {std::pair{"odometry", "odometry.tum"}, std::pair{"corrected", "trajectory.tum"}}) {
-    ASSERT_EQ(compare({scratch_ / "out" / file, truth}), 0) << err_;
+    ASSERT_EQ(run({scratch_ / "out" / file, truth}), 0) << err_;
     const std::string ate = out_.substr(out_.find("ate     ") + 8, 5);
     const std::string line = map.out().substr(map.out().find(std::string("  ") + name));
     EXPECT_THAT(line.substr(0, line.find('\n')), HasSubstr(ate + " m rms"));

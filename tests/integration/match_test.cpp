@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "command_test.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -14,28 +15,16 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class MatchTest : public testing::Test {
+class MatchTest : public CommandTest {
  protected:
-  MatchTest() : log_(scratch_ / "log.clf.gz") { write_log("room", log_); }
+  MatchTest() : CommandTest("match"), log_(scratch_ / "log.clf.gz") { write_log("room", log_); }
 
-  int match(std::vector<std::string> words) {
-    words.insert(words.begin(), "match");
-    Program program(scratch_, "topogeo", words);
-    const int code = program.wait();
-    out_ = program.out();
-    err_ = program.err();
-    return code;
-  }
-
-  Scratch scratch_;
   std::string log_;
-  std::string out_;
-  std::string err_;
 };
 
 TEST_F(MatchTest, ShowsTheSearchOfALogAndOfItsMap) {
   const std::string picture = scratch_ / "match.png";
-  ASSERT_EQ(match({log_, "--stops", "1,3", "--out", picture}), 0) << err_;
+  ASSERT_EQ(run({log_, "--stops", "1,3", "--out", picture}), 0) << err_;
   EXPECT_THAT(out_, HasSubstr("predicted: x "));
   EXPECT_THAT(out_, HasSubstr("solution 1: "));
   EXPECT_THAT(out_, HasSubstr("verdict: accepted"));
@@ -43,12 +32,12 @@ TEST_F(MatchTest, ShowsTheSearchOfALogAndOfItsMap) {
 
   Program map(scratch_, "topogeo", {"map", "--log", log_, "--out", scratch_ / "map"});
   ASSERT_EQ(map.wait(), 0) << map.err();
-  ASSERT_EQ(match({log_, "--stops", "1,3", "--json"}), 0) << err_;
+  ASSERT_EQ(run({log_, "--stops", "1,3", "--json"}), 0) << err_;
   const auto of_log = nlohmann::json::parse(out_);
-  ASSERT_EQ(match({scratch_ / "map" / "map.pb", "--stops", "1,3", "--json"}), 0) << err_;
+  ASSERT_EQ(run({scratch_ / "map" / "map.pb", "--stops", "1,3", "--json"}), 0) << err_;
   EXPECT_EQ(nlohmann::json::parse(out_), of_log) << "the same stops, the same search";
-  ASSERT_EQ(match({scratch_ / "map" / "map.pb", "--stops", "1,3", "--json", "--prediction", "map",
-                   "--solutions", "2"}),
+  ASSERT_EQ(run({scratch_ / "map" / "map.pb", "--stops", "1,3", "--json", "--prediction", "map",
+                 "--solutions", "2"}),
             0)
       << err_;
   const auto of_map = nlohmann::json::parse(out_);
@@ -58,17 +47,17 @@ TEST_F(MatchTest, ShowsTheSearchOfALogAndOfItsMap) {
 }
 
 TEST_F(MatchTest, WrongStopsFilesAndNamesAreOneLineErrors) {
-  EXPECT_EQ(match({log_, "--stops", "1"}), 2);
+  EXPECT_EQ(run({log_, "--stops", "1"}), 2);
   EXPECT_THAT(err_, HasSubstr("expected two numbers, like 12,80"));
-  EXPECT_EQ(match({log_, "--stops", "1,9999"}), 2);
+  EXPECT_EQ(run({log_, "--stops", "1,9999"}), 2);
   EXPECT_THAT(err_, HasSubstr("there is no stop 9999"));
-  EXPECT_EQ(match({log_, "--stops", "2,2"}), 2);
+  EXPECT_EQ(run({log_, "--stops", "2,2"}), 2);
   EXPECT_THAT(err_, HasSubstr("a stop is not searched in itself"));
-  EXPECT_EQ(match({log_, "--stops", "1,3", "--out", scratch_ / "match.gif"}), 2);
+  EXPECT_EQ(run({log_, "--stops", "1,3", "--out", scratch_ / "match.gif"}), 2);
   EXPECT_THAT(err_, HasSubstr(".png or .svg"));
-  EXPECT_EQ(match({log_, "--stops", "1,3", "--prediction", "map"}), 2);
+  EXPECT_EQ(run({log_, "--stops", "1,3", "--prediction", "map"}), 2);
   EXPECT_THAT(err_, HasSubstr("it is not known where the stops are"));
-  EXPECT_EQ(match({scratch_ / "none.pb", "--stops", "1,3"}), 3);
+  EXPECT_EQ(run({scratch_ / "none.pb", "--stops", "1,3"}), 3);
   EXPECT_THAT(err_, HasSubstr("none.pb"));
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "command_test.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -77,20 +78,9 @@ TEST_F(Record, WhatCannotBeRecordedIsSaid) {
   EXPECT_NE(silent.wait(), 0);
 }
 
-class CheckLog : public testing::Test {
+class CheckLog : public CommandTest {
  protected:
-  int run(const std::vector<std::string>& words) {
-    std::vector<std::string> all = {"check-log"};
-    all.insert(all.end(), words.begin(), words.end());
-    Program program(scratch_, "topogeo", all);
-    const int code = program.wait();
-    out_ = program.out();
-    err_ = program.err();
-    return code;
-  }
-  Scratch scratch_;
-  std::string out_;
-  std::string err_;
+  CheckLog() : CommandTest("check-log") {}
 };
 
 TEST_F(CheckLog, ExitCodeTellsCleanFromFaultyFromUnreadable) {

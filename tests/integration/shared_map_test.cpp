@@ -32,6 +32,7 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/world/world.hpp"
 
+#include "map_error.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -135,20 +136,11 @@ class SharedMapServices : public testing::Test {
       EXPECT_TRUE(ends_.write(end));
     }
   }
-  /// Largest distance of a stop from its true place, the first one at its true one.
-  [[nodiscard]] double largest_error_m(const storage::MapDocument& map) const {
-    const auto truth = [&](const topomap::LocalMap& stop) {
+  [[nodiscard]] double error_m(const storage::MapDocument& map) const {
+    return largest_error_m(map, [&](const topomap::LocalMap& stop) {
       const FloorDrive& drive = stop.robot_id == "a" ? a_ : b_;
       return drive.T_world_robot[stop.stop.number];
-    };
-    double largest_m = 0.0;
-    for (std::size_t i = 0; i < map.trajectory.stops.size(); ++i) {
-      const Pose2 T_true = geometry::between(truth(map.local_maps[0]), truth(map.local_maps[i]));
-      const Pose2 T = geometry::between(map.trajectory.stops[0].T_map_robot,
-                                        map.trajectory.stops[i].T_map_robot);
-      largest_m = std::max(largest_m, geometry::between(T_true, T).position_m().norm());
-    }
-    return largest_m;
+    });
   }
 
   const bool udp_only_ = (use_udp_only(), true);
@@ -193,7 +185,7 @@ TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
   const storage::MapDocument map = storage::read_map_file(scratch_ / "out" / "map.pb");
   EXPECT_EQ(map.robot_id, "a");
   ASSERT_EQ(map.trajectory.stops.size(), a_.stops.size() + b_.stops.size()) << localizer->err();
-  EXPECT_LT(largest_error_m(map), 0.3);
+  EXPECT_LT(error_m(map), 0.3);
   for (const std::string robot : {"a", "b"}) {
     EXPECT_EQ(std::ranges::count(map.local_maps, robot, &topomap::LocalMap::robot_id),
               static_cast<std::ptrdiff_t>((robot == "a" ? a_ : b_).stops.size()));
@@ -210,7 +202,7 @@ TEST_F(SharedMapServices, MakeOneMapWhateverIsKilledAndItIsSplitAgain) {
                  "--out", split});
   const storage::MapDocument alone = storage::read_map_file(split);
   EXPECT_EQ(alone.trajectory.stops.size(), a_.stops.size());
-  EXPECT_LT(largest_error_m(alone), 0.3);
+  EXPECT_LT(error_m(alone), 0.3);
 }
 
 TEST_F(SharedMapServices, MakeTheSameBytesWithAnyNumberOfWorkers) {

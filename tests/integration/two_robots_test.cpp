@@ -21,6 +21,7 @@
 #include "topogeo/storage/map_file.hpp"
 #include "topogeo/world/world.hpp"
 
+#include "map_error.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {
@@ -68,19 +69,10 @@ class TwoRobotsTest : public testing::Test {
   [[nodiscard]] storage::MapDocument stored_map() const {
     return storage::read_map_file(scratch_ / "out" / "map.pb");
   }
-  /// Largest distance of a stop from its true place, the first one at its true one.
-  [[nodiscard]] double largest_error_m(const storage::MapDocument& map) const {
-    const auto truth = [&](const topomap::LocalMap& stop) {
+  [[nodiscard]] double error_m(const storage::MapDocument& map) const {
+    return largest_error_m(map, [&](const topomap::LocalMap& stop) {
       return T_world_robot_.at(stop.robot_id).at(stop.stamp_ns);
-    };
-    double largest_m = 0.0;
-    for (std::size_t i = 0; i < map.trajectory.stops.size(); ++i) {
-      const Pose2 T_true = geometry::between(truth(map.local_maps[0]), truth(map.local_maps[i]));
-      const Pose2 T = geometry::between(map.trajectory.stops[0].T_map_robot,
-                                        map.trajectory.stops[i].T_map_robot);
-      largest_m = std::max(largest_m, geometry::between(T_true, T).position_m().norm());
-    }
-    return largest_m;
+    });
   }
 
   static constexpr int kRate = 8;  // times real time: a mapper that starts misses some metres
@@ -131,7 +123,7 @@ TEST_F(TwoRobotsTest, GoOnInOneMapWhenALocalMapperIsKilled) {
     EXPECT_GT(std::ranges::count(map.local_maps, robot, &topomap::LocalMap::robot_id),
               newest_[robot].session_stops());
   }
-  EXPECT_LT(largest_error_m(map), 0.3);
+  EXPECT_LT(error_m(map), 0.3);
 }
 
 }  // namespace

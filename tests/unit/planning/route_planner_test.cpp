@@ -8,36 +8,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "branch_maps.hpp"
+
 namespace topogeo::planning {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 using topomap::GlobalMap;
-
-void add_node(GlobalMap& map, std::uint32_t id, double x, double y) {
-  map.nodes.push_back({id, topomap::NodeKind::kReal, {x, y}, 1.0, 1});
-}
-
-const topomap::MapNode& node(const GlobalMap& map, std::uint32_t id) {
-  for (const topomap::MapNode& n : map.nodes) {
-    if (n.id == id) return n;
-  }
-  throw std::logic_error("no such node");
-}
-
-// A branch from a to b through the points between, all of one clearance.
-void add_branch(GlobalMap& map, std::uint32_t id, std::uint32_t a, std::uint32_t b,
-                const std::vector<Eigen::Vector2d>& between = {}, double clearance_m = 1.0) {
-  topomap::MapBranch branch;
-  branch.id = id;
-  branch.node_a = a;
-  branch.node_b = b;
-  branch.points.push_back({node(map, a).position_m, clearance_m});
-  for (const Eigen::Vector2d& p : between) branch.points.push_back({p, clearance_m});
-  branch.points.push_back({node(map, b).position_m, clearance_m});
-  map.branches.push_back(branch);
-}
 
 //  3 ----11---- 4          two corridors 10 m apart, 20 m long, joined at both ends;
 //  |            |          the west joint (12) is 0.4 m wide on each side, the east one (13) 1 m
@@ -46,17 +24,17 @@ void add_branch(GlobalMap& map, std::uint32_t id, std::uint32_t a, std::uint32_t
 //  1 ----10---- 2     7 --14-- 8
 GlobalMap ring() {
   GlobalMap map;
-  add_node(map, 1, 0, 0);
-  add_node(map, 2, 20, 0);
-  add_node(map, 3, 0, 10);
-  add_node(map, 4, 20, 10);
-  add_node(map, 7, 30, 0);
-  add_node(map, 8, 40, 0);
-  add_branch(map, 10, 1, 2, {{10, 0}});
-  add_branch(map, 11, 4, 3, {{10, 10}});
-  add_branch(map, 12, 1, 3, {}, 0.4);
-  add_branch(map, 13, 2, 4);
-  add_branch(map, 14, 7, 8);
+  add_map_node(map, 1, 0, 0);
+  add_map_node(map, 2, 20, 0);
+  add_map_node(map, 3, 0, 10);
+  add_map_node(map, 4, 20, 10);
+  add_map_node(map, 7, 30, 0);
+  add_map_node(map, 8, 40, 0);
+  add_map_branch(map, 10, 1, 2, {{10, 0}});
+  add_map_branch(map, 11, 4, 3, {{10, 10}});
+  add_map_branch(map, 12, 1, 3, {}, 0.4);
+  add_map_branch(map, 13, 2, 4);
+  add_map_branch(map, 14, 7, 8);
   return map;
 }
 
@@ -100,7 +78,7 @@ TEST(Plan, GoesAlongAVirtualBranchWhateverItsClearance) {
   // The robot drove from 2 to 7 and saw nothing meanwhile.
   GlobalMap map = ring();
   ASSERT_EQ(plan(map, {19, 0}, {35, 0}).status, PlanStatus::kNotConnected);
-  add_branch(map, 15, 2, 7, {{25, 0}}, 0.0);
+  add_map_branch(map, 15, 2, 7, {{25, 0}}, 0.0);
   EXPECT_EQ(plan(map, {19, 0}, {35, 0}).status, PlanStatus::kTooNarrow);
   map.branches.back().is_virtual = true;
   const PlanResult result = plan(map, {19, 0}, {35, 0});
@@ -148,8 +126,8 @@ TEST(Plan, OutAndBackIsTheSameRoute) {
 
 TEST(Plan, FollowsALoopBranchOnItsShorterSide) {
   GlobalMap map;
-  add_node(map, 1, 0, 0);
-  add_branch(map, 5, 1, 1, {{4, 0}, {4, 4}, {0, 4}});
+  add_map_node(map, 1, 0, 0);
+  add_map_branch(map, 5, 1, 1, {{4, 0}, {4, 4}, {0, 4}});
   const PlanResult result = plan(map, {1, 0}, {0, 1});
   ASSERT_TRUE(result.found());
   EXPECT_NEAR(result.route.length_m, 2.0, 1e-12);
@@ -158,10 +136,10 @@ TEST(Plan, FollowsALoopBranchOnItsShorterSide) {
 
 TEST(Plan, TakesTheShorterOfTwoBranchesBetweenTheSameNodes) {
   GlobalMap map;
-  add_node(map, 1, 0, 0);
-  add_node(map, 2, 4, 0);
-  add_branch(map, 5, 1, 2, {{2, 3}});
-  add_branch(map, 6, 1, 2);
+  add_map_node(map, 1, 0, 0);
+  add_map_node(map, 2, 4, 0);
+  add_map_branch(map, 5, 1, 2, {{2, 3}});
+  add_map_branch(map, 6, 1, 2);
   EXPECT_THAT(plan_between_nodes(map, 2, 1).route.branch_ids, ElementsAre(6));
 }
 
@@ -195,10 +173,10 @@ TEST(Plan, SaysWhyThereIsNoRoute) {
 
 TEST(Plan, DistinguishesANarrowRouteFromNone) {
   GlobalMap map;
-  for (std::uint32_t i = 0; i < 4; ++i) add_node(map, i, 10.0 * i, 0);
-  add_branch(map, 1, 0, 1);
-  add_branch(map, 2, 1, 2, {}, 0.2);
-  add_branch(map, 3, 2, 3);
+  for (std::uint32_t i = 0; i < 4; ++i) add_map_node(map, i, 10.0 * i, 0);
+  add_map_branch(map, 1, 0, 1);
+  add_map_branch(map, 2, 1, 2, {}, 0.2);
+  add_map_branch(map, 3, 2, 3);
   const PlanResult result = plan(map, {1, 0}, {29, 0});
   EXPECT_EQ(result.status, PlanStatus::kTooNarrow);
   EXPECT_TRUE(plan(map, {1, 0}, {29, 0}, {3.0, 0.2}).found());
@@ -265,10 +243,10 @@ TEST(PlanBetweenNodes, AgreesWithFloydAndWarshallOnRandomMaps) {
   for (int round = 0; round < 60; ++round) {
     GlobalMap map;
     const std::uint32_t n = 2 + below(9);
-    for (std::uint32_t i = 0; i < n; ++i) add_node(map, i, 20 * unit(), 20 * unit());
+    for (std::uint32_t i = 0; i < n; ++i) add_map_node(map, i, 20 * unit(), 20 * unit());
     const std::uint32_t branches = 1 + below(2 * n);
     for (std::uint32_t i = 0; i < branches; ++i) {
-      add_branch(map, i, below(n), below(n), {{20 * unit(), 20 * unit()}}, unit());
+      add_map_branch(map, i, below(n), below(n), {{20 * unit(), 20 * unit()}}, unit());
     }
     const auto lengths = all_lengths(map, 0.3);
     for (std::uint32_t a = 0; a < n; ++a) {

@@ -114,25 +114,25 @@ TEST(ContinuedPlace, EndsWhereTheMapContradictsWhatIsSeen) {
   EXPECT_FALSE(place.pose());
 }
 
-TEST(ContinuedPlace, GoesOnWhereTheMapKnowsNothing) {
+/// Whether a place is still known when as many scans, each so far after the last, were seen like
+/// that.
+bool goes_on(const KnownView& view, double distance_m, int scans) {
   ContinuedPlace place;
   place.track(kTracked, 1.0);
-  for (int i = 0; i < 50; ++i) place.compare({0.0, 0.01}, 1.0);
-  EXPECT_TRUE(place.pose());
+  for (int i = 0; i < scans; ++i) place.compare(view, distance_m);
+  return place.pose().has_value();
+}
+
+TEST(ContinuedPlace, GoesOnWhereTheMapKnowsNothing) {
+  EXPECT_TRUE(goes_on({0.0, 0.01}, 1.0, 50));
 }
 
 TEST(ContinuedPlace, GoesOnWhereDoorsAndPeopleHaveChanged) {
-  ContinuedPlace place;
-  place.track(kTracked, 1.0);
-  for (int i = 0; i < 50; ++i) place.compare({0.75, 0.15}, 1.0);
-  EXPECT_TRUE(place.pose());
+  EXPECT_TRUE(goes_on({0.75, 0.15}, 1.0, 50));
 }
 
 TEST(ContinuedPlace, CountsAViewOnce) {
-  ContinuedPlace place;
-  place.track(kTracked, 1.0);
-  for (int i = 0; i < 4; ++i) place.compare({0.4, 0.2}, 0.1);
-  EXPECT_TRUE(place.pose());
+  EXPECT_TRUE(goes_on({0.4, 0.2}, 0.1, 4));
 }
 
 TEST(ContinuedPlace, BeginsAnewWhereItIsTracked) {
