@@ -1,5 +1,6 @@
 // The commands beside mapping: help, configuration, status, plan, demo, and the report of a run.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/version.hpp"
 
 #include "program.hpp"
@@ -165,9 +167,26 @@ TEST_F(CommandsTest, PlansBetweenRoomsOfAMappedFloor) {
   EXPECT_GE(route["min_clearance_m"], 0.3);
   EXPECT_GT(route["points"].size(), 10U);
 
-  Program text(scratch_, "topogeo", {"plan", map, "--from", "7.8,3.2", "--to", "25.1,14"});
+  const std::string picture = scratch_ / "route.png";
+  Program text(scratch_, "topogeo",
+               {"plan", map, "--from", "7.8,3.2", "--to", "25.1,14", "--picture", picture});
   ASSERT_EQ(text.wait(), 0);
   EXPECT_THAT(text.out(), HasSubstr("length "));
+  EXPECT_THAT(read_file(picture), StartsWith("\x89PNG"));
+
+  // Something stands on the way: round it, through other rooms.
+  const json& middle = route["points"][route["points"].size() / 2];
+  const double x_m = middle["x_m"];
+  const double y_m = middle["y_m"];
+  Program round(scratch_, "topogeo",
+                {"plan", map, "--from", "7.8,3.2", "--to", "25.1,14", "--block",
+                 fmt::format("{},{}", x_m, y_m), "--json"});
+  ASSERT_EQ(round.wait(), 0) << round.err();
+  const json detour = json::parse(round.out());
+  EXPECT_GT(detour["length_m"], route["length_m"]);
+  for (const json& point : detour["points"]) {
+    EXPECT_GT(std::hypot(point["x_m"].get<double>() - x_m, point["y_m"].get<double>() - y_m), 0.3);
+  }
 
   Program nowhere(scratch_, "topogeo", {"plan", map, "--from", "-90,3", "--to", "25.1,14"});
   EXPECT_EQ(nowhere.wait(), 1);
