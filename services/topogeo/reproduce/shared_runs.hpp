@@ -1,8 +1,95 @@
-// Results that several experiments look at, each made once, when it is first asked for.
+// Drives that several experiments look at, each made once, when it is first asked for.
 #pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/mapping/localizer_config.hpp"
+#include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/localization/thesis/thesis_localizer.hpp"
+#include "topogeo/topomap/global_map.hpp"
+#include "topogeo/topomap/local_map.hpp"
+#include "topogeo/world/world.hpp"
 
 namespace topogeo::reproduce {
 
-class SharedRuns {};
+/// The stops of a simulated drive. Poses are in the frame of the first stop.
+struct Drive {
+  world::World world;
+  geometry::Pose2 T_world_first;
+  std::vector<std::shared_ptr<const topomap::LocalMap>> stops;
+  std::vector<geometry::Pose2> truth;
+  std::vector<geometry::Pose2> odometry;
+  std::vector<double> path_m;  ///< driven up to each stop
+  double perception_ms = 0.0;  ///< mean time of a diagram and local map
+  [[nodiscard]] std::vector<topomap::LocalMap> maps() const;
+};
+
+/// What the Thesis's algorithm makes of a drive.
+struct Correction {
+  localization::LocalizerConfig config;
+  std::unique_ptr<localization::MatchPool> pool;
+  std::unique_ptr<localization::ThesisLocalizer> localizer;
+  std::vector<std::vector<geometry::Pose2>> poses_after;  ///< [k]: all poses after stop k
+  std::vector<std::vector<std::uint32_t>> overlaps;       ///< [k]: MS of stop k, at stop k
+  std::vector<bool> closed;  ///< [k]: whether stop k moved earlier poses
+  /// Of the backward correction at stop k, poses of all its solutions, best first; the loop begins
+  /// at the stop `first`.
+  struct Backward {
+    std::size_t stop = 0;
+    std::size_t first = 0;
+    std::vector<localization::LoopPath> paths;
+    localization::BackwardProblem problem;
+    std::vector<geometry::Pose2> before;  ///< poses by the forward correction
+  };
+  std::vector<Backward> backward;
+  double wall_s = 0.0;
+
+  [[nodiscard]] const localization::ThesisMap& map() const { return localizer->map(); }
+  [[nodiscard]] const std::vector<geometry::Pose2>& final_poses() const {
+    return poses_after.back();
+  }
+};
+
+/// How nodes and branches alone, or with scan points, are matched; and whether cycles are closed.
+struct CorrectionKind {
+  localization::FitnessForm form = localization::FitnessForm::kCombined;
+  bool backward = true;
+  friend auto operator<=>(const CorrectionKind&, const CorrectionKind&) = default;
+};
+
+class SharedRuns {
+ public:
+  /// "corridor": experiment 1 with a stop each 1.3 m; "positions": its first 24 m with a stop each
+  /// 2.4 m; "turn": up to its turn with a stop each 0.66 m, of which there are 45; "loop":
+  /// experiment 2 with a stop each 1.5 m, and back to where it began; "apart": experiment 1 with
+  /// stops so far apart, and seen so little, that local maps do not overlap; "door": a corridor
+  /// with a door that opens. Throws std::invalid_argument for another name.
+  const Drive& drive(const std::string& name);
+  const Correction& correction(const std::string& drive, const CorrectionKind& kind = {});
+
+ private:
+  std::map<std::string, Drive> drives_;
+  std::map<std::pair<std::string, CorrectionKind>, Correction> corrections_;
+};
+
+/// Largest and last errors of poses against the truth.
+struct PoseErrors {
+  double mean_m = 0.0;
+  double largest_m = 0.0;
+  double last_m = 0.0;
+  double last_rad = 0.0;
+};
+PoseErrors pose_errors(const std::vector<geometry::Pose2>& poses,
+                       const std::vector<geometry::Pose2>& truth);
+
+/// The global map of the first `count` stops at these poses.
+topomap::GlobalMap fused(const Drive& drive, const std::vector<geometry::Pose2>& poses,
+                         std::size_t count);
 
 }  // namespace topogeo::reproduce

@@ -148,7 +148,7 @@ bool CycleClosing::close_with(ThesisMap& map, ThesisMatching& matching,
   BackwardProblem problem = backward_problem(map, first);
   problem.candidates = candidates_of(map, matches, first);
   ++attempts_;
-  const BackwardResult found = correct_backward(problem, map.solutions(), config_.thesis.backward);
+  BackwardResult found = correct_backward(problem, map.solutions(), config_.thesis.backward);
   if (found.outcome != LoopSearchOutcome::kClosed) {
     ++failures_;
     for (const ThesisMatch& match : matches) {
@@ -159,6 +159,7 @@ bool CycleClosing::close_with(ThesisMap& map, ThesisMatching& matching,
   }
   apply_path(map, first, found.paths.front());
   accept(map, matches, problem.candidates[found.paths.front().candidate].via, T_map_before);
+  last_closing_ = ClosedCycle{std::move(problem), std::move(found)};
   return true;
 }
 

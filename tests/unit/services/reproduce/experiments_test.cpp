@@ -58,20 +58,39 @@ TEST(Experiments, ScenesOfTheFiguresAreCompiledIn) {
   EXPECT_FALSE(world_named("figure_5_07").segments.empty());
 }
 
+void expect_compares(const Outcome& outcome, const std::filesystem::path& folder) {
+  const std::string& name = outcome.experiment->name;
+  EXPECT_EQ(outcome.failure, "") << name;
+  EXPECT_TRUE(std::ranges::any_of(outcome.values,
+                                  [](const Value& value) {
+                                    return value.relation != Relation::kShown &&
+                                           value.expected.has_value();
+                                  }))
+      << name << " compares nothing";
+  for (const ReportPicture& picture : outcome.pictures) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder / picture.file)) << picture.file;
+  }
+}
+
 TEST_F(ExperimentRuns, LightOnesCompareAndDraw) {
   for (const Experiment& experiment : experiments()) {
-    if (experiment.drives) continue;
-    const Outcome outcome = run(experiment.name);
-    EXPECT_EQ(outcome.failure, "") << experiment.name;
-    EXPECT_TRUE(std::ranges::any_of(outcome.values,
-                                    [](const Value& value) {
-                                      return value.relation != Relation::kShown &&
-                                             value.expected.has_value();
-                                    }))
-        << experiment.name << " compares nothing";
-    for (const ReportPicture& picture : outcome.pictures) {
-      EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / picture.file)) << picture.file;
-    }
+    if (!experiment.drives) expect_compares(run(experiment.name), folder_);
+  }
+}
+
+TEST_F(ExperimentRuns, DrivesCompareAndDraw) {
+  for (const Experiment& experiment : experiments()) {
+    if (experiment.drives) expect_compares(run(experiment.name), folder_);
+  }
+}
+
+// What is published exactly comes out exactly.
+TEST_F(ExperimentRuns, TablesAndMatricesAgree) {
+  for (const std::string name :
+       {"table-4.1", "table-6.1", "table-6.2", "table-6.4", "macondo-figure-4", "macondo-figure-6",
+        "macondo-figure-7", "macondo-figure-8"}) {
+    const Outcome outcome = run(name);
+    EXPECT_EQ(outcome.verdict(), Verdict::kEqual) << name << ": " << outcome.verdict_text();
   }
 }
 

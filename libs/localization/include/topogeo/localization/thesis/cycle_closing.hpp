@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,12 @@
 #include "topogeo/topomap/trajectory.hpp"
 
 namespace topogeo::localization {
+
+/// A backward correction that closed a cycle.
+struct ClosedCycle {
+  BackwardProblem problem;
+  BackwardResult found;  ///< paths.front() became the poses
+};
 
 class CycleClosing {
  public:
@@ -36,6 +43,8 @@ class CycleClosing {
 
   [[nodiscard]] const std::vector<topomap::LoopClosure>& closures() const { return closures_; }
   [[nodiscard]] const std::vector<LoopDecision>& decisions() const { return decisions_; }
+  /// The last cycle that was closed, for looking at.
+  [[nodiscard]] const std::optional<ClosedCycle>& last_closing() const { return last_closing_; }
   /// Backward corrections so far, and those of them that found no consistent poses.
   [[nodiscard]] std::uint64_t attempts() const { return attempts_; }
   [[nodiscard]] std::uint64_t failures() const { return failures_; }
@@ -53,6 +62,7 @@ class CycleClosing {
   LocalizerConfig config_;
   std::vector<topomap::LoopClosure> closures_;
   std::vector<LoopDecision> decisions_;
+  std::optional<ClosedCycle> last_closing_;
   std::uint64_t attempts_ = 0;
   std::uint64_t failures_ = 0;
 };

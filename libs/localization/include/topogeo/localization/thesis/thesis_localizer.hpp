@@ -49,6 +49,10 @@ class ThesisLocalizer : public Slam {
   [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
 
+  // For looking at how a pose came about.
+  [[nodiscard]] const ThesisMap& map() const { return map_; }
+  [[nodiscard]] const CycleClosing& cycles() const { return cycles_; }
+
  private:
   void correct_forward();
   [[nodiscard]] std::vector<ThesisNeighbour> forward_neighbours();

@@ -1,0 +1,21 @@
+// The parts of chapter 8, and what their pictures share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reproduce/experiment.hpp"
+#include "reproduce/shared_runs.hpp"
+
+namespace topogeo::reproduce {
+
+std::vector<Experiment> chapter8_corridor();
+std::vector<Experiment> chapter8_loop();
+
+/// All readings of a drive, where odometry or the truth has the stops, and its path.
+render::FigurePanel readings_panel(const Drive& drive, const std::string& title, bool truth);
+/// The local maps of the first stops at these poses, and their path.
+render::FigurePanel maps_panel(const Drive& drive, const std::vector<geometry::Pose2>& poses,
+                               std::size_t count, const std::string& title);
+
+}  // namespace topogeo::reproduce

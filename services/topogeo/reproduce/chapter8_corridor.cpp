@@ -1,0 +1,255 @@
+// Thesis, 8.2: a corridor driven there and back.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "topogeo/support/format.hpp"
+
+#include "reproduce/chapter8.hpp"
+#include "reproduce/drawing.hpp"
+#include "reproduce/shared_runs.hpp"
+
+namespace topogeo::reproduce {
+namespace {
+
+using geometry::Pose2;
+using render::FigureColour;
+using render::FigurePanel;
+using topomap::NodeKind;
+
+constexpr const char* kCorridor = "corridor";
+
+/// The stop at which the robot is farthest down the corridor.
+std::size_t end_of_corridor(const Drive& drive) {
+  const auto at = std::ranges::max_element(drive.truth, {}, &Pose2::x_m);
+  return static_cast<std::size_t>(at - drive.truth.begin());
+}
+
+void figure_8_4(Report& report) {
+  report.draw({.title = "Readings where odometry has the robot",
+               .panels = {readings_panel(report.runs().drive(kCorridor), "by odometry", false),
+                          readings_panel(report.runs().drive(kCorridor), "in truth", true)}});
+  const Drive& drive = report.runs().drive(kCorridor);
+  const PoseErrors errors = pose_errors(drive.odometry, drive.truth);
+  report.show("stops", static_cast<double>(drive.stops.size()));
+  report.show("largest error by odometry", errors.largest_m, "m");
+  report.states("by odometry the map is distorted (more than 1 m)", errors.largest_m > 1.0);
+}
+
+void figure_8_5(Report& report) {
+  const Drive& drive = report.runs().drive(kCorridor);
+  report.draw({.title = "Local maps where odometry has the robot",
+               .panels = {maps_panel(drive, drive.odometry, drive.stops.size(), "by odometry"),
+                          maps_panel(drive, drive.truth, drive.stops.size(), "in truth")}});
+  const PoseErrors errors = pose_errors(drive.odometry, drive.truth);
+  report.states("local maps of one place lie apart (more than 1 m)", errors.last_m > 1.0);
+  report.show("last position off by odometry", errors.last_m, "m");
+}
+
+void figure_8_6(Report& report) {
+  const Drive& drive = report.runs().drive(kCorridor);
+  const Correction& correction = report.runs().correction(kCorridor, {.backward = false});
+  const std::size_t end = end_of_corridor(drive);
+  const topomap::GlobalMap map = fused(drive, correction.final_poses(), end + 1);
+  FigurePanel panel;
+  panel.title = "global map at the end of the corridor";
+  add_walls(panel, drive.world, drive.T_world_first);
+  add_map(panel, map, FigureColour::kGreen);
+  report.draw({.title = "The corridor driven once", .panels = {panel}});
+  const auto kinds = [&](NodeKind kind) {
+    return static_cast<double>(std::ranges::count(map.nodes, kind, &topomap::MapNode::kind));
+  };
+  report.states("the map has nodes of doors", kinds(NodeKind::kDoor) > 0);
+  report.states("the map has crossings", kinds(NodeKind::kReal) > 0);
+  report.show("doors", kinds(NodeKind::kDoor));
+  report.show("crossings", kinds(NodeKind::kReal));
+  report.show("narrowings", kinds(NodeKind::kNarrowing));
+  report.show("passages between hall and corridor", kinds(NodeKind::kHallCorridor));
+  const std::vector<Pose2> driven(
+      correction.final_poses().begin(),
+      correction.final_poses().begin() + static_cast<std::ptrdiff_t>(end) + 1);
+  report.show("mean error of positions", pose_errors(driven, drive.truth).mean_m, "m");
+}
+
+void figure_8_7(Report& report) {
+  const Drive& drive = report.runs().drive(kCorridor);
+  const Correction& correction = report.runs().correction(kCorridor);
+  render::Figure figure;
+  figure.title = "Solutions of backward corrections on the way back";
+  figure.columns = 4;
+  std::size_t most = 0;
+  for (const Correction::Backward& backward : correction.backward) {
+    most = std::max(most, backward.paths.size());
+    if (figure.panels.size() == 8) continue;
+    FigurePanel panel;
+    panel.title =
+        fmt::format("position {}: {} solutions", backward.stop + 1, backward.paths.size());
+    for (std::size_t p = 0; p < backward.paths.size(); ++p) {
+      std::vector<Pose2> poses;
+      for (const Pose2& T : backward.paths[p].T_first_pose) {
+        poses.push_back(backward.before[backward.first] * T);
+      }
+      add_path(panel, poses, distinct_colour(p));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  if (figure.panels.empty()) throw std::runtime_error("no cycle was closed");
+  report.draw(figure, "A colour for each solution.");
+  report.states("there are several valid solutions", most > 1);
+  report.show("backward corrections", static_cast<double>(correction.backward.size()));
+  const PoseErrors errors = pose_errors(correction.final_poses(), drive.truth);
+  report.show("mean error of all positions at the end", errors.mean_m, "m");
+  report.states("positions end nearer to the truth than odometry",
+                errors.mean_m < pose_errors(drive.odometry, drive.truth).mean_m);
+}
+
+/// Stretches of branches of a map that lie in a rectangle of the world, metres.
+double length_within(const topomap::GlobalMap& map, const Drive& drive, const Eigen::Vector2d& low,
+                     const Eigen::Vector2d& high) {
+  double length_m = 0.0;
+  for (const topomap::MapBranch& branch : map.branches) {
+    for (std::size_t i = 1; i < branch.points.size(); ++i) {
+      const Eigen::Vector2d at_m = drive.T_world_first * branch.points[i].position_m;
+      const bool inside =
+          (at_m.array() >= low.array()).all() && (at_m.array() <= high.array()).all();
+      if (!inside) continue;
+      length_m += (branch.points[i].position_m - branch.points[i - 1].position_m).norm();
+    }
+  }
+  return length_m;
+}
+
+/// Around a place of the world, with what is there when the robot is at a stop.
+FigurePanel place_panel(const Drive& drive, std::size_t stop, const Eigen::Vector2d& at_m,
+                        const std::string& title) {
+  FigurePanel panel;
+  panel.title = title;
+  add_walls(panel, world::scene_at(drive.world, drive.path_m[stop]), drive.T_world_first);
+  const Eigen::Vector2d page = on_page(geometry::inverse(drive.T_world_first) * at_m);
+  panel.extent = {page - Eigen::Vector2d(4.0, 4.0), page + Eigen::Vector2d(4.0, 4.0)};
+  return panel;
+}
+
+// The leaf of experiment_1.world.yaml that stands almost along the wall.
+const Eigen::Vector2d kLeafLow_m(18.3, -1.1);
+const Eigen::Vector2d kLeafHigh_m(20.1, -0.55);
+
+void figure_8_8(Report& report) {
+  const Drive& drive = report.runs().drive(kCorridor);
+  const Correction& correction = report.runs().correction(kCorridor);
+  const auto false_length = [&](std::size_t count) {
+    return length_within(fused(drive, correction.final_poses(), count), drive, kLeafLow_m,
+                         kLeafHigh_m);
+  };
+  // Before the door behind the leaf opens.
+  std::size_t last = 0;
+  std::size_t worst = 0;
+  double worst_m = 0.0;
+  for (std::size_t k = 1; k < drive.stops.size() && drive.path_m[k] < 33.0; ++k) {
+    last = k;
+    const double length_m = false_length(k + 1);
+    if (length_m > worst_m) {
+      worst_m = length_m;
+      worst = k;
+    }
+  }
+  const std::size_t shown = worst_m > 0.0 ? worst : last / 2;
+  FigurePanel with = place_panel(drive, shown, {19.2, 0.0}, "(b) while it is seen first");
+  add_map(with, fused(drive, correction.final_poses(), shown + 1), FigureColour::kGreen);
+  add_map(with, *drive.stops[shown], correction.final_poses()[shown], FigureColour::kOrange);
+  FigurePanel after = place_panel(drive, last, {19.2, 0.0}, "(c) after more views");
+  add_map(after, fused(drive, correction.final_poses(), last + 1), FigureColour::kGreen);
+  report.draw(
+      {.title = "A leaf along the wall that looks like an opening", .panels = {with, after}},
+      "Global map green, local map orange.");
+  report.show("longest false branch behind the leaf", worst_m, "m");
+  report.worked_out("false branch left after all views", false_length(last + 1), 0.0, "m", 0.1);
+}
+
+// The door of door_opens.world.yaml.
+const Eigen::Vector2d kDoorLow_m(4.4, -2.4);
+const Eigen::Vector2d kDoorHigh_m(5.6, -1.1);
+constexpr double kDoorOpens_m = 12.0;
+
+void figure_8_9(Report& report) {
+  const Drive& drive = report.runs().drive("door");
+  const Correction& correction = report.runs().correction("door");
+  const auto opened = std::ranges::lower_bound(drive.path_m, kDoorOpens_m);
+  const auto count = static_cast<std::size_t>(opened - drive.path_m.begin());
+  const topomap::GlobalMap shut = fused(drive, correction.final_poses(), count);
+  const topomap::GlobalMap open = fused(drive, correction.final_poses(), drive.stops.size());
+  const Eigen::Vector2d door_m(5.0, -1.1);
+  FigurePanel a = place_panel(drive, count - 1, door_m, "(a) before it opens");
+  add_map(a, shut, FigureColour::kGreen);
+  FigurePanel b = place_panel(drive, drive.stops.size() - 1, door_m, "(b) after it was seen open");
+  add_map(b, open, FigureColour::kGreen);
+  report.draw({.title = "A door that opens meanwhile", .panels = {a, b}});
+  report.worked_out("branches through the shut door",
+                    length_within(shut, drive, kDoorLow_m, kDoorHigh_m), 0.0, "m", 0.1);
+  report.states("a branch leads through the open door",
+                length_within(open, drive, kDoorLow_m, kDoorHigh_m) > 0.3);
+  report.states("the map has more nodes afterwards", open.nodes.size() > shut.nodes.size());
+}
+
+void figure_8_10(Report& report) {
+  const Drive& drive = report.runs().drive(kCorridor);
+  const Correction& correction = report.runs().correction(kCorridor);
+  const Eigen::Vector2d mouth_m(4.0, 0.0);
+  const auto near_mouth = [&](const Eigen::Vector2d& at_m) {
+    return (drive.T_world_first * at_m - mouth_m).norm() < 1.2;
+  };
+  std::size_t seen = 0;
+  FigurePanel views = place_panel(drive, 0, mouth_m, "(a) states of single views");
+  for (std::size_t k = 0; k < drive.stops.size(); ++k) {
+    render::FigureDots dots{{}, FigureColour::kOrange, 3.5};
+    for (const topomap::LocalNode& node : drive.stops[k]->nodes) {
+      const Eigen::Vector2d at_m = correction.final_poses()[k] * node.position_m;
+      const bool state = node.kind == NodeKind::kHallCorridor ||
+                         node.kind == NodeKind::kNarrowing || node.kind == NodeKind::kDoor;
+      if (!state || !near_mouth(at_m)) continue;
+      dots.points.push_back(on_page(at_m));
+      ++seen;
+    }
+    views.dots.push_back(std::move(dots));
+  }
+  const topomap::GlobalMap map = fused(drive, correction.final_poses(), drive.stops.size());
+  FigurePanel together = place_panel(drive, 0, mouth_m, "(b) fused");
+  add_map(together, map, FigureColour::kGreen);
+  report.draw({.title = "Nodes of one passage become one", .panels = {views, together}});
+  const auto left = std::ranges::count_if(map.nodes, [&](const topomap::MapNode& node) {
+    return (node.kind == NodeKind::kHallCorridor || node.kind == NodeKind::kNarrowing ||
+            node.kind == NodeKind::kDoor) &&
+           near_mouth(node.position_m);
+  });
+  report.states("several views have a node of the passage", seen > 1);
+  report.show("nodes of single views", static_cast<double>(seen));
+  report.printed("nodes of the passage after fusion", static_cast<double>(left), 1);
+}
+
+}  // namespace
+
+std::vector<Experiment> chapter8_corridor() {
+  const std::string kThesis = "Thesis";
+  return {
+      {"figure-8.4", kThesis, "Figure 8.4",
+       "Experiment 1, a corridor there and back: readings where odometry has the robot", figure_8_4,
+       "", true},
+      {"figure-8.5", kThesis, "Figure 8.5", "Experiment 1: local maps where odometry has the robot",
+       figure_8_5, "", true},
+      {"figure-8.6", kThesis, "Figure 8.6",
+       "Experiment 1: the global map when the robot is at the end of the corridor", figure_8_6, "",
+       true},
+      {"figure-8.7", kThesis, "Figure 8.7",
+       "Experiment 1: solutions of the backward correction on the way back", figure_8_7, "", true},
+      {"figure-8.8", kThesis, "Figure 8.8",
+       "Experiment 1: a leaf along the wall makes a false branch, which later views outvote",
+       figure_8_8, "", true},
+      {"figure-8.9", kThesis, "Figure 8.9", "A door seen open later adds its branch and node",
+       figure_8_9, "", true},
+      {"figure-8.10", kThesis, "Figure 8.10",
+       "Experiment 1: nodes of the passage from hall to corridor become one", figure_8_10,
+       "A state that too small a share of the views shows is left out of the global map", true},
+  };
+}
+
+}  // namespace topogeo::reproduce

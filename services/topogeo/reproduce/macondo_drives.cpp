@@ -1,0 +1,228 @@
+#include "reproduce/macondo_drives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "topogeo/devices/sonar_ring.hpp"
+#include "topogeo/markov/markov_localizer.hpp"
+#include "topogeo/pipeline/world_grid.hpp"
+#include "topogeo/planning/grid_sources.hpp"
+#include "topogeo/planning/hybrid_planner.hpp"
+#include "topogeo/planning/motion_primitives.hpp"
+#include "topogeo/simulation/sonar.hpp"
+
+namespace topogeo::reproduce {
+
+using geometry::Pose2;
+
+namespace {
+
+constexpr double kCell_m = 0.1;
+constexpr double kSonarReach_m = 5.0;
+constexpr double kExactReach_m = 2.5;
+constexpr double kRounding_m = 1e-6;
+constexpr double kFarError_m = 0.30;
+constexpr double kFarErrorShare = 0.75;
+constexpr int kLastLooks = 3;              // at the goal
+constexpr double kLongestAdvance_m = 0.5;  // so that the robot looks around often enough
+
+markov::ObstacleCells obstacles_of(const planning::HybridMap& map) {
+  const planning::GridFrame& frame = map.frame();
+  std::vector<std::uint8_t> occupied;
+  for (std::int32_t y = 0; y < frame.rows; ++y) {
+    for (std::int32_t x = 0; x < frame.columns; ++x) {
+      occupied.push_back(map.space().grid().at({x, y}) == planning::CellState::kOccupied ? 1 : 0);
+    }
+  }
+  return markov::ObstacleCells({.width = frame.columns,
+                                .height = frame.rows,
+                                .resolution_m = frame.resolution_m,
+                                .origin_m = frame.T_map_grid.position_m(),
+                                .occupied = occupied});
+}
+
+/// The middle of a passable cell.
+Eigen::Vector2d draw_place(const planning::HybridMap& map, support::Random& random) {
+  for (;;) {
+    const auto index =
+        static_cast<std::size_t>(random.uniform() * static_cast<double>(map.frame().size()));
+    const planning::Cell cell = map.frame().cell_at(std::min(index, map.frame().size() - 1));
+    if (map.space().passable(cell)) return map.frame().center_m(cell);
+  }
+}
+
+/// Executes primitives with the errors of the published transition matrices: each cell of an
+/// advance, and each turn, displaces the robot as they say. As there, the heading is right.
+class Wheels {
+ public:
+  Wheels(const world::World& scene, const Pose2& T_start, support::Random& random)
+      : scene_(scene), T_(T_start), random_(random) {}
+
+  void execute(const markov::Move& move) {
+    if (move.kind == markov::MoveKind::kAdvance) {
+      T_ = T_ * Pose2{move.amount, 0.0, 0.0};
+      const long cells = std::lround(std::fabs(move.amount) / kCell_m);
+      for (long i = 0; i < cells; ++i) displace(transition_.advance);
+    } else {
+      const bool left = move.kind == markov::MoveKind::kTurnLeft;
+      T_ = T_ * Pose2{0.0, 0.0, left ? move.amount : -move.amount};
+      displace(left ? transition_.left : transition_.right);
+    }
+    hit_ |= world::clearance_m(scene_, T_.position_m()) < 0.5 * kCell_m;
+  }
+  [[nodiscard]] const Pose2& pose() const { return T_; }
+  [[nodiscard]] bool hit() const { return hit_; }
+
+ private:
+  void displace(const markov::TransitionMatrix& matrix) {
+    double left =
+        random_.uniform() * std::accumulate(matrix.values.begin(), matrix.values.end(), 0.0);
+    std::size_t i = 0;
+    while (i + 1 < matrix.values.size() && left >= matrix.values[i]) left -= matrix.values[i++];
+    const int row = static_cast<int>(i) / matrix.columns;
+    const int column = static_cast<int>(i) % matrix.columns;
+    T_ =
+        T_ * Pose2{kCell_m * (column - matrix.columns / 2), kCell_m * (matrix.rows / 2 - row), 0.0};
+  }
+
+  const world::World& scene_;
+  Pose2 T_;
+  support::Random& random_;
+  markov::TransitionModel transition_;
+  bool hit_ = false;
+};
+
+markov::Move move_of(const planning::MotionPrimitive& primitive) {
+  switch (primitive.kind) {
+    case planning::MotionKind::kAdvance:
+      return {markov::MoveKind::kAdvance, primitive.amount};
+    case planning::MotionKind::kTurnLeft:
+      return {markov::MoveKind::kTurnLeft, primitive.amount};
+    case planning::MotionKind::kTurnRight:
+      return {markov::MoveKind::kTurnRight, primitive.amount};
+  }
+  throw std::logic_error("unknown primitive");
+}
+
+/// Long advances in parts.
+std::vector<markov::Move> moves_of(const std::vector<planning::MotionPrimitive>& primitives) {
+  std::vector<markov::Move> moves;
+  for (const planning::MotionPrimitive& primitive : primitives) {
+    markov::Move move = move_of(primitive);
+    const int parts = move.kind == markov::MoveKind::kAdvance
+                          ? static_cast<int>(std::ceil(move.amount / kLongestAdvance_m))
+                          : 1;
+    move.amount /= std::max(parts, 1);
+    for (int i = 0; i < parts; ++i) moves.push_back(move);
+  }
+  return moves;
+}
+
+struct Task {
+  planning::HybridRoute route;
+  Pose2 T_start;
+  Eigen::Vector2d goal_m = Eigen::Vector2d::Zero();
+};
+
+Task draw_drive(const planning::HybridMap& map, support::Random& random) {
+  const planning::HybridPlanner planner(map);
+  for (;;) {
+    const Eigen::Vector2d from_m = draw_place(map, random);
+    const Eigen::Vector2d to_m = draw_place(map, random);
+    planning::HybridRoute route = planner.plan(from_m, to_m);
+    if (!route.found() || route.length_m < 3.0 || route.points_m.size() < 2) continue;
+    const Eigen::Vector2d along = route.points_m[1] - route.points_m[0];
+    return {route, {from_m.x(), from_m.y(), std::atan2(along.y(), along.x())}, to_m};
+  }
+}
+
+/// Compares what the sonars read with what they should, and goes back to the route when the robot
+/// is not where it should be. False when it is lost.
+bool relocalize(const world::World& scene, Wheels& wheels, markov::MarkovLocalizer& localizer,
+                support::Random& random) {
+  if (!localizer.perceive(published_readings(scene, wheels.pose(), random)).possible) return false;
+  const Pose2 T_route = localizer.expected();
+  const auto back = localizer.relocalization_moves(T_route);
+  if (!back) return false;
+  if (back->blocked || back->moves.empty()) return true;
+  localizer.accept_estimate();
+  for (const markov::Move& move : back->moves) {
+    wheels.execute(move);
+    if (!localizer.move(move).possible) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool MacondoDrive::arrived() const {
+  return localized && !hit && std::fabs(error_x_m) <= 1.5 * kCell_m &&
+         std::fabs(error_y_m) <= 1.5 * kCell_m;
+}
+
+DrawnFloor draw_floor(const world::World& world) {
+  DrawnFloor floor{world::scene_at(world, 0.0), nullptr};
+  planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(world), kCell_m));
+  planning::ZoneMap zones = planning::zones_by_width(space);
+  floor.map = std::make_shared<const planning::HybridMap>(std::move(space), std::move(zones));
+  return floor;
+}
+
+std::vector<markov::RangeSensor> six_sonars() {
+  std::vector<markov::RangeSensor> sensors;
+  for (const devices::SonarMount& mount : devices::macondo_sonars()) {
+    sensors.push_back({mount.T_robot_sonar, mount.half_cone_rad});
+  }
+  return sensors;
+}
+
+std::vector<float> published_readings(const world::World& scene, const Pose2& T_robot,
+                                      support::Random& random) {
+  std::vector<simulation::Echo> echoes;
+  for (const devices::SonarMount& mount : devices::macondo_sonars()) {
+    echoes.push_back(
+        simulation::echo(scene, T_robot * mount.T_robot_sonar, mount.half_cone_rad, kSonarReach_m));
+  }
+  std::vector<float> readings = simulation::measure(echoes, {.range_max_m = kSonarReach_m}, random);
+  for (float& reading_m : readings) {
+    const bool far = reading_m > kExactReach_m && random.uniform() < kFarErrorShare;
+    if (far) reading_m += static_cast<float>(random.uniform(-kFarError_m, kFarError_m));
+  }
+  return readings;
+}
+
+MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, bool sonars) {
+  support::Random random(seed);
+  const Task task = draw_drive(*floor.map, random);
+  MacondoDrive drive;
+  drive.route_m = task.route.points_m;
+  drive.goal = {task.goal_m.x(), task.goal_m.y(), 0.0};
+  Wheels wheels(floor.world, task.T_start, random);
+  markov::MarkovLocalizer localizer({}, obstacles_of(*floor.map), six_sonars());
+  drive.localized =
+      !sonars ||
+      localizer.initialize(task.T_start, published_readings(floor.world, wheels.pose(), random))
+          .possible;
+  drive.truth.push_back(wheels.pose());
+  for (const markov::Move& move :
+       moves_of(planning::motion_primitives(task.route.points_m, task.T_start.theta_rad))) {
+    if (!drive.localized) break;
+    wheels.execute(move);
+    if (sonars) {
+      drive.localized =
+          localizer.move(move).possible && relocalize(floor.world, wheels, localizer, random);
+    }
+    drive.truth.push_back(wheels.pose());
+  }
+  for (int i = 0; sonars && drive.localized && i < kLastLooks; ++i) {
+    drive.localized = relocalize(floor.world, wheels, localizer, random);
+  }
+  drive.hit = wheels.hit();
+  drive.error_x_m = wheels.pose().x_m - task.goal_m.x();
+  drive.error_y_m = wheels.pose().y_m - task.goal_m.y();
+  return drive;
+}
+
+}  // namespace topogeo::reproduce
