@@ -45,6 +45,63 @@ void describe(MarkovConfig& config, support::ConfigSchema& schema) {
   describe(config.sonar, schema);
 }
 
+void describe(PoseGridConfig& config, support::ConfigSchema& schema) {
+  schema.add("markov.pose_window_m", &config.window_m, 0.5, 5.0, "m",
+             "grid: poses: side of the window of positions");
+  schema.add("markov.pose_cell_m", &config.cell_m, 0.02, 0.5, "m", "its cells");
+  schema.add("markov.heading_window_rad", &config.heading_window_rad, 0.1, 6.2, "rad",
+             "its headings, both sides together");
+  schema.add("markov.heading_step_rad", &config.heading_step_rad, 0.01, 0.2, "rad",
+             "between two headings");
+  schema.add("markov.station_sigma_m", &config.station_sigma_m, 0.005, 0.5, "m",
+             "how exactly the robot is put on its base station, one sigma");
+  schema.add("markov.station_sigma_rad", &config.station_sigma_rad, 0.005, 0.5, "rad",
+             "the same of its heading");
+  schema.add("markov.path_sigma_m", &config.path_sigma_m, 0.001, 0.5, "m",
+             "error of odometry along and across, for the root of each metre");
+  schema.add("markov.path_sigma_rad", &config.path_sigma_rad, 0.001, 0.5, "rad",
+             "of its heading, for the root of each metre");
+  schema.add("markov.turn_sigma_rad", &config.turn_sigma_rad, 0.001, 0.5, "rad",
+             "of its heading, for the root of each radian turned");
+  schema.add("markov.turn_sigma_m", &config.turn_sigma_m, 0.0, 0.5, "m",
+             "of its position, for the root of each radian turned");
+  schema.add("markov.perceive_every_m", &config.perceive_every_m, 0.02, 2.0, "m",
+             "driven between two perceptual updates; sonars are heard while driving");
+  schema.add("markov.perceive_every_rad", &config.perceive_every_rad, 0.02, 2.0, "rad",
+             "turned between two");
+  schema.add("markov.hit_sigma_m", &config.hit_sigma_m, 0.01, 1.0, "m",
+             "of a reading of what is expected, cells of the map included");
+  schema.add("markov.far_from_m", &config.far_from_m, 0.5, 20.0, "m",
+             "beyond it readings are worse; MACONDO: 2.5");
+  schema.add("markov.far_sigma_m", &config.far_sigma_m, 0.01, 2.0, "m",
+             "of a reading there; MACONDO: three of four are off by up to 0.3");
+  schema.add("markov.hit_share", &config.hit_share, 0.05, 0.95, "",
+             "of the readings, those of what is expected");
+  schema.add("markov.short_share", &config.short_share, 0.0, 0.5, "",
+             "those of something nearer that is not on the map");
+  schema.add("markov.evidence", &config.evidence, 0.05, 1.0, "",
+             "weight of one update: readings taken close together err alike");
+  schema.add("markov.least_agreement", &config.least_agreement, 0.0, 0.9, "",
+             "share of near readings that agree with the map below which the pose is lost");
+}
+
+void check(const PoseGridConfig& config) {
+  support::check_ranges(config);
+  constexpr int kMostCells = 101;
+  constexpr int kMostHeadings = 181;
+  if (config.window_m / config.cell_m > kMostCells) {
+    support::refuse_value("markov.pose_window_m", config.window_m, "at most 101 of pose_cell_m");
+  }
+  if (config.heading_window_rad / config.heading_step_rad > kMostHeadings) {
+    support::refuse_value("markov.heading_window_rad", config.heading_window_rad,
+                          "at most 181 of heading_step_rad");
+  }
+  if (config.hit_share + config.short_share > 0.98) {
+    support::refuse_value("markov.short_share", config.short_share,
+                          "at most 0.98 together with hit_share");
+  }
+}
+
 void check(const SonarModelConfig& config) {
   support::check_ranges(config);
   require_odd("markov.rays_per_cone", config.rays_per_cone);

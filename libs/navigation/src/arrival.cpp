@@ -13,7 +13,9 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr int kCorrections = 5;        // an error that stays after these is one of the pose
+constexpr int kCorrections = 5;       // an error that stays after these is one of the pose,
+constexpr int kMostCorrections = 12;  // or of wheels that do not bring it nearer than this
+constexpr double kPoor_m = 0.05;
 constexpr int kLooks = 3;              // a third of a circle each
 constexpr double kLookTurn_rad = 2.1;  // three of them are a whole turn
 
@@ -31,7 +33,7 @@ void Arrival::begin(std::int64_t now_ns) {
 }
 
 void Arrival::accept_position() {
-  corrections_ = kCorrections;
+  corrections_ = kMostCorrections;
 }
 
 ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
@@ -50,7 +52,8 @@ ArrivalStep Arrival::step(const ArrivalView& view, std::int64_t now_ns) {
           ? std::fabs(geometry::wrap_angle(*view.heading_rad - view.T_map_robot.theta_rad))
           : 0.0;
   const bool there = off_m <= config_.follower.arrival_m && off_rad <= config_.follower.arrival_rad;
-  if (!there && corrections_ < kCorrections) return correct(view, off_m);
+  const int tries = off_m > kPoor_m ? kMostCorrections : kCorrections;
+  if (!there && corrections_ < tries) return correct(view, off_m);
   std::string message = fmt::format("has arrived, {:.2f} m", off_m);
   if (view.heading_rad) {
     message += fmt::format(" and {:.1f} degrees", off_rad * 180.0 / std::numbers::pi);

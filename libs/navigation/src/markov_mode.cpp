@@ -29,11 +29,16 @@ void MarkovMode::add(const OdometrySample& odometry) {
 
 void MarkovMode::add(const ScanPoints& scan) {
   constexpr double kStep_rad = 0.17453292519943295;  // ten degrees
-  if (on() && config_.markov_by_laser) round_ = laser_round(scan, kStep_rad);
+  if (on() && config_.markov_by_laser) hear(laser_round(scan, kStep_rad));
 }
 
 void MarkovMode::add(const SonarRound& sonar) {
-  if (on() && !config_.markov_by_laser) round_ = sonar;
+  if (on() && !config_.markov_by_laser) hear(sonar);
+}
+
+void MarkovMode::hear(const SonarRound& round) {
+  round_ = round;
+  if (tracker_ && tracker_->started() && !looks()) tracker_->hear(round);
 }
 
 std::optional<PoseFix> MarkovMode::pose() {
@@ -61,7 +66,8 @@ void MarkovMode::set_path(std::span<const planning::PathSample> path,
   constexpr double kJustBegun_m = 0.3;  // it has looked there
   nodes_at_m_.clear();
   next_node_ = 0;
-  if (!on() || path.empty()) return;
+  // With a grid of poses it hears its sonars on the way.
+  if (!on() || path.empty() || config_.markov.grid == MarkovGrid::kPoses) return;
   for (const Eigen::Vector2d& node_m : nodes_m) {
     const auto off_m = [&](const planning::PathSample& sample) {
       return (sample.T_map_robot.position_m() - node_m).norm();

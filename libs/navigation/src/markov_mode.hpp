@@ -46,6 +46,8 @@ class MarkovMode {
   std::optional<double> look(std::int64_t now_ns);
 
  private:
+  void hear(const SonarRound& round);
+
   const NavigatorConfig& config_;
   std::optional<MarkovTracker> tracker_;
   std::optional<geometry::Pose2> T_map_station_;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
+
+#include <Eigen/Geometry>
 
 #include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/scan/scan.hpp"
@@ -78,12 +81,25 @@ bool MarkovTracker::start(const geometry::Pose2& T_map_base_station, const Sonar
   for (const SonarReading& reading : readings.readings) {
     sensors.push_back({reading.T_robot_sonar, reading.half_cone_rad});
   }
+  if (last_) T_odom_followed_ = last_->T_odom_robot;
+  corrected_m_ = 0.0;
+  if (config_.grid == MarkovGrid::kPoses) {
+    poses_ = std::make_unique<markov::PoseLocalizer>(config_.poses, cells_, std::move(sensors),
+                                                     config_.markov.sonar.max_range_m,
+                                                     inverse(T_map_grid_) * T_map_base_station);
+    reason_ = poses_->reason();
+    if (!reason_.empty()) {
+      poses_.reset();
+      return false;
+    }
+    T_odom_heard_ = T_odom_followed_;
+    poses_->perceive(ranges_of(readings));
+    return true;
+  }
   localizer_.emplace(config_.markov, cells_, std::move(sensors));
   const auto report =
       localizer_->initialize(inverse(T_map_grid_) * T_map_base_station, ranges_of(readings));
   reason_ = report.possible ? "" : report.reason;
-  corrected_m_ = 0.0;
-  if (last_) T_odom_followed_ = last_->T_odom_robot;
   if (!report.possible) localizer_.reset();
   return report.possible;
 }
@@ -92,6 +108,59 @@ void MarkovTracker::add(const OdometrySample& sample) {
   if (last_ && sample.stamp_ns <= last_->stamp_ns) return;
   if (!last_) T_odom_followed_ = sample.T_odom_robot;
   last_ = sample;
+  track_.add({sample.stamp_ns, sample.T_odom_robot});
+  hear_waiting();
+}
+
+void MarkovTracker::follow_poses(const geometry::Pose2& T_odom_robot) {
+  poses_->move(between(T_odom_followed_, T_odom_robot));
+  T_odom_followed_ = T_odom_robot;
+}
+
+void MarkovTracker::hear(const SonarRound& readings) {
+  if (!poses_) return;
+  waiting_ = readings;
+  hear_waiting();
+}
+
+void MarkovTracker::hear_waiting() {
+  if (!waiting_ || !poses_ || !last_ || waiting_->stamp_ns > last_->stamp_ns) return;
+  const SonarRound round = *std::exchange(waiting_, std::nullopt);
+  const auto then = track_.at(round.stamp_ns);
+  if (!then) return;
+  const geometry::Pose2 moved = between(T_odom_heard_, then->T_odom_robot);
+  if (moved.position_m().norm() < config_.poses.perceive_every_m &&
+      std::fabs(moved.theta_rad) < config_.poses.perceive_every_rad) {
+    return;
+  }
+  follow_poses(then->T_odom_robot);
+  T_odom_heard_ = then->T_odom_robot;
+  poses_->perceive(ranges_of(round));
+  reason_ = poses_->reason();
+}
+
+markov::PerceptionReport MarkovTracker::perceive_poses(const SonarRound& readings) {
+  if (last_) follow_poses(last_->T_odom_robot);
+  T_odom_heard_ = T_odom_followed_;
+  const Eigen::Vector2d before_m = poses_->estimate().T_map_robot.position_m();
+  poses_->perceive(ranges_of(readings));
+  corrected_m_ = (poses_->estimate().T_map_robot.position_m() - before_m).norm();
+  reason_ = poses_->reason();
+  return {.possible = poses_->located(), .match = {}, .weight = 0.0, .reason = reason_};
+}
+
+PoseFix MarkovTracker::pose_fix() const {
+  PoseFix fix;
+  fix.stamp_ns = last_->stamp_ns;
+  fix.tracking = poses_->located();
+  fix.state_text = reason_;
+  fix.T_map_robot =
+      T_map_grid_ * poses_->estimate().T_map_robot * between(T_odom_followed_, last_->T_odom_robot);
+  const double turn_rad = T_map_grid_.theta_rad;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(turn_rad).toRotationMatrix();
+  fix.covariance = turn * poses_->estimate().covariance * turn.transpose();
+  return fix;
 }
 
 void MarkovTracker::follow(const markov::Move& move) {
@@ -100,6 +169,7 @@ void MarkovTracker::follow(const markov::Move& move) {
 }
 
 void MarkovTracker::primitive_done() {
+  if (poses_ && last_) follow_poses(last_->T_odom_robot);
   if (!localizer_ || !last_) return;
   constexpr double kLeast_m = 1e-6;
   const geometry::Pose2 step = between(T_odom_followed_, last_->T_odom_robot);
@@ -119,7 +189,8 @@ void MarkovTracker::primitive_done() {
 }
 
 markov::PerceptionReport MarkovTracker::perceive(const SonarRound& readings) {
-  if (!localizer_) throw std::runtime_error("markov tracker: perceive() before start()");
+  if (!started()) throw std::runtime_error("markov tracker: perceive() before start()");
+  if (poses_) return perceive_poses(readings);
   primitive_done();
   auto report = localizer_->perceive(ranges_of(readings));
   reason_ = report.possible ? "" : report.reason;
@@ -130,6 +201,7 @@ markov::PerceptionReport MarkovTracker::perceive(const SonarRound& readings) {
 }
 
 std::optional<PoseFix> MarkovTracker::fix() const {
+  if (poses_ && last_) return pose_fix();
   if (!localizer_ || !last_) return std::nullopt;
   PoseFix fix;
   fix.stamp_ns = last_->stamp_ns;

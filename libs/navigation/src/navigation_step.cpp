@@ -6,6 +6,8 @@
 
 #include "topogeo/support/format.hpp"
 
+#include "elapsed.hpp"
+
 namespace topogeo::navigation {
 namespace {
 
@@ -167,6 +169,7 @@ geometry::Velocity NavigationStep::drive(const geometry::Pose2& T_map_robot) {
 
 geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
   constexpr double kNearEnough_m = 0.08;  // a goal that is too narrow for the last centimetres
+  constexpr double kStays_s = 15.0;       // longer than the last centimetres and a turn take
   const SeenObstacles obstacles = surroundings.seen(now_ns);
   const RouteDriver::Scene scene{routes, T_map_robot, obstacles, wait.over(now_ns), now_ns};
   if (driver.needs_path() || !driver.follower().has_path()) {
@@ -181,7 +184,13 @@ geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
     begin_path();
   }
   const bool hindered = driven.before_block || (held && !driven.another_path);
-  if (hindered && (routes.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m) {
+  const bool near = (routes.goal_m() - T_map_robot.position_m()).norm() < kNearEnough_m;
+  if (!near) near_since_ns.reset();
+  if (near && !near_since_ns) near_since_ns = now_ns;
+  // Paths found again and again round what only a sonar hears bring it no nearer either.
+  const bool stays = near && elapsed_s(*near_since_ns, now_ns) > kStays_s;
+  if (near && (hindered || stays)) {
+    near_since_ns.reset();
     return settle_here();
   }
   if (hindered) {

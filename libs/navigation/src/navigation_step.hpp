@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
@@ -59,6 +60,7 @@ struct NavigationStep {
   ObstacleWait wait;
   Arrival arrival;
   Relocalization relocalization;
+  std::optional<std::int64_t> near_since_ns;  ///< within centimetres of the goal
   NavigatorStatus status;
 };
 

@@ -36,6 +36,11 @@ void describe_patience(NavigatorConfig& n, support::ConfigSchema& schema) {
 }  // namespace
 
 void describe(MarkovTrackerConfig& config, support::ConfigSchema& schema) {
+  schema.add(
+      "markov.grid", &config.grid,
+      {{"poses", MarkovGrid::kPoses}, {"positions", MarkovGrid::kPositions}},
+      "poses: positions and headings, sonars are heard while it drives; positions: MACONDO's "
+      "window, sonars are heard where it stops at border nodes");
   schema.add("markov.cell_m", &config.cell_m, 0.01, 1.0, "m",
              "side of a cell; cells of the map are joined up to it; MACONDO: 0.1");
   schema.add("markov.heading_sigma_rad", &config.heading_sigma_rad, 0.001, 1.0, "rad",
@@ -45,6 +50,7 @@ void describe(MarkovTrackerConfig& config, support::ConfigSchema& schema) {
 void check(const MarkovTrackerConfig& config) {
   support::check_ranges(config);
   markov::check(config.markov);
+  markov::check(config.poses);
 }
 
 void describe(NavigatorConfig& config, support::ConfigSchema& schema) {
@@ -63,6 +69,7 @@ void describe(NavigatorConfig& config, support::ConfigSchema& schema) {
 void check(const NavigatorConfig& config) {
   support::check_ranges(config);
   markov::check(config.markov.markov);
+  markov::check(config.markov.poses);
   planning::check(config.detour);
   planning::check(config.smooth);
 }

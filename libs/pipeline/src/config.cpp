@@ -61,6 +61,7 @@ support::ConfigSchema describe(Config& config) {
   planning::describe(config.navigator.smooth, schema);
   planning::describe(config.navigator.detour, schema);
   markov::describe(config.navigator.markov.markov, schema);
+  markov::describe(config.navigator.markov.poses, schema);
   navigation::describe(config.exploration, schema);
   localization::describe(config.calibration, schema);
   describe(config.metrics, schema);

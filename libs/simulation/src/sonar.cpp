@@ -68,6 +68,31 @@ class Cone {
   Echo nearest_;
 };
 
+struct Disturbance {
+  bool reflected = false;
+  double detour_m = 0.0;
+  bool missing = false;
+  double far_error_m = 0.0;
+};
+
+/// Draws nothing for what the settings leave out.
+Disturbance draw_disturbance(const SonarNoise& noise, support::Random& random) {
+  Disturbance drawn;
+  if (noise.reflection_probability > 0.0) {
+    drawn.reflected = random.uniform() < noise.reflection_probability;
+    drawn.detour_m = random.uniform(0.0, noise.reflection_detour_m);
+  }
+  if (noise.missing_probability > 0.0) {
+    drawn.missing = random.uniform() < noise.missing_probability;
+  }
+  if (noise.far_error_probability > 0.0) {
+    const bool off = random.uniform() < noise.far_error_probability;
+    const double error_m = random.uniform(-noise.far_error_m, noise.far_error_m);
+    if (off) drawn.far_error_m = error_m;
+  }
+  return drawn;
+}
+
 }  // namespace
 
 Echo echo(const world::World& scene, const geometry::Pose2& T_world_sonar, double half_cone_rad,
@@ -86,6 +111,15 @@ Echo echo(const world::World& scene, const geometry::Pose2& T_world_sonar, doubl
   return cone.nearest();
 }
 
+SonarNoise macondo_sonar_noise() {
+  SonarNoise noise;
+  noise.specular_loss_probability = 0.6;
+  noise.reflection_probability = 0.5;
+  noise.missing_probability = 0.03;
+  noise.far_error_probability = 0.75;
+  return noise;
+}
+
 std::vector<float> measure(const std::vector<Echo>& echoes, const SonarNoise& noise,
                            support::Random& random) {
   std::vector<float> readings_m;
@@ -94,11 +128,15 @@ std::vector<float> measure(const std::vector<Echo>& echoes, const SonarNoise& no
     const bool lost = random.uniform() < noise.specular_loss_probability &&
                       echo.incidence_rad > noise.specular_from_rad;
     const double error_m = noise.sigma_m * random.normal();
-    if (lost || echo.range_m >= noise.range_max_m) {
+    const Disturbance disturbance = draw_disturbance(noise, random);
+    double reading_m = echo.range_m + error_m;
+    if (reading_m > noise.far_from_m) reading_m += disturbance.far_error_m;
+    if (lost) reading_m = echo.range_m + disturbance.detour_m;
+    if (disturbance.missing || (lost && !disturbance.reflected) ||
+        std::max(echo.range_m, lost ? reading_m : 0.0) >= noise.range_max_m) {
       readings_m.push_back(scan::Scan::kNoReturn);
       continue;
     }
-    double reading_m = echo.range_m + error_m;
     if (noise.resolution_m > 0.0) {
       reading_m = std::floor(reading_m / noise.resolution_m + 0.5) * noise.resolution_m;
     }

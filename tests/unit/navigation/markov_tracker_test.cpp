@@ -12,6 +12,12 @@
 namespace topogeo::navigation {
 namespace {
 
+MarkovTrackerConfig positions() {
+  MarkovTrackerConfig config;
+  config.grid = MarkovGrid::kPositions;
+  return config;
+}
+
 /// A robot without noise in two rooms, whose odometry measures 3 % too little.
 class MarkovDrive : public testing::Test {
  protected:
@@ -45,7 +51,7 @@ class MarkovDrive : public testing::Test {
 
   world::World world = two_doors();
   std::optional<simulation::SimulatedRobot> robot;
-  MarkovTracker tracker{map_of(world)->space().grid()};
+  MarkovTracker tracker{map_of(world)->space().grid(), positions()};
   std::int64_t stamp_ns = 0;
 };
 
@@ -106,6 +112,7 @@ TEST_F(MarkovDrive, PerceivingBeforeTheStartIsAMistake) {
 TEST(NavigatorMarkov, DrivesFromTheBaseStationThroughADoor) {
   for (const bool by_laser : {false, true}) {
     DriveSettings settings;
+    settings.navigator.markov.grid = MarkovGrid::kPositions;
     settings.T_world_start = {1.25, 4.55, 0.0};
     settings.navigator.motion = MotionStyle::kPrimitives;
     settings.navigator.pose_source = PoseSource::kMarkov;
@@ -134,11 +141,67 @@ TEST(NavigatorMarkov, DrivesFromTheBaseStationThroughADoor) {
   }
 }
 
+/// Wheels of a recorded log, sonars as bad as published, no laser: it hears them while it drives.
+TEST(NavigatorMarkov, DrivesThroughADoorBySonarsAlone) {
+  DriveSettings settings;
+  settings.T_world_start = {1.25, 4.55, 0.0};
+  settings.noise = true;
+  settings.navigator.motion = MotionStyle::kPrimitives;
+  settings.navigator.pose_source = PoseSource::kMarkov;
+  settings.navigator.guard.needs_scan = false;
+  settings.navigator.guard.needs_sonar = true;
+  settings.navigator.follower.speed_m_per_s = 0.3;
+  TestDrive drive(two_doors(), settings);
+  drive.scans_come = false;
+  drive.go_to({8.5, 1.5}, 0.0);
+  drive.step();
+  drive.poses_come = false;
+  ASSERT_TRUE(drive.arrives(180.0)) << drive.status().message;
+  EXPECT_LT(drive.off_m(), 0.1);
+  EXPECT_EQ(drive.robot.collisions(), 0U);
+}
+
+TEST(MarkovTrackerPoses, HearsOnTheWayAndWaitsForOdometry) {
+  const world::World world = two_doors();
+  simulation::RobotOptions options;
+  options.T_world_start = geometry::Pose2{1.25, 1.55, 0.0};
+  options.sonar.sigma_m = 0.0;
+  options.odometry = {-0.05, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  simulation::SimulatedRobot robot(world, options);
+  const auto heard = [&](std::int64_t stamp_ns) {
+    SonarRound round;
+    round.stamp_ns = stamp_ns;
+    const std::vector<float> ranges_m = robot.sonar();
+    for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+      const auto& mount = robot.options().sonars[i];
+      round.readings.push_back({mount.T_robot_sonar, mount.half_cone_rad, ranges_m[i]});
+    }
+    return round;
+  };
+  MarkovTracker tracker{map_of(world)->space().grid()};
+  std::int64_t now_ns = 1;
+  tracker.add(OdometrySample{now_ns, robot.T_odom_robot()});
+  ASSERT_TRUE(tracker.start({1.25, 1.55, 0.0}, heard(now_ns)));
+  for (int i = 0; i < 60; ++i) {
+    robot.step({0.1, 0.0}, 1.0);
+    now_ns += 1'000'000;
+    tracker.hear(heard(now_ns));  // before its odometry has come
+    tracker.add(OdometrySample{now_ns, robot.T_odom_robot()});
+  }
+  const auto fix = tracker.fix();
+  ASSERT_TRUE(fix);
+  EXPECT_TRUE(fix->tracking);
+  // Odometry alone is 0.3 m off by now.
+  EXPECT_LT((fix->T_map_robot.position_m() - robot.T_world_robot().position_m()).norm(), 0.1);
+  EXPECT_FALSE(tracker.return_moves({2.0, 1.5, 0.0}));
+}
+
 TEST(NavigatorMarkov, AMapThatComesAgainBeforeTheStartLeavesTheBaseStation) {
   for (const bool station_first : {false, true}) {
     DriveSettings settings;
     settings.T_world_start = {1.25, 4.55, 0.0};
     settings.navigator.pose_source = PoseSource::kMarkov;
+    settings.navigator.markov.grid = MarkovGrid::kPositions;
     TestDrive drive(two_doors(), settings);
     drive.poses_come = station_first;
     drive.sonars_come = false;  // so it does not start yet

@@ -38,6 +38,7 @@ class MarkovPoseSources : public testing::Test {
   static NavigatorConfig markov_config() {
     NavigatorConfig config;
     config.pose_source = PoseSource::kMarkov;
+    config.markov.grid = MarkovGrid::kPositions;
     config.markov_by_laser = true;
     return config;
   }

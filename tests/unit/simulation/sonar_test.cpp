@@ -103,5 +103,44 @@ TEST(Measure, SmoothWallsThrowObliqueSoundElsewhere) {
   EXPECT_EQ(readings_m[1], scan::Scan::kNoReturn);
 }
 
+TEST(Measure, FarReadingsErrAsMacondoFound) {
+  SonarNoise noise = macondo_sonar_noise();
+  noise.sigma_m = 0.0;
+  noise.resolution_m = 0.0;
+  noise.missing_probability = 0.0;
+  support::Random random(2);
+  int off = 0;
+  constexpr int kRounds = 4000;
+  for (int i = 0; i < kRounds; ++i) {
+    const auto readings_m = measure({{.range_m = 2.4}, {.range_m = 4.0}}, noise, random);
+    EXPECT_FLOAT_EQ(readings_m[0], 2.4F);
+    EXPECT_NEAR(readings_m[1], 4.0, 0.3 + 1e-6);
+    off += std::fabs(readings_m[1] - 4.0F) > 1e-6F ? 1 : 0;
+  }
+  EXPECT_NEAR(off / static_cast<double>(kRounds), 0.75, 0.03);
+}
+
+TEST(Measure, ReflectedSoundReadsLongerAndSomeEchoesAreMissing) {
+  SonarNoise noise{.sigma_m = 0.0, .resolution_m = 0.0};
+  noise.specular_loss_probability = 1.0;
+  noise.reflection_probability = 0.5;
+  noise.reflection_detour_m = 1.0;
+  noise.missing_probability = 0.1;
+  support::Random random(4);
+  int longer = 0;
+  int missing = 0;
+  constexpr int kRounds = 4000;
+  for (int i = 0; i < kRounds; ++i) {
+    const auto readings_m = measure({{1.0, 40.0 * kDegree}, {1.0, 0.0}}, noise, random);
+    missing += readings_m[1] == scan::Scan::kNoReturn ? 1 : 0;
+    if (readings_m[0] == scan::Scan::kNoReturn) continue;
+    EXPECT_GE(readings_m[0], 1.0F);
+    EXPECT_LE(readings_m[0], 2.0F);
+    ++longer;
+  }
+  EXPECT_NEAR(longer / static_cast<double>(kRounds), 0.5 * 0.9, 0.03);
+  EXPECT_NEAR(missing / static_cast<double>(kRounds), 0.1, 0.02);
+}
+
 }  // namespace
 }  // namespace topogeo::simulation

@@ -75,13 +75,43 @@ struct MarkovConfig {
   double perceptual_weight = 0.6;
 };
 
+/// Markov localization over positions and headings (pose_localizer.hpp), after Fox, Burgard and
+/// Thrun, which MACONDO's window of positions is a simple form of.
+struct PoseGridConfig {
+  double window_m = 2.1;  ///< side of the window of positions
+  double cell_m = 0.05;
+  double heading_window_rad = 1.5;
+  double heading_step_rad = 0.035;
+  /// Of the robot on its base station, one sigma.
+  double station_sigma_m = 0.05;
+  double station_sigma_rad = 0.05;
+  // Odometry, one sigma for the root of a metre or a radian.
+  double path_sigma_m = 0.05;        ///< along and across the path, per root of a metre
+  double path_sigma_rad = 0.03;      ///< per root of a metre
+  double turn_sigma_rad = 0.12;      ///< per root of a radian turned
+  double turn_sigma_m = 0.03;        ///< per root of a radian turned
+  double perceive_every_m = 0.10;    ///< driven between two perceptual updates
+  double perceive_every_rad = 0.10;  ///< turned between two
+  // One reading, given what is expected.
+  double hit_sigma_m = 0.06;  ///< up to far_from_m
+  double far_from_m = 2.5;
+  double far_sigma_m = 0.20;  ///< beyond it
+  double hit_share = 0.75;    ///< of readings that are of what is expected
+  double short_share = 0.10;  ///< of something nearer that is not on the map
+  double evidence = 0.4;      ///< exponent: readings taken close together err alike
+  /// Smoothed share of near readings that agree with the map below which the pose is lost.
+  double least_agreement = 0.25;
+};
+
 // They declare the part of the section `markov` that does not depend on the map; that of the whole
 // includes that of its sonar model.
 void describe(SonarModelConfig& config, support::ConfigSchema& schema);
 void describe(MarkovConfig& config, support::ConfigSchema& schema);
+void describe(PoseGridConfig& config, support::ConfigSchema& schema);
 
 // They throw std::invalid_argument naming key or field, value and range.
 void check(const SonarModelConfig& config);
 void check(const MarkovConfig& config);
+void check(const PoseGridConfig& config);
 
 }  // namespace topogeo::markov

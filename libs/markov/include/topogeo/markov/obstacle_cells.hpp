@@ -41,6 +41,8 @@ class ObstacleCells {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] double cell_m() const { return cell_m_; }
+  /// Outer corner of cell (0, 0), map frame.
+  [[nodiscard]] const Eigen::Vector2d& origin_m() const { return origin_m_; }
 
   [[nodiscard]] bool inside(Cell cell) const {
     return cell.x >= 0 && cell.x < width_ && cell.y >= 0 && cell.y < height_;

@@ -8,12 +8,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/markov/markov_localizer.hpp"
+#include "topogeo/markov/pose_localizer.hpp"
 #include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/navigation/navigator_inputs.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
@@ -33,7 +36,7 @@ class MarkovTracker {
   /// rounds to come. False, with `reason()`, when the station is no free cell. Throws
   /// std::invalid_argument for readings and mounts that are not valid.
   bool start(const geometry::Pose2& T_map_base_station, const SonarRound& readings);
-  [[nodiscard]] bool started() const { return localizer_.has_value(); }
+  [[nodiscard]] bool started() const { return localizer_.has_value() || poses_ != nullptr; }
 
   void add(const OdometrySample& sample);
 
@@ -44,6 +47,10 @@ class MarkovTracker {
   /// the motion since the last primitive first. Throws std::runtime_error before start(),
   /// std::invalid_argument for another number of sensors.
   markov::PerceptionReport perceive(const SonarRound& readings);
+  /// The same while it drives: with a grid of poses, once it has moved far enough since the last
+  /// readings; does nothing with one of positions. A round that is newer than the odometry waits
+  /// for it.
+  void hear(const SonarRound& readings);
 
   /// Where the robot is now; tracking as long as some cell is possible. Nothing before start() and
   /// without odometry.
@@ -51,6 +58,7 @@ class MarkovTracker {
   /// How far the last perceive() moved the robot from where it was expected, metres.
   [[nodiscard]] double corrected_m() const { return corrected_m_; }
   /// The moves from where it is to a pose of the route (map frame), straight: turn, advance, turn.
+  /// Nothing with a grid of poses.
   [[nodiscard]] std::optional<markov::ReturnMoves> return_moves(
       const geometry::Pose2& T_map_route) const;
   /// Why there is no pose; empty when there is one.
@@ -58,11 +66,19 @@ class MarkovTracker {
 
  private:
   void follow(const markov::Move& move);
+  void follow_poses(const geometry::Pose2& T_odom_robot);
+  void hear_waiting();
+  markov::PerceptionReport perceive_poses(const SonarRound& readings);
+  [[nodiscard]] PoseFix pose_fix() const;
 
   MarkovTrackerConfig config_;
   markov::ObstacleCells cells_;
   geometry::Pose2 T_map_grid_;
   std::optional<markov::MarkovLocalizer> localizer_;
+  std::unique_ptr<markov::PoseLocalizer> poses_;
+  geometry::OdometryTrack track_{0};
+  std::optional<SonarRound> waiting_;  ///< newer than the odometry
+  geometry::Pose2 T_odom_heard_;       ///< where sonars were heard last
   std::optional<OdometrySample> last_;
   geometry::Pose2 T_odom_followed_;  ///< up to where the belief has followed
   double corrected_m_ = 0.0;

@@ -13,8 +13,19 @@
 
 namespace topogeo::navigation {
 
+/// What Markov localization holds probabilities of.
+enum class MarkovGrid : std::uint8_t {
+  /// Positions and headings; sonars are heard while the robot drives (markov/pose_localizer.hpp).
+  kPoses = 0,
+  /// MACONDO's window of positions, by its matrices and weights (markov/markov_localizer.hpp). The
+  /// robot stops to hear its sonars at border nodes and at the end of its route.
+  kPositions = 1,
+};
+
 struct MarkovTrackerConfig {
+  MarkovGrid grid = MarkovGrid::kPoses;
   markov::MarkovConfig markov;
+  markov::PoseGridConfig poses;
   double cell_m = 0.1;
   double heading_sigma_rad = 0.05;
 };

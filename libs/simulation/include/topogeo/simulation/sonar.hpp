@@ -32,10 +32,25 @@ struct SonarNoise {
   /// Smooth surfaces that the sound meets more obliquely than this throw it elsewhere,
   double specular_from_rad = 25.0 * std::numbers::pi / 180.0;
   double specular_loss_probability = 0.0;  ///< with this probability; [0, 1]
+  /// Of the sound thrown elsewhere, the share that comes back over another surface: the reading is
+  /// up to reflection_detour_m longer; [0, 1]
+  double reflection_probability = 0.0;
+  double reflection_detour_m = 2.5;  ///< >= 0
+  double missing_probability = 0.0;  ///< of an echo that is not heard at all; [0, 1]
+  /// Beyond this distance readings are off by up to far_error_m to either side,
+  double far_from_m = 2.5;
+  double far_error_m = 0.30;
+  double far_error_probability = 0.0;  ///< with this probability; [0, 1]
 };
 
-/// Readings of a ring; scan::Scan::kNoReturn without an echo. Uses the same count of random
-/// numbers for every round.
+/// The sonars of MACONDO, III.1: exact up to 2.5 m (here to 2 cm); from 2.5 to 5 m three of four
+/// readings are off by up to 30 cm; nothing beyond. Reflections and missing echoes have no figures
+/// there: here 60 % of the sound that meets a wall at more than 25 degrees is lost, half of it
+/// comes back over another wall, and 3 % of all echoes are missing.
+SonarNoise macondo_sonar_noise();
+
+/// Readings of a ring; scan::Scan::kNoReturn without an echo. With the same settings it uses the
+/// same count of random numbers for every round.
 std::vector<float> measure(const std::vector<Echo>& echoes, const SonarNoise& noise,
                            support::Random& random);
 
