@@ -48,7 +48,7 @@ void describe(MarkovConfig& config, support::ConfigSchema& schema) {
 void describe(PoseGridConfig& config, support::ConfigSchema& schema) {
   schema.add("markov.pose_window_m", &config.window_m, 0.5, 5.0, "m",
              "grid: poses: side of the window of positions");
-  schema.add("markov.pose_cell_m", &config.cell_m, 0.02, 0.5, "m", "its cells");
+  schema.add("markov.pose_cell_m", &config.cell_m, 0.02, 0.5, "m", "side of its cells");
   schema.add("markov.heading_window_rad", &config.heading_window_rad, 0.1, 6.2, "rad",
              "its headings, both sides together");
   schema.add("markov.heading_step_rad", &config.heading_step_rad, 0.01, 0.2, "rad",

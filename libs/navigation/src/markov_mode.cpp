@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "topogeo/planning/place_names.hpp"
+
 namespace topogeo::navigation {
 
 void MarkovMode::set_map(const planning::HybridMap* map) {
@@ -14,6 +16,12 @@ void MarkovMode::set_map(const planning::HybridMap* map) {
   tracker_.reset();
   tried_ns_.reset();
   if (map == nullptr) return;
+  const MarkovTrackerConfig& markov = config_.markov;
+  if (const planning::Place* place = planning::find_place(map->places(), markov.station);
+      place != nullptr && !T_map_station_) {
+    T_map_station_ =
+        geometry::Pose2{place->position_m.x(), place->position_m.y(), markov.station_heading_rad};
+  }
   tracker_.emplace(map->space().grid(), config_.markov);
   if (odometry_) tracker_->add(*odometry_);
 }

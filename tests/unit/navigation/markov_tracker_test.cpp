@@ -214,6 +214,32 @@ TEST(NavigatorMarkov, AMapThatComesAgainBeforeTheStartLeavesTheBaseStation) {
   }
 }
 
+/// No pose ever comes: the base station is a place of the map.
+TEST(NavigatorMarkov, StartsAtTheBaseStationOfTheMap) {
+  for (const std::string name : {"base station", "dock"}) {
+    DriveSettings settings;
+    settings.T_world_start = {1.25, 4.55, 0.5};
+    settings.navigator.pose_source = PoseSource::kMarkov;
+    settings.navigator.markov.station_heading_rad = 0.5;
+    settings.navigator.guard.needs_scan = false;
+    TestDrive drive(two_doors(), settings);
+    drive.poses_come = drive.scans_come = false;
+    const std::vector<planning::Place> places{{name, {1.25, 4.55}}};
+    drive.navigator.set_map(
+        std::make_shared<planning::HybridMap>(drive.map->space(), drive.map->zones(), places),
+        drive.map_version);
+    const bool started =
+        drive.run_until([&] { return drive.status().T_map_robot.has_value(); }, 1.0);
+    ASSERT_EQ(started, name == "base station") << name;
+    if (!started) continue;
+    EXPECT_NEAR(drive.status().T_map_robot->x_m, 1.25, 0.1);
+    EXPECT_NEAR(drive.status().T_map_robot->y_m, 4.55, 0.1);
+    EXPECT_NEAR(drive.status().T_map_robot->theta_rad, 0.5, 0.1);
+    drive.go_to({2.5, 4.55});
+    EXPECT_TRUE(drive.arrives(60.0)) << drive.status().message;
+  }
+}
+
 TEST(LaserRound, HasABeamForEveryStep) {
   ScanPoints scan;
   scan.stamp_ns = 7;

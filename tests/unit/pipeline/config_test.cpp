@@ -93,6 +93,7 @@ std::map<std::string, std::set<std::string>> owners_of_keys(Config& c) {
   library("planning", c.planner, c.planning, c.hybrid_map.grid, c.hybrid_map.inflation,
           c.hybrid_map.zones, c.hybrid_planner, c.navigator.smooth, c.navigator.detour);
   library("markov", c.navigator.markov.markov);
+  library("markov poses", c.navigator.markov.poses);
   library("navigation", c.navigator, c.exploration);
   library("pipeline", c.local_mapper, c.metrics);
   return owners;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "topogeo/markov/markov_config.hpp"
 #include "topogeo/navigation/follower_config.hpp"
@@ -28,6 +29,8 @@ struct MarkovTrackerConfig {
   markov::PoseGridConfig poses;
   double cell_m = 0.1;
   double heading_sigma_rad = 0.05;
+  std::string station = "base station";  ///< place of the map that the robot starts at
+  double station_heading_rad = 0.0;      ///< map frame
 };
 
 /// Declares the part of the section `markov` that is about the map and the robot.
@@ -44,9 +47,8 @@ enum class MotionStyle : std::uint8_t {
 /// Where the pose comes from.
 enum class PoseSource : std::uint8_t {
   kLocalizer = 0,  ///< pose fixes that are added
-  /// Markov localization (docs/algorithms.md, "Markov localization") on the map's grid: the first
-  /// pose fix that is added is the base station. The robot stops at every border node and at the
-  /// end of the route to measure where it is.
+  /// Markov localization (docs/algorithms.md, "Markov localization") on the map's grid. The base
+  /// station is the place of the map with that name, without one the first pose fix that is added.
   kMarkov = 1,
 };
 
