@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "topogeo/support/cpu_time.hpp"
-#include "topogeo/voronoi/distance_error.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/voronoi/distance_error.hpp"
 #include "topogeo/voronoi/thesis_voronoi.hpp"
 
 #include "reproduce/chapter4.hpp"

@@ -69,6 +69,7 @@ void table_6_4(Report& report) {
   constexpr std::array<double, 4> kPercent{24.4, 2.5, 58.5, 14.6};
   constexpr int kSpins = 400000;
   std::vector<localization::Individual> population;
+  population.reserve(kFitness.size());
   for (const double fitness : kFitness) population.push_back({{}, fitness});
   localization::Roulette roulette;
   roulette.fill(population);
@@ -121,6 +122,7 @@ FigurePanel drive_panel(const std::vector<UncertainPose>& poses, const std::stri
   FigurePanel panel;
   panel.title = title;
   std::vector<Pose2> path;
+  path.reserve(poses.size());
   for (const UncertainPose& pose : poses) path.push_back(pose.T_a_b);
   add_path(panel, path, FigureColour::kBlack);
   return panel;

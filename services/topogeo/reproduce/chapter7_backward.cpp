@@ -209,6 +209,7 @@ void figure_7_27(Report& report) {
   std::vector<Pose2> forward = backward.before;
   const auto& path = backward.paths.front().T_first_pose;
   std::vector<Pose2> solved;
+  solved.reserve(path.size());
   for (const Pose2& T_first_pose : path) {
     solved.push_back(forward[backward.first] * T_first_pose);
   }

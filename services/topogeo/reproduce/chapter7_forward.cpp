@@ -241,6 +241,11 @@ void forward_position(Report& report) {
   if (P == 3) report.printed("maps in MS_3", as_number(overlaps.size()), 1);
   if (P == 11) {
     report.add(positions_table(drive, correction, k));
+    const Correction& farther = report.runs().correction("positions, 10 m", {.backward = false});
+    report.show(
+        "error of the corrected position with a range of 10 m",
+        pose_errors(farther.final_poses(), report.runs().drive("positions, 10 m").truth).last_m,
+        "m");
     report.show("odometry corrected by",
                 (drive.odometry[k].position_m() - correction.final_poses()[k].position_m()).norm(),
                 "m");

@@ -62,7 +62,8 @@ std::size_t published_end(const Drive& drive) {
     return (drive.T_world_first * pose.position_m() - end_m).norm();
   };
   const auto half = static_cast<std::ptrdiff_t>(drive.truth.size() / 2);
-  const auto at = std::ranges::min_element(drive.truth.begin() + half, drive.truth.end(), {}, away_m);
+  const auto at =
+      std::ranges::min_element(drive.truth.begin() + half, drive.truth.end(), {}, away_m);
   return static_cast<std::size_t>(at - drive.truth.begin());
 }
 

@@ -23,9 +23,10 @@ constexpr double kCell_m = 0.1;
 constexpr double kSonarReach_m = 5.0;
 constexpr double kExactReach_m = 2.5;
 constexpr double kRounding_m = 1e-6;
+constexpr double kLeastRoom_m = 0.15;  // half of the robot
 constexpr double kFarError_m = 0.30;
 constexpr double kFarErrorShare = 0.75;
-constexpr int kLastLooks = 3;              // at the goal
+constexpr int kLastLooks = 5;              // at the goal
 constexpr double kLongestAdvance_m = 0.5;  // so that the robot looks around often enough
 
 markov::ObstacleCells obstacles_of(const planning::HybridMap& map) {
@@ -60,17 +61,27 @@ class Wheels {
   Wheels(const world::World& scene, const Pose2& T_start, support::Random& random)
       : scene_(scene), T_(T_start), random_(random) {}
 
-  void execute(const markov::Move& move) {
+  /// What was executed: an advance ends before an obstacle.
+  markov::Move execute(markov::Move move) {
     if (move.kind == markov::MoveKind::kAdvance) {
-      T_ = T_ * Pose2{move.amount, 0.0, 0.0};
-      const long cells = std::lround(std::fabs(move.amount) / kCell_m);
-      for (long i = 0; i < cells; ++i) displace(transition_.advance);
+      const double sign = move.amount < 0.0 ? -1.0 : 1.0;
+      double done_m = 0.0;
+      while (std::fabs(move.amount) - done_m > kRounding_m) {
+        const double step_m = std::min(kCell_m, std::fabs(move.amount) - done_m);
+        const Pose2 T_next = T_ * Pose2{sign * step_m, 0.0, 0.0};
+        if (world::clearance_m(scene_, T_next.position_m()) < kLeastRoom_m) break;
+        T_ = T_next;
+        done_m += step_m;
+        if (step_m > 0.5 * kCell_m) displace(transition_.advance);
+      }
+      move.amount = sign * done_m;
     } else {
       const bool left = move.kind == markov::MoveKind::kTurnLeft;
       T_ = T_ * Pose2{0.0, 0.0, left ? move.amount : -move.amount};
       displace(left ? transition_.left : transition_.right);
     }
     hit_ |= world::clearance_m(scene_, T_.position_m()) < 0.5 * kCell_m;
+    return move;
   }
   [[nodiscard]] const Pose2& pose() const { return T_; }
   [[nodiscard]] bool hit() const { return hit_; }
@@ -81,10 +92,9 @@ class Wheels {
         random_.uniform() * std::accumulate(matrix.values.begin(), matrix.values.end(), 0.0);
     std::size_t i = 0;
     while (i + 1 < matrix.values.size() && left >= matrix.values[i]) left -= matrix.values[i++];
-    const int row = static_cast<int>(i) / matrix.columns;
-    const int column = static_cast<int>(i) % matrix.columns;
-    T_ =
-        T_ * Pose2{kCell_m * (column - matrix.columns / 2), kCell_m * (matrix.rows / 2 - row), 0.0};
+    const int ahead = static_cast<int>(i) % matrix.columns - matrix.columns / 2;
+    const int aside = matrix.rows / 2 - static_cast<int>(i) / matrix.columns;
+    T_ = T_ * Pose2{kCell_m * ahead, kCell_m * aside, 0.0};
   }
 
   const world::World& scene_;
@@ -104,6 +114,19 @@ markov::Move move_of(const planning::MotionPrimitive& primitive) {
       return {markov::MoveKind::kTurnRight, primitive.amount};
   }
   throw std::logic_error("unknown primitive");
+}
+
+/// Where a move takes a robot that does not err.
+Pose2 after(const Pose2& T, const markov::Move& move) {
+  switch (move.kind) {
+    case markov::MoveKind::kAdvance:
+      return T * Pose2{move.amount, 0.0, 0.0};
+    case markov::MoveKind::kTurnLeft:
+      return T * Pose2{0.0, 0.0, move.amount};
+    case markov::MoveKind::kTurnRight:
+      return T * Pose2{0.0, 0.0, -move.amount};
+  }
+  throw std::logic_error("unknown move");
 }
 
 /// Long advances in parts.
@@ -140,17 +163,15 @@ Task draw_drive(const planning::HybridMap& map, support::Random& random) {
 
 /// Compares what the sonars read with what they should, and goes back to the route when the robot
 /// is not where it should be. False when it is lost.
-bool relocalize(const world::World& scene, Wheels& wheels, markov::MarkovLocalizer& localizer,
-                support::Random& random) {
+bool relocalize(const world::World& scene, const Pose2& T_route, Wheels& wheels,
+                markov::MarkovLocalizer& localizer, support::Random& random) {
   if (!localizer.perceive(published_readings(scene, wheels.pose(), random)).possible) return false;
-  const Pose2 T_route = localizer.expected();
   const auto back = localizer.relocalization_moves(T_route);
   if (!back) return false;
   if (back->blocked || back->moves.empty()) return true;
   localizer.accept_estimate();
   for (const markov::Move& move : back->moves) {
-    wheels.execute(move);
-    if (!localizer.move(move).possible) return false;
+    if (!localizer.move(wheels.execute(move)).possible) return false;
   }
   return true;
 }
@@ -186,9 +207,11 @@ std::vector<float> published_readings(const world::World& scene, const Pose2& T_
         simulation::echo(scene, T_robot * mount.T_robot_sonar, mount.half_cone_rad, kSonarReach_m));
   }
   std::vector<float> readings = simulation::measure(echoes, {.range_max_m = kSonarReach_m}, random);
-  for (float& reading_m : readings) {
-    const bool far = reading_m > kExactReach_m && random.uniform() < kFarErrorShare;
-    if (far) reading_m += static_cast<float>(random.uniform(-kFarError_m, kFarError_m));
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const bool heard = echoes[i].range_m < kSonarReach_m;
+    const bool far = heard && echoes[i].range_m > kExactReach_m + kRounding_m &&
+                     random.uniform() < kFarErrorShare;
+    if (far) readings[i] += static_cast<float>(random.uniform(-kFarError_m, kFarError_m));
   }
   return readings;
 }
@@ -206,18 +229,20 @@ MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, bool son
       localizer.initialize(task.T_start, published_readings(floor.world, wheels.pose(), random))
           .possible;
   drive.truth.push_back(wheels.pose());
+  Pose2 T_route = task.T_start;
   for (const markov::Move& move :
        moves_of(planning::motion_primitives(task.route.points_m, task.T_start.theta_rad))) {
     if (!drive.localized) break;
-    wheels.execute(move);
+    const markov::Move done = wheels.execute(move);
+    T_route = after(T_route, move);
     if (sonars) {
-      drive.localized =
-          localizer.move(move).possible && relocalize(floor.world, wheels, localizer, random);
+      drive.localized = localizer.move(done).possible &&
+                        relocalize(floor.world, T_route, wheels, localizer, random);
     }
     drive.truth.push_back(wheels.pose());
   }
   for (int i = 0; sonars && drive.localized && i < kLastLooks; ++i) {
-    drive.localized = relocalize(floor.world, wheels, localizer, random);
+    drive.localized = relocalize(floor.world, T_route, wheels, localizer, random);
   }
   drive.hit = wheels.hit();
   drive.error_x_m = wheels.pose().x_m - task.goal_m.x();

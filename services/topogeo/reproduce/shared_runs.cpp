@@ -42,6 +42,7 @@ constexpr double kStopTurn_rad = 2.8;  // nearly a half turn on the spot is a st
 constexpr DriveSetup kSetups[] = {
     {"corridor", "experiment_1", false, 1.3, kWholePath_m, kAllStops, 10.0, 6.0},
     {"positions", "experiment_1", false, 2.42, 26.0, 11, 4.0, 6.0},
+    {"positions, 10 m", "experiment_1", false, 2.42, 26.0, 11, 10.0, 6.0},
     {"turn", "experiment_1", false, 0.66, kWholePath_m, 46, 4.0, 1.5},
     {"loop", "experiment_2", true, 1.5, kWholePath_m, kAllStops, 10.0, 6.0},
     {"door", "door_opens", false, 1.3, kWholePath_m, kAllStops, 10.0, 6.0},

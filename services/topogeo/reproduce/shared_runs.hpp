@@ -66,10 +66,11 @@ struct CorrectionKind {
 class SharedRuns {
  public:
   /// "corridor": experiment 1 with a stop each 1.3 m; "positions": its first 24 m with a stop each
-  /// 2.4 m; "turn": up to its turn with a stop each 0.66 m, of which there are 45; "loop":
-  /// experiment 2 with a stop each 1.5 m, and back to where it began; "apart": experiment 1 with
-  /// stops so far apart, and seen so little, that local maps do not overlap; "door": a corridor
-  /// with a door that opens. Throws std::invalid_argument for another name.
+  /// 2.4 m and 4 m of range, "positions, 10 m" with 10 m; "turn": up to its turn with a stop each
+  /// 0.66 m, of which there are 45; "loop": experiment 2 with a stop each 1.5 m, and back to where
+  /// it began; "apart": experiment 1 with stops so far apart, and seen so little, that local maps
+  /// do not overlap; "door": a corridor with a door that opens. Throws std::invalid_argument for
+  /// another name.
   const Drive& drive(const std::string& name);
   const Correction& correction(const std::string& drive, const CorrectionKind& kind = {});
 
