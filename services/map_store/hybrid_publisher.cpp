@@ -27,7 +27,8 @@ HybridPublisher::HybridPublisher(service::Service& service)
 void HybridPublisher::publish(const pipeline::HybridMapParts& parts, std::int64_t stamp_ns) {
   if (!pipeline::has_grid(parts)) return;
   try {
-    publish(pipeline::make_hybrid_map(parts, service_.setup().config.config.hybrid_map), stamp_ns);
+    publish(pipeline::make_hybrid_map(parts, service_.setup().config.config.hybrid_map, &rooms_),
+            stamp_ns);
   } catch (const std::invalid_argument& error) {
     service_.status().fault("hybrid map not made", error.what());
   }

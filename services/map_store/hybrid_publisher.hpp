@@ -31,6 +31,7 @@ class HybridPublisher {
 
  private:
   service::Service& service_;
+  planning::RoomNumbers rooms_;
   HybridUpdates updates_;
   HybridUpdates::Update rest_;
   messaging::Writer<msg::GridTile> tiles_;

@@ -32,7 +32,7 @@ class Reach {
  public:
   Reach(const world::World& world, std::uint64_t seed)
       : space_(planning::grid_of(pipeline::drawing_of(world))), zones_(zones_by_width(space_)) {
-    const planning::ZoneMap parts = planning::zones_between(space_, {});
+    const planning::ZoneMap parts = planning::drawn_zones(space_, {});
     const auto origin = space_.frame().cell_of(world.tour_m.front());
     if (!origin || !space_.passable(*origin)) throw std::runtime_error(world.name + ": tour");
     const planning::ZoneId part = parts.zone_of_cell[space_.frame().index(*origin)];
@@ -142,7 +142,7 @@ class GrowingMap {
     planning::FreeSpace space(planning::grid_from_scans(maps_, trajectory.stops));
     const std::vector<planning::Passage> passages = planning::passages_of(*map.graph);
     planning::ZoneMap zones = passages.empty() ? planning::zones_by_width(space)
-                                               : planning::zones_between(space, passages);
+                                               : planning::zones_of_rooms(space, passages);
     map.map = std::make_shared<const planning::HybridMap>(std::move(space), std::move(zones));
     for (const topomap::StopPose& stop : trajectory.stops) {
       map.T_map_stops.push_back(stop.T_map_robot);

@@ -66,7 +66,7 @@ class Seen {
 
 /// The cells that a robot gets to, the widest first, so that a tour stops in the middle of rooms.
 std::vector<Cell> reachable_cells(const planning::FreeSpace& space, const Cell& start) {
-  const planning::ZoneMap parts = planning::zones_between(space, {});
+  const planning::ZoneMap parts = planning::drawn_zones(space, {});
   const planning::ZoneId part = parts.zone_of_cell[space.frame().index(start)];
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < space.frame().size(); ++i) {
@@ -204,7 +204,7 @@ MappedFloor map_floor(std::string_view name, const pipeline::Config& config, Whe
   planning::FreeSpace space(
       planning::grid_from_scans(document.local_maps, document.trajectory.stops));
   planning::ZoneMap zones =
-      planning::zones_between(space, planning::passages_of(document.global_map));
+      planning::zones_of_rooms(space, planning::passages_of(document.global_map));
   floor.map = std::make_shared<const planning::HybridMap>(std::move(space), std::move(zones));
   floor.seconds = support::monotonic_s() - begin_s;
   return floor;

@@ -68,13 +68,14 @@ namespace {
 std::vector<planning::ZoneId> zones_around(const planning::HybridMap& map,
                                            const Eigen::Vector2d& from_m) {
   constexpr double kNear_m = 0.5;
-  constexpr double kPocket_m2 = 1.0;
   std::vector<planning::ZoneId> zones;
   const auto own = map.frame().cell_of(from_m);
   if (own && map.space().passable(*own)) {
     const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
     const planning::ZoneId zone = map.zone_of(*own);
-    if (static_cast<double>(map.zones().zones[zone].cells) * cell_m2 > kPocket_m2) return {zone};
+    if (static_cast<double>(map.zones().zones[zone].cells) * cell_m2 > planning::kPocket_m2) {
+      return {zone};
+    }
   }
   visit_disc(map.frame(), from_m, kNear_m, [&](const Cell& cell) {
     const planning::ZoneId zone = map.zone_of(cell);

@@ -29,8 +29,7 @@ planning::ZoneMap make_zones(const planning::FreeSpace& space, const HybridMapPa
   if (!rooms.empty()) return planning::drawn_zones(space, rooms, config);
   std::vector<planning::Passage> passages;
   if (parts.global_map != nullptr) passages = planning::passages_of(*parts.global_map);
-  if (!passages.empty()) return planning::zones_between(space, passages, config);
-  return planning::zones_by_width(space, config);
+  return planning::zones_of_rooms(space, passages, config);
 }
 
 /// The same cells in another place.
@@ -116,7 +115,8 @@ bool has_grid(const HybridMapParts& parts) {
   return false;
 }
 
-planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config) {
+planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config,
+                                    planning::RoomNumbers* rooms) {
   check(config);
   std::span<const planning::DrawnZone> drawn;
   if (parts.drawing != nullptr) drawn = parts.drawing->zones;
@@ -124,6 +124,11 @@ planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMap
   planning::ZoneMap zones = make_zones(space, parts, config.zones);
   std::vector<planning::Place> places;
   if (parts.drawing != nullptr) places = parts.drawing->places;
+  planning::RoomNumbers numbers;
+  const bool drawn_grid = parts.drawing != nullptr && parts.drawing->grid;
+  (rooms != nullptr ? *rooms : numbers)
+      .assign(space.frame(), drawn_grid ? std::span<const topomap::StopPose>{} : parts.stops, zones,
+              places);
   return {std::move(space), std::move(zones), std::move(places)};
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "cell_neighbours.hpp"
+
 namespace topogeo::planning {
 namespace {
 
@@ -99,12 +101,38 @@ FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config,
   for (std::size_t i = 0; i < squared_.size(); ++i) {
     passable_[i] = grid_.cells()[i] == CellState::kFree && squared_[i] > forbidden ? 1 : 0;
   }
+  keep_out_of_no_go(forbidden);
+  close_pockets();
+}
+
+void FreeSpace::keep_out_of_no_go(double forbidden) {
   if (rules_.no_go().empty()) return;
   OccupancyGrid no_go(frame());
   for (const Cell& cell : rules_.no_go()) no_go.set(cell, CellState::kOccupied);
   const std::vector<std::int32_t> to_zone = squared_distances(no_go, false);
   for (std::size_t i = 0; i < to_zone.size(); ++i) {
     if (to_zone[i] <= forbidden) passable_[i] = 0;
+  }
+}
+
+void FreeSpace::close_pockets() {
+  const double least_cells = config_.min_pocket_m2 / (frame().resolution_m * frame().resolution_m);
+  if (least_cells <= 1.0) return;
+  std::vector<bool> visited(passable_.size(), false);
+  std::vector<std::size_t> piece;
+  for (std::size_t first = 0; first < passable_.size(); ++first) {
+    if (visited[first] || passable_[first] == 0) continue;
+    piece.assign(1, first);
+    visited[first] = true;
+    for (std::size_t done = 0; done < piece.size(); ++done) {
+      visit_neighbours(frame(), piece[done], [&](std::size_t j) {
+        if (visited[j] || passable_[j] == 0) return;
+        visited[j] = true;
+        piece.push_back(j);
+      });
+    }
+    if (static_cast<double>(piece.size()) >= least_cells) continue;
+    for (const std::size_t i : piece) passable_[i] = 0;
   }
 }
 

@@ -29,10 +29,20 @@ void describe(InflationConfig& config, support::ConfigSchema& schema) {
 void describe(ZoneConfig& config, support::ConfigSchema& schema) {
   schema.add("hybrid_map.min_zone_m2", &config.min_area_m2, 0.0, 1000.0, "m2",
              "smaller zones that were not drawn join the neighbour with the longest border");
-  schema.add("hybrid_map.passage_half_width_m", &config.passage_half_width_m, 0.05, 5.0, "m",
-             "without drawn zones and passages of a map, zones meet where less is free");
-  schema.add("hybrid_map.cut_reach_m", &config.cut_reach_m, 0.0, 5.0, "m",
-             "how much further than the clearance of a passage the border across it may reach");
+  schema.add("hybrid_map.narrowing_ratio", &config.rooms.narrowing_ratio, 0.0, 1.0, "",
+             "rooms meet where less is free than this part of the narrower of the two");
+  schema.add("hybrid_map.door_ratio", &config.rooms.door_ratio, 0.0, 1.0, "",
+             "the same where the graph of the map has a door or a narrowing");
+  schema.add("hybrid_map.opening_ratio", &config.rooms.opening_ratio, 0.0, 1.0, "",
+             "and where less is free than this part of the wider one: a corridor ends at a hall");
+  schema.add("hybrid_map.nook_depth", &config.rooms.nook_depth, 0.0, 100.0, "",
+             "what is open by its width squared times this is part of the room that it opens to");
+  schema.add("hybrid_map.column_m", &config.rooms.column_m, 0.0, 100.0, "m",
+             "what stands free and is shorter parts no rooms");
+  schema.add("hybrid_map.furniture_from_m", &config.rooms.furniture_from_m, 0.0, 100.0, "m",
+             "nor does what stands free and is thicker than that by half of its area, as a rack");
+  schema.add("hybrid_map.furniture_to_m", &config.rooms.furniture_to_m, 0.0, 100.0, "m",
+             "and at most so thick: blocks of rooms are thicker");
 }
 
 void check(const ScanGridConfig& config) {

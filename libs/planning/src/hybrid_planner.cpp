@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/planning/motion_primitives.hpp"
+
 #include "closed_cells.hpp"
 #include "goal_target.hpp"
 #include "route_ends.hpp"

@@ -51,7 +51,6 @@ std::optional<Cell> start_of(const FreeSpace& space, const SearchWindow& window,
 
 // Whether next to nothing can be got to from an open cell: at most a square metre.
 bool shut_in(const SearchWindow& window, const Cell& from, double resolution_m) {
-  constexpr double kPocket_m2 = 1.0;
   const auto most = static_cast<std::size_t>(kPocket_m2 / (resolution_m * resolution_m));
   std::vector<Cell> found{from};
   for (std::size_t i = 0; i < found.size() && found.size() <= most; ++i) {

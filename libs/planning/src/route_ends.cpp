@@ -62,7 +62,6 @@ std::optional<Cell> EndFinder::start(const Eigen::Vector2d& point_m, double snap
 
 std::optional<Cell> EndFinder::start_apart(const HybridMap& map, const Eigen::Vector2d& point_m,
                                            double snap_m, const std::vector<ZoneId>& zones) const {
-  constexpr double kPocket_m2 = 1.0;
   const auto own = space_.frame().cell_of(point_m);
   if (!own) return std::nullopt;
   if (open(*own)) {

@@ -7,18 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cell_neighbours.hpp"
+
 namespace topogeo::planning {
 namespace {
-
-template <typename Visit>
-void visit_neighbours(const GridFrame& frame, std::size_t index, Visit&& visit) {
-  const Cell cell = frame.cell_at(index);
-  const auto width = static_cast<std::size_t>(frame.columns);
-  if (cell.column + 1 < frame.columns) visit(index + 1);
-  if (cell.row + 1 < frame.rows) visit(index + width);
-  if (cell.column > 0) visit(index - 1);
-  if (cell.row > 0) visit(index - width);
-}
 
 // Every cell gets the label of the nearest one that has a label, by steps to the four sides.
 void grow(const FreeSpace& space, ZoneLabels& labels) {

@@ -5,8 +5,10 @@
 #include <map>
 #include <stdexcept>
 
-#include "cell_line.hpp"
+#include "clearance_basins.hpp"
+#include "furniture.hpp"
 #include "polygon_cells.hpp"
+#include "room_merger.hpp"
 #include "zone_labels.hpp"
 
 namespace topogeo::planning {
@@ -31,25 +33,18 @@ Eigen::Vector2d point_ahead(std::span<const BranchPoint> points, bool from_back)
   return at(points.size() - 1);
 }
 
-// Cells of a line across the passage to both sides, up to the forbidden ones; none when a side
-// stays open.
-std::vector<std::size_t> cut(const FreeSpace& space, const Passage& passage,
-                             const ZoneConfig& config) {
-  const GridFrame& frame = space.frame();
-  const Eigen::Vector2d across(-passage.along.y(), passage.along.x());
-  const double reach_m = passage.clearance_m + config.cut_reach_m;
-  std::vector<std::size_t> cells;
-  for (const double side : {1.0, -1.0}) {
-    const Eigen::Vector2d end_m = passage.position_m + side * reach_m * across;
-    const bool open = visit_line(frame.in_cells(passage.position_m), frame.in_cells(end_m),
-                                 [&](const Cell& cell) {
-                                   if (!space.passable(cell)) return false;
-                                   cells.push_back(frame.index(cell));
-                                   return true;
-                                 });
-    if (open) return {};
+// Which saddles lie at a door or narrowing of the map.
+std::vector<bool> saddles_at_doors(const GridFrame& frame, const Basins& basins,
+                                   std::span<const Passage> passages) {
+  constexpr double kNear_m = 0.5;  // by so much doors of the graph and of the grid lie apart
+  std::vector<bool> at_door(basins.saddles.size(), false);
+  for (std::size_t k = 0; k < at_door.size(); ++k) {
+    const Eigen::Vector2d at_m = frame.center_m(frame.cell_at(basins.saddles[k].cell));
+    at_door[k] = std::any_of(passages.begin(), passages.end(), [&](const Passage& passage) {
+      return (passage.position_m - at_m).norm() <= kNear_m;
+    });
   }
-  return cells;
+  return at_door;
 }
 
 // Gives the passable cells in a polygon that belong to no zone yet to `index`.
@@ -89,15 +84,21 @@ std::vector<Passage> passages_of(const GlobalMap& map) {
   return passages;
 }
 
-ZoneMap zones_between(const FreeSpace& space, std::span<const Passage> passages,
-                      const ZoneConfig& config) {
+ZoneMap zones_of_rooms(const FreeSpace& space, std::span<const Passage> passages,
+                       const ZoneConfig& config) {
   check(config);
-  std::vector<std::uint32_t> owner = passable_owner(space);
-  for (const Passage& passage : passages) {
-    for (const std::size_t i : cut(space, passage, config)) owner[i] = kNoLabel;
+  const FreeSpace walls(without_furniture(space.grid(), config.rooms), {.forbidden_cells = 0.0});
+  const Basins basins = clearance_basins(walls);
+  const std::vector<std::uint32_t> room_of =
+      rooms_of(basins, saddles_at_doors(space.frame(), basins, passages), config.rooms,
+               space.frame().resolution_m);
+  std::vector<std::uint32_t> owner(space.frame().size(), kNoLabel);
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    const std::uint32_t basin = basins.of_cell[i];
+    if (space.passable(i) && basin != kNoBasin) owner[i] = room_of[basin];
   }
   ZoneLabels labels = no_labels(space);
-  label_parts(space, owner, {""}, labels);
+  label_parts(space, owner, std::vector<std::string>(basins.peak_m.size()), labels);
   return complete(space, std::move(labels), config);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "canvas.hpp"
 #include "page.hpp"
@@ -26,7 +27,29 @@ constexpr std::array<Colour, 6> kTints{{{0.90, 0.94, 1.00},
                                         {0.88, 0.97, 0.97},
                                         {0.99, 0.92, 0.94}}};
 
-Colour colour_of(const HybridMap& map, const Cell& cell) {
+// A tint for each zone that none of its neighbours has, as far as there are enough.
+std::vector<std::size_t> tints_of(const HybridMap& map) {
+  std::vector<std::size_t> tints(map.zones().zones.size());
+  for (std::size_t zone = 0; zone < tints.size(); ++zone) {
+    std::array<bool, kTints.size()> taken{};
+    for (const std::uint32_t id : map.nodes_of(static_cast<planning::ZoneId>(zone))) {
+      for (const planning::ZoneId other : map.nodes()[id].zones) {
+        if (other < zone) taken.at(tints[other]) = true;
+      }
+    }
+    const std::size_t wanted = zone % kTints.size();
+    tints[zone] = wanted;
+    for (std::size_t k = 0; k < kTints.size(); ++k) {
+      const std::size_t tint = (wanted + k) % kTints.size();
+      if (taken.at(tint)) continue;
+      tints[zone] = tint;
+      break;
+    }
+  }
+  return tints;
+}
+
+Colour colour_of(const HybridMap& map, const std::vector<std::size_t>& tints, const Cell& cell) {
   switch (map.space().grid().at(cell)) {
     case CellState::kOccupied:
       return kInk;
@@ -36,13 +59,15 @@ Colour colour_of(const HybridMap& map, const Cell& cell) {
       break;
   }
   const planning::ZoneId zone = map.zone_of(cell);
-  return zone == planning::kNoZone ? kForbidden : kTints.at(zone % kTints.size());
+  return zone == planning::kNoZone ? kForbidden : kTints.at(tints[zone]);
 }
 
 class RouteDrawing {
  public:
   RouteDrawing(const HybridMap& map, double width_px)
-      : map_(map), scale_((width_px - 2 * kRouteMargin_px) / map.frame().columns) {}
+      : map_(map),
+        tints_(tints_of(map)),
+        scale_((width_px - 2 * kRouteMargin_px) / map.frame().columns) {}
 
   [[nodiscard]] std::uint32_t height_px() const {
     return static_cast<std::uint32_t>(
@@ -100,9 +125,9 @@ class RouteDrawing {
     cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
     for (std::int32_t row = 0; row < frame.rows; ++row) {
       for (std::int32_t first = 0; first < frame.columns;) {
-        const Colour colour = colour_of(map_, {first, row});
+        const Colour colour = colour_of(map_, tints_, {first, row});
         std::int32_t end = first + 1;
-        while (end < frame.columns && same(colour, colour_of(map_, {end, row}))) ++end;
+        while (end < frame.columns && same(colour, colour_of(map_, tints_, {end, row}))) ++end;
         if (!same(colour, kWhite)) {
           set_colour(cr, colour);
           draw_run(cr, {first, row}, end - first);
@@ -164,7 +189,8 @@ class RouteDrawing {
   }
 
   const HybridMap& map_;
-  double scale_;  // pixels per cell
+  std::vector<std::size_t> tints_;  // by zone
+  double scale_;                    // pixels per cell
 };
 
 }  // namespace

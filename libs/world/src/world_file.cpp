@@ -120,7 +120,7 @@ class WorldParser {
  public:
   World parse(const YamlNode& root) {
     root.allow_keys({"name", "wall_thickness", "walls", "boxes", "columns", "segments", "tour",
-                     "people", "places"});
+                     "people", "places", "rooms"});
     if (const YamlNode name = root.at("name"); name.exists()) world_.name = name.text();
     const double thickness_m = number_or(root.at("wall_thickness"), 0.0, kThickestWall_m, "m", 0.0);
     for (const YamlNode& node : root.at("walls").items()) add_wall(node, thickness_m);
@@ -130,6 +130,7 @@ class WorldParser {
     for (const YamlNode& node : root.at("tour").items()) world_.tour_m.push_back(point_of(node));
     for (const YamlNode& node : root.at("people").items()) add_person(node);
     for (const YamlNode& node : root.at("places").items()) add_place(node);
+    for (const YamlNode& node : root.at("rooms").items()) add_room(node);
     if (world_.segments.empty() && world_.circles.empty() && world_.changing.empty()) {
       root.fail("walls, boxes, columns or segments", "none");
     }
@@ -175,6 +176,21 @@ class WorldParser {
       node.at("name").fail("a name that is not empty, each once");
     }
     world_.places.push_back({name, point_of(node.required("at"))});
+  }
+
+  void add_room(const YamlNode& node) {
+    node.allow_keys({"name", "polygon"});
+    Room room{node.required("name").text(), {}};
+    const auto has_name = [&](const Room& other) { return other.name == room.name; };
+    if (room.name.empty() || std::ranges::any_of(world_.rooms, has_name)) {
+      node.at("name").fail("a name that is not empty, each once");
+    }
+    for (const YamlNode& corner : node.required("polygon").items()) {
+      room.polygon_m.push_back(point_of(corner));
+    }
+    constexpr std::size_t kLeastCorners = 3;
+    if (room.polygon_m.size() < kLeastCorners) node.at("polygon").fail("three corners or more");
+    world_.rooms.push_back(std::move(room));
   }
 
   void add_box(const YamlNode& node) {

@@ -21,7 +21,7 @@ namespace {
 static_assert(msg::kNoZone == planning::kNoZone);
 
 planning::InflationConfig inflation_of(const msg::HybridMap& summary) {
-  return {summary.forbidden_cells(), summary.inflate_unknown()};
+  return {summary.forbidden_cells(), summary.inflate_unknown(), planning::kPocket_m2};
 }
 
 void check_zones_and_places(const msg::HybridMap& summary) {

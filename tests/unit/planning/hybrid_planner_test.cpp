@@ -73,7 +73,7 @@ TEST(HybridPlanner, FromADoorThatTheMapShowsTooNarrowItLeavesToEitherSide) {
                   inflation);
   ZoneConfig config;
   config.min_area_m2 = 0.0;
-  ZoneMap zones = zones_between(space, {}, config);
+  ZoneMap zones = drawn_zones(space, {}, config);
   ASSERT_THAT(zones.zones, SizeIs(2));
   const HybridMap map(std::move(space), std::move(zones));
   const HybridPlanner planner(map);

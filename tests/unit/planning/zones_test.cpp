@@ -60,7 +60,7 @@ void expect_sound(const FreeSpace& space, const ZoneMap& map) {
 TEST(Zones, AreCutApartAtAPassage) {
   const FreeSpace space = two_rooms();
   const std::vector<Passage> door{{{8.5, 4.5}, Eigen::Vector2d::UnitX(), 1.5}};
-  const ZoneMap map = zones_between(space, door, small_zones());
+  const ZoneMap map = zones_of_rooms(space, door, small_zones());
   ASSERT_EQ(map.zones.size(), 2U);
   EXPECT_NE(zone_at(space, map, {7, 4}), zone_at(space, map, {9, 4}));
   EXPECT_EQ(zone_at(space, map, {0, 0}), zone_at(space, map, {7, 8}));
@@ -70,7 +70,39 @@ TEST(Zones, AreCutApartAtAPassage) {
 TEST(Zones, AreNotCutWhereAPassageMeetsNoWalls) {
   const FreeSpace space = two_rooms();
   const std::vector<Passage> middle{{{4.5, 4.5}, Eigen::Vector2d::UnitX(), 1.5}};
-  EXPECT_EQ(zones_between(space, middle, small_zones()).zones.size(), 1U);
+  EXPECT_EQ(zones_of_rooms(space, middle, small_zones()).zone_of_cell,
+            zones_of_rooms(space, {}, small_zones()).zone_of_cell);
+}
+
+// Two rooms of 9 x 9 cells, the way between them 5 wide: 0.6 of their width.
+TEST(Zones, MeetAtAWideDoorWhereTheMapHasOne) {
+  InflationConfig config;
+  config.forbidden_cells = 0.0;
+  std::vector<std::string> lines(11, "#.........#.........#");
+  lines.front() = lines.back() = std::string(21, '#');
+  for (std::size_t i = 3; i < 8; ++i) lines[i][10] = '.';
+  const FreeSpace space(grid_of_text(lines), config);
+  EXPECT_EQ(zones_of_rooms(space, {}, small_zones()).zones.size(), 1U);
+  const std::vector<Passage> door{{{10.5, 5.5}, Eigen::Vector2d::UnitX(), 3.0}};
+  const ZoneMap map = zones_of_rooms(space, door, small_zones());
+  ASSERT_EQ(map.zones.size(), 2U);
+  EXPECT_NE(zone_at(space, map, {8, 5}), zone_at(space, map, {12, 5}));
+  expect_sound(space, map);
+}
+
+// A floor of 30 cells, and one of 5 behind a wall.
+TEST(Zones, PocketsThatNothingLeadsToAreNoFloor) {
+  InflationConfig config;
+  config.forbidden_cells = 0.0;
+  const std::vector<std::string> lines{"..........#..", "..........#..", "..........##."};
+  EXPECT_TRUE(FreeSpace(grid_of_text(lines), config).passable({11, 1}));
+  config.min_pocket_m2 = 5.0;
+  EXPECT_TRUE(FreeSpace(grid_of_text(lines), config).passable({11, 1}));
+  config.min_pocket_m2 = 5.5;
+  const FreeSpace space(grid_of_text(lines), config);
+  EXPECT_FALSE(space.passable({11, 1}));
+  EXPECT_FALSE(space.passable({12, 0}));
+  EXPECT_TRUE(space.passable({3, 1}));
 }
 
 TEST(Zones, AreFoundByTheWidthOfTheFloor) {
@@ -123,6 +155,7 @@ TEST(Zones, HangTogetherOnRandomFloors) {
     const BlockFloor floor = block_floor({}, seed);
     const FreeSpace space(floor.grid);
     expect_sound(space, zones_by_width(space));
+    expect_sound(space, zones_of_rooms(space));
     expect_sound(space, drawn_zones(space, floor.rooms));
   }
 }

@@ -12,7 +12,7 @@ inline constexpr std::int32_t kTileCells = 64;
 
 struct HybridMapConfig {
   planning::ScanGridConfig grid{.snap_cells = kTileCells};
-  planning::InflationConfig inflation;
+  planning::InflationConfig inflation{.min_pocket_m2 = planning::kPocket_m2};
   planning::ZoneConfig zones;
 };
 

@@ -2,8 +2,8 @@
 // (MACONDO, III.2; docs/algorithms.md, "Hybrid map and planner").
 //
 // The grid is the drawn one, the one that scans saw, or the two as planning::grid_of_both lays them
-// together. Zones are the drawn ones; without any they lie between the passages of the map that the
-// robot has made; without those they follow from the width of the free space.
+// together. Zones are the drawn ones; without any they are the rooms between the walls and the
+// doors of the map that the robot has made.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include "topogeo/pipeline/hybrid_map_config.hpp"
 #include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/planning/hybrid_map.hpp"
+#include "topogeo/planning/room_numbers.hpp"
 #include "topogeo/storage/map_document.hpp"
 
 namespace topogeo::pipeline {
@@ -33,8 +34,10 @@ bool has_grid(const HybridMapParts& parts);
 
 /// Throws std::invalid_argument saying why when there is nothing to make a grid of (no drawing and
 /// no scan points), the grid would be too large, or the configuration is out of range. The lower
-/// left corner of a grid of scans lies at a multiple of config.grid.snap_cells.
-planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config);
+/// left corner of a grid of scans lies at a multiple of config.grid.snap_cells. Rooms have the
+/// numbers and names that `rooms` remembers from the maps before, without it from 1 on.
+planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config,
+                                    planning::RoomNumbers* rooms = nullptr);
 
 /// A drawn floor: the grid and the places of a world file (.world.yaml, see world/world.hpp)
 /// with cells of `resolution_m`, or the grid of a YAML file (see planning/grid_file.hpp). The names

@@ -50,6 +50,9 @@ class FreeSpace {
   static constexpr std::int32_t kNoObstacle = std::numeric_limits<std::int32_t>::max();
 
  private:
+  void keep_out_of_no_go(double forbidden);
+  void close_pockets();
+
   OccupancyGrid grid_;
   InflationConfig config_;
   std::vector<std::int32_t> squared_;

@@ -24,13 +24,27 @@ struct ScanGridConfig {
 struct InflationConfig {
   double forbidden_cells = 3.0;
   bool inflate_unknown = false;  ///< unknown cells themselves are always forbidden
+  /// What hangs together and is smaller is forbidden, too; >= 0. Not in the configuration file: who
+  /// sends a hybrid map and who gets it use kPocket_m2.
+  double min_pocket_m2 = 0.0;
+};
+inline constexpr double kPocket_m2 = 1.0;
+
+/// How rooms are told from parts of rooms.
+struct RoomConfig {
+  double narrowing_ratio = 0.55;
+  double door_ratio = 0.7;
+  double opening_ratio = 0.45;
+  double nook_depth = 2.0;
+  double column_m = 2.0;
+  double furniture_from_m = 0.3;
+  double furniture_to_m = 2.5;
 };
 
 struct ZoneConfig {
   double min_area_m2 = 2.0;
   double passage_half_width_m = 0.6;  ///< for zones_by_width
-  double cut_reach_m = 0.6;  ///< for zones_between; a passage whose cut meets no forbidden cells is
-                             ///< no border
+  RoomConfig rooms;                   ///< for zones_of_rooms
 };
 
 // Together they declare the section `hybrid_map`.

@@ -1,6 +1,6 @@
 // Zones: parts of the free space that meet at borders (MACONDO, III.2; docs/algorithms.md, "Hybrid
-// map and planner"). They are drawn, found from the narrow passages of the topo-geometric map, or
-// found from the width of the free space alone.
+// map and planner"). They are drawn, the rooms that
+// are found between the walls, or found from the width of the free space alone.
 //
 // However they come about, every passable cell is in exactly one zone, and a zone hangs together:
 // a robot gets from each of its cells to each other without leaving it.
@@ -31,9 +31,10 @@ inline constexpr ZoneId kNoZone = 0xffff;  ///< of a cell that is in none
 
 struct Zone {
   ZoneId id = 0;     ///< index in ZoneMap::zones
-  std::string name;  ///< "" when it was not drawn
+  std::string name;  ///< "" when it was not drawn and RoomNumbers has not named it
   std::size_t cells = 0;
-  CellBox box;  ///< the smallest one around its cells
+  CellBox box;             ///< the smallest one around its cells
+  std::uint32_t room = 0;  ///< stays with the room from map to map (RoomNumbers); 0: not numbered
 };
 
 struct ZoneMap {
@@ -52,9 +53,13 @@ struct Passage {
 /// branch that was seen are left out.
 std::vector<Passage> passages_of(const topomap::GlobalMap& map);
 
-/// Cuts the free space across each passage; what still hangs together is a zone.
-ZoneMap zones_between(const FreeSpace& space, std::span<const Passage> passages,
-                      const ZoneConfig& config = {});
+/// Rooms, corridors and halls: basins of clearance between the walls (what stands free on the floor
+/// parts nothing), joined where the place between them is no door and no mouth of a corridor. At a
+/// passage of the map less of a narrowing is enough. After Bormann et al., "Room segmentation:
+/// survey, implementation, and analysis", ICRA 2016, distance transform and Voronoi methods; they
+/// part the floor by areas and lengths, here the widths on either side decide.
+ZoneMap zones_of_rooms(const FreeSpace& space, std::span<const Passage> passages = {},
+                       const ZoneConfig& config = {});
 
 /// Zones for maps without a graph: the wide parts of the free space, each with the half of the
 /// narrow passages that is nearer to it.

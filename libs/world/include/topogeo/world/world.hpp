@@ -10,6 +10,9 @@
 //   segments: [[0, 0, 1, 1]]      # single lines: x1, y1, x2, y2
 //   tour: [[1, 1], [6, 1]]        # points of the drive, in order
 //   places: [{name: room A, at: [1, 1]}]         # named places; each name once
+//   rooms: [{name: hall, polygon: [[0, 0], [4, 0], [4, 3]]}]   # what people call a room here, to
+//                                 # compare with; each name once, of those that overlap the first
+//                                 # counts
 // What changes while the robot drives:
 //   doors: [{at: 2.5, width: 0.9, open: [[0, 12.5], [40, 60]]}]   # shut except in these intervals
 //                                 # of the driven distance; without `open` it always stands open
@@ -92,6 +95,12 @@ struct NamedPlace {
   Eigen::Vector2d position_m;
 };
 
+/// A room as people would draw it.
+struct Room {
+  std::string name;
+  std::vector<Eigen::Vector2d> polygon_m;  ///< corners in order, at least three
+};
+
 struct World {
   std::string name{};
   std::vector<Segment> segments{};
@@ -100,6 +109,7 @@ struct World {
   std::vector<ChangingPart> changing{};
   std::vector<Person> people{};
   std::vector<NamedPlace> places{};
+  std::vector<Room> rooms{};
 };
 
 /// Reads a world file. Throws std::runtime_error naming file, line, key and what was expected: an

@@ -1,0 +1,106 @@
+#include "furniture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "topogeo/planning/free_space.hpp"
+
+namespace topogeo::planning {
+namespace {
+
+/// Obstacles that hang together over sides and corners.
+struct Block {
+  std::vector<std::size_t> cells;
+  bool at_edge = false;  ///< reaches the edge of the grid
+};
+
+Block take_block(const OccupancyGrid& walls, std::size_t first, std::vector<bool>& taken) {
+  const GridFrame& frame = walls.frame();
+  Block block{{first}};
+  taken[first] = true;
+  for (std::size_t done = 0; done < block.cells.size(); ++done) {
+    const Cell at = frame.cell_at(block.cells[done]);
+    for (std::int32_t row = at.row - 1; row <= at.row + 1; ++row) {
+      for (std::int32_t column = at.column - 1; column <= at.column + 1; ++column) {
+        if (!frame.contains({column, row})) {
+          block.at_edge = true;
+          continue;
+        }
+        const std::size_t i = frame.index({column, row});
+        if (taken[i] || walls.cells()[i] != CellState::kOccupied) continue;
+        taken[i] = true;
+        block.cells.push_back(i);
+      }
+    }
+  }
+  return block;
+}
+
+/// Distances to the nearest free cell, for what is occupied.
+FreeSpace depths(const OccupancyGrid& walls) {
+  OccupancyGrid turned(walls.frame());
+  for (std::size_t i = 0; i < walls.cells().size(); ++i) {
+    const bool free = walls.cells()[i] == CellState::kFree;
+    turned.set(walls.frame().cell_at(i), free ? CellState::kOccupied : CellState::kFree);
+  }
+  return FreeSpace(std::move(turned), {.forbidden_cells = 0.0, .min_pocket_m2 = 0.0});
+}
+
+/// The cell farthest from one, and how far in cells.
+std::pair<Cell, double> farthest_from(const GridFrame& frame, const Block& block,
+                                      const Cell& from) {
+  std::pair<Cell, double> farthest{from, 0.0};
+  for (const std::size_t i : block.cells) {
+    const Cell cell = frame.cell_at(i);
+    const double away = std::hypot(cell.column - from.column, cell.row - from.row);
+    if (away > farthest.second) farthest = {cell, away};
+  }
+  return farthest;
+}
+
+/// The length of what is longer than it is wide, whichever way it is turned.
+double length_cells(const GridFrame& frame, const Block& block) {
+  const Cell end = farthest_from(frame, block, frame.cell_at(block.cells.front())).first;
+  return farthest_from(frame, block, end).second + 1.0;
+}
+
+bool is_furniture(const Block& block, const FreeSpace& depth, const RoomConfig& config) {
+  if (block.at_edge) return false;
+  const double cell_m = depth.frame().resolution_m;
+  const double length_m = cell_m * length_cells(depth.frame(), block);
+  if (length_m <= config.column_m) return true;
+  std::int32_t deepest = 0;
+  std::size_t inner = 0;
+  const double from_cells = 0.5 * config.furniture_from_m / cell_m;
+  for (const std::size_t i : block.cells) {
+    deepest = std::max(deepest, depth.squared_cells(i));
+    if (depth.squared_cells(i) > from_cells * from_cells) ++inner;
+  }
+  const double thick_m = 2.0 * cell_m * std::sqrt(static_cast<double>(deepest));
+  return 2 * inner >= block.cells.size() && thick_m <= config.furniture_to_m;
+}
+
+}  // namespace
+
+OccupancyGrid without_furniture(const OccupancyGrid& grid, const RoomConfig& config) {
+  OccupancyGrid walls(grid.frame());
+  for (std::size_t i = 0; i < grid.cells().size(); ++i) {
+    const bool free = grid.cells()[i] == CellState::kFree;
+    walls.set(grid.frame().cell_at(i), free ? CellState::kFree : CellState::kOccupied);
+  }
+  const FreeSpace depth = depths(walls);
+  std::vector<bool> taken(grid.frame().size(), false);
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (taken[i] || walls.cells()[i] != CellState::kOccupied) continue;
+    const Block block = take_block(walls, i, taken);
+    if (!is_furniture(block, depth, config)) continue;
+    for (const std::size_t cell : block.cells)
+      walls.set(grid.frame().cell_at(cell), CellState::kFree);
+  }
+  return walls;
+}
+
+}  // namespace topogeo::planning

@@ -1,0 +1,112 @@
+// Whether the rooms that are found are those that people draw.
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/pipeline/hybrid_map_config.hpp"
+#include "topogeo/pipeline/world_grid.hpp"
+#include "topogeo/planning/zones.hpp"
+#include "topogeo/world/world.hpp"
+
+#include "../planning/floors.hpp"
+
+namespace topogeo::pipeline {
+namespace {
+
+using planning::DrawnZone;
+using planning::FreeSpace;
+using planning::ZoneId;
+using planning::ZoneMap;
+
+constexpr double kGoodOverlap = 0.95;
+
+/// Intersection over union of the cells of each drawn room and of the room found that overlaps it
+/// most; every room found counts once.
+std::map<std::string, double> overlaps(const FreeSpace& space, const ZoneMap& found,
+                                       const std::vector<DrawnZone>& drawn) {
+  planning::ZoneConfig config;
+  config.min_area_m2 = 0.0;
+  const ZoneMap truth = planning::drawn_zones(space, drawn, config);
+  std::map<std::pair<ZoneId, ZoneId>, double> common;
+  for (std::size_t i = 0; i < truth.zone_of_cell.size(); ++i) {
+    if (space.passable(i)) common[{truth.zone_of_cell[i], found.zone_of_cell[i]}] += 1.0;
+  }
+  std::map<std::string, double> best;
+  for (const planning::Zone& room : truth.zones) best[room.name] = 0.0;
+  for (const auto& [pair, cells] : common) {
+    const auto drawn_cells = static_cast<double>(truth.zones[pair.first].cells);
+    const auto found_cells = static_cast<double>(found.zones[pair.second].cells);
+    double& overlap = best[truth.zones[pair.first].name];
+    overlap = std::max(overlap, cells / (drawn_cells + found_cells - cells));
+  }
+  return best;
+}
+
+void expect_rooms(const FreeSpace& space, const std::vector<DrawnZone>& drawn) {
+  const ZoneMap found = planning::zones_of_rooms(space);
+  for (const auto& [name, overlap] : overlaps(space, found, drawn)) {
+    EXPECT_GE(overlap, kGoodOverlap) << "'" << name << "'";
+  }
+  EXPECT_EQ(found.zones.size(), drawn.size());
+}
+
+/// A world file, turned, as a floor with its rooms.
+void expect_rooms_of_world(const std::string& name, double turned_rad) {
+  SCOPED_TRACE(name + " turned by " + std::to_string(turned_rad));
+  const world::World world =
+      world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / (name + ".world.yaml"));
+  const geometry::Pose2 turn{0.0, 0.0, turned_rad};
+  planning::Drawing drawing = drawing_of(world);
+  for (auto& line : drawing.lines) line = {turn * line.a_m, turn * line.b_m};
+  for (auto& disc : drawing.discs) disc.center_m = turn * disc.center_m;
+  for (auto& inside_m : drawing.inside_m) inside_m = turn * inside_m;
+  std::vector<DrawnZone> rooms;
+  for (const world::Room& room : world.rooms) {
+    DrawnZone& zone = rooms.emplace_back(DrawnZone{room.name, room.polygon_m});
+    for (auto& corner_m : zone.polygon_m) corner_m = turn * corner_m;
+  }
+  ASSERT_FALSE(rooms.empty());
+  const HybridMapConfig config;
+  expect_rooms(FreeSpace(planning::grid_of(drawing, 0.1), config.inflation), rooms);
+}
+
+TEST(RoomsFound, AreThoseOfTheOfficeFloor) {
+  for (const double turned_rad : {0.0, 0.3, 0.5, 0.8, 1.2, 2.0, 2.9})
+    expect_rooms_of_world("floor", turned_rad);
+}
+
+// Racks that stand free make no rooms of the aisles between them.
+TEST(RoomsFound, AreThoseOfTheWarehouse) {
+  for (const double turned_rad : {0.0, 0.3, 0.5, 0.8, 1.2, 2.0, 2.9})
+    expect_rooms_of_world("hall", turned_rad);
+}
+
+// Rooms with furniture whose doors are known.
+TEST(RoomsFound, AreThoseOfRandomFloors) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const planning::BlockFloor floor = planning::block_floor({}, seed);
+    expect_rooms(FreeSpace(floor.grid, HybridMapConfig{}.inflation), floor.rooms);
+  }
+}
+
+TEST(RoomsFound, AreThoseOfRandomFloorsOfOtherSizes) {
+  for (const planning::BlockPlan& plan :
+       {planning::BlockPlan{3, 4, 70, 60, 12, 4}, planning::BlockPlan{6, 2, 36, 44, 9, 1},
+        planning::BlockPlan{2, 2, 120, 90, 16, 8}}) {
+    for (std::uint64_t seed = 100; seed < 110; ++seed) {
+      SCOPED_TRACE(std::to_string(plan.room_width) + ", seed " + std::to_string(seed));
+      const planning::BlockFloor floor = planning::block_floor(plan, seed);
+      expect_rooms(FreeSpace(floor.grid, HybridMapConfig{}.inflation), floor.rooms);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::pipeline
