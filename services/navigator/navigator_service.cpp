@@ -105,6 +105,11 @@ void NavigatorService::listen_to_sensors() {
     if (!is_newer(Source::kBase, base.stamp_ns())) return;
     navigator_.add(service::base_from_msg(base));
   });
+  service_.subscribe<msg::LaserStatus>([this](const msg::LaserStatus& laser) {
+    if (!is_newer(Source::kLaser, laser.stamp_ns())) return;
+    navigator_.add(
+        navigation::LaserFields{laser.stamp_ns(), laser.warning_field(), laser.protective_field()});
+  });
 }
 
 bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {

@@ -36,7 +36,7 @@ class NavigatorService {
   ~NavigatorService();
 
  private:
-  enum class Source : std::uint8_t { kPose, kOdometry, kScan, kSonar, kBase };
+  enum class Source : std::uint8_t { kPose, kOdometry, kScan, kSonar, kBase, kLaser };
   static constexpr std::size_t kSources = 5;
 
   void listen_to_orders();

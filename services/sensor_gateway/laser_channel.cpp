@@ -90,7 +90,9 @@ void LaserChannel::after_driver(std::int64_t now_ns) {
     on_scans_(now_ns);
     memory_.store(driver_.status().line);
   }
-  if (state(driver_.status()) != published_state_) publish_status();
+  const bool fields_changed =
+      warning_field_ != published_warning_ || protective_field_ != published_protective_;
+  if (state(driver_.status()) != published_state_ || fields_changed) publish_status();
 }
 
 bool LaserChannel::running() const {
@@ -135,6 +137,8 @@ void LaserChannel::publish_status() {
   }
   const msg::LaserState state_now = state(status);
   published_state_ = state_now;
+  published_warning_ = warning_field_;
+  published_protective_ = protective_field_;
   msg::LaserStatus message;
   messaging::set_header(message, service_.robot_id(), time_.stamp_ns(now_ns), statuses_sent_);
   message.state(state_now);

@@ -60,6 +60,8 @@ class LaserChannel {
   std::uint32_t dazzled_ = 0;
   bool warning_field_ = false;
   bool protective_field_ = false;
+  bool published_warning_ = false;
+  bool published_protective_ = false;
   std::deque<std::int64_t> recent_ns_;  // when the last scans came
   std::uint64_t timer_ = 0;
   SerialLine line_;

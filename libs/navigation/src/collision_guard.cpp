@@ -50,6 +50,10 @@ void CollisionGuard::add(const SonarRound& sonar) {
   compare_echoes();
 }
 
+void CollisionGuard::add(const LaserFields& fields) {
+  if (!fields_ || fields.stamp_ns > fields_->stamp_ns) fields_ = fields;
+}
+
 // Notes since when the sonars have no echo although the laser sees something in their reach.
 void CollisionGuard::watch_silence(const SonarRound& sonar) {
   const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), has_echo);
@@ -168,6 +172,27 @@ double CollisionGuard::speed_for(double free_m) const {
 }
 
 GuardVerdict CollisionGuard::judge(const geometry::Velocity& wanted, std::int64_t now_ns) const {
+  GuardVerdict verdict = judge_by_distances(wanted, now_ns);
+  if (config_.laser_fields && fields_) obey_fields(verdict);
+  return verdict;
+}
+
+void CollisionGuard::obey_fields(GuardVerdict& verdict) const {
+  const double ahead = verdict.allowed.linear_m_per_s;
+  if (ahead < kStanding_m_s || !(fields_->warning || fields_->protective)) return;
+  const double most = fields_->protective ? 0.0 : config_.warning_field_m_per_s;
+  if (ahead <= most) return;
+  verdict.limited = true;
+  verdict.allowed.linear_m_per_s *= most / ahead;
+  verdict.allowed.angular_rad_per_s *= most / ahead;
+  verdict.message = "something is in the warning field of the laser";
+  if (!fields_->protective) return;
+  verdict.reason = HaltReason::kObstacle;
+  verdict.message = "something is in the protective field of the laser";
+}
+
+GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted,
+                                                std::int64_t now_ns) const {
   GuardVerdict verdict;
   verdict.reason = health(now_ns, &verdict.message);
   if (verdict.reason != HaltReason::kNone) {

@@ -26,6 +26,11 @@ void describe(GuardConfig& config, support::ConfigSchema& schema) {
              "sonars measure no less");
   schema.add("guard.silent_s", &config.silent_s, 0.1, 60.0, "s",
              "so long without an echo where there must be one, and the sonars count as silent");
+  schema.add("guard.laser_fields", &config.laser_fields,
+             "obeys the fields that are set up in the laser: no motion ahead with something in the "
+             "protective field");
+  schema.add("guard.warning_field_m_per_s", &config.warning_field_m_per_s, 0.0, 10.0, "m/s",
+             "largest speed ahead with something in the warning field of the laser");
 }
 
 void check(const GuardConfig& config) {

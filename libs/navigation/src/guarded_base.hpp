@@ -22,6 +22,7 @@ class GuardedBase {
   void add(const OdometrySample& odometry) { guard_.add(odometry); }
   void add(const ScanPoints& scan) { guard_.add(scan); }
   void add(const SonarRound& sonar) { guard_.add(sonar); }
+  void add(const LaserFields& fields) { guard_.add(fields); }
   void add(const BaseCondition& base) { base_ = base; }
 
   /// Why no motion at all is possible, with one line for people; kNone when it is.

@@ -94,6 +94,10 @@ void Navigator::add(const SonarRound& sonar) {
   state_->poses.add(sonar);
 }
 
+void Navigator::add(const LaserFields& fields) {
+  state_->base.add(fields);
+}
+
 void Navigator::add(const BaseCondition& base) {
   state_->base.add(base);
 }

@@ -44,6 +44,7 @@ PlsEmulator::PlsEmulator(PlsEmulatorSettings settings, Ranges ranges, std::int64
     throw std::invalid_argument(
         "an emulated laser needs a mirror period and a rate above 0, and ranges to measure");
   }
+  set_fields(settings_.protective_field_m, settings_.warning_field_m);
 }
 
 void PlsEmulator::receive(std::span<const std::uint8_t> bytes, const devices::LineSettings& host,
@@ -268,12 +269,37 @@ void PlsEmulator::measure(std::int64_t now_ns) {
   measure_at_ns_ = std::max({turn_ns, free_ns - settings_.sweep_to_send_ns, now_ns + 1});
 }
 
+void PlsEmulator::set_fields(double protective_m, double warning_m) {
+  constexpr double kFarthestProtective_m = 4.0;
+  constexpr double kFarthestWarning_m = 15.0;
+  if (!(protective_m >= 0.0 && protective_m <= kFarthestProtective_m && warning_m >= 0.0 &&
+        warning_m <= kFarthestWarning_m)) {
+    throw std::invalid_argument(
+        "an emulated laser has a protective field of 0 to 4 m and a warning field of 0 to 15 m");
+  }
+  settings_.protective_field_m = protective_m;
+  settings_.warning_field_m = warning_m;
+}
+
+std::uint16_t PlsEmulator::field_bits(float range_m) const {
+  constexpr std::uint16_t kWarning = 1U << 14;
+  constexpr std::uint16_t kProtective = 1U << 15;
+  if (!(range_m > 0.0F)) return 0;
+  const auto range = static_cast<double>(range_m);
+  std::uint16_t bits = 0;
+  if (range <= settings_.warning_field_m) bits |= kWarning;
+  if (range <= settings_.protective_field_m) bits |= kProtective;
+  return bits;
+}
+
 std::vector<std::uint8_t> PlsEmulator::scan_data(std::int64_t now_ns) {
   if (!last_scan_.empty() && strikes(PlsFault::kStuckScan)) return last_scan_;
   const std::vector<float> ranges_m = ranges_(now_ns);
   std::vector<std::uint8_t> data;
   put_word(data, ranges_m.size());
-  for (const float range_m : ranges_m) put_word(data, code_of(range_m, settings_.no_return_code));
+  for (const float range_m : ranges_m) {
+    put_word(data, code_of(range_m, settings_.no_return_code) | field_bits(range_m));
+  }
   last_scan_ = data;
   return data;
 }

@@ -149,6 +149,34 @@ TEST(CollisionGuard, SonarsWithNothingNearMayBeSilent) {
   EXPECT_EQ(guard.health(kNow_ns + kSecond_ns), HaltReason::kNone);
 }
 
+// Nothing is near by the scan: the fields alone decide.
+TEST(CollisionGuard, ObeysTheFieldsOfTheLaser) {
+  GuardConfig config;
+  CollisionGuard guard = guard_seeing({{0.0, 3.0}});
+  guard.add(LaserFields{kNow_ns, true, false});
+  const auto slowed = guard.judge({0.8, 0.4}, kNow_ns);
+  EXPECT_DOUBLE_EQ(slowed.allowed.linear_m_per_s, config.warning_field_m_per_s);
+  EXPECT_DOUBLE_EQ(slowed.allowed.angular_rad_per_s, 0.1);  // on the same arc
+  EXPECT_TRUE(slowed.limited);
+  EXPECT_EQ(slowed.reason, HaltReason::kNone);
+  guard.add(LaserFields{kNow_ns + 1, true, true});
+  EXPECT_EQ(guard.judge({0.1, 0.0}, kNow_ns).allowed, geometry::Velocity{});
+  EXPECT_EQ(guard.judge({0.1, 0.0}, kNow_ns).reason, HaltReason::kObstacle);
+  EXPECT_EQ(guard.judge({0.0, 0.7}, kNow_ns).allowed, (geometry::Velocity{0.0, 0.7}));
+  guard.add(LaserFields{kNow_ns, false, false});  // older than the one before
+  EXPECT_EQ(guard.judge({0.1, 0.0}, kNow_ns).allowed, geometry::Velocity{});
+  guard.add(LaserFields{kNow_ns + 2, false, false});
+  EXPECT_EQ(guard.judge({0.8, 0.4}, kNow_ns).allowed, (geometry::Velocity{0.8, 0.4}));
+}
+
+TEST(CollisionGuard, LeavesTheFieldsOfTheLaserAloneWhenToldTo) {
+  GuardConfig config;
+  config.laser_fields = false;
+  CollisionGuard guard = guard_seeing({{0.0, 3.0}}, config);
+  guard.add(LaserFields{kNow_ns, true, true});
+  EXPECT_EQ(guard.judge({0.5, 0.0}, kNow_ns).allowed, (geometry::Velocity{0.5, 0.0}));
+}
+
 TEST(CollisionGuard, SettingsOutOfRangeAreRefused) {
   GuardConfig config;
   config.radius_m = 0.0;

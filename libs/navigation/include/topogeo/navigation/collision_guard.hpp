@@ -7,6 +7,9 @@
 // on the one that the robot is on. From the free distance follows the speed from which it still
 // stops in time. Noise of the laser is smoothed over neighbouring beams by no more than the side
 // margin, so a measured point itself is never touched.
+//
+// A second line are the fields that the laser itself watches, which know nothing of odometry, body
+// or mounting (Thesis, appendix B.1).
 #pragma once
 
 #include <cstdint>
@@ -43,6 +46,7 @@ class CollisionGuard {
   void add(const OdometrySample& odometry);
   void add(const ScanPoints& scan);
   void add(const SonarRound& sonar);
+  void add(const LaserFields& fields);
 
   /// What of a wanted velocity is safe now. Turning on the spot of a round body always is, as long
   /// as the sensors work. Backwards it goes only where fresh sonars point.
@@ -58,6 +62,10 @@ class CollisionGuard {
   [[nodiscard]] double speed_for(double free_m) const;
   /// Whether the scan has a point in the sonar's cone, at most so far from it.
   [[nodiscard]] bool laser_sees(const SonarReading& reading, double up_to_m) const;
+  /// What the fields of the laser leave of a verdict.
+  void obey_fields(GuardVerdict& verdict) const;
+  [[nodiscard]] GuardVerdict judge_by_distances(const geometry::Velocity& wanted,
+                                                std::int64_t now_ns) const;
   void compare_echoes();
   void watch_silence(const SonarRound& sonar);
 
@@ -73,6 +81,7 @@ class CollisionGuard {
   std::vector<Echo> echoes_;  ///< of the last round
   std::optional<geometry::Pose2> T_odom_sonar_round_;
   std::optional<std::int64_t> silent_since_ns_;
+  std::optional<LaserFields> fields_;
 };
 
 }  // namespace topogeo::navigation

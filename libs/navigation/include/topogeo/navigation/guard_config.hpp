@@ -19,6 +19,8 @@ struct GuardConfig {
   double sonar_reach_m = 1.5;
   double sonar_least_m = 0.16;
   double silent_s = 1.0;
+  bool laser_fields = true;
+  double warning_field_m_per_s = 0.2;
 };
 
 /// Declares the section `guard`.

@@ -50,6 +50,7 @@ class Navigator {
   void add(const OdometrySample& odometry);
   void add(const ScanPoints& scan);
   void add(const SonarRound& sonar);
+  void add(const LaserFields& fields);
   void add(const BaseCondition& base);
 
   /// What the base shall do until the next call. `now_ns` never goes back.

@@ -55,6 +55,14 @@ struct SonarRound {
   std::vector<SonarReading> readings;
 };
 
+/// Whether something is in the fields that the laser itself watches (SICK PLS: OSSD outputs and
+/// WEAK SIGNAL). What is in the protective field is in the warning field, too.
+struct LaserFields {
+  std::int64_t stamp_ns = 0;
+  bool warning = false;
+  bool protective = false;
+};
+
 struct BaseCondition {
   std::int64_t stamp_ns = 0;
   bool commands_taken = true;

@@ -34,6 +34,10 @@ struct PlsEmulatorSettings {
   std::int64_t mirror_period_ns = 40'000'000;
   std::int64_t sweep_to_send_ns = 10'000'000;  ///< from the middle of the sweep to the first byte
   std::uint16_t no_return_code = 8191;
+  /// Radii of the half discs that the sensor watches; 0: none is set up. A PLS knows up to 4 m of a
+  /// protective field and about 15 m of a warning field (Thesis, B.3 and table B.3).
+  double protective_field_m = 0.0;
+  double warning_field_m = 0.0;
   std::uint64_t seed = 1;  ///< of where faults strike
 };
 
@@ -73,6 +77,8 @@ class PlsEmulator final : public SerialDevice {
   void set_up(std::uint32_t baud, bool streaming, std::int64_t now_ns);
   /// The byte at the end of every telegram: pollution and errors, for example.
   void set_status(std::uint8_t status) { status_ = status; }
+  /// Sets up other fields; see PlsEmulatorSettings. Throws std::invalid_argument out of range.
+  void set_fields(double protective_m, double warning_m);
 
   // Faults.
   /// Strikes the next `count` telegrams, scans or changes of the rate that the fault can strike.
@@ -115,6 +121,7 @@ class PlsEmulator final : public SerialDevice {
   void finish_start_up(std::int64_t now_ns);
   void measure(std::int64_t now_ns);
   [[nodiscard]] std::vector<std::uint8_t> scan_data(std::int64_t now_ns);
+  [[nodiscard]] std::uint16_t field_bits(float range_m) const;
   std::int64_t send_telegram(std::vector<std::uint8_t> telegram, std::int64_t start_ns);
   [[nodiscard]] bool strikes(PlsFault fault);
 
