@@ -1,0 +1,69 @@
+// The ultrasonic, infrared and tactile sensors in the panels of a B21's body and base (Thesis, A.3,
+// A.5.3, table A.1), behind one interface.
+//
+// Documented are counts, places (all around, body or base), ranges and opening angles. Seven sensor
+// processors (MSP) read them and share a fast asynchronous bus with the computer of the robot. No
+// source has the telegrams of that bus, nor the order in which sensors are numbered, so that
+// MspBodySensors reads nothing and says so; simulation::SimulatedBodySensors measures in a world.
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/devices/sonar_ring.hpp"
+
+namespace topogeo::devices {
+
+/// Range sensors of one kind, counter-clockwise.
+struct RangeRing {
+  std::vector<SonarMount> mounts;
+  double range_min_m = 0.0;
+  double range_max_m = 0.0;
+};
+
+/// 24 in the body: 0.1 to 8 m, 15 degrees from edge to edge (A.5.3.1).
+RangeRing b21_sonar_ring();
+/// 24 in the body: 0.04 to 0.5 m, 15 degrees (A.5.3.2). The 32 of the base look at the same height
+/// and farther down, and have the same values.
+RangeRing b21_body_infrared();
+RangeRing b21_base_infrared();
+
+inline constexpr std::size_t kB21BodyPanels = 24;
+inline constexpr std::size_t kB21BasePanels = 32;
+
+struct BodyReadings {
+  std::int64_t stamp_ns = 0;
+  std::vector<float> sonar_m;  ///< by mount; scan::Scan::kNoReturn without an echo
+  /// The same. What comes back depends on colour and texture, so a range is rough, and nothing is
+  /// no proof that nothing is there.
+  std::vector<float> body_infrared_m;
+  std::vector<float> base_infrared_m;
+  std::bitset<kB21BodyPanels> body_pressed;  ///< tactile panels, counter-clockwise from ahead
+  std::bitset<kB21BasePanels> base_pressed;
+};
+
+class BodySensors {
+ public:
+  BodySensors() = default;
+  BodySensors(const BodySensors&) = delete;
+  BodySensors& operator=(const BodySensors&) = delete;
+  virtual ~BodySensors() = default;
+
+  /// The readings of now, nanoseconds of any steady clock; nothing when there are none: see fault.
+  virtual std::optional<BodyReadings> read(std::int64_t now_ns) = 0;
+  /// For people, why there are no readings; empty when there are.
+  [[nodiscard]] virtual std::string fault() const = 0;
+};
+
+/// The place of the sensors on a real B21. It reads nothing: see above.
+class MspBodySensors final : public BodySensors {
+ public:
+  std::optional<BodyReadings> read(std::int64_t now_ns) override;
+  [[nodiscard]] std::string fault() const override;
+};
+
+}  // namespace topogeo::devices
