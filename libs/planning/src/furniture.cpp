@@ -67,6 +67,42 @@ double length_cells(const GridFrame& frame, const Block& block) {
   return farthest_from(frame, block, end).second + 1.0;
 }
 
+/// Twice the area of the triangle; > 0 where the three turn left.
+double turn(const Cell& a, const Cell& b, const Cell& c) {
+  return static_cast<double>(b.column - a.column) * (c.row - a.row) -
+         static_cast<double>(b.row - a.row) * (c.column - a.column);
+}
+
+/// Which part of its convex hull a block fills (Andrew's monotone chain): walls that meet at
+/// corners fill little of theirs.
+double solidity(const GridFrame& frame, const Block& block) {
+  std::vector<Cell> corners;
+  for (const std::size_t i : block.cells) {
+    const Cell cell = frame.cell_at(i);
+    for (const Cell& step : {Cell{0, 0}, Cell{1, 0}, Cell{0, 1}, Cell{1, 1}}) {
+      corners.push_back({cell.column + step.column, cell.row + step.row});
+    }
+  }
+  std::sort(corners.begin(), corners.end(), [](const Cell& a, const Cell& b) {
+    return a.column != b.column ? a.column < b.column : a.row < b.row;
+  });
+  double twice_area = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    std::vector<Cell> hull;
+    for (const Cell& corner : corners) {
+      while (hull.size() > 1 && turn(hull[hull.size() - 2], hull.back(), corner) <= 0.0) {
+        hull.pop_back();
+      }
+      hull.push_back(corner);
+    }
+    for (std::size_t i = 1; i + 1 < hull.size(); ++i) {
+      twice_area += turn(hull.front(), hull[i], hull[i + 1]);
+    }
+    std::reverse(corners.begin(), corners.end());
+  }
+  return 2.0 * static_cast<double>(block.cells.size()) / twice_area;
+}
+
 bool is_furniture(const Block& block, const FreeSpace& depth, const RoomConfig& config) {
   if (block.at_edge) return false;
   const double cell_m = depth.frame().resolution_m;
@@ -80,7 +116,9 @@ bool is_furniture(const Block& block, const FreeSpace& depth, const RoomConfig& 
     if (depth.squared_cells(i) > from_cells * from_cells) ++inner;
   }
   const double thick_m = 2.0 * cell_m * std::sqrt(static_cast<double>(deepest));
-  return 2 * inner >= block.cells.size() && thick_m <= config.furniture_to_m;
+  constexpr double kCompact = 0.6;  // a rack with a pallet beside it; walls fill less
+  return 2 * inner >= block.cells.size() && thick_m <= config.furniture_to_m &&
+         solidity(depth.frame(), block) >= kCompact;
 }
 
 }  // namespace
