@@ -21,7 +21,8 @@ planning::HybridMap drawn_map(const std::vector<std::string>& lines,
   planning::FreeSpace space(grid_of_text(lines, kExplored_m), inflation);
   planning::ZoneConfig zones;
   zones.min_area_m2 = 0.2;
-  planning::ZoneMap cut = planning::zones_of_rooms(space, passages, zones);
+  planning::ZoneMap cut = passages.empty() ? planning::drawn_zones(space, {}, zones)
+                                           : planning::zones_of_rooms(space, passages, zones);
   return {std::move(space), std::move(cut)};
 }
 

@@ -74,16 +74,16 @@ TEST(Zones, AreNotCutWhereAPassageMeetsNoWalls) {
             zones_of_rooms(space, {}, small_zones()).zone_of_cell);
 }
 
-// Two rooms of 9 x 9 cells, the way between them 5 wide: 0.6 of their width.
+// Two rooms of 9 x 9 cells of 0.25 m, the way between them 5 wide: 0.6 of their width.
 TEST(Zones, MeetAtAWideDoorWhereTheMapHasOne) {
   InflationConfig config;
   config.forbidden_cells = 0.0;
   std::vector<std::string> lines(11, "#.........#.........#");
   lines.front() = lines.back() = std::string(21, '#');
   for (std::size_t i = 3; i < 8; ++i) lines[i][10] = '.';
-  const FreeSpace space(grid_of_text(lines), config);
+  const FreeSpace space(grid_of_text(lines, 0.25), config);
   EXPECT_EQ(zones_of_rooms(space, {}, small_zones()).zones.size(), 1U);
-  const std::vector<Passage> door{{{10.5, 5.5}, Eigen::Vector2d::UnitX(), 3.0}};
+  const std::vector<Passage> door{{{2.625, 1.375}, Eigen::Vector2d::UnitX(), 0.75}};
   const ZoneMap map = zones_of_rooms(space, door, small_zones());
   ASSERT_EQ(map.zones.size(), 2U);
   EXPECT_NE(zone_at(space, map, {8, 5}), zone_at(space, map, {12, 5}));
