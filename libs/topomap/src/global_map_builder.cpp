@@ -8,6 +8,7 @@
 #include "driven_path.hpp"
 #include "map_extraction.hpp"
 #include "node_fusion.hpp"
+#include "pair_fusion.hpp"
 #include "ridge_refinement.hpp"
 #include "seen_region.hpp"
 #include "virtual_links.hpp"
@@ -53,12 +54,14 @@ void check_input(const LocalMap& map, const geometry::Pose2& T_map_robot) {
 }  // namespace
 
 struct GlobalMapBuilder::State {
-  explicit State(const GlobalMapConfig& used) : config(used), grid(used), nodes(used) {}
+  explicit State(const GlobalMapConfig& used)
+      : config(used), grid(used), nodes(used), pairs(used) {}
 
   GlobalMapConfig config;
   VoteGrid grid;
   NodeFusion nodes;
   BranchNames names;
+  PairFusion pairs;  // instead of the three above with FusionRule::kPairs
   DrivenPath path;
 };
 
@@ -81,8 +84,13 @@ void GlobalMapBuilder::integrate(const LocalMap& map, const geometry::Pose2& T_m
 void GlobalMapBuilder::integrate(const LocalMap& map, const StopPose& stop) {
   const geometry::Pose2& T_map_robot = stop.T_map_robot;
   check_input(map, T_map_robot);
-  const SeenRegion view(map, state_->config.gap_m);
   const Sighting sighting{stop.views, stop.last_seen_ns()};
+  if (state_->config.fusion == FusionRule::kPairs) {
+    state_->pairs.add(map, T_map_robot, sighting);
+    state_->path.add(map, T_map_robot);
+    return;
+  }
+  const SeenRegion view(map, state_->config.gap_m);
   state_->grid.add(map, T_map_robot, view, sighting);
   state_->nodes.add(map, T_map_robot, view, sighting);
   state_->names.add(map, T_map_robot);
@@ -100,6 +108,12 @@ void GlobalMapBuilder::rebuild(std::span<const LocalMap> maps, std::span<const S
 }
 
 GlobalMap GlobalMapBuilder::snapshot(std::uint64_t version) const {
+  if (state_->config.fusion == FusionRule::kPairs) {
+    GlobalMap map = state_->pairs.map();
+    add_virtual_links(state_->path, state_->config, map);
+    map.version = version;
+    return map;
+  }
   const RidgeGraph ridge = refine_ridge(trace_ridge(state_->grid, state_->config), state_->config);
   GlobalMap map = extract_map(ridge, state_->nodes, state_->names, state_->config);
   add_virtual_links(state_->path, state_->config, map);

@@ -45,6 +45,11 @@ void describe_elements(GlobalMapConfig& g, support::ConfigSchema& schema) {
 }  // namespace
 
 void describe(GlobalMapConfig& config, support::ConfigSchema& schema) {
+  schema.add("global_map.fusion", &config.fusion,
+             {{"votes", FusionRule::kVotes}, {"pairs", FusionRule::kPairs}},
+             "votes: branches are the ridges of the votes of all views; pairs: equivalent nodes "
+             "and branches of map and view are joined, as the thesis prints it (eq. 7.25-7.27), "
+             "for comparison");
   describe_votes(config, schema);
   describe_elements(config, schema);
 }

@@ -161,7 +161,9 @@ void LocalMapBuilder::Work::find_cuts() {
   absorb_short_stretches(false);
   absorb_short_stretches(true);
   if (config_.find_states) {
-    const auto states = state_finder_.find(points_, confirmed_, config_);
+    const auto states = config_.state_rule == StateRule::kSlopes
+                            ? state_finder_.find_slope_changes(points_, confirmed_, config_)
+                            : state_finder_.find(points_, confirmed_, config_);
     cuts_.assign(states.begin(), states.end());
     for (const BranchState& state : cuts_) points_[state.point] = state.at;
   }

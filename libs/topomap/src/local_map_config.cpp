@@ -26,6 +26,10 @@ void describe_confirmation(LocalMapConfig& m, support::ConfigSchema& schema) {
 void describe_states(LocalMapConfig& m, support::ConfigSchema& schema) {
   schema.add("local_map.find_states", &m.find_states,
              "Thesis, 5.2.2.1: doors, narrowings and hall-corridor passages along branches");
+  schema.add("local_map.state_rule", &m.state_rule,
+             {{"floors", StateRule::kFloors}, {"slopes", StateRule::kSlopes}},
+             "floors: minima and plateaus of the clearance; slopes: each change of its slope that "
+             "later points confirm, as the thesis prints it (eq. 5.1-5.4), for comparison");
   schema.add("local_map.state_rise_m", &m.state_rise_m, 0.01, 10.0, "m",
              "eq. 5.3: rise of the clearance on a side of a minimum that counts as a change of "
              "slope; twice the error of a reading, as a branch point depends on two");

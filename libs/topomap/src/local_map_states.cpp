@@ -173,6 +173,38 @@ BranchState BranchStateFinder::mouth_of(std::span<const BranchPoint> points, con
                   NodeKind::kHallCorridor);
 }
 
+std::span<const BranchState> BranchStateFinder::find_slope_changes(
+    std::span<const BranchPoint> points, std::span<const char> confirmed,
+    const LocalMapConfig& config) {
+  states_.clear();
+  const auto slope = [&](std::size_t from, std::size_t to) {
+    const double rise_m = points[to].clearance_m - points[from].clearance_m;
+    return rise_m > 0.0 ? 1 : (rise_m < 0.0 ? -1 : 0);
+  };
+  for (std::size_t j = 2; j + 1 < points.size(); ++j) {
+    const int before = slope(j - 2, j - 1);
+    const int now = slope(j - 1, j);
+    if (now == before || confirmed[j] == 0) continue;  // 5.1
+    bool goes_on = true;
+    bool far_enough = false;
+    for (std::size_t k = j + 1; k < points.size() && goes_on && !far_enough; ++k) {
+      goes_on = slope(j - 1, k) == now;  // 5.3
+      far_enough =
+          (points[k].position_m - points[j].position_m).norm() > config.state_confirm_m;  // 5.4
+    }
+    if (!goes_on || !far_enough) continue;
+    const double clearance_m = points[j].clearance_m;
+    NodeKind kind = NodeKind::kHallCorridor;
+    if (before < 0 && now > 0) {
+      const bool door =
+          clearance_m <= config.door_half_width_m && clearance_m >= config.door_min_half_width_m;
+      kind = door ? NodeKind::kDoor : NodeKind::kNarrowing;
+    }
+    states_.push_back({j, kind, points[j]});  // 5.2
+  }
+  return states_;
+}
+
 std::span<const BranchState> BranchStateFinder::find(std::span<const BranchPoint> points,
                                                      std::span<const char> confirmed,
                                                      const LocalMapConfig& config) {

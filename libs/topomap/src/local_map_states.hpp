@@ -27,6 +27,14 @@ class BranchStateFinder {
   std::span<const BranchState> find(std::span<const BranchPoint> points,
                                     std::span<const char> confirmed, const LocalMapConfig& config);
 
+  /// The states of a branch as the thesis prints them (5.1-5.4), valid until the next call: each
+  /// point at which the sign of the slope changes, when all points up to the first one farther than
+  /// state_confirm_m go on in the new direction. A change from falling to rising is a door or
+  /// narrowing, any other one a passage between hall and corridor.
+  std::span<const BranchState> find_slope_changes(std::span<const BranchPoint> points,
+                                                  std::span<const char> confirmed,
+                                                  const LocalMapConfig& config);
+
  private:
   struct Floor;
 

@@ -21,6 +21,8 @@ msg::GeneticParameters to_genetic(const localization::GeneticParameters& genetic
   out.branch_hypotheses(genetic.branch_hypotheses);
   out.resolution_m(genetic.resolution_m);
   out.resolution_rad(genetic.resolution_rad);
+  out.finer_resolution_m(genetic.finer_resolution_m);
+  out.finer_resolution_rad(genetic.finer_resolution_rad);
   return out;
 }
 
@@ -34,6 +36,8 @@ localization::GeneticParameters from_genetic(const msg::GeneticParameters& genet
   out.branch_hypotheses = genetic.branch_hypotheses();
   out.resolution_m = finite(genetic.resolution_m(), "genetic.resolution_m");
   out.resolution_rad = finite(genetic.resolution_rad(), "genetic.resolution_rad");
+  out.finer_resolution_m = finite(genetic.finer_resolution_m(), "genetic.finer_resolution_m");
+  out.finer_resolution_rad = finite(genetic.finer_resolution_rad(), "genetic.finer_resolution_rad");
   return out;
 }
 
@@ -137,6 +141,7 @@ msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& a
   out.half_width_rad(task.half_width.z());
   out.genetic(to_genetic(task.genetic));
   out.fitness_form(static_cast<msg::FitnessForm>(task.fitness_form));
+  out.evidence(static_cast<msg::MatchEvidence>(task.evidence));
   for (const geometry::Pose2& pose : task.initial_individuals) {
     out.initial_individuals().push_back(to_msg(pose));
   }
@@ -148,7 +153,8 @@ msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& a
 }
 
 localization::MatchTask from_msg(const msg::MatchTask& message) {
-  check(message.fitness_form() <= msg::kFitnessCombined, "fitness_form", "0 to 2");
+  check(message.fitness_form() <= msg::kFitnessTopologicalWeighted, "fitness_form", "0 to 3");
+  check(message.evidence() <= msg::kEvidenceFitness, "evidence", "0 to 2");
   check(message.solutions_wanted() >= 1 && message.solutions_wanted() <= msg::kMaxSolutions,
         "solutions_wanted", "1 to 40");
   localization::MatchTask out;
@@ -164,6 +170,7 @@ localization::MatchTask from_msg(const msg::MatchTask& message) {
                     finite(message.half_width_rad(), "half_width_rad")};
   out.genetic = from_genetic(message.genetic());
   out.fitness_form = static_cast<localization::FitnessForm>(message.fitness_form());
+  out.evidence = static_cast<localization::MatchEvidence>(message.evidence());
   for (const msg::Pose2& pose : message.initial_individuals()) {
     out.initial_individuals.push_back(from_msg(pose));
   }

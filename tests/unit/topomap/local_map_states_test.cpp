@@ -50,6 +50,26 @@ std::vector<DiagramPoint> through_a_gap(double half_width_m) {
   return points;
 }
 
+// Eq. 5.1 with 5.3 and 5.4, worked by hand: down to x = 0.5, up to x = 1, level from there on. What
+// rises or falls for less than the confirming distance is an error of measurement.
+TEST(LocalMapStates, EachConfirmedChangeOfSlopeIsAStateByTheRuleOfTheThesis) {
+  LocalMapConfig config;
+  config.state_rule = StateRule::kSlopes;
+  config.state_confirm_m = 0.15;
+  std::vector<DiagramPoint> points;
+  for (int i = 0; i <= 40; ++i) {
+    const double x_m = 0.05 * i;
+    points.push_back({{x_m, 0.0}, x_m < 1.0 ? 0.5 + std::fabs(x_m - 0.5) : 1.0});
+  }
+  points[4].clearance_m += 0.08;  // one reading
+  const std::vector<LocalNode> states = states_of(points, config);
+  ASSERT_EQ(states.size(), 2U);
+  EXPECT_EQ(states[0].kind, NodeKind::kDoor);
+  EXPECT_NEAR(states[0].position_m.x(), 0.55, 1e-9);  // 5.2: the first point of the new slope
+  EXPECT_EQ(states[1].kind, NodeKind::kHallCorridor);
+  EXPECT_NEAR(states[1].position_m.x(), 1.05, 1e-9);
+}
+
 TEST(LocalMapStates, AGapThatIsTooNarrowForTheRobotIsNoDoor) {
   LocalMapConfig config;
   config.door_half_width_m = 0.6;

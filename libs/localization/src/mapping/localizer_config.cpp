@@ -11,9 +11,18 @@ void describe_matches(LocalizerConfig& l, support::ConfigSchema& schema) {
   schema.add("match.fitness", &l.fitness_form,
              {{"combined", FitnessForm::kCombined},
               {"topological", FitnessForm::kTopological},
+              {"topological_weighted", FitnessForm::kTopologicalWeighted},
               {"printed", FitnessForm::kPrinted}},
              "combined: nodes, branches, scan points and the odometry prior; topological: nodes "
-             "and branches; printed: the equations as the thesis prints them, for comparison");
+             "and branches; topological_weighted: the same by how surely they are found again, and "
+             "the odometry prior; printed: the equations as the thesis prints them, for "
+             "comparison");
+  schema.add("match.evidence", &l.evidence,
+             {{"scan", MatchEvidence::kScan},
+              {"branches", MatchEvidence::kBranches},
+              {"fitness", MatchEvidence::kFitness}},
+             "scan: scan points refine a solution and decide whether it is accepted; branches: "
+             "nodes and branches alone do; fitness: nothing does, as in the thesis");
   schema.add("match.solutions", &l.solutions_wanted, 1U, 40U, "",
              "best distinct solutions kept of a match");
   schema.add("match.search_probability", &l.search_probability, 0.01, 0.9999, "",

@@ -20,6 +20,7 @@ MatchTask match_task(const LocalizerConfig& config, const UncertainPose& T_refer
   task.half_width.z() = std::min(task.half_width.z(), config.largest_half_width_rad);
   task.genetic = config.genetic;
   task.fitness_form = config.fitness_form;
+  task.evidence = config.evidence;
   task.solutions_wanted = config.solutions_wanted;
   task.gate = config.gate;
   return task;

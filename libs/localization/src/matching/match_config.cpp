@@ -21,6 +21,11 @@ void describe(GeneticParameters& parameters, support::ConfigSchema& schema) {
              "of the position genes");
   schema.add("match.resolution_rad", &parameters.resolution_rad, 0.001, 0.5, "rad",
              "of the heading gene");
+  schema.add("match.finer_resolution_m", &parameters.finer_resolution_m, 0.0, 2.0, "m",
+             "of a second search around each of the best solutions (Thesis, 7.3.1.2); 0: none, as "
+             "least squares are finer");
+  schema.add("match.finer_resolution_rad", &parameters.finer_resolution_rad, 0.0005, 0.5, "rad",
+             "of its heading gene");
 }
 
 void describe(GateConfig& config, support::ConfigSchema& schema) {

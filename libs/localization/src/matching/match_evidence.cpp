@@ -8,6 +8,7 @@
 
 #include <Eigen/LU>
 
+#include "topogeo/localization/matching/branch_refinement.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 
@@ -65,6 +66,9 @@ void check_genetic(const Checker& checker, const GeneticParameters& g) {
   checker.range("branch_hypotheses", g.branch_hypotheses, 0.0, kMostIndividuals);
   checker.range("resolution_m", g.resolution_m, 1e-6, 10.0);
   checker.range("resolution_rad", g.resolution_rad, 1e-6, 4.0);
+  if (g.finer_resolution_m == 0.0) return;
+  checker.range("finer_resolution_m", g.finer_resolution_m, 1e-6, 10.0);
+  checker.range("finer_resolution_rad", g.finer_resolution_rad, 1e-6, 4.0);
 }
 
 void check_gate(const Checker& checker, const GateConfig& gate) {
@@ -95,7 +99,9 @@ void check(const MatchTask& task) {
   check_genetic(checker, task.genetic);
   check_gate(checker, task.gate);
   checker.range("fitness_form", static_cast<double>(task.fitness_form), 0.0,
-                static_cast<double>(FitnessForm::kCombined));
+                static_cast<double>(FitnessForm::kTopologicalWeighted));
+  checker.range("evidence", static_cast<double>(task.evidence), 0.0,
+                static_cast<double>(MatchEvidence::kFitness));
   checker.range("solutions_wanted", task.solutions_wanted, 1.0, kMostSolutions);
 }
 
@@ -105,6 +111,13 @@ bool same_place(const Pose2& a, const Pose2& b) {
   constexpr double kApart_rad = 0.15;
   return (a.position_m() - b.position_m()).squaredNorm() <= kApart_m * kApart_m &&
          std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) <= kApart_rad;
+}
+
+PoseEvidence evidence_for(const MatchContext& context, const Pose2& T) {
+  if (context.task.evidence == MatchEvidence::kScan) {
+    return evidence_at(context.reference, context.query, T);
+  }
+  return branch_evidence_at(context.reference, context.query, T);
 }
 
 void add_evidence(const MatchContext& context, MatchResult& result) {
@@ -120,7 +133,7 @@ void add_evidence(const MatchContext& context, MatchResult& result) {
   }
   if (!stated.solutions.empty() && stated.solutions.front().fitness > 0.0) {
     const Pose2& T = result.T_reference_query;
-    const PoseEvidence evidence = evidence_at(reference, query, T);
+    const PoseEvidence evidence = evidence_for(context, T);
     stated.T_reference_query = T;
     stated.fitness = fitness(T);
     if (result.second.fitness > 0.0) {
@@ -130,10 +143,16 @@ void add_evidence(const MatchContext& context, MatchResult& result) {
     stated.inliers = evidence.inliers;
     stated.violations = evidence.violations;
     stated.residual_rms_m = evidence.residual_rms_m;
-    stated.scan_fitness = forms.combined().scan()(T);
+    stated.scan_fitness = task.evidence == MatchEvidence::kScan
+                              ? forms.combined().scan()(T)
+                              : forms.of_maps(T, geometry::sincos(T.theta_rad));
     stated.topological_fitness = forms.combined().topological()(T);
-    stated.status = evidence.overlap > 0.0 ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
-    if (!evidence.information.isZero(0.0)) {
+    const bool in_common =
+        task.evidence == MatchEvidence::kFitness ? stated.fitness > 0.0 : evidence.overlap > 0.0;
+    stated.status = in_common ? MatchStatus::kSolved : MatchStatus::kNothingInCommon;
+    if (task.evidence == MatchEvidence::kFitness) {
+      stated.covariance = task.covariance;
+    } else if (!evidence.information.isZero(0.0)) {
       stated.covariance = match_covariance(evidence.information, doubt(stated));
     }
   }

@@ -4,6 +4,7 @@
 #include "topogeo/localization/matching/fitness_forms.hpp"
 #include "topogeo/localization/matching/match.hpp"
 #include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/localization/matching/refinement.hpp"
 
 namespace topogeo::localization {
 
@@ -19,6 +20,12 @@ struct MatchContext {
   const MatchFeatures& query;
   const FitnessForms& forms;
 };
+
+/// Places that are refined before the winner is chosen. Fixed: tasks do not carry it.
+inline constexpr std::size_t kRefined = 3;
+
+/// The evidence at a pose by MatchTask::evidence.
+PoseEvidence evidence_for(const MatchContext& context, const geometry::Pose2& T_reference_query);
 
 /// Whether two poses are so near each other that refinement takes both to one: within 0.3 m and
 /// 0.15 rad.

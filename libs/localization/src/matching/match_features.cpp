@@ -110,6 +110,10 @@ double grid_cell_m(const std::vector<SurfacePoint>& points) {
   return box.sizes().maxCoeff() <= kLargestFineExtent_m ? kFine_m : 2.0 * kFine_m;
 }
 
+// Share of the points of confirmed branches that are found again half a metre on: freiburg-079 and
+// intel together (tests/bench/RESULTS.md, "What of a local map is found again").
+constexpr double kFoundAgain = 0.84;
+
 void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSample>& out) {
   const auto& points = branch.points;
   double since_m = MatchFeatures::kBranchSpacing_m;
@@ -122,7 +126,9 @@ void add_branch_samples(const topomap::LocalBranch& branch, std::vector<BranchSa
     Eigen::Vector2d direction = points[after].position_m - points[before].position_m;
     const double length = std::sqrt(direction.squaredNorm());
     if (length <= 0.0) continue;
-    out.push_back({points[i].position_m, direction / length, points[i].clearance_m});
+    const double slope = (points[after].clearance_m - points[before].clearance_m) / length;
+    out.push_back(
+        {points[i].position_m, direction / length, points[i].clearance_m, slope, kFoundAgain});
   }
 }
 
@@ -143,6 +149,10 @@ BranchCurve whole_branch(const topomap::LocalBranch& branch) {
 }
 
 }  // namespace
+
+double repeatability(const topomap::LocalNode& node) {
+  return node.kind == topomap::NodeKind::kReal ? 0.65 : 0.73;
+}
 
 // Looked up by the slope within the quadrant: a direction is asked for a thousand times in a match,
 // and half a degree needs no arc tangent.

@@ -56,7 +56,10 @@ double doubt(const MatchResult& result) {
 double rivalry(const MatchTask& task, const MatchResult& result) {
   if (!(result.second.fitness > 0.0 && result.fitness > 0.0)) return 0.0;
   const double ratio = result.second.fitness / result.fitness;
-  if (task.fitness_form != FitnessForm::kCombined) return ratio;
+  if (task.fitness_form != FitnessForm::kCombined &&
+      task.fitness_form != FitnessForm::kTopologicalWeighted) {
+    return ratio;
+  }
   const OdometryPrior prior(task);
   return ratio * prior(result.T_reference_query) / prior(result.second.T_reference_query);
 }
@@ -67,6 +70,7 @@ Judgement judge(const MatchTask& task, const MatchResult& result) {
   if (result.status != MatchStatus::kSolved || result.covariance.isZero(0.0)) {
     return rejected(Reason::kNothingInCommon);
   }
+  if (task.evidence == MatchEvidence::kFitness) return {Verdict::kAccepted, Reason::kNone};
   if (result.overlap < gate.smallest_overlap) return rejected(Reason::kLittleOverlap);
   if (result.inliers < gate.smallest_inliers) return rejected(Reason::kFewInliers);
   const double search_m = std::max(task.half_width.x(), task.half_width.y());

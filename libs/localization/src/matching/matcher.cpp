@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include "topogeo/localization/matching/branch_refinement.hpp"
 #include "topogeo/localization/matching/genetic_search.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 #include "topogeo/localization/places/place_field.hpp"
@@ -19,9 +20,28 @@ namespace {
 
 using geometry::Pose2;
 
-// Fixed: answers do not depend on the first, and tasks do not carry the second.
-constexpr std::size_t kCachedReferences = 16;  // of about 150 kB
-constexpr std::size_t kRefined = 3;  // places that are refined before the winner is chosen
+constexpr std::size_t kCachedReferences = 16;  // of about 150 kB; answers do not depend on it
+
+// Rivals are rated by what refines a match; where that is not the scan, by the requested form.
+double rating(const MatchContext& context, const Pose2& T) {
+  const geometry::SinCos heading = geometry::sincos(T.theta_rad);
+  if (context.task.evidence == MatchEvidence::kScan) {
+    return context.forms.combined().of_maps(T, heading);
+  }
+  return context.forms.of_maps(T, heading);
+}
+
+Alignment align_by_evidence(const MatchContext& context, const Pose2& T, const PosePrior& prior) {
+  switch (context.task.evidence) {
+    case MatchEvidence::kScan:
+      return align(context.reference, context.query, T, prior);
+    case MatchEvidence::kBranches:
+      return align_branches(context.reference, context.query, T, prior);
+    case MatchEvidence::kFitness:
+      break;
+  }
+  return {T, 0, false};
+}
 
 // Refines the `starts`, takes the one with the largest fitness and gives it as free of the prior as
 // weak_prior() leaves it as the result's pose. Its second is the pose elsewhere that the maps allow
@@ -32,29 +52,41 @@ void choose(const MatchContext& context, const std::vector<MatchSolution>& start
   std::array<MatchSolution, kRefined> refined;
   std::size_t best = 0;
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    const Alignment aligned =
-        align(context.reference, context.query, starts[i].T_reference_query, prior);
+    const Alignment aligned = align_by_evidence(context, starts[i].T_reference_query, prior);
     refined[i] = {aligned.T_reference_query, context.forms.chosen()(aligned.T_reference_query)};
     if (refined[i].fitness > refined[best].fitness) best = i;
   }
   result.T_reference_query = refined[best].T_reference_query;
   const Alignment released =
-      align(context.reference, context.query, result.T_reference_query, weak_prior(prior));
+      align_by_evidence(context, result.T_reference_query, weak_prior(prior));
   if (released.converged && same_place(released.T_reference_query, result.T_reference_query)) {
     result.T_reference_query = released.T_reference_query;
   }
-  result.second = strongest_rival(context, result.T_reference_query);
-  const CombinedFitness& combined = context.forms.combined();
+  if (context.task.evidence != MatchEvidence::kFitness) {
+    result.second = strongest_rival(context, result.T_reference_query);
+  }
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const Pose2& T = refined[i].T_reference_query;
     if (same_place(T, result.T_reference_query)) continue;
-    const double fitness = combined.of_maps(T, geometry::sincos(T.theta_rad));
+    const double fitness = rating(context, T);
     if (fitness > result.second.fitness) result.second = {T, fitness};
   }
   if (result.second.fitness <= 0.0) return;
   // It is rated like every other solution, by the requested form, which may find nothing.
   result.second.fitness = context.forms.chosen()(result.second.T_reference_query);
   if (result.second.fitness <= 0.0) result.second = {};
+}
+
+// The second search (Thesis, 7.3.1.2): around a solution, one cell of the first one to each side.
+MatchTask finer_task(const MatchTask& task, const Pose2& T_solution) {
+  MatchTask finer = task;
+  finer.T_reference_query = T_solution;
+  finer.initial_individuals.clear();
+  finer.half_width = {task.genetic.resolution_m, task.genetic.resolution_m,
+                      task.genetic.resolution_rad};
+  finer.genetic.resolution_m = task.genetic.finer_resolution_m;
+  finer.genetic.resolution_rad = task.genetic.finer_resolution_rad;
+  return finer;
 }
 
 }  // namespace
@@ -135,10 +167,22 @@ MatchResult Matcher::solve(const MatchTask& task) {
   const MatchContext context{task, against, query, forms_};
   if (!result.solutions.empty() && result.solutions.front().fitness > 0.0) {
     search_.best_distinct(kRefined, same_place, starts_);
+    if (task.genetic.finer_resolution_m > 0.0) result.evaluations += search_finer(task);
     choose(context, starts_, result);
   }
   add_evidence(context, result);
   return result;
+}
+
+std::uint32_t Matcher::search_finer(const MatchTask& task) {
+  std::uint32_t evaluations = 0;
+  std::vector<MatchSolution> best;
+  for (MatchSolution& start : starts_) {
+    evaluations += search_.run(finer_task(task, start.T_reference_query), forms_.chosen(), {});
+    search_.best_distinct(1, same_place, best);
+    if (!best.empty() && best.front().fitness > start.fitness) start = best.front();
+  }
+  return evaluations;
 }
 
 std::vector<MatchResult> InProcessPool::match(std::span<const MatchTask> tasks) {

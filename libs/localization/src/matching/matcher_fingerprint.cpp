@@ -101,12 +101,16 @@ std::uint64_t matcher_fingerprint() {
   task.genetic.generations = 8;
   task.seed = 5;
   Hash hash;
-  for (const FitnessForm form :
-       {FitnessForm::kPrinted, FitnessForm::kTopological, FitnessForm::kCombined}) {
+  for (const FitnessForm form : {FitnessForm::kPrinted, FitnessForm::kTopological,
+                                 FitnessForm::kCombined, FitnessForm::kTopologicalWeighted}) {
     task.fitness_form = form;
     const MatchResult result = matcher.solve(task);
     hash.add(result);
   }
+  task.evidence = MatchEvidence::kBranches;
+  task.genetic.finer_resolution_m = 0.03;
+  const MatchResult by_branches = matcher.solve(task);
+  hash.add(by_branches);
   return hash.value();
 }
 

@@ -42,8 +42,9 @@ std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
     return std::to_string(result.solutions.size()) + " solutions, wanted were " +
            std::to_string(task.solutions_wanted);
   }
+  const std::uint64_t searches = task.genetic.finer_resolution_m > 0.0 ? 1 + kRefined : 1;
   const std::uint64_t most =
-      std::uint64_t{task.genetic.individuals} * std::uint64_t{task.genetic.generations};
+      searches * std::uint64_t{task.genetic.individuals} * std::uint64_t{task.genetic.generations};
   if (result.evaluations < task.genetic.individuals || result.evaluations > most) {
     return std::to_string(result.evaluations) + " evaluations, possible are " +
            std::to_string(task.genetic.individuals) + " to " + std::to_string(most);

@@ -7,6 +7,8 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 
+#include "least_squares_steps.hpp"
+
 namespace topogeo::localization {
 namespace {
 
@@ -14,10 +16,8 @@ using geometry::Pose2;
 
 // Fixed: matches depend on them, tasks do not carry them, and workers must give the answers of the
 // localizer (matcher_fingerprint.hpp). They fit lasers with centimetres of noise.
-constexpr int kMaxIterations = 15;         // bounds the time of a match
 constexpr std::size_t kFewestPoints = 12;  // fewer do not fix three unknowns
-constexpr double kFirstGate_m = 0.50;      // shrinks to kLastGate_m while iterating
-constexpr double kLastGate_m = 0.20;
+constexpr ShrinkingGate kGate{0.50, 0.20, 0.06};
 constexpr double kCauchy_m = 0.05;  // a reading's error: twice as far weighs a fifth
 // Deviation taken for one residual. More than the laser's noise, because the residuals of
 // neighbouring beams are not independent.
@@ -25,21 +25,6 @@ constexpr double kResidualSigma_m = 0.08;
 constexpr double kInlier_m = 0.15;         // on a surface, with noise and the thickness of walls
 constexpr double kViewTolerance_m = 0.30;  // half-thickness of what the laser saw
 constexpr double kSameFace = 0.70710678;   // cosine between two normals of one surface
-
-struct NormalEquations {
-  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  std::size_t points = 0;
-
-  // Written out, because the order of the sums must be the same on every machine.
-  void add(const double jacobian[3], double residual, double weight) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) hessian(i, j) += weight * jacobian[i] * jacobian[j];
-      gradient(i) += weight * jacobian[i] * residual;
-    }
-    ++points;
-  }
-};
 
 NormalEquations linearize(const Reference& reference, const MatchFeatures& query, const Pose2& T,
                           double gate_m) {
@@ -68,17 +53,6 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
     equations.add(jacobian, residual, kPerSigma2 / (1.0 + u * u));
   }
   return equations;
-}
-
-// Adds the prior; both its error and the update are (x, y, theta) in the reference frame.
-void add_prior(NormalEquations& equations, const Pose2& T, const PosePrior& prior) {
-  const Eigen::Vector3d error = geometry::difference(T, prior.T_reference_query);
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      equations.hessian(i, j) += prior.information(i, j);
-      equations.gradient(i) += prior.information(i, j) * error[j];
-    }
-  }
 }
 
 // Counts the reference's points that fall into what the query saw.
@@ -164,7 +138,7 @@ Eigen::Vector2d known_part(const Eigen::Vector2d& step_m, const Eigen::Matrix2d&
 
 Eigen::Matrix3d information_at(const Reference& reference, const MatchFeatures& query,
                                const Pose2& T_reference_query) {
-  const NormalEquations equations = linearize(reference, query, T_reference_query, kLastGate_m);
+  const NormalEquations equations = linearize(reference, query, T_reference_query, kGate.last_m);
   if (equations.points < kFewestPoints) return Eigen::Matrix3d::Zero();
   return equations.hessian;
 }
@@ -179,26 +153,9 @@ PoseEvidence evidence_at(const Reference& reference, const MatchFeatures& query,
 
 Alignment align(const Reference& reference, const MatchFeatures& query, const Pose2& T_first_guess,
                 const PosePrior& prior) {
-  Alignment result{T_first_guess, 0, false};
-  Pose2& T = result.T_reference_query;
-  for (int k = 0; k < kMaxIterations; ++k) {
-    const double gate_m = std::max(kLastGate_m, kFirstGate_m - 0.06 * k);
-    NormalEquations equations = linearize(reference, query, T, gate_m);
-    if (equations.points < kFewestPoints) return {T_first_guess, k, false};
-    add_prior(equations, T, prior);
-    // A little damping keeps a direction that nothing fixes (along a bare corridor) where it was.
-    for (int i = 0; i < 3; ++i) equations.hessian(i, i) += 1e-3;
-    const Eigen::Vector3d step = equations.hessian.inverse() * equations.gradient;
-    T = {T.x_m - step.x(), T.y_m - step.y(), geometry::wrap_angle(T.theta_rad - step.z())};
-    result.iterations = k + 1;
-    const bool still =
-        std::fabs(step.x()) < 1e-4 && std::fabs(step.y()) < 1e-4 && std::fabs(step.z()) < 1e-5;
-    if (still && gate_m <= kLastGate_m) {
-      result.converged = true;
-      break;
-    }
-  }
-  return result;
+  return align_with(T_first_guess, prior, kGate, kFewestPoints, [&](const Pose2& T, double gate_m) {
+    return linearize(reference, query, T, gate_m);
+  });
 }
 
 PosePrior weak_prior(const PosePrior& prior) {

@@ -13,7 +13,8 @@ namespace {
 // Thesis, 7.3.1.2, eqs. 7.23 and 7.24 (docs/algorithms.md, "Backward correction"), with X_{i-1} =
 // X_n (+) X_L^(n,i-1): the pose of `this` relative to the previous one through a map n that both
 // were matched with, as far back as need be.
-std::vector<StepOption> intermediate_options(const SolutionStore& solutions, std::uint32_t id) {
+std::vector<StepOption> intermediate_options(const SolutionStore& solutions, std::uint32_t id,
+                                             std::size_t most) {
   std::vector<StepOption> options;
   for (const std::uint32_t n : solutions.matched_with(id)) {
     if (n + 1 >= id) continue;
@@ -32,8 +33,7 @@ std::vector<StepOption> intermediate_options(const SolutionStore& solutions, std
   }
   std::stable_sort(options.begin(), options.end(),
                    [](const auto& a, const auto& b) { return a.fitness > b.fitness; });
-  constexpr std::size_t kLargest = 9;  // as many as of two maps with three solutions each
-  if (options.size() > kLargest) options.resize(kLargest);
+  if (options.size() > most) options.resize(most);
   return options;
 }
 
@@ -79,7 +79,7 @@ std::vector<StepOption> step_options(const BackwardProblem& problem, const Solut
         {StepKind::kMatched, solution.T_earlier_later, solution.covariance, solution.fitness});
   }
   if (!options.empty()) return options;
-  options = intermediate_options(solutions, id);
+  options = intermediate_options(solutions, id, config.intermediate_steps);
   if (!options.empty()) return options;
   const BackwardPose& pose = problem.poses[k];
   if (pose.overlaps.empty()) return grid_options(pose.T_previous_this, config);

@@ -18,6 +18,16 @@ void describe(BackwardConfig& config, support::ConfigSchema& schema) {
              "inside, so 0.95 for each would refuse many right ones");
   schema.add("backward.heading_sigmas", &config.heading_sigmas, 0.5, 6.0, "",
              "half-width of the headings of a pose in standard deviations");
+  schema.add("backward.draw", &config.draw,
+             "each step is tried a second time, drawn towards the expected pose; the thesis tries "
+             "the stored solutions alone");
+  schema.add("backward.solutions", &config.paths_wanted, 1U, 1000U, "",
+             "of a closed cycle that are kept, by their summed fitness; the first one becomes the "
+             "trajectory");
+  schema.add("backward.intermediate_steps", &config.intermediate_steps, 1U, 100'000U, "",
+             "tried at most where two stops were not matched but both with a third one: each "
+             "solution with the one times each with the other (Thesis, eq. 7.23 and 7.24); 9 as of "
+             "three solutions each, 1600 are all of 40");
   schema.add("backward.largest_grid", &config.largest_grid, 1U, 1'000'000U, "poses",
              "tried for a step between two stops of which nothing overlaps; the space of a wider "
              "uncertainty is tried in wider steps");

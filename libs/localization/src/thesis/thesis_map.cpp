@@ -19,10 +19,17 @@ ThesisMap::ThesisMap(const LocalizerConfig& config, std::uint32_t solutions_per_
 void ThesisMap::append(std::shared_ptr<const LocalMap> map) {
   check_next(*map, stops_.size(), stops_.empty() ? nullptr : stops_.front().map.get());
   ThesisStop stop;
-  stop.view = visible_rectangle(*map);
-  MatchFeatures features = extract_scan_features(map->points, map->T_robot_laser);
-  stop.profile = std::move(features.profile);
-  stop.outline = outline_of(features.coarse);
+  const bool by_scan = config_.evidence == MatchEvidence::kScan;
+  stop.view = visible_rectangle(*map, by_scan);
+  MatchFeatures features = extract_features(*map);
+  if (by_scan) {
+    stop.profile = std::move(features.profile);
+    stop.outline = outline_of(features.coarse);
+  }
+  for (const topomap::LocalNode& node : features.nodes) stop.landmarks_m.push_back(node.position_m);
+  for (const BranchSample& sample : features.branches) {
+    stop.landmarks_m.push_back(sample.position_m);
+  }
   if (!stops_.empty()) {
     const ThesisStop& previous = stops_.back();
     stop.T_previous_this =
@@ -69,12 +76,24 @@ std::vector<ThesisNeighbour> ThesisMap::neighbours(std::uint32_t stop, const Pos
                                                    config_.search_heading_sigmas);
     const Pose2 T_earlier_new = geometry::between(graph_.poses()[i], T_map_stop);
     if (!overlap(seen_from(now.view, T_earlier_new, half), before.view)) continue;
-    const double share = expected_overlap(now.profile, before.outline, pose);
+    const double share = expected_share(now, before, pose);
     if (share >= config_.smallest_expected_overlap || i + 1 == stop) {
       found.push_back({i, pose, share});
     }
   }
   return found;
+}
+
+double ThesisMap::expected_share(const ThesisStop& now, const ThesisStop& before,
+                                 const UncertainPose& T_new_earlier) const {
+  if (config_.evidence == MatchEvidence::kScan) {
+    return expected_overlap(now.profile, before.outline, T_new_earlier);
+  }
+  if (before.landmarks_m.empty()) return 0.0;
+  const auto seen = std::count_if(
+      before.landmarks_m.begin(), before.landmarks_m.end(),
+      [&](const Eigen::Vector2d& p) { return contains(now.view, T_new_earlier.T_a_b * p); });
+  return static_cast<double>(seen) / static_cast<double>(before.landmarks_m.size());
 }
 
 bool ThesisMap::overlap_now(std::uint32_t earlier, std::uint32_t later) const {

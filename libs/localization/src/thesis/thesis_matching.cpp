@@ -40,7 +40,7 @@ std::vector<ThesisMatch> ThesisMatching::match(const ThesisMap& map,
     found.result = std::move(results[i]);
     if (found.result.status == MatchStatus::kSolved) {
       // The map of the thesis knows odometry by its matches alone.
-      if (!found.result.covariance.isZero(0.0)) {
+      if (tasks[i].evidence != MatchEvidence::kFitness && !found.result.covariance.isZero(0.0)) {
         found.result.T_reference_query =
             with_prior(found.result.T_reference_query, data_covariance(found.result),
                        {tasks[i].T_reference_query, tasks[i].covariance.inverse()});

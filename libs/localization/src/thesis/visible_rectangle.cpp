@@ -22,7 +22,7 @@ void include(VisibleRectangle& view, const Eigen::Vector2d& point_m) {
 
 }  // namespace
 
-VisibleRectangle visible_rectangle(const topomap::LocalMap& map) {
+VisibleRectangle visible_rectangle(const topomap::LocalMap& map, bool with_points) {
   VisibleRectangle view;  // the robot stands at the origin
   for (const topomap::LocalNode& node : map.nodes) {
     if (node.kind != topomap::NodeKind::kVirtual) include(view, node.position_m);
@@ -31,10 +31,16 @@ VisibleRectangle visible_rectangle(const topomap::LocalMap& map) {
     if (branch.is_virtual) continue;
     for (const topomap::BranchPoint& point : branch.points) include(view, point.position_m);
   }
+  if (!with_points) return view;
   for (const topomap::ScanPoint& point : map.points) {
     include(view, {static_cast<double>(point.x_m), static_cast<double>(point.y_m)});
   }
   return view;
+}
+
+bool contains(const VisibleRectangle& view, const Eigen::Vector2d& point_m) {
+  return (view.low_m.array() <= point_m.array()).all() &&
+         (point_m.array() <= view.high_m.array()).all();
 }
 
 VisibleRectangle seen_from(const VisibleRectangle& view, const Pose2& T_frame_robot,

@@ -176,7 +176,7 @@ TEST_F(MatcherTest, RefusesTasksThatMakeNoSense) {
        }},
       {"gate nan", [&](MatchTask& t) { t.gate.largest_doubt = nan; }},
       {"gate negative", [](MatchTask& t) { t.gate.smallest_overlap = -0.1; }},
-      {"form", [](MatchTask& t) { t.fitness_form = static_cast<FitnessForm>(3); }},
+      {"form", [](MatchTask& t) { t.fitness_form = static_cast<FitnessForm>(4); }},
       {"space", [](MatchTask& t) { t.half_width.x() = 1e9; }},
       {"pose far", [](MatchTask& t) { t.T_reference_query.x_m = 1e30; }},
       {"no solutions", [](MatchTask& t) { t.solutions_wanted = 0; }},

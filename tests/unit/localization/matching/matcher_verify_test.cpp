@@ -73,6 +73,24 @@ class MatcherVerifyTest : public testing::Test {
   MatchTask task_;
 };
 
+TEST_F(MatcherVerifyTest, FindsNothingWrongWithRightResultsByOtherEvidence) {
+  for (const MatchEvidence evidence : {MatchEvidence::kBranches, MatchEvidence::kFitness}) {
+    for (const FitnessForm form : {FitnessForm::kPrinted, FitnessForm::kTopological,
+                                   FitnessForm::kCombined, FitnessForm::kTopologicalWeighted}) {
+      for (const double finer_m : {0.0, 0.03}) {
+        task_.evidence = evidence;
+        task_.fitness_form = form;
+        task_.genetic.finer_resolution_m = finer_m;
+        const MatchResult result = worker_.solve(task_);
+        EXPECT_EQ(client_.verify(task_, result), "");
+        MatchResult wrong = result;
+        wrong.fitness += 0.01;
+        EXPECT_NE(client_.verify(task_, wrong), "");
+      }
+    }
+  }
+}
+
 TEST_F(MatcherVerifyTest, FindsNothingWrongWithRightResults) {
   int with_second = 0;
   for (const FitnessForm form :

@@ -52,11 +52,13 @@ TEST_P(Conversions, MatchTaskIsExact) {
   task.T_reference_query = any_pose(random_);
   task.covariance = any_matrix(random_);
   task.half_width = {any_double(random_), any_double(random_), any_double(random_)};
-  task.genetic = {any_u32(random_), any_u32(random_), any_double(random_), any_double(random_),
-                  any_u32(random_), any_u32(random_), any_double(random_), any_double(random_)};
+  task.genetic = {any_u32(random_),    any_u32(random_),   any_double(random_), any_double(random_),
+                  any_u32(random_),    any_u32(random_),   any_double(random_), any_double(random_),
+                  any_double(random_), any_double(random_)};
   task.gate = {any_double(random_), any_double(random_), any_double(random_),
                any_double(random_), any_double(random_), any_double(random_)};
-  task.fitness_form = static_cast<localization::FitnessForm>(random_.below(3));
+  task.fitness_form = static_cast<localization::FitnessForm>(random_.below(4));
+  task.evidence = static_cast<localization::MatchEvidence>(random_.below(3));
   for (int i = 0; i < 7; ++i) task.initial_individuals.push_back(any_pose(random_));
   task.solutions_wanted = 1 + static_cast<std::uint32_t>(random_.below(40));
   task.seed = random_.next_u64();
@@ -73,6 +75,7 @@ TEST_P(Conversions, MatchTaskIsExact) {
   EXPECT_EQ(back.genetic, task.genetic);
   EXPECT_EQ(back.gate, task.gate);
   EXPECT_EQ(back.fitness_form, task.fitness_form);
+  EXPECT_EQ(back.evidence, task.evidence);
   EXPECT_EQ(back.initial_individuals, task.initial_individuals);
   EXPECT_EQ(back.solutions_wanted, task.solutions_wanted);
   EXPECT_EQ(back.seed, task.seed);

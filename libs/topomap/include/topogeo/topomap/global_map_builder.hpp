@@ -9,6 +9,7 @@
 // and a false branch is outvoted (fig. 8.8). Nodes are fused as the Thesis does: equivalent ones
 // merge to the mean of position (7.25) and clearance (7.26), near-by ones collapse (fig. 8.10).
 // The trade-off: branches closer together than about twice `vote_radius_m` become one.
+// `fusion: pairs` joins as the Thesis prints it, for comparison.
 //
 // Where the robot drove from one part of the map to another and saw nothing that joins them (local
 // maps that do not overlap, fig. 8.23), a virtual branch along the path that it drove does. It

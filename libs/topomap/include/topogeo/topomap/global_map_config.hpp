@@ -9,7 +9,14 @@ class ConfigSchema;
 
 namespace topogeo::topomap {
 
+/// How the branches of local maps become those of the global one.
+enum class FusionRule : std::uint8_t {
+  kVotes = 0,  ///< ridges of the votes of all views
+  kPairs = 1,  ///< equivalent ones are joined in pairs, as the thesis prints it (7.25-7.27)
+};
+
 struct GlobalMapConfig {
+  FusionRule fusion = FusionRule::kVotes;
   double cell_m = 0.1;
   double vote_radius_m = 0.25;
   double gap_m = 0.6;

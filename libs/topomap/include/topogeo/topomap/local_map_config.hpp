@@ -1,11 +1,19 @@
 // Settings of the local topo-geometric map.
 #pragma once
 
+#include <cstdint>
+
 namespace topogeo::support {
 class ConfigSchema;
 }
 
 namespace topogeo::topomap {
+
+/// What makes a place along a branch a state.
+enum class StateRule : std::uint8_t {
+  kFloors = 0,  ///< minima and plateaus of the clearance, confirmed on both sides
+  kSlopes = 1,  ///< each confirmed change of slope, as the thesis prints it (5.1-5.4)
+};
 
 struct LocalMapConfig {
   double points_range_m = 50.0;
@@ -17,6 +25,7 @@ struct LocalMapConfig {
   bool remove_off_main_graph = false;
 
   bool find_states = true;
+  StateRule state_rule = StateRule::kFloors;
   double door_half_width_m = 0.6;
   double door_min_half_width_m = 0.275;
   double state_rise_m = 0.1;

@@ -30,6 +30,7 @@ struct LocalizerConfig {
   OdometryNoise odometry;
   GeneticParameters genetic;
   FitnessForm fitness_form = FitnessForm::kCombined;
+  MatchEvidence evidence = MatchEvidence::kScan;
   std::uint32_t solutions_wanted = 3;
   double search_probability = 0.95;
   double search_heading_sigmas = 3.0;

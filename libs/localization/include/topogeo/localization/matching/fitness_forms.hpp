@@ -3,6 +3,7 @@
 
 #include "topogeo/localization/matching/fitness_combined.hpp"
 #include "topogeo/localization/matching/fitness_printed.hpp"
+#include "topogeo/localization/matching/fitness_weighted.hpp"
 
 namespace topogeo::localization {
 
@@ -19,13 +20,24 @@ class FitnessForms {
     form_ = task.fitness_form;
     combined_.bind(reference, query, task);
     if (form_ == FitnessForm::kPrinted) printed_.bind(reference, query);
+    if (form_ == FitnessForm::kTopologicalWeighted) weighted_.bind(reference, query, task);
   }
 
   /// The one that the task names.
   [[nodiscard]] const Fitness& chosen() const {
     if (form_ == FitnessForm::kPrinted) return printed_;
     if (form_ == FitnessForm::kTopological) return combined_.topological();
+    if (form_ == FitnessForm::kTopologicalWeighted) return weighted_;
     return combined_;
+  }
+  /// The same without the odometry prior, which two of the forms have.
+  [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
+                               const geometry::SinCos& heading) const {
+    if (form_ == FitnessForm::kTopologicalWeighted) {
+      return weighted_.of_maps(T_reference_query, heading);
+    }
+    if (form_ == FitnessForm::kCombined) return combined_.of_maps(T_reference_query, heading);
+    return chosen().at(T_reference_query, heading);
   }
   [[nodiscard]] const CombinedFitness& combined() const { return combined_; }
 
@@ -33,6 +45,7 @@ class FitnessForms {
   FitnessForm form_ = FitnessForm::kCombined;
   PrintedFitness printed_;
   CombinedFitness combined_;
+  WeightedFitness weighted_;
 };
 
 }  // namespace topogeo::localization

@@ -56,6 +56,7 @@ struct MatchTask {
   Eigen::Vector3d half_width = Eigen::Vector3d::Zero();  ///< of the search space: m, m, rad
   GeneticParameters genetic;
   FitnessForm fitness_form = FitnessForm::kCombined;
+  MatchEvidence evidence = MatchEvidence::kScan;
   std::vector<geometry::Pose2>
       initial_individuals;             ///< T_reference_query candidates beside the prediction
   std::uint32_t solutions_wanted = 3;  ///< n best distinct solutions, 1 to 40
@@ -104,7 +105,7 @@ struct MatchResult {
   MatchStatus status = MatchStatus::kNothingInCommon;
   std::vector<MatchSolution> solutions;  ///< best first, distinct, before refinement
   geometry::Pose2
-      T_reference_query;  ///< best solution after point-to-line refinement with the prior
+      T_reference_query;  ///< best solution after refinement by MatchTask::evidence with the prior
   Eigen::Matrix3d covariance =
       Eigen::Matrix3d::Zero();  ///< of T_reference_query from the data alone (inverse Hessian with
                                 ///< a floor), (x, y, theta) in the reference frame; zero unless
@@ -113,7 +114,8 @@ struct MatchResult {
   double inliers = 0.0;  ///< of those, share within the inlier distance of a reference line, [0, 1]
   double violations = 0.0;  ///< of those, share where the reference saw free space instead, [0, 1]
   double residual_rms_m = 0.0;
-  double scan_fitness = 0.0;         ///< of the refined pose, without the prior, [0, 1]
+  double scan_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]; where no scan
+                              ///< point counts, what the task's form gives there
   double topological_fitness = 0.0;  ///< of the refined pose, without the prior, [0, 1]
   double fitness = 0.0;              ///< of the refined pose, [0, 1]
   MatchSolution second;  ///< the pose elsewhere in the search space that the maps allow best,

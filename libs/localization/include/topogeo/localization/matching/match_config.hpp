@@ -15,6 +15,15 @@ enum class FitnessForm : std::uint8_t {
   kTopological = 1,  ///< equivalent nodes and branches, clearance, orientation, coverage
   kCombined =
       2,  ///< topological and scan points against a distance field, times the odometry prior
+  kTopologicalWeighted = 3,  ///< nodes and branches by how surely they are found again, times the
+                             ///< odometry prior
+};
+
+/// What refines the solutions of a search and decides whether the match is accepted.
+enum class MatchEvidence : std::uint8_t {
+  kScan = 0,      ///< least squares of scan points, and the gate
+  kBranches = 1,  ///< the same of nodes and branches; no scan point counts
+  kFitness = 2,   ///< the fitness alone, as in the thesis: whatever has one is accepted
 };
 
 /// Parameters of the genetic algorithm (docs/algorithms.md, "Genetic search").
@@ -26,7 +35,9 @@ struct GeneticParameters {
   std::uint32_t elite = 2;
   std::uint32_t branch_hypotheses = 10;
   double resolution_m = 0.15;
-  double resolution_rad = 0.034906585;  ///< 2 degrees
+  double resolution_rad = 0.034906585;         ///< 2 degrees
+  double finer_resolution_m = 0.0;             ///< of a second search around each solution; 0: none
+  double finer_resolution_rad = 0.0087266463;  ///< 0.5 degrees
   friend bool operator==(const GeneticParameters&, const GeneticParameters&) = default;
 };
 

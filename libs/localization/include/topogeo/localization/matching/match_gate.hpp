@@ -16,7 +16,7 @@ double doubt(const MatchResult& result);
 
 /// How well the second pose fits the maps, as a share of how well the result does; 0 without one.
 /// Odometry does not count, because a false prediction speaks for the false pose.
-/// Only the combined form has odometry in it.
+/// Only the combined and the weighted form have odometry in them.
 double rivalry(const MatchTask& task, const MatchResult& result);
 
 /// "accepted", "ambiguous", "rejected".

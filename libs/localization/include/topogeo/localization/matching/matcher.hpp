@@ -56,6 +56,8 @@ class Matcher {
 
   const KnownMap& known(std::uint32_t id, std::uint64_t hash) const;
   const Reference& reference(std::uint32_t id, std::uint64_t hash);
+  // Searches once more around each of the starts; how many individuals were scored.
+  std::uint32_t search_finer(const MatchTask& task);
   const PlaceField& field(const PlaceQuestion& question) const;
 
   std::map<std::uint32_t, KnownMap> maps_;

@@ -44,7 +44,7 @@ struct Alignment {
   bool converged = false;
 };
 
-/// Gauss-Newton with a Cauchy weight, at most `kMaxIterations`. With too few points for three
+/// Gauss-Newton with a Cauchy weight, at most 15 iterations. With too few points for three
 /// unknowns the pose comes back as it was, not converged.
 Alignment align(const Reference& reference, const MatchFeatures& query,
                 const geometry::Pose2& T_first_guess, const PosePrior& prior);

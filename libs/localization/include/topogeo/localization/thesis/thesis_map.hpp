@@ -28,8 +28,9 @@ struct ThesisStop {
   VisibleRectangle view;
   RangeProfile profile;
   std::vector<SurfacePoint> outline;
-  UncertainPose T_previous_this;                         ///< by odometry
-  std::vector<std::uint32_t> overlaps;                   ///< MS, ascending
+  std::vector<Eigen::Vector2d> landmarks_m;  ///< nodes and samples of branches, robot frame
+  UncertainPose T_previous_this;             ///< by odometry
+  std::vector<std::uint32_t> overlaps;       ///< MS, ascending
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the pose in the map
 };
 
@@ -96,6 +97,10 @@ class ThesisMap {
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
  private:
+  // Share of the earlier map that the new one should see.
+  [[nodiscard]] double expected_share(const ThesisStop& now, const ThesisStop& before,
+                                      const UncertainPose& T_new_earlier) const;
+
   LocalizerConfig config_;
   PoseGraph graph_;  // poses and the matches that placed them, for uncertainties alone
   std::vector<ThesisStop> stops_;

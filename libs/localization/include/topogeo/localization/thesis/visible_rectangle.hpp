@@ -22,8 +22,11 @@ struct VisibleRectangle {
 
 /// CV of a map in the frame of its robot: the rectangle around the robot and all that the map has
 /// to be matched by. That is its nodes and branches as in the Thesis, none virtual, and the scan
-/// points, which matching compares as well and which are all there is in a dead end.
-VisibleRectangle visible_rectangle(const topomap::LocalMap& map);
+/// points, which matching compares as well and which are all there is in a dead end;
+/// `with_points` false: without them.
+VisibleRectangle visible_rectangle(const topomap::LocalMap& map, bool with_points = true);
+
+bool contains(const VisibleRectangle& view, const Eigen::Vector2d& point_m);
 
 /// The same field of view in another frame (eq. 7.19), when its pose lies anywhere in the
 /// rectangular search space of the given half-widths (m, m, rad; none negative) around

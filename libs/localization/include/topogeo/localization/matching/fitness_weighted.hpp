@@ -1,0 +1,44 @@
+// The topological fitness with what makes it enough to map by (own; docs/algorithms.md, "Fitness"):
+// nodes and branches count by how surely they are found again, and the odometry prior decides where
+// they are alike at several places.
+//
+// Kernels are half as wide as those of the topological form: a branch is found again within
+// centimetres, so a pose 0.3 m aside is not half right.
+#pragma once
+
+#include <vector>
+
+#include "topogeo/localization/matching/fitness.hpp"
+#include "topogeo/localization/matching/fitness_combined.hpp"
+
+namespace topogeo::localization {
+
+class WeightedFitness : public Fitness {
+ public:
+  /// bind() before use.
+  WeightedFitness() = default;
+  WeightedFitness(const Reference& reference, const MatchFeatures& query, const MatchTask& task) {
+    bind(reference, query, task);
+  }
+
+  /// The maps must live as long as they are used.
+  void bind(const Reference& reference, const MatchFeatures& query, const MatchTask& task);
+
+  [[nodiscard]] double at(const geometry::Pose2& T_reference_query,
+                          const geometry::SinCos& heading) const override;
+
+  /// The same by the maps alone; odometry does not count.
+  [[nodiscard]] double of_maps(const geometry::Pose2& T_reference_query,
+                               const geometry::SinCos& heading) const;
+
+ private:
+  [[nodiscard]] double of_branches(const geometry::Pose2& T, const geometry::SinCos& r) const;
+  [[nodiscard]] double of_nodes(const geometry::Pose2& T, const geometry::SinCos& r) const;
+
+  const Reference* reference_ = nullptr;
+  const MatchFeatures* query_ = nullptr;
+  OdometryPrior prior_;
+  double per_weight_ = 0.0;
+};
+
+}  // namespace topogeo::localization
