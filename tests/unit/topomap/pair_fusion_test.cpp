@@ -17,13 +17,14 @@ LocalMap corridor_view(std::uint32_t id, double length_m, double clearance_m) {
   LocalMap map;
   map.robot_id = "robot";
   map.id = id;
-  map.nodes.resize(2);
-  map.nodes[0].kind = NodeKind::kFictitious;
-  map.nodes[1] = {.id = 1,
-                  .kind = NodeKind::kDoor,
-                  .position_m = {length_m, 0.0},
-                  .clearance_m = clearance_m,
-                  .base_groups = {}};
+  map.nodes.resize(4);
+  for (std::uint32_t k = 0; k < 4; ++k) map.nodes[k].id = k;
+  for (const std::uint32_t k : {0U, 2U, 3U}) map.nodes[k].kind = NodeKind::kFictitious;
+  map.nodes[1].kind = NodeKind::kDoor;
+  map.nodes[1].position_m = {length_m, 0.0};
+  map.nodes[1].clearance_m = clearance_m;
+  map.nodes[2].position_m = {0.0, 1.0};  // these two make the field of view 2 m wide
+  map.nodes[3].position_m = {0.0, -1.0};
   LocalBranch branch;
   branch.node_b = 1;
   for (int i = 0; 0.1 * i <= length_m + 1e-9; ++i) {
@@ -43,13 +44,13 @@ TEST(PairFusion, EquivalentNodesBecomeTheMeanOfTheMapAndTheView) {
   GlobalMapBuilder builder = pairs();
   builder.integrate(corridor_view(0, 4.0, 0.50), Pose2{0, 0, 0});
   builder.integrate(corridor_view(1, 3.0, 0.60), Pose2{1.2, 0.1, 0});
-  builder.integrate(corridor_view(2, 2.0, 0.55), Pose2{2.0, 0.05, 0});
+  builder.integrate(corridor_view(2, 2.2, 0.55), Pose2{2.0, 0.05, 0});
   const GlobalMap map = builder.snapshot(1);
   const auto door = std::find_if(map.nodes.begin(), map.nodes.end(),
                                  [](const MapNode& n) { return n.kind == NodeKind::kDoor; });
   ASSERT_NE(door, map.nodes.end());
   // 7.25 and 7.26 twice: not the mean of the three views, each later one counts half.
-  EXPECT_NEAR(door->position_m.x(), 0.5 * (0.5 * (4.0 + 4.2) + 4.0), 1e-9);
+  EXPECT_NEAR(door->position_m.x(), 0.5 * (0.5 * (4.0 + 4.2) + 4.2), 1e-9);
   EXPECT_NEAR(door->position_m.y(), 0.5 * (0.5 * (0.0 + 0.1) + 0.05), 1e-9);
   EXPECT_NEAR(door->clearance_m, 0.5 * (0.55 + 0.55), 1e-9);
   EXPECT_EQ(door->observations, 3U);

@@ -25,7 +25,7 @@ void expect_view(const VisibleRectangle& view, double low_x, double low_y, doubl
   EXPECT_NEAR(view.high_m.y(), high_y, 1e-12);
 }
 
-bool contains(const VisibleRectangle& view, const Eigen::Vector2d& point_m) {
+bool holds(const VisibleRectangle& view, const Eigen::Vector2d& point_m) {
   constexpr double kRounding = 1e-9;
   return (point_m.array() >= view.low_m.array() - kRounding).all() &&
          (point_m.array() <= view.high_m.array() + kRounding).all();
@@ -93,7 +93,7 @@ TEST(VisibleRectangle, EnvelopeContainsEveryPoseOfTheSearchSpace) {
                        T_frame_robot.theta_rad + random.uniform(-half.z(), half.z())};
       const Eigen::Vector2d point(random.uniform(view.low_m.x(), view.high_m.x()),
                                   random.uniform(view.low_m.y(), view.high_m.y()));
-      ASSERT_TRUE(contains(seen, pose * point)) << "round " << round;
+      ASSERT_TRUE(holds(seen, pose * point)) << "round " << round;
     }
   }
 }
