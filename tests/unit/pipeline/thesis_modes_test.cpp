@@ -45,7 +45,7 @@ MappedExperiment map_experiment(const std::string& config_name) {
 }
 
 TEST(ThesisModes, EachFormOfTheFitnessMakesAMap) {
-  for (const std::string name : {"printed", "topological", "topological_weighted", "combined"}) {
+  for (const char* name : {"printed", "topological", "topological_weighted", "combined"}) {
     const MappedExperiment mapped = map_experiment(name);
     EXPECT_GT(mapped.map.trajectory.stops.size(), 35U) << name;
     EXPECT_TRUE(std::isfinite(mapped.rms_m)) << name;
