@@ -136,14 +136,14 @@ TEST(PlsDriver, ScansSayWhereTheirBeamsAre) {
 
 // The world has returns from 0.1 to 10 m. Its distances stay what they are.
 TEST(PlsDriver, ScansSayWhatIsInTheFieldsOfTheSensor) {
-  struct Case {
+  struct Fields {
     double protective_m, warning_m;
     bool protective, warning;
   };
   PlsOnLine pls;
   pls.start();
-  for (const Case& c : {Case{0.0, 0.0, false, false}, Case{0.05, 0.08, false, false},
-                        Case{0.05, 12.0, false, true}, Case{4.0, 12.0, true, true}}) {
+  for (const Fields& c : {Fields{0.0, 0.0, false, false}, Fields{0.05, 0.08, false, false},
+                          Fields{0.05, 12.0, false, true}, Fields{4.0, 12.0, true, true}}) {
     pls.emulator.set_fields(c.protective_m, c.warning_m);
     ASSERT_TRUE(pls.run_for_scans(4, 10 * kSecond_ns));  // the first may be older
     EXPECT_EQ(pls.scans.back().protective_field, c.protective) << c.protective_m;
