@@ -39,7 +39,9 @@ simulation::RobotOptions robot_options() {
 }
 
 planning::HybridMap make_map() {
-  const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(room())));
+  // As who gets it does.
+  const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(room())),
+                                  {.min_pocket_m2 = planning::kPocket_m2});
   return {space, planning::zones_by_width(space), {}};
 }
 
