@@ -37,7 +37,7 @@ class NavigatorService {
 
  private:
   enum class Source : std::uint8_t { kPose, kOdometry, kScan, kSonar, kBase, kLaser };
-  static constexpr std::size_t kSources = 5;
+  static constexpr std::size_t kSources = static_cast<std::size_t>(Source::kLaser) + 1;
 
   void listen_to_orders();
   void listen_to_sensors();
