@@ -16,7 +16,7 @@ namespace {
 // Sizes on the page, chosen by eye.
 constexpr double kFigureMargin_px = 18.0;
 constexpr double kFigureTitle_px = 42.0;
-constexpr double kPanelTitle_px = 24.0;
+constexpr double kPanelHeading_px = 24.0;
 constexpr double kFigureNote_px = 18.0;
 constexpr double kLeastAspect = 0.45;  // height of a panel by its width
 constexpr double kMostAspect = 1.6;
@@ -190,9 +190,9 @@ FigurePage arrange_figure(const Figure& figure, double width_px) {
       const double left_px =
           kFigureMargin_px + static_cast<double>(i - first) * (cell_px + kFigureMargin_px);
       page.rects.push_back(
-          {left_px + kAxisLeft_px, page.bottom_px + kPanelTitle_px, panel_px, height_px});
+          {left_px + kAxisLeft_px, page.bottom_px + kPanelHeading_px, panel_px, height_px});
     }
-    page.bottom_px += kPanelTitle_px + height_px + kAxisBelow_px + 0.5 * kFigureMargin_px;
+    page.bottom_px += kPanelHeading_px + height_px + kAxisBelow_px + 0.5 * kFigureMargin_px;
   }
   return page;
 }

@@ -32,9 +32,13 @@ class PoseGrid {
            static_cast<std::size_t>(x);
   }
   /// What a cell stands for: metres and radians off the expected pose.
-  [[nodiscard]] double offset_m(int cell) const { return (cell - side_ / 2) * cell_m_; }
+  [[nodiscard]] double offset_m(int cell) const {
+    const int from_middle = cell - side_ / 2;
+    return from_middle * cell_m_;
+  }
   [[nodiscard]] double offset_rad(int heading) const {
-    return (heading - headings_ / 2) * heading_step_rad_;
+    const int from_middle = heading - headings_ / 2;
+    return from_middle * heading_step_rad_;
   }
 
   /// A normal distribution around the middle.
