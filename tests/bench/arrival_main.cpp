@@ -4,13 +4,11 @@
 //
 //   topogeo_arrival [--runs 200] [--wheels mild|b21] [--unknown-start] [--jobs 2]
 //   topogeo_arrival --floor NAME --run N [--picture FILE.png] [--trace FILE.csv]
-#include <atomic>
 #include <cstdio>
 #include <exception>
 #include <map>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -22,6 +20,7 @@
 #include "arrival_run.hpp"
 #include "arrival_table.hpp"
 #include "navigation_floors.hpp"
+#include "parallel_drives.hpp"
 
 namespace {
 
@@ -131,26 +130,9 @@ bench::ArrivalRow drive(const Job& job, const bench::MappedFloor& floor,
 std::vector<bench::ArrivalRow> drive_all(const std::vector<Job>& jobs, const Floors& floors,
                                          const bench::ArrivalConfig& config,
                                          const Arguments& arguments) {
-  std::vector<bench::ArrivalRow> rows(jobs.size());
-  std::atomic<std::size_t> next{0};
-  std::vector<std::exception_ptr> errors(arguments.jobs);
-  std::vector<std::thread> threads;
-  for (unsigned k = 0; k < arguments.jobs; ++k) {
-    threads.emplace_back([&, k] {
-      try {
-        for (std::size_t i = next++; i < jobs.size(); i = next++) {
-          rows[i] = drive(jobs[i], floors.at(jobs[i].floor), config, arguments);
-        }
-      } catch (...) {
-        errors[k] = std::current_exception();
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  return rows;
+  return bench::drive_in_parallel<bench::ArrivalRow>(jobs, arguments.jobs, [&](const Job& job) {
+    return drive(job, floors.at(job.floor), config, arguments);
+  });
 }
 
 }  // namespace

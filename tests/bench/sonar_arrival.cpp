@@ -3,19 +3,18 @@
 //
 //   topogeo_sonar_arrival [--runs 200] [--sonars 24|6] [--wheels mild|b21] [--grid poses|positions]
 //   topogeo_sonar_arrival --floor NAME --run N [--trace FILE.csv]
-#include <atomic>
 #include <cstdio>
 #include <exception>
 #include <map>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "parallel_drives.hpp"
 #include "sonar_run.hpp"
 #include "sonar_table.hpp"
 
@@ -110,26 +109,9 @@ bench::SonarRow drive(const SonarJob& job, const DrawnFloors& floors,
 std::vector<bench::SonarRow> drive_all(const std::vector<SonarJob>& jobs, const DrawnFloors& floors,
                                        const bench::SonarDriveConfig& config,
                                        const SonarArguments& arguments) {
-  std::vector<bench::SonarRow> rows(jobs.size());
-  std::atomic<std::size_t> next{0};
-  std::vector<std::exception_ptr> errors(arguments.jobs);
-  std::vector<std::thread> threads;
-  for (unsigned k = 0; k < arguments.jobs; ++k) {
-    threads.emplace_back([&, k] {
-      try {
-        for (std::size_t i = next++; i < jobs.size(); i = next++) {
-          rows[i] = drive(jobs[i], floors, config, arguments);
-        }
-      } catch (...) {
-        errors[k] = std::current_exception();
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  return rows;
+  return bench::drive_in_parallel<bench::SonarRow>(jobs, arguments.jobs, [&](const SonarJob& job) {
+    return drive(job, floors, config, arguments);
+  });
 }
 
 }  // namespace

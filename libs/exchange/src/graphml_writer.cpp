@@ -3,6 +3,7 @@
 
 #include "topogeo/exchange/graphml.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/markup.hpp"
 
 #include "segments.hpp"
 #include "text.hpp"
@@ -28,29 +29,6 @@ constexpr std::string_view kHead = R"(<?xml version="1.0" encoding="UTF-8"?>
 <key id="points" for="edge" attr.name="points" attr.type="string"/>
 <graph id="map" edgedefault="undirected">
 )";
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 std::string datum(std::string_view key, std::string_view text) {
   return fmt::format("<data key=\"{}\">{}</data>", key, text);
@@ -94,7 +72,8 @@ std::string graphml_text(const topomap::GlobalMap& map, std::span<const planning
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
     text += fmt::format("<node id=\"p{}\">", i) + position(places[i].position_m) +
-            datum("kind", "place") + datum("name", escaped(places[i].name)) + "</node>\n";
+            datum("kind", "place") + datum("name", support::escaped_markup(places[i].name)) +
+            "</node>\n";
   }
   for (const topomap::MapBranch& branch : map.branches) text += edge_text(branch);
   return text + "</graph>\n</graphml>\n";

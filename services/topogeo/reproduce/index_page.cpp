@@ -7,34 +7,12 @@
 
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/support/markup.hpp"
 
 namespace topogeo::reproduce {
 namespace {
 
 constexpr const char* kPictureFolder = "pictures/";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 const char* origin_text(Origin origin) {
   return origin == Origin::kPrinted ? "printed" : "worked out";
@@ -63,7 +41,7 @@ std::string values_html(const std::vector<Value>& values) {
     html += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td "
         "class=\"{}\">{}</td></tr>\n",
-        escaped(value.name), text_of(value.measured, value.unit),
+        support::escaped_markup(value.name), text_of(value.measured, value.unit),
         value.expected ? text_of(*value.expected, value.unit) : "",
         !value.expected                      ? ""
         : value.unit == "yes"                ? "stated"
@@ -75,12 +53,14 @@ std::string values_html(const std::vector<Value>& values) {
 }
 
 std::string table_html(const Table& table) {
-  std::string html = fmt::format("<p>{}</p><table><tr>", escaped(table.title));
-  for (const std::string& cell : table.header) html += "<th>" + escaped(cell) + "</th>";
+  std::string html = fmt::format("<p>{}</p><table><tr>", support::escaped_markup(table.title));
+  for (const std::string& cell : table.header)
+    html += "<th>" + support::escaped_markup(cell) + "</th>";
   html += "</tr>\n";
   for (const std::vector<std::string>& row : table.rows) {
     html += "<tr>";
-    for (const std::string& cell : row) html += "<td class=\"n\">" + escaped(cell) + "</td>";
+    for (const std::string& cell : row)
+      html += "<td class=\"n\">" + support::escaped_markup(cell) + "</td>";
     html += "</tr>\n";
   }
   return html + "</table>\n";
@@ -91,17 +71,20 @@ std::string row_html(const Outcome& outcome) {
   std::string html = fmt::format(
       "<section id=\"{0}\"><h2>{1}, {2} <span class=\"{3}\">{3}</span></h2>\n<p>{4}</p>\n"
       "<p><b>{5}</b> ({0}, {6:.1f} s)</p>\n",
-      escaped(experiment.name), escaped(experiment.publication), escaped(experiment.number),
-      to_string(outcome.verdict()), escaped(experiment.caption), escaped(outcome.verdict_text()),
+      support::escaped_markup(experiment.name), support::escaped_markup(experiment.publication),
+      support::escaped_markup(experiment.number), to_string(outcome.verdict()),
+      support::escaped_markup(experiment.caption), support::escaped_markup(outcome.verdict_text()),
       outcome.wall_s);
   html += values_html(outcome.values);
   for (const Table& table : outcome.tables) html += table_html(table);
-  for (const std::string& note : outcome.notes) html += "<p>" + escaped(note) + "</p>\n";
+  for (const std::string& note : outcome.notes)
+    html += "<p>" + support::escaped_markup(note) + "</p>\n";
   for (const ReportPicture& picture : outcome.pictures) {
     html += fmt::format(
         "<figure><img src=\"{0}{1}\" alt=\"{1}\" loading=\"lazy\">"
         "<figcaption>{2}</figcaption></figure>\n",
-        kPictureFolder, escaped(picture.file), escaped(picture.caption));
+        kPictureFolder, support::escaped_markup(picture.file),
+        support::escaped_markup(picture.caption));
   }
   return html + "</section>\n";
 }
@@ -139,8 +122,9 @@ std::string summary_html(const std::vector<Outcome>& outcomes) {
     const Experiment& experiment = *outcome.experiment;
     html += fmt::format(
         "<tr><td><a href=\"#{}\">{}, {}</a></td><td>{}</td><td class=\"{}\">{}</td></tr>\n",
-        escaped(experiment.name), escaped(experiment.publication), escaped(experiment.number),
-        escaped(experiment.caption), to_string(outcome.verdict()), escaped(outcome.verdict_text()));
+        support::escaped_markup(experiment.name), support::escaped_markup(experiment.publication),
+        support::escaped_markup(experiment.number), support::escaped_markup(experiment.caption),
+        to_string(outcome.verdict()), support::escaped_markup(outcome.verdict_text()));
   }
   return html + "</table>\n";
 }

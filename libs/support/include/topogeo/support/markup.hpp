@@ -1,0 +1,12 @@
+// Text within XML and HTML.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace topogeo::support {
+
+/// The text with the characters that markup gives a meaning (& < > ") written as entities.
+std::string escaped_markup(std::string_view text);
+
+}  // namespace topogeo::support
