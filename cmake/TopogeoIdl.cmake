@@ -4,10 +4,10 @@ find_package(fastcdr REQUIRED)
 find_package(fastrtps REQUIRED)
 find_program(FASTDDSGEN fastddsgen REQUIRED)
 
-# topogeo_add_idl(NAME idl FILES a.idl ...): library topogeo_<name>, alias topogeo::<name>, headers
-# topogeo/msg/<file>.h, all of them in topogeo/msg/types.h, the type supports of Fast DDS in
-# topogeo/msg/type_supports.h, the bounds of sequences and enumerations in topogeo/msg/bounds.h. Files come
-# after those that they include.
+# topogeo_add_idl(NAME idl FILES a.idl ... [FOLDER topogeo/msg] [UNBOUNDED]): library topogeo_<name>, alias
+# topogeo::<name>, headers <folder>/<file>.h, all of them in <folder>/types.h, the type supports of Fast DDS in
+# <folder>/type_supports.h, the bounds of sequences and enumerations in <folder>/bounds.h (not with UNBOUNDED).
+# Files come after those that they include.
 #
 # One call for all files, because the generator also writes the outputs of every included file and
 # takes most of its time to start. It writes into a staging folder and only what changed is copied,
@@ -16,10 +16,13 @@ find_program(FASTDDSGEN fastddsgen REQUIRED)
 # sed takes out addresses in comments that differ from run to run, and has the buffer of a key cleared
 # before each use: what an earlier, longer key left in the padding would give one instance two handles.
 function(topogeo_add_idl)
-  cmake_parse_arguments(ARG "" "NAME" "FILES" ${ARGN})
+  cmake_parse_arguments(ARG "UNBOUNDED" "NAME;FOLDER" "FILES" ${ARGN})
+  if(NOT ARG_FOLDER)
+    set(ARG_FOLDER topogeo/msg)
+  endif()
   set(staging ${CMAKE_CURRENT_BINARY_DIR}/staging)
   set(include_dir ${CMAKE_CURRENT_BINARY_DIR}/include)
-  set(generated ${include_dir}/topogeo/msg)
+  set(generated ${include_dir}/${ARG_FOLDER})
   file(MAKE_DIRECTORY ${staging} ${generated})  # the generator does not make its output folder
 
   set(staged "")
@@ -39,25 +42,33 @@ function(topogeo_add_idl)
   set(type_supports "")
   foreach(file IN LISTS ARG_FILES)
     cmake_path(GET file STEM stem)
-    string(APPEND types "#include \"topogeo/msg/${stem}.h\"\n")
-    string(APPEND type_supports "#include \"topogeo/msg/${stem}PubSubTypes.h\"\n")
+    string(APPEND types "#include \"${ARG_FOLDER}/${stem}.h\"\n")
+    string(APPEND type_supports "#include \"${ARG_FOLDER}/${stem}PubSubTypes.h\"\n")
   endforeach()
   file(CONFIGURE OUTPUT ${generated}/types.h CONTENT "#pragma once\n\n${types}")
   file(CONFIGURE OUTPUT ${generated}/type_supports.h CONTENT "#pragma once\n\n${type_supports}")
+  set(bounds_output ${staging}/bounds.h)
+  set(bounds_command COMMAND ${CMAKE_COMMAND} -DOUTPUT=${bounds_output} "-DFILES=${ARG_FILES}"
+                             -P ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake)
+  if(ARG_UNBOUNDED)
+    set(bounds_command "")
+    set(bounds_output "")
+  else()
+    list(APPEND outputs ${generated}/bounds.h)
+  endif()
   set(sources ${outputs})
   list(FILTER sources INCLUDE REGEX "\\.cxx$")
 
   add_custom_command(
-    OUTPUT ${outputs} ${generated}/bounds.h
+    OUTPUT ${outputs}
     COMMAND ${FASTDDSGEN} -replace -cs -d ${staging} ${ARG_FILES} > ${staging}/log.txt
             || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
     COMMAND sed -i -E -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
     COMMAND sed -i -E
             -e "s/^( +)p_type->serializeKey\\(ser\\)$<SEMICOLON>/\\1memset(m_keyBuffer, 0, p_type->getKeyMaxCdrSerializedSize())$<SEMICOLON>\\n&/"
             ${staged_keys}
-    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${staging}/bounds.h "-DFILES=${ARG_FILES}"
-            -P ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake
-    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${staging}/bounds.h ${generated}
+    ${bounds_command}
+    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${staged} ${bounds_output} ${generated}
     DEPENDS ${ARG_FILES} ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
     COMMENT "Generating message types from IDL"
