@@ -1,0 +1,60 @@
+// What the parts of the page share.
+import { Api } from "./api";
+import { Channels } from "./channels";
+import { Connection } from "./connection";
+import { MapView } from "./map/map_view";
+import { Notices } from "./ui/notices";
+import { Theme } from "./ui/theme";
+
+/** Whether there is a connection, and what this page may do. */
+export class Rights {
+  connected = false;
+  may_write = false;
+  private offered: Set<string> | null = null;
+  private readonly listeners: (() => void)[] = [];
+
+  set_connected(connected: boolean, may_write: boolean): void {
+    this.connected = connected;
+    this.may_write = connected ? may_write : this.may_write;
+    this.notify();
+  }
+
+  set_offers(offers: string[]): void {
+    this.offered = new Set(offers);
+    this.notify();
+  }
+
+  /** Whether the service takes this order at all. */
+  offers(what: string): boolean {
+    return this.offered === null || this.offered.has(what);
+  }
+
+  can(what: string): boolean {
+    return this.may_write && this.connected && this.offers(what);
+  }
+
+  on_change(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+
+  private notify(): void {
+    for (const listener of this.listeners) listener();
+  }
+}
+
+export interface App {
+  channels: Channels;
+  api: Api;
+  notices: Notices;
+  rights: Rights;
+  connection: Connection;
+  map: MapView;
+  theme: Theme;
+}
+
+/** A view beside the map. */
+export interface ViewPart {
+  element: HTMLElement;
+  /** Called when the view is opened or left. */
+  shown?(visible: boolean): void;
+}

@@ -1,0 +1,84 @@
+// The page's copy of what the service knows: values, and tables that deltas keep current.
+import {
+  kTables,
+  TableMessage,
+  TableName,
+  Tables,
+  ValueMessage,
+  ValueName,
+  Values,
+} from "./protocol";
+
+/** What a message has changed in a table. */
+export interface Change {
+  set: string[];
+  gone: string[];
+  all: boolean; // a snapshot: keys that are not in `set` are gone, too
+}
+
+type TableListener = (change: Change) => void;
+
+export class Channels {
+  private readonly values: { [Name in ValueName]?: Values[Name] | null } = {};
+  private readonly tables = new Map<TableName, Map<string, unknown>>();
+  private readonly versions = new Map<TableName, number>();
+  private readonly value_listeners = new Map<ValueName, (() => void)[]>();
+  private readonly table_listeners = new Map<TableName, TableListener[]>();
+
+  constructor() {
+    for (const name of kTables) this.tables.set(name, new Map());
+  }
+
+  /** The newest value; null where there is none. */
+  value<Name extends ValueName>(name: Name): Values[Name] | null {
+    return (this.values[name] as Values[Name] | undefined) ?? null;
+  }
+
+  table<Name extends TableName>(name: Name): ReadonlyMap<string, Tables[Name]> {
+    return this.tables.get(name) as ReadonlyMap<string, Tables[Name]>;
+  }
+
+  /** Versions of the tables that are held, for the service to go on from. */
+  held(): Record<string, number> {
+    return Object.fromEntries(this.versions);
+  }
+
+  on_value(names: ValueName[], listener: () => void): void {
+    for (const name of names) {
+      this.value_listeners.set(name, [...(this.value_listeners.get(name) ?? []), listener]);
+    }
+  }
+
+  on_table<Name extends TableName>(name: Name, listener: TableListener): void {
+    this.table_listeners.set(name, [...(this.table_listeners.get(name) ?? []), listener]);
+  }
+
+  /** Takes a message of a channel; false when it is a delta on a version that is not held. */
+  apply(message: ValueMessage | TableMessage): boolean {
+    if ("from" in message) return this.apply_table(message);
+    (this.values as Record<string, unknown>)[message.channel] = message.value;
+    for (const listener of this.value_listeners.get(message.channel) ?? []) listener();
+    return true;
+  }
+
+  /** Forgets the values, which are of the moment; tables stay, to go on from. */
+  forget_values(): void {
+    for (const name of Object.keys(this.values) as ValueName[]) {
+      this.apply({ channel: name, version: 0, value: null });
+    }
+  }
+
+  private apply_table(message: TableMessage): boolean {
+    const table = this.tables.get(message.channel);
+    if (!table) return true; // of a newer service
+    const all = message.from === 0;
+    if (!all && message.from !== this.versions.get(message.channel)) return false;
+    if (all) table.clear();
+    for (const key of message.gone) table.delete(key);
+    for (const [key, value] of Object.entries(message.set)) table.set(key, value);
+    this.versions.set(message.channel, message.version);
+    const change = { set: Object.keys(message.set), gone: message.gone, all };
+    for (const listener of this.table_listeners.get(message.channel) ?? []) listener(change);
+    return true;
+  }
+}

@@ -1,0 +1,123 @@
+// The WebSocket: connects, goes on after interruptions from what the page holds, notices a dead
+// connection.
+import { Channels } from "./channels";
+import { TableMessage, ValueMessage } from "./protocol";
+
+const kSilenceMs = 5000; // the service sends something every two seconds
+const kPongMs = 1000;
+const kFirstDelayMs = 500;
+const kLongestDelayMs = 4000;
+
+export interface Listener {
+  connected(may_write: boolean, error: string): void;
+  disconnected(): void;
+  refused(what: string, error: string): void;
+}
+
+interface Control {
+  op?: string;
+  life?: string;
+  may_write?: boolean;
+  what?: string;
+  error?: string;
+}
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private life = "";
+  private open = false;
+  private delay_ms = kFirstDelayMs;
+  private last_message_ms = 0;
+  private pong_timer = 0;
+  private retry_timer = 0;
+
+  /** names: the channels wanted; empty: all. */
+  constructor(
+    private readonly channels: Channels,
+    private readonly token: string,
+    private readonly names: string[],
+    private readonly listener: Listener,
+  ) {
+    window.setInterval(() => this.check_silence(), 1000);
+    document.addEventListener("visibilitychange", () => this.on_visibility());
+    window.addEventListener("online", () => this.reconnect_now());
+    this.connect();
+  }
+
+  /** Sends a message of the page; false when there is no connection. */
+  send(message: Record<string, unknown>): boolean {
+    if (!this.open || this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  private connect(): void {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    const socket = new WebSocket(`${scheme}://${location.host}/ws`);
+    this.socket = socket;
+    this.last_message_ms = Date.now();
+    socket.onopen = () => {
+      const hello: Record<string, unknown> = { op: "hello" };
+      if (this.token) hello.token = this.token;
+      if (this.names.length > 0) hello.channels = this.names;
+      if (this.life) Object.assign(hello, { life: this.life, have: this.channels.held() });
+      socket.send(JSON.stringify(hello));
+    };
+    socket.onmessage = (event) => {
+      if (this.socket !== socket) return;
+      this.last_message_ms = Date.now();
+      this.on_message(JSON.parse(String(event.data)) as Control | ValueMessage | TableMessage);
+    };
+    socket.onclose = () => {
+      if (this.socket === socket) this.lose();
+    };
+  }
+
+  private on_message(message: Control | ValueMessage | TableMessage): void {
+    if ("channel" in message) {
+      if (!this.channels.apply(message)) this.send({ op: "resync", channel: message.channel });
+    } else if (message.op === "welcome") {
+      this.life = message.life ?? "";
+      this.open = true;
+      this.delay_ms = kFirstDelayMs;
+      this.listener.connected(message.may_write === true, message.error ?? "");
+    } else if (message.op === "pong") {
+      window.clearTimeout(this.pong_timer);
+    } else if (message.op === "refused") {
+      this.listener.refused(message.what ?? "", message.error ?? "");
+    }
+  }
+
+  private lose(): void {
+    const socket = this.socket;
+    this.socket = null;
+    this.open = false;
+    window.clearTimeout(this.pong_timer);
+    socket?.close();
+    this.listener.disconnected();
+    window.clearTimeout(this.retry_timer);
+    this.retry_timer = window.setTimeout(() => this.connect(), this.delay_ms);
+    this.delay_ms = Math.min(2 * this.delay_ms, kLongestDelayMs);
+  }
+
+  private reconnect_now(): void {
+    if (this.socket) return;
+    window.clearTimeout(this.retry_timer);
+    this.delay_ms = kFirstDelayMs;
+    this.connect();
+  }
+
+  private check_silence(): void {
+    if (this.socket && Date.now() - this.last_message_ms > kSilenceMs) this.lose();
+  }
+
+  private on_visibility(): void {
+    if (document.hidden) return;
+    if (!this.socket) {
+      this.reconnect_now();
+    } else if (this.send({ op: "ping" })) {
+      window.clearTimeout(this.pong_timer);
+      this.pong_timer = window.setTimeout(() => this.lose(), kPongMs);
+    }
+  }
+}

@@ -1,0 +1,67 @@
+// Numbers with their units, for people.
+
+const kDash = "–";
+
+export type Maybe = number | null | undefined;
+
+function known(value: Maybe): value is number {
+  return typeof value === "number" && Number.isFinite(value);
+}
+
+/** "3.4 m", "120 m", "1.25 km"; a dash for what is not known. */
+export function length(meters: Maybe): string {
+  if (!known(meters)) return kDash;
+  if (meters >= 1000) return `${(meters / 1000).toFixed(2)} km`;
+  if (meters >= 100) return `${meters.toFixed(0)} m`;
+  return meters >= 10 ? `${meters.toFixed(1)} m` : `${meters.toFixed(2)} m`;
+}
+
+/** "12 s", "3 min 5 s", "2 h 10 min". */
+export function duration(seconds: Maybe): string {
+  if (!known(seconds)) return kDash;
+  const whole = Math.round(seconds);
+  if (whole < 60) return `${whole} s`;
+  if (whole < 3600) return `${Math.floor(whole / 60)} min ${whole % 60} s`;
+  return `${Math.floor(whole / 3600)} h ${Math.floor((whole % 3600) / 60)} min`;
+}
+
+export function speed(meters_per_second: Maybe): string {
+  return known(meters_per_second) ? `${meters_per_second.toFixed(2)} m/s` : kDash;
+}
+
+export function degrees(radians: Maybe): string {
+  return known(radians) ? `${((radians * 180) / Math.PI).toFixed(1)}°` : kDash;
+}
+
+export function area(square_meters: Maybe): string {
+  if (!known(square_meters)) return kDash;
+  return `${square_meters >= 100 ? count(square_meters) : square_meters.toFixed(1)} m²`;
+}
+
+export function percent(share: Maybe): string {
+  return known(share) ? `${Math.round(100 * share)} %` : kDash;
+}
+
+/** 12345 as "12,345". */
+export function count(number: Maybe): string {
+  return known(number) ? Math.round(number).toLocaleString("en") : kDash;
+}
+
+export function rate(per_second: Maybe): string {
+  if (!known(per_second)) return kDash;
+  return `${per_second >= 100 ? per_second.toFixed(0) : per_second.toFixed(1)} /s`;
+}
+
+export function memory(bytes: Maybe): string {
+  return known(bytes) ? `${(bytes / 1e6).toFixed(0)} MB` : kDash;
+}
+
+/** Time of day of seconds since 1970. */
+export function clock(time_s: number): string {
+  return new Date(1000 * time_s).toLocaleTimeString("en-GB");
+}
+
+/** "3.20, -1.05 m". */
+export function point(x_m: number, y_m: number): string {
+  return `${x_m.toFixed(2)}, ${y_m.toFixed(2)} m`;
+}

@@ -1,0 +1,178 @@
+// The operator's page: the map, and beside it the views.
+import { Api, take_token } from "./api";
+import { App, Rights, ViewPart } from "./app";
+import { Channels } from "./channels";
+import { Connection } from "./connection";
+import { MapView } from "./map/map_view";
+import { Info } from "./protocol";
+import { texts } from "./texts";
+import { fill, h, icon, set_text, show } from "./ui/dom";
+import { Header } from "./ui/header";
+import { map_controls } from "./ui/map_controls";
+import { Notices } from "./ui/notices";
+import { once_a_frame } from "./ui/schedule";
+import { Theme } from "./ui/theme";
+import { CorrectView } from "./views/correct";
+import { NowView } from "./views/now";
+import { SendView } from "./views/send";
+import { UnderstandView } from "./views/understand";
+
+type ViewName = keyof typeof texts.views;
+
+// Views as tabs, by the pattern of the ARIA practices: arrows move between tabs.
+class Tabs {
+  readonly bar: HTMLElement;
+  readonly panel: HTMLElement;
+  private readonly tabs = new Map<ViewName, HTMLButtonElement>();
+  private current: ViewName | null = null;
+
+  constructor(private readonly views: Record<ViewName, ViewPart>) {
+    this.panel = h("aside", { class: "panel", id: "panel", role: "tabpanel", tabindex: 0 });
+    const names = Object.keys(views) as ViewName[];
+    for (const name of names) {
+      const tab = h(
+        "button",
+        {
+          type: "button",
+          role: "tab",
+          id: `tab-${name}`,
+          "aria-controls": "panel",
+          class: "tab",
+          onclick: () => this.open(name),
+        },
+        texts.views[name],
+      );
+      tab.prepend(icon(name));
+      this.tabs.set(name, tab);
+    }
+    this.bar = h(
+      "nav",
+      { class: "tabs", role: "tablist", "aria-label": texts.views_label },
+      ...this.tabs.values(),
+    );
+    this.bar.addEventListener("keydown", (event) => {
+      const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+      if (!step || !this.current) return;
+      const next = names[(names.indexOf(this.current) + step + names.length) % names.length];
+      this.open(next);
+      this.tabs.get(next)?.focus();
+      event.preventDefault();
+    });
+  }
+
+  open(name: ViewName): void {
+    if (this.current === name) return;
+    if (this.current) this.views[this.current].shown?.(false);
+    this.current = name;
+    for (const [other, tab] of this.tabs) {
+      tab.setAttribute("aria-selected", String(other === name));
+      tab.tabIndex = other === name ? 0 : -1;
+    }
+    this.panel.setAttribute("aria-labelledby", `tab-${name}`);
+    fill(this.panel, this.views[name].element);
+    this.panel.scrollTop = 0;
+    this.views[name].shown?.(true);
+    sessionStorage.setItem("topogeo-view", name);
+  }
+
+  is_open(name: ViewName): boolean {
+    return this.current === name;
+  }
+}
+
+// What stands on the map while there is none.
+function empty_map(channels: Channels): HTMLElement {
+  const services = h("p");
+  const element = h(
+    "div",
+    { class: "empty-map" },
+    h("h2", {}, texts.empty_map.title),
+    h("p", {}, texts.empty_map.text),
+    services,
+  );
+  const update = once_a_frame(() => {
+    const running = [...channels.table("services").values()].filter(
+      (service) => service.state !== "lost" && service.service !== "web",
+    );
+    const names = running.map((service) => service.service).join(", ");
+    set_text(services, names ? texts.empty_map.services(names) : texts.empty_map.no_services);
+    show(element, channels.table("tiles").size === 0 && channels.table("graph").size === 0);
+  });
+  channels.on_table("services", update);
+  channels.on_table("tiles", update);
+  channels.on_table("graph", update);
+  update();
+  return element;
+}
+
+function start(): void {
+  const token = take_token();
+  const theme = new Theme();
+  const channels = new Channels();
+  const rights = new Rights();
+  const api = new Api(token);
+  const notices = new Notices();
+
+  const robot = h("span", { class: "robot-name" });
+  const theme_button = h("button", {
+    type: "button",
+    class: "control flat",
+    title: texts.controls.theme,
+    "aria-label": texts.controls.theme,
+    onclick: () => theme.toggle(),
+  });
+  theme_button.append(icon("sun"));
+  const header = new Header(channels, rights, api, notices, [robot, theme_button]);
+  const canvas = h("div", {
+    class: "map",
+    id: "map",
+    role: "application",
+    "aria-label": texts.map_label,
+    tabindex: 0,
+  });
+  const scale = h("div", { class: "scale", "aria-hidden": "true" });
+  const stage = h("main", { class: "stage" }, canvas, scale, empty_map(channels));
+  const root = h("div", { class: "app" }, header.element, header.banners, stage);
+  document.body.replaceChildren(root);
+
+  const read_info = async () => {
+    const info = await api.get<Info>("/api/info").catch(() => null);
+    if (!info) return;
+    if (info.offers) rights.set_offers(info.offers);
+    set_text(robot, info.robot_id || texts.no_robot);
+    document.title = `${info.robot_id || texts.no_robot} – ${texts.title}`;
+  };
+  const connection = new Connection(channels, token, [], {
+    connected: (may_write, error) => {
+      rights.set_connected(true, may_write);
+      if (error) header.show_token_error();
+      void read_info();
+    },
+    disconnected: () => {
+      rights.set_connected(false, false);
+      channels.forget_values();
+    },
+    refused: (_, error) => notices.show(error, "error"),
+  });
+  const map = new MapView(canvas, scale, channels, theme);
+  const app: App = { channels, api, notices, rights, connection, map, theme };
+  const send = new SendView(app);
+  const views = {
+    now: new NowView(app),
+    send,
+    correct: new CorrectView(app),
+    understand: new UnderstandView(app),
+  };
+  const tabs = new Tabs(views);
+  stage.append(map_controls(map));
+  root.append(tabs.bar, tabs.panel, notices.element);
+  map.on_tap = (x_m, y_m, pixels_per_m) => {
+    if (!tabs.is_open("now") && !tabs.is_open("send")) return;
+    if (rights.may_write) tabs.open("send");
+    send.choose_point(x_m, y_m, pixels_per_m);
+  };
+  const stored = sessionStorage.getItem("topogeo-view") as ViewName | null;
+  tabs.open(stored && stored in views ? stored : "now");
+}
+
+start();

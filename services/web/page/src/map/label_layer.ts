@@ -1,0 +1,117 @@
+// Names of rooms and places, and zones that demand something, on the map.
+import { PointM, Room, Rule } from "../protocol";
+import { Palette } from "../ui/theme";
+import { View } from "./map_canvas";
+
+const kFont = "13px system-ui, sans-serif";
+
+interface Label {
+  text: string;
+  x: number; // pixels, of its middle
+  y: number;
+  width: number;
+}
+
+export function draw_rules(
+  context: CanvasRenderingContext2D,
+  view: View,
+  rules: ReadonlyMap<string, Rule>,
+  palette: Palette,
+): void {
+  for (const rule of rules.values()) {
+    const corners = rule.corners_m;
+    context.beginPath();
+    for (let i = 0; i + 1 < corners.length; i += 2) {
+      context.lineTo(
+        view.scale * corners[i] + view.offset_x,
+        view.offset_y - view.scale * corners[i + 1],
+      );
+    }
+    context.closePath();
+    const color = { no_go: palette.no_go, slow: palette.slow, one_way: palette.one_way }[rule.kind];
+    context.fillStyle = color;
+    context.globalAlpha = 0.18;
+    context.fill();
+    context.globalAlpha = 1;
+    context.strokeStyle = color;
+    context.lineWidth = 1.5;
+    context.stroke();
+  }
+}
+
+/** Places first, then zones, then large rooms; a name that would cover another is left out. */
+export function draw_labels(
+  context: CanvasRenderingContext2D,
+  view: View,
+  names: {
+    rooms: Iterable<Room>;
+    places: ReadonlyMap<string, PointM>;
+    rules: ReadonlyMap<string, Rule>;
+  },
+  palette: Palette,
+): void {
+  const { rooms, places, rules } = names;
+  context.font = kFont;
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  const drawn: Label[] = [];
+  for (const [name, place] of places) {
+    const x = view.scale * place.x_m + view.offset_x;
+    const y = view.offset_y - view.scale * place.y_m;
+    draw_pin(context, x, y, palette);
+    draw_label(context, { text: name, x, y: y - 15, width: 0 }, drawn, palette);
+  }
+  for (const [name, rule] of rules) {
+    const [x, y] = middle(rule.corners_m);
+    const at = { x: view.scale * x + view.offset_x, y: view.offset_y - view.scale * y };
+    draw_label(context, { text: name, ...at, width: 0 }, drawn, palette);
+  }
+  const by_area = [...rooms].sort((a, b) => b.area_m2 - a.area_m2);
+  for (const room of by_area) {
+    if (room.name === "" || places.has(room.name)) continue;
+    if (Math.sqrt(room.area_m2) * view.scale < 34) continue;
+    const x = view.scale * room.x_m + view.offset_x;
+    const y = view.offset_y - view.scale * room.y_m;
+    draw_label(context, { text: room.name, x, y, width: 0 }, drawn, palette);
+  }
+}
+
+function middle(corners: number[]): [number, number] {
+  let [x, y] = [0, 0];
+  for (let i = 0; i + 1 < corners.length; i += 2) {
+    x += corners[i];
+    y += corners[i + 1];
+  }
+  const count = Math.max(1, corners.length / 2);
+  return [x / count, y / count];
+}
+
+function draw_pin(context: CanvasRenderingContext2D, x: number, y: number, palette: Palette): void {
+  context.beginPath();
+  context.arc(x, y, 4.5, 0, 2 * Math.PI);
+  context.fillStyle = palette.goal;
+  context.fill();
+  context.strokeStyle = palette.halo;
+  context.lineWidth = 2;
+  context.stroke();
+}
+
+function draw_label(
+  context: CanvasRenderingContext2D,
+  label: Label,
+  drawn: Label[],
+  palette: Palette,
+): void {
+  label.width = context.measureText(label.text).width;
+  const covers = (other: Label) =>
+    Math.abs(label.x - other.x) < (label.width + other.width) / 2 + 6 &&
+    Math.abs(label.y - other.y) < 17;
+  if (drawn.some(covers)) return;
+  drawn.push(label);
+  context.lineJoin = "round";
+  context.lineWidth = 3.5;
+  context.strokeStyle = palette.halo;
+  context.strokeText(label.text, label.x, label.y);
+  context.fillStyle = palette.label;
+  context.fillText(label.text, label.x, label.y);
+}

@@ -1,0 +1,124 @@
+// A canvas on the map that is drawn anew only when the view leaves it or the zoom changes: while
+// the map is dragged the browser shifts the drawn picture, whatever is on it.
+import * as L from "leaflet";
+
+/**
+ * How metres of the map frame become pixels of a canvas: X = scale x + offset_x, Y = offset_y -
+ * scale y.
+ */
+export interface View {
+  scale: number; // pixels per metre
+  offset_x: number;
+  offset_y: number;
+  width: number; // pixels
+  height: number;
+  // What is visible, metres.
+  min_x: number;
+  min_y: number;
+  max_x: number;
+  max_y: number;
+}
+
+export type Draw = (context: CanvasRenderingContext2D, view: View) => void;
+
+export class MapCanvas {
+  private readonly canvas = document.createElement("canvas");
+  private readonly context: CanvasRenderingContext2D;
+  private top_left: L.LatLng = { lat: 0, lng: 0 };
+  private bottom_right: L.LatLng = { lat: 0, lng: 0 };
+  private zoom = Number.NaN;
+  private frame = 0;
+
+  /** padding: how far the canvas reaches beyond the view on each side, as a share of the view. */
+  constructor(
+    private readonly map: L.Map,
+    z_index: number,
+    private readonly padding: number,
+    private readonly draw: Draw,
+  ) {
+    const context = this.canvas.getContext("2d");
+    if (!context) throw new Error("this browser has no 2D canvas");
+    this.context = context;
+    this.canvas.className = "map-canvas leaflet-zoom-animated";
+    this.canvas.style.zIndex = String(z_index);
+    this.canvas.setAttribute("aria-hidden", "true");
+    map.getPane("overlayPane").append(this.canvas);
+    map.on("zoomanim", (event) => this.transform(event.center, event.zoom));
+    map.on("zoom", () => this.transform(map.getCenter(), map.getZoom()));
+    map.on("move", () => this.redraw_if_left());
+    map.on("moveend", () => this.redraw_if_left());
+    map.on("zoomend viewreset resize", () => this.redraw());
+    this.redraw();
+  }
+
+  /** Draws with the next frame. */
+  redraw(): void {
+    if (this.frame !== 0) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      this.paint();
+    });
+  }
+
+  private redraw_if_left(): void {
+    if (this.map.getZoom() !== this.zoom) return; // while zooming the old picture is scaled
+    const bounds = this.map.getBounds();
+    const low = bounds.getSouthWest();
+    const high = bounds.getNorthEast();
+    const inside =
+      low.lng >= this.top_left.lng &&
+      high.lng <= this.bottom_right.lng &&
+      low.lat >= this.bottom_right.lat &&
+      high.lat <= this.top_left.lat;
+    if (!inside) this.redraw();
+  }
+
+  private paint(): void {
+    const size = this.map.getSize();
+    if (size.x === 0 || size.y === 0) return;
+    const margin = L.point(Math.ceil(size.x * this.padding), Math.ceil(size.y * this.padding));
+    const width = size.x + 2 * margin.x;
+    const height = size.y + 2 * margin.y;
+    const corner = this.map.containerPointToLayerPoint(margin.multiplyBy(-1)).round();
+    this.zoom = this.map.getZoom();
+    const origin = this.map.getPixelOrigin().add(corner);
+    const scale = 2 ** this.zoom;
+    const view: View = {
+      scale,
+      offset_x: -origin.x,
+      offset_y: -origin.y,
+      width,
+      height,
+      min_x: origin.x / scale,
+      max_x: (origin.x + width) / scale,
+      min_y: -(origin.y + height) / scale,
+      max_y: -origin.y / scale,
+    };
+    this.top_left = { lat: view.max_y, lng: view.min_x };
+    this.bottom_right = { lat: view.min_y, lng: view.max_x };
+
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const columns = Math.round(width * ratio);
+    const rows = Math.round(height * ratio);
+    if (this.canvas.width !== columns || this.canvas.height !== rows) {
+      this.canvas.width = columns;
+      this.canvas.height = rows;
+      this.canvas.style.width = `${width}px`;
+      this.canvas.style.height = `${height}px`;
+    }
+    L.DomUtil.setTransform(this.canvas, corner, 1);
+    this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.context.clearRect(0, 0, width, height);
+    this.draw(this.context, view);
+  }
+
+  // Scales what was drawn to a zoom on the way.
+  private transform(center: L.LatLng, zoom: number): void {
+    if (Number.isNaN(this.zoom)) return;
+    const pane = L.DomUtil.getPosition(this.map.getPane("mapPane"));
+    const half = this.map.getSize().divideBy(2);
+    const origin = this.map.project(center, zoom).subtract(half).add(pane).round();
+    const offset = this.map.project(this.top_left, zoom).subtract(origin);
+    L.DomUtil.setTransform(this.canvas, offset, this.map.getZoomScale(zoom, this.zoom));
+  }
+}

@@ -1,0 +1,209 @@
+// What is on the map: takes the channels, draws the still part and the moving part.
+import { Channels } from "../channels";
+import { Loop } from "../protocol";
+import { recolor_grid, recolor_rooms, TileLayer } from "./tile_layer";
+import { Theme } from "../ui/theme";
+import { Box, known_box, TileVersions } from "./grid_frame";
+import { GraphLayer } from "./graph_layer";
+import { draw_labels, draw_rules } from "./label_layer";
+import { View } from "./map_canvas";
+import {
+  draw_body,
+  draw_goal,
+  draw_local_map,
+  draw_robot,
+  draw_route,
+  draw_scan,
+  PoseMark,
+} from "./robot_layer";
+import { TrailLayer } from "./trail_layer";
+
+export const kLayers = ["rooms", "names", "graph", "trail", "loops", "scan", "local_map"] as const;
+export type LayerName = (typeof kLayers)[number];
+
+/** A goal that is chosen and not given yet. */
+export interface Mark {
+  x_m: number;
+  y_m: number;
+}
+
+export class MapScene {
+  readonly visible: Record<LayerName, boolean> = {
+    rooms: true,
+    names: true,
+    graph: true,
+    trail: true,
+    loops: false,
+    scan: true,
+    local_map: false,
+  };
+  // Chosen by the views.
+  marks: Mark[] = [];
+  preview: number[] = []; // x, y of each point of the route, metres
+  pose_mark: PoseMark | null = null;
+  chosen_loop: Loop | null = null;
+
+  private readonly versions = new TileVersions();
+  private readonly grid: TileLayer;
+  private readonly rooms: TileLayer;
+  private readonly graph = new GraphLayer();
+  readonly trail = new TrailLayer();
+  private frame = "";
+
+  constructor(
+    private readonly channels: Channels,
+    private readonly theme: Theme,
+    private readonly still_changed: () => void,
+    private readonly moving_changed: () => void,
+  ) {
+    this.grid = new TileLayer("grid", () => recolor_grid(theme.palette), still_changed);
+    this.rooms = new TileLayer("rooms", () => recolor_rooms(theme.palette), still_changed);
+    theme.on_change(() => this.forget_pictures());
+    this.follow_grid();
+    this.follow_graph();
+    this.follow_trail();
+    const still = () => still_changed();
+    channels.on_table("places", still);
+    channels.on_table("rules", still);
+    channels.on_table("loops", still);
+    channels.on_value(["pose", "scan", "route", "goals", "local_map"], moving_changed);
+  }
+
+  /** The box around what is known of the floor; null without a map. */
+  box(): Box | null {
+    const info = this.channels.value("map");
+    return info ? known_box(info, this.channels.table("tiles").keys()) : null;
+  }
+
+  draw_still(context: CanvasRenderingContext2D, view: View): void {
+    const palette = this.theme.palette;
+    const info = this.channels.value("map");
+    if (info) {
+      this.grid.draw(context, view, info, this.versions);
+      if (this.visible.rooms && this.channels.table("rooms").size > 0) {
+        context.globalAlpha = palette.room_alpha;
+        this.rooms.draw(context, view, info, this.versions);
+        context.globalAlpha = 1;
+      }
+    }
+    const rules = this.channels.table("rules");
+    draw_rules(context, view, rules, palette);
+    if (this.visible.trail) this.trail.draw(context, view, palette);
+    if (this.visible.graph) this.graph.draw(context, view, palette);
+    const loops = this.visible.loops ? this.channels.table("loops").values() : [];
+    this.trail.draw_loops(context, view, loops, this.chosen_loop, palette);
+    if (this.visible.names) {
+      const rooms = this.channels.table("rooms").values();
+      const places = this.channels.table("places");
+      draw_labels(context, view, { rooms, places, rules }, palette);
+    }
+  }
+
+  draw_moving(context: CanvasRenderingContext2D, view: View): void {
+    const palette = this.theme.palette;
+    const pose = this.channels.value("pose");
+    const located = pose !== null && pose.state !== "SEARCHING" && pose.state !== "LOST";
+    const route = this.channels.value("route");
+    const goal = this.channels.value("goals")?.current;
+    const local = this.channels.value("local_map");
+    if (local && this.visible.local_map) draw_local_map(context, view, local, palette);
+    if (route?.found && goal) draw_route(context, view, route.points_m, palette, false);
+    if (goal && route?.found) this.draw_route_end(context, view, route.points_m);
+    if (this.preview.length > 0) draw_route(context, view, this.preview, palette, true);
+    this.marks.forEach((mark, i) => {
+      const number = this.marks.length > 1 ? String(i + 1) : "";
+      draw_goal(context, view, mark.x_m, mark.y_m, palette, number);
+    });
+    const scan = this.channels.value("scan");
+    if (scan && located && this.visible.scan) draw_scan(context, view, scan, palette);
+    if (pose && located) {
+      const color = pose.state === "TRACKING" ? palette.robot : palette.ellipse;
+      draw_robot(context, view, pose, palette, color);
+    }
+    if (this.pose_mark) draw_body(context, view, this.pose_mark, palette.goal, palette);
+  }
+
+  /** Draws all anew, after something chosen has changed. */
+  refresh(): void {
+    this.still_changed();
+    this.moving_changed();
+  }
+
+  private draw_route_end(context: CanvasRenderingContext2D, view: View, points: number[]): void {
+    const last = points.length - 2;
+    if (last < 0) return;
+    draw_goal(context, view, points[last], points[last + 1], this.theme.palette);
+  }
+
+  private forget_pictures(): void {
+    this.grid.clear();
+    this.rooms.clear();
+    this.refresh();
+  }
+
+  private follow_grid(): void {
+    const rebuild = () => {
+      const info = this.channels.value("map");
+      this.versions.clear();
+      if (!info) return;
+      for (const [key, version] of this.channels.table("tiles")) {
+        this.versions.add(info, Number(key), version);
+      }
+    };
+    this.channels.on_value(["map"], () => {
+      const frame = this.channels.value("map")?.frame ?? "";
+      if (frame !== "" && frame !== this.frame) {
+        this.frame = frame;
+        this.grid.clear();
+        this.rooms.clear();
+        rebuild();
+      }
+      this.still_changed();
+    });
+    this.channels.on_table("tiles", (change) => {
+      const info = this.channels.value("map");
+      if (change.all || change.gone.length > 0) {
+        rebuild();
+      } else if (info) {
+        const tiles = this.channels.table("tiles");
+        for (const key of change.set) this.versions.add(info, Number(key), tiles.get(key) ?? 0);
+      }
+      this.still_changed();
+    });
+    this.channels.on_table("rooms", () => this.still_changed());
+  }
+
+  private follow_graph(): void {
+    const table = this.channels.table("graph");
+    this.channels.on_table("graph", (change) => {
+      if (change.all) this.graph.clear();
+      for (const key of change.gone) {
+        if (key.startsWith("n")) this.graph.remove_node(Number(key.slice(1)));
+        else if (key.startsWith("b")) this.graph.remove_branch(Number(key.slice(1)));
+      }
+      for (const key of change.set) {
+        const id = Number(key.slice(1));
+        const value = table.get(key);
+        if (key === "map" || !value) continue;
+        if (key.startsWith("n")) {
+          const { kind = "real", x_m = 0, y_m = 0 } = value;
+          this.graph.set_node({ id, kind, x: x_m, y: y_m });
+        } else {
+          const points = new Float32Array(value.points_m ?? []);
+          this.graph.set_branch(id, points, value.virtual === true);
+        }
+      }
+      this.still_changed();
+    });
+  }
+
+  private follow_trail(): void {
+    const table = this.channels.table("trail");
+    this.channels.on_table("trail", (change) => {
+      if (change.all) this.trail.clear();
+      for (const key of change.gone) this.trail.remove_chunk(Number(key));
+      for (const key of change.set) this.trail.set_chunk(Number(key), table.get(key) ?? []);
+      this.still_changed();
+    });
+  }
+}

@@ -1,0 +1,199 @@
+// The map on the page: pan, zoom, fit, follow, and what a tap or a drag on it means.
+import * as L from "leaflet";
+import { Channels } from "../channels";
+import { Theme } from "../ui/theme";
+import { MapCanvas } from "./map_canvas";
+import { MapScene } from "./map_scene";
+import { PoseMark } from "./robot_layer";
+
+const kFirstZoom = 4; // 16 pixels a metre
+const kLargestFitZoom = 6;
+const kTapPx = 8; // a drag that is shorter gives no heading
+
+export class MapView {
+  readonly scene: MapScene;
+  private readonly map: L.Map;
+  private readonly still: MapCanvas;
+  private readonly moving: MapCanvas;
+  private readonly scale_bar: HTMLElement;
+  private moved = false; // by a person: until then a map that grows is kept in view
+  private following = false;
+  private fitted = ""; // the box that was last fitted
+  private pose_tool: ((mark: PoseMark, done: boolean) => void) | null = null;
+
+  on_tap: (x_m: number, y_m: number, pixels_per_m: number) => void = () => undefined;
+  on_follow: (following: boolean) => void = () => undefined;
+
+  /** container: filled by the map; scale_bar: gets width and text. */
+  constructor(
+    container: HTMLElement,
+    scale_bar: HTMLElement,
+    private readonly channels: Channels,
+    theme: Theme,
+  ) {
+    this.scale_bar = scale_bar;
+    this.map = L.map(container, {
+      crs: L.CRS.Simple,
+      center: [0, 0],
+      zoom: kFirstZoom,
+      minZoom: -5,
+      maxZoom: 9,
+      zoomSnap: 0.25,
+      zoomDelta: 1,
+      wheelPxPerZoomLevel: 90,
+      zoomControl: false,
+      attributionControl: false,
+      tap: false,
+    });
+    this.scene = new MapScene(
+      channels,
+      theme,
+      () => this.on_still_change(),
+      () => this.on_moving_change(),
+    );
+    this.still = new MapCanvas(this.map, 1, 0.25, (c, view) => this.scene.draw_still(c, view));
+    this.moving = new MapCanvas(this.map, 2, 0.1, (c, view) => this.scene.draw_moving(c, view));
+    this.map.on("click", (event) => {
+      if (this.pose_tool) return;
+      this.on_tap(event.latlng.lng, event.latlng.lat, 2 ** this.map.getZoom());
+    });
+    this.map.on("dragstart", () => {
+      this.moved = true;
+      this.follow(false);
+    });
+    container.addEventListener("wheel", () => (this.moved = true), { passive: true });
+    container.addEventListener("touchmove", () => (this.moved = true), { passive: true });
+    this.map.on("zoom zoomend move resize", () => this.show_scale());
+    new ResizeObserver(() => this.map.invalidateSize({ pan: false })).observe(container);
+    this.listen_for_pose(container);
+    this.show_scale();
+  }
+
+  zoom_in(): void {
+    this.moved = true;
+    this.map.zoomIn();
+  }
+
+  zoom_out(): void {
+    this.moved = true;
+    this.map.zoomOut();
+  }
+
+  /** Shows all that is known of the floor, and goes on so while it grows. */
+  fit(animate = true): void {
+    this.moved = false;
+    const box = this.scene.box();
+    if (!box) return;
+    const key = JSON.stringify(box);
+    if (key === this.fitted && !animate) return;
+    this.fitted = key;
+    const bounds = L.latLngBounds([
+      [box.min_y, box.min_x],
+      [box.max_y, box.max_x],
+    ]);
+    const options = { animate, maxZoom: kLargestFitZoom };
+    this.map.fitBounds(bounds, {
+      ...options,
+      paddingTopLeft: [24, 24],
+      paddingBottomRight: [24, 40],
+    });
+  }
+
+  follow(following: boolean): void {
+    if (this.following === following) return;
+    this.following = following;
+    this.on_follow(following);
+    if (following) this.center_on_robot();
+  }
+
+  is_following(): boolean {
+    return this.following;
+  }
+
+  /** Brings a point into view. */
+  show(x_m: number, y_m: number): void {
+    if (!this.map.getBounds().contains([y_m, x_m])) this.map.panTo([y_m, x_m]);
+  }
+
+  /** Whether arrow keys move the map. */
+  take_keys(take: boolean): void {
+    if (take) this.map.keyboard.enable();
+    else this.map.keyboard.disable();
+  }
+
+  /**
+   * Has press and drag on the map set a pose: the point where it begins, looking to where it ends.
+   */
+  start_pose(on_change: (mark: PoseMark, done: boolean) => void): void {
+    this.pose_tool = on_change;
+    this.map.dragging.disable();
+    this.map.getContainer().classList.add("setting-pose");
+  }
+
+  end_pose(): void {
+    this.pose_tool = null;
+    this.map.dragging.enable();
+    this.map.getContainer().classList.remove("setting-pose");
+  }
+
+  private listen_for_pose(container: HTMLElement): void {
+    let from: { x: number; y: number; at: L.LatLng } | null = null;
+    const mark = (event: PointerEvent): PoseMark | null => {
+      if (!from) return null;
+      const at = this.map.mouseEventToLatLng(event);
+      const moved = Math.hypot(event.clientX - from.x, event.clientY - from.y) > kTapPx;
+      const theta = moved ? Math.atan2(at.lat - from.at.lat, at.lng - from.at.lng) : null;
+      const before = this.scene.pose_mark?.theta ?? 0;
+      return { x: from.at.lng, y: from.at.lat, theta: theta ?? before };
+    };
+    const pass_on = (event: PointerEvent, done: boolean) => {
+      const pose = mark(event);
+      if (!pose || !this.pose_tool) return;
+      this.scene.pose_mark = pose;
+      this.moving.redraw();
+      this.pose_tool(pose, done);
+    };
+    container.addEventListener("pointerdown", (event) => {
+      if (!this.pose_tool || !event.isPrimary) return;
+      from = { x: event.clientX, y: event.clientY, at: this.map.mouseEventToLatLng(event) };
+      container.setPointerCapture(event.pointerId);
+      pass_on(event, false);
+    });
+    container.addEventListener("pointermove", (event) => pass_on(event, false));
+    container.addEventListener("pointerup", (event) => {
+      pass_on(event, true);
+      from = null;
+    });
+    container.addEventListener("pointercancel", () => (from = null));
+  }
+
+  private on_still_change(): void {
+    if (!this.moved && !this.following) this.fit(false);
+    this.still?.redraw();
+  }
+
+  private on_moving_change(): void {
+    if (this.following) this.center_on_robot();
+    this.moving?.redraw();
+  }
+
+  private center_on_robot(): void {
+    const pose = this.channels.value("pose");
+    if (!pose || pose.state === "SEARCHING" || pose.state === "LOST") return;
+    const center = this.map.getCenter();
+    const off_px =
+      Math.hypot(pose.x_m - center.lng, pose.y_m - center.lat) * 2 ** this.map.getZoom();
+    if (off_px > 2) this.map.panTo([pose.y_m, pose.x_m], { animate: off_px > 60, duration: 0.3 });
+  }
+
+  // A bar of 1, 2 or 5 times a power of ten metres, at most 120 pixels.
+  private show_scale(): void {
+    const scale = 2 ** this.map.getZoom();
+    const most = 120 / scale;
+    const power = 10 ** Math.floor(Math.log10(most));
+    const meters = [5, 2, 1].map((step) => step * power).find((step) => step <= most) ?? power;
+    this.scale_bar.style.width = `${Math.round(meters * scale)}px`;
+    const text = meters >= 1000 ? `${meters / 1000} km` : `${Number(meters.toPrecision(1))} m`;
+    if (this.scale_bar.textContent !== text) this.scale_bar.textContent = text;
+  }
+}

@@ -1,0 +1,182 @@
+// Pictures of the grid and of the rooms, in the colours of the theme. A picture stays until its
+// next version has come, and one of another level until those of the level wanted are there.
+import { MapInfo } from "../protocol";
+import { Palette } from "../ui/theme";
+import { kTilePixels, level_for, tile_key, tiles_in, TileVersions, to_map } from "./grid_frame";
+import { View } from "./map_canvas";
+
+const kKeptTiles = 300;
+
+interface Tile {
+  picture: HTMLCanvasElement | null;
+  version: string; // that is shown or on its way
+  used: number;
+}
+
+type Recolor = (pixels: Uint8ClampedArray) => void;
+
+export class TileLayer {
+  private readonly tiles = new Map<string, Tile>();
+  private shown_level = 0;
+  private uses = 0;
+  private generation = 0; // counts what makes all pictures void
+
+  /** layer: as in the address; on_load: something is to be drawn anew. */
+  constructor(
+    private readonly layer: "grid" | "rooms",
+    private readonly recolor: () => Recolor,
+    private readonly on_load: () => void,
+  ) {}
+
+  clear(): void {
+    this.tiles.clear();
+    ++this.generation;
+  }
+
+  /** extra: a further version on which the pictures depend. */
+  draw(
+    context: CanvasRenderingContext2D,
+    view: View,
+    info: MapInfo,
+    versions: TileVersions,
+    extra = "",
+  ): void {
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const level = level_for(view.scale * info.resolution_m * ratio);
+    const complete = this.load(view, info, versions, level, extra);
+    context.save();
+    // Cells of the grid, rows upwards, to pixels.
+    const [cos, sin] = [Math.cos(info.theta_rad), Math.sin(info.theta_rad)];
+    const cell = view.scale * info.resolution_m;
+    const [x, y] = to_map(info, 0, 0);
+    context.transform(
+      cell * cos,
+      -cell * sin,
+      -cell * sin,
+      -cell * cos,
+      view.scale * x + view.offset_x,
+      view.offset_y - view.scale * y,
+    );
+    context.imageSmoothingEnabled = cell * 2 ** level < 1;
+    if (complete) {
+      this.shown_level = level;
+    } else if (this.shown_level !== level) {
+      this.paint(context, view, info, this.shown_level);
+    }
+    this.paint(context, view, info, level);
+    context.restore();
+    this.forget();
+  }
+
+  private paint(context: CanvasRenderingContext2D, view: View, info: MapInfo, level: number): void {
+    const range = tiles_in(info, level, view);
+    const side = kTilePixels * 2 ** level;
+    for (let row = range.first_row; row <= range.last_row; ++row) {
+      for (let column = range.first_column; column <= range.last_column; ++column) {
+        const tile = this.tiles.get(tile_key(level, column, row));
+        if (!tile?.picture) continue;
+        tile.used = ++this.uses;
+        context.save();
+        context.translate(column * side, (row + 1) * side);
+        context.scale(1, -1);
+        context.drawImage(tile.picture, 0, 0, side, side);
+        context.restore();
+      }
+    }
+  }
+
+  // Fetches what is missing; true when all that is in view is there.
+  private load(
+    view: View,
+    info: MapInfo,
+    versions: TileVersions,
+    level: number,
+    extra: string,
+  ): boolean {
+    const range = tiles_in(info, level, view);
+    let complete = true;
+    for (let row = range.first_row; row <= range.last_row; ++row) {
+      for (let column = range.first_column; column <= range.last_column; ++column) {
+        const version = versions.of(level, column, row);
+        if (version === undefined) continue;
+        const key = tile_key(level, column, row);
+        const wanted = `${version}${extra}`;
+        const tile = this.tiles.get(key);
+        if (tile?.version !== wanted) this.fetch(info, key, wanted);
+        if (!tile?.picture) complete = false;
+      }
+    }
+    return complete;
+  }
+
+  private fetch(info: MapInfo, key: string, version: string): void {
+    const generation = this.generation;
+    const before = this.tiles.get(key);
+    const tile: Tile = { picture: before?.picture ?? null, version, used: ++this.uses };
+    this.tiles.set(key, tile);
+    const image = new Image();
+    image.onload = () => {
+      if (generation !== this.generation || tile.version !== version) return;
+      tile.picture = this.paint_tile(image);
+      this.on_load();
+    };
+    image.onerror = () => {
+      // Perhaps the service starts again: asked for once more when the version changes or the view
+      // moves on.
+      if (tile.version === version) window.setTimeout(() => (tile.version = ""), 2000);
+    };
+    image.src = `/tiles/${this.layer}/${info.frame}/${key}.png?v=${version}`;
+  }
+
+  private paint_tile(image: HTMLImageElement): HTMLCanvasElement {
+    const canvas = document.createElement("canvas");
+    canvas.width = kTilePixels;
+    canvas.height = kTilePixels;
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    if (!context) return canvas;
+    context.drawImage(image, 0, 0);
+    const pixels = context.getImageData(0, 0, kTilePixels, kTilePixels);
+    this.recolor()(pixels.data);
+    context.putImageData(pixels, 0, 0);
+    return canvas;
+  }
+
+  private forget(): void {
+    if (this.tiles.size <= kKeptTiles) return;
+    const oldest = [...this.tiles.entries()].sort((a, b) => a[1].used - b[1].used);
+    for (const [key] of oldest.slice(0, this.tiles.size - kKeptTiles)) this.tiles.delete(key);
+  }
+}
+
+// As the service paints them.
+const kRoomColors = [0x8dd3c7, 0xffffb3, 0xbebada, 0xfb8072, 0x80b1d3, 0xfdb462];
+
+function rgb(color: string): [number, number, number] {
+  const value = parseInt(color.slice(1), 16);
+  return [value >> 16, (value >> 8) & 255, value & 255];
+}
+
+/** Free and occupied cells in the colours of the theme ("#rrggbb"). */
+export function recolor_grid(palette: Palette): Recolor {
+  const free = rgb(palette.free);
+  const occupied = rgb(palette.occupied);
+  return (pixels) => {
+    for (let i = 0; i < pixels.length; i += 4) {
+      if (pixels[i + 3] === 0) continue;
+      const color = pixels[i] > 127 ? free : occupied;
+      [pixels[i], pixels[i + 1], pixels[i + 2]] = color;
+    }
+  };
+}
+
+/** Rooms in the colours of the theme. */
+export function recolor_rooms(palette: Palette): Recolor {
+  const colors = new Map(kRoomColors.map((color, i) => [color, rgb(palette.rooms[i])]));
+  return (pixels) => {
+    for (let i = 0; i < pixels.length; i += 4) {
+      if (pixels[i + 3] === 0) continue;
+      const color = colors.get((pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2]);
+      if (color) [pixels[i], pixels[i + 1], pixels[i + 2]] = color;
+    }
+  };
+}

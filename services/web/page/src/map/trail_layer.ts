@@ -1,0 +1,108 @@
+// Stops of the corrected trajectory, and the loops closed between them.
+import { Loop, Tables } from "../protocol";
+import { Palette } from "../ui/theme";
+import { View } from "./map_canvas";
+
+const kChunkStops = 32;
+
+export class TrailLayer {
+  private chunks = new Map<number, Tables["trail"]>();
+
+  clear(): void {
+    this.chunks.clear();
+  }
+
+  set_chunk(number: number, stops: Tables["trail"]): void {
+    this.chunks.set(number, stops);
+  }
+
+  remove_chunk(number: number): void {
+    this.chunks.delete(number);
+  }
+
+  /** How many stops there are. */
+  size(): number {
+    let stops = 0;
+    for (const [number, chunk] of this.chunks) {
+      stops = Math.max(stops, kChunkStops * number + chunk.length);
+    }
+    return stops;
+  }
+
+  /** x, y (metres), theta (radians) of a stop; null when its place is not known. */
+  stop(number: number): [number, number, number] | null {
+    return this.chunks.get(Math.floor(number / kChunkStops))?.[number % kChunkStops] ?? null;
+  }
+
+  draw(context: CanvasRenderingContext2D, view: View, palette: Palette): void {
+    context.strokeStyle = palette.trail;
+    context.lineWidth = 1.6;
+    context.lineJoin = "round";
+    context.beginPath();
+    let pen_down = false;
+    const numbers = [...this.chunks.keys()].sort((a, b) => a - b);
+    for (const number of numbers) {
+      for (const stop of this.chunks.get(number) ?? []) {
+        if (!stop) {
+          pen_down = false;
+          continue;
+        }
+        const x = view.scale * stop[0] + view.offset_x;
+        const y = view.offset_y - view.scale * stop[1];
+        if (pen_down) context.lineTo(x, y);
+        else context.moveTo(x, y);
+        pen_down = true;
+      }
+    }
+    context.stroke();
+  }
+
+  /** Lines between the stops of accepted loops; the chosen one thick, also when it was rejected. */
+  draw_loops(
+    context: CanvasRenderingContext2D,
+    view: View,
+    loops: Iterable<Loop>,
+    chosen: Loop | null,
+    palette: Palette,
+  ): void {
+    context.strokeStyle = palette.loop;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    for (const loop of loops) {
+      if (loop.accepted) this.trace_loop(context, view, loop);
+    }
+    context.stroke();
+    if (!chosen) return;
+    context.beginPath();
+    this.trace_loop(context, view, chosen);
+    context.lineWidth = 4;
+    if (!chosen.accepted) context.setLineDash([7, 6]);
+    context.stroke();
+    context.setLineDash([]);
+    for (const number of [chosen.earlier, chosen.later]) {
+      const stop = this.stop(number);
+      if (!stop) continue;
+      context.beginPath();
+      context.arc(
+        view.scale * stop[0] + view.offset_x,
+        view.offset_y - view.scale * stop[1],
+        7,
+        0,
+        2 * Math.PI,
+      );
+      context.fillStyle = palette.loop;
+      context.fill();
+      context.strokeStyle = palette.halo;
+      context.lineWidth = 2;
+      context.stroke();
+      context.strokeStyle = palette.loop;
+    }
+  }
+
+  private trace_loop(context: CanvasRenderingContext2D, view: View, loop: Loop): void {
+    const [from, to] = [this.stop(loop.earlier), this.stop(loop.later)];
+    if (!from || !to) return;
+    context.moveTo(view.scale * from[0] + view.offset_x, view.offset_y - view.scale * from[1]);
+    context.lineTo(view.scale * to[0] + view.offset_x, view.offset_y - view.scale * to[1]);
+  }
+}

@@ -1,0 +1,262 @@
+// What the service sends and takes; docs/web.md describes it. Metres, radians, seconds, map frame.
+import { NodeKind } from "./map/graph_layer";
+
+export interface Pose {
+  stamp_s: number;
+  sequence: number;
+  state: "TRACKING" | "AMBIGUOUS" | "SEARCHING" | "LOST";
+  mode: "mapping" | "localization";
+  confidence: number | null;
+  x_m: number; // means nothing in SEARCHING and LOST, as y_m and theta_rad
+  y_m: number;
+  theta_rad: number;
+  covariance: (number | null)[]; // 3 x 3, row-major
+  reason: string;
+}
+
+export interface Scan {
+  points_robot_m: number[]; // x, y of each hit, robot frame
+  x_m?: number; // of the robot at that scan; missing where its pose is not known
+  y_m?: number;
+  theta_rad?: number;
+}
+
+export interface Navigator {
+  state: "idle" | "driving" | "relocalizing" | "blocked" | "arrived" | "stopped";
+  reason: string;
+  message: string;
+  goal_id: string;
+  driven_m: number | null;
+  rest_m: number | null;
+  rest_s: number | null;
+  linear_mps: number | null;
+  free_ahead_m: number | null;
+  detours: number;
+  guard_stops: number;
+}
+
+export interface PointM {
+  x_m: number;
+  y_m: number;
+}
+
+export interface Route {
+  found: boolean;
+  message: string;
+  length_m: number | null;
+  points_m: number[];
+  nearest_reachable?: PointM;
+}
+
+export interface Preview extends Partial<Route> {
+  found: boolean;
+  time_s?: number | null;
+  min_clearance_m?: number | null;
+}
+
+export interface Goals {
+  current: { goal_id: string; text: string; x_m?: number; y_m?: number } | null;
+  waiting: { text: string }[];
+  exploring: boolean;
+}
+
+export interface Drive {
+  held: boolean;
+  linear_mps: number | null;
+  angular_radps: number | null;
+  free_ahead_m: number | null;
+  message: string;
+}
+
+export interface Base {
+  state: string;
+  reason: string;
+  battery_v: number | null;
+  battery_low: boolean;
+}
+
+export interface Laser {
+  state: string;
+  reason: string;
+  scans_per_s: number | null;
+}
+
+export interface MapInfo {
+  version: string | number;
+  columns: number;
+  rows: number;
+  resolution_m: number;
+  frame: string;
+  x_m: number; // lower left corner of cell (0, 0)
+  y_m: number;
+  theta_rad: number;
+}
+
+export interface LocalMap {
+  session: string;
+  number: number;
+  x_m?: number; // where the stop is on the map; missing where unknown
+  y_m?: number;
+  theta_rad?: number;
+  nodes: [number, number, NodeKind][]; // robot frame of the stop
+  branches: number[][];
+  points_m: number[];
+}
+
+export interface Values {
+  pose: Pose;
+  scan: Scan;
+  navigator: Navigator;
+  route: Route;
+  goals: Goals;
+  drive: Drive;
+  base: Base;
+  laser: Laser;
+  map: MapInfo;
+  truth: { x_m: number; y_m: number; theta_rad: number; collisions: number };
+  local_map: LocalMap;
+  viewers: { viewers: number; operators: number };
+  time: { time_s: number };
+}
+
+export interface Room extends PointM {
+  name: string;
+  area_m2: number;
+  color: number;
+}
+
+export interface Rule {
+  kind: "no_go" | "slow" | "one_way";
+  value: number | null;
+  corners_m: number[];
+}
+
+export interface GraphObject {
+  // n12
+  kind?: NodeKind;
+  x_m?: number;
+  y_m?: number;
+  // b7
+  virtual?: boolean;
+  points_m?: number[];
+  // map
+  nodes?: number;
+  branches?: number;
+}
+
+export interface Loop {
+  step: number;
+  earlier: number;
+  later: number;
+  accepted: boolean;
+  outcome: "accepted" | "gate" | "unconfirmed" | "no_closing" | "outvoted";
+  explanation: string;
+  source: "prediction" | "place" | "window";
+  correction_m: number | null;
+  correction_rad: number | null;
+  fitness: number | null;
+  probability: number | null;
+}
+
+export interface Service {
+  service: string;
+  host: string;
+  state: string;
+  message: string;
+  waits_for: string;
+  input: string;
+  input_rate_per_s: number | null;
+  input_age_s: number | null;
+  faults: number;
+  last_error: string;
+  cpu_s: number | null;
+  memory_bytes: number | null;
+  version: string;
+}
+
+export interface Worker {
+  name: string;
+  host: string;
+  slots: number;
+  in_hand: number;
+  load: number | null;
+  tasks_per_s: number | null;
+  tasks_done: number;
+  failures: number;
+  draining: boolean;
+}
+
+export interface Merge {
+  state: "open" | "accepted" | "refused" | "withdrawn";
+  robot: string;
+  other_robot: string;
+  confidence: number | null;
+  stops: number;
+  distance_m: number | null;
+  matches: number;
+  fitness: number | null;
+  contradicted: number | null;
+}
+
+export interface LogEvent {
+  time_s: number;
+  level: "info" | "warning" | "error";
+  source: string;
+  text: string;
+}
+
+export interface Tables {
+  tiles: number;
+  rooms: Room;
+  places: PointM;
+  rules: Rule;
+  graph: GraphObject;
+  trail: ([number, number, number] | null)[];
+  loops: Loop;
+  services: Service;
+  workers: Worker;
+  merges: Merge;
+  events: LogEvent;
+}
+
+export type ValueName = keyof Values;
+export type TableName = keyof Tables;
+
+export const kTables: readonly TableName[] = [
+  "tiles",
+  "rooms",
+  "places",
+  "rules",
+  "graph",
+  "trail",
+  "loops",
+  "services",
+  "workers",
+  "merges",
+  "events",
+];
+
+export interface ValueMessage {
+  channel: ValueName;
+  version: number;
+  value: unknown;
+}
+
+export interface TableMessage {
+  channel: TableName;
+  from: number; // 0: a snapshot
+  version: number;
+  set: Record<string, unknown>;
+  gone: string[];
+}
+
+export interface Info {
+  protocol: number;
+  robot_id: string;
+  version: string;
+  life: string;
+  may_write: boolean;
+  offers?: string[];
+}
+
+export type Goal = ({ place: string } | PointM) & { heading_rad?: number };

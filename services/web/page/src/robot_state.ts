@@ -1,0 +1,46 @@
+// The robot's state in a word and a sentence.
+import { Channels } from "./channels";
+import { Rights } from "./app";
+import { texts } from "./texts";
+
+export type StateName = keyof typeof texts.states;
+
+export interface RobotState {
+  name: StateName;
+  word: string;
+  reason: string;
+}
+
+export function robot_state(channels: Channels, rights: Rights): RobotState {
+  const named = (name: StateName, reason: string) => ({ name, word: texts.states[name], reason });
+  if (!rights.connected) return named("offline", texts.reasons.offline);
+  const pose = channels.value("pose");
+  return pose ? named(pose.state, pose.reason) : named("none", texts.reasons.none);
+}
+
+/** Why the base does not move until somebody releases it; null when it may. */
+export function held_text(channels: Channels): string | null {
+  const base = channels.value("base");
+  if (base?.state === "halted") return texts.held;
+  if (base?.state === "emergency_stop") return texts.emergency;
+  return null;
+}
+
+/** What the navigator does, as a sentence. */
+export function navigator_text(channels: Channels): string {
+  const navigator = channels.value("navigator");
+  if (!navigator) return texts.send.no_navigator;
+  const state = texts.navigator[navigator.state] ?? navigator.state;
+  const halted = navigator.state === "stopped" || navigator.state === "blocked";
+  const halt = halted ? texts.halts[navigator.reason] : undefined;
+  const parts = [halt ? `${state}. ${halt}` : `${state}.`];
+  if (navigator.message) parts.push(sentence(navigator.message));
+  return parts.join(" ");
+}
+
+/** A message of a service with a capital letter and a full stop. */
+export function sentence(text: string): string {
+  if (text === "") return "";
+  const capital = text[0].toUpperCase() + text.slice(1);
+  return /[.!?…]$/.test(capital) ? capital : `${capital}.`;
+}

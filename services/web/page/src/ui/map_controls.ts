@@ -1,0 +1,91 @@
+// Buttons on the map: zoom, fit, follow, what is shown.
+import { kLayers } from "../map/map_scene";
+import { MapView } from "../map/map_view";
+import { texts } from "../texts";
+import { h, icon, IconName, show } from "./dom";
+
+const kLayersKey = "topogeo-layers";
+
+export function map_controls(map: MapView): HTMLElement {
+  const control = (name: string, picture: IconName, action: () => void) => {
+    const element = h("button", {
+      type: "button",
+      class: "control",
+      title: name,
+      "aria-label": name,
+      onclick: action,
+    });
+    element.append(icon(picture));
+    return element;
+  };
+  const words = texts.controls;
+  const follow = control(words.follow, "follow", () => map.follow(!map.is_following()));
+  map.on_follow = (following) => follow.setAttribute("aria-pressed", String(following));
+  map.on_follow(false);
+  const menu = layer_menu(map);
+  const layers = control(words.layers, "layers", () => {
+    show(menu, menu.hidden);
+    layers.setAttribute("aria-expanded", String(!menu.hidden));
+  });
+  layers.setAttribute("aria-expanded", "false");
+  listen(map);
+  return h(
+    "div",
+    { class: "controls" },
+    h(
+      "div",
+      { class: "control-group" },
+      control(words.zoom_in, "plus", () => map.zoom_in()),
+      control(words.zoom_out, "minus", () => map.zoom_out()),
+    ),
+    h(
+      "div",
+      { class: "control-group" },
+      control(words.fit, "fit", () => map.fit()),
+      follow,
+      layers,
+    ),
+    menu,
+  );
+}
+
+function layer_menu(map: MapView): HTMLElement {
+  const { visible } = map.scene;
+  Object.assign(visible, stored_layers());
+  const boxes = kLayers.map((name) => {
+    const box = h("input", { type: "checkbox", checked: visible[name] });
+    box.addEventListener("change", () => {
+      visible[name] = box.checked;
+      localStorage.setItem(kLayersKey, JSON.stringify(visible));
+      map.scene.refresh();
+    });
+    return h("label", {}, box, texts.layers[name]);
+  });
+  return h(
+    "div",
+    { class: "layer-menu", role: "group", "aria-label": texts.controls.layers, hidden: true },
+    ...boxes,
+  );
+}
+
+function stored_layers(): Record<string, boolean> {
+  try {
+    const stored: unknown = JSON.parse(localStorage.getItem(kLayersKey) ?? "{}");
+    const known = Object.entries(stored as Record<string, unknown>).filter(
+      ([name, value]) => kLayers.some((layer) => layer === name) && typeof value === "boolean",
+    );
+    return Object.fromEntries(known) as Record<string, boolean>;
+  } catch {
+    return {};
+  }
+}
+
+function listen(map: MapView): void {
+  document.addEventListener("keydown", (event) => {
+    const target = event.target as HTMLElement;
+    if (target.closest("input, select, textarea")) return;
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.key === "f") map.fit();
+    if (event.key === "r") map.follow(!map.is_following());
+  });
+}

@@ -1,0 +1,31 @@
+// Short messages that go by themselves; errors stay longer.
+import { button, h } from "./dom";
+import { texts } from "../texts";
+
+const kShownMs = { info: 4000, error: 10000 };
+
+export class Notices {
+  readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
+
+  show(text: string, kind: "info" | "error" = "info"): void {
+    const notice = h("div", { class: `notice ${kind}` }, h("span", {}, text));
+    notice.append(
+      button("×", () => notice.remove(), { class: "notice-close", "aria-label": texts.close }),
+    );
+    this.element.append(notice);
+    while (this.element.childElementCount > 3) this.element.firstElementChild?.remove();
+    window.setTimeout(() => notice.remove(), kShownMs[kind]);
+  }
+
+  /** Reports what becomes of an order. True when it was taken. */
+  async report(order: Promise<unknown>, done: string): Promise<boolean> {
+    try {
+      const answer = (await order) as { message?: string } | null;
+      this.show(answer?.message || done);
+      return true;
+    } catch (error) {
+      this.show(error instanceof Error ? error.message : String(error), "error");
+      return false;
+    }
+  }
+}

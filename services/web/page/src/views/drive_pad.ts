@@ -1,0 +1,182 @@
+// Driving by hand: while a button or a key is held, an order every 100 ms; none means stop.
+import { App } from "../app";
+import * as format from "../format";
+import { texts } from "../texts";
+import { button, h, icon, IconName, set_text, show } from "../ui/dom";
+
+const kPeriodMs = 100;
+const kTurnRadps = 0.6;
+const kFastestMps = 0.6;
+const kFirstMps = 0.3;
+
+type Direction = "forward" | "backward" | "turn_left" | "turn_right";
+
+const kKeys: Record<string, Direction> = {
+  w: "forward",
+  s: "backward",
+  a: "turn_left",
+  d: "turn_right",
+  ArrowUp: "forward",
+  ArrowDown: "backward",
+  ArrowLeft: "turn_left",
+  ArrowRight: "turn_right",
+};
+
+const words = texts.send;
+
+export class DrivePad {
+  readonly element: HTMLElement;
+  // Pointers and keys that are held, each with its direction.
+  private readonly held = new Set<string>();
+  private readonly pad: HTMLElement;
+  private readonly state = h("p", { class: "quiet", role: "status" });
+  private readonly toggle: HTMLButtonElement;
+  private readonly speed: HTMLInputElement;
+  private timer = 0;
+  private active = false;
+
+  constructor(private readonly app: App) {
+    this.speed = h("input", {
+      type: "range",
+      min: 0.1,
+      max: kFastestMps,
+      step: 0.05,
+      value: kFirstMps,
+      id: "drive-speed",
+    });
+    const value = h("output", { for: "drive-speed" }, format.speed(kFirstMps));
+    this.speed.addEventListener("input", () =>
+      set_text(value, format.speed(Number(this.speed.value))),
+    );
+    this.toggle = button(words.drive_on, () => this.set_active(!this.active), {
+      "aria-pressed": "false",
+    });
+    this.pad = h(
+      "div",
+      { class: "drive-pad", hidden: true },
+      this.direction("forward", "up"),
+      this.direction("turn_left", "left"),
+      this.direction("turn_right", "right"),
+      this.direction("backward", "down"),
+    );
+    this.element = h(
+      "div",
+      { class: "drive" },
+      h("p", { class: "quiet" }, words.drive_hint),
+      this.toggle,
+      this.pad,
+      h(
+        "div",
+        { class: "field-row" },
+        h("label", { for: "drive-speed" }, words.drive_speed),
+        this.speed,
+        value,
+      ),
+      this.state,
+    );
+    this.listen();
+    app.channels.on_value(["drive"], () => this.show_state());
+    this.show_state();
+  }
+
+  /** Lets go of everything, and of the keys. */
+  set_active(active: boolean): void {
+    if (this.active === active) return;
+    this.active = active;
+    if (!active) this.release();
+    show(this.pad, active);
+    set_text(this.toggle, active ? words.drive_off : words.drive_on);
+    this.toggle.setAttribute("aria-pressed", String(active));
+    this.app.map.take_keys(!active);
+  }
+
+  private direction(direction: Direction, picture: IconName): HTMLButtonElement {
+    const element = h("button", {
+      type: "button",
+      class: `button drive-button ${direction}`,
+      "aria-label": words[direction],
+    });
+    element.append(icon(picture));
+    const name = (event: PointerEvent) => `${direction}:pointer${event.pointerId}`;
+    element.addEventListener("pointerdown", (event) => {
+      element.setPointerCapture(event.pointerId);
+      this.hold(name(event));
+    });
+    for (const type of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
+      element.addEventListener(type, (event) => this.let_go(name(event)));
+    }
+    element.addEventListener("contextmenu", (event) => event.preventDefault());
+    // With the keyboard the button itself is held.
+    element.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      event.stopPropagation();
+      this.hold(`${direction}:button`);
+    });
+    element.addEventListener("keyup", () => this.let_go(`${direction}:button`));
+    element.addEventListener("blur", () => this.let_go(`${direction}:button`));
+    return element;
+  }
+
+  private listen(): void {
+    const key_name = (event: KeyboardEvent): string | null => {
+      const direction = kKeys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+      return direction ? `${direction}:key${event.code}` : null;
+    };
+    document.addEventListener("keydown", (event) => {
+      const name = key_name(event);
+      if (!this.active || !name || event.ctrlKey || event.altKey || event.metaKey) return;
+      if (event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement)
+        return;
+      event.preventDefault();
+      this.hold(name);
+    });
+    document.addEventListener("keyup", (event) => {
+      const name = key_name(event);
+      if (name) this.let_go(name);
+    });
+    window.addEventListener("blur", () => this.release());
+    window.addEventListener("pagehide", () => this.release());
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.release();
+    });
+    this.app.rights.on_change(() => {
+      if (!this.app.rights.connected) this.set_active(false);
+    });
+  }
+
+  private hold(name: string): void {
+    this.held.add(name);
+    if (this.timer !== 0) return;
+    this.timer = window.setInterval(() => this.send(), kPeriodMs);
+    this.send();
+  }
+
+  private let_go(name: string): void {
+    if (this.held.delete(name) && this.held.size === 0) this.release();
+  }
+
+  private release(): void {
+    this.held.clear();
+    if (this.timer === 0) return;
+    window.clearInterval(this.timer);
+    this.timer = 0;
+    this.app.connection.send({ op: "release" });
+  }
+
+  private send(): void {
+    const wants = (direction: Direction) =>
+      [...this.held].some((name) => name.startsWith(`${direction}:`)) ? 1 : 0;
+    const speed = Number(this.speed.value) * (wants("forward") - wants("backward"));
+    // Backwards a key to the left still turns the robot's front to the left.
+    const turn = kTurnRadps * (wants("turn_left") - wants("turn_right"));
+    this.app.connection.send({ op: "drive", linear_mps: speed, angular_radps: turn });
+  }
+
+  private show_state(): void {
+    const drive = this.app.channels.value("drive");
+    if (!drive) return set_text(this.state, words.drive_idle);
+    const now = words.drive_state(drive.linear_mps, drive.free_ahead_m);
+    set_text(this.state, drive.message ? `${now}. ${drive.message}` : now);
+  }
+}

@@ -1,0 +1,36 @@
+// Which sign on the map is what.
+import { draw_node, NodeKind } from "../map/graph_layer";
+import { texts } from "../texts";
+import { h } from "../ui/dom";
+import { Palette } from "../ui/theme";
+
+const kSizePx = 20;
+
+export function legend(palette: () => Palette): { element: HTMLElement; redraw: () => void } {
+  const signs = (Object.keys(texts.legend) as (NodeKind & keyof typeof texts.legend)[]).map(
+    (kind) => {
+      const canvas = h("canvas", {
+        width: 2 * kSizePx,
+        height: 2 * kSizePx,
+        "aria-hidden": "true",
+      });
+      return { kind, canvas };
+    },
+  );
+  const redraw = () => {
+    for (const { kind, canvas } of signs) {
+      const context = canvas.getContext("2d");
+      if (!context) continue;
+      context.setTransform(2, 0, 0, 2, 0, 0);
+      context.clearRect(0, 0, kSizePx, kSizePx);
+      draw_node(context, kind, kSizePx / 2, kSizePx / 2, 5.5, palette());
+    }
+  };
+  redraw();
+  const element = h(
+    "ul",
+    { class: "legend" },
+    ...signs.map(({ kind, canvas }) => h("li", {}, canvas, texts.legend[kind])),
+  );
+  return { element, redraw };
+}

@@ -1,0 +1,106 @@
+// Loops accepted and rejected with their reasons; the chosen one shows on the map.
+import { App } from "../app";
+import { Loop } from "../protocol";
+import { sentence } from "../robot_state";
+import { texts } from "../texts";
+import { button, h, set_attribute, set_text, show } from "../ui/dom";
+import { KeyedList } from "../ui/list";
+
+const words = texts.understand;
+const kShownLoops = 100;
+
+type Filter = keyof typeof words.filters;
+
+export class LoopList {
+  readonly element: HTMLElement;
+  private readonly counts = h("p");
+  private readonly empty = h("p", { class: "quiet" }, words.no_loops);
+  private readonly more = h("p", { class: "quiet" });
+  private readonly filters: [Filter, HTMLButtonElement][];
+  private readonly list: KeyedList<Loop>;
+  private filter: Filter = "all";
+  private chosen = "";
+
+  constructor(private readonly app: App) {
+    this.filters = (Object.keys(words.filters) as Filter[]).map((filter) => [
+      filter,
+      button(words.filters[filter], () => this.set_filter(filter), { class: "button small" }),
+    ]);
+    this.list = new KeyedList<Loop>(
+      "rows loops",
+      (key) => this.entry(key),
+      (element, loop, key) => this.show_entry(element, loop, key),
+    );
+    this.element = h(
+      "div",
+      {},
+      h("p", { class: "quiet" }, words.loops_hint),
+      this.counts,
+      h(
+        "div",
+        { class: "buttons", role: "group", "aria-label": words.filter_label },
+        ...this.filters.map(([, element]) => element),
+      ),
+      this.empty,
+      this.list.element,
+      this.more,
+    );
+  }
+
+  /** Shows a loop on the map; null: none. */
+  choose(key: string | null): void {
+    this.chosen = key ?? "";
+    const { scene } = this.app.map;
+    const loop = this.app.channels.table("loops").get(this.chosen) ?? null;
+    scene.chosen_loop = loop;
+    const stop = loop && (scene.trail.stop(loop.later) ?? scene.trail.stop(loop.earlier));
+    if (stop) {
+      this.app.map.follow(false);
+      this.app.map.show(stop[0], stop[1]);
+    }
+    scene.refresh();
+    this.update();
+  }
+
+  update(): void {
+    const all = [...this.app.channels.table("loops")];
+    const accepted = all.filter(([, loop]) => loop.accepted).length;
+    set_text(this.counts, words.loops_count(accepted, all.length - accepted));
+    show(this.counts, all.length > 0);
+    show(this.empty, all.length === 0);
+    for (const [filter, element] of this.filters) {
+      set_attribute(element, "aria-pressed", String(filter === this.filter));
+      show(element, all.length > 0);
+    }
+    const wanted = all
+      .filter(([, loop]) => this.filter === "all" || loop.accepted === (this.filter === "accepted"))
+      .sort((a, b) => Number(b[0]) - Number(a[0]));
+    this.list.show(wanted.slice(0, kShownLoops));
+    show(this.more, wanted.length > kShownLoops);
+    set_text(this.more, words.more(Math.max(0, wanted.length - kShownLoops)));
+  }
+
+  private set_filter(filter: Filter): void {
+    this.filter = filter;
+    this.update();
+  }
+
+  private entry(key: string): HTMLElement {
+    const choose = () => this.choose(this.chosen === key ? null : key);
+    const title = h("button", { type: "button", class: "row-title", onclick: choose });
+    return h("li", {}, title, h("p"), h("p", { class: "quiet" }));
+  }
+
+  private show_entry(element: HTMLElement, loop: Loop, key: string): void {
+    const [title, why, facts] = element.children as unknown as HTMLElement[];
+    set_text(title, words.loop(loop.later, loop.earlier));
+    set_attribute(title, "aria-pressed", String(key === this.chosen));
+    const source = words.sources[loop.source] ?? loop.source;
+    const outcome = words.outcomes[loop.outcome] ?? loop.outcome;
+    const explained = loop.explanation ? ` ${sentence(loop.explanation)}` : "";
+    set_text(why, `${outcome}; ${source}.${explained}`);
+    const { fitness, probability, correction_m, correction_rad } = loop;
+    set_text(facts, words.loop_facts(fitness, probability, correction_m, correction_rad));
+    set_attribute(element, "data-level", loop.accepted ? "good" : "bad");
+  }
+}

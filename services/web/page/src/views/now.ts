@@ -1,0 +1,165 @@
+// Now: how the robot and its map are.
+import { App, ViewPart } from "../app";
+import * as format from "../format";
+import { ellipse_of } from "../map/robot_layer";
+import { Pose } from "../protocol";
+import { sentence } from "../robot_state";
+import { texts } from "../texts";
+import { Bar, Facts, Level } from "../ui/bar";
+import { h, set_text, show } from "../ui/dom";
+import { once_a_frame } from "../ui/schedule";
+import { folded, section } from "../ui/section";
+import { legend } from "./legend";
+
+const kStaleLoopStops = 60; // a bar of the last loop is empty then
+const kMostSquares = 16384; // that a grid can have
+
+const words = texts.now;
+
+export class NowView implements ViewPart {
+  readonly element: HTMLElement;
+  private readonly facts = new Facts();
+  private readonly devices = new Facts();
+  private readonly truth = new Facts();
+  private readonly truth_section: HTMLElement;
+  private readonly viewers = h("p", { class: "quiet" });
+  private readonly confidence = new Bar(words.confidence);
+  private readonly workers = new Bar(words.workers);
+  private readonly map = new Bar(words.map);
+  private readonly loop = new Bar(words.loop);
+  private readonly battery = new Bar(words.battery);
+  private visible = false;
+
+  constructor(private readonly app: App) {
+    this.truth_section = section(words.simulated, this.truth.element);
+    const bars = [this.confidence, this.workers, this.map, this.loop, this.battery];
+    const picture = legend(() => app.theme.palette);
+    app.theme.on_change(() => picture.redraw());
+    this.element = h(
+      "div",
+      { class: "view" },
+      section(words.health, h("div", { class: "bars" }, ...bars.map((bar) => bar.element))),
+      section(words.robot, this.facts.element),
+      section(words.devices, this.devices.element),
+      this.truth_section,
+      folded(words.legend, false, picture.element),
+      this.viewers,
+    );
+    const update = once_a_frame(() => this.update());
+    const { channels } = app;
+    channels.on_value(["pose", "navigator", "base", "laser", "truth", "viewers"], update);
+    channels.on_table("workers", update);
+    channels.on_table("loops", update);
+    channels.on_table("trail", update);
+    channels.on_table("graph", update);
+    channels.on_table("rooms", update);
+  }
+
+  shown(visible: boolean): void {
+    this.visible = visible;
+    if (visible) this.update();
+  }
+
+  private update(): void {
+    if (!this.visible) return;
+    const { channels } = this.app;
+    const pose = channels.value("pose");
+    this.show_pose(pose);
+    this.show_bars(pose);
+    const laser = channels.value("laser");
+    const because = (reason: string) => (reason ? `. ${sentence(reason)}` : "");
+    this.devices.set(
+      words.laser,
+      laser
+        ? `${laser.state}, ${format.rate(laser.scans_per_s)}${because(laser.reason)}`
+        : words.not_heard,
+    );
+    const base = channels.value("base");
+    this.devices.set(
+      words.base,
+      base
+        ? base.state.replace("_", " ") + because(base.reason)
+        : words.not_heard,
+    );
+    const truth = channels.value("truth");
+    show(this.truth_section, truth !== null);
+    if (truth) {
+      const at = format.point(truth.x_m, truth.y_m);
+      this.truth.set(words.position, `${at}, ${format.degrees(truth.theta_rad)}`);
+      this.truth.set("", words.collisions(truth.collisions));
+    }
+    const viewers = channels.value("viewers");
+    set_text(this.viewers, viewers ? words.viewers(viewers.viewers, viewers.operators) : "");
+  }
+
+  private show_pose(pose: Pose | null): void {
+    const located = pose && pose.state !== "SEARCHING" && pose.state !== "LOST" ? pose : null;
+    const ellipse = located ? ellipse_of(located.covariance) : null;
+    const variance = located?.covariance[8];
+    this.facts.set(words.mode, pose ? words.modes[pose.mode] : words.unknown);
+    this.facts.set(
+      words.position,
+      located ? format.point(located.x_m, located.y_m) : words.unknown,
+    );
+    this.facts.set(words.heading, located ? format.degrees(located.theta_rad) : words.unknown);
+    this.facts.set(
+      words.precision,
+      ellipse
+        ? words.sigma(
+            ellipse[0],
+            ellipse[1],
+            typeof variance === "number" ? Math.sqrt(variance) : null,
+          )
+        : words.unknown,
+    );
+    this.facts.set(words.speed, format.speed(this.app.channels.value("navigator")?.linear_mps));
+  }
+
+  private show_bars(pose: Pose | null): void {
+    const { channels } = this.app;
+    const confidence = pose?.confidence ?? 0;
+    const level: Level = confidence > 0.9 ? "good" : confidence > 0.5 ? "fair" : "bad";
+    this.confidence.set(confidence, pose ? format.percent(pose.confidence) : words.unknown, level);
+
+    let [slots, busy] = [0, 0];
+    const workers = channels.table("workers");
+    for (const worker of workers.values()) {
+      slots += worker.slots;
+      busy += worker.in_hand;
+    }
+    this.workers.set(
+      slots > 0 ? busy / slots : 0,
+      workers.size > 0 ? words.workers_value(busy, slots, workers.size) : words.no_workers,
+    );
+
+    let floor = 0;
+    for (const room of channels.table("rooms").values()) floor += room.area_m2;
+    const graph = channels.table("graph").get("map");
+    const squares = channels.table("tiles").size;
+    this.map.set(
+      Math.log1p(squares) / Math.log1p(kMostSquares),
+      words.map_value(graph?.nodes, graph?.branches, floor),
+    );
+
+    let last = -1;
+    for (const loop of channels.table("loops").values()) {
+      if (loop.accepted) last = Math.max(last, loop.step);
+    }
+    const ago = Math.max(0, this.app.map.scene.trail.size() - 1 - last);
+    this.loop.set(
+      last < 0 ? 0 : 1 - ago / kStaleLoopStops,
+      last < 0 ? words.no_loop : words.loop_value(ago),
+    );
+
+    const base = channels.value("base");
+    show(this.battery.element, typeof base?.battery_v === "number");
+    if (base) {
+      // The base reports whether it is low; how full it is nobody knows from the voltage alone.
+      this.battery.set(
+        base.battery_low ? 0.15 : 1,
+        words.battery_value(base.battery_v, base.battery_low),
+        base.battery_low ? "bad" : "good",
+      );
+    }
+  }
+}

@@ -1,0 +1,270 @@
+// Send: choose goals, see the route, go; what is under way; driving by hand.
+import { App, ViewPart } from "../app";
+import { Destination, destinations } from "../destinations";
+import { Goal, Preview } from "../protocol";
+import { texts } from "../texts";
+import { button, fill, h, set_text, show } from "../ui/dom";
+import { KeyedList } from "../ui/list";
+import { once_a_frame } from "../ui/schedule";
+import { folded, section } from "../ui/section";
+import { DrivePad } from "./drive_pad";
+import { Underway } from "./underway";
+
+const words = texts.send;
+const kNamedPx = 18; // a tap so near to a place means the place
+
+interface Choice {
+  goal: Goal;
+  text: string;
+  x_m: number;
+  y_m: number;
+}
+
+export class SendView implements ViewPart {
+  readonly element: HTMLElement;
+  private readonly drive: DrivePad;
+  private readonly orders: HTMLElement;
+  private readonly card = h("div", { class: "card", hidden: true });
+  private readonly names: KeyedList<Destination>;
+  private readonly no_names = h("p", { class: "quiet" });
+  private readonly filter: HTMLInputElement;
+  private readonly note = h("p", { class: "note" });
+  private choices: Choice[] = [];
+  private adding = false;
+  private last: Preview | null = null; // null while it is planned
+  private asked = 0; // counts previews: an answer to an earlier one is old
+
+  constructor(private readonly app: App) {
+    this.drive = new DrivePad(app);
+    this.filter = h("input", {
+      type: "search",
+      class: "field",
+      placeholder: words.search,
+      "aria-label": words.search,
+      oninput: () => this.show_names(),
+    });
+    this.names = new KeyedList<Destination>(
+      "names",
+      (name) => h("li", {}, this.name_button(name)),
+      (element, entry) => {
+        element.classList.toggle("is-place", entry.is_place);
+      },
+    );
+    const explore = button(words.explore, () => void this.order("explore"), {
+      title: words.explore_title,
+      "data-order": "explore",
+    });
+    const back = button(words.return, () => void this.order("return"), { "data-order": "return" });
+    this.orders = h(
+      "div",
+      {},
+      section(
+        words.heading,
+        h("p", { class: "quiet" }, words.hint),
+        this.card,
+        this.filter,
+        this.names.element,
+        this.no_names,
+        h("div", { class: "buttons" }, explore, back),
+      ),
+      folded(words.drive, false, this.drive.element),
+    );
+    this.element = h("div", { class: "view" }, this.note, new Underway(app).element, this.orders);
+    const names = once_a_frame(() => this.show_names());
+    app.channels.on_table("places", names);
+    app.channels.on_table("rooms", names);
+    const rights = once_a_frame(() => this.show_rights());
+    app.rights.on_change(rights);
+    app.channels.on_value(["navigator"], rights);
+    this.show_names();
+    this.show_rights();
+  }
+
+  shown(visible: boolean): void {
+    if (!visible) this.drive.set_active(false);
+    this.show_on_map(visible);
+  }
+
+  /** A tap on the map. */
+  choose_point(x_m: number, y_m: number, pixels_per_m: number): void {
+    if (!this.app.rights.may_write) return;
+    const near = destinations(this.app.channels).find(
+      (entry) =>
+        entry.is_place && Math.hypot(entry.x_m - x_m, entry.y_m - y_m) * pixels_per_m < kNamedPx,
+    );
+    if (near) return this.choose(near);
+    const choice: Choice = { goal: { x_m, y_m }, text: words.point(x_m, y_m), x_m, y_m };
+    this.choices = [...this.kept(), choice];
+    void this.preview();
+    void this.name_point(choice);
+  }
+
+  private choose(entry: Destination): void {
+    const { name, x_m, y_m } = entry;
+    this.choices = [...this.kept(), { goal: { place: name }, text: name, x_m, y_m }];
+    this.app.map.show(x_m, y_m);
+    void this.preview();
+  }
+
+  // With a list begun, a choice comes to it; else it takes the place of the one before.
+  private kept(): Choice[] {
+    const kept = this.adding ? this.choices : [];
+    this.adding = false;
+    return kept;
+  }
+
+  private async name_point(choice: Choice): Promise<void> {
+    const { x_m, y_m } = choice;
+    const path = `/api/at?x_m=${x_m.toFixed(3)}&y_m=${y_m.toFixed(3)}`;
+    const at = await this.app.api.get<{ room?: string }>(path).catch(() => null);
+    if (!at?.room) return;
+    choice.text = words.point_in(at.room, x_m, y_m);
+    if (this.last) this.show_card(this.last);
+  }
+
+  private async preview(): Promise<void> {
+    const asked = ++this.asked;
+    this.last = null;
+    this.show_on_map(true);
+    this.show_card(null);
+    if (this.choices.length === 0) return;
+    const goals = this.choices.map((choice) => choice.goal);
+    const body = goals.length === 1 ? goals[0] : { goals };
+    let answer: Preview;
+    try {
+      answer = await this.app.api.post<Preview>("preview", body);
+    } catch (error) {
+      answer = { found: false, message: error instanceof Error ? error.message : String(error) };
+    }
+    if (asked !== this.asked) return;
+    this.last = answer;
+    this.show_on_map(this.element.isConnected);
+    this.show_card(answer);
+  }
+
+  private show_on_map(visible: boolean): void {
+    const { scene } = this.app.map;
+    scene.marks = visible ? this.choices : [];
+    scene.preview = visible && this.last?.found ? (this.last.points_m ?? []) : [];
+    scene.refresh();
+  }
+
+  // answer: null while it is planned.
+  private show_card(answer: Preview | null): void {
+    show(this.card, this.choices.length > 0);
+    if (this.choices.length === 0) return fill(this.card);
+    const several = this.choices.length > 1;
+    const title = several ? words.list : this.choices[0].text;
+    const text = !answer
+      ? words.planning
+      : answer.found
+        ? several
+          ? words.list_length(answer.length_m, answer.time_s)
+          : words.route(answer.length_m, answer.time_s, answer.min_clearance_m)
+        : answer.message || words.no_route;
+    const ready = answer?.found === true;
+    const go = button(
+      several ? words.go_all(this.choices.length) : words.go,
+      () => void this.go(),
+      { class: "button primary", disabled: !ready, id: "go" },
+    );
+    const near = answer?.nearest_reachable;
+    fill(
+      this.card,
+      h("h3", {}, title),
+      several ? this.chosen_list() : null,
+      h("p", { class: answer?.found === false ? "bad-text" : "", role: "status" }, text),
+      near ? button(words.nearest, () => this.take_nearest(near.x_m, near.y_m)) : null,
+      h(
+        "div",
+        { class: "buttons" },
+        go,
+        button(words.append, () => this.begin_list(), { disabled: !ready }),
+        button(words.clear, () => this.clear()),
+      ),
+      this.adding ? h("p", { class: "quiet" }, words.hint) : null,
+    );
+  }
+
+  private chosen_list(): HTMLElement {
+    const entry = (choice: Choice, index: number) =>
+      h(
+        "li",
+        {},
+        h("span", {}, choice.text),
+        button("×", () => this.drop(index), {
+          class: "button small",
+          "aria-label": words.remove(choice.text),
+        }),
+      );
+    return h("ol", { class: "chosen" }, ...this.choices.map(entry));
+  }
+
+  private begin_list(): void {
+    this.adding = true;
+    this.show_card(this.last);
+    this.filter.focus();
+  }
+
+  private drop(index: number): void {
+    this.choices = this.choices.filter((_, i) => i !== index);
+    void this.preview();
+  }
+
+  private take_nearest(x_m: number, y_m: number): void {
+    this.choices[this.choices.length - 1] = {
+      goal: { x_m, y_m },
+      text: words.point(x_m, y_m),
+      x_m,
+      y_m,
+    };
+    void this.preview();
+  }
+
+  private clear(): void {
+    this.choices = [];
+    this.adding = false;
+    void this.preview();
+  }
+
+  private async go(): Promise<void> {
+    const goals = this.choices.map((choice) => choice.goal);
+    const done =
+      goals.length === 1 ? texts.done.goal(this.choices[0].text) : texts.done.goals(goals.length);
+    const order = this.app.api.post("goal", goals.length === 1 ? goals[0] : { goals });
+    if (await this.app.notices.report(order, done)) this.clear();
+  }
+
+  private async order(what: "explore" | "return"): Promise<void> {
+    await this.app.notices.report(this.app.api.post(what), texts.done[what]);
+  }
+
+  private name_button(name: string): HTMLButtonElement {
+    return button(name, () => {
+      const entry = destinations(this.app.channels).find((other) => other.name === name);
+      if (entry) this.choose(entry);
+    });
+  }
+
+  private show_names(): void {
+    const all = destinations(this.app.channels);
+    const wanted = this.filter.value.trim().toLowerCase();
+    const found = all.filter((entry) => entry.name.toLowerCase().includes(wanted));
+    this.names.show(found.map((entry) => [entry.name, entry] as const));
+    show(this.filter, all.length > 6);
+    show(this.no_names, found.length === 0);
+    set_text(this.no_names, all.length === 0 ? words.no_names : words.no_match);
+  }
+
+  private show_rights(): void {
+    const { rights, channels } = this.app;
+    const navigator = channels.value("navigator") !== null;
+    const note = !rights.may_write ? words.spectator : navigator ? "" : words.no_navigator;
+    show(this.note, note !== "");
+    set_text(this.note, note);
+    show(this.orders, rights.may_write);
+    for (const element of this.orders.querySelectorAll<HTMLElement>("[data-order]")) {
+      show(element, rights.offers(element.dataset.order ?? ""));
+    }
+  }
+}

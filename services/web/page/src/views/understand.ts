@@ -1,0 +1,113 @@
+// Understand: why the robot is unsure, which loops were decided how, who works, what happened.
+import { App, ViewPart } from "../app";
+import * as format from "../format";
+import { LogEvent, Worker } from "../protocol";
+import { robot_state } from "../robot_state";
+import { texts } from "../texts";
+import { Bar } from "../ui/bar";
+import { h, set_attribute, set_text, show } from "../ui/dom";
+import { KeyedList } from "../ui/list";
+import { once_a_frame } from "../ui/schedule";
+import { folded, section } from "../ui/section";
+import { LoopList } from "./loop_list";
+import { ServiceList } from "./service_list";
+
+const words = texts.understand;
+const kShownEvents = 200;
+
+export class UnderstandView implements ViewPart {
+  readonly element: HTMLElement;
+  private readonly reason = h("p");
+  private readonly confidence = new Bar(texts.now.confidence);
+  private readonly loops: LoopList;
+  private readonly services: ServiceList;
+  private readonly no_workers = h("p", { class: "quiet" }, words.no_workers);
+  private readonly workers: KeyedList<Worker>;
+  private readonly no_events = h("p", { class: "quiet" }, words.no_events);
+  private readonly events: KeyedList<LogEvent>;
+  private visible = false;
+
+  constructor(private readonly app: App) {
+    this.loops = new LoopList(app);
+    this.services = new ServiceList(app);
+    const bars = new WeakMap<HTMLElement, Bar>();
+    this.workers = new KeyedList<Worker>(
+      "rows",
+      () => {
+        const bar = new Bar(words.load);
+        const element = h("li", {}, h("h3"), bar.element, h("p", { class: "quiet" }));
+        bars.set(element, bar);
+        return element;
+      },
+      (element, worker) => show_worker(element, bars.get(element), worker),
+    );
+    this.events = new KeyedList<LogEvent>(
+      "events",
+      () => h("li", {}, h("time"), h("span", { class: "source" }), h("span", { class: "text" })),
+      show_event,
+    );
+    this.events.element.tabIndex = 0; // it scrolls
+    this.events.element.setAttribute("aria-label", words.events);
+    this.element = h(
+      "div",
+      { class: "view" },
+      section(words.why, this.reason, this.confidence.element),
+      folded(words.loops, true, this.loops.element),
+      folded(words.services, true, this.services.element),
+      folded(words.workers, true, this.no_workers, this.workers.element),
+      folded(words.events, true, this.no_events, this.events.element),
+    );
+    const update = once_a_frame(() => this.update());
+    app.channels.on_value(["pose"], update);
+    for (const table of ["loops", "services", "workers", "events"] as const) {
+      app.channels.on_table(table, update);
+    }
+    app.rights.on_change(update);
+  }
+
+  shown(visible: boolean): void {
+    this.visible = visible;
+    if (visible) this.update();
+    else this.loops.choose(null);
+  }
+
+  private update(): void {
+    if (!this.visible) return;
+    const { channels, rights } = this.app;
+    const state = robot_state(channels, rights);
+    set_text(this.reason, `${state.word}. ${state.reason}`);
+    const confidence = channels.value("pose")?.confidence;
+    this.confidence.set(
+      confidence ?? 0,
+      format.percent(confidence),
+      (confidence ?? 0) > 0.9 ? "good" : (confidence ?? 0) > 0.5 ? "fair" : "bad",
+    );
+    this.loops.update();
+    this.services.update();
+    const workers = [...channels.table("workers")];
+    workers.sort((a, b) => a[1].name.localeCompare(b[1].name));
+    show(this.no_workers, workers.length === 0);
+    this.workers.show(workers);
+    const events = [...channels.table("events")].sort((a, b) => Number(b[0]) - Number(a[0]));
+    show(this.no_events, events.length === 0);
+    this.events.show(events.slice(0, kShownEvents));
+  }
+}
+
+function show_worker(element: HTMLElement, bar: Bar | undefined, worker: Worker): void {
+  const [name, , facts] = element.children as unknown as HTMLElement[];
+  const draining = worker.draining ? ` (${words.draining})` : "";
+  set_text(name, `${worker.name} · ${worker.host}${draining}`);
+  bar?.set(worker.load ?? 0, format.percent(worker.load));
+  const rate = format.rate(worker.tasks_per_s);
+  set_text(facts, words.worker_facts(worker.slots, worker.tasks_done, rate, worker.failures));
+}
+
+function show_event(element: HTMLElement, event: LogEvent): void {
+  const [time, source, text] = element.children as unknown as HTMLElement[];
+  set_text(time, format.clock(event.time_s));
+  set_text(source, event.source);
+  const level = event.level === "info" ? "" : `${words.levels[event.level]}: `;
+  set_text(text, level + event.text);
+  set_attribute(element, "data-level", event.level);
+}

@@ -1,0 +1,91 @@
+// What the robot is sent to, how far it is, what blocks it; pause, resume, cancel.
+import { App } from "../app";
+import { navigator_text } from "../robot_state";
+import { texts } from "../texts";
+import { button, h, set_attribute, set_text, show } from "../ui/dom";
+import { once_a_frame } from "../ui/schedule";
+import { section } from "../ui/section";
+
+const words = texts.send;
+type Order = "pause" | "resume" | "cancel";
+
+export class Underway {
+  readonly element: HTMLElement;
+  private readonly goal = h("h3");
+  private readonly state = h("p", { role: "status" });
+  private readonly rest = h("p", { class: "quiet" });
+  private readonly waiting = h("p", { class: "quiet" });
+  private readonly fill = h("span", { class: "bar-fill" });
+  private readonly progress = h(
+    "div",
+    {
+      class: "bar-meter progress",
+      role: "progressbar",
+      "aria-label": words.progress,
+      "aria-valuemin": 0,
+      "aria-valuemax": 100,
+    },
+    this.fill,
+  );
+  private readonly buttons: Record<Order, HTMLButtonElement>;
+
+  constructor(private readonly app: App) {
+    const order = (what: Order) => button(words[what], () => void this.send(what));
+    this.buttons = { pause: order("pause"), resume: order("resume"), cancel: order("cancel") };
+    this.element = section(
+      words.underway,
+      this.goal,
+      this.progress,
+      this.rest,
+      this.state,
+      this.waiting,
+      h("div", { class: "buttons" }, ...Object.values(this.buttons)),
+    );
+    const update = once_a_frame(() => this.update());
+    app.channels.on_value(["navigator", "goals"], update);
+    app.rights.on_change(update);
+    this.update();
+  }
+
+  private async send(what: Order): Promise<void> {
+    try {
+      await this.app.api.post(what);
+    } catch (error) {
+      this.app.notices.show(error instanceof Error ? error.message : String(error), "error");
+    }
+  }
+
+  private update(): void {
+    const { channels, rights } = this.app;
+    const navigator = channels.value("navigator");
+    const goals = channels.value("goals");
+    const goal = goals?.current ?? null;
+    const exploring = goals?.exploring ?? false;
+    set_text(this.goal, exploring ? words.exploring : goal ? words.to(goal.text) : words.idle);
+    set_text(this.state, navigator_text(channels));
+    show(this.state, navigator?.state !== "idle" || navigator.message !== "");
+
+    const moving = navigator !== null && (goal !== null || exploring);
+    const arrived = navigator?.state === "arrived";
+    const rest = arrived ? 0 : (navigator?.rest_m ?? null);
+    const driven = navigator?.driven_m ?? 0;
+    const known = moving && typeof rest === "number" && driven + rest > 0;
+    show(this.progress, known);
+    show(this.rest, known && !arrived);
+    if (known) {
+      const percent = Math.round((100 * driven) / (driven + rest));
+      this.fill.style.width = `${percent}%`;
+      set_attribute(this.progress, "aria-valuenow", String(percent));
+      set_text(this.rest, words.rest(rest, navigator?.rest_s));
+    }
+    const waiting = (goals?.waiting ?? []).map((entry) => entry.text);
+    show(this.waiting, waiting.length > 0);
+    set_text(this.waiting, waiting.length > 0 ? words.waiting(waiting.join(", ")) : "");
+
+    const paused = navigator?.state === "stopped" && navigator.reason === "paused";
+    const under_way = moving && !arrived && navigator.reason !== "cancelled";
+    show(this.buttons.pause, rights.can("pause") && under_way && !paused);
+    show(this.buttons.resume, rights.can("resume") && moving && paused);
+    show(this.buttons.cancel, rights.can("cancel") && (under_way || waiting.length > 0));
+  }
+}
