@@ -21,13 +21,13 @@ type ViewName = keyof typeof texts.views;
 
 // Views as tabs, by the pattern of the ARIA practices: arrows move between tabs.
 class Tabs {
-  readonly bar: HTMLElement;
-  readonly panel: HTMLElement;
+  readonly element: HTMLElement;
+  private readonly panel: HTMLElement;
   private readonly tabs = new Map<ViewName, HTMLButtonElement>();
   private current: ViewName | null = null;
 
   constructor(private readonly views: Record<ViewName, ViewPart>) {
-    this.panel = h("aside", { class: "panel", id: "panel", role: "tabpanel", tabindex: 0 });
+    this.panel = h("div", { class: "panel", id: "panel", role: "tabpanel", tabindex: 0 });
     const names = Object.keys(views) as ViewName[];
     for (const name of names) {
       const tab = h(
@@ -45,12 +45,13 @@ class Tabs {
       tab.prepend(icon(name));
       this.tabs.set(name, tab);
     }
-    this.bar = h(
-      "nav",
+    const bar = h(
+      "div",
       { class: "tabs", role: "tablist", "aria-label": texts.views_label },
       ...this.tabs.values(),
     );
-    this.bar.addEventListener("keydown", (event) => {
+    this.element = h("aside", { class: "side" }, bar, this.panel);
+    bar.addEventListener("keydown", (event) => {
       const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
       if (!step || !this.current) return;
       const next = names[(names.indexOf(this.current) + step + names.length) % names.length];
@@ -113,7 +114,7 @@ function start(): void {
   const api = new Api(token);
   const notices = new Notices();
 
-  const robot = h("span", { class: "robot-name" });
+  const robot = h("h1", { class: "robot-name" }, texts.title);
   const theme_button = h("button", {
     type: "button",
     class: "control flat",
@@ -165,7 +166,7 @@ function start(): void {
   };
   const tabs = new Tabs(views);
   stage.append(map_controls(map));
-  root.append(tabs.bar, tabs.panel, notices.element);
+  root.append(tabs.element, notices.element);
   map.on_tap = (x_m, y_m, pixels_per_m) => {
     if (!tabs.is_open("now") && !tabs.is_open("send")) return;
     if (rights.may_write) tabs.open("send");

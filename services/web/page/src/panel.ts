@@ -166,7 +166,8 @@ function start(): void {
   const rights = new Rights();
   const api = new Api(token);
   const notices = new Notices();
-  const header = new Header(channels, rights, api, notices, []);
+  const title = h("h1", { class: "unseen" }, words.title);
+  const header = new Header(channels, rights, api, notices, [title]);
   const panel = new Panel(channels, rights, api, notices);
   const root = h("div", { class: "app panel-app" }, header.element, header.banners, panel.element);
   root.append(notices.element);

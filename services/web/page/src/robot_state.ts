@@ -31,6 +31,7 @@ export function navigator_text(channels: Channels): string {
   const navigator = channels.value("navigator");
   if (!navigator) return texts.send.no_navigator;
   const state = texts.navigator[navigator.state] ?? navigator.state;
+  if (navigator.state === "idle" && navigator.message) return sentence(navigator.message);
   const halted = navigator.state === "stopped" || navigator.state === "blocked";
   const halt = halted ? texts.halts[navigator.reason] : undefined;
   const parts = [halt ? `${state}. ${halt}` : `${state}.`];

@@ -73,8 +73,9 @@ export const texts = {
     workers: "Search workers",
     workers_value: (busy: number, slots: number, workers: number) =>
       `${workers} at work, ${busy} of ${slots} slots busy`,
-    no_workers: "none, the localizer searches itself",
+    no_workers: "none at work",
     map: "Map",
+    no_map: "none yet",
     map_value: (nodes: Maybe, branches: Maybe, floor: Maybe) =>
       `${area(floor)}, ${count(nodes)} nodes, ${count(branches)} branches`,
     loop: "Last closed loop",

@@ -49,6 +49,8 @@ export class MapScene {
   private readonly graph = new GraphLayer();
   readonly trail = new TrailLayer();
   private frame = "";
+  private room_colors = ""; // of all rooms: pictures of rooms change with them
+  private shown = false;
 
   constructor(
     private readonly channels: Channels,
@@ -79,10 +81,11 @@ export class MapScene {
     const palette = this.theme.palette;
     const info = this.channels.value("map");
     if (info) {
-      this.grid.draw(context, view, info, this.versions);
+      const complete = this.grid.draw(context, view, info, this.versions);
+      if (complete && this.channels.table("tiles").size > 0) this.mark_shown();
       if (this.visible.rooms && this.channels.table("rooms").size > 0) {
         context.globalAlpha = palette.room_alpha;
-        this.rooms.draw(context, view, info, this.versions);
+        this.rooms.draw(context, view, info, this.versions, this.room_colors);
         context.globalAlpha = 1;
       }
     }
@@ -170,7 +173,18 @@ export class MapScene {
       }
       this.still_changed();
     });
-    this.channels.on_table("rooms", () => this.still_changed());
+    this.channels.on_table("rooms", () => {
+      const rooms = [...this.channels.table("rooms")].sort((a, b) => Number(a[0]) - Number(b[0]));
+      this.room_colors = `.${rooms.map(([, room]) => room.color).join("")}`;
+      this.still_changed();
+    });
+  }
+
+  // For those who measure how long it takes until the map is on the screen.
+  private mark_shown(): void {
+    if (this.shown) return;
+    this.shown = true;
+    performance.mark("map-shown");
   }
 
   private follow_graph(): void {

@@ -33,14 +33,14 @@ export class TileLayer {
     ++this.generation;
   }
 
-  /** extra: a further version on which the pictures depend. */
+  /** extra: on what the pictures depend besides their versions. True when all of the view is there. */
   draw(
     context: CanvasRenderingContext2D,
     view: View,
     info: MapInfo,
     versions: TileVersions,
     extra = "",
-  ): void {
+  ): boolean {
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const level = level_for(view.scale * info.resolution_m * ratio);
     const complete = this.load(view, info, versions, level, extra);
@@ -66,6 +66,7 @@ export class TileLayer {
     this.paint(context, view, info, level);
     context.restore();
     this.forget();
+    return complete;
   }
 
   private paint(context: CanvasRenderingContext2D, view: View, info: MapInfo, level: number): void {

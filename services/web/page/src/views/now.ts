@@ -77,9 +77,7 @@ export class NowView implements ViewPart {
     const base = channels.value("base");
     this.devices.set(
       words.base,
-      base
-        ? base.state.replace("_", " ") + because(base.reason)
-        : words.not_heard,
+      base ? base.state.replace("_", " ") + because(base.reason) : words.not_heard,
     );
     const truth = channels.value("truth");
     show(this.truth_section, truth !== null);
@@ -138,7 +136,7 @@ export class NowView implements ViewPart {
     const squares = channels.table("tiles").size;
     this.map.set(
       Math.log1p(squares) / Math.log1p(kMostSquares),
-      words.map_value(graph?.nodes, graph?.branches, floor),
+      graph || squares > 0 ? words.map_value(graph?.nodes, graph?.branches, floor) : words.no_map,
     );
 
     let last = -1;
