@@ -1,0 +1,152 @@
+// Parts of the page that need no browser: the copy of the tables, the frame of the pictures, numbers of goals, units.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
+
+// esbuild takes types away, as for the page.
+async function load(module) {
+  const out = join(build, "tests/browser/modules", `${module.replace("/", "_")}.mjs`);
+  const file = join(source, "services/web/page/src", `${module}.ts`);
+  execFileSync("esbuild", [file, "--bundle", "--format=esm", "--log-level=warning", `--outfile=${out}`]);
+  return import(pathToFileURL(out));
+}
+
+const { Channels } = await load("channels");
+const grid = await load("map/grid_frame");
+const { destinations, numbered } = await load("destinations");
+const format = await load("format");
+
+const delta = (from, version, set, gone = []) => ({ channel: "events", from, version, set, gone });
+
+test("tables follow deltas, and nothing is taken on a version that is not held", () => {
+  const channels = new Channels();
+  const seen = [];
+  channels.on_table("events", (change) => seen.push(change));
+  assert.equal(channels.apply(delta(0, 3, { a: 1, b: 2 })), true);
+  assert.equal(channels.apply(delta(3, 4, { b: 5, c: 6 }, ["a"])), true);
+  assert.deepEqual(Object.fromEntries(channels.table("events")), { b: 5, c: 6 });
+  assert.equal(channels.apply(delta(3, 5, { d: 1 })), false);
+  assert.deepEqual(Object.fromEntries(channels.table("events")), { b: 5, c: 6 });
+  assert.deepEqual(channels.held(), { events: 4 });
+  // A snapshot takes the place of everything.
+  assert.equal(channels.apply(delta(0, 1, { z: 9 })), true);
+  assert.deepEqual(Object.fromEntries(channels.table("events")), { z: 9 });
+  assert.deepEqual(
+    seen.map((change) => change.all),
+    [true, false, true],
+  );
+});
+
+test("a random series of deltas ends as the table that made them", () => {
+  let seed = 1;
+  const random = (end) => (seed = (48271 * seed) % 2147483647) % end;
+  const channels = new Channels();
+  const truth = new Map();
+  channels.apply(delta(0, 1, {}));
+  for (let version = 2; version < 500; ++version) {
+    const set = {};
+    const gone = [];
+    for (let i = random(4); i >= 0; --i) {
+      const key = `k${random(20)}`;
+      if (random(3) > 0) set[key] = version;
+      else if (!(key in set) && truth.has(key)) gone.push(key);
+    }
+    gone.forEach((key) => truth.delete(key));
+    const wanted = Object.entries(set).filter(([key]) => !gone.includes(key));
+    wanted.forEach(([key, value]) => truth.set(key, value));
+    assert.equal(channels.apply(delta(version - 1, version, Object.fromEntries(wanted), gone)), true);
+  }
+  assert.deepEqual(new Map(channels.table("events")), truth);
+});
+
+test("values go with the connection, tables stay", () => {
+  const channels = new Channels();
+  channels.apply({ channel: "pose", version: 1, value: { state: "TRACKING" } });
+  channels.apply(delta(0, 1, { a: 1 }));
+  channels.forget_values();
+  assert.equal(channels.value("pose"), null);
+  assert.equal(channels.table("events").size, 1);
+});
+
+const kGrid = { columns: 1000, rows: 700, resolution_m: 0.05, x_m: 3, y_m: -2, theta_rad: 0.7 };
+
+test("points go to the grid and back", () => {
+  assert.deepEqual(
+    grid.to_map({ ...kGrid, theta_rad: Math.PI / 2 }, 20, 0).map((v) => Number(v.toFixed(9))),
+    [3, -1],
+  );
+  for (const cell of [
+    [0, 0],
+    [17, 400],
+    [999.5, 3],
+  ]) {
+    const back = grid.to_grid(kGrid, ...grid.to_map(kGrid, ...cell));
+    back.forEach((value, i) => assert.ok(Math.abs(value - cell[i]) < 1e-9));
+  }
+});
+
+test("the version of a picture is the largest of its squares, as counted one by one", () => {
+  const in_row = Math.ceil(kGrid.columns / 64);
+  const squares = new Map();
+  for (let i = 0; i < 120; ++i) squares.set((37 * i) % (in_row * 11), 1 + ((7 * i) % 50));
+  const versions = new grid.TileVersions();
+  for (const [square, version] of squares) versions.add(kGrid, square, version);
+  for (let level = 0; level <= 3; ++level) {
+    const side = 4 * 2 ** level;
+    for (let row = 0; row < 3; ++row) {
+      for (let column = 0; column < 4; ++column) {
+        let most;
+        for (const [square, version] of squares) {
+          const inside =
+            Math.floor((square % in_row) / side) === column && Math.floor(Math.floor(square / in_row) / side) === row;
+          if (inside) most = Math.max(version, most ?? 0);
+        }
+        assert.equal(versions.of(level, column, row), most, `${level}/${column}/${row}`);
+      }
+    }
+  }
+});
+
+test("the pictures of a view are those that have a pixel in it", () => {
+  const box = { min_x: 8, max_x: 15, min_y: 0, max_y: 9 };
+  const range = grid.tiles_in(kGrid, 0, box);
+  for (let row = 0; row < kGrid.rows; row += 10) {
+    for (let column = 0; column < kGrid.columns; column += 10) {
+      const [x, y] = grid.to_map(kGrid, column, row);
+      if (x < box.min_x || x > box.max_x || y < box.min_y || y > box.max_y) continue;
+      const [c, r] = [Math.floor(column / 256), Math.floor(row / 256)];
+      assert.ok(c >= range.first_column && c <= range.last_column && r >= range.first_row && r <= range.last_row);
+    }
+  }
+  assert.equal(grid.level_for(1), 0);
+  assert.equal(grid.level_for(0.5), 1);
+  assert.equal(grid.level_for(0.3), 1);
+  assert.equal(grid.level_for(1e-9), 8);
+});
+
+test("rooms keep their numbers on the keypad, places count from 101", () => {
+  const channels = new Channels();
+  const table = (channel, set) => channels.apply({ channel, from: 0, version: 1, set, gone: [] });
+  table("places", { kitchen: { x_m: 1, y_m: 2 }, base: { x_m: 0, y_m: 0 } });
+  table("rooms", {
+    0: { name: "room 12", x_m: 0, y_m: 0 },
+    1: { name: "kitchen", x_m: 0, y_m: 0 },
+    2: { name: "room 3", x_m: 0, y_m: 0 },
+  });
+  const names = [...numbered(destinations(channels))].map(([number, { name }]) => `${number} ${name}`);
+  assert.deepEqual(names, ["101 base", "102 kitchen", "3 room 3", "12 room 12"]);
+});
+
+test("numbers have units, and what is not known is a dash", () => {
+  assert.equal(format.length(3.456), "3.46 m");
+  assert.equal(format.length(1234), "1.23 km");
+  assert.equal(format.duration(125), "2 min 5 s");
+  assert.equal(format.duration(59.7), "1 min 0 s");
+  assert.equal(format.degrees(Math.PI / 2), "90.0°");
+  assert.equal(format.length(null), "–");
+  assert.equal(format.speed(undefined), "–");
+});

@@ -1,0 +1,271 @@
+// The operator's page in a browser, with a simulated robot: the page is clicked as a person does, and the truth of the
+// simulator says what came of it.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { eventually, in_map, Robot } from "./robot.mjs";
+import { watch } from "./watcher.mjs";
+
+const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_CHROMIUM: chromium } = process.env;
+const packages = createRequire(join(build, "tests/browser/"));
+const playwright = packages("playwright-core");
+const axe = packages.resolve("axe-core/axe.min.js");
+const pictures = join(build, "tests/browser/screenshots");
+mkdirSync(pictures, { recursive: true });
+
+const kSizes = {
+  desk: { width: 1280, height: 800 },
+  tablet: { width: 820, height: 1180 },
+  phone: { width: 390, height: 844 },
+};
+const kViews = ["now", "send", "correct", "understand"];
+
+const robot = new Robot(join(build, "bin"), source, process.env.TOPOGEO_WORK);
+let browser;
+let context;
+let truth;
+
+before(async () => {
+  await robot.start();
+  browser = await playwright.chromium.launch({
+    executablePath: chromium,
+    args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
+  });
+  context = await browser.newContext({ viewport: kSizes.desk, colorScheme: "light" });
+  truth = await watch(context, robot.address);
+  await eventually("the robot has a pose", async () => (await truth.newest("pose"))?.state === "TRACKING", 120);
+});
+
+after(async () => {
+  await browser?.close();
+  await robot.stop();
+});
+
+/** A page of the operator (or of a spectator), with the errors that it had. */
+async function open(view, { token = robot.token, path = "/", options = undefined } = {}) {
+  const own = options ? await browser.newContext(options) : context;
+  const page = await own.newPage();
+  page.faults = [];
+  page.on("pageerror", (error) => page.faults.push(error.stack));
+  await page.goto(`${robot.address}${path}${token ? `#token=${token}` : ""}`);
+  if (view) await page.click(`#tab-${view}`);
+  page.close_all = () => (options ? own.close() : page.close());
+  return page;
+}
+
+async function end(page) {
+  assert.deepEqual(page.faults, []);
+  await page.close_all();
+}
+
+/** Waits until a selector has a text. */
+function text(page, selector, pattern, seconds) {
+  return eventually(
+    `${selector} with ${pattern}`,
+    async () => {
+      const found = await page.locator(selector).allInnerTexts();
+      return found.some((entry) => pattern.test(entry));
+    },
+    seconds,
+  );
+}
+
+async function true_place() {
+  return in_map(await truth.newest("truth"));
+}
+
+async function stands() {
+  const from = await true_place();
+  await new Promise((resolve) => setTimeout(resolve, 300));
+  const to = await true_place();
+  return Math.hypot(to.x_m - from.x_m, to.y_m - from.y_m) < 0.002;
+}
+
+test("shows the map", async () => {
+  const page = await open("now");
+  await text(page, ".state-word", /TRACKING/i);
+  const mark = () => performance.getEntriesByName("map-shown")[0]?.startTime;
+  const shown_ms = await eventually("a picture of the map", () => page.evaluate(mark), 30);
+  console.log(`map on the screen ${Math.round(shown_ms)} ms after opening`);
+  assert.equal(await page.locator(".empty-map").isVisible(), false);
+  await end(page);
+});
+
+test("without the token it only watches", async () => {
+  const page = await open("send", { token: "", options: { viewport: kSizes.desk } });
+  await text(page, ".view-only", /view only/i);
+  assert.equal(await page.locator("#stop").isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: "room A" }).count(), 0);
+  await page.mouse.click(300, 400);
+  assert.equal(await page.locator("#go").count(), 0);
+  const status = await page.evaluate(async () => {
+    const answer = await fetch("/api/goal", { method: "POST", body: '{"place":"room A"}' });
+    return answer.status;
+  });
+  assert.equal(status, 401);
+  assert.equal(await robot.post("goal", { place: "room A" }, "wrong"), 401);
+  await end(page);
+});
+
+test("a click on room A brings the robot there", async () => {
+  const page = await open("send");
+  await page.getByRole("button", { name: "room A", exact: true }).click();
+  await text(page, ".card [role=status]", /\d m, about/);
+  await page.click("#go");
+  await text(page, ".section h3", /To room A/);
+  await text(page, ".section [role=status]", /Arrived/, 120);
+  const at = await true_place();
+  assert.ok(Math.hypot(at.x_m - 3, at.y_m) < 0.3, JSON.stringify(at));
+  await end(page);
+});
+
+test("a click on the map makes a goal of the point", async () => {
+  const page = await open("now");
+  const box = await page.locator("#map").boundingBox();
+  await page.evaluate(() => performance.getEntriesByName("map-shown").length);
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await text(page, "#tab-send[aria-selected=true]", /Send/);
+  await text(page, ".card h3", /Point/);
+  await end(page);
+});
+
+test("a held key drives, letting go stops", async () => {
+  const page = await open("send");
+  await page.getByText("Drive by hand", { exact: true }).click();
+  await page.getByRole("button", { name: "Take the controls" }).click();
+  const from = await true_place();
+  await page.keyboard.down("s");
+  await eventually(
+    "the robot moves",
+    async () => {
+      const at = await true_place();
+      return Math.hypot(at.x_m - from.x_m, at.y_m - from.y_m) > 0.1;
+    },
+    20,
+  );
+  await page.keyboard.up("s");
+  await eventually("the robot stands", stands, 10);
+  assert.equal(await truth.newest("drive"), null);
+  await end(page);
+});
+
+test("a page that goes away while it drives stops the robot", async () => {
+  const page = await open("send", { options: { viewport: kSizes.desk } });
+  await page.getByText("Drive by hand", { exact: true }).click();
+  await page.getByRole("button", { name: "Take the controls" }).click();
+  const from = (await truth.newest("truth")).theta_rad;
+  await page.keyboard.down("a");
+  await eventually("the robot turns", async () => Math.abs((await truth.newest("truth")).theta_rad - from) > 0.1, 20);
+  await page.close_all();
+  await eventually(
+    "the robot stands",
+    async () => {
+      const before = (await truth.newest("truth")).theta_rad;
+      await new Promise((resolve) => setTimeout(resolve, 300));
+      return Math.abs((await truth.newest("truth")).theta_rad - before) < 0.002;
+    },
+    10,
+  );
+});
+
+test("Stop holds the robot until it is released", async () => {
+  const page = await open("send");
+  await page.getByRole("button", { name: "base", exact: true }).click();
+  await page.click("#go");
+  await eventually("the robot drives", async () => !(await stands()), 30);
+  await page.click("#stop");
+  await text(page, ".banner", /held/);
+  await eventually("the robot stands", stands, 10);
+  await page.getByRole("button", { name: "Release" }).click();
+  await eventually(
+    "the banner goes",
+    async () =>
+      (await page.getByText("The robot is held").count()) === 0 ||
+      !(await page.getByText("The robot is held").isVisible()),
+  );
+  await end(page);
+});
+
+test("the pose is set by dragging", async () => {
+  const page = await open("correct");
+  await page.getByRole("button", { name: "Set on the map" }).click();
+  const at = await truth.newest("pose");
+  for (const [id, value] of [
+    ["#pose-x", at.x_m],
+    ["#pose-y", at.y_m],
+    ["#pose-theta", (at.theta_rad * 180) / Math.PI],
+  ]) {
+    await page.fill(id, String(value.toFixed(3)));
+  }
+  // A drag on the map fills the fields; the true pose is typed again, for the robot is to stay where it is.
+  const typed = await page.inputValue("#pose-x");
+  const box = await page.locator("#map").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await page.inputValue("#pose-theta"), "90.0");
+  assert.notEqual(await page.inputValue("#pose-x"), typed);
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await end(page);
+});
+
+test("the page goes on after the web service was replaced", async () => {
+  const page = await open("now");
+  await text(page, ".state-word", /TRACKING/i);
+  await robot.end("web", "SIGKILL");
+  await text(page, ".banner", /Connection lost/);
+  await text(page, ".state-word", /OFFLINE/i);
+  await robot.start_web();
+  await text(page, ".state-word", /TRACKING/i);
+  await page.reload();
+  await text(page, ".state-word", /TRACKING/i);
+  assert.equal(await page.locator("#stop").isVisible(), true);
+  await end(page);
+});
+
+test("the panel sends by number", async () => {
+  const page = await open(null, { path: "/panel", options: { viewport: { width: 800, height: 480 } } });
+  await text(page, ".panel-names", /102\s+room A/);
+  for (const digit of "102") await page.getByRole("button", { name: digit, exact: true }).click();
+  await text(page, ".panel-name", /room A/);
+  await page.getByRole("button", { name: "Go", exact: true }).click();
+  await text(page, ".panel-line", /To room A/);
+  await page.getByRole("button", { name: "Cancel", exact: true }).click();
+  await end(page);
+});
+
+/** What axe-core finds serious on a page. */
+async function serious_findings(page) {
+  await page.addScriptTag({ path: axe });
+  const { violations } = await page.evaluate(() => window.axe.run());
+  return violations
+    .filter((finding) => ["serious", "critical"].includes(finding.impact))
+    .map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`);
+}
+
+for (const scheme of ["light", "dark"]) {
+  test(`every view is accessible, ${scheme}`, async () => {
+    for (const [size, viewport] of Object.entries(kSizes)) {
+      const options = { viewport, colorScheme: scheme, bypassCSP: true };
+      const page = await open(null, { options });
+      await text(page, ".state-word", /TRACKING/i);
+      for (const view of kViews) {
+        await page.click(`#tab-${view}`);
+        if (view === "send") {
+          await page.getByRole("button", { name: "room A", exact: true }).click();
+          await text(page, ".card [role=status]", /m, about|no /i);
+        }
+        await page.screenshot({ path: join(pictures, `${view}-${size}-${scheme}.png`) });
+        if (size !== "tablet") assert.deepEqual(await serious_findings(page), [], `${view}, ${size}`);
+      }
+      await page.goto(`${robot.address}/panel`);
+      await text(page, ".panel-names", /room A/);
+      await page.screenshot({ path: join(pictures, `panel-${size}-${scheme}.png`) });
+      if (size !== "tablet") assert.deepEqual(await serious_findings(page), [], `panel, ${size}`);
+      await end(page);
+    }
+  });
+}

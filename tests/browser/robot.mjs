@@ -1,0 +1,136 @@
+// A simulated robot in one room with all its services and the web service, for tests in a browser.
+import { spawn } from "node:child_process";
+import { existsSync, mkdirSync, openSync, readFileSync, writeFileSync } from "node:fs";
+import { createServer } from "node:net";
+import { join } from "node:path";
+
+/** Waits until `check` gives something true, which is returned; fails with `what` after some seconds. */
+export async function eventually(what, check, seconds = 60) {
+  const end = Date.now() + 1000 * seconds * Number(process.env.TOPOGEO_TIME_FACTOR ?? 1);
+  for (;;) {
+    const found = await check();
+    if (found) return found;
+    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+}
+
+function free_port() {
+  return new Promise((resolve, reject) => {
+    const server = createServer();
+    server.on("error", reject);
+    server.listen(0, "127.0.0.1", () => {
+      const { port } = server.address();
+      server.close(() => resolve(port));
+    });
+  });
+}
+
+// The map begins where the robot starts, at (1, 1) of the world, and looks along x.
+const kStart = { x_m: 1, y_m: 1 };
+const kPlaces = `places:
+  - {name: room A, at: [3, 0]}
+  - {name: base, at: [0, 0]}
+`;
+
+export class Robot {
+  token = "token-of-the-test";
+  processes = new Map();
+
+  /** bin: folder of the programs; source: of the project; work: where files go, made if missing. */
+  constructor(bin, source, work) {
+    this.bin = bin;
+    this.world = join(source, "tests/data/room.world.yaml");
+    this.work = work;
+    mkdirSync(work, { recursive: true });
+  }
+
+  get address() {
+    return `http://127.0.0.1:${this.port}`;
+  }
+
+  /** Starts everything; the web service last. */
+  async start() {
+    const file = (name) => join(this.work, name);
+    writeFileSync(file("places.yaml"), kPlaces);
+    this.run("simulator", "--world", this.world, "--laser-port", file("laser"), "--base-port", file("base"));
+    await eventually("ports of the simulator", () => existsSync(file("laser")) && existsSync(file("base")));
+    const devices = spawn(join(this.bin, "topogeo"), ["config", "--devices"], {
+      stdio: ["ignore", openSync(file("devices.yaml"), "w"), "inherit"],
+    });
+    await new Promise((resolve) => devices.on("exit", resolve));
+    this.run(
+      "sensor_gateway",
+      "--devices",
+      file("devices.yaml"),
+      "--laser-port",
+      file("laser"),
+      "--base-port",
+      file("base"),
+    );
+    this.run("local_mapper");
+    this.run("localizer");
+    this.run("ga_worker", "--name", "helper");
+    this.run("map_store", "--out", file("map"), "--places", file("places.yaml"));
+    this.run("planner");
+    this.run("navigator");
+    this.port = await free_port();
+    await this.start_web();
+  }
+
+  /** Starts the web service at the port that it had before. */
+  async start_web() {
+    this.run("web", "--port", String(this.port), "--token", this.token);
+    await eventually("the web service answers", () => fetch(`${this.address}/api/info`).catch(() => null));
+  }
+
+  run(name, ...options) {
+    const log = openSync(join(this.work, `${name}.log`), "a");
+    const started = spawn(join(this.bin, name), options, {
+      stdio: ["ignore", log, log],
+      // Killed programs leave shared memory behind at which others can wait.
+      env: { ...process.env, TOPOGEO_DDS_PARTICIPANT: "udp_only" },
+    });
+    const ended = new Promise((resolve) => started.on("exit", resolve));
+    this.processes.set(name, { process: started, ended });
+  }
+
+  /** Ends a service by a signal. */
+  async end(name, signal = "SIGTERM") {
+    const { process: running, ended } = this.processes.get(name) ?? {};
+    if (!running) return;
+    this.processes.delete(name);
+    running.kill(signal);
+    await ended;
+  }
+
+  async stop() {
+    const names = [...this.processes.keys()].reverse();
+    await Promise.all(names.map((name) => this.end(name)));
+  }
+
+  /** The last lines of a service. */
+  log(name) {
+    return readFileSync(join(this.work, `${name}.log`), "utf8")
+      .split("\n")
+      .slice(-15)
+      .join("\n");
+  }
+
+  /** POST of an order, its status code. */
+  async post(order, body, token = this.token) {
+    const headers = { "Content-Type": "application/json" };
+    if (token) headers.Authorization = `Bearer ${token}`;
+    const answer = await fetch(`${this.address}/api/${order}`, {
+      method: "POST",
+      headers,
+      body: JSON.stringify(body),
+    });
+    return answer.status;
+  }
+}
+
+/** Where the robot truly is, in the frame of the map, of the channel `truth`. */
+export function in_map(truth) {
+  return { x_m: truth.x_m - kStart.x_m, y_m: truth.y_m - kStart.y_m };
+}
