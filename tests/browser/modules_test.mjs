@@ -63,13 +63,31 @@ test("a random series of deltas ends as the table that made them", () => {
   assert.deepEqual(new Map(channels.table("events")), truth);
 });
 
-test("values go with the connection, tables stay", () => {
+test("what is of the moment goes with the connection, the map and the tables stay", () => {
   const channels = new Channels();
+  channels.apply({ channel: "map", version: 1, value: { columns: 3 } });
   channels.apply({ channel: "pose", version: 1, value: { state: "TRACKING" } });
   channels.apply(delta(0, 1, { a: 1 }));
-  channels.forget_values();
+  channels.forget_moment();
   assert.equal(channels.value("pose"), null);
+  assert.deepEqual(channels.value("map"), { columns: 3 });
   assert.equal(channels.table("events").size, 1);
+});
+
+test("what a service that is new does not send is gone after a while", () => {
+  const channels = new Channels();
+  channels.apply({ channel: "map", version: 1, value: { columns: 3 } });
+  channels.apply(delta(0, 7, { a: 1 }));
+  channels.apply({ channel: "places", from: 0, version: 2, set: { base: {} }, gone: [] });
+  channels.begin_anew();
+  assert.equal(channels.apply(delta(7, 8, { b: 1 })), false);
+  assert.equal(channels.apply(delta(0, 1, { c: 1 })), true);
+  assert.equal(channels.table("places").size, 1);
+  channels.drop_unconfirmed();
+  assert.deepEqual(Object.fromEntries(channels.table("events")), { c: 1 });
+  assert.equal(channels.table("places").size, 0);
+  assert.equal(channels.value("map"), null);
+  assert.deepEqual(channels.held(), { events: 1 });
 });
 
 const kGrid = { columns: 1000, rows: 700, resolution_m: 0.05, x_m: 3, y_m: -2, theta_rad: 0.7 };

@@ -23,6 +23,7 @@ export class Channels {
   private readonly tables = new Map<TableName, Map<string, unknown>>();
   private readonly versions = new Map<TableName, number>();
   private readonly value_listeners = new Map<ValueName, (() => void)[]>();
+  private readonly unconfirmed = new Set<string>();
   private readonly table_listeners = new Map<TableName, TableListener[]>();
 
   constructor() {
@@ -55,17 +56,38 @@ export class Channels {
 
   /** Takes a message of a channel; false when it is a delta on a version that is not held. */
   apply(message: ValueMessage | TableMessage): boolean {
+    this.unconfirmed.delete(message.channel);
     if ("from" in message) return this.apply_table(message);
     (this.values as Record<string, unknown>)[message.channel] = message.value;
     for (const listener of this.value_listeners.get(message.channel) ?? []) listener();
     return true;
   }
 
-  /** Forgets the values, which are of the moment; tables stay, to go on from. */
-  forget_values(): void {
+  /** Forgets what was true at the moment alone; the map and the tables stay, to go on from. */
+  forget_moment(): void {
     for (const name of Object.keys(this.values) as ValueName[]) {
-      this.apply({ channel: name, version: 0, value: null });
+      if (name !== "map") this.apply({ channel: name, version: 0, value: null });
     }
+  }
+
+  /** Another service speaks from now on, which counts versions of its own. */
+  begin_anew(): void {
+    this.versions.clear();
+    for (const name of [...kTables, "map"]) this.unconfirmed.add(name);
+  }
+
+  /** Forgets what the service has not sent since begin_anew(): it has none. */
+  drop_unconfirmed(): void {
+    for (const name of this.unconfirmed) {
+      if (name === "map") {
+        this.apply({ channel: name, version: 0, value: null });
+        continue;
+      }
+      this.tables.get(name as TableName)?.clear();
+      const change = { set: [], gone: [], all: true };
+      for (const listener of this.table_listeners.get(name as TableName) ?? []) listener(change);
+    }
+    this.unconfirmed.clear();
   }
 
   private apply_table(message: TableMessage): boolean {

@@ -5,6 +5,7 @@ import { TableMessage, ValueMessage } from "./protocol";
 
 const kSilenceMs = 5000; // the service sends something every two seconds
 const kPongMs = 1000;
+const kSnapshotsMs = 5000; // until a service that is new has sent all that it has
 const kFirstDelayMs = 500;
 const kLongestDelayMs = 4000;
 
@@ -77,7 +78,7 @@ export class Connection {
     if ("channel" in message) {
       if (!this.channels.apply(message)) this.send({ op: "resync", channel: message.channel });
     } else if (message.op === "welcome") {
-      this.life = message.life ?? "";
+      this.follow_life(message.life ?? "");
       this.open = true;
       this.delay_ms = kFirstDelayMs;
       this.listener.connected(message.may_write === true, message.error ?? "");
@@ -86,6 +87,15 @@ export class Connection {
     } else if (message.op === "refused") {
       this.listener.refused(message.what ?? "", message.error ?? "");
     }
+  }
+
+  // After a restart of the service the old map stays until the new one is there.
+  private follow_life(life: string): void {
+    if (this.life !== "" && this.life !== life) {
+      this.channels.begin_anew();
+      window.setTimeout(() => this.channels.drop_unconfirmed(), kSnapshotsMs);
+    }
+    this.life = life;
   }
 
   private lose(): void {

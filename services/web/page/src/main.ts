@@ -76,6 +76,17 @@ class Tabs {
     sessionStorage.setItem("topogeo-view", name);
   }
 
+  /** Keys 1 to 4 open the views. */
+  listen(): void {
+    const names = [...this.tabs.keys()];
+    document.addEventListener("keydown", (event) => {
+      const target = event.target as HTMLElement;
+      if (target.closest("input, select, textarea") || event.ctrlKey || event.altKey) return;
+      const name = names[Number(event.key) - 1];
+      if (name) this.open(name);
+    });
+  }
+
   is_open(name: ViewName): boolean {
     return this.current === name;
   }
@@ -151,7 +162,7 @@ function start(): void {
     },
     disconnected: () => {
       rights.set_connected(false, false);
-      channels.forget_values();
+      channels.forget_moment();
     },
     refused: (_, error) => notices.show(error, "error"),
   });
@@ -166,6 +177,7 @@ function start(): void {
   };
   const tabs = new Tabs(views);
   stage.append(map_controls(map));
+  tabs.listen();
   root.append(tabs.element, notices.element);
   map.on_tap = (x_m, y_m, pixels_per_m) => {
     if (!tabs.is_open("now") && !tabs.is_open("send")) return;

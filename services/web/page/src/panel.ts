@@ -181,7 +181,7 @@ function start(): void {
     },
     disconnected: () => {
       rights.set_connected(false, false);
-      channels.forget_values();
+      channels.forget_moment();
     },
     refused: (_, error) => notices.show(error, "error"),
   });

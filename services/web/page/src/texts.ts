@@ -93,10 +93,16 @@ export const texts = {
     not_heard: "not heard",
     simulated: "True pose of the simulated robot",
     collisions: (n: number) => `${n} collisions`,
-    legend: "Legend",
+    legend: "Legend and keys",
     viewers: (viewers: number, operators: number) =>
       `${viewers} ${viewers === 1 ? "page is" : "pages are"} open, ${operators} may command.`,
   },
+  keys: [
+    ["Space", "Stop"],
+    ["F", "Show the whole map"],
+    ["R", "Follow the robot"],
+    ["1 – 4", "The views"],
+  ],
   legend: {
     real: "Junction",
     door: "Door",

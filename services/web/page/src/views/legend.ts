@@ -1,6 +1,7 @@
-// Which sign on the map is what.
+// Which sign on the map is what, and what keys do.
 import { draw_node, NodeKind } from "../map/graph_layer";
 import { texts } from "../texts";
+import { Facts } from "../ui/bar";
 import { h } from "../ui/dom";
 import { Palette } from "../ui/theme";
 
@@ -27,10 +28,9 @@ export function legend(palette: () => Palette): { element: HTMLElement; redraw: 
     }
   };
   redraw();
-  const element = h(
-    "ul",
-    { class: "legend" },
-    ...signs.map(({ kind, canvas }) => h("li", {}, canvas, texts.legend[kind])),
-  );
+  const list = signs.map(({ kind, canvas }) => h("li", {}, canvas, texts.legend[kind]));
+  const keys = new Facts();
+  for (const [key, effect] of texts.keys) keys.set(key, effect);
+  const element = h("div", {}, h("ul", { class: "legend" }, ...list), keys.element);
   return { element, redraw };
 }
