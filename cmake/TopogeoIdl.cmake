@@ -48,7 +48,8 @@ function(topogeo_add_idl)
   file(CONFIGURE OUTPUT ${generated}/types.h CONTENT "#pragma once\n\n${types}")
   file(CONFIGURE OUTPUT ${generated}/type_supports.h CONTENT "#pragma once\n\n${type_supports}")
   set(bounds_output ${staging}/bounds.h)
-  set(bounds_command COMMAND ${CMAKE_COMMAND} -DOUTPUT=${bounds_output} "-DFILES=${ARG_FILES}"
+  list(JOIN ARG_FILES "$<SEMICOLON>" bounded_files)  # one argument, though it goes through a list
+  set(bounds_command COMMAND ${CMAKE_COMMAND} -DOUTPUT=${bounds_output} "-DFILES=${bounded_files}"
                              -P ${PROJECT_SOURCE_DIR}/cmake/IdlBounds.cmake)
   if(ARG_UNBOUNDED)
     set(bounds_command "")
