@@ -28,6 +28,7 @@ export class MapCanvas {
   private bottom_right: L.LatLng = { lat: 0, lng: 0 };
   private zoom = Number.NaN;
   private frame = 0;
+  private zooming = false; // animated: the picture is scaled until the end
 
   /** padding: how far the canvas reaches beyond the view on each side, as a share of the view. */
   constructor(
@@ -43,11 +44,17 @@ export class MapCanvas {
     this.canvas.style.zIndex = String(z_index);
     this.canvas.setAttribute("aria-hidden", "true");
     map.getPane("overlayPane").append(this.canvas);
-    map.on("zoomanim", (event) => this.transform(event.center, event.zoom));
+    map.on("zoomanim", (event) => {
+      this.zooming = true;
+      this.transform(event.center, event.zoom);
+    });
     map.on("zoom", () => this.transform(map.getCenter(), map.getZoom()));
     map.on("move", () => this.redraw_if_left());
     map.on("moveend", () => this.redraw_if_left());
-    map.on("zoomend viewreset resize", () => this.redraw());
+    map.on("zoomend viewreset resize", () => {
+      this.zooming = false;
+      this.redraw();
+    });
     this.redraw();
   }
 
@@ -56,7 +63,7 @@ export class MapCanvas {
     if (this.frame !== 0) return;
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
-      this.paint();
+      if (!this.zooming) this.paint();
     });
   }
 

@@ -103,6 +103,7 @@ export class MapView {
     if (this.following === following) return;
     this.following = following;
     this.on_follow(following);
+    this.moved = true;
     if (following) this.center_on_robot();
   }
 

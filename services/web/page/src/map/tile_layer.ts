@@ -5,7 +5,8 @@ import { Palette } from "../ui/theme";
 import { kTilePixels, level_for, tile_key, tiles_in, TileVersions, to_map } from "./grid_frame";
 import { View } from "./map_canvas";
 
-const kKeptTiles = 300;
+const kRetryMs = 2000;
+const kKeptTiles = 220;
 
 interface Tile {
   picture: HTMLCanvasElement | null;
@@ -122,9 +123,11 @@ export class TileLayer {
       this.on_load();
     };
     image.onerror = () => {
-      // Perhaps the service starts again: asked for once more when the version changes or the view
-      // moves on.
-      if (tile.version === version) window.setTimeout(() => (tile.version = ""), 2000);
+      // Perhaps the service starts again.
+      window.setTimeout(() => {
+        if (tile.version === version) tile.version = "";
+        this.on_load();
+      }, kRetryMs);
     };
     image.src = `/tiles/${this.layer}/${info.frame}/${key}.png?v=${version}`;
   }

@@ -8,6 +8,9 @@ export class Notices {
   readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
 
   show(text: string, kind: "info" | "error" = "info"): void {
+    for (const shown of this.element.children) {
+      if (shown.firstElementChild?.textContent === text) return; // repeated many times a second
+    }
     const notice = h("div", { class: `notice ${kind}` }, h("span", {}, text));
     notice.append(
       button("×", () => notice.remove(), { class: "notice-close", "aria-label": texts.close }),

@@ -12,3 +12,19 @@ export function once_a_frame(work: () => void): () => void {
     });
   };
 }
+
+/** The same, but not more often than every period_ms. */
+export function at_most_every(period_ms: number, work: () => void): () => void {
+  let waiting = false;
+  let last_ms = -Infinity;
+  return () => {
+    if (waiting) return;
+    waiting = true;
+    const wait_ms = Math.max(0, last_ms + period_ms - performance.now());
+    window.setTimeout(() => {
+      waiting = false;
+      last_ms = performance.now();
+      work();
+    }, wait_ms);
+  };
+}

@@ -7,13 +7,14 @@ import { texts } from "../texts";
 import { Bar } from "../ui/bar";
 import { h, set_attribute, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
-import { once_a_frame } from "../ui/schedule";
+import { at_most_every } from "../ui/schedule";
 import { folded, section } from "../ui/section";
 import { LoopList } from "./loop_list";
 import { ServiceList } from "./service_list";
 
 const words = texts.understand;
 const kShownEvents = 200;
+const kPeriodMs = 300;
 
 export class UnderstandView implements ViewPart {
   readonly element: HTMLElement;
@@ -57,7 +58,7 @@ export class UnderstandView implements ViewPart {
       folded(words.workers, true, this.no_workers, this.workers.element),
       folded(words.events, true, this.no_events, this.events.element),
     );
-    const update = once_a_frame(() => this.update());
+    const update = at_most_every(kPeriodMs, () => this.update());
     app.channels.on_value(["pose"], update);
     for (const table of ["loops", "services", "workers", "events"] as const) {
       app.channels.on_table(table, update);
