@@ -165,7 +165,8 @@ export class MapScene {
     });
     this.channels.on_table("tiles", (change) => {
       const info = this.channels.value("map");
-      if (change.all || change.gone.length > 0) {
+      // After a change of the frame all squares come anew.
+      if (change.gone.length > 0 || change.set.length === this.channels.table("tiles").size) {
         rebuild();
       } else if (info) {
         const tiles = this.channels.table("tiles");
