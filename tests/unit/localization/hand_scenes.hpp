@@ -71,6 +71,16 @@ inline world::World endless_corridor() {
   return lines({{{-40, -1}, {40, -1}}, {{-40, 1}, {40, 1}}});
 }
 
+/// The same corridor with a door 0.9 m wide in its left wall, shut, 0.08 m back, from x = 2 on.
+inline world::World corridor_with_shut_door() {
+  return lines({{{-40, -1}, {40, -1}},
+                {{-40, 1}, {2, 1}},
+                {{2, 1}, {2, 1.08}},
+                {{2, 1.08}, {2.9, 1.08}},
+                {{2.9, 1.08}, {2.9, 1}},
+                {{2.9, 1}, {40, 1}}});
+}
+
 inline MatchFeatures features_at(const world::World& world, const geometry::Pose2& T_world_robot,
                                  const Sweep& sweep = {}) {
   return extract_scan_features(exact_points(world, T_world_robot, sweep), {});

@@ -10,6 +10,8 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 
+#include "wall_edges.hpp"
+
 namespace topogeo::localization {
 namespace {
 
@@ -274,6 +276,7 @@ MatchFeatures extract_scan_features(std::span<const ScanPoint> points, const Pos
     }
   }
   features.profile = RangeProfile(points, T_robot_laser);
+  features.edges = find_wall_edges(all, laser_m);
   return features;
 }
 

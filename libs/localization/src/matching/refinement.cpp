@@ -26,6 +26,47 @@ constexpr double kInlier_m = 0.15;         // on a surface, with noise and the t
 constexpr double kViewTolerance_m = 0.30;  // half-thickness of what the laser saw
 constexpr double kSameFace = 0.70710678;   // cosine between two normals of one surface
 
+// The edge of the reference that the query's `edge` is, moved to the reference frame by T; none
+// within the gate: nullptr. Its distance along the wall goes to `along_m`.
+const WallEdge* same_edge(const Reference& reference, const WallEdge& edge, double gate_m,
+                          double& along_m) {
+  constexpr double kSameDirection = 0.95;  // cosine
+  constexpr double kSameHeight_m = 0.03;   // and a quarter of the height
+  const WallEdge* nearest = nullptr;
+  double least_m = gate_m;
+  for (const WallEdge& other : reference.features.edges) {
+    if (edge.direction.dot(other.direction) < kSameDirection) continue;
+    if (std::fabs(other.step_m - edge.step_m) > kSameHeight_m + 0.25 * other.step_m) continue;
+    const Eigen::Vector2d d = edge.position_m - other.position_m;
+    const double distance_m = d.dot(other.direction);
+    const double across_m = d.x() * other.direction.y() - d.y() * other.direction.x();
+    if (std::fabs(across_m) > kInlier_m || std::fabs(distance_m) > least_m) continue;
+    least_m = std::fabs(distance_m);
+    along_m = distance_m;
+    nearest = &other;
+  }
+  return nearest;
+}
+
+// Of the points of a wall only the distance from it counts, so they do not tell that it goes on
+// 8 cm further back; its edges do, and along a corridor of shut doors nothing else does.
+void add_edges(const Reference& reference, const MatchFeatures& query, const Pose2& T,
+               const geometry::SinCos& r, double gate_m, NormalEquations& equations) {
+  for (const WallEdge& edge : query.edges) {
+    const WallEdge here = moved(edge, T, r);
+    double along_m = 0.0;
+    const WallEdge* other = same_edge(reference, here, gate_m, along_m);
+    if (other == nullptr) continue;
+    const Eigen::Vector2d d = here.position_m - T.position_m();
+    const Eigen::Vector2d& u = other->direction;
+    const double jacobian[3] = {u.x(), u.y(), u.y() * d.x() - u.x() * d.y()};
+    const double variance_m2 = 2.0 * kResidualSigma_m * kResidualSigma_m +
+                               here.sigma_m * here.sigma_m + other->sigma_m * other->sigma_m;
+    equations.add(jacobian, along_m, 1.0 / (variance_m2 + along_m * along_m));
+    --equations.points;  // they fix no pose without the walls
+  }
+}
+
 NormalEquations linearize(const Reference& reference, const MatchFeatures& query, const Pose2& T,
                           double gate_m) {
   NormalEquations equations;
@@ -52,6 +93,7 @@ NormalEquations linearize(const Reference& reference, const MatchFeatures& query
                                 other.normal.y() * dx - other.normal.x() * dy};
     equations.add(jacobian, residual, kPerSigma2 / (1.0 + u * u));
   }
+  add_edges(reference, query, T, r, gate_m, equations);
   return equations;
 }
 

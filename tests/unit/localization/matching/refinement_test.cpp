@@ -41,6 +41,22 @@ TEST(RefinementTest, FindsAKnownOffsetInARoom) {
   }
 }
 
+TEST(RefinementTest, AShutDoorTellsWhereInACorridor) {
+  const Reference reference =
+      make_reference(test::features_at(test::corridor_with_shut_door(), {}));
+  const Pose2 truth{0.5, 0.1, 0.1};
+  const MatchFeatures query = test::features_at(test::corridor_with_shut_door(), truth);
+  for (const double off_m : {-0.15, 0.12}) {
+    const Refinement found = refine(reference, query, {truth.x_m + off_m, 0.05, 0.08}, no_prior());
+    EXPECT_TRUE(found.converged);
+    EXPECT_NEAR(found.T_reference_query.x_m, truth.x_m, 0.02);
+    EXPECT_NEAR(found.T_reference_query.y_m, truth.y_m, 0.01);
+    // Known to a decimetre, not as well as the way across.
+    EXPECT_LT(1.0 / std::sqrt(found.information(0, 0)), 0.12);
+    EXPECT_LT(found.information(0, 0), 0.1 * found.information(1, 1));
+  }
+}
+
 TEST(RefinementTest, AlongABareCorridorThePriorStands) {
   const Reference reference = make_reference(test::features_at(test::endless_corridor(), {}));
   const MatchFeatures query = test::features_at(test::endless_corridor(), {0.5, 0.1, 0.1});

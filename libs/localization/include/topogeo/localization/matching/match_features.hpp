@@ -99,6 +99,22 @@ struct BranchCurve {
   double clearance_m = 0.0;  ///< mean
 };
 
+/// Where a wall goes on further back: a jamb of a shut door, a pillar, a cupboard. In the frame of
+/// its points.
+struct WallEdge {
+  Eigen::Vector2d position_m;  ///< on the side in front
+  Eigen::Vector2d direction;   ///< unit vector along the wall, to the side that lies back
+  double step_m = 0.0;         ///< from the front to the back, > 0
+  double sigma_m = 0.0;        ///< of the position along the wall, by the distance of two beams
+};
+
+/// The same edge in frame a, from frame b; `heading` of T_a_b.
+inline WallEdge moved(const WallEdge& edge, const geometry::Pose2& T_a_b,
+                      const geometry::SinCos& heading) {
+  const SurfacePoint at = moved(SurfacePoint{edge.position_m, edge.direction}, T_a_b, heading);
+  return {at.position_m, at.normal, edge.step_m, edge.sigma_m};
+}
+
 struct MatchFeatures {
   static constexpr double kFineSpacing_m = 0.05;
   static constexpr double kCoarseSpacing_m = 0.20;
@@ -107,6 +123,7 @@ struct MatchFeatures {
 
   std::vector<SurfacePoint> surface;  ///< at least kFineSpacing_m apart along the scan
   std::vector<SurfacePoint> coarse;   ///< at least kCoarseSpacing_m apart along the scan
+  std::vector<WallEdge> edges;        ///< at least 0.45 m apart
   RangeProfile profile;
   std::vector<topomap::LocalNode>
       nodes;  ///< real nodes and states of a branch; none fictitious or virtual
