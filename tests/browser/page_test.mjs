@@ -229,6 +229,9 @@ test("the page goes on after the web service was replaced", async () => {
 test("the panel sends by number", async () => {
   const page = await open(null, { path: "/panel", options: { viewport: { width: 800, height: 480 } } });
   await text(page, ".panel-names", /102\s+room A/);
+  const keys = await page.locator(".keypad .key").last().boundingBox();
+  const orders = await page.locator(".panel-orders").boundingBox();
+  assert.ok(keys.y + keys.height <= orders.y && orders.y + orders.height <= 480, "the keys do not fit on the screen");
   for (const digit of "102") await page.getByRole("button", { name: digit, exact: true }).click();
   await text(page, ".panel-name", /room A/);
   await page.getByRole("button", { name: "Go", exact: true }).click();

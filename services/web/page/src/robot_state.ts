@@ -32,6 +32,8 @@ export function navigator_text(channels: Channels): string {
   if (!navigator) return texts.send.no_navigator;
   const state = texts.navigator[navigator.state] ?? navigator.state;
   if (navigator.state === "idle" && navigator.message) return sentence(navigator.message);
+  // How far it is stands beside it.
+  if (navigator.state === "driving" && navigator.message.startsWith("drives")) return `${state}.`;
   const halted = navigator.state === "stopped" || navigator.state === "blocked";
   const halt = halted ? texts.halts[navigator.reason] : undefined;
   const parts = [halt ? `${state}. ${halt}` : `${state}.`];

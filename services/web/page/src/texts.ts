@@ -252,9 +252,9 @@ export const texts = {
       outvoted: "Outvoted later",
     },
     sources: {
-      prediction: "predicted by the poses",
-      place: "looks like that place",
-      window: "looks like that place, as a whole",
+      prediction: "Compared because the poses predict it.",
+      place: "Compared because it looks like that place.",
+      window: "Compared because it looks like that place, as a whole.",
     },
     loop_facts: (fitness: Maybe, probability: Maybe, moved: Maybe, turned: Maybe) =>
       `Fitness ${percent(fitness)}, probability ${percent(probability)}; moves the stop by ` +

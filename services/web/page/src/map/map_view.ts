@@ -63,6 +63,10 @@ export class MapView {
     });
     container.addEventListener("wheel", () => (this.moved = true), { passive: true });
     container.addEventListener("touchmove", () => (this.moved = true), { passive: true });
+    this.map.on("resize", () => {
+      this.fitted = "";
+      this.on_still_change();
+    });
     this.map.on("zoom zoomend move resize", () => this.show_scale());
     new ResizeObserver(() => this.map.invalidateSize({ pan: false })).observe(container);
     this.listen_for_pose(container);
@@ -95,7 +99,7 @@ export class MapView {
     this.map.fitBounds(bounds, {
       ...options,
       paddingTopLeft: [24, 24],
-      paddingBottomRight: [24, 40],
+      paddingBottomRight: [64, 40],
     });
   }
 

@@ -95,10 +95,8 @@ export class LoopList {
     const [title, why, facts] = element.children as unknown as HTMLElement[];
     set_text(title, words.loop(loop.later, loop.earlier));
     set_attribute(title, "aria-pressed", String(key === this.chosen));
-    const source = words.sources[loop.source] ?? loop.source;
-    const outcome = words.outcomes[loop.outcome] ?? loop.outcome;
-    const explained = loop.explanation ? ` ${sentence(loop.explanation)}` : "";
-    set_text(why, `${outcome}; ${source}.${explained}`);
+    const outcome = loop.explanation || words.outcomes[loop.outcome] || loop.outcome;
+    set_text(why, `${sentence(outcome)} ${words.sources[loop.source] ?? ""}`);
     const { fitness, probability, correction_m, correction_rad } = loop;
     set_text(facts, words.loop_facts(fitness, probability, correction_m, correction_rad));
     set_attribute(element, "data-level", loop.accepted ? "good" : "bad");
