@@ -1,10 +1,11 @@
 #include "topogeo/scan/carmen_log_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
+
+#include "topogeo/scan/scan_sequence.hpp"
 
 #include "carmen_line.hpp"
 #include "gz_lines.hpp"
@@ -17,18 +18,6 @@ bool has_binary_bytes(std::string_view line) {
     const auto byte = static_cast<unsigned char>(c);
     return (byte < 0x20U && byte != '\t') || byte == 0x7fU;
   });
-}
-
-// A scan read ahead, with the line it came from.
-struct Candidate {
-  Scan scan;
-  std::uint64_t line = 0;
-};
-
-std::string seconds_text(std::int64_t stamp_ns) {
-  const std::string nanoseconds = std::to_string(stamp_ns % 1'000'000'000);
-  return std::to_string(stamp_ns / 1'000'000'000) + "." + std::string(9 - nanoseconds.size(), '0') +
-         nanoseconds;
 }
 
 }  // namespace
@@ -78,27 +67,23 @@ struct CarmenLogReader::Impl {
       : path(file.string()),
         lines(file),
         parser(options.range_max_m),
-        jump_ns(static_cast<std::int64_t>(options.jump_s * 1e9)) {}
+        sequence(
+            options.jump_s, [this] { return next_readable(); },
+            [this](SkipReason reason, std::uint64_t line, const std::string& text) {
+              skip(reason, line, text);
+            }) {}
 
   void skip(SkipReason reason, std::uint64_t line, const std::string& text);
-  std::optional<Candidate> next_readable();
-  std::optional<Candidate> take();
-  std::optional<Candidate> confirm(Candidate candidate);
-  bool same_geometry(const Scan& scan) const;
+  std::optional<ScanSequence::Candidate> next_readable();
   [[noreturn]] void throw_unusable() const;
 
   std::string path;
   GzLines lines;
   CarmenLineParser parser;
-  std::int64_t jump_ns;
+  ScanSequence sequence;
   CarmenLogStatistics statistics;
   bool damage_reported = false;
-  std::optional<Scan> geometry;         // the first readable scan, which fixes the geometry
-  std::optional<Candidate> read_ahead;  // comes before the rest of the file
-  std::optional<std::int64_t> last_ns;  // stamp of the last scan that take() accepted
-  std::optional<Candidate> ready;       // accepted, not yet handed out
-  std::uint64_t sequence = 0;
-  std::uint64_t odometry_epoch = 0;
+  std::optional<Scan> ready;  // accepted, not yet handed out
 };
 
 void CarmenLogReader::Impl::skip(SkipReason reason, std::uint64_t line, const std::string& text) {
@@ -108,15 +93,8 @@ void CarmenLogReader::Impl::skip(SkipReason reason, std::uint64_t line, const st
   }
 }
 
-bool CarmenLogReader::Impl::same_geometry(const Scan& scan) const {
-  constexpr double kTolerance_rad = 1e-6;
-  return scan.ranges_m.size() == geometry->ranges_m.size() &&
-         std::fabs(scan.angle_min_rad - geometry->angle_min_rad) <= kTolerance_rad &&
-         std::fabs(scan.angle_step_rad - geometry->angle_step_rad) <= kTolerance_rad;
-}
-
 // The next laser line that can be read by itself; its time is not checked.
-std::optional<Candidate> CarmenLogReader::Impl::next_readable() {
+std::optional<ScanSequence::Candidate> CarmenLogReader::Impl::next_readable() {
   GzLines::Line line;
   while (lines.next(line)) {
     const std::uint64_t number = ++statistics.lines;
@@ -142,19 +120,7 @@ std::optional<Candidate> CarmenLogReader::Impl::next_readable() {
       skip(error->reason, number, error->text);
       continue;
     }
-    Candidate candidate{std::get<Scan>(std::move(result)), number};
-    if (!geometry) geometry = candidate.scan;
-    if (!same_geometry(candidate.scan)) {
-      skip(SkipReason::kGeometry, number,
-           "expected " + std::to_string(geometry->ranges_m.size()) +
-               " beams at the angles of the first scan, got " +
-               std::to_string(candidate.scan.ranges_m.size()));
-      continue;
-    }
-    // The angles of a log are rounded; one exact geometry spares comparisons.
-    candidate.scan.angle_min_rad = geometry->angle_min_rad;
-    candidate.scan.angle_step_rad = geometry->angle_step_rad;
-    return candidate;
+    return ScanSequence::Candidate{std::get<Scan>(std::move(result)), number};
   }
   if (!lines.damage().empty() && !damage_reported) {
     damage_reported = true;
@@ -162,47 +128,6 @@ std::optional<Candidate> CarmenLogReader::Impl::next_readable() {
          "expected more compressed data, got: " + lines.damage());
   }
   return std::nullopt;
-}
-
-// The next scan whose time is right.
-std::optional<Candidate> CarmenLogReader::Impl::take() {
-  while (true) {
-    std::optional<Candidate> candidate = std::exchange(read_ahead, std::nullopt);
-    if (!candidate) candidate = next_readable();
-    if (!candidate) return std::nullopt;
-    if (last_ns && candidate->scan.stamp_ns <= *last_ns) {
-      skip(SkipReason::kTime, candidate->line,
-           "expected a time stamp after " + seconds_text(*last_ns) + ", got " +
-               seconds_text(candidate->scan.stamp_ns));
-      continue;
-    }
-    if (!last_ns || candidate->scan.stamp_ns - *last_ns > jump_ns) {
-      candidate = confirm(*std::move(candidate));
-    }
-    last_ns = candidate->scan.stamp_ns;
-    return candidate;
-  }
-}
-
-// A candidate far ahead of its predecessor: were it wrong and accepted, all that follows would look
-// late and be lost. When the next scan is far earlier, yet still after the last accepted one, the
-// candidate is the wrong one.
-std::optional<Candidate> CarmenLogReader::Impl::confirm(Candidate candidate) {
-  while (true) {
-    std::optional<Candidate> following = next_readable();
-    if (!following) return candidate;
-    const std::int64_t following_ns = following->scan.stamp_ns;
-    const bool earlier = candidate.scan.stamp_ns - following_ns > jump_ns;
-    const bool usable = !last_ns || following_ns > *last_ns;
-    if (!earlier || !usable) {
-      read_ahead = std::move(following);
-      return candidate;
-    }
-    skip(SkipReason::kTime, candidate.line,
-         "expected a time stamp before that of the next scan, " + seconds_text(following_ns) +
-             ", got " + seconds_text(candidate.scan.stamp_ns));
-    candidate = *std::move(following);
-  }
 }
 
 void CarmenLogReader::Impl::throw_unusable() const {
@@ -227,7 +152,7 @@ CarmenLogReader::CarmenLogReader(const std::filesystem::path& path,
                                  const CarmenLogOptions& options) {
   check(options);
   impl_ = std::make_unique<Impl>(path, options);
-  impl_->ready = impl_->take();
+  impl_->ready = impl_->sequence.next();
   if (!impl_->ready) impl_->throw_unusable();
 }
 
@@ -236,14 +161,10 @@ CarmenLogReader::CarmenLogReader(CarmenLogReader&&) noexcept = default;
 CarmenLogReader& CarmenLogReader::operator=(CarmenLogReader&&) noexcept = default;
 
 std::optional<Scan> CarmenLogReader::next() {
-  std::optional<Candidate> candidate = std::exchange(impl_->ready, std::nullopt);
-  if (!candidate) candidate = impl_->take();
-  if (!candidate) return std::nullopt;
-  if (impl_->sequence == 0) impl_->odometry_epoch = fingerprint(candidate->scan);
-  candidate->scan.sequence = impl_->sequence++;
-  candidate->scan.odometry_epoch = impl_->odometry_epoch;
-  ++impl_->statistics.scans;
-  return std::move(candidate->scan);
+  std::optional<Scan> scan = std::exchange(impl_->ready, std::nullopt);
+  if (!scan) scan = impl_->sequence.next();
+  if (scan) ++impl_->statistics.scans;
+  return scan;
 }
 
 const CarmenLogStatistics& CarmenLogReader::statistics() const {
