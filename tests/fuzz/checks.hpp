@@ -25,6 +25,11 @@ inline void require(bool holds, const char* promise) {
 /// reader.
 std::size_t check_carmen_log(std::string_view bytes);
 
+/// Reads `bytes` as a recording of ROS of the format that its first bytes name, message by message
+/// and as a log. Returns how many messages were read whole; 0 when the reader refuses the file.
+/// Throws BrokenPromise.
+std::size_t check_recording(std::string_view bytes);
+
 /// Reads `bytes` as a map file, as they are and once more with a start and a checksum that are
 /// right, since no chance change of a file keeps its checksum. What can be read must be the same
 /// after writing and reading. Returns how many of the two were read. Throws BrokenPromise.

@@ -46,6 +46,12 @@ TEST(FuzzSeeds, LogsPass) {
   expect_all_pass("carmen_log", [](const std::string& bytes) { check_carmen_log(bytes); });
 }
 
+TEST(FuzzSeeds, RecordingsPass) {
+  for (const char* target : {"mcap_file", "ros_bag", "rosbag2_sqlite"}) {
+    expect_all_pass(target, [](const std::string& bytes) { check_recording(bytes); });
+  }
+}
+
 TEST(FuzzSeeds, MapFilesPass) {
   expect_all_pass("map_file", [](const std::string& bytes) { check_map_file(bytes); });
 }
@@ -77,6 +83,16 @@ TEST(FuzzSeeds, ReachTheMaps) {
   EXPECT_EQ(maps("nothing_usable"), 0U);
   EXPECT_EQ(check_map_file(content(seeds("map_file") / "whole_file")), 2U);
   EXPECT_EQ(check_map_file(content(seeds("map_file") / "body")), 1U);
+}
+
+TEST(FuzzSeeds, ReachTheMessages) {
+  const auto messages = [](const char* name) { return check_recording(content(seeds("") / name)); };
+  EXPECT_EQ(messages("mcap_file/drive_none"), 13U);
+  EXPECT_EQ(messages("mcap_file/drive_zstd"), 13U);
+  EXPECT_EQ(messages("mcap_file/drive_lz4"), 13U);
+  EXPECT_EQ(messages("ros_bag/drive_none"), 13U);
+  EXPECT_EQ(messages("ros_bag/drive_bz2"), 13U);
+  EXPECT_EQ(messages("rosbag2_sqlite/drive"), 13U);
 }
 
 TEST(FuzzSeeds, ReachTheReports) {

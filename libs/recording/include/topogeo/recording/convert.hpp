@@ -1,0 +1,36 @@
+// One log from another: CARMEN, .db3, .mcap, .bag, from each to each.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "topogeo/recording/survey.hpp"
+
+namespace topogeo::recording {
+
+struct ConvertOptions {
+  TopicChoice topics;  ///< of a recording that becomes a CARMEN log
+  std::string compression =
+      "zstd";  ///< of .mcap: none, lz4, zstd; of .bag: none, lz4, bz2 (zstd: none)
+};
+
+struct Conversion {
+  std::uint64_t scans = 0;
+  std::uint64_t odometry = 0;
+  std::uint64_t transforms = 0;  ///< messages of them
+  /// Messages by topic that are of other types or cannot be read.
+  std::map<std::string, std::uint64_t> left_out;
+  std::vector<std::string> notes;  ///< for people: damage, what was chosen
+};
+
+/// Between recordings all laser scans, odometry and transforms are copied with their topics and
+/// times, other messages are left out. A CARMEN log has the scans of one topic with the odometry at
+/// their times. Throws std::runtime_error naming the file that cannot be read or written,
+/// std::invalid_argument for an unknown compression.
+Conversion convert(const std::filesystem::path& in, const std::filesystem::path& out,
+                   const ConvertOptions& options = {});
+
+}  // namespace topogeo::recording

@@ -1,0 +1,68 @@
+// One reader for all logs that people have: CARMEN text logs, and recordings of ROS (see
+// message_source.hpp). All give the same scans, so that one drive gives the same map in each
+// format.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/recording/survey.hpp"
+#include "topogeo/scan/carmen_log_check.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+
+namespace topogeo::recording {
+
+/// What `--log` takes, for help texts.
+inline constexpr const char* kLogFormats =
+    "CARMEN log (plain or gzip), or recording of ROS: .db3, .mcap, .bag, folder of rosbag2";
+
+class LogReader {
+ public:
+  /// Opens the log and reads up to its first usable scan. Throws as scan::CarmenLogReader and
+  /// survey() do.
+  explicit LogReader(const std::filesystem::path& path, const scan::CarmenLogOptions& options = {},
+                     const TopicChoice& topics = {});
+  ~LogReader();
+  LogReader(LogReader&&) noexcept;
+  LogReader& operator=(LogReader&&) noexcept;
+  LogReader(const LogReader&) = delete;
+  LogReader& operator=(const LogReader&) = delete;
+
+  /// As scan::CarmenLogReader::next().
+  std::optional<scan::Scan> next();
+
+  /// Of a recording: `lines` are its messages that were read, of all kinds, `laser_lines` its
+  /// scans.
+  [[nodiscard]] const scan::CarmenLogStatistics& statistics() const;
+
+  /// Share of the log read so far, in [0, 1].
+  [[nodiscard]] double fraction_read() const;
+
+  struct Source;
+
+ private:
+  std::unique_ptr<Source> source_;
+};
+
+/// Never less than the number of usable scans. Throws std::runtime_error when the log cannot be
+/// opened.
+std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& topics = {});
+
+struct LogMounting {
+  std::optional<geometry::Pose2> T_robot_laser;  ///< empty where the log does not state it
+  std::vector<std::string> notes;                ///< of Survey; none for a CARMEN log
+};
+/// Throws std::runtime_error when the log cannot be opened.
+LogMounting mounting_in_log(const std::filesystem::path& path, const TopicChoice& topics = {});
+
+/// As scan::check_carmen_log; of a recording, messages count as lines, and a fault has the number
+/// of its scan among those of the topic, from 1.
+scan::LogCheck check_log(const std::filesystem::path& path,
+                         const scan::LogCheckOptions& options = {}, const TopicChoice& topics = {});
+
+}  // namespace topogeo::recording

@@ -1,0 +1,53 @@
+// Writes what a robot measures and where it is as a log of any format: a CARMEN text log, or a
+// recording of ROS that ROS, Foxglove and our own reader take.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/scan/scan.hpp"
+
+namespace topogeo::recording {
+
+class LogWriter {
+ public:
+  /// Creates or replaces the file, whose name states the format: .mcap, .db3, .bag; all others are
+  /// CARMEN logs, gzip for .gz. `T_robot_laser`: mounting of the laser, which the log states.
+  /// `compression`: see ConvertOptions. Throws std::runtime_error when the file cannot be written,
+  /// std::invalid_argument for a compression it does not have.
+  explicit LogWriter(const std::filesystem::path& path, const geometry::Pose2& T_robot_laser = {},
+                     const std::string& compression = "zstd");
+
+  /// Closes without reporting errors; call close() to hear of them.
+  ~LogWriter();
+  LogWriter(LogWriter&&) noexcept;
+  LogWriter& operator=(LogWriter&&) noexcept;
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
+
+  /// Appends a scan with its odometry; of a recording /scan, /odom and odom -> base_link on /tf.
+  /// Throws std::invalid_argument for a scan that no log can hold (see scan::CarmenLogWriter),
+  /// std::runtime_error when writing fails.
+  void write(const scan::Scan& scan);
+
+  /// Appends a pose of the robot in the map at the time of a scan, with its covariance over x, y,
+  /// heading in the map frame: /pose, and map -> odom on /tf. Only .mcap and .db3 hold them; others
+  /// ignore it. Throws std::runtime_error when writing fails.
+  void write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
+                  const Eigen::Matrix3d& covariance);
+
+  /// Flushes and closes. Throws std::runtime_error when that fails.
+  void close();
+
+  struct Target;
+
+ private:
+  std::unique_ptr<Target> target_;
+};
+
+}  // namespace topogeo::recording

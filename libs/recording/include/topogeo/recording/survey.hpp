@@ -1,0 +1,42 @@
+// What a recording holds for mapping: which topics scans and odometry are taken from, and where the
+// laser sits.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/recording/laser_scan.hpp"
+
+namespace topogeo::recording {
+
+/// What the user chooses; all may be left out.
+struct TopicChoice {
+  std::optional<std::string>
+      scan;  ///< of sensor_msgs/LaserScan; none: /scan, else the one with most messages
+  std::optional<std::string>
+      odometry;  ///< of nav_msgs/Odometry or tf2_msgs/TFMessage; none: /odom, else the
+                 ///< Odometry with most messages, else odom -> base of /tf
+};
+
+struct Survey {
+  std::string scan_topic;
+  std::string laser_frame;
+  std::uint64_t scans = 0;  ///< messages of that topic
+  std::string odometry_topic;
+  bool odometry_from_tf = false;
+  std::string odom_frame;
+  std::string robot_frame;  ///< child frame of the odometry
+  std::optional<LaserMounting>
+      mounting;  ///< empty where no transforms connect robot_frame and laser_frame
+  /// For people, a line each: which topics are used of which, what is known of the mounting.
+  std::vector<std::string> notes;
+};
+
+/// Reads the whole recording once. Throws std::runtime_error naming the file and what was expected:
+/// no recording, no scans, no odometry, a chosen topic that is not there.
+Survey survey(const std::filesystem::path& path, const TopicChoice& choice);
+
+}  // namespace topogeo::recording

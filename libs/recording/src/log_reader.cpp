@@ -1,0 +1,147 @@
+#include "topogeo/recording/log_reader.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "topogeo/recording/message_source.hpp"
+#include "topogeo/scan/laser_mounting.hpp"
+#include "topogeo/scan/scan_check.hpp"
+
+#include "ros_scans.hpp"
+
+namespace topogeo::recording {
+
+struct LogReader::Source {
+  Source() = default;
+  virtual ~Source() = default;
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+
+  virtual std::optional<scan::Scan> next() = 0;
+  [[nodiscard]] virtual const scan::CarmenLogStatistics& statistics() const = 0;
+  [[nodiscard]] virtual double fraction_read() const = 0;
+};
+
+namespace {
+
+class CarmenScans final : public LogReader::Source {
+ public:
+  CarmenScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options)
+      : reader_(path, options) {}
+  std::optional<scan::Scan> next() override { return reader_.next(); }
+  [[nodiscard]] const scan::CarmenLogStatistics& statistics() const override {
+    return reader_.statistics();
+  }
+  [[nodiscard]] double fraction_read() const override { return reader_.fraction_read(); }
+
+ private:
+  scan::CarmenLogReader reader_;
+};
+
+class RecordedScans final : public LogReader::Source {
+ public:
+  RecordedScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+                const TopicChoice& topics)
+      : name_(path.string()),
+        scans_(path, topics, options.range_max_m, skip()),
+        sequence_(
+            options.jump_s, [this] { return scans_.next(); }, skip()) {
+    ready_ = sequence_.next();
+    if (ready_) return;
+    throw std::runtime_error(
+        name_ + ": none of " + std::to_string(scans_.scan_messages()) + " scans of " +
+        scans_.facts().scan_topic + " is usable" +
+        (statistics_.messages.empty() ? "" : "; the first: " + statistics_.messages.front()));
+  }
+
+  std::optional<scan::Scan> next() override {
+    std::optional<scan::Scan> scan = std::exchange(ready_, std::nullopt);
+    if (!scan) scan = sequence_.next();
+    if (scan) ++statistics_.scans;
+    statistics_.lines = scans_.messages();
+    statistics_.laser_lines = scans_.scan_messages();
+    statistics_.odometry_lines = scans_.odometry_messages();
+    return scan;
+  }
+  [[nodiscard]] const scan::CarmenLogStatistics& statistics() const override { return statistics_; }
+  [[nodiscard]] double fraction_read() const override { return scans_.fraction_read(); }
+
+ private:
+  scan::ScanSequence::Skip skip() {
+    return [this](scan::SkipReason reason, std::uint64_t scan, const std::string& text) {
+      ++statistics_.skipped[static_cast<std::size_t>(reason)];
+      if (statistics_.messages.size() >= scan::CarmenLogStatistics::kMaxMessages) return;
+      statistics_.messages.push_back(reason == scan::SkipReason::kTruncated
+                                         ? text
+                                         : name_ + ": scan " + std::to_string(scan) + ": " + text);
+    };
+  }
+
+  std::string name_;
+  scan::CarmenLogStatistics statistics_;
+  RosScans scans_;
+  scan::ScanSequence sequence_;
+  std::optional<scan::Scan> ready_;
+};
+
+}  // namespace
+
+LogReader::LogReader(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+                     const TopicChoice& topics) {
+  check(options);
+  if (is_recording(path)) {
+    source_ = std::make_unique<RecordedScans>(path, options, topics);
+  } else {
+    source_ = std::make_unique<CarmenScans>(path, options);
+  }
+}
+
+LogReader::~LogReader() = default;
+LogReader::LogReader(LogReader&&) noexcept = default;
+LogReader& LogReader::operator=(LogReader&&) noexcept = default;
+
+std::optional<scan::Scan> LogReader::next() {
+  return source_->next();
+}
+
+const scan::CarmenLogStatistics& LogReader::statistics() const {
+  return source_->statistics();
+}
+
+double LogReader::fraction_read() const {
+  return source_->fraction_read();
+}
+
+std::uint64_t count_scans(const std::filesystem::path& path, const TopicChoice& topics) {
+  return is_recording(path) ? survey(path, topics).scans : scan::count_scans(path);
+}
+
+LogMounting mounting_in_log(const std::filesystem::path& path, const TopicChoice& topics) {
+  if (!is_recording(path)) return {scan::mounting_in_log(path), {}};
+  Survey facts = survey(path, topics);
+  LogMounting mounting;
+  if (facts.mounting) mounting.T_robot_laser = facts.mounting->T_robot_laser;
+  mounting.notes = std::move(facts.notes);
+  return mounting;
+}
+
+scan::LogCheck check_log(const std::filesystem::path& path, const scan::LogCheckOptions& options,
+                         const TopicChoice& topics) {
+  if (!is_recording(path)) return scan::check_carmen_log(path, options);
+  constexpr double kNoLimit_m = 1e9;
+  scan::ScanCheck check(options);
+  RosScans scans(path, topics, kNoLimit_m,
+                 [&](scan::SkipReason reason, std::uint64_t scan, const std::string& text) {
+                   check.found(scan::fault_of(reason), scan, text);
+                 });
+  while (std::optional<scan::ScanSequence::Candidate> candidate = scans.next()) {
+    check.take(candidate->place, std::move(candidate->scan));
+  }
+  scan::LogCheck result = check.finish();
+  result.lines = scans.messages();
+  result.laser_lines = scans.scan_messages();
+  result.odometry_lines = scans.odometry_messages();
+  return result;
+}
+
+}  // namespace topogeo::recording

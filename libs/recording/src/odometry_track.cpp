@@ -1,0 +1,78 @@
+#include "topogeo/recording/odometry_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace topogeo::recording {
+namespace {
+
+/// Half an hour at 50 poses a second, without a scan that would let poses be forgotten.
+constexpr std::size_t kMostSamples = 100'000;
+// A robot that stands: what odometry of wheels shows of it.
+constexpr double kStands_m = 0.01;
+constexpr double kStands_rad = 0.01;
+
+bool stood(const geometry::Pose2& a, const geometry::Pose2& b) {
+  const Eigen::Vector3d apart = geometry::difference(a, b);
+  return apart.head<2>().norm() <= kStands_m && std::fabs(apart.z()) <= kStands_rad;
+}
+
+}  // namespace
+
+void OdometryTrack::add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot) {
+  auto place = samples_.end();
+  while (place != samples_.begin() && std::prev(place)->stamp_ns >= stamp_ns) --place;
+  if (place != samples_.end() && place->stamp_ns == stamp_ns) {
+    place->T_odom_robot = T_odom_robot;
+    return;
+  }
+  samples_.insert(place, {stamp_ns, T_odom_robot});
+  if (samples_.size() > kMostSamples) samples_.pop_front();
+}
+
+bool OdometryTrack::reaches(std::int64_t stamp_ns) const {
+  return !samples_.empty() && samples_.back().stamp_ns >= stamp_ns;
+}
+
+std::optional<geometry::Pose2> OdometryTrack::at(std::int64_t stamp_ns) const {
+  if (samples_.empty()) return std::nullopt;
+  const auto after = std::ranges::lower_bound(samples_, stamp_ns, {}, &Sample::stamp_ns);
+  if (after != samples_.end() && after->stamp_ns == stamp_ns) return after->T_odom_robot;
+  if (after == samples_.begin() || after == samples_.end()) {
+    const Sample& nearest = after == samples_.end() ? samples_.back() : *after;
+    if (std::llabs(nearest.stamp_ns - stamp_ns) > kLongestHold_ns) return std::nullopt;
+    return nearest.T_odom_robot;
+  }
+  const Sample& a = *std::prev(after);
+  const Sample& b = *after;
+  if (b.stamp_ns - a.stamp_ns > kLongestGap_ns && !stood(a.T_odom_robot, b.T_odom_robot)) {
+    return std::nullopt;
+  }
+  const double share =
+      static_cast<double>(stamp_ns - a.stamp_ns) / static_cast<double>(b.stamp_ns - a.stamp_ns);
+  const Eigen::Vector3d step = geometry::difference(b.T_odom_robot, a.T_odom_robot);
+  return geometry::Pose2{a.T_odom_robot.x_m + share * step.x(),
+                         a.T_odom_robot.y_m + share * step.y(),
+                         geometry::wrap_angle(a.T_odom_robot.theta_rad + share * step.z())};
+}
+
+std::optional<double> OdometryTrack::distance_s(std::int64_t stamp_ns) const {
+  if (samples_.empty()) return std::nullopt;
+  const auto after = std::ranges::lower_bound(samples_, stamp_ns, {}, &Sample::stamp_ns);
+  double nearest_s = 1e18;
+  if (after != samples_.end()) {
+    nearest_s = static_cast<double>(after->stamp_ns - stamp_ns) * 1e-9;
+  }
+  if (after != samples_.begin()) {
+    nearest_s =
+        std::min(nearest_s, static_cast<double>(stamp_ns - std::prev(after)->stamp_ns) * 1e-9);
+  }
+  return nearest_s;
+}
+
+void OdometryTrack::forget_before(std::int64_t stamp_ns) {
+  while (samples_.size() > 2 && samples_[1].stamp_ns < stamp_ns) samples_.pop_front();
+}
+
+}  // namespace topogeo::recording

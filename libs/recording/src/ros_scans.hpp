@@ -1,0 +1,58 @@
+// The scans of a recording with the odometry at their times, readable by themselves, not yet in
+// order.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "topogeo/recording/message_source.hpp"
+#include "topogeo/recording/odometry_track.hpp"
+#include "topogeo/recording/survey.hpp"
+#include "topogeo/scan/scan_sequence.hpp"
+
+namespace topogeo::recording {
+
+class RosScans {
+ public:
+  RosScans(const std::filesystem::path& path, const TopicChoice& choice, double range_limit_m,
+           scan::ScanSequence::Skip skip);
+
+  std::optional<scan::ScanSequence::Candidate> next();
+
+  [[nodiscard]] const Survey& facts() const { return survey_; }
+  [[nodiscard]] double fraction_read() const { return source_->fraction_read(); }
+  [[nodiscard]] std::uint64_t messages() const { return messages_; }
+  [[nodiscard]] std::uint64_t scan_messages() const { return scans_; }
+  [[nodiscard]] std::uint64_t odometry_messages() const { return odometry_; }
+
+ private:
+  using Candidate = scan::ScanSequence::Candidate;
+
+  [[nodiscard]] bool front_is_due() const;
+  std::optional<Candidate> take_front();
+  void take(const RawMessage& message);
+  void take_scan(const RawMessage& message, const Topic& topic);
+  void take_odometry(const RawMessage& message, const Topic& topic);
+  void take_transforms(const RawMessage& message, const Topic& topic);
+  void add_pose(const ros::Header& header, std::int64_t log_time_ns,
+                const std::optional<geometry::Pose2>& T_odom_robot);
+  void finish();
+
+  Survey survey_;
+  double range_limit_m_;
+  scan::ScanSequence::Skip skip_;
+  std::unique_ptr<MessageSource> source_;
+  OdometryTrack track_;
+  std::deque<Candidate> waiting_;  // for odometry at or after their times
+  std::uint64_t messages_ = 0;
+  std::uint64_t scans_ = 0;
+  std::uint64_t odometry_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace topogeo::recording

@@ -1,0 +1,158 @@
+#include "sqlite_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <sqlite3.h>
+
+#include "compression.hpp"
+#include "input_file.hpp"
+
+namespace topogeo::recording {
+namespace {
+
+std::string column_text(sqlite3_stmt* row, int column) {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
+  return text == nullptr ? "" : text;
+}
+
+/// For a name in a URI.
+std::string escaped(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    if (c == '%' || c == '?' || c == '#') {
+      constexpr std::string_view kDigits = "0123456789ABCDEF";
+      const auto byte = static_cast<unsigned char>(c);
+      out += '%';
+      out += kDigits[byte / 16U];
+      out += kDigits[byte % 16U];
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+bool is_zstd_frame(std::span<const std::byte> data) {
+  constexpr std::array<std::byte, 4> kFrame = {std::byte{0x28}, std::byte{0xB5}, std::byte{0x2F},
+                                               std::byte{0xFD}};
+  return data.size() > kFrame.size() && std::ranges::equal(data.first(kFrame.size()), kFrame);
+}
+
+}  // namespace
+
+SqliteSource::SqliteSource(const std::filesystem::path& path, const TopicFilter& wanted)
+    : name_(path.string()),
+      database_(nullptr, &sqlite3_close),
+      messages_(nullptr, &sqlite3_finalize) {
+  open();
+  read_topics();
+  select_messages(wanted);
+}
+
+SqliteSource::~SqliteSource() = default;
+
+void SqliteSource::open() {
+  // A recording beside which no file can be made, as on a read-only disk, opens as one that does
+  // not change.
+  for (const char* how : {"?mode=ro", "?mode=ro&immutable=1"}) {
+    sqlite3* raw = nullptr;
+    const std::string uri = "file:" + escaped(name_) + how;
+    const int result =
+        sqlite3_open_v2(uri.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+    database_.reset(raw);
+    if (result == SQLITE_OK && sqlite3_exec(raw, "SELECT 1 FROM sqlite_master LIMIT 1", nullptr,
+                                            nullptr, nullptr) == SQLITE_OK) {
+      return;
+    }
+  }
+  fail("cannot be opened");
+}
+
+SqliteSource::Statement SqliteSource::prepare(const std::string& sql) {
+  sqlite3_stmt* raw = nullptr;
+  if (sqlite3_prepare_v2(database_.get(), sql.c_str(), -1, &raw, nullptr) != SQLITE_OK) {
+    fail("expected the tables of rosbag2");
+  }
+  return {raw, &sqlite3_finalize};
+}
+
+void SqliteSource::fail(const std::string& what) {
+  throw std::runtime_error(name_ + ": " + what + ": " +
+                           (database_ ? sqlite3_errmsg(database_.get()) : "no memory"));
+}
+
+void SqliteSource::read_topics() {
+  const Statement rows =
+      prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  int result = SQLITE_ROW;
+  while ((result = sqlite3_step(rows.get())) == SQLITE_ROW) {
+    const bool cdr = column_text(rows.get(), 3) == "cdr";
+    topic_of_id_[sqlite3_column_int64(rows.get(), 0)] = topics_.size();
+    topics_.push_back({column_text(rows.get(), 1), ros2_type_name(column_text(rows.get(), 2)),
+                       cdr ? Encoding::kCdr : Encoding::kOther});
+  }
+  if (result != SQLITE_DONE) fail("table topics");
+  const Statement last = prepare("SELECT max(id) FROM messages");
+  if (sqlite3_step(last.get()) == SQLITE_ROW) last_id_ = sqlite3_column_int64(last.get(), 0);
+}
+
+void SqliteSource::select_messages(const TopicFilter& wanted) {
+  std::string ids;
+  for (const auto& [id, topic] : topic_of_id_) {
+    if (!wanted(topics_[topic])) continue;
+    ids += (ids.empty() ? "" : ", ") + std::to_string(id);
+  }
+  // By id, which is the order of recording: in order of time SQLite would have to sort the whole
+  // file where it lacks the index, and jump about in it where it has one.
+  messages_ = prepare("SELECT id, topic_id, timestamp, data FROM messages WHERE topic_id IN (" +
+                      ids + ") ORDER BY id");
+}
+
+bool SqliteSource::next(RawMessage& message) {
+  if (ended_) return false;
+  const int result = sqlite3_step(messages_.get());
+  if (result != SQLITE_ROW) {
+    ended_ = true;
+    if (result != SQLITE_DONE) {
+      damage_ = name_ + ": after " + position() + ": " + sqlite3_errmsg(database_.get());
+    }
+    return false;
+  }
+  sqlite3_stmt* row = messages_.get();
+  message_id_ = sqlite3_column_int64(row, 0);
+  const auto topic = topic_of_id_.find(sqlite3_column_int64(row, 1));
+  if (topic == topic_of_id_.end()) {
+    damage_ = name_ + ": " + position() + ": expected the number of a topic";
+    ended_ = true;
+    return false;
+  }
+  message.topic = topic->second;
+  message.log_time_ns = sqlite3_column_int64(row, 2);
+  const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(row, 3));
+  message.data = {data,
+                  data == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(row, 3))};
+  if (is_zstd_frame(message.data)) {
+    try {
+      decompress_zstd(message.data, unpacked_);
+      message.data = unpacked_;
+    } catch (const FormatError& error) {
+      damage_ = name_ + ": " + position() + ": " + error.what();
+      ended_ = true;
+      return false;
+    }
+  }
+  return true;
+}
+
+std::string SqliteSource::position() const {
+  return "message " + std::to_string(message_id_);
+}
+
+double SqliteSource::fraction_read() const {
+  if (ended_ || last_id_ <= 0) return 1.0;
+  return std::clamp(static_cast<double>(message_id_) / static_cast<double>(last_id_), 0.0, 1.0);
+}
+
+}  // namespace topogeo::recording

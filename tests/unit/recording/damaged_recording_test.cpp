@@ -1,0 +1,120 @@
+// Recordings that were cut off, are damaged, or are none.
+#include <gmock/gmock.h>
+
+#include "recorded_drive.hpp"
+
+namespace topogeo::recording {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class DamagedRecording : public RecordingFiles,
+                         public testing::WithParamInterface<std::pair<const char*, const char*>> {};
+
+INSTANTIATE_TEST_SUITE_P(Formats, DamagedRecording,
+                         testing::Values(std::pair{"a.mcap", "none"}, std::pair{"a.mcap", "zstd"},
+                                         std::pair{"a.bag", "none"}, std::pair{"a.bag", "bz2"}));
+
+constexpr std::uint32_t kLongDrive = 800;
+
+/// A drive of several chunks.
+std::filesystem::path long_drive(const std::filesystem::path& file, const char* compression) {
+  LogWriter writer(file, kMounting, compression);
+  scan::Scan scan;
+  scan.angle_min_rad = -1.0;
+  scan.angle_step_rad = 0.001;
+  std::uint32_t noise = 1;
+  for (std::uint32_t i = 0; i < kLongDrive; ++i) {
+    scan.stamp_ns = 1'000'000'000'000 + i * 50'000'000LL;
+    scan.ranges_m.clear();
+    for (int beam = 0; beam < 1000; ++beam) {
+      noise = noise * 1664525U + 1013904223U;
+      scan.ranges_m.push_back(1.0F + static_cast<float>(noise >> 16U) * 1e-4F);
+    }
+    writer.write(scan);
+  }
+  writer.close();
+  return file;
+}
+
+TEST_P(DamagedRecording, GivesWhatIsWholeWhenCutOff) {
+  const std::string whole = bytes_of(long_drive(path(GetParam().first), GetParam().second));
+  const std::vector<scan::Scan> all = read_scans(path(GetParam().first));
+  ASSERT_EQ(all.size(), std::size_t{kLongDrive});
+  const std::filesystem::path cut = path(std::string("cut_") + GetParam().first);
+  put_bytes(cut, whole.substr(0, whole.size() * 6 / 10));
+  LogReader reader(cut);
+  std::size_t scans = 0;
+  while (const std::optional<scan::Scan> scan = reader.next()) {
+    ASSERT_EQ(scan->ranges_m, all[scans].ranges_m);
+    ++scans;
+  }
+  EXPECT_GT(scans, std::size_t{kLongDrive} / 5);
+  EXPECT_LT(scans, std::size_t{kLongDrive} * 6 / 10);
+  EXPECT_EQ(reader.statistics().skipped_for(scan::SkipReason::kTruncated), 1U);
+  ASSERT_FALSE(reader.statistics().messages.empty());
+  EXPECT_THAT(reader.statistics().messages.back(),
+              AllOf(HasSubstr(cut.string() + ": byte "), HasSubstr("expected")));
+}
+
+TEST_P(DamagedRecording, IsNeverReadAsSomethingElse) {
+  const std::string whole = bytes_of(write_drive(path(GetParam().first), GetParam().second));
+  const std::vector<scan::Scan> drive = read_scans(path(GetParam().first));
+  const std::filesystem::path damaged = path(std::string("damaged_") + GetParam().first);
+  const std::size_t step = 1 + whole.size() / 150;
+  for (std::size_t at = 0; at < whole.size(); at += step) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(~bytes[at]);
+    put_bytes(damaged, bytes);
+    try {
+      EXPECT_LE(read_scans(damaged).size(), drive.size() + 1) << at;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(damaged.string())) << at;
+    }
+  }
+}
+
+// A byte changed in a chunk of MCAP is found by its checksum.
+TEST_F(DamagedRecording, FailsItsChecksum) {
+  std::string bytes = bytes_of(write_drive(path("a.mcap"), "none"));
+  const std::size_t inside = bytes.find("base_link") + 2;
+  bytes[inside] = 'x';
+  put_bytes(path("b.mcap"), bytes);
+  EXPECT_THAT(open_error(path("b.mcap")), HasSubstr("expected laser scans"));
+}
+
+TEST_F(DamagedRecording, OfSqliteIsRefusedOrReadInPart) {
+  const std::string whole = bytes_of(write_drive(path("a.db3")));
+  for (std::size_t part = 1; part < 8; ++part) {
+    put_bytes(path("b.db3"), whole.substr(0, whole.size() * part / 8));
+    const std::string error = open_error(path("b.db3"));
+    if (!error.empty()) {
+      EXPECT_THAT(error, HasSubstr("b.db3"));
+    }
+  }
+}
+
+TEST_F(DamagedRecording, IsNoneByItsFirstBytes) {
+  for (const char* name : {"a.mcap", "a.db3", "a.bag"}) {
+    put_bytes(path(name), "FLASER 2 1 1 0 0 0 0 0 0 1.0 h 1.0\n");
+    EXPECT_THAT(open_error(path(name)), AllOf(HasSubstr(name), HasSubstr("byte 0: expected")));
+    EXPECT_THAT(open_error(path(std::string("no_") + name)), HasSubstr("nothing of that name"));
+  }
+  put_bytes(path("v1.bag"), "#ROSBAG V1.2\n");
+  EXPECT_THAT(open_error(path("v1.bag")), HasSubstr("version 2.0"));
+  put_bytes(path("whole.db3.zstd"), "\x28\xB5\x2F\xFD\x24");
+  EXPECT_THAT(open_error(path("whole.db3.zstd")), HasSubstr("zstd -d"));
+  put_bytes(path("text.clf"), "FLASER 2 1 1 0 0 0 0 0 0 1.0 h 1.0\n");
+  EXPECT_THAT(open_error(path("text.clf")), IsEmpty());
+}
+
+TEST_F(DamagedRecording, IsRecognisedByItsContentUnderAnotherName) {
+  const auto file = write_drive(path("a.mcap"));
+  std::filesystem::copy_file(file, path("recording.log"));
+  expect_same_scans(read_scans(path("recording.log")), read_scans(file));
+}
+
+}  // namespace
+}  // namespace topogeo::recording

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# fetch_packages.sh FOLDER: the npm packages that mcap_check.mjs needs, once, into FOLDER. Exit code 77 where npm or the
+# network is missing.
+set -euo pipefail
+folder=$1
+[ -e "$folder/done" ] && exit 0
+command -v npm > /dev/null && command -v node > /dev/null || { echo "no node or npm"; exit 77; }
+mkdir -p "$folder"
+timeout 90 npm install --prefix "$folder" --no-audit --no-fund --ignore-scripts --fetch-retries 1 \
+  @mcap/core@2.2.2 @foxglove/rosmsg@5.0.5 @foxglove/rosmsg2-serialization@3.1.0 fzstd@0.1.1 \
+  || { echo "npm cannot fetch the packages"; exit 77; }
+touch "$folder/done"
