@@ -41,7 +41,7 @@ msg::Odometry odometry_of(const scan::Scan& scan, const std::string& robot_id,
 }  // namespace
 
 LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
-                       scan::CarmenLogReader reader, std::uint64_t scans_total)
+                       recording::LogReader reader, std::uint64_t scans_total)
     : service_(service),
       options_(options),
       readers_(options.readers.value_or(1)),

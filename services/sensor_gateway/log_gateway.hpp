@@ -10,7 +10,7 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
-#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/recording/log_reader.hpp"
 #include "topogeo/service/service.hpp"
 
 #include "replay_pace.hpp"
@@ -19,8 +19,9 @@ namespace topogeo::sensor_gateway {
 
 struct GatewayOptions {
   std::filesystem::path log;
-  service::ReplayRate rate;    ///< empty: lossless
-  std::optional<int> readers;  ///< scan readers to wait for before the first scan, >= 0; none: 1
+  recording::TopicChoice topics;  ///< of a log that is a recording of ROS
+  service::ReplayRate rate;       ///< empty: lossless
+  std::optional<int> readers;     ///< scan readers to wait for before the first scan, >= 0; none: 1
   bool exit_at_end = false;
 };
 
@@ -29,7 +30,7 @@ struct GatewayOptions {
 class LogGateway {
  public:
   /// `scans_total` is for people watching.
-  LogGateway(service::Service& service, const GatewayOptions& options, scan::CarmenLogReader reader,
+  LogGateway(service::Service& service, const GatewayOptions& options, recording::LogReader reader,
              std::uint64_t scans_total);
 
  private:
@@ -47,7 +48,7 @@ class LogGateway {
   service::Service& service_;
   GatewayOptions options_;
   int readers_;
-  scan::CarmenLogReader reader_;
+  recording::LogReader reader_;
   ReplayPace pace_;
   messaging::Writer<msg::Scan> scans_;
   messaging::Writer<msg::Odometry> odometry_;

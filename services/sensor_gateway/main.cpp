@@ -1,4 +1,4 @@
-// Gives the scans and odometry of a robot, from its devices or from a log in CARMEN's format.
+// Gives the scans and odometry of a robot, from its devices or from a log.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,13 +26,15 @@ struct Options {
 };
 
 struct OpenLog {
-  scan::CarmenLogReader reader;
+  recording::LogReader reader;
   std::uint64_t scans_total;
 };
 
-OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options) {
+OpenLog open_log(const sensor_gateway::GatewayOptions& replay,
+                 const scan::CarmenLogOptions& options) {
   try {
-    return {scan::CarmenLogReader(path, options), scan::count_scans(path)};
+    return {recording::LogReader(replay.log, options, replay.topics),
+            recording::count_scans(replay.log, replay.topics)};
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
@@ -50,7 +52,7 @@ void add_options_to(command_line::Command& app, Options& options) {
   command_line::Command* source =
       app.add_option_group("source", "where scans and odometry come from");
   command_line::Option* log =
-      source->add_option("--log", options.replay.log, "log in CARMEN's format, plain or gzip");
+      source->add_option("--log", options.replay.log, recording::kLogFormats);
   command_line::Option* devices =
       source->add_option("--devices", options.devices,
                          "ports and kinds of the devices (YAML), see `topogeo config --devices`");
@@ -61,6 +63,12 @@ void add_options_to(command_line::Command& app, Options& options) {
          "of a log: realtime, lossless (as fast as the readers take it) or a factor of real time")
       ->needs(log)
       ->default_str("lossless");
+  app.add_option("--scan-topic", options.replay.topics.scan, "laser scans of a recording of ROS")
+      ->needs(log)
+      ->type_name("TOPIC");
+  app.add_option("--odometry-topic", options.replay.topics.odometry, "its odometry or transforms")
+      ->needs(log)
+      ->type_name("TOPIC");
   app.add_option("--readers", options.replay.readers,
                  "readers of scans to wait for; 0: do not wait")
       ->check(command_line::range(0, 100))
@@ -80,7 +88,7 @@ void add_options_to(command_line::Command& app, Options& options) {
 }
 
 void replay(const service::Setup& setup, const sensor_gateway::GatewayOptions& options) {
-  OpenLog log = open_log(options.log, setup.config.config.log);
+  OpenLog log = open_log(options, setup.config.config.log);
   service::Service service(setup);
   const sensor_gateway::LogGateway gateway(service, options, std::move(log.reader),
                                            log.scans_total);

@@ -35,6 +35,7 @@ constexpr double kMountingDegrees = 180.0 / std::numbers::pi;
 
 struct CalibrateLaserOptions {
   std::filesystem::path log;
+  recording::TopicChoice topics;
   std::optional<std::filesystem::path> config;
   std::optional<std::filesystem::path> out;
 };
@@ -63,7 +64,7 @@ struct Found {
 
 Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Config& config,
                      bool first) {
-  OpenLog log = open_log(options.log, config.log);
+  OpenLog log = open_log(options.log, config.log, options.topics);
   Found found;
   found.log = match_log(config, log);
   if (first) report_skipped(log.reader.statistics());
@@ -125,7 +126,7 @@ std::string laser_yaml(const LaserCalibration& laser) {
 
 int calibrate_laser_log(const CalibrateLaserOptions& options) {
   const pipeline::LoadedConfig config =
-      load_for_calibration(options.config, options.out, options.log);
+      load_for_calibration(options.config, options.out, options.log, options.topics);
   const Found found = calibrate_laser(options, config.config);
   const LaserCalibration& laser = found.laser;
   const std::string name = options.log.filename().string();
@@ -157,9 +158,8 @@ void add_calibrate_laser_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
       "calibrate-laser", "Estimate from a log where the laser sits on its robot");
   auto options = std::make_shared<CalibrateLaserOptions>();
-  command->add_option("LOG", options->log, "CARMEN log, plain or gzip")
-      ->required()
-      ->type_name("FILE");
+  add_topic_options(*command, options->topics);
+  command->add_option("LOG", options->log, recording::kLogFormats)->required()->type_name("FILE");
   command
       ->add_option(
           "--config", options->config,

@@ -33,6 +33,7 @@ using localization::OdometryCalibration;
 
 struct CalibrateOptions {
   std::filesystem::path log;
+  recording::TopicChoice topics;
   std::optional<std::filesystem::path> reference;
   std::optional<std::filesystem::path> config;
   std::optional<std::filesystem::path> out;
@@ -58,9 +59,10 @@ std::vector<topomap::StampedPose> read_reference(const CalibrateOptions& options
 }
 
 CalibrationInputs read_inputs(const CalibrateOptions& options) {
-  pipeline::LoadedConfig config = load_for_calibration(options.config, options.out, options.log);
+  pipeline::LoadedConfig config =
+      load_for_calibration(options.config, options.out, options.log, options.topics);
   auto reference = read_reference(options);
-  OpenLog log = open_log(options.log, config.config.log);
+  OpenLog log = open_log(options.log, config.config.log, options.topics);
   return {std::move(config), std::move(log), std::move(reference)};
 }
 
@@ -214,9 +216,8 @@ void add_calibrate_odometry_command(command_line::Command& app, int& exit_code) 
   command_line::Command* command = app.add_subcommand(
       "calibrate-odometry", "Estimate from a log how wrong the odometry of its robot is");
   auto options = std::make_shared<CalibrateOptions>();
-  command->add_option("LOG", options->log, "CARMEN log, plain or gzip")
-      ->required()
-      ->type_name("FILE");
+  add_topic_options(*command, options->topics);
+  command->add_option("LOG", options->log, recording::kLogFormats)->required()->type_name("FILE");
   command
       ->add_option("--reference", options->reference,
                    "true trajectory of the robot (TUM) to measure by; without it scans are matched")

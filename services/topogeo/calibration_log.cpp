@@ -28,7 +28,8 @@ constexpr std::uint32_t kRecentMatches = 6;
 
 pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
                                             const std::optional<std::filesystem::path>& out,
-                                            const std::filesystem::path& log) {
+                                            const std::filesystem::path& log,
+                                            const recording::TopicChoice& topics) {
   pipeline::LoadedConfig loaded;
   try {
     loaded = pipeline::load_config(config);
@@ -42,14 +43,15 @@ pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem:
     }
     support::check_writable_directory(directory);
   }
-  choose_mounting(loaded, log);
+  choose_mounting(loaded, log, topics);
   return loaded;
 }
 
-OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options) {
+OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+                 const recording::TopicChoice& topics) {
   try {
-    scan::CarmenLogReader reader(path, options);
-    return {std::move(reader), scan::count_scans(path)};
+    recording::LogReader reader(path, options, topics);
+    return {std::move(reader), recording::count_scans(path, topics)};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }

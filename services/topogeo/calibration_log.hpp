@@ -10,7 +10,7 @@
 
 #include "topogeo/localization/calibration/odometry_calibration_samples.hpp"
 #include "topogeo/pipeline/config.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/recording/log_reader.hpp"
 #include "topogeo/support/progress_bar.hpp"
 
 namespace topogeo::cli {
@@ -20,15 +20,17 @@ namespace topogeo::cli {
 /// service::BadInputError for the log and std::runtime_error for `out`.
 pipeline::LoadedConfig load_for_calibration(const std::optional<std::filesystem::path>& config,
                                             const std::optional<std::filesystem::path>& out,
-                                            const std::filesystem::path& log);
+                                            const std::filesystem::path& log,
+                                            const recording::TopicChoice& topics);
 
 /// A log before its first scan.
 struct OpenLog {
-  scan::CarmenLogReader reader;
+  recording::LogReader reader;
   std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
 };
 /// Throws service::BadInputError.
-OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options);
+OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
+                 const recording::TopicChoice& topics);
 
 /// A progress bar on stderr, if that is a terminal, else a line that names the work.
 class Bar {

@@ -8,11 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "topogeo/command_line/command_line.hpp"
-#include "topogeo/scan/carmen_log_check.hpp"
+#include "topogeo/recording/log_reader.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "commands.hpp"
+#include "job.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -104,12 +105,13 @@ struct LogRequest {
   std::string log;
   bool json = false;
   scan::LogCheckOptions options;
+  recording::TopicChoice topics;
 };
 
 int check_log(const LogRequest& request) {
   scan::LogCheck check;
   try {
-    check = scan::check_carmen_log(request.log, request.options);
+    check = recording::check_log(request.log, request.options, request.topics);
   } catch (const std::runtime_error& error) {
     std::cerr << "topogeo: " << error.what() << '\n';
     return kUnreadable;
@@ -128,7 +130,8 @@ void add_check_log_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand("check-log", "Find what is wrong with a log");
   auto request = std::make_shared<LogRequest>();
   constexpr double kMost = 1e6;
-  command->add_option("log", request->log, "CARMEN log, plain or gzip")->required();
+  command->add_option("log", request->log, recording::kLogFormats)->required();
+  add_topic_options(*command, request->topics);
   command->add_flag("--json", request->json, "print everything as JSON");
   command
       ->add_option("--gap", request->options.longest_gap_s,

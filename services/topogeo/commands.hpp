@@ -19,6 +19,7 @@ void add_localizer_command(command_line::Command& app, int& exit_code);
 void add_base_command(command_line::Command& app, int& exit_code);
 void add_record_command(command_line::Command& app, int& exit_code);
 void add_check_log_command(command_line::Command& app, int& exit_code);
+void add_convert_command(command_line::Command& app, int& exit_code);
 void add_demo_command(command_line::Command& app, int& exit_code);
 void add_simulator_command(command_line::Command& app, int& exit_code);
 void add_status_command(command_line::Command& app, int& exit_code);

@@ -10,9 +10,9 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/config.hpp"
+#include "topogeo/recording/log_reader.hpp"
 #include "topogeo/render/contact_sheet.hpp"
 #include "topogeo/render/scan_picture.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/cpu_time.hpp"
@@ -27,6 +27,7 @@ namespace {
 
 struct DvlOptions {
   std::filesystem::path log;
+  recording::TopicChoice topics;
   std::filesystem::path out;
   std::optional<std::filesystem::path> config;
   std::optional<std::uint64_t> scan;
@@ -74,16 +75,16 @@ class ScanViews {
   voronoi::LocalVoronoi diagram_maker_;
 };
 
-scan::CarmenLogReader open_scans(const DvlOptions& options, const pipeline::Config& config) {
+recording::LogReader open_scans(const DvlOptions& options, const pipeline::Config& config) {
   try {
-    return scan::CarmenLogReader(options.log, config.log);
+    return recording::LogReader(options.log, config.log, options.topics);
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
 }
 
 /// Number of usable scans: that of laser lines can be larger.
-std::uint64_t count_usable(scan::CarmenLogReader reader, std::uint64_t laser_lines) {
+std::uint64_t count_usable(recording::LogReader reader, std::uint64_t laser_lines) {
   SlowProgress progress("counting scans");
   std::uint64_t count = 0;
   while (reader.next()) progress.update(++count, laser_lines);
@@ -92,7 +93,7 @@ std::uint64_t count_usable(scan::CarmenLogReader reader, std::uint64_t laser_lin
 }
 
 std::string picture_of_scan(const DvlOptions& options, const pipeline::Config& config) {
-  scan::CarmenLogReader reader = open_scans(options, config);
+  recording::LogReader reader = open_scans(options, config);
   SlowProgress progress("reading up to the scan");
   std::uint64_t read = 0;
   while (const std::optional<scan::Scan> scan = reader.next()) {
@@ -130,10 +131,10 @@ std::vector<std::uint64_t> chosen_scans(const DvlOptions& options, std::uint64_t
 }
 
 std::string sheet_of_log(const DvlOptions& options, const pipeline::Config& config) {
-  const std::uint64_t scans =
-      count_usable(open_scans(options, config), scan::count_scans(options.log));
+  const std::uint64_t scans = count_usable(open_scans(options, config),
+                                           recording::count_scans(options.log, options.topics));
   const std::vector<std::uint64_t> chosen = chosen_scans(options, scans);
-  scan::CarmenLogReader reader = open_scans(options, config);
+  recording::LogReader reader = open_scans(options, config);
   ScanViews maker(config.local_mapper);
   SlowProgress progress("drawing");
   std::vector<render::ScanView> views;
@@ -165,7 +166,7 @@ int draw(const DvlOptions& options) {
   } catch (const std::exception& error) {
     throw service::UsageError(error.what());
   }
-  choose_mounting(config, options.log);
+  choose_mounting(config, options.log, options.topics);
   support::write_file_atomically(options.out, options.all
                                                   ? sheet_of_log(options, config.config)
                                                   : picture_of_scan(options, config.config));
@@ -178,9 +179,8 @@ void add_dvl_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
       "dvl", "Picture of the local Voronoi diagram and map of one scan, or of many (--all)");
   auto options = std::make_shared<DvlOptions>();
-  command->add_option("--log", options->log, "CARMEN log, plain or gzip")
-      ->required()
-      ->type_name("FILE");
+  add_topic_options(*command, options->topics);
+  command->add_option("--log", options->log, recording::kLogFormats)->required()->type_name("FILE");
   command->add_option("--out", options->out, "picture to write: .png or .svg")
       ->required()
       ->type_name("FILE");

@@ -8,7 +8,6 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
-#include "topogeo/scan/laser_mounting.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -29,8 +28,8 @@ pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file) {
 
 Job open_log(const JobOptions& options, Inputs inputs) {
   try {
-    scan::CarmenLogReader reader(options.log, inputs.config.config.log);
-    const std::uint64_t laser_lines = scan::count_scans(options.log);
+    recording::LogReader reader(options.log, inputs.config.config.log, options.topics);
+    const std::uint64_t laser_lines = recording::count_scans(options.log, options.topics);
     return {options, std::move(inputs), std::move(reader), laser_lines};
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
@@ -90,8 +89,19 @@ void add_common_options(command_line::Command& app, JobOptions& options) {
       ->capture_default_str();
 }
 
+void add_topic_options(command_line::Command& app, recording::TopicChoice& topics) {
+  app.add_option("--scan-topic", topics.scan,
+                 "laser scans of a recording (default: /scan, else the one with most messages)")
+      ->type_name("TOPIC");
+  app.add_option("--odometry-topic", topics.odometry,
+                 "its odometry, or its transforms (default: /odom, else the one with most "
+                 "messages, else odom -> base_link of /tf)")
+      ->type_name("TOPIC");
+}
+
 void add_log_options(command_line::Command& app, JobOptions& options) {
-  app.add_option("--log", options.log, "CARMEN log, plain or gzip")->required()->type_name("FILE");
+  app.add_option("--log", options.log, recording::kLogFormats)->required()->type_name("FILE");
+  add_topic_options(app, options.topics);
   app.add_option("--out", options.out, "directory for the results; made if it does not exist")
       ->required()
       ->type_name("DIR");
@@ -129,9 +139,12 @@ void add_map_options(command_line::Command& app, JobOptions& options, StoredMapU
       ->type_name("X,Y,DEG");
 }
 
-void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log) {
+void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
+                     const recording::TopicChoice& topics) {
   try {
-    const std::string message = pipeline::choose_mounting(config, scan::mounting_in_log(log));
+    const recording::LogMounting in_log = recording::mounting_in_log(log, topics);
+    for (const std::string& note : in_log.notes) std::cerr << "topogeo: " << note << '\n';
+    const std::string message = pipeline::choose_mounting(config, in_log.T_robot_laser);
     if (!message.empty()) std::cerr << "topogeo: " << message << '\n';
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
@@ -143,7 +156,7 @@ Inputs check_inputs(const JobOptions& options) {
     throw service::UsageError("--initial-pose: expected with a stored map, --map or --continue");
   }
   Inputs inputs{load(options.config), nullptr, nullptr};
-  if (!options.log.empty()) choose_mounting(inputs.config, options.log);
+  if (!options.log.empty()) choose_mounting(inputs.config, options.log, options.topics);
   const pipeline::Config& config = inputs.config.config;
   if (options.continued && config.localizer.mode != localization::LocalizerMode::kGraph) {
     throw service::UsageError("--continue: expected localizer.mode graph in the configuration");

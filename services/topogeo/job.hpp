@@ -12,13 +12,14 @@
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/pipeline/trajectory_error.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
+#include "topogeo/recording/log_reader.hpp"
 #include "topogeo/storage/report.hpp"
 
 namespace topogeo::cli {
 
 struct JobOptions {
   std::filesystem::path log;
+  recording::TopicChoice topics;  ///< of a log that is a recording of ROS
   std::filesystem::path out;
   std::optional<std::filesystem::path> config;
   std::string robot_id = "robot";
@@ -34,7 +35,9 @@ void add_config_option(command_line::Command& app, std::optional<std::filesystem
 void add_width_option(command_line::Command& app, std::uint32_t& width_px);
 /// Adds --config and --robot, which every mapping command has.
 void add_common_options(command_line::Command& app, JobOptions& options);
-/// Adds --log, --out and --reference as well.
+/// Adds --scan-topic and --odometry-topic.
+void add_topic_options(command_line::Command& app, recording::TopicChoice& topics);
+/// Adds --log, those of its topics, --out and --reference as well.
 void add_log_options(command_line::Command& app, JobOptions& options);
 
 /// Which options on stored maps a command has.
@@ -55,9 +58,10 @@ struct Inputs {
 };
 
 /// Takes the mounting of the laser from the log unless the configuration sets it, and reports on
-/// stderr what people should know of that. Throws service::BadInputError when the log cannot be
-/// opened.
-void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log);
+/// stderr what people should know of that, and of the topics that are used of a recording. Throws
+/// service::BadInputError when the log cannot be opened.
+void choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
+                     const recording::TopicChoice& topics);
 
 /// Finds out before the work starts whether configuration, stored map and reference can be used,
 /// wherever the scans come from; where there is a log, with the laser where choose_mounting has it.
@@ -68,7 +72,7 @@ Inputs check_inputs(const JobOptions& options);
 struct Job {
   JobOptions options;
   Inputs inputs;
-  scan::CarmenLogReader reader;   ///< before its first scan
+  recording::LogReader reader;    ///< before its first scan
   std::uint64_t laser_lines = 0;  ///< at least as many as there are usable scans
 };
 

@@ -29,6 +29,7 @@ int run(int argc, const char* const* argv) {
   cli::add_base_command(app, exit_code);
   cli::add_record_command(app, exit_code);
   cli::add_check_log_command(app, exit_code);
+  cli::add_convert_command(app, exit_code);
   cli::add_demo_command(app, exit_code);
   cli::add_simulator_command(app, exit_code);
   cli::add_status_command(app, exit_code);

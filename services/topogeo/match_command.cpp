@@ -21,8 +21,8 @@
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/local_mapper.hpp"
 #include "topogeo/pipeline/stop_search.hpp"
+#include "topogeo/recording/log_reader.hpp"
 #include "topogeo/render/match_picture.hpp"
-#include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/atomic_file.hpp"
@@ -93,7 +93,7 @@ Stops stops_of_log(const std::filesystem::path& file, const pipeline::Config& co
                    std::size_t last) {
   Stops stops;
   try {
-    scan::CarmenLogReader reader(file, config.log);
+    recording::LogReader reader(file, config.log);
     pipeline::LocalMapper mapper(config.local_mapper, "robot");
     const auto keep = [&](std::optional<topomap::LocalMap> map) {
       if (!map) return;
@@ -269,7 +269,7 @@ int match_stops(const MatchOptions& options) {
   if (is_map(options.source)) {
     stops = stops_of_map(options.source);
   } else {
-    choose_mounting(config, options.source);
+    choose_mounting(config, options.source, {});
     stops = stops_of_log(options.source, config.config, std::max(pair.reference, pair.query));
   }
   UncertainPose predicted;
@@ -296,7 +296,9 @@ void add_match_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
       "match", "Show the search for the relative pose of two stops: what was searched and found");
   auto options = std::make_shared<MatchOptions>();
-  command->add_option("source", options->source, "CARMEN log, or a map (.pb, .sqlite)")
+  command
+      ->add_option("source", options->source,
+                   "log (see `topogeo map --help`), or a map (.pb, .sqlite)")
       ->required()
       ->type_name("FILE");
   command

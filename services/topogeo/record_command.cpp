@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/messaging/event_loop.hpp"
@@ -15,8 +17,9 @@
 #include "topogeo/messaging/topics.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
+#include "topogeo/msg/trajectory.h"
 #include "topogeo/pipeline/laser_mounting.hpp"
-#include "topogeo/scan/carmen_log_writer.hpp"
+#include "topogeo/recording/log_writer.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -32,6 +35,8 @@ using Clock = std::chrono::steady_clock;
 /// Scans that a stream end counts and that have not come by then will not come any more.
 constexpr std::chrono::seconds kPatience{5};
 constexpr milliseconds kRecordTick{50};
+/// Scans whose poses may still come: a minute or two.
+constexpr std::size_t kRecentScans = 2048;
 
 struct RecordRequest {
   DomainView view;
@@ -40,7 +45,7 @@ struct RecordRequest {
   std::optional<std::string> laser;  ///< see pipeline::parse_mounting
 };
 
-scan::CarmenLogWriter open(const RecordRequest& request) {
+recording::LogWriter open(const RecordRequest& request) {
   geometry::Pose2 T_robot_laser;
   try {
     if (request.laser) T_robot_laser = pipeline::parse_mounting(*request.laser);
@@ -48,7 +53,7 @@ scan::CarmenLogWriter open(const RecordRequest& request) {
     throw service::UsageError(std::string("--laser: ") + error.what());
   }
   try {
-    return scan::CarmenLogWriter(request.out, T_robot_laser);
+    return recording::LogWriter(request.out, T_robot_laser);
   } catch (const std::runtime_error& error) {
     throw service::BadInputError(error.what());
   }
@@ -62,7 +67,8 @@ class Recorder {
         participant_(join(request.view, "topogeo/record")),
         // Slows a replay down rather than lose scans.
         scans_(participant_, {std::string(messaging::kReplayRole), {}}),
-        ends_(participant_) {
+        ends_(participant_),
+        poses_(participant_) {
     loop_.add<msg::Scan>(scans_, [this](const msg::Scan& scan, const messaging::SampleInfo&) {
       if (scan.robot_id() == request_.robot_id.c_str()) take(scan);
     });
@@ -73,6 +79,10 @@ class Recorder {
           expected_ = end.count();
           last_news_ = Clock::now();
         });
+    loop_.add<msg::LivePose>(poses_,
+                             [this](const msg::LivePose& pose, const messaging::SampleInfo&) {
+                               if (pose.robot_id() == request_.robot_id.c_str()) take_pose(pose);
+                             });
     loop_.add_timer(kRecordTick, [this] { stop_at_end(); });
   }
 
@@ -106,9 +116,23 @@ class Recorder {
     }
     if (recorded_ == 0) first_ = number;
     if (recorded_ > 0) missing_ += number - next_;
-    log_.write(service::from_msg(message));
+    scan::Scan scan = service::from_msg(message);
+    log_.write(scan);
+    scan.ranges_m.clear();
+    recent_[scan.sequence] = std::move(scan);
+    if (recent_.size() > kRecentScans) recent_.erase(recent_.begin());
     next_ = number + 1;
     ++recorded_;
+  }
+
+  /// Of a robot that knows where it is; poses come after their scans.
+  void take_pose(const msg::LivePose& pose) {
+    const auto scan = recent_.find(pose.sequence_number());
+    const bool located =
+        pose.state() == msg::kStateTracking || pose.state() == msg::kStateAmbiguous;
+    if (!located || scan == recent_.end() || scan->second.stamp_ns != pose.stamp_ns()) return;
+    log_.write_pose(scan->second, service::from_msg(pose.T_map_robot()),
+                    service::from_msg(pose.covariance()));
   }
 
   void stop_at_end() {
@@ -117,13 +141,15 @@ class Recorder {
   }
 
   RecordRequest request_;
-  scan::CarmenLogWriter log_;
+  recording::LogWriter log_;
   messaging::Participant participant_;
   messaging::Reader<msg::Scan> scans_;
   messaging::Reader<msg::StreamEnd> ends_;
+  messaging::Reader<msg::LivePose> poses_;
   messaging::EventLoop loop_;
-  std::uint64_t first_ = 0;  // number of the first scan recorded
-  std::uint64_t next_ = 0;   // number of the scan that is expected
+  std::map<std::uint64_t, scan::Scan> recent_;  // by number, without ranges
+  std::uint64_t first_ = 0;                     // number of the first scan recorded
+  std::uint64_t next_ = 0;                      // number of the scan that is expected
   std::uint64_t recorded_ = 0;
   std::uint64_t missing_ = 0;              // between the scans recorded
   std::optional<std::uint64_t> expected_;  // scans in the whole stream
@@ -133,11 +159,13 @@ class Recorder {
 }  // namespace
 
 void add_record_command(command_line::Command& app, int& exit_code) {
-  command_line::Command* command =
-      app.add_subcommand("record", "Write the scans that a sensor gateway gives as a log");
+  command_line::Command* command = app.add_subcommand(
+      "record", "Write the scans that a sensor gateway gives as a log, and the poses as well");
   auto request = std::make_shared<RecordRequest>();
   request->view.partition = messaging::kDefaultPartition;
-  command->add_option("--out", request->out, "log to write, gzip when its name ends in .gz")
+  command
+      ->add_option("--out", request->out,
+                   "log to write, by its name: .mcap, .db3, .bag, else CARMEN (.gz: gzip)")
       ->required()
       ->type_name("FILE");
   command->add_option("--robot,--robot-id", request->robot_id, "whose scans")

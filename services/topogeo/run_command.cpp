@@ -126,8 +126,10 @@ void add_run_options(command_line::Command& app, RunOptions& options) {
       ->capture_default_str();
   app.add_option("--profiles", options.profiles_file, "QoS profiles instead of the built-in ones")
       ->type_name("FILE");
-  app.add_option("--record", options.record,
-                 "also write the scans that are mapped as a log, which gives the same map")
+  app.add_option(
+         "--record", options.record,
+         "also write the scans that are mapped as a log, which gives the same map (.mcap, .db3, "
+         ".bag, else CARMEN)")
       ->type_name("FILE");
 }
 

@@ -79,6 +79,9 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
                            std::to_string(kSimulatedBaseBaud)});
   }
   Arguments source = {"--log", options.job.log.string(), "--rate", options.rate};
+  const recording::TopicChoice& topics = options.job.topics;
+  if (topics.scan) source.insert(source.end(), {"--scan-topic", *topics.scan});
+  if (topics.odometry) source.insert(source.end(), {"--odometry-topic", *topics.odometry});
   if (!options.devices.empty()) {
     source = {"--devices", options.devices.string()};
     const std::filesystem::path memory = odometry_memory(partition);
