@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
@@ -16,6 +17,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "topogeo/messaging/plain_participant.hpp"
 #include "topogeo/messaging/revocations.hpp"
 #include "topogeo/messaging/shared_memory.hpp"
 
@@ -97,6 +99,28 @@ void add_peers(dds::DomainParticipantQos& qos, const std::string& hosts) {
   // With any peer given the middleware leaves the multicast address out.
 }
 
+// Nodes of ROS 2 on this host, also those that use no multicast, and by multicast those of the
+// network: with any peer given the middleware leaves the multicast address out, and without a port
+// it would take it for that of a host.
+void add_ros_peers(dds::DomainParticipantQos& qos, std::uint32_t domain) {
+  using eprosima::fastrtps::rtps::IPLocator;
+  constexpr std::uint32_t kFirstPort = 7400;
+  constexpr std::uint32_t kPortsOfDomain = 250;
+  eprosima::fastrtps::rtps::Locator_t host;
+  IPLocator::setIPv4(host, "127.0.0.1");
+  eprosima::fastrtps::rtps::Locator_t network;
+  IPLocator::setIPv4(network, "239.255.0.1");
+  network.port = kFirstPort + kPortsOfDomain * domain;
+  qos.wire_protocol().builtin.initialPeersList.push_back(host);
+  qos.wire_protocol().builtin.initialPeersList.push_back(network);
+}
+
+/// What nodes of ROS 2 expect of a participant, without which they do not list it.
+void set_ros_identity(dds::DomainParticipantQos& qos) {
+  constexpr std::string_view kEnclave = "enclave=/;";
+  qos.user_data().data_vec({kEnclave.begin(), kEnclave.end()});
+}
+
 // The messages by which secured participants get to know each other carry certificates, and Fast
 // DDS 2.9.1 does not finish where those are cut into packets.
 void send_whole_certificates(dds::DomainParticipantQos& qos) {
@@ -134,10 +158,15 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                              "' is not in the profiles file");
   }
   qos.name(options.name);
-  add_peers(qos, environment("TOPOGEO_PEERS"));
-  const std::filesystem::path security =
-      options.security.empty() ? std::filesystem::path(environment("TOPOGEO_SECURITY"))
-                               : options.security;
+  const bool ros = is_ros_profile(profile);
+  if (ros) {
+    add_ros_peers(qos, options.domain);
+    set_ros_identity(qos);
+  } else {
+    add_peers(qos, environment("TOPOGEO_PEERS"));
+  }
+  std::filesystem::path security = options.security;
+  if (security.empty() && !ros) security = environment("TOPOGEO_SECURITY");
   if (!security.empty()) {
     revocations_ = RevocationList(security / options.identity);  // before the middleware reads it
     add_security(qos, security / options.identity);
@@ -167,10 +196,10 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
                                std::string(kAddressFilterClass));
     }
     dds::PublisherQos publisher_qos = dds::PUBLISHER_QOS_DEFAULT;
-    publisher_qos.partition().push_back(options.partition.c_str());
+    if (!ros) publisher_qos.partition().push_back(options.partition.c_str());
     publisher_ = require(participant_->create_publisher(publisher_qos), "a publisher");
     dds::SubscriberQos subscriber_qos = dds::SUBSCRIBER_QOS_DEFAULT;
-    subscriber_qos.partition().push_back(options.partition.c_str());
+    if (!ros) subscriber_qos.partition().push_back(options.partition.c_str());
     subscriber_ = require(participant_->create_subscriber(subscriber_qos), "a subscriber");
   } catch (...) {
     participant_->delete_contained_entities();

@@ -151,6 +151,15 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     {"routes", "topogeo_routes_taken_total", kTotal, "routes that were followed"},
     {"arrivals", "topogeo_arrivals_total", kTotal, "goals that were reached"},
     {"commands", "topogeo_velocities_sent_total", kTotal, "velocities sent to the base"},
+    // bridge to ROS 2
+    {"scans_adapted", "topogeo_ros_adapted_scans_total", kTotal,
+     "scans of ROS put on the beams of the first one"},
+    {"poses_sent", "topogeo_ros_poses_sent_total", kTotal, "poses published on ROS"},
+    {"maps_sent", "topogeo_ros_maps_sent_total", kTotal, "whole maps published on ROS"},
+    {"map_updates_sent", "topogeo_ros_map_updates_sent_total", kTotal,
+     "parts of the map published on ROS"},
+    {"initial_poses", "topogeo_ros_initial_poses_total", kTotal, "poses set from ROS"},
+    {"velocities", "topogeo_ros_velocities_total", kTotal, "velocities handed to or from ROS"},
     // simulator
     {"time_s", "topogeo_simulated_seconds_total", kTotal, "time in the simulated world"},
     {"stood_still_s", "topogeo_simulator_delay_seconds_total", kTotal,

@@ -19,10 +19,10 @@
 namespace topogeo::service {
 namespace {
 
-/// In the order of their ports.
-constexpr auto kServices =
-    std::to_array<std::string_view>({"sensor_gateway", "local_mapper", "localizer", "map_store",
-                                     "planner", "navigator", "simulator", "ga_worker"});
+/// In the order of their ports; search workers have several.
+constexpr auto kServices = std::to_array<std::string_view>(
+    {"sensor_gateway", "local_mapper", "localizer", "map_store", "planner", "navigator",
+     "simulator", "ga_worker", "ros_bridge"});
 /// Search workers of one host that find a port.
 constexpr std::uint32_t kWorkerPorts = 64;
 
@@ -98,7 +98,9 @@ MetricsAddress metrics_address(const std::string& address, std::uint32_t first_p
                                const std::string& service) {
   const auto found = std::ranges::find(kServices, service);
   const auto place = static_cast<std::uint32_t>(found - kServices.begin());
-  return {address, first_port + place, service == "ga_worker" ? kWorkerPorts : 1};
+  const bool after_workers = place > kServices.size() - 2;
+  const std::uint32_t port = first_port + place + (after_workers ? kWorkerPorts - 1 : 0);
+  return {address, port, service == "ga_worker" ? kWorkerPorts : 1};
 }
 
 }  // namespace topogeo::service

@@ -25,6 +25,7 @@ const std::vector<RestrictedLibrary>& restricted_libraries() {
        {"libs/messaging/src/", "libs/map_client/include/topogeo/map_client/map_reader.hpp"}},
       {"fastcdr/", {"libs/messaging/src/"}},
       {"topogeo/msg/type_supports.h", {"libs/messaging/src/"}},
+      {"topogeo/ros2/type_supports.h", {"libs/ros_messaging/src/"}},
       {"CLI/",
        {"libs/command_line/src/command_line.cpp", "libs/command_line/src/generated_help.cpp"}},
       {"SQLiteCpp/", {"libs/storage/src/"}},

@@ -1,0 +1,88 @@
+// Readers and writers of topics of ROS 2, for the participants of plain_participant.hpp and the
+// event loop of messaging.
+//
+// On DDS a topic of ROS has the prefix "rt" and a type name of its own (ROS 2 design, "Topic and
+// Service name mapping to DDS"). Strings and sequences are unbounded there: what cannot be read
+// becomes the event kInvalidSample.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/ros_messaging/messages.hpp"
+
+namespace topogeo::ros {
+
+/// Names the profiles of deploy/dds_profiles.xml.
+enum class Qos {
+  kBestEffort,  ///< what a slow network loses is lost
+  kReliable,    ///< lost packets are sent again
+  kLatched,     ///< reliable, and late readers get the last message
+  kTransforms   ///< reliable, deep enough for the many writers of /tf
+};
+
+struct Topic {
+  std::string name;  ///< as ROS has it: "/scan"
+  Qos qos = Qos::kReliable;
+};
+
+/// Throws std::invalid_argument naming the rule that `name` breaks: it starts with '/', has
+/// letters, digits, '_' and '/', no token that is empty or starts with a digit, and at most 247
+/// characters.
+void check_topic_name(const std::string& name);
+
+/// A topic of type T as its readers and as its writers use it; lives as long as the process. Throws
+/// as check_topic_name.
+template <Message T>
+const messaging::TopicInfo& reader_info(const std::string& name);
+template <Message T>
+const messaging::TopicInfo& writer_info(const std::string& name);
+
+/// Of the profiles.
+std::string role(Qos qos);
+
+}  // namespace topogeo::ros
+
+namespace topogeo::messaging {
+
+/// As the Reader of our topics; there are no disposals.
+template <class T>
+requires ros::Message<T>
+class Reader<T> {
+ public:
+  Reader(const Participant& participant, const ros::Topic& topic)
+      : core_(std::make_shared<detail::ReaderCore>(participant, ros::reader_info<T>(topic.name),
+                                                   ros::role(topic.qos), std::string())) {}
+
+  [[nodiscard]] int matched() const { return core_->matched(); }
+  [[nodiscard]] const std::shared_ptr<detail::ReaderCore>& core() const { return core_; }
+
+ private:
+  std::shared_ptr<detail::ReaderCore> core_;
+};
+
+/// As the Writer of our topics.
+template <class T>
+requires ros::Message<T>
+class Writer<T> {
+ public:
+  Writer(const Participant& participant, const ros::Topic& topic)
+      : core_(std::make_shared<detail::WriterCore>(participant, ros::writer_info<T>(topic.name),
+                                                   ros::role(topic.qos))) {}
+
+  /// False: not sent, because a reader is slow. Throws std::runtime_error when the middleware
+  /// fails.
+  [[nodiscard]] bool write(const T& message) { return core_->write(&message); }
+  [[nodiscard]] int matched() const { return core_->matched(); }
+  [[nodiscard]] const std::shared_ptr<detail::WriterCore>& core() const { return core_; }
+
+ private:
+  std::shared_ptr<detail::WriterCore> core_;
+};
+
+}  // namespace topogeo::messaging

@@ -1,0 +1,156 @@
+#include "topogeo/ros_messaging/topic.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "topogeo/ros2/type_supports.h"
+
+namespace topogeo::ros {
+namespace {
+
+/// What the history allocates for a sample before it knows how large it is, bytes.
+constexpr std::uint32_t kFirstPayload = 256;
+constexpr std::size_t kLongestName = 247;
+
+/// What a reader hands over: the message, or that there was none in the payload.
+template <class T>
+struct Received final : public T {
+  bool readable = true;
+};
+
+/// A generated type support whose histories grow with the samples, and to which a payload that is
+/// no message of the type is one that find_defect refuses: where the generated code fails the
+/// middleware reads nothing behind it, and what it throws ends the process.
+template <class Generated>
+class RosTypeSupport final : public Generated {
+  using Message = typename Generated::type;
+
+ public:
+  RosTypeSupport() { this->m_typeSize = std::min(this->m_typeSize, kFirstPayload); }
+  [[nodiscard]] bool is_bounded() const override { return false; }
+  [[nodiscard]] bool is_plain() const override { return false; }
+
+  void* createData() override { return new Received<Message>; }  // NOLINT: the interface's
+  void deleteData(void* data) override {
+    delete static_cast<Received<Message>*>(data);  // NOLINT: as above
+  }
+
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+    auto& received = *static_cast<Received<Message>*>(data);
+    received.readable = true;
+    try {
+      if (Generated::deserialize(payload, static_cast<Message*>(&received))) return true;
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): as the false
+    }
+    received.readable = false;
+    return true;
+  }
+};
+
+template <class Generated>
+eprosima::fastdds::dds::TopicDataType* make_ros_type() {
+  return new RosTypeSupport<Generated>;  // NOLINT: the caller hands it to a dds::TypeSupport
+}
+
+template <class T>
+std::optional<std::string> find_unreadable(const void* message) {
+  if (static_cast<const Received<T>*>(message)->readable) return std::nullopt;
+  return "a payload that is no message of its type";
+}
+
+std::optional<std::string> no_defect(const void* /*message*/) {
+  return std::nullopt;
+}
+
+}  // namespace
+
+void check_topic_name(const std::string& name) {
+  const auto refuse = [&](const std::string& rule) {
+    throw std::invalid_argument("topic '" + name + "': expected " + rule);
+  };
+  if (name.size() < 2 || name.front() != '/') refuse("a name that starts with '/'");
+  if (name.size() > kLongestName) refuse("at most 247 characters");
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    const bool digit = c >= '0' && c <= '9';
+    if (!letter && !digit && c != '/') refuse("letters, digits, '_' and '/'");
+    if (i == 0 || name[i - 1] != '/') continue;
+    if (c == '/') refuse("no empty part");
+    if (digit) refuse("no part that starts with a digit");
+  }
+  if (name.back() == '/') refuse("a name that does not end with '/'");
+}
+
+std::string role(Qos qos) {
+  switch (qos) {
+    case Qos::kBestEffort:
+      return "ros_best_effort";
+    case Qos::kLatched:
+      return "ros_latched";
+    case Qos::kTransforms:
+      return "ros_transforms";
+    case Qos::kReliable:
+      break;
+  }
+  return "ros_reliable";
+}
+
+namespace {
+
+struct NamedInfo {
+  std::string name;
+  messaging::TopicInfo info;
+};
+
+/// Topics that were asked for, which readers and writers point to.
+const messaging::TopicInfo& keep(const std::string& key, const std::string& name,
+                                 eprosima::fastdds::dds::TopicDataType* (*make_type)(),
+                                 std::optional<std::string> (*find_defect)(const void*)) {
+  static std::mutex mutex;
+  static std::map<std::string, NamedInfo> topics;
+  check_topic_name(name);
+  const std::lock_guard lock(mutex);
+  const auto [entry, added] = topics.try_emplace(key + name);
+  if (added) {
+    entry->second.name = "rt" + name;
+    entry->second.info = {entry->second.name, "ros_reliable", "", "", make_type, find_defect};
+  }
+  return entry->second.info;
+}
+
+}  // namespace
+
+#define TOPOGEO_ROS_MESSAGE(Type, package)                                                    \
+  template <>                                                                                 \
+  const messaging::TopicInfo& reader_info<Type>(const std::string& name) {                    \
+    return keep("read " #Type, name, make_ros_type<package::msg::dds_::Type##_PubSubType>,    \
+                find_unreadable<Type>);                                                       \
+  }                                                                                           \
+  template <>                                                                                 \
+  const messaging::TopicInfo& writer_info<Type>(const std::string& name) {                    \
+    return keep("written " #Type, name, make_ros_type<package::msg::dds_::Type##_PubSubType>, \
+                no_defect);                                                                   \
+  }
+TOPOGEO_ROS_MESSAGE(Clock, rosgraph_msgs)
+TOPOGEO_ROS_MESSAGE(DiagnosticArray, diagnostic_msgs)
+TOPOGEO_ROS_MESSAGE(LaserScan, sensor_msgs)
+TOPOGEO_ROS_MESSAGE(MarkerArray, visualization_msgs)
+TOPOGEO_ROS_MESSAGE(OccupancyGrid, nav_msgs)
+TOPOGEO_ROS_MESSAGE(OccupancyGridUpdate, map_msgs)
+TOPOGEO_ROS_MESSAGE(Odometry, nav_msgs)
+TOPOGEO_ROS_MESSAGE(Path, nav_msgs)
+TOPOGEO_ROS_MESSAGE(PoseStamped, geometry_msgs)
+TOPOGEO_ROS_MESSAGE(PoseWithCovarianceStamped, geometry_msgs)
+TOPOGEO_ROS_MESSAGE(TFMessage, tf2_msgs)
+TOPOGEO_ROS_MESSAGE(Twist, geometry_msgs)
+TOPOGEO_ROS_MESSAGE(TwistStamped, geometry_msgs)
+#undef TOPOGEO_ROS_MESSAGE
+
+}  // namespace topogeo::ros

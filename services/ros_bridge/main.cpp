@@ -1,0 +1,141 @@
+// Joins a robot that speaks ROS 2 with the services of topogeo; no part of ROS is needed.
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <unistd.h>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/service/service.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/format.hpp"
+
+#include "ros_bridge_service.hpp"
+#include "settings.hpp"
+
+namespace {
+
+using namespace topogeo;  // NOLINT(google-build-using-namespace)
+
+struct Options {
+  ros_bridge::SettingOptions settings;
+  std::optional<std::uint32_t> ros_domain;
+  std::string map_robot;
+  bool replay = false;
+  bool ros_arguments = false;
+  bool print_settings = false;
+  std::optional<double> show_mounting_s;
+};
+
+/// As ROS reads it: 0x10 is 16.
+std::uint32_t domain_of_environment(std::uint32_t otherwise) {
+  constexpr unsigned long kLargestDomain = 232;
+  const char* text = std::getenv("ROS_DOMAIN_ID");
+  if (text == nullptr || *text == '\0') return otherwise;
+  char* end = nullptr;
+  const unsigned long domain = std::strtoul(text, &end, 0);
+  if (*end != '\0' || domain > kLargestDomain) {
+    throw service::UsageError(std::string("ROS_DOMAIN_ID: expected 0 to 232, got '") + text + "'");
+  }
+  return static_cast<std::uint32_t>(domain);
+}
+
+void add_options_to(command_line::Command& app, Options& options) {
+  app.add_option("--ros", options.settings.file,
+                 "names, frames, directions and quality of service (YAML), as --print-settings has "
+                 "them")
+      ->type_name("FILE");
+  app.add_option("-r,--remap", options.settings.remaps,
+                 "a topic of ROS by another name, as ROS has it: /scan:=/front/scan; __ns:=/robot1")
+      ->allow_extra_args(false)
+      ->type_name("FROM:=TO");
+  app.add_option("--namespace", options.settings.ros_namespace,
+                 "of the ROS topics whose names do not begin with '/'")
+      ->type_name("NAME");
+  app.add_flag("--print-settings", options.print_settings,
+               "print the settings with every key documented, those of --ros if given, and end");
+  app.add_flag("--ros-args", options.ros_arguments, "does nothing: what follows may be pasted");
+  app.add_option("--ros-domain", options.ros_domain,
+                 "DDS domain of the ROS nodes (default: ROS_DOMAIN_ID, else --domain)")
+      ->check(command_line::range(0U, 232U));
+  app.add_flag("--replay", options.replay,
+               "with `directions: {sensors: out}`: the scans are those of a log");
+  app.add_option(
+         "--show-mounting", options.show_mounting_s,
+         "print where the frames of ROS have the laser, as --laser takes it, and end; waits "
+         "so long for a scan")
+      ->check(command_line::range(0.0, 3600.0))
+      ->type_name("SECONDS");
+  service::add_map_option(app, options.map_robot);
+}
+
+ros_bridge::Settings load(const Options& options) {
+  try {
+    return ros_bridge::load_settings(options.settings);
+  } catch (const std::runtime_error& error) {
+    throw service::UsageError(error.what());
+  }
+}
+
+void print_settings(const Options& options) {
+  ros_bridge::Settings settings;
+  const support::ConfigSchema schema = describe(settings);
+  try {
+    if (options.settings.file) support::load_yaml_file(*options.settings.file, schema);
+  } catch (const std::runtime_error& error) {
+    throw service::UsageError(error.what());
+  }
+  support::write_yaml(schema, std::cout);
+}
+
+/// Out of sight of other services, and without a word to ROS.
+void show_mounting(service::Setup setup, ros_bridge::Settings settings, std::uint32_t domain,
+                   double wait_s) {
+  setup.options.partition = "show-mounting-" + std::to_string(::getpid());
+  settings.directions = {};
+  service::Service service(setup);
+  const ros_bridge::RosBridgeService bridge(service, settings, domain, false);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(wait_s);
+  while (!bridge.mounting() && std::chrono::steady_clock::now() < end) {
+    if (service.loop().run_for(std::chrono::milliseconds(20))) return;
+  }
+  const auto mounting = bridge.mounting();
+  if (!mounting) {
+    throw std::runtime_error(fmt::format(
+        "no scan within {:.0f} s whose frame the transforms join with that of the robot", wait_s));
+  }
+  std::cout << pipeline::mounting_argument(mounting->T_robot_laser) << '\n';
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  return service::run_service(
+      argc, argv, "ros_bridge",
+      "Joins a robot that speaks ROS 2: takes its scans, odometry, transforms and goals, gives it "
+      "map, pose, route and velocities.",
+      [&](command_line::Command& app) { add_options_to(app, options); },
+      [&](const service::Setup& setup) {
+        if (options.print_settings) {
+          print_settings(options);
+          return;
+        }
+        const ros_bridge::Settings settings = load(options);
+        const std::uint32_t domain =
+            options.ros_domain ? *options.ros_domain : domain_of_environment(setup.options.domain);
+        if (options.show_mounting_s) {
+          show_mounting(setup, settings, domain, *options.show_mounting_s);
+          return;
+        }
+        service::Service service(service::with_map_of(setup, options.map_robot));
+        ros_bridge::RosBridgeService bridge(service, settings, domain, options.replay);
+        service.run();
+        bridge.finish();
+      });
+}

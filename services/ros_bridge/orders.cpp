@@ -1,0 +1,80 @@
+#include "orders.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+#include "geometry.hpp"
+
+namespace topogeo::ros_bridge {
+namespace {
+
+constexpr double kClick_m = 0.5;
+constexpr double kClick_rad = 15.0 * std::numbers::pi / 180.0;
+
+geometry::Pose2 map_from(const std::string& frame, const Settings::Frames& frames,
+                         const std::optional<geometry::Pose2>& T_map_odom,
+                         const std::optional<geometry::Pose2>& T_map_robot) {
+  if (frame == frames.map) return {};
+  if (frame == frames.odom && T_map_odom) return *T_map_odom;
+  if (frame == (frames.robot.empty() ? "base_link" : frames.robot) && T_map_robot) {
+    return *T_map_robot;
+  }
+  throw std::invalid_argument("frame '" + frame + "': expected " + frames.map);
+}
+
+}  // namespace
+
+service::Goal to_goal(const ros::PoseStamped& message, const Settings::Frames& frames,
+                      const std::optional<geometry::Pose2>& T_map_odom,
+                      const std::optional<geometry::Pose2>& T_map_robot) {
+  const geometry::Pose2 T_map_frame =
+      map_from(frame_name(message.header_().frame_id_()), frames, T_map_odom, T_map_robot);
+  const Eigen::Vector2d at_m(message.pose_().position_().x_(), message.pose_().position_().y_());
+  if (!at_m.allFinite()) throw std::invalid_argument("position: expected finite numbers");
+  service::Goal goal;
+  goal.kind = msg::kGoalPosition;
+  goal.target = Eigen::Vector2d(T_map_frame * at_m);
+  if (const auto pose = planar(message.pose_())) {
+    goal.heading_rad = geometry::wrap_angle(T_map_frame.theta_rad + pose->theta_rad);
+  }
+  return goal;
+}
+
+service::LocalizationCommand to_set_pose(const ros::PoseWithCovarianceStamped& message,
+                                         const std::string& map_frame) {
+  const std::string frame = frame_name(message.header_().frame_id_());
+  if (frame != map_frame) {
+    throw std::invalid_argument("frame '" + frame + "': expected " + map_frame);
+  }
+  const auto pose = planar(message.pose_().pose_());
+  if (!pose) throw std::invalid_argument("pose: expected numbers and a quaternion of length 1");
+  service::LocalizationCommand command;
+  command.kind = msg::kCommandSetPose;
+  command.T_map_robot = *pose;
+  constexpr std::array<std::size_t, 3> kRows = {0, 1, 5};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      const auto i = static_cast<Eigen::Index>(row);
+      const auto j = static_cast<Eigen::Index>(column);
+      // Halves of both sides: what rounding makes unequal is refused otherwise.
+      command.covariance(i, j) =
+          0.5 * (message.pose_().covariance_()[kRows[row] * 6 + kRows[column]] +
+                 message.pose_().covariance_()[kRows[column] * 6 + kRows[row]]);
+    }
+  }
+  constexpr double kLeast = 1e-12;
+  const Eigen::LLT<Eigen::Matrix3d> factor(command.covariance);
+  if (!command.covariance.allFinite() || factor.info() != Eigen::Success ||
+      command.covariance.diagonal().minCoeff() < kLeast) {
+    command.covariance =
+        Eigen::Vector3d(kClick_m * kClick_m, kClick_m * kClick_m, kClick_rad * kClick_rad)
+            .asDiagonal();
+  }
+  return command;
+}
+
+}  // namespace topogeo::ros_bridge

@@ -1,0 +1,52 @@
+#include "ros_side.hpp"
+
+#include <chrono>
+
+#include "topogeo/messaging/plain_participant.hpp"
+#include "topogeo/support/log.hpp"
+
+namespace topogeo::ros_bridge {
+namespace {
+
+messaging::Participant join_ros(const service::Service& service, const Settings& settings,
+                                std::uint32_t domain) {
+  messaging::ParticipantOptions options;
+  options.domain = domain;
+  options.name = "/topogeo_bridge";
+  options.profile =
+      settings.localhost_only ? messaging::kRosLocalhostProfile : messaging::kRosProfile;
+  options.profiles_file = service.setup().options.profiles_file;
+  return messaging::Participant(options);
+}
+
+}  // namespace
+
+RosSide::RosSide(service::Service& service, Settings settings, std::uint32_t domain)
+    : service_(service),
+      settings_(std::move(settings)),
+      participant_(join_ros(service, settings_, domain)) {}
+
+void RosSide::say_once(const std::string& reason, const std::string& detail) {
+  last_complaint_ = reason + (detail.empty() ? "" : ": " + detail);
+  if (said_.insert(reason).second) {
+    spdlog::warn("{} (said once, counted in the status)", last_complaint_);
+  }
+}
+
+void RosSide::complain(const std::string& reason, const std::string& detail) {
+  constexpr std::size_t kLongestReason = 48;
+  service_.status().add_drops(reason.substr(0, kLongestReason));
+  say_once(reason, detail);
+}
+
+void RosSide::set_complaints(const std::string& reason, std::uint64_t count,
+                             const std::string& detail) {
+  service_.status().set_drops(reason, count);
+  if (count > 0) say_once(reason, detail);
+}
+
+std::int64_t steady_now_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace topogeo::ros_bridge

@@ -1,0 +1,211 @@
+#include "scan_intake.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "geometry.hpp"
+
+namespace topogeo::ros_bridge {
+namespace {
+
+constexpr std::int64_t kTimeJump_ns = 1'000'000'000;
+/// No robot of a building is as fast, and no odometry as coarse.
+constexpr double kFastest_mps = 5.0;
+constexpr double kJump_m = 0.5;
+/// As where a log contradicts the configuration.
+constexpr double kMountingTolerance_m = 0.02;
+/// Motion over a sweep that the beams do not show.
+constexpr double kStill_m = 0.002;
+constexpr double kStill_rad = 0.001;
+
+std::string text(const geometry::Pose2& pose) {
+  return std::to_string(pose.x_m) + "," + std::to_string(pose.y_m) + "," +
+         std::to_string(pose.theta_rad);
+}
+
+}  // namespace
+
+std::string_view describe(IntakeDrop drop) {
+  switch (drop) {
+    case IntakeDrop::kInvalidScan:
+      return "invalid ROS scan";
+    case IntakeDrop::kOtherFrame:
+      return "scan of another frame";
+    case IntakeDrop::kNoOdometry:
+      return "no odometry";
+    case IntakeDrop::kNoMounting:
+      return "unknown frame of the laser";
+    case IntakeDrop::kTilted:
+      return "tilted laser";
+    case IntakeDrop::kOtherMounting:
+      return "laser mounted elsewhere";
+    case IntakeDrop::kOldScan:
+      return "time not increasing";
+    case IntakeDrop::kInvalidOdometry:
+      return "invalid ROS odometry";
+    case IntakeDrop::kOldOdometry:
+      return "odometry not newer";
+  }
+  return "unknown";
+}
+
+void ScanIntake::begin() {
+  track_ = geometry::OdometryTrack(options_.longest_extrapolation_ns);
+  last_odometry_.reset();
+  waiting_.clear();
+  last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
+  next_sequence_ = 0;
+  ++epochs_;
+}
+
+void ScanIntake::count(IntakeDrop drop, const std::string& detail) {
+  ++drops_[static_cast<std::size_t>(drop)];
+  details_[static_cast<std::size_t>(drop)] = detail;
+}
+
+std::string ScanIntake::add(const geometry::OdometrySample& sample) {
+  std::string why;
+  if (last_odometry_) {
+    const std::int64_t passed_ns = sample.stamp_ns - last_odometry_->stamp_ns;
+    const double moved_m =
+        geometry::between(last_odometry_->T_odom_robot, sample.T_odom_robot).position_m().norm();
+    if (passed_ns < -kTimeJump_ns) {
+      why = "time went back by " + std::to_string(static_cast<double>(-passed_ns) * 1e-9) + " s";
+    } else if (passed_ns <= 0) {
+      count(IntakeDrop::kOldOdometry, std::to_string(sample.stamp_ns));
+      return {};
+    } else if (moved_m > kJump_m + kFastest_mps * static_cast<double>(passed_ns) * 1e-9) {
+      why = "the odometry jumped by " + std::to_string(moved_m) + " m";
+    }
+  }
+  if (!why.empty()) begin();
+  last_odometry_ = sample;
+  static_cast<void>(track_.add(sample));
+  return why;
+}
+
+void ScanIntake::add(const ros::LaserScan& message, std::int64_t arrival_ns) {
+  waiting_.push_back({message, arrival_ns});
+}
+
+std::vector<ScanIntake::Leaving> ScanIntake::take(std::int64_t now_ns) {
+  std::vector<Leaving> scans;
+  while (!waiting_.empty()) {
+    const Waiting& first = waiting_.front();
+    const std::int64_t stamp_ns = from_ros(first.message.header_().stamp_());
+    const bool bracketed = track_.last_ns() && *track_.last_ns() >= stamp_ns;
+    if (!bracketed && now_ns < due_ns()) break;
+    if (auto scan = finish(first.message)) scans.push_back({*std::move(scan), first.arrival_ns});
+    waiting_.pop_front();
+  }
+  return scans;
+}
+
+std::int64_t ScanIntake::due_ns() const {
+  return waiting_.empty() ? std::numeric_limits<std::int64_t>::max()
+                          : waiting_.front().arrival_ns + options_.odometry_wait_ns;
+}
+
+bool ScanIntake::find_mounting(const std::string& laser_frame) {
+  if (!options_.mounting_from_tf) {
+    mounting_ = Mounting{options_.T_robot_laser, false};
+    return true;
+  }
+  const auto T_robot_laser = frames_.find(robot_frame_, laser_frame);
+  if (!T_robot_laser) {
+    count(IntakeDrop::kNoMounting, "no transform from " + robot_frame_ + " to " + laser_frame);
+    return false;
+  }
+  const auto mounting = mounting_of(*T_robot_laser);
+  if (!mounting) {
+    count(IntakeDrop::kTilted, laser_frame + " does not look along the floor of " + robot_frame_);
+    return false;
+  }
+  mounting_ = mounting;
+  const Eigen::Vector2d apart_m =
+      mounting->T_robot_laser.position_m() - options_.T_robot_laser.position_m();
+  if (apart_m.norm() > kMountingTolerance_m) {
+    count(IntakeDrop::kOtherMounting,
+          "/tf_static has it at " + text(mounting->T_robot_laser) + ", the configuration at " +
+              text(options_.T_robot_laser) +
+              ": start the services with --laser=" + text(mounting->T_robot_laser));
+    return false;
+  }
+  return true;
+}
+
+std::optional<scan::Scan> ScanIntake::finish(const ros::LaserScan& message) {
+  const std::string frame = frame_name(message.header_().frame_id_());
+  if (laser_frame_ && *laser_frame_ != frame) {
+    count(IntakeDrop::kOtherFrame, frame + ", the first was of " + *laser_frame_);
+    return std::nullopt;
+  }
+  if (!find_mounting(frame)) return std::nullopt;
+  try {
+    const Sweep sweep = thinned(to_sweep(message, mounting_->upside_down), options_.most_beams);
+    auto scan = finish(sweep, from_ros(message.header_().stamp_()));
+    if (scan) laser_frame_ = frame;
+    return scan;
+  } catch (const std::invalid_argument& error) {
+    count(IntakeDrop::kInvalidScan, error.what());
+    return std::nullopt;
+  }
+}
+
+std::optional<scan::Scan> ScanIntake::finish(const Sweep& sweep, std::int64_t stamp_ns) {
+  if (stamp_ns <= last_stamp_ns_) {
+    count(IntakeDrop::kOldScan, std::to_string(stamp_ns));
+    return std::nullopt;
+  }
+  const auto odometry = track_.at(stamp_ns);
+  if (!odometry) {
+    count(IntakeDrop::kNoOdometry, "at the time " + std::to_string(stamp_ns));
+    return std::nullopt;
+  }
+  if (!pattern_) pattern_ = sweep.pattern;
+  scan::Scan scan;
+  scan.ranges_m = ranges_of(sweep, stamp_ns);
+  scan.stamp_ns = stamp_ns;
+  scan.T_odom_robot = odometry->T_odom_robot;
+  scan.sequence = next_sequence_++;
+  scan.odometry_epoch = epochs_;
+  // The configured frame of the laser may be turned against that of /tf: only places must agree.
+  const double turn_rad =
+      geometry::wrap_angle(mounting_->T_robot_laser.theta_rad - options_.T_robot_laser.theta_rad);
+  scan.angle_min_rad = pattern_->angle_min_rad + turn_rad;
+  scan.angle_step_rad = pattern_->angle_step_rad;
+  last_stamp_ns_ = stamp_ns;
+  return scan;
+}
+
+std::vector<float> ScanIntake::ranges_of(const Sweep& sweep, std::int64_t stamp_ns) {
+  constexpr double kSameAngle_rad = 1e-4;
+  Sweep straight = sweep;
+  const auto T_odom_laser_after = [&](double after_s) -> std::optional<geometry::Pose2> {
+    const auto odometry = track_.at(stamp_ns + std::llround(after_s * 1e9));
+    if (!odometry) return std::nullopt;
+    return odometry->T_odom_robot * mounting_->T_robot_laser;
+  };
+  const double length_s = std::fabs(sweep.time_step_s) * static_cast<double>(sweep.ranges_m.size());
+  const auto start = T_odom_laser_after(0.0);
+  const auto end = T_odom_laser_after(length_s);
+  if (length_s > 0.0 && start && end) {
+    const geometry::Pose2 moved = geometry::between(*start, *end);
+    if (moved.position_m().norm() > kStill_m || std::fabs(moved.theta_rad) > kStill_rad) {
+      straight.ranges_m = deskewed(sweep, T_odom_laser_after);
+    }
+  }
+  const BeamPattern& pattern = sweep.pattern;
+  const bool same = pattern.beams == pattern_->beams &&
+                    std::fabs(pattern.angle_min_rad - pattern_->angle_min_rad) < kSameAngle_rad &&
+                    std::fabs(pattern.angle_step_rad - pattern_->angle_step_rad) *
+                            static_cast<double>(pattern.beams) <
+                        kSameAngle_rad;
+  if (same) return straight.ranges_m;
+  ++adapted_;
+  return on_pattern(straight, *pattern_);
+}
+
+}  // namespace topogeo::ros_bridge

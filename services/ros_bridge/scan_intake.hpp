@@ -1,0 +1,117 @@
+// Scans and odometry of ROS put together to ours: each scan gets the odometry of its time, one
+// pattern of beams and one epoch of odometry; what cannot be used is counted by its reason.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/geometry/odometry_track.hpp"
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/scan/scan.hpp"
+
+#include "frame_tree.hpp"
+#include "laser_scan.hpp"
+
+namespace topogeo::ros_bridge {
+
+/// Why something that came was not used.
+enum class IntakeDrop : std::uint8_t {
+  kInvalidScan,
+  kOtherFrame,     ///< of another laser than the first scan
+  kNoOdometry,     ///< before the first, or too long after the last
+  kNoMounting,     ///< nothing joins the frames of the robot and of the laser
+  kTilted,         ///< the laser does not look along the floor
+  kOtherMounting,  ///< not where the configuration has the laser
+  kOldScan,        ///< not after the scan before it
+  kInvalidOdometry,
+  kOldOdometry
+};
+inline constexpr std::size_t kIntakeDrops = 9;
+/// For people.
+std::string_view describe(IntakeDrop drop);
+
+struct IntakeOptions {
+  geometry::Pose2 T_robot_laser;      ///< as our services are configured
+  bool mounting_from_tf = true;       ///< false: the laser is where it is configured, upright
+  std::int64_t odometry_wait_ns = 0;  ///< a scan waits for odometry so long at most; >= 0
+  std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
+  std::size_t most_beams = 2048;              ///< scans of more are thinned out
+};
+
+/// Arrival times are of a steady clock, stamps those of the messages.
+class ScanIntake {
+ public:
+  explicit ScanIntake(const IntakeOptions& options) : options_(options), track_(0) { begin(); }
+
+  /// The frame of the robot, of whose mountings and odometry the rest speaks.
+  void set_robot_frame(const std::string& frame) { robot_frame_ = frame; }
+  FrameTree& frames() { return frames_; }
+
+  /// The pose of the robot by odometry. A stamp over a second before the last one, or a pose that
+  /// no robot gets to since then, begins another epoch; returns why, or an empty text.
+  std::string add(const geometry::OdometrySample& sample);
+  void add(const ros::LaserScan& message, std::int64_t arrival_ns);
+  void count(IntakeDrop drop, const std::string& detail);
+
+  struct Leaving {
+    scan::Scan scan;
+    std::int64_t arrival_ns = 0;
+  };
+  /// The scans that can leave by now, in order.
+  std::vector<Leaving> take(std::int64_t now_ns);
+  /// When `take` has something at the latest; the largest number while nothing waits.
+  [[nodiscard]] std::int64_t due_ns() const;
+
+  /// Where the laser of the last scan is; empty before one whose mounting is known.
+  [[nodiscard]] const std::optional<Mounting>& mounting() const { return mounting_; }
+  [[nodiscard]] std::uint64_t epochs() const { return epochs_; }
+  /// Numbers scans and odometry of an epoch; the service makes the epoch's own number of it.
+  [[nodiscard]] std::uint64_t scans() const { return next_sequence_; }
+  [[nodiscard]] std::uint64_t adapted() const { return adapted_; }
+  [[nodiscard]] std::uint64_t dropped(IntakeDrop drop) const {
+    return drops_[static_cast<std::size_t>(drop)];
+  }
+  /// What was said of a reason last.
+  [[nodiscard]] const std::string& detail(IntakeDrop drop) const {
+    return details_[static_cast<std::size_t>(drop)];
+  }
+
+ private:
+  struct Waiting {
+    ros::LaserScan message;
+    std::int64_t arrival_ns = 0;
+  };
+
+  void begin();
+  [[nodiscard]] bool find_mounting(const std::string& laser_frame);
+  std::optional<scan::Scan> finish(const ros::LaserScan& message);
+  std::optional<scan::Scan> finish(const Sweep& sweep, std::int64_t stamp_ns);
+  std::vector<float> ranges_of(const Sweep& sweep, std::int64_t stamp_ns);
+
+  IntakeOptions options_;
+  std::string robot_frame_;
+  FrameTree frames_;
+  geometry::OdometryTrack track_;
+  std::optional<geometry::OdometrySample> last_odometry_;
+  std::deque<Waiting> waiting_;
+  std::optional<std::string> laser_frame_;
+  std::optional<Mounting> mounting_;
+  std::optional<BeamPattern> pattern_;  // of the first scan, which all have from then on
+  std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t next_sequence_ = 0;
+  std::uint64_t epochs_ = 0;
+  std::uint64_t adapted_ = 0;
+  std::array<std::uint64_t, kIntakeDrops> drops_{};
+  std::array<std::string, kIntakeDrops> details_{};
+};
+
+}  // namespace topogeo::ros_bridge

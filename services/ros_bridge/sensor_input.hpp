@@ -1,0 +1,72 @@
+// Scan, odometry and frames of ROS as our scans and odometry: what the sensor gateway is for
+// devices.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/stream.h"
+
+#include "ros_side.hpp"
+#include "scan_intake.hpp"
+
+namespace topogeo::ros_bridge {
+
+/// Lives in the loop of its service.
+class SensorInput {
+ public:
+  explicit SensorInput(RosSide& ros);
+  SensorInput(const SensorInput&) = delete;
+  SensorInput& operator=(const SensorInput&) = delete;
+  ~SensorInput();
+
+  /// The stream ends: those who read scans may finish. Once, at the end.
+  void finish();
+
+  /// Gets each transform of tf that is none of the robot's own frames: parent, child, stamp.
+  std::function<void(const std::string&, const std::string&, std::int64_t)> on_foreign_transform;
+
+  /// Gets each odometry that is published: stamp, epoch, T_odom_robot.
+  std::function<void(std::int64_t, std::uint64_t, const geometry::Pose2&)> on_reading;
+
+  /// Where the laser is, once a scan has come whose mounting is known and can be used.
+  [[nodiscard]] const ScanIntake& intake() const { return intake_; }
+
+ private:
+  void on_odometry(const ros::Odometry& message, const messaging::SampleInfo& info);
+  void on_transforms(const ros::TFMessage& message, const messaging::SampleInfo& info,
+                     bool are_static);
+  void on_odometry_transform(const ros::TransformStamped& message,
+                             const messaging::SampleInfo& info);
+  void on_scan(const ros::LaserScan& message, const messaging::SampleInfo& info);
+  void add(const geometry::OdometrySample& sample);
+  void release(std::int64_t now_ns);
+  void publish(const ScanIntake::Leaving& leaving);
+  void publish_state();
+  [[nodiscard]] std::uint64_t epoch() const { return epoch_salt_ + intake_.epochs(); }
+
+  RosSide& ros_;
+  ScanIntake intake_;
+  std::uint64_t epoch_salt_;
+  std::string robot_frame_;
+  SoleWriter scan_writer_;
+  SoleWriter odometry_writer_;
+  std::optional<geometry::OdometrySample> last_transform_;
+  messaging::Writer<msg::Scan> scans_;
+  messaging::Writer<msg::Odometry> odometry_;
+  messaging::Writer<msg::StreamEnd> stream_end_;
+  std::uint64_t odometry_sent_ = 0;
+  std::uint64_t scans_sent_ = 0;
+  std::int64_t last_scan_ns_ = 0;
+  std::int64_t latency_ns_ = 0;
+  std::uint64_t scans_at_state_ = 0;
+  std::string published_;
+  std::uint64_t release_timer_ = 0;
+  std::uint64_t state_timer_ = 0;
+};
+
+}  // namespace topogeo::ros_bridge

@@ -1,0 +1,37 @@
+// Our scans and odometry as those of ROS: robots whose devices, logs or simulators are ours.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/sensor.h"
+
+#include "ros_side.hpp"
+
+namespace topogeo::ros_bridge {
+
+/// Lives in the loop of its service. Publishes scan, odometry, odom -> robot on tf, robot -> laser
+/// on tf_static and, if so set, the time of the stamps as clock.
+class SensorOutput {
+ public:
+  /// `replay`: a log is read, as of the gateway.
+  SensorOutput(RosSide& ros, bool replay);
+
+ private:
+  void on_scan(const msg::Scan& scan);
+  void on_odometry(const msg::Odometry& odometry);
+  void publish_mounting(std::int64_t stamp_ns);
+  void publish_time(std::int64_t stamp_ns);
+
+  RosSide& ros_;
+  std::string robot_frame_;
+  messaging::Writer<ros::LaserScan> scans_;
+  messaging::Writer<ros::Odometry> odometry_;
+  messaging::Writer<ros::TFMessage> transforms_;
+  messaging::Writer<ros::TFMessage> static_transforms_;
+  std::optional<messaging::Writer<ros::Clock>> clock_;
+  bool mounting_sent_ = false;
+};
+
+}  // namespace topogeo::ros_bridge

@@ -1,0 +1,121 @@
+#include "velocity_bridge.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/support/log.hpp"
+
+#include "geometry.hpp"
+#include "outputs.hpp"
+
+namespace topogeo::ros_bridge {
+namespace {
+
+/// As the gateway: a command never holds for longer.
+constexpr double kLongestVelocity_s = 0.5;
+constexpr double kNothing = 1e-6;
+
+}  // namespace
+
+VelocityBridge::VelocityBridge(RosSide& ros) : ros_(ros) {
+  ros.service().status().set_counter("velocities", 0.0);
+  if (ros.settings().directions.velocity == Direction::kOut) give();
+  if (ros.settings().directions.velocity == Direction::kIn) take();
+}
+
+VelocityBridge::~VelocityBridge() {
+  ros_.service().loop().cancel_timer(timer_);
+  if (!moving_) return;
+  try {
+    send(0.0, 0.0);
+  } catch (const std::exception& error) {
+    spdlog::error("the last velocity was not sent: {}", error.what());
+  }
+}
+
+void VelocityBridge::give() {
+  const Settings& settings = ros_.settings();
+  if (settings.stamped_velocity) {
+    stamped_ = ros_.advertise<ros::TwistStamped>(settings.topics.velocity, settings.qos.velocity);
+  } else {
+    twists_ = ros_.advertise<ros::Twist>(settings.topics.velocity, settings.qos.velocity);
+  }
+  ros_.service().subscribe<msg::MotionCommand>(
+      [this](const msg::MotionCommand& command) { on_command(command); });
+}
+
+void VelocityBridge::take() {
+  const Settings& settings = ros_.settings();
+  commands_ = ros_.service().advertise<msg::MotionCommand>();
+  if (settings.stamped_velocity) {
+    ros_.subscribe<ros::TwistStamped>(
+        settings.topics.velocity, settings.qos.velocity,
+        [this](const ros::TwistStamped& message, const messaging::SampleInfo&) {
+          on_twist(message.twist_());
+        });
+  } else {
+    ros_.subscribe<ros::Twist>(
+        settings.topics.velocity, settings.qos.velocity,
+        [this](const ros::Twist& message, const messaging::SampleInfo&) { on_twist(message); });
+  }
+}
+
+void VelocityBridge::on_command(const msg::MotionCommand& command) {
+  const double valid_s = std::min(command.valid_for_s(), kLongestVelocity_s);
+  if (!std::isfinite(command.linear_mps()) || !std::isfinite(command.angular_radps()) ||
+      !(valid_s > 0.0)) {
+    throw std::invalid_argument("expected finite speeds for a time over 0");
+  }
+  send(command.linear_mps(), command.angular_radps());
+  messaging::EventLoop& loop = ros_.service().loop();
+  loop.cancel_timer(timer_);
+  if (!moving_) return;
+  timer_ = loop.call_after(std::chrono::nanoseconds(std::llround(valid_s * 1e9)), [this] {
+    ros_.complain("velocity without a successor", "the base is stopped");
+    send(0.0, 0.0);
+  });
+}
+
+void VelocityBridge::send(double linear_mps, double angular_radps) {
+  const ros::Twist twist = to_ros(linear_mps, angular_radps);
+  if (stamped_) {
+    ros::TwistStamped message;
+    const std::string& robot = ros_.settings().frames.robot;
+    message.header_(header_of(robot.empty() ? "base_link" : robot, ros_.now_ns()));
+    message.twist_(twist);
+    ros_.send(*stamped_, message);
+  } else if (twists_) {
+    ros_.send(*twists_, twist);
+  }
+  moving_ = linear_mps != 0.0 || angular_radps != 0.0;
+  ros_.service().status().set_counter("velocities", static_cast<double>(++sent_));
+}
+
+void VelocityBridge::on_twist(const ros::Twist& twist) {
+  const double linear_mps = twist.linear_().x_();
+  const double angular_radps = twist.angular_().z_();
+  if (!std::isfinite(linear_mps) || !std::isfinite(angular_radps)) {
+    throw std::invalid_argument("expected finite speeds");
+  }
+  const double others =
+      std::max({std::fabs(twist.linear_().y_()), std::fabs(twist.linear_().z_()),
+                std::fabs(twist.angular_().x_()), std::fabs(twist.angular_().y_())});
+  if (!(others < kNothing)) {
+    throw std::invalid_argument("expected speeds along x and about z alone");
+  }
+  msg::MotionCommand command;
+  messaging::set_header(command, ros_.service().robot_id(), ros_.now_ns(), sent_);
+  command.linear_mps(linear_mps);
+  command.angular_radps(angular_radps);
+  command.valid_for_s(kLongestVelocity_s);
+  if (!commands_->write(command)) {
+    ros_.service().status().fault("send blocked", "motion command");
+    return;
+  }
+  ros_.service().status().set_counter("velocities", static_cast<double>(++sent_));
+}
+
+}  // namespace topogeo::ros_bridge

@@ -1,0 +1,42 @@
+// Velocities: those of our navigator to the base of ROS, or those of ROS to our base.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/motion.h"
+#include "topogeo/ros_messaging/messages.hpp"
+
+#include "ros_side.hpp"
+
+namespace topogeo::ros_bridge {
+
+/// Lives in the loop of its service. A base of ROS keeps its last velocity, so one that is not
+/// followed by another within its time is ended by a zero; a velocity of ROS holds for half a
+/// second.
+class VelocityBridge {
+ public:
+  explicit VelocityBridge(RosSide& ros);
+  VelocityBridge(const VelocityBridge&) = delete;
+  VelocityBridge& operator=(const VelocityBridge&) = delete;
+  /// Stops a base that was told to move.
+  ~VelocityBridge();
+
+ private:
+  void give();
+  void take();
+  void on_command(const msg::MotionCommand& command);
+  void on_twist(const ros::Twist& twist);
+  void send(double linear_mps, double angular_radps);
+
+  RosSide& ros_;
+  std::optional<messaging::Writer<ros::Twist>> twists_;
+  std::optional<messaging::Writer<ros::TwistStamped>> stamped_;
+  std::optional<messaging::Writer<msg::MotionCommand>> commands_;
+  bool moving_ = false;
+  std::uint64_t sent_ = 0;
+  std::uint64_t timer_ = 0;
+};
+
+}  // namespace topogeo::ros_bridge

@@ -1,0 +1,166 @@
+// A robot and its user that speak ROS 2, by Cyclone DDS, with our services behind ros_bridge.
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/storage/tum.hpp"
+
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+using Words = std::vector<std::string>;
+
+/// The last line that starts with `start`, without it; empty: there is none.
+std::string last_line(const std::string& text, const std::string& start) {
+  std::istringstream lines(text);
+  std::string found;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(start) && !lines.eof()) found = line.substr(start.size());
+  }
+  return found;
+}
+
+geometry::Pose2 pose_in(const std::string& text) {
+  std::istringstream words(text);
+  geometry::Pose2 pose;
+  words >> pose.x_m >> pose.y_m >> pose.theta_rad;
+  return pose;
+}
+
+/// Free floor in the last map that a user got; 0 before the first.
+double free_m2(const Program& user) {
+  std::istringstream map(last_line(user.out(), "map map "));
+  int columns = 0;
+  int rows = 0;
+  double resolution_m = 0.0;
+  int free = 0;
+  map >> columns >> rows >> resolution_m >> free;
+  return free * resolution_m * resolution_m;
+}
+
+class RosBridge : public testing::Test {
+ protected:
+  RosBridge() { use_udp_only(); }
+
+  Program& start(const std::string& service, Words words = {}) {
+    const Words common = {"--domain", domain_, "--partition", "ros-test"};
+    words.insert(words.begin(), common.begin(), common.end());
+    return *programs_.emplace_back(std::make_unique<Program>(scratch_, service, words));
+  }
+  Program& start_peer(Words words) {
+    words.insert(words.begin(), ros_domain());
+    return *programs_.emplace_back(std::make_unique<Program>(scratch_, "../tests/ros_peer", words));
+  }
+  /// ROS and we may share a domain: partitions keep them apart.
+  [[nodiscard]] std::string ros_domain() const { return domain_; }
+
+  /// Until a program has printed it.
+  static bool says(const Program& program, const std::string& text) {
+    constexpr int kMost = 2000 * kTimeFactor;
+    for (int i = 0; i < kMost; ++i) {
+      if (program.out().find(text) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+  }
+  template <class Condition>
+  static bool comes_true(const Condition& condition) {
+    constexpr int kMost = 2000 * kTimeFactor;
+    for (int i = 0; i < kMost; ++i) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+  }
+
+  void start_bridge() {
+    // What a test sends is to arrive.
+    std::ofstream(scratch_ / "ros.yaml") << "qos:\n  scan: reliable\n  odometry: reliable\n"
+                                            "odometry:\n  wait_s: 0.5\n";
+    start("ros_bridge", {"--ros", scratch_ / "ros.yaml", "--ros-domain", ros_domain()});
+  }
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  std::vector<std::unique_ptr<Program>> programs_;
+};
+
+TEST_F(RosBridge, MapsARobotOfRosAndShowsItsMapAndPose) {
+  write_log("room", scratch_ / "room.clf", scratch_ / "truth.tum");
+  const Program& user = start_peer({"watch"});
+  start("map_store", {"--out", scratch_ / "out", "--new"});
+  start("localizer", {"--wait-workers", "0"});
+  start("local_mapper");
+  start_bridge();
+  const Program& robot = start_peer({"replay", scratch_ / "room.clf"});
+  ASSERT_TRUE(says(robot, "driven")) << robot.out() << programs_[4]->err();
+
+  // Where the drive has ended, seen from where it has begun, is where the user sees the robot.
+  const auto truth = storage::read_trajectory_tum(scratch_ / "truth.tum");
+  const geometry::Pose2 end = geometry::between(truth.front().pose, truth.back().pose);
+  const auto is_at_end = [&] {
+    const geometry::Pose2 seen = pose_in(last_line(user.out(), "pose map "));
+    return (seen.position_m() - end.position_m()).norm() < 0.1 &&
+           std::fabs(geometry::wrap_angle(seen.theta_rad - end.theta_rad)) < 0.05;
+  };
+  EXPECT_TRUE(comes_true(is_at_end)) << last_line(user.out(), "pose map ");
+  EXPECT_THAT(last_line(user.out(), "tf map odom "), Not(IsEmpty()));
+  EXPECT_THAT(user.out(), HasSubstr("diagnostics topogeo: ros_bridge 0"));
+  EXPECT_TRUE(comes_true([&] { return last_line(user.out(), "graph ").size() > 0; }));
+
+  // Who comes late gets the whole map.
+  const Program& late = start_peer({"watch"});
+  // The room of 6 x 4 m, without the table and what is behind things.
+  EXPECT_TRUE(comes_true([&] { return std::fabs(free_m2(late) - 22.0) < 3.0; }))
+      << last_line(late.out(), "map map ");
+  EXPECT_THAT(late.out(), HasSubstr(" whole\n"));
+  EXPECT_TRUE(comes_true([&] { return last_line(late.out(), "graph ").size() > 0; }));
+}
+
+TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
+  write_log("room", scratch_ / "room.clf");
+  Program map(scratch_, "topogeo",
+              {"map", "--log", scratch_ / "room.clf", "--out", scratch_ / "map"});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+  const std::string stored = scratch_ / "map/map.pb";
+  start("map_store", {"--map", stored});
+  start("localizer", {"--map", stored, "--initial-pose=0,0,0", "--wait-workers", "0"});
+  start("local_mapper", {"--standalone"});
+  start("planner");
+  start("navigator");
+  start_bridge();
+  const Program& robot = start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml"});
+  const Program& user = start_peer({"watch"});
+  ASSERT_TRUE(says(user, "pose map")) << programs_[5]->err();
+  Program& goal = start_peer({"goal", "3", "0", "1.5708"});
+  ASSERT_EQ(goal.wait(280.0), 0) << goal.err();
+  const auto has_arrived = [&] {
+    const std::string truth = last_line(robot.out(), "truth ");
+    const geometry::Pose2 at = pose_in(truth);
+    return truth.find("stands") != std::string::npos &&
+           (at.position_m() - Eigen::Vector2d(3.0, 0.0)).norm() < 0.3 &&
+           std::fabs(geometry::wrap_angle(at.theta_rad - 1.5708)) < 0.3;
+  };
+  EXPECT_TRUE(comes_true(has_arrived)) << last_line(robot.out(), "truth ");
+  EXPECT_THAT(last_line(robot.out(), "truth "), HasSubstr("collisions 0"));
+  EXPECT_THAT(user.out(), HasSubstr("plan "));
+}
+
+}  // namespace
+}  // namespace topogeo::test
