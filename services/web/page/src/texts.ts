@@ -151,8 +151,8 @@ export const texts = {
     no_navigator: "No navigator is running, so the robot cannot be sent.",
     drive: "Drive by hand",
     drive_hint:
-      "Hold a button, or W A S D or the arrow keys. The robot stops when you let go, when the page " +
-      "is left or the connection drops.",
+      "Hold a button, or W A S D or the arrow keys. The robot stops when you let go, when the " +
+      "page is left or the connection drops.",
     drive_on: "Take the controls",
     drive_off: "Let go of the controls",
     drive_speed: "Speed",
@@ -202,6 +202,9 @@ export const texts = {
     sure_roughly: "somewhere near (2 m)",
     apply: "Apply",
     cancel: "Cancel",
+    while_mapping:
+      "While the robot maps, its pose is not to be chosen or searched. Leave the map as it is " +
+      "first, below.",
     search: "Search the whole map",
     search_hint:
       "Forgets the pose and compares what the robot sees with every place. Let it move a few " +

@@ -34,7 +34,7 @@ export class TileLayer {
     ++this.generation;
   }
 
-  /** extra: on what the pictures depend besides their versions. True when all of the view is there. */
+  /** extra: on what pictures depend besides their versions. True when all of the view is there. */
   draw(
     context: CanvasRenderingContext2D,
     view: View,

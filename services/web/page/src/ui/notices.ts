@@ -1,5 +1,6 @@
 // Short messages that go by themselves; errors stay longer.
 import { button, h } from "./dom";
+import { sentence } from "../robot_state";
 import { texts } from "../texts";
 
 const kShownMs = { info: 4000, error: 10000 };
@@ -24,10 +25,10 @@ export class Notices {
   async report(order: Promise<unknown>, done: string): Promise<boolean> {
     try {
       const answer = (await order) as { message?: string } | null;
-      this.show(answer?.message || done);
+      this.show(answer?.message ? sentence(answer.message) : done);
       return true;
     } catch (error) {
-      this.show(error instanceof Error ? error.message : String(error), "error");
+      this.show(sentence(error instanceof Error ? error.message : String(error)), "error");
       return false;
     }
   }

@@ -21,6 +21,8 @@ export class CorrectView implements ViewPart {
   private readonly note = h("p", { class: "note" }, words.spectator);
   private readonly parts: HTMLElement;
   private readonly start: HTMLButtonElement;
+  private readonly search: HTMLButtonElement;
+  private readonly while_mapping = h("p", { class: "note" }, words.while_mapping);
   private readonly form: HTMLFormElement;
   private readonly x: HTMLInputElement;
   private readonly y: HTMLInputElement;
@@ -49,17 +51,17 @@ export class CorrectView implements ViewPart {
       (number) => this.merge_entry(Number(number)),
       show_merge,
     );
-    const search = button(words.search_start, () => {
+    this.search = button(words.search_start, () => {
       void app.notices.report(app.api.post("search"), texts.done.search);
     });
     const parts: [string, HTMLElement][] = [
       ["pose", section(words.pose, quiet(words.pose_hint), this.start, this.form)],
-      ["search", section(words.search, quiet(words.search_hint), search)],
+      ["search", section(words.search, quiet(words.search_hint), this.search)],
       ["mode", section(words.mode, quiet(words.mode_hint), this.mode)],
       ["merge", section(words.merges, this.no_merges, this.merges.element)],
     ];
     this.parts = h("div", {}, ...parts.map(([, part]) => part));
-    this.element = h("div", { class: "view" }, this.note, this.parts);
+    this.element = h("div", { class: "view" }, this.note, this.while_mapping, this.parts);
     const update = once_a_frame(() => {
       show(this.note, !app.rights.may_write);
       show(this.parts, app.rights.may_write);
@@ -171,8 +173,13 @@ export class CorrectView implements ViewPart {
 
   private show_mode(): void {
     const mode = this.app.channels.value("pose")?.mode;
+    const mapping = mode === "mapping";
+    show(this.while_mapping, mapping && this.app.rights.may_write);
+    this.start.disabled = mapping;
+    this.search.disabled = mapping;
+    if (mapping && !this.form.hidden) this.close_pose();
     show(this.mode, mode !== undefined);
-    set_text(this.mode, mode === "mapping" ? words.to_localization : words.to_mapping);
+    set_text(this.mode, mapping ? words.to_localization : words.to_mapping);
   }
 
   private show_merges(): void {
