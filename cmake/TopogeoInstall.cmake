@@ -8,7 +8,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(programs ${CMAKE_INSTALL_LIBEXECDIR}/topogeo)
-set(robot_services sensor_gateway local_mapper localizer map_store planner navigator simulator)
+set(robot_services sensor_gateway local_mapper localizer map_store planner navigator simulator ros_bridge)
 set(generated ${CMAKE_BINARY_DIR}/package)
 file(MAKE_DIRECTORY ${generated})
 
@@ -52,6 +52,7 @@ install(FILES ${deploy}/security/permissions.txt DESTINATION ${data}/security CO
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)
 install(DIRECTORY ${deploy}/kubernetes ${deploy}/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ros2 DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
 install(FILES ${deploy}/compose.yaml ${deploy}/devices.example.yaml
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT topogeo)
 
