@@ -188,36 +188,6 @@ test("Stop holds the robot until it is released", async () => {
   await end(page);
 });
 
-test("the pose is set by dragging, in a map that stays as it is", async () => {
-  const page = await open("correct");
-  await eventually("no pose is chosen while the robot maps", () =>
-    page.getByRole("button", { name: "Set on the map" }).isDisabled(),
-  );
-  await page.getByRole("button", { name: "Leave the map as it is" }).click();
-  await text(page, "button", /Map from now on/, 120);
-  await page.getByRole("button", { name: "Set on the map" }).click();
-  const at = await truth.newest("pose");
-  // A drag on the map fills the fields; then the pose is typed, for the robot is to stay where it is.
-  const shown = await page.inputValue("#pose-x");
-  const box = await page.locator("#map").boundingBox();
-  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-  await page.mouse.down();
-  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60, { steps: 4 });
-  await page.mouse.up();
-  assert.equal(await page.inputValue("#pose-theta"), "90.0");
-  assert.notEqual(await page.inputValue("#pose-x"), shown);
-  await page.fill("#pose-x", at.x_m.toFixed(3));
-  await page.fill("#pose-y", at.y_m.toFixed(3));
-  await page.fill("#pose-theta", ((at.theta_rad * 180) / Math.PI).toFixed(3));
-  await page.selectOption("#pose-sure", "exact");
-  await page.getByRole("button", { name: "Apply" }).click();
-  await text(page, ".notice", /goes on from there/i);
-  assert.equal(await page.getByRole("button", { name: "Apply" }).isVisible(), false);
-  await page.getByRole("button", { name: "Map from now on" }).click();
-  await text(page, "button", /Leave the map as it is/, 120);
-  await end(page);
-});
-
 test("the page goes on after the web service was replaced", async () => {
   const page = await open("now");
   await text(page, ".state-word", /TRACKING/i);
@@ -278,3 +248,34 @@ for (const scheme of ["light", "dark"]) {
     }
   });
 }
+
+// Last: a robot that stands after this has a pose, and knows at its next stop whether it is the right one.
+test("the pose is set by dragging, in a map that stays as it is", async () => {
+  const page = await open("correct");
+  await eventually("no pose is chosen while the robot maps", () =>
+    page.getByRole("button", { name: "Set on the map" }).isDisabled(),
+  );
+  await page.getByRole("button", { name: "Leave the map as it is" }).click();
+  await text(page, "button", /Map from now on/, 120);
+  await page.getByRole("button", { name: "Set on the map" }).click();
+  const at = await truth.newest("pose");
+  // A drag on the map fills the fields; then the pose is typed, for the robot is to stay where it is.
+  const shown = await page.inputValue("#pose-x");
+  const box = await page.locator("#map").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await page.inputValue("#pose-theta"), "90.0");
+  assert.notEqual(await page.inputValue("#pose-x"), shown);
+  await page.fill("#pose-x", at.x_m.toFixed(3));
+  await page.fill("#pose-y", at.y_m.toFixed(3));
+  await page.fill("#pose-theta", ((at.theta_rad * 180) / Math.PI).toFixed(3));
+  await page.selectOption("#pose-sure", "exact");
+  await page.getByRole("button", { name: "Apply" }).click();
+  await text(page, ".notice", /goes on from there/i);
+  assert.equal(await page.getByRole("button", { name: "Apply" }).isVisible(), false);
+  await page.getByRole("button", { name: "Map from now on" }).click();
+  await text(page, "button", /Leave the map as it is/, 120);
+  await end(page);
+});
