@@ -1,6 +1,8 @@
 // A robot and its user that speak ROS 2, by Cyclone DDS, with our services behind ros_bridge.
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -13,6 +15,9 @@
 #include <gtest/gtest.h>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/msg/sensor.h"
 #include "topogeo/storage/tum.hpp"
 
 #include "program.hpp"
@@ -160,6 +165,28 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   EXPECT_TRUE(comes_true(has_arrived)) << last_line(robot.out(), "truth ");
   EXPECT_THAT(last_line(robot.out(), "truth "), HasSubstr("collisions 0"));
   EXPECT_THAT(user.out(), HasSubstr("plan "));
+}
+
+// Our side is encrypted, that of ROS is not, and its scans come through.
+TEST_F(RosBridge, WithSecurityNodesOfRosStayPlainPeers) {
+  Program keys(scratch_, "../../deploy/security/make_keys",
+               {scratch_ / "keys", "issue", "robot", "ros_bridge", "topogeo"});
+  ASSERT_EQ(keys.wait(), 0) << keys.err();
+  const std::string material = scratch_ / "keys/robot";
+  ::setenv("TOPOGEO_SECURITY", material.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread
+  start_bridge();
+  ::unsetenv("TOPOGEO_SECURITY");  // NOLINT(concurrency-mt-unsafe): as above
+  start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml"});
+  messaging::ParticipantOptions options;
+  options.domain = static_cast<std::uint32_t>(std::stoul(domain_));
+  options.partition = "ros-test";
+  options.security = material;
+  const messaging::Participant participant(options);
+  messaging::Reader<msg::Scan> scans(participant);
+  EXPECT_TRUE(scans.wait_for_data(std::chrono::seconds(100 * kTimeFactor)))
+      << programs_.front()->err();
+  programs_.front()->send_signal(SIGTERM);
+  EXPECT_EQ(programs_.front()->wait(), 0) << programs_.front()->err();
 }
 
 }  // namespace
