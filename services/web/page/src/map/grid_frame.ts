@@ -52,6 +52,12 @@ export function box_of_cells(info: MapInfo, low: [number, number], high: [number
   };
 }
 
+/** Ends of a rectangle of cells. */
+export interface CellBox {
+  low: [number, number]; // column, row
+  high: [number, number];
+}
+
 /** The box around the known squares; null without any. */
 export function known_box(info: MapInfo, squares: Iterable<string>): Box | null {
   const in_row = Math.ceil(info.columns / kSquareCells);
@@ -121,6 +127,12 @@ export class TileVersions {
       column >>= 1;
       row >>= 1;
     }
+  }
+
+  /** How many pictures of a level there are. */
+  count(level: number): number {
+    const prefix = `${level}/`;
+    return [...this.versions.keys()].filter((key) => key.startsWith(prefix)).length;
   }
 
   /** undefined where nothing is known. */

@@ -3,7 +3,7 @@ import { Channels } from "../channels";
 import { Loop } from "../protocol";
 import { recolor_grid, recolor_rooms, TileLayer } from "./tile_layer";
 import { Theme } from "../ui/theme";
-import { Box, known_box, TileVersions } from "./grid_frame";
+import { Box, box_of_cells, known_box, TileVersions } from "./grid_frame";
 import { GraphLayer } from "./graph_layer";
 import { draw_labels, draw_rules } from "./label_layer";
 import { View } from "./map_canvas";
@@ -19,6 +19,8 @@ import {
 import { TrailLayer } from "./trail_layer";
 
 export const kLayers = ["rooms", "names", "graph", "trail", "loops", "scan", "local_map"] as const;
+const kBoxStepM = 1;
+
 export type LayerName = (typeof kLayers)[number];
 
 /** A goal that is chosen and not given yet. */
@@ -74,7 +76,17 @@ export class MapScene {
   /** The box around what is known of the floor; null without a map. */
   box(): Box | null {
     const info = this.channels.value("map");
-    return info ? known_box(info, this.channels.table("tiles").keys()) : null;
+    if (!info) return null;
+    const cells = this.grid.known_cells(this.versions);
+    if (!cells) return known_box(info, this.channels.table("tiles").keys());
+    const box = box_of_cells(info, cells.low, cells.high);
+    // In steps, so that a map that grows does not move with each cell.
+    return {
+      min_x: kBoxStepM * Math.floor(box.min_x / kBoxStepM),
+      min_y: kBoxStepM * Math.floor(box.min_y / kBoxStepM),
+      max_x: kBoxStepM * Math.ceil(box.max_x / kBoxStepM),
+      max_y: kBoxStepM * Math.ceil(box.max_y / kBoxStepM),
+    };
   }
 
   draw_still(context: CanvasRenderingContext2D, view: View): void {

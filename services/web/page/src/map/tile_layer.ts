@@ -2,7 +2,15 @@
 // next version has come, and one of another level until those of the level wanted are there.
 import { MapInfo } from "../protocol";
 import { Palette } from "../ui/theme";
-import { kTilePixels, level_for, tile_key, tiles_in, TileVersions, to_map } from "./grid_frame";
+import {
+  CellBox,
+  kTilePixels,
+  level_for,
+  tile_key,
+  tiles_in,
+  TileVersions,
+  to_map,
+} from "./grid_frame";
 import { View } from "./map_canvas";
 
 const kRetryMs = 2000;
@@ -10,6 +18,7 @@ const kKeptTiles = 220;
 
 interface Tile {
   picture: HTMLCanvasElement | null;
+  known: CellBox | null; // around what is not transparent
   version: string; // that is shown or on its way
   used: number;
 }
@@ -114,12 +123,17 @@ export class TileLayer {
   private fetch(info: MapInfo, key: string, version: string): void {
     const generation = this.generation;
     const before = this.tiles.get(key);
-    const tile: Tile = { picture: before?.picture ?? null, version, used: ++this.uses };
+    const tile: Tile = {
+      picture: before?.picture ?? null,
+      known: before?.known ?? null,
+      version,
+      used: ++this.uses,
+    };
     this.tiles.set(key, tile);
     const image = new Image();
     image.onload = () => {
       if (generation !== this.generation || tile.version !== version) return;
-      tile.picture = this.paint_tile(image);
+      this.paint_tile(tile, key, image);
       this.on_load();
     };
     image.onerror = () => {
@@ -132,17 +146,29 @@ export class TileLayer {
     image.src = `/tiles/${this.layer}/${info.frame}/${key}.png?v=${version}`;
   }
 
-  private paint_tile(image: HTMLImageElement): HTMLCanvasElement {
+  /** The box around all that is known; null while a picture of it is missing. */
+  known_cells(versions: TileVersions): CellBox | null {
+    const prefix = `${this.shown_level}/`;
+    const tiles = [...this.tiles].filter(([key, tile]) => tile.picture && key.startsWith(prefix));
+    if (tiles.length === 0 || tiles.length < versions.count(this.shown_level)) return null;
+    const boxes = tiles.flatMap(([, { known }]) => (known ? [known] : []));
+    const least = (i: 0 | 1) => Math.min(...boxes.map((box) => box.low[i]));
+    const most = (i: 0 | 1) => Math.max(...boxes.map((box) => box.high[i]));
+    return boxes.length > 0 ? { low: [least(0), least(1)], high: [most(0), most(1)] } : null;
+  }
+
+  private paint_tile(tile: Tile, key: string, image: HTMLImageElement): void {
     const canvas = document.createElement("canvas");
     canvas.width = kTilePixels;
     canvas.height = kTilePixels;
     const context = canvas.getContext("2d", { willReadFrequently: true });
-    if (!context) return canvas;
+    if (!context) return;
     context.drawImage(image, 0, 0);
     const pixels = context.getImageData(0, 0, kTilePixels, kTilePixels);
+    tile.known = known_of(key, pixels.data);
     this.recolor()(pixels.data);
     context.putImageData(pixels, 0, 0);
-    return canvas;
+    tile.picture = canvas;
   }
 
   private forget(): void {
@@ -150,6 +176,26 @@ export class TileLayer {
     const oldest = [...this.tiles.entries()].sort((a, b) => a[1].used - b[1].used);
     for (const [key] of oldest.slice(0, this.tiles.size - kKeptTiles)) this.tiles.delete(key);
   }
+}
+
+function known_of(key: string, pixels: Uint8ClampedArray): CellBox | null {
+  let [left, right, top, bottom] = [kTilePixels, -1, kTilePixels, -1];
+  for (let i = 0; i < kTilePixels * kTilePixels; ++i) {
+    if (pixels[4 * i + 3] === 0) continue;
+    const line = Math.floor(i / kTilePixels);
+    left = Math.min(left, i % kTilePixels);
+    right = Math.max(right, i % kTilePixels);
+    top = Math.min(top, line);
+    bottom = line;
+  }
+  if (right < 0) return null;
+  const [level, column, row] = key.split("/").map(Number);
+  const cells = 2 ** level;
+  const above = kTilePixels * (row + 1); // the first line of a picture is the upper one
+  return {
+    low: [cells * (kTilePixels * column + left), cells * (above - bottom - 1)],
+    high: [cells * (kTilePixels * column + right + 1), cells * (above - top)],
+  };
 }
 
 // As the service paints them.
