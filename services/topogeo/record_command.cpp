@@ -9,12 +9,15 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/map_client/map_follower.hpp"
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/messaging/topics.hpp"
+#include "topogeo/msg/map_update.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
 #include "topogeo/msg/trajectory.h"
@@ -68,7 +71,9 @@ class Recorder {
         // Slows a replay down rather than lose scans.
         scans_(participant_, {std::string(messaging::kReplayRole), {}}),
         ends_(participant_),
-        poses_(participant_) {
+        poses_(participant_),
+        elements_(participant_),
+        follower_(request.robot_id) {
     loop_.add<msg::Scan>(scans_, [this](const msg::Scan& scan, const messaging::SampleInfo&) {
       if (scan.robot_id() == request_.robot_id.c_str()) take(scan);
     });
@@ -83,6 +88,16 @@ class Recorder {
                              [this](const msg::LivePose& pose, const messaging::SampleInfo&) {
                                if (pose.robot_id() == request_.robot_id.c_str()) take_pose(pose);
                              });
+    using messaging::SampleInfo;
+    loop_.add<msg::MapElement>(
+        elements_,
+        [this](const msg::MapElement& element, const SampleInfo& info) {
+          if (follower_.put(element, info.instance.bytes, info.writer.bytes)) take_map();
+        },
+        [this](const SampleInfo& info) {
+          if (info.state != messaging::InstanceState::kDisposed) return;
+          if (follower_.remove(info.instance.bytes, info.writer.bytes)) take_map();
+        });
     loop_.add_timer(kRecordTick, [this] { stop_at_end(); });
   }
 
@@ -130,14 +145,35 @@ class Recorder {
     const auto scan = recent_.find(pose.sequence_number());
     const bool located =
         pose.state() == msg::kStateTracking || pose.state() == msg::kStateAmbiguous;
+    next_pose_ = pose.sequence_number() + 1;
+    if (log_.holds_poses()) last_news_ = Clock::now();
     if (!located || scan == recent_.end() || scan->second.stamp_ns != pose.stamp_ns()) return;
     log_.write_pose(scan->second, service::from_msg(pose.T_map_robot()),
                     service::from_msg(pose.covariance()));
   }
 
+  void take_map() {
+    (void)follower_.take_changes();  // the whole is drawn
+    const map_client::Map& map = *follower_.map();
+    recording::GraphDrawing graph;
+    for (const auto& [id, node] : map.nodes) {
+      graph.nodes.emplace_back(node->node_position().x_m(), node->node_position().y_m());
+    }
+    for (const auto& [id, branch] : map.branches) {
+      std::vector<Eigen::Vector2d>& line = graph.branches.emplace_back();
+      for (const msg::BranchPoint& point : branch->points()) {
+        line.emplace_back(point.x_m(), point.y_m());
+      }
+    }
+    log_.write_graph(map.stamp_ns, graph);
+  }
+
+  /// The stream has ended, and the poses of its scans have come where they are recorded.
   void stop_at_end() {
     if (!expected_) return;
-    if (next_ >= *expected_ || Clock::now() - last_news_ > kPatience) loop_.stop();
+    const bool scans_came = next_ >= *expected_;
+    const bool poses_came = !log_.holds_poses() || next_pose_ >= *expected_;
+    if ((scans_came && poses_came) || Clock::now() - last_news_ > kPatience) loop_.stop();
   }
 
   RecordRequest request_;
@@ -146,10 +182,13 @@ class Recorder {
   messaging::Reader<msg::Scan> scans_;
   messaging::Reader<msg::StreamEnd> ends_;
   messaging::Reader<msg::LivePose> poses_;
+  messaging::Reader<msg::MapElement> elements_;
   messaging::EventLoop loop_;
+  map_client::MapFollower follower_;
   std::map<std::uint64_t, scan::Scan> recent_;  // by number, without ranges
   std::uint64_t first_ = 0;                     // number of the first scan recorded
   std::uint64_t next_ = 0;                      // number of the scan that is expected
+  std::uint64_t next_pose_ = 0;                 // after the last scan of which a pose came
   std::uint64_t recorded_ = 0;
   std::uint64_t missing_ = 0;              // between the scans recorded
   std::optional<std::uint64_t> expected_;  // scans in the whole stream
@@ -159,8 +198,10 @@ class Recorder {
 }  // namespace
 
 void add_record_command(command_line::Command& app, int& exit_code) {
-  command_line::Command* command = app.add_subcommand(
-      "record", "Write the scans that a sensor gateway gives as a log, and the poses as well");
+  command_line::Command* command =
+      app.add_subcommand("record",
+                         "Write the scans that a sensor gateway gives as a log, with poses and "
+                         "graph if it holds them");
   auto request = std::make_shared<RecordRequest>();
   request->view.partition = messaging::kDefaultPartition;
   command

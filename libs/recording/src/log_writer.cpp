@@ -25,6 +25,8 @@ struct LogWriter::Target {
   virtual void write(const scan::Scan& scan) = 0;
   virtual void write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
                           const Eigen::Matrix3d& covariance) = 0;
+  virtual void write_graph(std::int64_t stamp_ns, const GraphDrawing& graph) = 0;
+  [[nodiscard]] virtual bool holds_poses() const = 0;
   virtual void close() = 0;
 };
 
@@ -34,6 +36,7 @@ constexpr const char* kMapFrame = "map";
 constexpr const char* kOdomFrame = "odom";
 constexpr const char* kRobotFrame = "base_link";
 constexpr const char* kLaserFrame = "laser";
+constexpr std::string_view kMarkersType = "visualization_msgs/msg/MarkerArray";
 constexpr std::string_view kPoseType = "geometry_msgs/msg/PoseWithCovarianceStamped";
 
 class CarmenTarget final : public LogWriter::Target {
@@ -43,6 +46,8 @@ class CarmenTarget final : public LogWriter::Target {
   void write(const scan::Scan& scan) override { log_.write(scan); }
   void write_pose(const scan::Scan& /*scan*/, const geometry::Pose2& /*T_map_robot*/,
                   const Eigen::Matrix3d& /*covariance*/) override {}
+  void write_graph(std::int64_t /*stamp_ns*/, const GraphDrawing& /*graph*/) override {}
+  [[nodiscard]] bool holds_poses() const override { return false; }
   void close() override { log_.close(); }
 
  private:
@@ -87,6 +92,53 @@ std::array<double, 36> to_covariance(const Eigen::Matrix3d& covariance) {
   return out;
 }
 
+ros::Point to_point(const Eigen::Vector2d& point_m) {
+  ros::Point point;
+  point.x_(point_m.x());
+  point.y_(point_m.y());
+  return point;
+}
+
+enum class MarkerType : std::int32_t { kLineStrip = 4, kSphereList = 7 };
+enum class MarkerAction : std::int32_t { kAdd = 0, kDeleteAll = 3 };
+
+ros::Marker graph_marker(const char* kind, std::size_t id, MarkerType type,
+                         const std::vector<Eigen::Vector2d>& points, double size_m,
+                         std::int64_t stamp_ns) {
+  ros::Marker marker;
+  marker.header_().stamp_(from_stamp_ns(stamp_ns));
+  marker.header_().frame_id_(kMapFrame);
+  marker.ns_(kind);
+  marker.id_(static_cast<std::int32_t>(id));
+  marker.type_(static_cast<std::int32_t>(type));
+  marker.action_(static_cast<std::int32_t>(MarkerAction::kAdd));
+  marker.pose_().orientation_().w_(1.0);
+  marker.scale_().x_(size_m);
+  marker.scale_().y_(size_m);
+  marker.scale_().z_(size_m);
+  marker.color_().g_(0.45F);
+  marker.color_().b_(0.7F);
+  marker.color_().a_(1.0F);
+  for (const Eigen::Vector2d& point_m : points) marker.points_().push_back(to_point(point_m));
+  return marker;
+}
+
+/// The branches as lines and the nodes as spheres, after what clears those before.
+ros::MarkerArray graph_markers(const GraphDrawing& graph, std::int64_t stamp_ns) {
+  constexpr double kBranch_m = 0.05;
+  constexpr double kNode_m = 0.2;
+  ros::MarkerArray array;
+  array.markers_().push_back(graph_marker("", 0, MarkerType::kSphereList, {}, kNode_m, stamp_ns));
+  array.markers_().back().action_(static_cast<std::int32_t>(MarkerAction::kDeleteAll));
+  for (std::size_t i = 0; i < graph.branches.size(); ++i) {
+    array.markers_().push_back(graph_marker("branches", i, MarkerType::kLineStrip,
+                                            graph.branches[i], kBranch_m, stamp_ns));
+  }
+  array.markers_().push_back(
+      graph_marker("nodes", 0, MarkerType::kSphereList, graph.nodes, kNode_m, stamp_ns));
+  return array;
+}
+
 class RosTarget final : public LogWriter::Target {
  public:
   RosTarget(std::unique_ptr<MessageSink> sink, const geometry::Pose2& T_robot_laser)
@@ -116,7 +168,7 @@ class RosTarget final : public LogWriter::Target {
 
   void write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
                   const Eigen::Matrix3d& covariance) override {
-    if (sink_->encoding() != Encoding::kCdr) return;
+    if (!holds_poses()) return;
     ros::PoseWithCovarianceStamped pose;
     pose.header_().stamp_(from_stamp_ns(scan.stamp_ns));
     pose.header_().frame_id_(kMapFrame);
@@ -127,6 +179,13 @@ class RosTarget final : public LogWriter::Target {
                                kOdomFrame, scan.stamp_ns),
                   "/tf", scan.stamp_ns);
   }
+
+  void write_graph(std::int64_t stamp_ns, const GraphDrawing& graph) override {
+    if (holds_poses()) put(graph_markers(graph, stamp_ns), "/graph", kMarkersType, stamp_ns);
+  }
+
+  // ROS 1 has other definitions of these messages, which nobody here reads.
+  [[nodiscard]] bool holds_poses() const override { return sink_->encoding() == Encoding::kCdr; }
 
   void close() override { sink_->close(); }
 
@@ -192,6 +251,14 @@ void LogWriter::write(const scan::Scan& scan) {
 void LogWriter::write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
                            const Eigen::Matrix3d& covariance) {
   target_->write_pose(scan, T_map_robot, covariance);
+}
+
+void LogWriter::write_graph(std::int64_t stamp_ns, const GraphDrawing& graph) {
+  target_->write_graph(stamp_ns, graph);
+}
+
+bool LogWriter::holds_poses() const {
+  return target_->holds_poses();
 }
 
 void LogWriter::close() {

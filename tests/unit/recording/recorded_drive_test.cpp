@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "topogeo/recording/convert.hpp"
+#include "topogeo/recording/message_source.hpp"
+#include "topogeo/recording/ros_types.hpp"
 
 namespace topogeo::recording {
 namespace {
@@ -83,6 +85,57 @@ TEST_F(RecordedDrive, IsChosenByTopic) {
   EXPECT_THAT(open_error(file, {.scan = {}, .odometry = "/wheels"}), HasSubstr("on /wheels"));
   // Transforms give the same poses as the odometry that they were written with.
   expect_same_scans(read_scans(file, {.scan = "/scan", .odometry = "/tf"}), read_scans(file));
+}
+
+TEST_F(RecordedDrive, HoldsPosesAndTheGraph) {
+  const scan::Scan at = short_drive()[3];
+  const geometry::Pose2 T_map_robot{5.0, 6.0, 1.0};
+  {
+    LogWriter writer(path("a.mcap"), kMounting);
+    EXPECT_TRUE(writer.holds_poses());
+    EXPECT_FALSE(LogWriter(path("a.bag")).holds_poses());
+    EXPECT_FALSE(LogWriter(path("a.clf")).holds_poses());
+    for (const scan::Scan& scan : short_drive()) writer.write(scan);
+    writer.write_pose(at, T_map_robot, Eigen::Vector3d(1.0, 2.0, 3.0).asDiagonal());
+    writer.write_graph(at.stamp_ns, {{{1.0, 2.0}}, {{{1.0, 2.0}, {3.0, 4.0}}}});
+    writer.close();
+  }
+  const auto source = open_messages(path("a.mcap"), [](const Topic& topic) {
+    return topic.name == "/pose" || topic.name == "/graph" || topic.name == "/tf";
+  });
+  std::map<std::string, int> counts;
+  RawMessage message;
+  ros::TransformStamped last;
+  while (source->next(message)) {
+    const Topic& topic = source->topics()[message.topic];
+    ++counts[topic.name];
+    if (topic.name == "/tf") {
+      last = decode<ros::TfMessage>(message.data, topic.encoding).transforms_().front();
+    } else if (topic.name == "/pose") {
+      const auto pose = decode<ros::PoseWithCovarianceStamped>(message.data, topic.encoding);
+      EXPECT_EQ(pose.header_().frame_id_(), "map");
+      EXPECT_EQ(to_stamp_ns(pose.header_().stamp_()), at.stamp_ns);
+      EXPECT_EQ(pose.pose_().pose_().position_().x_(), 5.0);
+      EXPECT_EQ(pose.pose_().covariance_()[0], 1.0);
+      EXPECT_EQ(pose.pose_().covariance_()[7], 2.0);
+      EXPECT_EQ(pose.pose_().covariance_()[35], 3.0);
+    } else {
+      const auto graph = decode<ros::MarkerArray>(message.data, topic.encoding);
+      ASSERT_EQ(graph.markers_().size(), 3U);
+      EXPECT_EQ(graph.markers_()[0].action_(), 3);  // clears what was drawn before
+      EXPECT_EQ(graph.markers_()[1].points_().size(), 2U);
+      EXPECT_EQ(graph.markers_()[2].points_()[0].y_(), 2.0);
+    }
+  }
+  EXPECT_EQ(counts["/pose"], 1);
+  EXPECT_EQ(counts["/graph"], 1);
+  // T_map_odom takes the odometry of the scan to the pose in the map.
+  EXPECT_EQ(last.header_().frame_id_(), "map");
+  const geometry::Pose2 T_map_odom = *planar_pose(last.transform_());
+  const geometry::Pose2 back = T_map_odom * at.T_odom_robot;
+  EXPECT_NEAR(back.x_m, T_map_robot.x_m, 1e-12);
+  EXPECT_NEAR(back.y_m, T_map_robot.y_m, 1e-12);
+  EXPECT_NEAR(back.theta_rad, T_map_robot.theta_rad, 1e-12);
 }
 
 TEST_F(RecordedDrive, IsRefusedWithoutACompressionOfThatName) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -13,6 +14,12 @@
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::recording {
+
+/// A graph as viewers draw it, in the map frame, metres.
+struct GraphDrawing {
+  std::vector<Eigen::Vector2d> nodes;
+  std::vector<std::vector<Eigen::Vector2d>> branches;  ///< two points or more each
+};
 
 class LogWriter {
  public:
@@ -40,6 +47,13 @@ class LogWriter {
   /// ignore it. Throws std::runtime_error when writing fails.
   void write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
                   const Eigen::Matrix3d& covariance);
+
+  /// Appends the graph as it is at that time, instead of those before: markers on /graph. As
+  /// write_pose().
+  void write_graph(std::int64_t stamp_ns, const GraphDrawing& graph);
+
+  /// Whether write_pose() and write_graph() leave something in the file.
+  [[nodiscard]] bool holds_poses() const;
 
   /// Flushes and closes. Throws std::runtime_error when that fails.
   void close();
