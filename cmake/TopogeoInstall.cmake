@@ -8,7 +8,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(programs ${CMAKE_INSTALL_LIBEXECDIR}/topogeo)
-set(robot_services sensor_gateway local_mapper localizer map_store planner navigator simulator ros_bridge)
+set(robot_services sensor_gateway local_mapper localizer map_store planner navigator simulator ros_bridge web)
 set(generated ${CMAKE_BINARY_DIR}/package)
 file(MAKE_DIRECTORY ${generated})
 
@@ -47,6 +47,7 @@ install(FILES ${deploy}/systemd/topogeo-worker@.service DESTINATION lib/systemd/
 install(FILES ${deploy}/systemd/topogeo.env DESTINATION ${data}/etc COMPONENT topogeo)
 install(FILES ${deploy}/systemd/worker.env DESTINATION ${data}/etc COMPONENT topogeo-workers)
 install(FILES ${deploy}/dds_profiles.xml DESTINATION ${data} COMPONENT topogeo-workers)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/share/topogeo/web DESTINATION ${data} COMPONENT topogeo)
 install(PROGRAMS ${deploy}/security/make_keys DESTINATION ${data}/security COMPONENT topogeo)
 install(FILES ${deploy}/security/permissions.txt DESTINATION ${data}/security COMPONENT topogeo)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT topogeo)

@@ -20,8 +20,7 @@
 #include "topogeo/navigation/navigator.hpp"
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service.hpp"
-
-#include "stamp_clock.hpp"
+#include "topogeo/service/stamp_clock.hpp"
 
 namespace topogeo::navigator {
 
@@ -59,7 +58,7 @@ class NavigatorService {
   void publish_blockages(std::int64_t now_ns);
 
   service::Service& service_;
-  StampClock clock_;
+  service::StampClock clock_;
   navigation::Navigator navigator_;
   std::shared_ptr<const planning::HybridMap> map_;
 

@@ -37,6 +37,8 @@ void add_config_command(command_line::Command& app, int& exit_code);
 void add_calibrate_laser_command(command_line::Command& app, int& exit_code);
 void add_calibrate_odometry_command(command_line::Command& app, int& exit_code);
 void add_compare_command(command_line::Command& app, int& exit_code);
+void add_web_command(command_line::Command& app, int& exit_code);
+void add_view_command(command_line::Command& app, int& exit_code);
 void add_store_command(command_line::Command& app, int& exit_code);
 
 }  // namespace topogeo::cli

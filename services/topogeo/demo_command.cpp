@@ -20,6 +20,7 @@
 #include "commands.hpp"
 #include "demo_world.hpp"
 #include "run_log.hpp"
+#include "web_run.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -116,6 +117,20 @@ int show_goto(DemoOptions options) {
   return run_goto(options.run);
 }
 
+/// A page for a simulated robot in the map of a drive before.
+int show_web(DemoOptions options) {
+  const Inputs inputs = check_inputs(options.run.job);
+  const world::World world = read_world(options.world);
+  support::check_writable_directory(options.run.job.out);
+  std::cerr << "mapping '" << world.name << "' from a simulated drive\n";
+  options.run.job.map = options.run.job.out / "floor.map.pb";
+  storage::write_map_file(*options.run.job.map, make_map(options, inputs.config.config, world));
+  options.simulation.world = world_file(options);
+  options.run.simulation = options.simulation;
+  if (!options.unknown_start) options.run.job.initial_pose = "0,0,0";
+  return run_web(options.run);
+}
+
 /// The same floor through the serial lines of emulated devices, in real time.
 int show_devices(DemoOptions options) {
   static_cast<void>(check_inputs(options.run.job));
@@ -147,8 +162,17 @@ void add_demo_command(command_line::Command& app, int& exit_code) {
   add_simulation_options(*command, options->simulation, sim);
   add_goal_run_options(*command, options->goal, options->unknown_start, nullptr);
   command->get_option("--goto")->excludes(sim);
-  command->callback([options, &exit_code] {
-    if (!options->goal.target.empty()) {
+  auto web = std::make_shared<WebOptions>();
+  auto with_web = std::make_shared<bool>(false);
+  command_line::Option* page = command->add_flag(
+      "--web", *with_web, "a page in the browser to send a simulated robot from, up to Ctrl-C");
+  page->excludes(sim)->excludes(command->get_option("--goto"));
+  add_web_options(*command, *web, page);
+  command->callback([options, web, with_web, &exit_code] {
+    if (*with_web) {
+      options->run.web = *web;
+      exit_code = show_web(*options);
+    } else if (!options->goal.target.empty()) {
       exit_code = show_goto(*options);
     } else {
       exit_code = options->with_devices ? show_devices(*options) : show_demo(*options);

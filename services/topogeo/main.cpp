@@ -39,6 +39,8 @@ int run(int argc, const char* const* argv) {
   cli::add_follow_command(app, exit_code);
   cli::add_goto_command(app, exit_code);
   cli::add_explore_command(app, exit_code);
+  cli::add_web_command(app, exit_code);
+  cli::add_view_command(app, exit_code);
   cli::add_places_command(app, exit_code);
   cli::add_plan_command(app, exit_code);
   cli::add_simulate_route_command(app, exit_code);

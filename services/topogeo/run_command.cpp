@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "run_log.hpp"
 #include "run_supervisor.hpp"
+#include "web_run.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -50,11 +51,13 @@ void add_continuation(storage::Report& report, const msg::RunSummary& summary) {
 /// Where a simulated robot starts that is sent somewhere: at the origin of the map, unless
 /// a flag has another place.
 RunOptions with_start(RunOptions options, bool unknown) {
-  if (!options.job.map) throw service::UsageError("run: --goto needs --map (see --help)");
+  if (!options.job.map && options.goal) {
+    throw service::UsageError("run: --goto needs --map (see --help)");
+  }
   if (unknown && options.job.initial_pose) {
     throw service::UsageError("run: --unknown-start excludes --initial-pose");
   }
-  if (!unknown && !options.job.initial_pose) options.job.initial_pose = "0,0,0";
+  if (options.job.map && !unknown && !options.job.initial_pose) options.job.initial_pose = "0,0,0";
   return options;
 }
 
@@ -186,6 +189,12 @@ void add_run_command(command_line::Command& app, int& exit_code) {
               "with --sim or --devices: drive where the robot has not been until nothing is left")
           ->excludes(log)
           ->excludes(command->get_option("--map"));
+  auto web = std::make_shared<WebOptions>();
+  auto with_web = std::make_shared<bool>(false);
+  command_line::Option* page = command->add_flag(
+      "--web", *with_web,
+      "a page in the browser; with --sim the robot stands until the page sends it, up to Ctrl-C");
+  add_web_options(*command, *web, page);
   auto goal = std::make_shared<GoalOptions>();
   auto unknown_start = std::make_shared<bool>(false);
   add_goal_run_options(*command, *goal, *unknown_start, sim);
@@ -195,6 +204,11 @@ void add_run_command(command_line::Command& app, int& exit_code) {
       throw service::UsageError("run: expected --log, --devices or --sim (see --help)");
     }
     if (sim->count() > 0) options->simulation = *simulation;
+    if (*with_web) options->web = *web;
+    if (*with_web && options->simulation && goal->target.empty() && !options->explore) {
+      exit_code = run_web(with_start(*options, *unknown_start));
+      return;
+    }
     if (!goal->target.empty()) {
       options->goal = *goal;
       exit_code = run_goto(with_start(*options, *unknown_start));

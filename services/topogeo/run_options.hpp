@@ -10,6 +10,7 @@
 
 #include "goal_session.hpp"
 #include "job.hpp"
+#include "web_options.hpp"
 
 namespace topogeo::cli {
 
@@ -35,7 +36,8 @@ struct RunOptions {
   std::string rate = "lossless";
   std::filesystem::path profiles_file;  ///< empty: built in
   bool explore = false;                 ///< the robot drives where it has not been, to the end
-  std::optional<GoalOptions> goal;      ///< to drive to in job.map; none: a drive that maps
+  std::optional<WebOptions> web;  ///< a page; with a simulation the robot stands until it sends it
+  std::optional<GoalOptions> goal;  ///< to drive to in job.map; none: a drive that maps
 };
 
 }  // namespace topogeo::cli

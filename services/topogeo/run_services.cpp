@@ -42,7 +42,7 @@ Arguments common_arguments(const RunOptions& options, const std::string& partiti
 
 /// What a map store keeps, or the map that it shows as it is.
 Arguments store_arguments(const RunOptions& options) {
-  if (options.goal && options.job.map) return {"--map", options.job.map->string()};
+  if ((options.goal || options.web) && options.job.map) return {"--map", options.job.map->string()};
   Arguments arguments = {"--out", options.job.out.string(), "--new", "--title",
                          source_name(options)};
   if (options.job.continued) {
@@ -141,8 +141,13 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   };
   start("map_store", common + store_arguments(options));
   processes.leave_out_at_restart("map_store", "--new");
+  if (options.web) {
+    export_token(*options.web);
+    start("web", common + web_arguments(*options.web));
+  }
+  if (options.job.log.empty() && options.devices.empty()) return;  // a map alone
   start("planner", common);
-  if (options.goal || options.explore) start("navigator", common);
+  if (options.goal || options.explore || options.web) start("navigator", common);
   const std::uint32_t wait_workers = options.wait_workers.value_or(options.workers);
   const bool replay = options.devices.empty();
   const Arguments source = replay ? Arguments{"--replay"} : Arguments{};
@@ -159,9 +164,9 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
 }
 
 std::vector<support::StageTime> by_stage(std::vector<support::StageTime> times) {
-  constexpr std::array<std::string_view, 8> kOrder = {"simulator", "sensor_gateway", "local_mapper",
+  constexpr std::array<std::string_view, 9> kOrder = {"simulator", "sensor_gateway", "local_mapper",
                                                       "localizer", kWorker,          "map_store",
-                                                      "planner",   "navigator"};
+                                                      "planner",   "navigator",      "web"};
   const auto place = [&](const support::StageTime& time) {
     return std::find_if(kOrder.begin(), kOrder.end(),
                         [&](std::string_view name) { return time.stage.starts_with(name); });

@@ -60,6 +60,7 @@ void ServiceRun::start(const RunOptions& options, Hooks hooks) {
   hooks_ = std::move(hooks);
   signals_.emplace([this](int number) { on_signal(number); });
   loop_.add_timer(kRunTick, [this] { tick(); });
+  if (options.web) web_log_ = options.job.out / "logs" / "web.log";
   start_services(processes_, options, partition_);
 }
 
@@ -91,7 +92,24 @@ void ServiceRun::tick() {
       hooks_.log(end->description + "; the run continues without it");
     }
   }
+  look_for_links();
   hooks_.on_tick();
+}
+
+void ServiceRun::look_for_links() {
+  if (web_log_.empty()) return;
+  std::string links = links_in(web_log_);
+  if (links.empty()) return;
+  web_log_.clear();
+  if (hooks_.on_links) {
+    hooks_.on_links(links);
+    return;
+  }
+  while (!links.empty()) {
+    const std::size_t end = links.find('\n');
+    hooks_.log(links.substr(0, end));
+    links.erase(0, end + 1);
+  }
 }
 
 // One that dies again and again is started less and less often.

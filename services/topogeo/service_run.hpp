@@ -27,6 +27,8 @@ class ServiceRun {
     std::function<void()> on_tick;                     ///< twenty times a second
     std::function<void()> on_first_signal;             ///< empty: it ends the run like the second
     std::function<void(const std::string& line)> log;  ///< for the user
+    /// The links of the page, once there are any; empty: they are logged.
+    std::function<void(const std::string& lines)> on_links = {};
   };
 
   /// Joins the domain; no service is started yet. Throws like messaging::Participant and
@@ -71,10 +73,13 @@ class ServiceRun {
  private:
   void on_signal(int number);
   void tick();
+  /// Passes the links of the page on when the web service has printed them.
+  void look_for_links();
   void restart(const std::string& name, const std::string& description);
 
   const std::string partition_;
   bool ended_ = false;
+  std::filesystem::path web_log_;  // where the links are to come; empty: nowhere
   std::string failure_;
   Hooks hooks_;
   std::atomic<int> signal_ = 0;

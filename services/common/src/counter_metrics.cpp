@@ -160,6 +160,12 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
      "parts of the map published on ROS"},
     {"initial_poses", "topogeo_ros_initial_poses_total", kTotal, "poses set from ROS"},
     {"velocities", "topogeo_ros_velocities_total", kTotal, "velocities handed to or from ROS"},
+    // web
+    {"viewers", "topogeo_web_viewers", kGauge, "pages that watch"},
+    {"requests", "topogeo_web_requests_total", kTotal, "requests by HTTP"},
+    {"orders", "topogeo_web_orders_total", kTotal, "orders of the operator"},
+    {"messages_sent", "topogeo_web_messages_total", kTotal, "messages to pages"},
+    {"bytes_sent", "topogeo_web_sent_bytes_total", kTotal, "bytes of these messages"},
     // simulator
     {"time_s", "topogeo_simulated_seconds_total", kTotal, "time in the simulated world"},
     {"stood_still_s", "topogeo_simulator_delay_seconds_total", kTotal,

@@ -22,7 +22,7 @@ namespace {
 /// In the order of their ports; search workers have several.
 constexpr auto kServices = std::to_array<std::string_view>(
     {"sensor_gateway", "local_mapper", "localizer", "map_store", "planner", "navigator",
-     "simulator", "ga_worker", "ros_bridge"});
+     "simulator", "ga_worker", "ros_bridge", "web"});
 /// Search workers of one host that find a port.
 constexpr std::uint32_t kWorkerPorts = 64;
 

@@ -1,10 +1,10 @@
-#include "navigator/stamp_clock.hpp"
+#include "topogeo/service/stamp_clock.hpp"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-namespace topogeo::navigator {
+namespace topogeo::service {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -71,4 +71,4 @@ TEST(StampClock, NeverGoesBackALittle) {
 }
 
 }  // namespace
-}  // namespace topogeo::navigator
+}  // namespace topogeo::service

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace topogeo::navigator {
+namespace topogeo::service {
 
 /// The stamps of gateway and localizer are of the gateway's clock, which is that of its host at the
 /// time when it was started. This one follows them: the message that came fastest of the last ten
@@ -67,4 +67,4 @@ class StampClock {
   bool set_back_ = false;
 };
 
-}  // namespace topogeo::navigator
+}  // namespace topogeo::service

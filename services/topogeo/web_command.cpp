@@ -1,0 +1,127 @@
+// topogeo web: a page for a robot that runs; topogeo view: for a stored map.
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <random>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <unistd.h>
+
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/read_map.hpp"
+#include "topogeo/support/format.hpp"
+
+#include "commands.hpp"
+#include "run_log.hpp"
+#include "web_options.hpp"
+#include "web_run.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+struct WebCommand {
+  WebOptions web;
+  std::uint32_t domain = 0;
+  std::string partition = messaging::kDefaultPartition;
+  std::string robot_id = "robot";
+  std::string map_of;
+  std::optional<std::filesystem::path> config;
+};
+
+struct ViewCommand {
+  std::filesystem::path map;
+  WebOptions web;
+  bool no_browser = false;
+  std::uint32_t domain = 0;
+};
+
+/// Becomes the program `web`.
+[[noreturn]] void become_web_service(const WebCommand& command) {
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web";
+  std::vector<std::string> words = {
+      "web",           "--domain",        std::to_string(command.domain),
+      "--partition",   command.partition, "--robot-id",
+      command.robot_id};
+  if (!command.map_of.empty()) words.insert(words.end(), {"--map-of", command.map_of});
+  if (command.config) words.insert(words.end(), {"--config", command.config->string()});
+  for (const std::string& argument : web_arguments(command.web)) words.push_back(argument);
+  if (command.web.token) export_token(command.web);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(program.c_str(), arguments.data());
+  throw std::system_error(errno, std::generic_category(), program.string());
+}
+
+/// A folder for the logs of the services, gone at the end.
+class LogFolder {
+ public:
+  LogFolder()
+      : path_(std::filesystem::temp_directory_path() /
+              fmt::format("topogeo-view-{}-{:08x}", ::getpid(), std::random_device{}())) {
+    std::filesystem::create_directories(path_);
+  }
+  LogFolder(const LogFolder&) = delete;
+  LogFolder& operator=(const LogFolder&) = delete;
+  ~LogFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+int view(const ViewCommand& command) {
+  try {
+    static_cast<void>(storage::read_map(command.map));
+  } catch (const std::exception& error) {
+    throw service::BadInputError(error.what());
+  }
+  const LogFolder logs;
+  RunOptions options;
+  options.domain = command.domain;
+  options.job.map = command.map;
+  options.job.out = logs.path();
+  options.web = command.web;
+  return run_web(options, !command.no_browser);
+}
+
+}  // namespace
+
+void add_web_command(command_line::Command& app, int&) {
+  command_line::Command* web =
+      app.add_subcommand("web", "A page for a robot that runs: see, send, drive, correct");
+  auto options = std::make_shared<WebCommand>();
+  add_web_options(*web, options->web);
+  service::add_domain_option(*web, options->domain);
+  web->add_option("--partition", options->partition, "of the robot's services")
+      ->capture_default_str();
+  web->add_option("--robot,--robot-id", options->robot_id, "whose page")->capture_default_str();
+  service::add_map_option(*web, options->map_of);
+  add_config_option(*web, options->config);
+  web->footer("Prints the link of the operator and that of spectators, who may only watch.");
+  web->callback([options] { become_web_service(*options); });
+}
+
+void add_view_command(command_line::Command& app, int& exit_code) {
+  command_line::Command* command =
+      app.add_subcommand("view", "Look at a stored map in the browser, without a robot");
+  auto options = std::make_shared<ViewCommand>();
+  command->add_option("map", options->map, "map file: map.pb or map.sqlite")
+      ->required()
+      ->type_name("MAP");
+  add_web_options(*command, options->web);
+  command->add_flag("--no-browser", options->no_browser, "print the link and open nothing");
+  service::add_domain_option(*command, options->domain);
+  command->callback([options, &exit_code] { exit_code = view(*options); });
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,73 @@
+#include "web_options.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <string_view>
+
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::cli {
+
+void add_web_options(command_line::Command& app, WebOptions& options,
+                     command_line::Option* needed) {
+  constexpr std::uint32_t kLargestPort = 65535;
+  const std::vector<command_line::Option*> added = {
+      app.add_option("--port", options.port,
+                     "port of the page (default: 8080), 0: any that is free")
+          ->check(command_line::range(0U, kLargestPort)),
+      app.add_option("--bind", options.bind,
+                     "address of the page (default: 127.0.0.1); others than those of this machine "
+                     "alone need --certificate")
+          ->type_name("ADDRESS"),
+      app.add_option("--token", options.token,
+                     "who has it may send the robot; without one it is made and printed"),
+      app.add_option("--certificate", options.certificate, "certificate of the page (PEM)")
+          ->type_name("FILE"),
+      app.add_option("--key", options.key, "its key (PEM)")->type_name("FILE"),
+      app.add_flag("--without-tls", options.without_tls,
+                   "listen at --bind although everybody on the network can read the token")};
+  if (needed == nullptr) return;
+  for (command_line::Option* option : added) option->needs(needed);
+}
+
+void export_token(const WebOptions& options) {
+  constexpr const char* kVariable = "TOPOGEO_WEB_TOKEN";
+  std::string token = options.token.value_or("");
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread uses the environment yet
+  const char* const given = std::getenv(kVariable);
+  if (!options.token && given != nullptr && *given != '\0') return;
+  std::random_device random;
+  for (int i = 0; i < 4 && !options.token; ++i) token += fmt::format("{:08x}", random());
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the same
+  ::setenv(kVariable, token.c_str(), 1);
+}
+
+std::vector<std::string> web_arguments(const WebOptions& options) {
+  std::vector<std::string> arguments;
+  const auto add = [&arguments](const std::string& name, const std::string& value) {
+    arguments.push_back(name);
+    arguments.push_back(value);
+  };
+  if (options.port) add("--port", std::to_string(*options.port));
+  if (options.bind) add("--bind", *options.bind);
+  if (options.certificate) add("--certificate", options.certificate->string());
+  if (options.key) add("--key", options.key->string());
+  if (options.without_tls) arguments.emplace_back("--without-tls");
+  return arguments;
+}
+
+std::string links_in(const std::filesystem::path& log) {
+  std::ifstream file(log);
+  std::string links;
+  std::string line;
+  while (std::getline(file, line)) {
+    const std::string_view text = line;
+    if (text.starts_with("operator:") || text.starts_with("spectators:")) links += line + '\n';
+    // The second line is whole when its end has come.
+    if (text.starts_with("spectators:") && !file.eof()) return links;
+  }
+  return {};
+}
+
+}  // namespace topogeo::cli

@@ -1,0 +1,38 @@
+// The web service of a command: what its command line says of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/command_line/command_line.hpp"
+
+namespace topogeo::cli {
+
+struct WebOptions {
+  std::optional<std::uint32_t> port;
+  std::optional<std::string> bind;
+  std::optional<std::string> token;
+  std::optional<std::filesystem::path> certificate;
+  std::optional<std::filesystem::path> key;
+  bool without_tls = false;
+};
+
+/// Adds --port, --bind, --token, --certificate, --key and --without-tls; with `needed` they go with
+/// that option alone. What they mean is in `topogeo-web --help`.
+void add_web_options(command_line::Command& app, WebOptions& options,
+                     command_line::Option* needed = nullptr);
+
+/// Hands the token, or one that is made here, to the programs that are started from here on: by the
+/// environment, which `ps` does not show. A service that is started again has the same.
+void export_token(const WebOptions& options);
+
+/// As arguments of the program `web`, without the token.
+std::vector<std::string> web_arguments(const WebOptions& options);
+
+/// The lines with the links that a web service has written to its log; empty: it has not yet.
+std::string links_in(const std::filesystem::path& log);
+
+}  // namespace topogeo::cli

@@ -1,0 +1,65 @@
+#include "web_run.hpp"
+
+#include <iostream>
+#include <stdexcept>
+
+#include <unistd.h>
+
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/msg/status.h"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/format.hpp"
+
+#include "browser.hpp"
+#include "commands.hpp"
+#include "run_log.hpp"
+
+namespace topogeo::cli {
+namespace {
+
+class WebRun {
+ public:
+  WebRun(const RunOptions& options, bool open_browser)
+      : open_browser_(open_browser), run_(options), statuses_(run_.participant()) {
+    run_.loop().add<msg::ServiceStatus>(
+        statuses_, [this](const msg::ServiceStatus& status, const messaging::SampleInfo&) {
+          run_.note_state(status);
+        });
+    ServiceRun::Hooks hooks;
+    hooks.on_tick = [] {};
+    hooks.log = [](const std::string& line) { std::cerr << "topogeo: " << line << '\n'; };
+    hooks.on_links = [this](const std::string& links) { show(links); };
+    run_.start(options, std::move(hooks));
+  }
+
+  /// Until a signal, or an end of a service that nothing works without.
+  void run() {
+    run_.run();
+    static_cast<void>(run_.stop(true));
+    if (run_.signal_number() == 0) throw std::runtime_error(run_.failure());
+  }
+
+ private:
+  void show(const std::string& links) const {
+    std::cout << links << "Ctrl-C ends it.\n" << std::flush;
+    if (open_browser_) open_in_browser(operator_link(links));
+  }
+
+  bool open_browser_;
+  ServiceRun run_;
+  messaging::Reader<msg::ServiceStatus> statuses_;
+};
+
+}  // namespace
+
+int run_web(RunOptions options, bool open_browser) {
+  if (options.simulation) {
+    options.laser = check_inputs(options.job).config.config.local_mapper.T_robot_laser;
+    prepare_simulation(options);
+  }
+  WebRun(options, open_browser).run();
+  std::cerr << "topogeo: stopped\n";
+  return service::kOk;
+}
+
+}  // namespace topogeo::cli

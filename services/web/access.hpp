@@ -1,0 +1,32 @@
+// Who may do what: the operator's token, and which pages of which sites may talk to the service.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace topogeo::web {
+
+/// 128 random bits as 32 hexadecimal digits.
+std::string new_token();
+
+/// Takes the same time wherever two texts differ.
+bool equal_in_constant_time(std::string_view a, std::string_view b);
+
+/// "Bearer TOKEN" of the header Authorization. False for an empty token: then nobody may write.
+bool is_authorized(std::string_view authorization, std::string_view token);
+
+/// The name in "name:port", without brackets of IPv6.
+std::string_view host_of(std::string_view authority);
+
+/// A name that a page of a foreign site cannot have made its own (DNS rebinding): an address in
+/// numbers, localhost, or one of `names` (this machine's, and those that the user allows). Capitals
+/// do not matter.
+bool is_own_host(std::string_view authority, const std::vector<std::string>& names);
+
+/// Whether a request comes from a page of this service: `origin` is the header Origin (empty: not
+/// from a page), `host` the header Host, `allowed` further origins, "https://desk.example".
+bool is_own_origin(std::string_view origin, std::string_view host,
+                   const std::vector<std::string>& allowed);
+
+}  // namespace topogeo::web

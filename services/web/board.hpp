@@ -1,0 +1,123 @@
+// What viewers see: channels, each a value or a table of objects, with the versions that let a
+// viewer who was away get exactly what it lacks.
+//
+// Viewers pull: the board keeps the newest state and no messages, so that a slow viewer costs
+// nothing. A message joins all changes since the version that a viewer holds; those who hold the
+// same version share one text.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace topogeo::web {
+
+/// In the order in which a viewer gets what has changed.
+enum class Channel : std::uint8_t {
+  kPose,
+  kDrive,
+  kNavigator,
+  kBase,
+  kGoals,
+  kMap,
+  kTiles,
+  kRooms,
+  kPlaces,
+  kRules,
+  kScan,
+  kRoute,
+  kTruth,
+  kLaser,
+  kTrail,
+  kGraph,
+  kServices,
+  kWorkers,
+  kMerges,
+  kLocalMap,
+  kLoops,
+  kEvents,
+  kViewers,
+  kTime,
+};
+inline constexpr std::size_t kChannels = static_cast<std::size_t>(Channel::kTime) + 1;
+
+/// As the protocol names it: "pose", "local_map", ...
+std::string_view name_of(Channel channel);
+std::optional<Channel> channel_of(std::string_view name);
+/// False: a value.
+bool is_table(Channel channel);
+
+/// A new object of a table, as JSON; empty: it is gone.
+struct Edit {
+  std::string key;
+  std::string json;
+};
+
+/// What brings a viewer up to date.
+struct Update {
+  std::shared_ptr<const std::string> text;  ///< a whole message
+  std::uint64_t version = 0;                ///< that the viewer holds then
+};
+
+/// For any thread.
+class Board {
+ public:
+  /// Keys that are gone are remembered up to this number for each table; a viewer who has missed
+  /// more gets the whole table.
+  static constexpr std::size_t kRemembered = 4096;
+
+  /// Calls `on_change` after each change, in the thread that made it, without a lock held.
+  void on_change(std::function<void(Channel)> handler);
+
+  /// Replaces a value, JSON. One that is equal to the one before is no change.
+  void set(Channel channel, std::string json);
+  /// All edits of one call come to viewers together. Objects that are equal are no change. `anew`:
+  /// what the table had before and is not among the edits is gone.
+  void edit(Channel channel, std::vector<Edit> edits, bool anew = false);
+
+  /// 0 before the first change.
+  [[nodiscard]] std::uint64_t version(Channel channel) const;
+  /// For a viewer who holds `held` (0: nothing), which is not the version of now. What it was never
+  /// given, a larger one than that of now, counts as nothing.
+  [[nodiscard]] Update update(Channel channel, std::uint64_t held) const;
+
+ private:
+  struct Object {
+    std::string json;
+    std::uint64_t version = 0;
+  };
+  struct State {
+    std::uint64_t version = 0;
+    std::string value;
+    std::map<std::string, Object> objects;
+    std::deque<std::pair<std::uint64_t, std::string>> gone;  // version and key, ascending
+    std::uint64_t forgotten = 0;  // what was gone up to this version is not known any more
+    // The last messages made for the version of now, by the version that they start from.
+    mutable std::map<std::uint64_t, std::shared_ptr<const std::string>> texts;
+  };
+
+  [[nodiscard]] static std::string text(Channel channel, const State& state, std::uint64_t from);
+  [[nodiscard]] State& state(Channel channel) {
+    return states_.at(static_cast<std::size_t>(channel));
+  }
+  [[nodiscard]] const State& state(Channel channel) const {
+    return states_.at(static_cast<std::size_t>(channel));
+  }
+  static bool apply(State& state, std::vector<Edit>& edits, bool anew);
+  void report(Channel channel);
+
+  mutable std::mutex mutex_;
+  std::vector<State> states_ = std::vector<State>(kChannels);
+  std::function<void(Channel)> on_change_;
+};
+
+}  // namespace topogeo::web

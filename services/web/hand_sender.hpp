@@ -1,0 +1,63 @@
+// Drives the base by hand, in what the collision guard allows: channel `drive`.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/motion.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/navigation/collision_guard.hpp"
+#include "topogeo/service/service.hpp"
+#include "topogeo/service/stamp_clock.hpp"
+
+#include "board.hpp"
+#include "manual_drive.hpp"
+
+namespace topogeo::web {
+
+class EventLog;
+
+/// Lives in the loop of its service.
+class HandSender {
+ public:
+  HandSender(service::Service& service, Board& board, EventLog& events);
+  HandSender(const HandSender&) = delete;
+  HandSender& operator=(const HandSender&) = delete;
+  /// The last command is to stand still.
+  ~HandSender();
+
+  /// Calls `on_first` when the robot was left alone before: it may have a goal.
+  void drive(std::uint64_t viewer, const geometry::Velocity& wanted,
+             const std::function<void()>& on_first);
+  void release(std::uint64_t viewer);
+  /// The base stops at once and holds until release_stop().
+  void stop();
+  void release_stop();
+
+  // Sensors of the guard.
+  void take(const navigation::ScanPoints& scan);
+  void take(const msg::LaserStatus& laser);
+
+ private:
+  void tick();
+  void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
+  void order(msg::BaseCommandKind kind);
+  void show(const navigation::GuardVerdict& verdict);
+
+  service::Service& service_;
+  Board& board_;
+  EventLog& events_;
+  std::string client_id_;
+  service::StampClock clock_;
+  navigation::CollisionGuard guard_;
+  ManualDrive drive_;
+  bool commanding_ = false;
+  std::uint64_t commands_sent_ = 0;
+  std::uint64_t orders_sent_ = 0;
+  messaging::Writer<msg::MotionCommand> commands_;
+  messaging::Writer<msg::BaseCommand> orders_;
+};
+
+}  // namespace topogeo::web

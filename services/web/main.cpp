@@ -1,0 +1,31 @@
+// Shows a robot to pages and programs, by HTTP and WebSocket.
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "topogeo/service/service.hpp"
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "access.hpp"
+#include "web_options.hpp"
+#include "web_service.hpp"
+
+int main(int argc, char** argv) {
+  using namespace topogeo;  // NOLINT(google-build-using-namespace)
+  web::WebOptions options;
+  return service::run_service(
+      argc, argv, "web", "Shows the robot in a browser and takes the orders of its operator.",
+      [&](command_line::Command& app) { web::add_web_options(app, options); },
+      [&](const service::Setup& setup) {
+        const web::ServerConfig config = web::server_config(options, setup.options.robot_id);
+        service::Service service(service::with_map_of(setup, options.map_robot));
+        const web::WebService web(service, config, web::page_files(options));
+        std::cout << web::links(config, web.port()) << std::flush;
+        service.run();
+      });
+}

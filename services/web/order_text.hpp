@@ -1,0 +1,50 @@
+// Orders of the operator, from the bodies of their requests.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/pose2.hpp"
+
+namespace topogeo::web {
+
+/// A place or room by its name, or a point.
+struct WantedGoal {
+  std::string name;                        ///< empty: a point
+  std::optional<Eigen::Vector2d> point_m;  ///< map frame
+  std::optional<double> heading_rad;       ///< map frame
+};
+
+struct GoalOrders {
+  std::vector<WantedGoal> goals;  ///< 1 to 50, in a row
+  bool append = false;            ///< after those that wait
+};
+
+struct PoseOrder {
+  geometry::Pose2 T_map_robot;
+  std::optional<double> sigma_m;
+  std::optional<double> sigma_rad;
+};
+
+struct MergeOrder {
+  std::uint32_t number = 0;
+  bool accept = false;
+};
+
+// All throw std::invalid_argument naming key and expectation.
+GoalOrders parse_goals(const std::string& body);
+PoseOrder parse_pose_order(const std::string& body);
+MergeOrder parse_merge_order(const std::string& body);
+/// "mapping" (true) or "localization".
+bool parse_mapping_mode(const std::string& body);
+/// A body that says nothing: empty, or an object.
+void check_plain(const std::string& body);
+
+/// "place room A" or "1.20, 3.40": for people.
+std::string describe(const WantedGoal& goal);
+
+}  // namespace topogeo::web

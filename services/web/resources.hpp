@@ -1,0 +1,24 @@
+// What GET answers besides the files of the page: tiles, what lies at a point, facts of the
+// service.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "map_view.hpp"
+#include "web_types.hpp"
+
+namespace topogeo::web {
+
+/// Of "x_m=1.2&y_m=3.4": the value of a key; empty when it is not there.
+std::string query_value(std::string_view query, std::string_view key);
+
+/// "/tiles/{layer}/{frame}/{level}/{column}/{row}.png" of a map; `map` may be null.
+Answer tile_answer(const Request& request, const ShownMap* map);
+
+/// "/api/at?x_m=..&y_m=..".
+Answer point_answer(const Request& request, const ShownMap* map);
+
+}  // namespace topogeo::web

@@ -1,0 +1,143 @@
+#include "web_options.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+#include "topogeo/service/service_options.hpp"
+#include "topogeo/support/file_content.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "access.hpp"
+
+namespace topogeo::web {
+namespace {
+
+constexpr std::size_t kShortestToken = 16;
+
+std::string read_token(const std::filesystem::path& file) {
+  try {
+    std::string token = support::file_content(file);
+    token.erase(std::remove_if(token.begin(), token.end(),
+                               [](unsigned char c) { return std::isspace(c) != 0; }),
+                token.end());
+    return token;
+  } catch (const std::runtime_error& error) {
+    throw service::BadInputError(error.what());
+  }
+}
+
+std::string checked(std::string token) {
+  const bool plain = std::ranges::all_of(token, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  });
+  if (token.size() < kShortestToken || !plain) {
+    throw service::UsageError(
+        "--token: expected 16 letters, digits, '-', '_' or '.' or more; see --help");
+  }
+  return token;
+}
+
+bool is_loopback(const std::string& address) {
+  return address == "::1" || address.starts_with("127.");
+}
+
+}  // namespace
+
+void add_web_options(command_line::Command& app, WebOptions& options) {
+  constexpr std::uint32_t kLargestPort = 65535;
+  app.add_option("--port", options.port, "port to listen at, 0: any that is free")
+      ->check(command_line::range(0U, kLargestPort))
+      ->capture_default_str();
+  app.add_option("--bind", options.bind,
+                 "address to listen at; others than those of this machine alone need --certificate")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  app.add_option("--token", options.token,
+                 "who has it may send the robot; without one it is made and printed")
+      ->environment("TOPOGEO_WEB_TOKEN")
+      ->type_name("TEXT");
+  app.add_option("--token-file", options.token_file,
+                 "the same from a file, which `ps` does not show")
+      ->type_name("FILE");
+  app.add_option("--certificate", options.certificate,
+                 "certificate of the server with its chain (PEM)")
+      ->type_name("FILE");
+  app.add_option("--key", options.key, "its key (PEM)")->type_name("FILE");
+  app.add_flag(
+      "--without-tls", options.without_tls,
+      "listen at --bind although everybody on the network can read the token: behind a proxy "
+      "or in a network that is closed");
+  app.add_option(
+         "--host", options.hosts,
+         "name under which pages reach this machine, in addition to its own; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  app.add_option(
+         "--origin", options.origins,
+         "site whose pages may use the service too, as https://desk.example; may be repeated")
+      ->type_name("ORIGIN")
+      ->allow_extra_args(false);
+  app.add_option("--page", options.page, "folder of the page, in place of the installed one")
+      ->type_name("DIR");
+  app.add_option("--viewers", options.most_viewers, "pages at the same time, at most")
+      ->check(command_line::range(1U, 1000U))
+      ->capture_default_str();
+  service::add_map_option(app, options.map_robot);
+}
+
+ServerConfig server_config(const WebOptions& options, const std::string& robot_id) {
+  ServerConfig config;
+  config.address = options.bind;
+  config.port = options.port;
+  if (options.token && options.token_file) {
+    throw service::UsageError("expected --token or --token-file, not both");
+  }
+  if (options.token) {
+    config.token = checked(*options.token);
+  } else if (options.token_file) {
+    config.token = checked(read_token(*options.token_file));
+  } else {
+    config.token = new_token();
+  }
+  config.life = new_token().substr(0, 16);
+  config.robot_id = robot_id;
+  config.hosts = options.hosts;
+  config.hosts.push_back(support::host_name());
+  config.origins = options.origins;
+  config.certificate_file = options.certificate.string();
+  config.key_file = options.key.string();
+  config.most_viewers = options.most_viewers;
+  if (config.certificate_file.empty() != config.key_file.empty()) {
+    throw service::UsageError("--certificate and --key go together");
+  }
+  if (!is_loopback(options.bind) && config.certificate_file.empty() && !options.without_tls) {
+    throw service::UsageError("--bind " + options.bind +
+                              ": expected --certificate and --key, or --without-tls; see --help");
+  }
+  return config;
+}
+
+PageFiles page_files(const WebOptions& options) {
+  if (!options.page.empty()) return PageFiles(options.page);
+  // Of a build, and of an installation, where programs are in libexec/topogeo.
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  for (const char* folder : {"../share/topogeo/web", "../../share/topogeo/web"}) {
+    const std::filesystem::path page = (program / folder).lexically_normal();
+    if (std::filesystem::exists(page / "index.html")) return PageFiles(page);
+  }
+  return PageFiles();
+}
+
+std::string links(const ServerConfig& config, std::uint32_t port) {
+  std::string host = config.address;
+  if (host == "0.0.0.0" || host == "::") host = support::host_name();
+  if (host.find(':') != std::string::npos) host = "[" + host + "]";
+  const std::string scheme = config.certificate_file.empty() ? "http" : "https";
+  const std::string link = fmt::format("{}://{}:{}/", scheme, host, port);
+  return fmt::format("operator:   {}#token={}\nspectators: {}\n", link, config.token, link);
+}
+
+}  // namespace topogeo::web

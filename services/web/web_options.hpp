@@ -1,0 +1,44 @@
+// The command line of the service.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "topogeo/command_line/command_line.hpp"
+
+#include "page_files.hpp"
+#include "web_types.hpp"
+
+namespace topogeo::web {
+
+struct WebOptions {
+  std::uint32_t port = 8080;
+  std::string bind = "127.0.0.1";
+  std::optional<std::string> token;
+  std::optional<std::filesystem::path> token_file;
+  std::filesystem::path certificate;
+  std::filesystem::path key;
+  std::vector<std::string> hosts;
+  std::vector<std::string> origins;
+  std::filesystem::path page;  ///< empty: beside the program
+  std::uint32_t most_viewers = 64;
+  bool without_tls = false;
+  std::string map_robot;
+};
+
+void add_web_options(command_line::Command& app, WebOptions& options);
+
+/// Throws service::UsageError where options do not go together, and service::BadInputError for a
+/// token file that cannot be read. A token that is not given is made.
+ServerConfig server_config(const WebOptions& options, const std::string& robot_id);
+
+/// Throws std::runtime_error for a folder that was given and cannot be used.
+PageFiles page_files(const WebOptions& options);
+
+/// Two lines: the operator's link and that of spectators.
+std::string links(const ServerConfig& config, std::uint32_t port);
+
+}  // namespace topogeo::web

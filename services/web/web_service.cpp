@@ -1,0 +1,227 @@
+#include "web_service.hpp"
+
+#include <array>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "topogeo/support/log.hpp"
+#include "topogeo/support/version.hpp"
+
+#include "json_values.hpp"
+#include "order_text.hpp"
+#include "resources.hpp"
+#include "route_preview.hpp"
+
+namespace topogeo::web {
+namespace {
+
+constexpr std::chrono::milliseconds kCountsPeriod{500};
+constexpr int kProtocolVersion = 1;
+/// What POST takes, below /api/.
+constexpr std::array<std::string_view, 12> kOffers = {"goal",   "preview", "pause",   "resume",
+                                                      "cancel", "stop",    "release", "return",
+                                                      "pose",   "search",  "mode",    "merge"};
+
+Answer accepted() {
+  return {202, "{}"};
+}
+
+}  // namespace
+
+WebService::WebService(service::Service& service, const ServerConfig& config, PageFiles files)
+    : service_(service),
+      config_(config),
+      files_(std::move(files)),
+      hand_(service, board_, events_),
+      map_(service, board_),
+      graph_(service, board_),
+      goals_(service, board_, map_, events_),
+      robot_(service, board_, events_,
+             {[this](const navigation::ScanPoints& scan) { hand_.take(scan); },
+              [this](const msg::LaserStatus& laser) { hand_.take(laser); },
+              [this](const msg::NavigatorStatus& status) { goals_.take(status); }}),
+      drive_(service, board_, events_),
+      health_(service, board_, events_),
+      server_(
+          std::make_unique<Server>(config_, board_, files_, static_cast<Backend&>(*this), tally_)),
+      localizer_(service) {
+  timer_ = service_.loop().add_timer(kCountsPeriod, [this] { report_counts(); });
+  report_counts();
+  service_.status().set_state(msg::kServiceRunning);
+}
+
+WebService::~WebService() {
+  service_.loop().cancel_timer(timer_);
+}
+
+template <class Work>
+void WebService::post(Work work) {
+  service_.loop().post([alive = std::weak_ptr<bool>(alive_), work = std::move(work)] {
+    if (!alive.expired()) work();
+  });
+}
+
+void WebService::handle(const Request& request, Respond respond) {
+  if (request.post) {
+    {
+      const std::scoped_lock lock(mutex_);
+      orders_.emplace_back(request, std::move(respond));
+    }
+    post([this] { work_off_orders(); });
+  } else if (request.path.starts_with("/tiles/")) {
+    respond(tile_answer(request, map_.shown().get()));
+  } else if (request.path == "/api/at") {
+    respond(point_answer(request, map_.shown().get()));
+  } else if (request.path == "/api/info") {
+    respond(info(request));
+  } else {
+    respond(error_answer(404, "there is no " + request.path));
+  }
+}
+
+Answer WebService::info(const Request& request) const {
+  const std::string& other = service_.setup().options.map_robot;
+  Answer answer;
+  answer.body = text_of(Json{{"protocol", kProtocolVersion},
+                             {"robot_id", service_.robot_id()},
+                             {"map_of", other.empty() ? service_.robot_id() : other},
+                             {"version", support::kVersion},
+                             {"life", config_.life},
+                             {"may_write", request.authorized},
+                             {"offers", kOffers}});
+  return answer;
+}
+
+void WebService::drive(std::uint64_t viewer, double linear_mps, double angular_radps) {
+  post([this, viewer, velocity = geometry::Velocity{linear_mps, angular_radps}] {
+    hand_.drive(viewer, velocity, [this] { goals_.pause(); });
+  });
+}
+
+void WebService::release(std::uint64_t viewer) {
+  post([this, viewer] { hand_.release(viewer); });
+}
+
+void WebService::work_off_orders() {
+  std::deque<std::pair<Request, Respond>> orders;
+  {
+    const std::scoped_lock lock(mutex_);
+    orders.swap(orders_);
+  }
+  for (const auto& [request, respond] : orders) {
+    try {
+      obey(request, respond);
+    } catch (const std::invalid_argument& error) {
+      tally_.add("refused: invalid");
+      respond(error_answer(400, error.what()));
+    }
+  }
+}
+
+void WebService::obey(const Request& request, const Respond& respond) {
+  using Order = std::function<void(const std::string&)>;
+  const auto plain = [&](const auto& act) -> Order {
+    return [&respond, act](const std::string& body) {
+      check_plain(body);
+      act();
+      respond(accepted());
+    };
+  };
+  const std::map<std::string_view, Order> orders = {
+      {"/api/goal", [&](const std::string& body) { respond(give_goals(body)); }},
+      {"/api/preview", [&](const std::string& body) { respond(preview(body)); }},
+      {"/api/pause", plain([this] { goals_.pause(); })},
+      {"/api/resume", plain([this] { goals_.resume(); })},
+      {"/api/cancel", plain([this] { goals_.cancel(); })},
+      {"/api/stop", plain([this] {
+         hand_.stop();
+         goals_.cancel();
+       })},
+      {"/api/release", plain([this] { hand_.release_stop(); })},
+      {"/api/return",
+       [&](const std::string& body) {
+         check_plain(body);
+         respond(go_back());
+       }},
+      {"/api/pose",
+       [&](const std::string& body) { localizer_.set_pose(parse_pose_order(body), respond); }},
+      {"/api/search",
+       [&](const std::string& body) {
+         check_plain(body);
+         localizer_.search(respond);
+       }},
+      {"/api/mode",
+       [&](const std::string& body) { localizer_.switch_mode(parse_mapping_mode(body), respond); }},
+      {"/api/merge",
+       [&](const std::string& body) { localizer_.answer_merge(parse_merge_order(body), respond); }},
+  };
+  const auto order = orders.find(request.path);
+  if (order == orders.end()) {
+    respond(error_answer(404, "there is no " + request.path));
+    return;
+  }
+  tally_.add("orders");
+  order->second(request.body);
+}
+
+Answer WebService::give_goals(const std::string& body) {
+  const GoalOrders orders = parse_goals(body);
+  std::uint64_t id = 0;
+  try {
+    id = goals_.add(orders);
+  } catch (const std::invalid_argument& error) {  // a name that is not there
+    return error_answer(409, error.what());
+  }
+  return {202, text_of(Json{{"goal_id", std::to_string(id)}, {"waiting", goals_.waiting()}})};
+}
+
+Answer WebService::go_back() {
+  WantedGoal goal;
+  for (const char* name : {"base", "base station"}) {
+    if (const auto found = map_.find(name); found && found->place) goal.name = found->name;
+  }
+  if (goal.name.empty()) goal.point_m = Eigen::Vector2d(0.0, 0.0);  // where the map began
+  const std::uint64_t id = goals_.add({{goal}, false});
+  return {202, text_of(Json{{"goal_id", std::to_string(id)}, {"waiting", 0}})};
+}
+
+Answer WebService::preview(const std::string& body) {
+  const GoalOrders orders = parse_goals(body);
+  const auto& pose = robot_.pose();
+  if (!pose || (pose->state() != msg::kStateTracking && pose->state() != msg::kStateAmbiguous)) {
+    return error_answer(409, "the robot does not know where it is");
+  }
+  std::shared_ptr<const planning::HybridMap> map;
+  std::shared_ptr<const topomap::GlobalMap> graph;
+  std::vector<Eigen::Vector2d> goals_m;
+  try {
+    map = map_.map();
+    graph = graph_.map();
+    for (const WantedGoal& goal : orders.goals) goals_m.push_back(goals_.position_of(goal));
+  } catch (const std::invalid_argument& error) {
+    return error_answer(409, error.what());
+  }
+  const planning::PlanningMaps maps{map.get(), graph.get()};
+  if (!maps.any()) return error_answer(409, "there is no map to plan on yet");
+  const pipeline::Config& config = service_.setup().config.config;
+  return preview_route(maps, {pose->T_map_robot().x_m(), pose->T_map_robot().y_m()}, goals_m,
+                       {config.planner, config.hybrid_planner, config.planning},
+                       config.navigator.follower);
+}
+
+void WebService::report_counts() {
+  messaging::StatusPublisher& status = service_.status();
+  for (const auto& [name, count] : tally_.counts()) {
+    if (name.starts_with("refused: ")) {
+      status.set_drops(name, count);
+    } else {
+      status.set_counter(name, static_cast<double>(count));
+    }
+  }
+}
+
+}  // namespace topogeo::web

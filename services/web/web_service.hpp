@@ -1,0 +1,86 @@
+// What pages and programs see of a robot and may order: topics of DDS on one side, HTTP and
+// WebSocket on the other.
+//
+// Handlers of topics turn messages into channels of the board, in the loop of the service; the
+// server shows the board in a thread of its own, and hands orders to the loop.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "topogeo/service/service.hpp"
+
+#include "board.hpp"
+#include "drive_view.hpp"
+#include "event_log.hpp"
+#include "goal_sender.hpp"
+#include "graph_view.hpp"
+#include "hand_sender.hpp"
+#include "health_view.hpp"
+#include "localizer_requests.hpp"
+#include "map_view.hpp"
+#include "page_files.hpp"
+#include "robot_view.hpp"
+#include "server.hpp"
+#include "tally.hpp"
+#include "web_types.hpp"
+
+namespace topogeo::web {
+
+/// Lives in the loop of its service.
+class WebService : private Backend {
+ public:
+  /// Listens from here on. Throws like Server.
+  WebService(service::Service& service, const ServerConfig& config, PageFiles files);
+  WebService(const WebService&) = delete;
+  WebService& operator=(const WebService&) = delete;
+  ~WebService() override;
+
+  [[nodiscard]] std::uint32_t port() const { return server_->port(); }
+
+ private:
+  // In the thread of the server.
+  void handle(const Request& request, Respond respond) override;
+  void drive(std::uint64_t viewer, double linear_mps, double angular_radps) override;
+  void release(std::uint64_t viewer) override;
+  [[nodiscard]] Answer info(const Request& request) const;
+  /// Calls it in the loop, unless this is gone by then.
+  template <class Work>
+  void post(Work work);
+
+  // In the loop.
+  void work_off_orders();
+  void obey(const Request& request, const Respond& respond);
+  [[nodiscard]] Answer give_goals(const std::string& body);
+  [[nodiscard]] Answer preview(const std::string& body);
+  [[nodiscard]] Answer go_back();
+  void report_counts();
+
+  service::Service& service_;
+  ServerConfig config_;
+  PageFiles files_;
+  Tally tally_;
+  Board board_;
+  EventLog events_{board_};
+  HandSender hand_;
+  MapView map_;
+  GraphView graph_;
+  GoalSender goals_;
+  RobotView robot_;
+  DriveView drive_;
+  HealthView health_;
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for what is posted
+  std::uint64_t timer_ = 0;
+  std::unique_ptr<Server> server_;
+  // Below the server: an answer that is still to be given holds on to a connection.
+  LocalizerRequests localizer_;
+  std::mutex mutex_;
+  std::deque<std::pair<Request, Respond>> orders_;
+};
+
+}  // namespace topogeo::web

@@ -1,0 +1,60 @@
+// What the server asks of the service behind it: answers to requests, and driving by hand.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace topogeo::web {
+
+struct Request {
+  bool post = false;        ///< else GET
+  std::string path;         ///< "/api/goal"
+  std::string query;        ///< what follows the question mark, as it came
+  std::string body;         ///< of POST
+  bool authorized = false;  ///< has the operator's token; of POST always
+};
+
+struct Answer {
+  unsigned status = 200;  ///< of HTTP
+  std::string body;
+  std::string content_type = "application/json";
+  bool cacheable = false;  ///< for good: the resource has its version in its name
+};
+
+/// An error as the protocol has it: {"error": "a sentence"}.
+Answer error_answer(unsigned status, const std::string& sentence);
+
+/// Called once, in any thread.
+using Respond = std::function<void(Answer)>;
+
+/// All are called in the thread of the server, and must come back soon.
+class Backend {
+ public:
+  Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+  virtual ~Backend() = default;
+
+  virtual void handle(const Request& request, Respond respond) = 0;
+  /// An operator holds key or finger. `viewer` is a number that no other has had.
+  virtual void drive(std::uint64_t viewer, double linear_mps, double angular_radps) = 0;
+  /// Let go, or gone; also for one that has never driven.
+  virtual void release(std::uint64_t viewer) = 0;
+};
+
+struct ServerConfig {
+  std::string address = "127.0.0.1";
+  std::uint32_t port = 0;  ///< 0: any that is free
+  std::string token;       ///< for writing; empty: nobody may
+  std::string life;        ///< another one after each start
+  std::string robot_id;
+  std::vector<std::string> hosts;    ///< names of this machine, see is_own_host
+  std::vector<std::string> origins;  ///< further ones, see is_own_origin
+  std::string certificate_file;      ///< PEM, with the chain; empty: no TLS
+  std::string key_file;              ///< PEM
+  std::uint32_t most_viewers = 64;
+};
+
+}  // namespace topogeo::web
