@@ -14,6 +14,7 @@
 #include <fastdds/rtps/writer/StatefulWriter.h>
 
 #include "library_function.hpp"
+#include "separate_sending.hpp"
 
 namespace {
 
@@ -39,6 +40,7 @@ extern "C" void topogeo_send_change(rtps::StatefulWriter* writer, rtps::CacheCha
   using Function = void (*)(rtps::StatefulWriter*, rtps::CacheChange_t*, const Deadline&);
   static const auto original = topogeo::messaging::library_function<Function>(kSend);
   change->inline_qos.length = 0;  // nothing else is in it
+  const topogeo::messaging::SendingScope scope(*writer);
   original(writer, change, until);
 }
 
