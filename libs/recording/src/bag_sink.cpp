@@ -9,7 +9,7 @@
 namespace topogeo::recording {
 namespace {
 
-constexpr std::size_t kBagChunkSize = 768U * 1024U;  // rosbag's own
+constexpr std::size_t kBagChunkSize = std::size_t{768} * 1024;  // rosbag's own
 constexpr std::size_t kHeaderEnd = 4096;
 
 /// Fields of a header, name=value each after its length.
