@@ -5,6 +5,7 @@
 #include <string>
 
 #include "topogeo/localization/mapping/search_space.hpp"
+#include "topogeo/localization/matching/branch_walls.hpp"
 #include "topogeo/localization/matching/fitness_forms.hpp"
 #include "topogeo/localization/matching/matcher.hpp"
 #include "topogeo/support/hash.hpp"
@@ -12,6 +13,18 @@
 namespace topogeo::pipeline {
 
 using localization::UncertainPose;
+
+namespace {
+
+// What a match by this evidence reads of a map.
+localization::MatchFeatures features_for(const topomap::LocalMap& map,
+                                         localization::MatchEvidence evidence) {
+  const localization::MatchFeatures features = localization::extract_features(map);
+  if (evidence == localization::MatchEvidence::kScan) return features;
+  return with_walls(features, localization::walls_of_branches(map));
+}
+
+}  // namespace
 
 void check_stops(std::size_t stops, std::size_t reference, std::size_t query) {
   for (const std::size_t stop : {reference, query}) {
@@ -62,8 +75,8 @@ StopSearch search_stop(const topomap::LocalMap& reference, const topomap::LocalM
   search.result = matcher.solve(search.task);
 
   const localization::Reference features =
-      localization::make_reference(localization::extract_features(reference));
-  const localization::MatchFeatures query_features = localization::extract_features(query);
+      localization::make_reference(features_for(reference, config.evidence));
+  const localization::MatchFeatures query_features = features_for(query, config.evidence);
   const localization::CombinedFitness fitness(features, query_features, search.task);
   const auto parts_at = [&](const geometry::Pose2& T) {
     return FitnessParts{fitness.scan()(T), fitness.topological()(T), fitness.prior()(T)};

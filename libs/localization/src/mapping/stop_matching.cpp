@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "topogeo/localization/mapping/search_space.hpp"
+#include "topogeo/localization/matching/branch_walls.hpp"
 #include "topogeo/localization/matching/expected_overlap.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
@@ -65,7 +66,7 @@ StopMatching::StopMatching(const LocalizerConfig& config, MatchPool& pool)
 void StopMatching::add(std::shared_ptr<const LocalMap> map, double distance_m) {
   requests_.add_map(map);
   auto view = std::make_shared<const StopView>(
-      view_of(extract_scan_features(map->points, map->T_robot_laser)));
+      view_of(extract_scan_features(points_for(*map, config_.evidence), map->T_robot_laser)));
   path_m_.push_back(stops_.empty() ? 0.0 : path_m_.back() + distance_m);
   places_.add(view, path_m_.back());
   stops_.push_back({std::move(map), std::move(view)});
@@ -166,7 +167,11 @@ void StopMatching::calibrate(std::span<const StopMatch> matches) {
 std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
                                                   const RelativePoses& relative, double widening) {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
-  const Pose2 T_previous_robot = stops_[stop].map->T_previous_robot;
+  // By scan tracking; where no scan point is to count, by odometry.
+  const Pose2 T_previous_robot =
+      config_.evidence == MatchEvidence::kScan
+          ? stops_[stop].map->T_previous_robot
+          : geometry::between(graph.poses()[stop - 1], graph.poses()[stop]);
   std::vector<MatchTask> tasks;
   for (const MatchCandidate& candidate : recent_candidates(graph, relative)) {
     UncertainPose prior = relative.at(candidate.id);

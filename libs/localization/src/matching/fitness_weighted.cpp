@@ -9,7 +9,8 @@ namespace {
 // Fixed: fitness depends on them, and tasks do not carry them.
 constexpr double kWeightedReach_m = 0.40;  // above twice the resolution of the search
 constexpr double kWeightedClearance_m = 0.25;
-constexpr double kWeightedNode = 3.0;  // a node pins both coordinates, a branch sample only one
+constexpr double kElementsShare = 0.3;  // beside the walls, as in the combined form
+constexpr double kWeightedNode = 3.0;   // a node pins both coordinates, a branch sample only one
 
 double soft(double squared, double width) {
   const double u = 1.0 - std::min(squared, width * width) / (width * width);
@@ -41,6 +42,8 @@ void WeightedFitness::bind(const Reference& reference, const MatchFeatures& quer
   reference_ = &reference;
   query_ = &query;
   prior_.bind(task);
+  with_walls_ = task.evidence == MatchEvidence::kBranches;
+  if (with_walls_) walls_.bind(reference, query);
   double weight = 0.0;
   for (const BranchSample& sample : query.branches) weight += sample.weight;
   for (const topomap::LocalNode& node : query.nodes) weight += kWeightedNode * repeatability(node);
@@ -54,8 +57,14 @@ double WeightedFitness::at(const geometry::Pose2& T_reference_query,
 
 double WeightedFitness::of_maps(const geometry::Pose2& T_reference_query,
                                 const geometry::SinCos& heading) const {
-  const double sum = of_branches(T_reference_query, heading) + of_nodes(T_reference_query, heading);
-  return std::min(1.0, sum * per_weight_);
+  if (!with_walls_) return of_elements(T_reference_query, heading);
+  const double walls = walls_.at(T_reference_query, heading);
+  if (per_weight_ == 0.0) return walls;
+  return kElementsShare * of_elements(T_reference_query, heading) + (1.0 - kElementsShare) * walls;
+}
+
+double WeightedFitness::of_elements(const geometry::Pose2& T, const geometry::SinCos& r) const {
+  return std::min(1.0, (of_branches(T, r) + of_nodes(T, r)) * per_weight_);
 }
 
 double WeightedFitness::of_branches(const geometry::Pose2& T, const geometry::SinCos& r) const {

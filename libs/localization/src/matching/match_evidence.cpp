@@ -1,5 +1,6 @@
 #include "match_evidence.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -8,7 +9,7 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/branch_refinement.hpp"
+#include "topogeo/geometry/portable_math.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 
@@ -82,6 +83,30 @@ void check_gate(const Checker& checker, const GateConfig& gate) {
   }
 }
 
+// Normals of walls that branches imply are off by some degrees, so walls along a corridor seem to
+// show the place along it: each point as much as the square of the error. Taken off the information
+// of the position in its weakest direction, at most all of it.
+Eigen::Matrix3d less_normal_errors(const Eigen::Matrix3d& information) {
+  constexpr double kNormalSigma_rad = 0.1;  // 2 cm over the 20 cm that a normal is fitted to
+  Eigen::Matrix3d known = information;
+  if (!(information(2, 2) > 0.0)) return known;
+  // Of the position once the heading is free to follow it.
+  const Eigen::Vector2d with_heading = information.topRightCorner<2, 1>();
+  const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() -
+                                   with_heading * with_heading.transpose() / information(2, 2);
+  const double half_difference = 0.5 * (position(0, 0) - position(1, 1));
+  const double spread =
+      std::sqrt(half_difference * half_difference + position(0, 1) * position(0, 1));
+  const double weakest = 0.5 * (position(0, 0) + position(1, 1)) - spread;
+  const geometry::SinCos along =
+      geometry::sincos(0.5 * geometry::atan2(-2.0 * position(0, 1), -2.0 * half_difference));
+  const Eigen::Vector2d u(along.cos, along.sin);
+  const double seeming =
+      kNormalSigma_rad * kNormalSigma_rad * (information(0, 0) + information(1, 1));
+  known.topLeftCorner<2, 2>() -= std::min(seeming, std::max(0.0, weakest)) * u * u.transpose();
+  return known;
+}
+
 }  // namespace
 
 void check(const MatchTask& task) {
@@ -113,13 +138,6 @@ bool same_place(const Pose2& a, const Pose2& b) {
          std::fabs(geometry::wrap_angle(a.theta_rad - b.theta_rad)) <= kApart_rad;
 }
 
-PoseEvidence evidence_for(const MatchContext& context, const Pose2& T) {
-  if (context.task.evidence == MatchEvidence::kScan) {
-    return evidence_at(context.reference, context.query, T);
-  }
-  return branch_evidence_at(context.reference, context.query, T);
-}
-
 void add_evidence(const MatchContext& context, MatchResult& result) {
   const auto& [task, reference, query, forms] = context;
   const Fitness& fitness = forms.chosen();
@@ -133,7 +151,7 @@ void add_evidence(const MatchContext& context, MatchResult& result) {
   }
   if (!stated.solutions.empty() && stated.solutions.front().fitness > 0.0) {
     const Pose2& T = result.T_reference_query;
-    const PoseEvidence evidence = evidence_for(context, T);
+    const PoseEvidence evidence = evidence_at(reference, query, T);
     stated.T_reference_query = T;
     stated.fitness = fitness(T);
     if (result.second.fitness > 0.0) {
@@ -143,9 +161,9 @@ void add_evidence(const MatchContext& context, MatchResult& result) {
     stated.inliers = evidence.inliers;
     stated.violations = evidence.violations;
     stated.residual_rms_m = evidence.residual_rms_m;
-    stated.scan_fitness = task.evidence == MatchEvidence::kScan
-                              ? forms.combined().scan()(T)
-                              : forms.of_maps(T, geometry::sincos(T.theta_rad));
+    stated.scan_fitness = task.evidence == MatchEvidence::kFitness
+                              ? forms.of_maps(T, geometry::sincos(T.theta_rad))
+                              : forms.combined().scan()(T);
     stated.topological_fitness = forms.combined().topological()(T);
     const bool in_common =
         task.evidence == MatchEvidence::kFitness ? stated.fitness > 0.0 : evidence.overlap > 0.0;
@@ -153,7 +171,9 @@ void add_evidence(const MatchContext& context, MatchResult& result) {
     if (task.evidence == MatchEvidence::kFitness) {
       stated.covariance = task.covariance;
     } else if (!evidence.information.isZero(0.0)) {
-      stated.covariance = match_covariance(evidence.information, doubt(stated));
+      const bool by_scan = task.evidence == MatchEvidence::kScan;
+      stated.covariance = match_covariance(
+          by_scan ? evidence.information : less_normal_errors(evidence.information), doubt(stated));
     }
   }
   const Judgement judgement = judge(task, stated);

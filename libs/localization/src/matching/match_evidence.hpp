@@ -13,7 +13,7 @@ namespace topogeo::localization {
 /// taken on trust.
 void check(const MatchTask& task);
 
-/// What a result is computed from.
+/// What a result is computed from; the features are those that MatchTask::evidence reads.
 struct MatchContext {
   const MatchTask& task;
   const Reference& reference;
@@ -23,9 +23,6 @@ struct MatchContext {
 
 /// Places that are refined before the winner is chosen. Fixed: tasks do not carry it.
 inline constexpr std::size_t kRefined = 3;
-
-/// The evidence at a pose by MatchTask::evidence.
-PoseEvidence evidence_for(const MatchContext& context, const geometry::Pose2& T_reference_query);
 
 /// Whether two poses are so near each other that refinement takes both to one: within 0.3 m and
 /// 0.15 rad.

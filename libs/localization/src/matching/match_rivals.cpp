@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/localization/matching/branch_refinement.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 
 namespace topogeo::localization {
@@ -32,10 +31,7 @@ double weakest_direction_rad(const Eigen::Matrix3d& information) {
 
 MatchSolution strongest_rival(const MatchContext& context, const Pose2& T_found) {
   const auto& [task, reference, query, forms] = context;
-  const bool by_scan = task.evidence == MatchEvidence::kScan;
-  const double first_rad =
-      weakest_direction_rad(by_scan ? information_at(reference, query, T_found)
-                                    : branch_information_at(reference, query, T_found));
+  const double first_rad = weakest_direction_rad(information_at(reference, query, T_found));
   const geometry::SinCos heading = geometry::sincos(T_found.theta_rad);
   const auto searched = [&task = task](const Pose2& T) {
     return std::fabs(T.x_m - task.T_reference_query.x_m) <= task.half_width.x() &&
@@ -49,8 +45,7 @@ MatchSolution strongest_rival(const MatchContext& context, const Pose2& T_found)
       const Pose2 T{T_found.x_m + distance_m * to.cos, T_found.y_m + distance_m * to.sin,
                     T_found.theta_rad};
       if (!searched(T)) continue;
-      const double fitness =
-          by_scan ? forms.combined().of_maps(T, heading) : forms.of_maps(T, heading);
+      const double fitness = forms.combined().of_maps(T, heading);
       if (fitness > rival.fitness) rival = {T, fitness};
     }
   }

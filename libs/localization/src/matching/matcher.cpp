@@ -7,7 +7,6 @@
 
 #include <Eigen/LU>
 
-#include "topogeo/localization/matching/branch_refinement.hpp"
 #include "topogeo/localization/matching/genetic_search.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 #include "topogeo/localization/places/place_field.hpp"
@@ -22,25 +21,17 @@ using geometry::Pose2;
 
 constexpr std::size_t kCachedReferences = 16;  // of about 150 kB; answers do not depend on it
 
-// Rivals are rated by what refines a match; where that is not the scan, by the requested form.
+// Rivals are rated by what refines a match; where nothing does, by the requested form.
 double rating(const MatchContext& context, const Pose2& T) {
   const geometry::SinCos heading = geometry::sincos(T.theta_rad);
-  if (context.task.evidence == MatchEvidence::kScan) {
-    return context.forms.combined().of_maps(T, heading);
-  }
-  return context.forms.of_maps(T, heading);
+  return context.task.evidence == MatchEvidence::kFitness
+             ? context.forms.of_maps(T, heading)
+             : context.forms.combined().of_maps(T, heading);
 }
 
 Alignment align_by_evidence(const MatchContext& context, const Pose2& T, const PosePrior& prior) {
-  switch (context.task.evidence) {
-    case MatchEvidence::kScan:
-      return align(context.reference, context.query, T, prior);
-    case MatchEvidence::kBranches:
-      return align_branches(context.reference, context.query, T, prior);
-    case MatchEvidence::kFitness:
-      break;
-  }
-  return {T, 0, false};
+  if (context.task.evidence == MatchEvidence::kFitness) return {T, 0, false};
+  return align(context.reference, context.query, T, prior);
 }
 
 // Refines the `starts`, takes the one with the largest fitness and gives it as free of the prior as
@@ -92,7 +83,7 @@ MatchTask finer_task(const MatchTask& task, const Pose2& T_solution) {
 }  // namespace
 
 void Matcher::add_map(const topomap::LocalMap& map) {
-  maps_[map.id] = {topomap::content_hash(map), extract_features(map)};
+  maps_[map.id] = {topomap::content_hash(map), extract_features(map), walls_of_branches(map), {}};
 }
 
 bool Matcher::has_map(std::uint32_t id, std::uint64_t hash) const {
@@ -100,7 +91,7 @@ bool Matcher::has_map(std::uint32_t id, std::uint64_t hash) const {
   return found != maps_.end() && found->second.hash == hash;
 }
 
-const Matcher::KnownMap& Matcher::known(std::uint32_t id, std::uint64_t hash) const {
+Matcher::KnownMap& Matcher::known(std::uint32_t id, std::uint64_t hash) {
   const auto found = maps_.find(id);
   if (found == maps_.end())
     throw std::out_of_range("local map " + std::to_string(id) + " is not known");
@@ -111,15 +102,26 @@ const Matcher::KnownMap& Matcher::known(std::uint32_t id, std::uint64_t hash) co
   return found->second;
 }
 
-const Reference& Matcher::reference(std::uint32_t id, std::uint64_t hash) {
-  const KnownMap& map = known(id, hash);
+const MatchFeatures& Matcher::features(std::uint32_t id, std::uint64_t hash,
+                                       MatchEvidence evidence) {
+  KnownMap& map = known(id, hash);
+  if (evidence == MatchEvidence::kScan) return map.features;
+  if (!map.by_branches) map.by_branches = with_walls(map.features, map.walls);
+  return *map.by_branches;
+}
+
+const Reference& Matcher::reference(const MatchTask& task) {
+  const std::uint32_t id = task.reference_map_id;
+  const std::uint64_t hash = task.reference_hash;
+  const bool by_scan = task.evidence == MatchEvidence::kScan;
+  const MatchFeatures& seen = features(id, hash, task.evidence);
   const auto found = std::find_if(references_.begin(), references_.end(), [&](const auto& cached) {
-    return cached.id == id && cached.hash == hash;
+    return cached.id == id && cached.hash == hash && cached.by_scan == by_scan;
   });
   if (found != references_.end()) {
     references_.splice(references_.begin(), references_, found);
   } else {
-    references_.push_front({id, hash, make_reference(map.features)});
+    references_.push_front({id, hash, by_scan, make_reference(seen)});
     if (references_.size() > kCachedReferences) references_.pop_back();
   }
   return references_.front().reference;
@@ -153,8 +155,8 @@ MatchResult Matcher::solve(const MatchTask& task) {
     return result;
   }
   check(task);
-  const MatchFeatures& query = known(task.query_map_id, task.query_hash).features;
-  const Reference& against = reference(task.reference_map_id, task.reference_hash);
+  const MatchFeatures& query = features(task.query_map_id, task.query_hash, task.evidence);
+  const Reference& against = reference(task);
   forms_.bind(against, query, task);
 
   MatchResult result;

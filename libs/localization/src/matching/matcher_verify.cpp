@@ -131,8 +131,8 @@ std::string Matcher::verify(const MatchTask& task, const MatchResult& result) {
                : whole_map.verify(*task.places, result.seeds);
   }
   check(task);
-  const MatchFeatures& query = known(task.query_map_id, task.query_hash).features;
-  const Reference& against = reference(task.reference_map_id, task.reference_hash);
+  const MatchFeatures& query = features(task.query_map_id, task.query_hash, task.evidence);
+  const Reference& against = reference(task);
   std::string fault = faults_of_form(task, result);
   if (!fault.empty()) return fault;
   forms_.bind(against, query, task);

@@ -6,6 +6,7 @@
 
 #include "topogeo/localization/mapping/search_space.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/localization/matching/branch_walls.hpp"
 #include "topogeo/localization/matching/expected_overlap.hpp"
 
 namespace topogeo::localization {
@@ -19,10 +20,12 @@ ThesisMap::ThesisMap(const LocalizerConfig& config, std::uint32_t solutions_per_
 void ThesisMap::append(std::shared_ptr<const LocalMap> map) {
   check_next(*map, stops_.size(), stops_.empty() ? nullptr : stops_.front().map.get());
   ThesisStop stop;
-  const bool by_scan = config_.evidence == MatchEvidence::kScan;
-  stop.view = visible_rectangle(*map, by_scan);
-  MatchFeatures features = extract_features(*map);
-  if (by_scan) {
+  const bool by_walls = config_.evidence != MatchEvidence::kFitness;
+  LocalMap seen = *map;
+  seen.points = points_for(*map, config_.evidence);
+  stop.view = visible_rectangle(seen, by_walls);
+  MatchFeatures features = extract_features(seen);
+  if (by_walls) {
     stop.profile = std::move(features.profile);
     stop.outline = outline_of(features.coarse);
   }
@@ -86,7 +89,7 @@ std::vector<ThesisNeighbour> ThesisMap::neighbours(std::uint32_t stop, const Pos
 
 double ThesisMap::expected_share(const ThesisStop& now, const ThesisStop& before,
                                  const UncertainPose& T_new_earlier) const {
-  if (config_.evidence == MatchEvidence::kScan) {
+  if (config_.evidence != MatchEvidence::kFitness) {
     return expected_overlap(now.profile, before.outline, T_new_earlier);
   }
   if (before.landmarks_m.empty()) return 0.0;

@@ -36,6 +36,29 @@ TEST(WeightedFitnessTest, CountsElementsByTheirWeight) {
   EXPECT_NEAR(fitness.of_maps({}, geometry::sincos(0.0)), 1.0 / 1.2, 1e-9);
 }
 
+// Where branches are the evidence the walls that they imply count as well.
+TEST(WeightedFitnessTest, CountsWallsWhereBranchesAreTheEvidence) {
+  MatchFeatures features = straight_branch();
+  for (int i = 0; i < 20; ++i) {
+    features.surface.push_back({{0.2 * i, 1.0}, {0.0, -1.0}, true});
+    features.coarse.push_back(features.surface.back());
+  }
+  const Reference reference = make_reference(features);
+  const geometry::SinCos ahead = geometry::sincos(0.0);
+  MatchTask task = task_at_origin();
+  task.evidence = MatchEvidence::kBranches;
+  MatchFeatures query = features;
+  EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 1.0, 1e-6);
+  for (SurfacePoint& wall : query.coarse) wall.position_m.y() = 4.0;  // where there is none
+  EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 0.3, 1e-6);
+  task.evidence = MatchEvidence::kFitness;
+  EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 1.0, 1e-6);
+  query = features;
+  query.branches.clear();  // nothing but walls, as where no branch is confirmed
+  task.evidence = MatchEvidence::kBranches;
+  EXPECT_NEAR(WeightedFitness(reference, query, task).of_maps({}, ahead), 1.0, 1e-6);
+}
+
 TEST(WeightedFitnessTest, FallsFasterThanTheTopologicalFormWithTheDistanceAcross) {
   const MatchFeatures features = straight_branch();
   const Reference reference = make_reference(features);

@@ -2,6 +2,10 @@
 // nodes and branches count by how surely they are found again, and the odometry prior decides where
 // they are alike at several places.
 //
+// Where branches are the evidence of a match (MatchEvidence::kBranches) the walls that they imply
+// count as well, as scan points do in the combined form: those of branches that are not confirmed
+// are right though the branches are not.
+//
 // Kernels are half as wide as those of the topological form: a branch is found again within
 // centimetres, so a pose 0.3 m aside is not half right.
 #pragma once
@@ -32,12 +36,15 @@ class WeightedFitness : public Fitness {
                                const geometry::SinCos& heading) const;
 
  private:
+  [[nodiscard]] double of_elements(const geometry::Pose2& T, const geometry::SinCos& r) const;
   [[nodiscard]] double of_branches(const geometry::Pose2& T, const geometry::SinCos& r) const;
   [[nodiscard]] double of_nodes(const geometry::Pose2& T, const geometry::SinCos& r) const;
 
   const Reference* reference_ = nullptr;
   const MatchFeatures* query_ = nullptr;
   OdometryPrior prior_;
+  ScanFitness walls_;
+  bool with_walls_ = false;
   double per_weight_ = 0.0;
 };
 

@@ -6,10 +6,12 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "topogeo/localization/matching/branch_walls.hpp"
 #include "topogeo/localization/matching/fitness_forms.hpp"
 #include "topogeo/localization/matching/genetic_search.hpp"
 #include "topogeo/localization/matching/genetic_search_hypotheses.hpp"
@@ -21,8 +23,8 @@ namespace topogeo::localization {
 
 class Matcher {
  public:
-  /// Keeps the features of the map (some 20 kB) under its id; a later map of the same id replaces
-  /// it.
+  /// Keeps the features of the map (some 20 kB, twice that where tasks ask for them without the
+  /// scan) under its id; a later map of the same id replaces it.
   void add_map(const topomap::LocalMap& map);
 
   /// True when a map of this id and content is known.
@@ -47,15 +49,20 @@ class Matcher {
   struct KnownMap {
     std::uint64_t hash = 0;
     MatchFeatures features;
+    BranchWalls walls;
+    std::optional<MatchFeatures> by_branches;  // the walls in place of the scan, once asked for
   };
   struct CachedReference {
     std::uint32_t id = 0;
     std::uint64_t hash = 0;
+    bool by_scan = true;
     Reference reference;
   };
 
-  const KnownMap& known(std::uint32_t id, std::uint64_t hash) const;
-  const Reference& reference(std::uint32_t id, std::uint64_t hash);
+  KnownMap& known(std::uint32_t id, std::uint64_t hash);
+  // What the task's evidence reads of the maps that it names.
+  const MatchFeatures& features(std::uint32_t id, std::uint64_t hash, MatchEvidence evidence);
+  const Reference& reference(const MatchTask& task);
   // Searches once more around each of the starts; how many individuals were scored.
   std::uint32_t search_finer(const MatchTask& task);
   const PlaceField& field(const PlaceQuestion& question) const;

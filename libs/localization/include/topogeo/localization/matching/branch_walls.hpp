@@ -1,0 +1,36 @@
+// The walls that the branches of a local map imply (own; docs/algorithms.md, "Refinement and
+// gate"): a match by nodes and branches alone works on them in place of the scan.
+//
+// A branch with its clearance is the middle between two objects, so it says where both are: the
+// circles of clearance along it touch them. It is the inverse of the medial axis transform (Harry
+// Blum: A transformation for extracting new descriptors of shape, 1967). Walls that no branch runs
+// beside are missing: dead ends, what lies behind the end of a branch.
+#pragma once
+
+#include <vector>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/localization/matching/match_config.hpp"
+#include "topogeo/localization/matching/match_features.hpp"
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::localization {
+
+/// Places on walls in the robot frame, by bearing from the laser.
+struct BranchWalls {
+  std::vector<topomap::ScanPoint> points;
+  geometry::Pose2 T_robot_laser;
+};
+
+/// Where the circles of clearance of the branches touch; no scan point is read. Of every branch
+/// that is not virtual: an object not seen yet can move one that is not confirmed, but the two
+/// objects that it lies between were seen.
+BranchWalls walls_of_branches(const topomap::LocalMap& map);
+
+/// The nodes and branches of `features` with the walls in place of the scan.
+MatchFeatures with_walls(const MatchFeatures& features, const BranchWalls& walls);
+
+/// The points of a map that matches by this evidence may read: of the scan, or walls_of_branches().
+std::vector<topomap::ScanPoint> points_for(const topomap::LocalMap& map, MatchEvidence evidence);
+
+}  // namespace topogeo::localization
