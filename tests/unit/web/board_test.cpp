@@ -1,0 +1,144 @@
+#include "board.hpp"
+
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace topogeo::web {
+namespace {
+
+using nlohmann::json;
+
+json message(const Board& board, Channel channel, std::uint64_t held) {
+  return json::parse(*board.update(channel, held).text);
+}
+
+TEST(Board, AValueReplacesTheOneBefore) {
+  Board board;
+  EXPECT_EQ(board.version(Channel::kPose), 0U);
+  board.set(Channel::kPose, R"({"x_m":1})");
+  board.set(Channel::kPose, R"({"x_m":2})");
+  EXPECT_EQ(message(board, Channel::kPose, 0),
+            json::parse(R"({"channel":"pose","version":2,"value":{"x_m":2}})"));
+}
+
+TEST(Board, WhatIsEqualIsNoChange) {
+  Board board;
+  int changes = 0;
+  board.on_change([&](Channel) { ++changes; });
+  board.set(Channel::kPose, "1");
+  board.set(Channel::kPose, "1");
+  board.edit(Channel::kGraph, {{"n1", "{}"}});
+  board.edit(Channel::kGraph, {{"n1", "{}"}, {"n7", ""}});
+  EXPECT_EQ(changes, 2);
+  EXPECT_EQ(board.version(Channel::kGraph), 1U);
+}
+
+TEST(Board, ADeltaHasWhatChangedSinceAVersion) {
+  Board board;
+  board.edit(Channel::kGraph, {{"n1", "1"}, {"n2", "2"}, {"n3", "3"}});
+  board.edit(Channel::kGraph, {{"n2", "20"}});
+  board.edit(Channel::kGraph, {{"n3", ""}});
+  EXPECT_EQ(
+      message(board, Channel::kGraph, 1),
+      json::parse(R"({"channel":"graph","from":1,"version":3,"set":{"n2":20},"gone":["n3"]})"));
+  EXPECT_EQ(
+      message(board, Channel::kGraph, 0),
+      json::parse(R"({"channel":"graph","from":0,"version":3,"set":{"n1":1,"n2":20},"gone":[]})"));
+}
+
+TEST(Board, WhatIsGoneAndThereAgainIsThere) {
+  Board board;
+  board.edit(Channel::kGraph, {{"n1", "1"}});
+  board.edit(Channel::kGraph, {{"n1", ""}});
+  board.edit(Channel::kGraph, {{"n1", "2"}});
+  EXPECT_EQ(message(board, Channel::kGraph, 1),
+            json::parse(R"({"channel":"graph","from":1,"version":3,"set":{"n1":2},"gone":[]})"));
+}
+
+TEST(Board, ATableAnewHasNothingElse) {
+  Board board;
+  board.edit(Channel::kTiles, {{"1", "1"}, {"2", "1"}});
+  board.edit(Channel::kTiles, {{"2", "1"}, {"3", "4"}}, true);
+  EXPECT_EQ(message(board, Channel::kTiles, 1),
+            json::parse(R"({"channel":"tiles","from":1,"version":2,"set":{"3":4},"gone":["1"]})"));
+}
+
+TEST(Board, WhoHoldsWhatTheBoardDoesNotKnowGetsAllOfIt) {
+  Board board;
+  board.edit(Channel::kGraph, {{"n1", "1"}});
+  EXPECT_EQ(message(board, Channel::kGraph, 17)["from"], 0);
+  for (std::size_t i = 0; i <= Board::kRemembered; ++i) {
+    board.edit(Channel::kGraph, {{"n2", "1"}});
+    board.edit(Channel::kGraph, {{"n2", ""}});
+  }
+  EXPECT_EQ(message(board, Channel::kGraph, 1)["from"], 0) << "what was gone is forgotten";
+}
+
+TEST(Board, KeysAreTextsOfAnyKind) {
+  Board board;
+  board.edit(Channel::kPlaces, {{"room \"A\"\n\xff", "1"}});
+  EXPECT_EQ(message(board, Channel::kPlaces, 0)["set"].size(), 1U);
+}
+
+/// A viewer who looks now and then, whenever that is, holds the same as the table.
+TEST(Board, ViewersWhoLookNowAndThenAreExact) {
+  Board board;
+  std::map<std::string, std::string> truth;
+  struct Viewer {
+    std::uint64_t version = 0;
+    std::map<std::string, std::string> table;
+  };
+  std::vector<Viewer> viewers(5);
+  std::mt19937 random(7);
+  for (int step = 0; step < 3000; ++step) {
+    std::vector<Edit> edits;
+    std::map<std::string, std::string> named;
+    for (unsigned i = 0; i < 1 + random() % 3; ++i) {
+      const std::string key = "n" + std::to_string(random() % 40);
+      named[key] = random() % 3 == 0 ? "" : std::to_string(random() % 5);
+    }
+    const bool anew = random() % 50 == 0;
+    if (anew) truth.clear();
+    for (const auto& [key, value] : named) {
+      if (anew && value.empty()) continue;
+      edits.push_back({key, value});
+      if (value.empty()) {
+        truth.erase(key);
+      } else {
+        truth[key] = value;
+      }
+    }
+    board.edit(Channel::kGraph, edits, anew);
+    for (Viewer& viewer : viewers) {
+      if (random() % 20 != 0 || board.version(Channel::kGraph) == viewer.version) continue;
+      const json update = message(board, Channel::kGraph, viewer.version);
+      if (update["from"] == 0) {
+        viewer.table.clear();
+      } else {
+        ASSERT_EQ(update["from"], viewer.version);
+      }
+      for (const auto& [key, value] : update["set"].items()) viewer.table[key] = value.dump();
+      for (const auto& key : update["gone"]) {
+        ASSERT_EQ(viewer.table.erase(key.get<std::string>()) <= 1, true);
+      }
+      viewer.version = update["version"];
+      ASSERT_EQ(viewer.table, truth) << "step " << step;
+    }
+  }
+}
+
+TEST(Board, ChannelsHaveNames) {
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const auto channel = static_cast<Channel>(i);
+    EXPECT_EQ(channel_of(name_of(channel)), channel);
+  }
+  EXPECT_EQ(channel_of("nothing"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace topogeo::web

@@ -1,0 +1,73 @@
+#include "manual_drive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace topogeo::web {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// A guard that sees a free floor at the time given.
+navigation::CollisionGuard guard_at(std::int64_t now_ns) {
+  navigation::CollisionGuard guard{navigation::GuardConfig{}};
+  guard.add(navigation::OdometrySample{now_ns, {}});
+  navigation::ScanPoints scan;
+  scan.stamp_ns = now_ns;
+  scan.points_m = {{8.0, 0.0}};
+  guard.add(scan);
+  return guard;
+}
+
+class Hand : public testing::Test {
+ protected:
+  std::optional<navigation::GuardVerdict> step(std::int64_t now_ns) {
+    return drive_.step(guard_at(now_ns), now_ns, now_ns);
+  }
+  ManualDrive drive_{navigation::FollowerConfig{}};
+};
+
+TEST_F(Hand, LeavesTheBaseAloneUnlessHeld) {
+  EXPECT_FALSE(step(100 * kMs));
+}
+
+TEST_F(Hand, DrivesWhileHeldAndStopsWhenTheMessagesEnd) {
+  ASSERT_TRUE(drive_.hold(1, {0.3, 0.1}, 1000 * kMs));
+  ASSERT_TRUE(step(1100 * kMs));
+  EXPECT_GT(step(1200 * kMs)->allowed.linear_m_per_s, 0.1);
+  const auto after = step(1301 * kMs);
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->allowed, geometry::Velocity{}) << "dead man";
+  ASSERT_TRUE(step(2200 * kMs)) << "zeros go on for a second";
+  EXPECT_FALSE(step(2400 * kMs));
+}
+
+TEST_F(Hand, LettingGoStopsAtOnce) {
+  drive_.hold(1, {0.3, 0.0}, 1000 * kMs);
+  drive_.release(2, 1010 * kMs);
+  EXPECT_TRUE(drive_.held(1010 * kMs)) << "another one has let go";
+  drive_.release(1, 1020 * kMs);
+  EXPECT_EQ(step(1030 * kMs)->allowed, geometry::Velocity{});
+}
+
+TEST_F(Hand, OneDrivesAtATime) {
+  EXPECT_TRUE(drive_.hold(1, {0.3, 0.0}, 1000 * kMs));
+  EXPECT_FALSE(drive_.hold(2, {-0.3, 0.0}, 1100 * kMs));
+  EXPECT_TRUE(drive_.hold(2, {-0.3, 0.0}, 1500 * kMs)) << "the first one is gone";
+}
+
+TEST_F(Hand, GoesNoFasterThanTheNavigator) {
+  drive_.hold(1, {50.0, 0.0}, 1000 * kMs);
+  EXPECT_LE(step(1010 * kMs)->allowed.linear_m_per_s, navigation::FollowerConfig{}.speed_m_per_s);
+}
+
+TEST_F(Hand, WithoutSensorsItDoesNotMove) {
+  drive_.hold(1, {0.3, 0.5}, 1000 * kMs);
+  const navigation::CollisionGuard blind{navigation::GuardConfig{}};
+  const auto verdict = drive_.step(blind, 1010 * kMs, 1010 * kMs);
+  ASSERT_TRUE(verdict);
+  EXPECT_EQ(verdict->allowed, geometry::Velocity{});
+  EXPECT_FALSE(verdict->message.empty());
+}
+
+}  // namespace
+}  // namespace topogeo::web

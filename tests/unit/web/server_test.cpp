@@ -1,0 +1,335 @@
+// The server alone, with a board and a backend of the test.
+#include "server.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "web_client.hpp"
+
+namespace topogeo::web {
+namespace {
+
+using std::chrono::milliseconds;
+using test::Headers;
+using test::http_get;
+using test::http_post;
+using test::http_request;
+using test::HttpReply;
+using test::PageModel;
+using test::WebSocketClient;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr milliseconds kPatience{20'000};
+const std::string kToken = "0123456789abcdef";
+
+/// Echoes what it is asked, and counts who drives.
+class EchoBackend : public Backend {
+ public:
+  void handle(const Request& request, Respond respond) override {
+    Answer answer;
+    answer.body = (request.post ? "POST " : "GET ") + request.path + "?" + request.query + " " +
+                  request.body + (request.authorized ? " authorized" : "");
+    respond(answer);
+  }
+  void drive(std::uint64_t viewer, double linear_mps, double) override {
+    driver = viewer;
+    speed_mps = linear_mps;
+    ++drives;
+  }
+  void release(std::uint64_t viewer) override {
+    if (viewer == driver) ++releases;
+  }
+  std::atomic<std::uint64_t> driver = 0;
+  std::atomic<double> speed_mps = 0.0;
+  std::atomic<int> drives = 0;
+  std::atomic<int> releases = 0;
+};
+
+class WebServer : public testing::Test {
+ protected:
+  WebServer() {
+    config_.token = kToken;
+    config_.life = "life1";
+    config_.robot_id = "robot";
+    config_.hosts = {"desk"};
+    start();
+  }
+  void start() { server_ = std::make_unique<Server>(config_, board_, files_, backend_, tally_); }
+  [[nodiscard]] std::uint32_t port() const { return server_->port(); }
+  [[nodiscard]] std::uint64_t refused(const std::string& reason) const {
+    const auto counts = tally_.counts();
+    const auto found = counts.find("refused: " + reason);
+    return found == counts.end() ? 0 : found->second;
+  }
+  template <class Condition>
+  static bool wait_until(const Condition& condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      std::this_thread::sleep_for(milliseconds(2));
+    }
+    return true;
+  }
+
+  ServerConfig config_;
+  Board board_;
+  PageFiles files_;
+  EchoBackend backend_;
+  Tally tally_;
+  std::unique_ptr<Server> server_;
+};
+
+TEST_F(WebServer, GivesThePageAndWhatTheBackendHas) {
+  const HttpReply page = http_get(port(), "/");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_THAT(page.head, HasSubstr("text/html"));
+  EXPECT_THAT(page.head, HasSubstr("Content-Security-Policy"));
+  EXPECT_EQ(http_get(port(), "/api/x?a=1").body, "GET /api/x?a=1 ");
+}
+
+TEST_F(WebServer, AKnownFileIsNotSentAgain) {
+  const std::string head = http_get(port(), "/").head;
+  const std::size_t begin = head.find("ETag: ") + 6;
+  const std::string tag = head.substr(begin, head.find("\r\n", begin) - begin);
+  const HttpReply again = http_request(port(), "GET", "/", {{"If-None-Match", tag}});
+  EXPECT_EQ(again.status, 304);
+  EXPECT_EQ(again.body, "");
+}
+
+TEST_F(WebServer, WritingNeedsTheToken) {
+  EXPECT_EQ(http_post(port(), "/api/goal", "", "{}").status, 401);
+  EXPECT_EQ(http_post(port(), "/api/goal", "0123456789abcdeX", "garbage").status, 401);
+  EXPECT_EQ(http_post(port(), "/api/anything", "").status, 401);
+  EXPECT_EQ(refused("no token"), 3U);
+  const HttpReply good = http_post(port(), "/api/goal", kToken, "{1}");
+  EXPECT_EQ(good.status, 200);
+  EXPECT_EQ(good.body, "POST /api/goal? {1} authorized");
+}
+
+TEST_F(WebServer, ForeignPagesAndNamesAreRefused) {
+  const std::string bearer = "Bearer " + kToken;
+  const auto post = [&](const Headers& headers) {
+    return http_request(port(), "POST", "/api/goal", headers, "{}").status;
+  };
+  EXPECT_EQ(post({{"Authorization", bearer}, {"Origin", "http://evil.example"}}), 403);
+  EXPECT_EQ(post({{"Authorization", bearer}, {"Host", "evil.example"}}), 403);
+  const std::string own = "http://127.0.0.1:" + std::to_string(port());
+  EXPECT_EQ(post({{"Authorization", bearer}, {"Origin", own}}), 200);
+  EXPECT_THROW(WebSocketClient(port(), {{"Origin", "http://evil.example"}}), std::runtime_error);
+  EXPECT_EQ(refused("foreign origin"), 2U);
+  EXPECT_EQ(refused("foreign host"), 1U);
+  EXPECT_EQ(http_request(port(), "GET", "/", {{"Host", "desk:1"}}).status, 200);
+}
+
+TEST_F(WebServer, WhatIsTooMuchOrNoHttpIsRefused) {
+  EXPECT_EQ(http_post(port(), "/api/goal", kToken, std::string(100'000, 'x')).status, 413);
+  EXPECT_EQ(http_request(port(), "GET", "/", {{"X", std::string(20'000, 'x')}}).status, 413);
+  EXPECT_EQ(refused("too large"), 2U);
+  EXPECT_THAT(test::exchange_bytes(port(), std::string("\x16\x03\x01 no HTTP\r\n\r\n"), kPatience),
+              HasSubstr("400"));
+  EXPECT_EQ(refused("no HTTP"), 1U);
+  EXPECT_EQ(http_request(port(), "DELETE", "/").status, 405);
+  // Many at once, on one connection.
+  const std::string order = "POST /x HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer " +
+                            kToken + "\r\nContent-Length: 0\r\n";
+  std::string orders;
+  for (int i = 0; i < 199; ++i) orders += order + "\r\n";
+  const std::string answers =
+      test::exchange_bytes(port(), orders + order + "Connection: close\r\n\r\n", kPatience);
+  EXPECT_THAT(answers, HasSubstr(" 200 OK"));
+  EXPECT_THAT(answers, HasSubstr(" 429 "));
+  EXPECT_GT(refused("too often"), 0U);
+}
+
+TEST_F(WebServer, ALateViewerGetsAllAndThenWhatChanges) {
+  board_.set(Channel::kPose, R"({"x_m":1})");
+  board_.edit(Channel::kGraph, {{"n1", "1"}, {"n2", "2"}});
+  WebSocketClient socket(port());
+  PageModel page;
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return page.has("graph") && page.has("pose"); }, kPatience));
+  EXPECT_EQ(page.others.at(0)["op"], "welcome");
+  EXPECT_EQ(page.others.at(0)["may_write"], false);
+  EXPECT_EQ(page.values["pose"]["x_m"], 1);
+  board_.edit(Channel::kGraph, {{"n1", ""}, {"n3", "3"}});
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return page.versions["graph"] == 2; }, kPatience));
+  EXPECT_THAT(page.tables["graph"],
+              testing::ElementsAre(testing::Pair("n2", 2), testing::Pair("n3", 3)));
+}
+
+TEST_F(WebServer, WhoComesBackGetsTheRest) {
+  board_.edit(Channel::kGraph, {{"n1", "1"}});
+  PageModel page;
+  {
+    WebSocketClient socket(port());
+    ASSERT_TRUE(page.wait_for(
+        socket, [&] { return page.has("graph"); }, kPatience));
+  }
+  board_.edit(Channel::kGraph, {{"n1", ""}, {"n2", "2"}});
+  const int snapshots = page.snapshots;
+  WebSocketClient socket(port());
+  socket.send({{"op", "hello"}, {"life", "life1"}, {"have", page.versions}});
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return page.versions["graph"] == 2; }, kPatience));
+  EXPECT_EQ(page.snapshots, snapshots) << "a delta";
+  EXPECT_EQ(page.tables["graph"].size(), 1U);
+}
+
+TEST_F(WebServer, AServiceThatStartedAgainBeginsAnew) {
+  board_.edit(Channel::kGraph, {{"n1", "1"}});
+  WebSocketClient socket(port());
+  socket.send({{"op", "hello"}, {"life", "another"}, {"have", {{"graph", 1}}}});
+  PageModel page;
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return page.has("graph"); }, kPatience));
+  EXPECT_EQ(page.tables["graph"].size(), 1U);
+  socket.send({{"op", "resync"}, {"channel", "graph"}});
+  const int snapshots = page.snapshots;
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return page.snapshots > snapshots; }, kPatience));
+}
+
+TEST_F(WebServer, AViewerGetsTheChannelsItWants) {
+  board_.set(Channel::kPose, "1");
+  board_.set(Channel::kScan, "1");
+  WebSocketClient socket(port());
+  socket.send({{"op", "hello"}, {"channels", {"pose"}}});
+  socket.send({{"op", "ping"}});
+  PageModel page;
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return page.has("pose") && page.others.size() >= 2; }, kPatience));
+  EXPECT_FALSE(page.has("scan"));
+  socket.send({{"op", "channels"}, {"channels", {"scan"}}});
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return page.has("scan"); }, kPatience));
+}
+
+TEST_F(WebServer, ASlowViewerHoldsNobodyUpAndEndsExact) {
+  WebSocketClient slow(port());
+  WebSocketClient fast(port());
+  PageModel fast_page;
+  const std::string filler(20'000, 'x');
+  constexpr int kChanges = 2000;  // 40 MB, more than buffers hold
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 1; i <= kChanges; ++i) {
+    board_.set(Channel::kScan, "\"" + filler + std::to_string(i) + "\"");
+    board_.edit(Channel::kGraph, {{"n" + std::to_string(i % 50), std::to_string(i)}});
+  }
+  const auto spent = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(spent, std::chrono::seconds(20)) << "the board waits for nobody";
+  const auto done = [&](PageModel& page) {
+    return page.versions["scan"] == kChanges && page.versions["graph"] == kChanges;
+  };
+  ASSERT_TRUE(fast_page.wait_for(
+      fast, [&] { return done(fast_page); }, kPatience));
+  PageModel slow_page;
+  ASSERT_TRUE(slow_page.wait_for(
+      slow, [&] { return done(slow_page); }, kPatience));
+  EXPECT_EQ(slow_page.tables["graph"], fast_page.tables["graph"]);
+  EXPECT_EQ(slow_page.values["scan"], fast_page.values["scan"]);
+}
+
+TEST_F(WebServer, OnlyOperatorsDriveAndAConnectionThatDropsLetsGo) {
+  {
+    WebSocketClient watcher(port());
+    watcher.send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}});
+    PageModel page;
+    ASSERT_TRUE(page.wait_for(
+        watcher,
+        [&] {
+          return std::ranges::any_of(page.others,
+                                     [](const auto& m) { return m["op"] == "refused"; });
+        },
+        kPatience));
+    EXPECT_EQ(backend_.drives, 0);
+  }
+  {
+    WebSocketClient operator_socket(port());
+    operator_socket.send({{"op", "hello"}, {"token", kToken}});
+    operator_socket.send({{"op", "drive"}, {"linear_mps", 0.5}, {"angular_radps", 0}});
+    ASSERT_TRUE(wait_until([&] { return backend_.drives > 0; }));
+    EXPECT_EQ(backend_.speed_mps, 0.5);
+    EXPECT_EQ(backend_.releases, 0);
+  }
+  EXPECT_TRUE(wait_until([&] { return backend_.releases > 0; }));
+}
+
+TEST_F(WebServer, GarbageIsRefusedCountedAndInTheEndNotHeardAnyMore) {
+  WebSocketClient socket(port());
+  for (int i = 0; i < 40; ++i) socket.send_text("garbage " + std::to_string(i));
+  PageModel page;
+  EXPECT_FALSE(page.wait_for(
+      socket, [] { return false; }, milliseconds(3000)));
+  EXPECT_TRUE(socket.ended());
+  EXPECT_GT(refused("no message"), 15U);
+  WebSocketClient large(port());
+  large.send_text(std::string(10'000, ' '));
+  EXPECT_FALSE(page.wait_for(
+      large, [] { return false; }, milliseconds(3000)));
+  EXPECT_TRUE(large.ended());
+  EXPECT_TRUE(wait_until([&] { return refused("too large") == 1; }));
+}
+
+TEST_F(WebServer, ViewersAreCountedAndLimited) {
+  server_.reset();
+  config_.most_viewers = 20;
+  start();
+  std::vector<std::unique_ptr<WebSocketClient>> sockets;
+  for (int i = 0; i < 20; ++i) sockets.push_back(std::make_unique<WebSocketClient>(port()));
+  EXPECT_THROW(WebSocketClient{port()}, std::runtime_error);
+  EXPECT_EQ(refused("too many viewers"), 1U);
+  PageModel page;
+  EXPECT_TRUE(page.wait_for(
+      *sockets.back(),
+      [&] { return page.has("viewers") && page.values["viewers"]["viewers"] == 20; }, kPatience));
+  sockets.erase(sockets.begin(), sockets.end() - 1);
+  EXPECT_TRUE(page.wait_for(
+      *sockets.back(), [&] { return page.values["viewers"]["viewers"] == 1; }, kPatience));
+}
+
+TEST_F(WebServer, ATakenPortIsNamed) {
+  config_.port = port();
+  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_); },
+              testing::ThrowsMessage<std::runtime_error>(HasSubstr(std::to_string(config_.port))));
+}
+
+TEST_F(WebServer, ACertificateThatIsNoneIsNamed) {
+  config_.certificate_file = "/dev/null";
+  config_.key_file = "/dev/null";
+  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_); },
+              testing::ThrowsMessage<std::runtime_error>(HasSubstr("/dev/null")));
+}
+
+TEST(PageFiles, AreThoseOfAFolder) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "page_files";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "images");
+  EXPECT_THROW(PageFiles{folder}, std::runtime_error) << "without an index";
+  std::ofstream(folder / "index.html") << "index";
+  std::ofstream(folder / "panel.html") << "panel";
+  std::ofstream(folder / "images/a.svg") << std::string(1000, ' ');
+  std::ofstream(folder.parent_path() / "secret") << "secret";
+  const PageFiles files(folder);
+  EXPECT_EQ(files.find("/")->content, "index");
+  EXPECT_EQ(files.find("/panel")->content, "panel");
+  EXPECT_EQ(files.find("/images/a.svg")->content_type, "image/svg+xml");
+  EXPECT_LT(files.find("/images/a.svg")->compressed.size(), 100U);
+  EXPECT_EQ(files.find("/../secret"), nullptr);
+  EXPECT_EQ(files.find("/images/../../secret"), nullptr);
+  EXPECT_THROW(PageFiles("/nowhere"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace topogeo::web
