@@ -76,8 +76,8 @@ ros::Point point_at(double x_m, double y_m) {
 
 }  // namespace
 
-geometry::Pose2 T_map_odom(const geometry::Pose2& T_map_robot,
-                           const geometry::Pose2& T_odom_robot) {
+geometry::Pose2 correction_of(const geometry::Pose2& T_map_robot,
+                              const geometry::Pose2& T_odom_robot) {
   return T_map_robot * inverse(T_odom_robot);
 }
 

@@ -17,8 +17,9 @@
 
 namespace topogeo::ros_bridge {
 
-/// REP 105: what the localizer adds to the odometry of the same moment.
-geometry::Pose2 T_map_odom(const geometry::Pose2& T_map_robot, const geometry::Pose2& T_odom_robot);
+/// REP 105: T_map_odom, what the localizer adds to the odometry of the same moment.
+geometry::Pose2 correction_of(const geometry::Pose2& T_map_robot,
+                              const geometry::Pose2& T_odom_robot);
 
 /// Height, roll and pitch are known to be about 0.
 ros::PoseWithCovarianceStamped to_ros(const service::LivePose& pose, const std::string& frame);

@@ -68,7 +68,7 @@ void PoseOutput::on_pose(const service::LivePose& pose) {
     if (T_odom_robot_.empty() || T_odom_robot_.rbegin()->first < pose.stamp_ns) waiting_ = pose;
     return;
   }
-  T_map_odom_ = ros_bridge::T_map_odom(pose.T_map_robot, odometry->second);
+  T_map_odom_ = correction_of(pose.T_map_robot, odometry->second);
   if (poses_) {
     ros_.send(*poses_, to_ros(pose, ros_.settings().frames.map));
     ros_.service().status().add_to_counter("poses_sent");

@@ -102,7 +102,7 @@ std::string resolved(const std::string& name, const std::string& ros_namespace) 
 
 std::string normalized_namespace(const std::string& text) {
   if (text.empty() || text == "/") return {};
-  const std::string name = text.starts_with('/') ? text : "/" + text;
+  std::string name = text.starts_with('/') ? text : "/" + text;
   ros::check_topic_name(name);
   return name;
 }

@@ -23,7 +23,7 @@ constexpr double kPi = std::numbers::pi;
 TEST(RosOutputs, TheCorrectionTimesTheOdometryIsThePose) {
   const geometry::Pose2 T_map_robot{2.0, -1.0, 2.5};
   const geometry::Pose2 T_odom_robot{0.5, 3.0, -1.2};
-  const geometry::Pose2 again = T_map_odom(T_map_robot, T_odom_robot) * T_odom_robot;
+  const geometry::Pose2 again = correction_of(T_map_robot, T_odom_robot) * T_odom_robot;
   EXPECT_NEAR(again.x_m, 2.0, 1e-12);
   EXPECT_NEAR(again.y_m, -1.0, 1e-12);
   EXPECT_NEAR(geometry::wrap_angle(again.theta_rad - 2.5), 0.0, 1e-12);
