@@ -1,0 +1,290 @@
+// The web service as pages use it: on a stored map, and on a simulated robot.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+#include "web_client.hpp"
+
+namespace topogeo::test {
+namespace {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using testing::HasSubstr;
+
+constexpr milliseconds kPatience{60'000};
+const std::string kToken = "token-of-this-test";
+
+/// Of the first link that a program prints.
+std::uint32_t port_in(const std::string& out) {
+  const std::size_t begin = out.find("127.0.0.1:");
+  if (begin == std::string::npos) return 0;
+  return static_cast<std::uint32_t>(std::stoul(out.substr(begin + 10)));
+}
+
+std::uint32_t wait_for_port(const Program& program, milliseconds patience = kPatience) {
+  const auto end = steady_clock::now() + patience * kTimeFactor;
+  while (steady_clock::now() < end) {
+    if (program.out().find("spectators: ") != std::string::npos) return port_in(program.out());
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  throw std::runtime_error("no link: " + program.err());
+}
+
+/// A map store that shows the map of a drive through a room, and a web service.
+class WebOnMap : public testing::Test {
+ protected:
+  WebOnMap() {
+    use_udp_only();
+    write_log("room", scratch_ / "room.clf");
+    Program map(
+        scratch_, "topogeo",
+        {"map", "--log", (scratch_ / "room.clf").string(), "--out", (scratch_ / "room").string()});
+    if (map.wait() != 0) throw std::runtime_error(map.err());
+    start_store();
+    start_web();
+  }
+  void start_store() {
+    store_ =
+        std::make_unique<Program>(scratch_, "map_store",
+                                  std::vector<std::string>{"--domain", domain_, "--map",
+                                                           (scratch_ / "room/map.pb").string()});
+  }
+  void start_web() {
+    web_ = std::make_unique<Program>(
+        scratch_, "web",
+        std::vector<std::string>{"--domain", domain_, "--port", "0", "--token", kToken});
+    port_ = wait_for_port(*web_);
+  }
+  /// All of the map.
+  static bool is_whole(PageModel& page) {
+    return page.has("map") && page.has("tiles") && page.has("rooms") &&
+           page.tables["graph"].contains("map");
+  }
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  std::unique_ptr<Program> store_;
+  std::unique_ptr<Program> web_;
+  std::uint32_t port_ = 0;
+};
+
+TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
+  PageModel page;
+  auto socket = std::make_unique<WebSocketClient>(port_);
+  socket->send({{"op", "hello"}});
+  ASSERT_TRUE(page.wait_for(
+      *socket, [&] { return is_whole(page); }, kPatience));
+  const auto graph = page.tables["graph"];
+  const json summary = graph.at("map");
+  EXPECT_EQ(graph.size() - 1,
+            summary["nodes"].get<std::size_t>() + summary["branches"].get<std::size_t>());
+  EXPECT_GT(summary["nodes"], 3);
+  const std::string life = page.others.at(0)["life"];
+
+  // The map store dies: what it has shown stays. It comes again: the same map.
+  store_->send_signal(SIGKILL);
+  store_->wait();
+  start_store();
+  ASSERT_TRUE(page.wait_for(
+      *socket, [&] { return page.values["map"]["frame"] != "" && page.versions["tiles"] > 1; },
+      kPatience));
+  PageModel late;
+  WebSocketClient late_socket(port_);
+  ASSERT_TRUE(late.wait_for(
+      late_socket, [&] { return is_whole(late); }, kPatience));
+  EXPECT_EQ(late.tables["graph"], page.tables["graph"]);
+  EXPECT_EQ(late.tables["rooms"], page.tables["rooms"]);
+
+  // The web service dies: a page that comes back with what it holds of another life gets all anew.
+  web_->send_signal(SIGKILL);
+  web_->wait();
+  start_web();
+  socket = std::make_unique<WebSocketClient>(port_);
+  socket->send({{"op", "hello"}, {"life", life}, {"have", page.versions}});
+  PageModel again;
+  ASSERT_TRUE(again.wait_for(
+      *socket, [&] { return is_whole(again); }, kPatience));
+  EXPECT_EQ(again.tables["graph"].size(), graph.size());
+  EXPECT_NE(again.others.at(0)["life"], life);
+}
+
+TEST_F(WebOnMap, TilesAreThoseOfTheMap) {
+  PageModel page;
+  WebSocketClient socket(port_);
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return is_whole(page); }, kPatience));
+  const std::string frame = page.values["map"]["frame"];
+  const HttpReply tile = http_get(port_, "/tiles/grid/" + frame + "/0/0/0.png?v=1");
+  EXPECT_EQ(tile.status, 200);
+  EXPECT_THAT(tile.head, HasSubstr("immutable"));
+  EXPECT_EQ(tile.body.substr(1, 3), "PNG");
+  EXPECT_EQ(http_get(port_, "/tiles/rooms/" + frame + "/1/0/0.png").status, 200);
+  EXPECT_EQ(http_get(port_, "/tiles/grid/00000000/0/0/0.png").status, 404);
+  const json room = page.tables["rooms"].begin()->second;
+  const std::string at = "x_m=" + room["x_m"].dump() + "&y_m=" + room["y_m"].dump();
+  const json point = json::parse(http_get(port_, "/api/at?" + at).body);
+  EXPECT_EQ(point["room"], room["name"]);
+  EXPECT_EQ(point["cell"], "free");
+}
+
+TEST_F(WebOnMap, OrdersThatCannotBeHaveAReason) {
+  PageModel page;
+  WebSocketClient socket(port_);
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return is_whole(page); }, kPatience));
+  EXPECT_EQ(http_post(port_, "/api/goal", "", R"({"place":"room A"})").status, 401);
+  EXPECT_EQ(http_post(port_, "/api/goal", kToken, R"({"place":"nowhere"})").status, 409);
+  EXPECT_EQ(http_post(port_, "/api/goal", kToken, "nonsense").status, 400);
+  EXPECT_EQ(http_post(port_, "/api/nothing", kToken).status, 404);
+  EXPECT_EQ(http_post(port_, "/api/preview", kToken, R"({"x_m":1,"y_m":1})").status, 409)
+      << "there is no robot";
+  EXPECT_EQ(http_post(port_, "/api/search", kToken).status, 503) << "there is no localizer";
+  const json info = json::parse(http_get(port_, "/api/info").body);
+  EXPECT_EQ(info["protocol"], 1);
+  EXPECT_THAT(info["offers"], testing::Contains("goal"));
+}
+
+TEST(WebCommand, ViewsAStoredMap) {
+  use_udp_only();
+  const Scratch scratch;
+  write_log("room", scratch / "room.clf");
+  Program map(
+      scratch, "topogeo",
+      {"map", "--log", (scratch / "room.clf").string(), "--out", (scratch / "room").string()});
+  ASSERT_EQ(map.wait(), 0) << map.err();
+  Program view(scratch, "topogeo",
+               {"view", (scratch / "room/map.pb").string(), "--port", "0", "--no-browser",
+                "--domain", own_domain()});
+  PageModel page;
+  WebSocketClient socket(wait_for_port(view));
+  EXPECT_TRUE(page.wait_for(
+      socket, [&] { return page.has("tiles") && page.tables["graph"].contains("map"); },
+      kPatience));
+  view.send_signal(SIGINT);
+  EXPECT_EQ(view.wait(), 0) << view.err();
+}
+
+TEST(WebCommand, NamesWhatDoesNotGoTogether) {
+  const Scratch scratch;
+  Program open(scratch, "web", {"--bind", "0.0.0.0", "--port", "0"});
+  EXPECT_EQ(open.wait(), 2);
+  EXPECT_THAT(open.err(), HasSubstr("--certificate"));
+  Program short_token(scratch, "web", {"--token", "short"});
+  EXPECT_EQ(short_token.wait(), 2);
+  Program no_page(scratch, "web", {"--page", "/nowhere", "--port", "0"});
+  EXPECT_EQ(no_page.wait(), 1);
+  EXPECT_THAT(no_page.err(), HasSubstr("/nowhere"));
+  Program no_map(scratch, "topogeo", {"view", "/nowhere.pb"});
+  EXPECT_EQ(no_map.wait(), 3);
+}
+
+/// `topogeo demo --web`: all services with a simulated robot, in real time.
+class WebOnRobot : public testing::Test {
+ protected:
+  WebOnRobot() {
+    use_udp_only();
+    demo_ = std::make_unique<Program>(
+        scratch_, "topogeo",
+        std::vector<std::string>{"demo", "--web", "--port", "0", "--token", kToken, "--out",
+                                 (scratch_ / "demo").string(), "--domain", own_domain()});
+    port_ = wait_for_port(*demo_, milliseconds(90'000));
+    socket_ = std::make_unique<WebSocketClient>(port_);
+    socket_->send({{"op", "hello"}, {"token", kToken}});
+  }
+  template <class Condition>
+  bool wait_for(const Condition& condition, milliseconds patience = kPatience) {
+    return page_.wait_for(*socket_, condition, patience * kTimeFactor);
+  }
+  /// In the world.
+  [[nodiscard]] std::pair<double, double> truth() {
+    return {page_.values["truth"]["x_m"], page_.values["truth"]["y_m"]};
+  }
+  static double distance(const std::pair<double, double>& a, const std::pair<double, double>& b) {
+    return std::hypot(a.first - b.first, a.second - b.second);
+  }
+
+  Scratch scratch_;
+  std::unique_ptr<Program> demo_;
+  std::uint32_t port_ = 0;
+  std::unique_ptr<WebSocketClient> socket_;
+  PageModel page_;
+};
+
+TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
+  ASSERT_TRUE(wait_for([&] {
+    return page_.has("pose") && page_.values["pose"]["state"] == "TRACKING" && page_.has("truth") &&
+           page_.tables["places"].contains("room A") && page_.has("navigator");
+  })) << demo_->err();
+  const auto start = truth();
+  const double start_rad = page_.values["truth"]["theta_rad"];
+
+  const HttpReply preview = http_post(port_, "/api/preview", kToken, R"({"place":"room A"})");
+  ASSERT_EQ(preview.status, 200) << preview.body;
+  const json route = json::parse(preview.body);
+  ASSERT_EQ(route["found"], true) << preview.body;
+  EXPECT_GT(route["length_m"], 1.0);
+  EXPECT_GT(route["time_s"], 1.0);
+
+  ASSERT_EQ(http_post(port_, "/api/goal", kToken, R"({"place":"Room a"})").status, 202);
+  ASSERT_TRUE(wait_for([&] { return page_.values["navigator"]["state"] == "driving"; }));
+  ASSERT_TRUE(wait_for([&] {
+    return page_.values["navigator"]["state"] == "arrived" &&
+           page_.values["goals"]["current"].is_null();
+  }));
+  const json place = page_.tables["places"]["room A"];
+  const double x_m = place["x_m"];
+  const double y_m = place["y_m"];
+  const std::pair<double, double> goal = {
+      start.first + std::cos(start_rad) * x_m - std::sin(start_rad) * y_m,
+      start.second + std::sin(start_rad) * x_m + std::cos(start_rad) * y_m};
+  EXPECT_LT(distance(truth(), goal), 0.3);
+
+  // By hand, turning, where nothing can be in the way; then the connection drops.
+  const double before_rad = page_.values["truth"]["theta_rad"];
+  {
+    WebSocketClient hand(port_);
+    hand.send({{"op", "hello"}, {"token", kToken}});
+    const auto turned = [&] {
+      return std::fabs(std::remainder(page_.values["truth"]["theta_rad"].get<double>() - before_rad,
+                                      2.0 * std::numbers::pi)) > 0.3;
+    };
+    const auto end = steady_clock::now() + kPatience;
+    while (!turned() && steady_clock::now() < end) {
+      hand.send({{"op", "drive"}, {"linear_mps", 0.0}, {"angular_radps", 0.5}});
+      wait_for([] { return false; }, milliseconds(50));
+    }
+    ASSERT_TRUE(turned());
+    EXPECT_EQ(page_.values["drive"]["held"], true);
+  }
+  ASSERT_TRUE(wait_for([&] { return page_.values["drive"].is_null(); }));
+  const double stood_rad = page_.values["truth"]["theta_rad"];
+  wait_for([] { return false; }, milliseconds(1000));
+  EXPECT_NEAR(page_.values["truth"]["theta_rad"].get<double>(), stood_rad, 0.02);
+  EXPECT_EQ(page_.values["truth"]["collisions"], 0);
+
+  // The stop button holds the base until it is released.
+  ASSERT_EQ(http_post(port_, "/api/stop", kToken).status, 202);
+  ASSERT_TRUE(wait_for([&] { return page_.values["base"]["state"] == "halted"; }));
+  ASSERT_EQ(http_post(port_, "/api/release", kToken).status, 202);
+  ASSERT_TRUE(wait_for([&] { return page_.values["base"]["state"] == "ready"; }));
+
+  demo_->send_signal(SIGINT);
+  EXPECT_EQ(demo_->wait(), 0) << demo_->err();
+}
+
+}  // namespace
+}  // namespace topogeo::test
