@@ -8,7 +8,9 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/laser_mounting.hpp"
+#include "topogeo/results/outputs.hpp"
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/storage/tum.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/format.hpp"
@@ -109,6 +111,20 @@ void add_log_options(command_line::Command& app, JobOptions& options) {
   app.add_option("--reference", options.reference,
                  "trajectory (TUM) to compare the result with at the end")
       ->type_name("FILE");
+}
+
+void add_overlaps_option(command_line::Command& app, JobOptions& options) {
+  app.add_flag("--overlaps", options.overlaps,
+               "report.json also holds for each stop the earlier ones that see the same, and the "
+               "solutions of a search in each that it was matched with");
+}
+
+void add_overlaps(storage::Report& report, const JobOptions& options,
+                  const pipeline::Config& config) {
+  if (!options.overlaps && !config.report.overlaps) return;
+  std::cerr << "searching matched stops for the report\n";
+  const storage::MapDocument map = storage::read_map_file(options.out / "map.pb");
+  results::add_overlaps(report, pipeline::stop_overlaps(map, config.localizer));
 }
 
 void add_map_options(command_line::Command& app, JobOptions& options, StoredMapUse use) {

@@ -27,6 +27,7 @@ struct JobOptions {
   std::optional<std::filesystem::path> map;        ///< to localize in; none: a map is made
   std::optional<std::filesystem::path> continued;  ///< map to extend; none: one is begun
   std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either
+  bool overlaps = false;  ///< in the report, also where the configuration does not ask for them
 };
 
 /// Adds --config.
@@ -37,6 +38,8 @@ void add_width_option(command_line::Command& app, std::uint32_t& width_px);
 void add_common_options(command_line::Command& app, JobOptions& options);
 /// Adds --scan-topic and --odometry-topic.
 void add_topic_options(command_line::Command& app, recording::TopicChoice& topics);
+/// Adds --overlaps, of the commands that make a map.
+void add_overlaps_option(command_line::Command& app, JobOptions& options);
 /// Adds --log, those of its topics, --out and --reference as well.
 void add_log_options(command_line::Command& app, JobOptions& options);
 
@@ -79,6 +82,11 @@ struct Job {
 /// The same for a log, which it opens, and makes the output directory. Throws the same, and
 /// std::runtime_error for the directory.
 Job prepare(const JobOptions& options);
+
+/// Fills the overlap sets and solutions of a report where they are asked for, by the map.pb that
+/// was written.
+void add_overlaps(storage::Report& report, const JobOptions& options,
+                  const pipeline::Config& config);
 
 /// Reports on stderr what was left out of the log; nothing when that is nothing.
 void report_skipped(const scan::CarmenLogStatistics& statistics);

@@ -163,6 +163,7 @@ int map_log(const JobOptions& options, bool stages) {
   }
 
   storage::Report report = make_report(job, run, document);
+  if (job.inputs.map == nullptr) add_overlaps(report, options, job.inputs.config.config);
   report.stages = times.stages();
   report.stages.insert(report.stages.begin() + 1, run.stages().begin(), run.stages().end());
   report.wall_s = support::monotonic_s() - start_s;
@@ -183,6 +184,7 @@ void add_map_command(command_line::Command& app, int& exit_code) {
   auto options = std::make_shared<JobOptions>();
   add_log_options(*command, *options);
   add_map_options(*command, *options, StoredMapUse::kContinue);
+  add_overlaps_option(*command, *options);
   auto stages = std::make_shared<bool>(false);
   command
       ->add_flag("--stages", *stages,

@@ -149,6 +149,7 @@ int run_log(const RunOptions& options) {
   if (!result.finished) throw std::runtime_error(result.failure);
 
   storage::Report report = make_report(options, job.inputs.config.effective, result);
+  add_overlaps(report, options.job, job.inputs.config.config);
   while (job.reader.next()) {  // to learn what the gateway skipped
   }
   results::add_log(report, job.reader.statistics());
@@ -169,6 +170,7 @@ void add_run_command(command_line::Command& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   add_log_options(*command, options->job);
   add_map_options(*command, options->job, StoredMapUse::kEither);
+  add_overlaps_option(*command, options->job);
   add_run_options(*command, *options);
   command_line::Option* log = command->get_option("--log")->required(false);
   command_line::Option* devices =

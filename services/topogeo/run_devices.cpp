@@ -144,6 +144,7 @@ int run_devices(RunOptions options) {
   if (!result.finished) throw std::runtime_error(result.failure);
 
   storage::Report report = make_report(options, inputs.config.effective, result);
+  add_overlaps(report, options.job, inputs.config.config);
   report.wall_s = support::monotonic_s() - start_s;
   storage::write_report(options.job.out / "report.json", report);
   print_pool(std::cout, result);

@@ -264,19 +264,21 @@ TEST_F(CommandsTest, DemoTellsTheErrorBeforeAndAfter) {
 TEST_F(CommandsTest, ReportOfRunAgreesWithThatOfMap) {
   const std::string log = scratch_ / "log.clf.gz";
   write_log("corridor", log);
-  Program map(scratch_, "topogeo", {"map", "--log", log, "--out", scratch_ / "map"});
+  Program map(scratch_, "topogeo", {"map", "--log", log, "--out", scratch_ / "map", "--overlaps"});
   ASSERT_EQ(map.wait(), 0) << map.err();
-  Program run(scratch_, "topogeo",
-              {"run", "--log", log, "--out", scratch_ / "run", "--domain", own_domain()});
+  Program run(
+      scratch_, "topogeo",
+      {"run", "--log", log, "--out", scratch_ / "run", "--domain", own_domain(), "--overlaps"});
   ASSERT_EQ(run.wait(), 0) << run.err();
 
   const json of_map = json::parse(read_file(scratch_ / "map" / "report.json"));
   const json of_run = json::parse(read_file(scratch_ / "run" / "report.json"));
   for (const char* key : {"version", "log", "robot_id", "seed", "counts", "distance_m",
-                          "loop_closures", "loop_candidates", "configuration"}) {
+                          "loop_closures", "loop_candidates", "overlaps", "configuration"}) {
     EXPECT_EQ(of_run[key], of_map[key]) << key;
   }
   EXPECT_GT(of_map["counts"]["matches_tried"], 0);
+  EXPECT_EQ(of_map["overlaps"].size() + 1, of_map["counts"]["stops"]);
   EXPECT_EQ(of_run["workers"], 2);
   for (const char* stage : {"sensor_gateway", "local_mapper", "localizer", "ga_worker_1",
                             "ga_worker_2", "map_store", "planner"}) {

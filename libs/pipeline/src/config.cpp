@@ -65,6 +65,7 @@ support::ConfigSchema describe(Config& config) {
   navigation::describe(config.exploration, schema);
   localization::describe(config.calibration, schema);
   describe(config.metrics, schema);
+  describe(config.report, schema);
   return schema;
 }
 

@@ -19,6 +19,11 @@ struct LocatedStops {
   std::vector<topomap::StopPose> stops;
 };
 
+storage::OverlapSolution solution_of(const localization::MatchSolution& solution,
+                                     const pipeline::FitnessParts& parts) {
+  return {solution.T_reference_query, solution.fitness, parts.scan, parts.topological, parts.prior};
+}
+
 LocatedStops located_stops(const storage::MapDocument& document) {
   LocatedStops out;
   for (std::size_t i = 0; i < document.trajectory.stops.size(); ++i) {
@@ -106,6 +111,30 @@ void add_loop_candidates(storage::Report& report,
          d.fitness, localization::to_string(d.source), d.predicted.T_a_b,
          std::sqrt(covariance(0, 0) + covariance(1, 1)), std::sqrt(covariance(2, 2)),
          d.probability});
+  }
+}
+
+void add_overlaps(storage::Report& report, std::span<const pipeline::StopOverlaps> overlaps) {
+  report.overlaps.clear();
+  report.overlaps.reserve(overlaps.size());
+  for (const pipeline::StopOverlaps& of_stop : overlaps) {
+    storage::Overlaps& out = report.overlaps.emplace_back();
+    out.stop_id = of_stop.stop;
+    out.overlap_set = of_stop.overlap_set;
+    for (const auto& [earlier, search] : of_stop.searches) {
+      const localization::MatchResult& result = search.result;
+      storage::OverlapSearch& found = out.searches.emplace_back();
+      found.earlier_id = earlier;
+      found.T_predicted = search.task.T_reference_query;
+      for (std::size_t i = 0; i < result.solutions.size(); ++i) {
+        found.solutions.push_back(solution_of(result.solutions[i], search.solutions[i]));
+      }
+      if (result.status == localization::MatchStatus::kSolved) {
+        found.refined = solution_of({result.T_reference_query, result.fitness}, search.refined);
+      }
+      found.verdict = localization::to_string(result.verdict);
+      found.reason = localization::to_string(result.reason);
+    }
   }
 }
 

@@ -64,6 +64,46 @@ Json loop_candidates(const std::vector<LoopCandidate>& candidates) {
   return json;
 }
 
+Json overlap_solution(const OverlapSolution& s) {
+  return {{"x_m", s.T_earlier_stop.x_m},
+          {"y_m", s.T_earlier_stop.y_m},
+          {"theta_rad", s.T_earlier_stop.theta_rad},
+          {"fitness", s.fitness},
+          {"scan_fitness", s.scan},
+          {"topological_fitness", s.topological},
+          {"prior", s.prior}};
+}
+
+Json overlap_search(const OverlapSearch& search) {
+  Json solutions = Json::array();
+  for (const OverlapSolution& solution : search.solutions) {
+    solutions.push_back(overlap_solution(solution));
+  }
+  Json refined = nullptr;
+  if (search.refined.fitness > 0.0) refined = overlap_solution(search.refined);
+  return {{"earlier_stop", search.earlier_id},
+          {"predicted_x_m", search.T_predicted.x_m},
+          {"predicted_y_m", search.T_predicted.y_m},
+          {"predicted_theta_rad", search.T_predicted.theta_rad},
+          {"solutions", solutions},
+          {"refined", refined},
+          {"verdict", search.verdict},
+          {"reason", search.reason}};
+}
+
+Json overlaps(const std::vector<Overlaps>& stops) {
+  Json json = Json::array();
+  for (const Overlaps& of_stop : stops) {
+    Json searches = Json::array();
+    for (const OverlapSearch& search : of_stop.searches) {
+      searches.push_back(overlap_search(search));
+    }
+    json.push_back(
+        {{"stop", of_stop.stop_id}, {"overlap_set", of_stop.overlap_set}, {"searches", searches}});
+  }
+  return json;
+}
+
 geometry::Pose2 pose_of(const Json& json, const std::string& prefix) {
   return {json.at(prefix + "x_m").get<double>(), json.at(prefix + "y_m").get<double>(),
           json.at(prefix + "theta_rad").get<double>()};
@@ -124,6 +164,7 @@ std::string report_json(const Report& report) {
   json["stages"] = stages(report.stages);
   json["loop_closures"] = loop_closures(report.loop_closures);
   json["loop_candidates"] = loop_candidates(report.loop_candidates);
+  if (!report.overlaps.empty()) json["overlaps"] = overlaps(report.overlaps);
   json["configuration"] = configuration(report.configuration);
   // A file name need not be valid UTF-8: what is not is replaced rather than refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

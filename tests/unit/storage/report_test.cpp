@@ -72,6 +72,28 @@ TEST_F(ReportFile, LoopCandidatesReadBackExactly) {
   EXPECT_EQ(back[1], report.loop_candidates[1]);
 }
 
+TEST_F(ReportFile, HoldsOverlapsWhereThereAreAny) {
+  Report report;
+  EXPECT_THAT(report_json(report), Not(HasSubstr("overlaps")));
+  OverlapSearch found;
+  found.earlier_id = 3;
+  found.T_predicted = {0.5, -0.25, 1.5};
+  found.solutions = {{{0.75, -0.5, 1.25}, 0.5, 0.25, 0.125, 0.0625}};
+  found.verdict = "rejected";
+  found.reason = "few inliers";
+  report.overlaps = {{7, {2, 3, 5}, {found}}};
+  std::string json = report_json(report);
+  std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
+  EXPECT_THAT(json, HasSubstr(R"("overlaps":[{"stop":7,"overlap_set":[2,3,5],"searches":[{)"));
+  EXPECT_THAT(json, HasSubstr(R"("earlier_stop":3,"predicted_x_m":0.5,"predicted_y_m":-0.25,)"));
+  EXPECT_THAT(json, HasSubstr(R"("solutions":[{"x_m":0.75,"y_m":-0.5,"theta_rad":1.25,)"
+                              R"("fitness":0.5,"scan_fitness":0.25,"topological_fitness":0.125,)"
+                              R"("prior":0.0625}])"));
+  EXPECT_THAT(json, HasSubstr(R"("refined":null,"verdict":"rejected","reason":"fewinliers")"));
+  report.overlaps.front().searches.front().refined = found.solutions.front();
+  EXPECT_THAT(report_json(report), Not(HasSubstr("null")));
+}
+
 TEST_F(ReportFile, DamagedLoopCandidatesAreRefusedWithTheirPlace) {
   const auto path = directory_ / "report.json";
   const auto read = [&] { read_loop_candidates(path); };

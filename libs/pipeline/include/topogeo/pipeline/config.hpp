@@ -12,6 +12,7 @@
 #include "topogeo/pipeline/hybrid_map_config.hpp"
 #include "topogeo/pipeline/local_mapper_config.hpp"
 #include "topogeo/pipeline/metrics_config.hpp"
+#include "topogeo/pipeline/report_config.hpp"
 #include "topogeo/planning/hybrid_planner_config.hpp"
 #include "topogeo/planning/planning_config.hpp"
 #include "topogeo/scan/carmen_log_config.hpp"
@@ -33,6 +34,7 @@ struct Config {
   navigation::TourConfig exploration;
   localization::OdometryCalibrationConfig calibration;
   MetricsConfig metrics;
+  ReportConfig report;
 };
 
 /// Every key of the file: what the libraries declare of their settings, one after the other.

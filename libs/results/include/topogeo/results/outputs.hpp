@@ -7,6 +7,7 @@
 
 #include "topogeo/localization/mapping/loop_decision.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
+#include "topogeo/pipeline/stop_overlaps.hpp"
 #include "topogeo/scan/carmen_log_reader.hpp"
 #include "topogeo/storage/map_document.hpp"
 #include "topogeo/storage/report.hpp"
@@ -33,6 +34,9 @@ void add_matches(storage::Report& report, const localization::SlamCounts& counts
 /// Fills the loop candidates of a report.
 void add_loop_candidates(storage::Report& report,
                          std::span<const localization::LoopDecision> decisions);
+
+/// Fills the overlap sets and solutions of a report.
+void add_overlaps(storage::Report& report, std::span<const pipeline::StopOverlaps> overlaps);
 
 /// Fills what was skipped of the log.
 void add_log(storage::Report& report, const scan::CarmenLogStatistics& statistics);

@@ -37,6 +37,37 @@ struct LoopCandidate {
   friend bool operator==(const LoopCandidate&, const LoopCandidate&) = default;
 };
 
+/// A pose of a stop in an earlier one that a search found, and what its fitness consists of.
+struct OverlapSolution {
+  geometry::Pose2 T_earlier_stop;
+  double fitness = 0.0;      ///< [0, 1], by the form that is configured
+  double scan = 0.0;         ///< [0, 1], points on points
+  double topological = 0.0;  ///< [0, 1], nodes and branches
+  double prior = 0.0;        ///< (0, 1], by the prediction
+
+  friend bool operator==(const OverlapSolution&, const OverlapSolution&) = default;
+};
+
+/// The search for a stop in an earlier one that it was matched with.
+struct OverlapSearch {
+  std::uint32_t earlier_id = 0;
+  geometry::Pose2 T_predicted;
+  std::vector<OverlapSolution> solutions;  ///< best first
+  OverlapSolution refined;                 ///< fitness 0: there is none
+  std::string verdict;
+  std::string reason;
+
+  friend bool operator==(const OverlapSearch&, const OverlapSearch&) = default;
+};
+
+struct Overlaps {
+  std::uint32_t stop_id = 0;
+  std::vector<std::uint32_t> overlap_set;  ///< earlier stops that see the same, ascending
+  std::vector<OverlapSearch> searches;
+
+  friend bool operator==(const Overlaps&, const Overlaps&) = default;
+};
+
 struct Report {
   std::string command;  ///< "map" or "run"
   std::string log;      ///< file name; of a path only the last part is written
@@ -55,6 +86,7 @@ struct Report {
   ReasonCounts matches_rejected;
   std::vector<topomap::LoopClosure> loop_closures;
   std::vector<LoopCandidate> loop_candidates;  ///< in the order of the decisions
+  std::vector<Overlaps> overlaps;              ///< empty: not asked for
   ReasonCounts localization;  ///< of a drive in a finished map: stops by state; empty: a mapping
   ReasonCounts continuation;  ///< of a map that was continued: its stops; empty: it was not
   double distance_m = 0.0;    ///< along the corrected trajectory
