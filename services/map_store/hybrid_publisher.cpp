@@ -4,6 +4,7 @@
 #include <chrono>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace topogeo::map_store {
 
@@ -18,8 +19,9 @@ std::uint64_t first_version() {
 
 }  // namespace
 
-HybridPublisher::HybridPublisher(service::Service& service)
+HybridPublisher::HybridPublisher(service::Service& service, planning::RoomMemory rooms)
     : service_(service),
+      rooms_(std::move(rooms)),
       updates_(service.robot_id(), first_version()),
       tiles_(service.advertise<msg::GridTile>()),
       summaries_(service.advertise<msg::HybridMap>()) {}

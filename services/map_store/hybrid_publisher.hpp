@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/hybrid_map.h"
@@ -15,7 +16,8 @@ namespace topogeo::map_store {
 /// Lives in the loop of its service.
 class HybridPublisher {
  public:
-  explicit HybridPublisher(service::Service& service);
+  /// Rooms keep the numbers that are remembered.
+  explicit HybridPublisher(service::Service& service, planning::RoomMemory rooms = {});
 
   /// Makes the map with the configuration of the service and sends it. Without
   /// anything to make a grid of there is none; one that cannot be made or does not fit the messages
@@ -28,6 +30,10 @@ class HybridPublisher {
 
   /// Tries what could not be sent once more. True when nothing is left.
   bool send_rest();
+
+  /// Goes on with other numbers of rooms.
+  void remember(planning::RoomMemory rooms) { rooms_ = planning::RoomNumbers(std::move(rooms)); }
+  [[nodiscard]] const planning::RoomMemory& rooms() const { return rooms_.memory(); }
 
  private:
   service::Service& service_;

@@ -115,6 +115,11 @@ void MapArchive::put(const std::vector<storage::RefusedMerge>& refused) {
   database_.put_refused_merges(refused);
 }
 
+void MapArchive::put(const planning::RoomMemory& rooms) {
+  check_file();
+  database_.put_rooms(rooms);
+}
+
 void MapArchive::check_file() {
   const std::uint64_t there = file_number(path_);
   if (there == file_) return;

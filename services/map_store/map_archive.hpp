@@ -50,6 +50,7 @@ class MapArchive {
   void put(const topomap::GlobalMap& map);
   void put(const storage::MapDrawing& drawing);
   void put(const std::vector<storage::RefusedMerge>& refused);
+  void put(const planning::RoomMemory& rooms);
 
   [[nodiscard]] const storage::MapDatabase& database() const { return database_; }
 

@@ -41,9 +41,12 @@ constexpr std::chrono::seconds kRetryPeriod{5};
 
 /// The map that is there, and its drawing under what is drawn now.
 /// `shown` becomes its global map, if it has one.
+/// `rooms` becomes what is remembered of its rooms.
 MapInput::Stored stored_input(const storage::MapDatabase& database, storage::MapDrawing& drawing,
-                              std::optional<topomap::GlobalMap>& shown) {
+                              std::optional<topomap::GlobalMap>& shown,
+                              planning::RoomMemory& rooms) {
   storage::MapDocument document = database.load();
+  rooms = std::move(document.rooms);
   if (!document.global_map.nodes.empty()) shown = std::move(document.global_map);
   pipeline::lay_over(document.drawing, std::move(drawing));
   drawing = std::move(document.drawing);
@@ -69,10 +72,10 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
     : service_(service),
       options_(std::move(options)),
       archive_(std::move(database), options_.database),
-      input_(stored_input(archive_.database(), options_.drawing, hybrid_pending_)),
+      input_(stored_input(archive_.database(), options_.drawing, hybrid_pending_, stored_rooms_)),
       live_map_(service.setup().config.config.global_map),
       elements_(service),
-      hybrid_(service),
+      hybrid_(service, stored_rooms_),
       ends_out_(service.advertise<msg::StreamEnd>()),
       acknowledged_(service),
       pieces_out_(service.advertise<msg::SnapshotPiece>()),
@@ -194,6 +197,18 @@ void MapStoreService::storing_failed(const std::string& why) {
   next_store_ = Clock::now() + kStoreRetryPeriod;
 }
 
+template <class Part>
+bool MapStoreService::keep(const Part& part) {
+  if (storing_fails_) return false;  // store() reports it
+  try {
+    archive_.put(part);
+    return true;
+  } catch (const std::exception& error) {
+    storing_failed(error.what());
+    return false;
+  }
+}
+
 void MapStoreService::write_snapshot(const msg::SnapshotRequest& request,
                                      const SnapshotQueue::Sink& sink) {
   if (!finished_) store(true);  // what cannot be stored is not in it
@@ -253,15 +268,6 @@ bool MapStoreService::publish(const topomap::GlobalMap& map) {
                            maps.empty() ? 0 : maps.back().stamp_ns);
 }
 
-void MapStoreService::keep(const topomap::GlobalMap& map) {
-  if (storing_fails_) return;  // store() reports it
-  try {
-    archive_.put(map);
-  } catch (const std::exception& error) {
-    storing_failed(error.what());
-  }
-}
-
 void MapStoreService::publish_hybrid() {
   hybrid_.send_rest();
   if (!hybrid_pending_ || Clock::now() < next_hybrid_) return;
@@ -274,6 +280,7 @@ void MapStoreService::publish_hybrid() {
   parts.drawing = &options_.drawing;
   hybrid_.publish(parts, parts.local_maps.empty() ? 0 : parts.local_maps.back().stamp_ns);
   hybrid_pending_.reset();
+  if (hybrid_.rooms() != stored_rooms_ && keep(hybrid_.rooms())) stored_rooms_ = hybrid_.rooms();
   const auto now = Clock::now();
   next_hybrid_ = now + std::max<Clock::duration>(kHybridPeriod, kHybridShare * (now - start));
 }
@@ -292,7 +299,8 @@ void MapStoreService::finish_if_complete() {
   }
 }
 
-storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& trajectory) const {
+storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& trajectory,
+                                                     const planning::RoomMemory& rooms) const {
   const auto& before = options_.continued;
   if (before && before->trajectory.stops.size() == trajectory.stops.size() &&
       before->trajectory.numbered_since == trajectory.numbered_since) {
@@ -312,6 +320,8 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
   document.drawing = options_.drawing;
   document.map_id = archive_.database().map_id();
   document.refused_merges = input_.refused_merges();
+  document.rooms = rooms;
+  pipeline::remember_rooms(document, config.hybrid_map);
   return document;
 }
 
@@ -320,19 +330,25 @@ void MapStoreService::end() {
   next_store_ = {};
   live_map_ = LiveMap(service_.setup().config.config.global_map);  // its memory is needed
   store(true);
-  const storage::MapDocument document = final_document(input_.newest_trajectory());
+  const storage::MapDocument document = final_document(input_.newest_trajectory(), hybrid_.rooms());
   write_results(options_.directory, document, options_.title);
   spdlog::info("stopped: the map so far, {} local maps, {} nodes and {} branches, in {}",
                document.local_maps.size(), document.global_map.nodes.size(),
                document.global_map.branches.size(), options_.directory.string());
   keep(document.global_map);
+  keep(document.rooms);
 }
 
 void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   if (!store(true)) throw std::runtime_error("the map file could not be brought up to date");
-  const storage::MapDocument document = final_document(trajectory);
+  // As a run in one process: the numbers of maps on the way depend on when these were made.
+  const auto& before = options_.continued;
+  const storage::MapDocument document =
+      final_document(trajectory, before ? before->rooms : planning::RoomMemory{});
   if (!publish(document.global_map)) throw std::runtime_error("the map could not be sent");
   archive_.put(document.global_map);
+  archive_.put(document.rooms);
+  hybrid_.remember(document.rooms);
   write_results(options_.directory, document, options_.title);
 
   msg::StreamEnd end;

@@ -68,13 +68,16 @@ class MapStoreService {
   void work_on_live_map();
   /// False when something of it could not be sent.
   bool publish(const topomap::GlobalMap& map);
-  /// Stores it, or reports a fault.
-  void keep(const topomap::GlobalMap& map);
+  /// Stores it, or reports a fault and is false.
+  template <class Part>
+  bool keep(const Part& part);
   /// Makes and sends the hybrid map of what is there, when it is time to.
   void publish_hybrid();
   void finish_if_complete();
-  /// The map of a run; the stored one when it was to be extended and no stop joined it.
-  [[nodiscard]] storage::MapDocument final_document(const topomap::Trajectory& trajectory) const;
+  /// The map of a run; the stored one when it was to be extended and no stop joined it. Its rooms
+  /// have the numbers that are remembered.
+  [[nodiscard]] storage::MapDocument final_document(const topomap::Trajectory& trajectory,
+                                                    const planning::RoomMemory& rooms) const;
   void finish(const topomap::Trajectory& trajectory);
   void count();
   /// Faults for local maps that were dropped.
@@ -84,6 +87,7 @@ class MapStoreService {
   MapStoreOptions options_;
   MapArchive archive_;
   std::optional<topomap::GlobalMap> hybrid_pending_;  // what the next hybrid map is made of
+  planning::RoomMemory stored_rooms_;
   MapInput input_;
   LiveMap live_map_;
   ElementPublisher elements_;

@@ -85,7 +85,8 @@ storage::MapDocument make_map(const DemoOptions& options, const pipeline::Config
   storage::MapDocument document = mapping.finish();
   const geometry::Pose2 T_map_world = geometry::inverse(log.T_world_robot.front());
   for (const world::NamedPlace& place : world.places) {
-    document.drawing.places.push_back({place.name, T_map_world * place.position_m});
+    document.drawing.places.push_back(
+        planning::moved({place.name, place.position_m, place.station_heading_rad}, T_map_world));
   }
   return document;
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,7 @@
 #include "topogeo/messaging/signal_stop.hpp"
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/pipeline/hybrid_map_source.hpp"
+#include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/live_hybrid_map.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -42,16 +44,25 @@ struct PlacesOptions {
   double wait_s = 5.0;
 };
 
-/// NAME=X,Y. Throws service::UsageError.
+/// NAME=X,Y or, of a base station, NAME=X,Y,DEG. Throws service::UsageError.
 planning::Place place_of(const std::string& text) {
   const std::size_t equals = text.rfind('=');
-  const auto point = equals == std::string::npos ? std::nullopt : point_of(text.substr(equals + 1));
-  if (!point) {
-    throw service::UsageError(fmt::format(
-        "--add '{}': expected NAME=X,Y in metres of the map frame, for example \"room A=1.5,-2\"",
-        text));
+  const std::string numbers = equals == std::string::npos ? "" : text.substr(equals + 1);
+  planning::Place place{text.substr(0, equals)};
+  if (const auto point = point_of(numbers)) {
+    place.position_m = *point;
+  } else {
+    try {
+      const geometry::Pose2 T_map_station = pipeline::parse_pose(numbers);
+      place.position_m = T_map_station.position_m();
+      place.station_heading_rad = T_map_station.theta_rad;
+    } catch (const std::invalid_argument&) {
+      throw service::UsageError(fmt::format(
+          "--add '{}': expected NAME=X,Y or, for a base station, NAME=X,Y,DEG in metres "
+          "and degrees of the map frame, for example \"room A=1.5,-2\"",
+          text));
+    }
   }
-  planning::Place place{text.substr(0, equals), *point};
   if (!std::holds_alternative<std::string>(target_of(place.name))) {
     throw service::UsageError(
         fmt::format("--add '{}': the name would be taken for a point or a node", text));
@@ -107,8 +118,13 @@ std::string zone_text(const planning::HybridMap& map, const Eigen::Vector2d& pos
 
 void print_places(const planning::HybridMap& map) {
   for (const planning::Place& place : map.places()) {
-    std::cout << fmt::format("{:20} {:8.2f} {:8.2f}  {}\n", place.name, place.position_m.x(),
-                             place.position_m.y(), zone_text(map, place.position_m));
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    const std::string station = place.station_heading_rad
+                                    ? fmt::format(", base station, heading {:.1f} deg",
+                                                  *place.station_heading_rad * kDegrees)
+                                    : "";
+    std::cout << fmt::format("{:20} {:8.2f} {:8.2f}  {}{}\n", place.name, place.position_m.x(),
+                             place.position_m.y(), zone_text(map, place.position_m), station);
   }
   if (map.places().empty()) std::cout << "no places\n";
   const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
@@ -189,8 +205,11 @@ void add_places_command(command_line::Command& app, int& exit_code) {
                    "map file, world (.world.yaml), grid (.yaml with its .pgm) or live")
       ->capture_default_str()
       ->type_name("FILE|live");
-  command->add_option("--add", options->added, "put a place into a map file, or move it there")
-      ->type_name("NAME=X,Y");
+  command
+      ->add_option("--add", options->added,
+                   "put a place into a map file, or move it there; with a heading it is a "
+                   "base station")
+      ->type_name("NAME=X,Y[,DEG]");
   command->add_option("--remove", options->removed, "take a place out of a map file")
       ->type_name("NAME");
   command->add_option("--zones", options->zones, "drawn zones and places (YAML) beside a file")

@@ -52,8 +52,12 @@ class GeojsonReader {
     } else if (word == "branch") {
       add_branch(properties, geometry_in(feature));
     } else if (word == "place") {
-      graph_.drawing.places.push_back(
-          {properties.required("name").text(), geojson_position(geometry_in(feature))});
+      planning::Place& place = graph_.drawing.places.emplace_back();
+      place.name = properties.required("name").text();
+      place.position_m = geojson_position(geometry_in(feature));
+      if (const JsonValue heading = properties.at("station_heading"); heading.exists()) {
+        place.station_heading_rad = heading.number();
+      }
     } else if (type == "Polygon") {
       add_zone(properties, geometry.required("coordinates"));
     } else {

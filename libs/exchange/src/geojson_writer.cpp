@@ -66,8 +66,10 @@ class GeojsonWriter {
       top["features"].push_back(whole_branch(branch));
     }
     for (const planning::Place& place : drawing_.places) {
+      Json properties = {{"topogeo", "place"}, {"name", place.name}};
+      if (place.station_heading_rad) properties["station_heading"] = *place.station_heading_rad;
       top["features"].push_back(geojson_feature(
-          {{"topogeo", "place"}, {"name", place.name}},
+          std::move(properties),
           collection_of({{"type", "Point"}, {"coordinates", coordinates(place.position_m)}})));
     }
     for (const planning::DrawnZone& zone : drawing_.zones) {
@@ -88,7 +90,11 @@ class GeojsonWriter {
       metadata["observations"] = of_map.observations;
       if (of_map.last_seen_ns != 0) metadata["last_seen"] = seconds_text(of_map.last_seen_ns);
     }
-    if (in.place) metadata["name"] = drawing_.places[*in.place].name;
+    if (in.place) {
+      const planning::Place& place = drawing_.places[*in.place];
+      metadata["name"] = place.name;
+      if (place.station_heading_rad) metadata["station_heading"] = *place.station_heading_rad;
+    }
     return geojson_feature(
         {{"id", ids_[index]}, {"frame", "map"}, {"metadata", std::move(metadata)}},
         {{"type", "Point"}, {"coordinates", coordinates(in.position_m)}});

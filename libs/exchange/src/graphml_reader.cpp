@@ -135,7 +135,12 @@ class GraphmlReader {
     if (kind != data.end() && kind->second == "place") {
       const auto name = data.find("name");
       if (name == data.end()) fail(here() + ": expected a 'name' of the place, got nothing");
-      graph_.drawing.places.push_back({name->second, position_m});
+      planning::Place& place = graph_.drawing.places.emplace_back();
+      place.name = name->second;
+      place.position_m = position_m;
+      if (data.contains("station_heading")) {
+        place.station_heading_rad = number(data, "station_heading", std::nullopt);
+      }
       return;
     }
     FileNode node{id, {}};

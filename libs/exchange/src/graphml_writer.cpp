@@ -21,6 +21,7 @@ constexpr std::string_view kHead = R"(<?xml version="1.0" encoding="UTF-8"?>
 <key id="seen" for="node" attr.name="observations" attr.type="long"/>
 <key id="seen_last" for="node" attr.name="last_seen" attr.type="string"/>
 <key id="name" for="node" attr.name="name" attr.type="string"/>
+<key id="heading" for="node" attr.name="station_heading" attr.type="double"/>
 <key id="virtual" for="edge" attr.name="virtual" attr.type="boolean"/>
 <key id="times" for="edge" attr.name="observations" attr.type="long"/>
 <key id="last_time" for="edge" attr.name="last_seen" attr.type="string"/>
@@ -72,8 +73,11 @@ std::string graphml_text(const topomap::GlobalMap& map, std::span<const planning
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
     text += fmt::format("<node id=\"p{}\">", i) + position(places[i].position_m) +
-            datum("kind", "place") + datum("name", support::escaped_markup(places[i].name)) +
-            "</node>\n";
+            datum("kind", "place") + datum("name", support::escaped_markup(places[i].name));
+    if (places[i].station_heading_rad) {
+      text += datum("heading", number_text(*places[i].station_heading_rad));
+    }
+    text += "</node>\n";
   }
   for (const topomap::MapBranch& branch : map.branches) text += edge_text(branch);
   return text + "</graph>\n</graphml>\n";

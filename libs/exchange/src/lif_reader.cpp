@@ -140,7 +140,13 @@ class LifReader {
         position.exists() ? lif_position(position) : node_of(nodes.front()).position_m;
     const bool taken = std::ranges::find(graph_.drawing.places, name, &planning::Place::name) !=
                        graph_.drawing.places.end();
-    graph_.drawing.places.push_back({taken ? id : name, at_m});
+    planning::Place& place = graph_.drawing.places.emplace_back();
+    place.name = taken ? id : name;
+    place.position_m = at_m;
+    // Stations of others have a direction as well, that of the work there.
+    if (station.at("stationDescription").text_or("") == kBaseStation) {
+      place.station_heading_rad = position.required("theta").number();
+    }
   }
 
   MapGraph graph_;

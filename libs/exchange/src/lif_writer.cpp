@@ -123,12 +123,15 @@ class LifWriter {
           fmt::format("place '{}' left out: no node with an edge to reach it from", place.name));
       return;
     }
-    stations.push_back(
-        {{"stationId", fmt::format("s{}", stations.size() + 1)},
-         {"stationName", place.name},
-         {"interactionNodeIds", Json::array({fmt::format("n{}", nearest->id)})},
-         {"stationPosition",
-          {{"x", place.position_m.x()}, {"y", place.position_m.y()}, {"theta", 0.0}}}});
+    const double heading_rad = place.station_heading_rad.value_or(0.0);
+    Json station = {
+        {"stationId", fmt::format("s{}", stations.size() + 1)},
+        {"stationName", place.name},
+        {"interactionNodeIds", Json::array({fmt::format("n{}", nearest->id)})},
+        {"stationPosition",
+         {{"x", place.position_m.x()}, {"y", place.position_m.y()}, {"theta", heading_rad}}}};
+    if (place.station_heading_rad) station["stationDescription"] = kBaseStation;
+    stations.push_back(std::move(station));
   }
 
   const topomap::GlobalMap& map_;

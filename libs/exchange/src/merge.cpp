@@ -216,6 +216,7 @@ MergedMap merge(const storage::MapDocument& a, const storage::MapDocument& b,
   document.trajectory = merger.map().trajectory;
   document.loop_closures = merger.map().loop_closures;
   document.edges = pipeline::map_edges(merger.map().edges);
+  document.rooms = a.rooms;
   document.refused_merges = a.refused_merges;
   std::ranges::copy(b.refused_merges, std::back_inserter(document.refused_merges));
   for (std::size_t i = 0; i < document.local_maps.size(); ++i) {

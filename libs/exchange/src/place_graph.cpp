@@ -15,7 +15,7 @@ void move(MapGraph& graph, const geometry::Pose2& T_map_graph) {
     for (topomap::BranchPoint& p : branch.points) p.position_m = T_map_graph * p.position_m;
   }
   for (planning::Place& place : graph.drawing.places) {
-    place.position_m = T_map_graph * place.position_m;
+    place = planning::moved(place, T_map_graph);
   }
   for (planning::DrawnZone& zone : graph.drawing.zones) {
     for (Eigen::Vector2d& corner : zone.polygon_m) corner = T_map_graph * corner;

@@ -54,6 +54,7 @@ storage::MapDocument with_fewer_views(const storage::MapDocument& document, std:
   out.seed = document.seed;
   out.map_id = document.map_id;
   out.drawing = document.drawing;
+  out.rooms = document.rooms;
   out.refused_merges = document.refused_merges;
   out.local_maps = std::move(fewer.maps);
   out.trajectory = std::move(fewer.trajectory);

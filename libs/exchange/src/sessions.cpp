@@ -81,6 +81,7 @@ storage::MapDocument without_session(const storage::MapDocument& document, std::
   out.seed = document.seed;
   out.map_id = document.map_id;
   out.drawing = document.drawing;
+  out.rooms = document.rooms;
   std::ranges::copy_if(document.refused_merges, std::back_inserter(out.refused_merges),
                        [&](const storage::RefusedMerge& refused) {
                          return refused.stop.session != session && refused.other.session != session;

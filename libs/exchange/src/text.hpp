@@ -25,4 +25,7 @@ std::optional<std::int64_t> stamp_of(std::string_view seconds);
 std::string_view name_of(topomap::NodeKind kind);
 std::optional<topomap::NodeKind> node_kind_of(std::string_view name);
 
+/// What a station is described as that is a base station of ours.
+inline constexpr std::string_view kBaseStation = "base station";
+
 }  // namespace topogeo::exchange

@@ -17,10 +17,11 @@ void MarkovMode::set_map(const planning::HybridMap* map) {
   tried_ns_.reset();
   if (map == nullptr) return;
   const MarkovTrackerConfig& markov = config_.markov;
-  if (const planning::Place* place = planning::find_place(map->places(), markov.station);
+  if (const planning::Place* place = planning::find_base_station(map->places(), markov.station);
       place != nullptr && !T_map_station_) {
     T_map_station_ =
-        geometry::Pose2{place->position_m.x(), place->position_m.y(), markov.station_heading_rad};
+        geometry::Pose2{place->position_m.x(), place->position_m.y(),
+                        place->station_heading_rad.value_or(markov.station_heading_rad)};
   }
   tracker_.emplace(map->space().grid(), config_.markov);
   if (odometry_) tracker_->add(*odometry_);

@@ -45,11 +45,12 @@ void describe(MarkovTrackerConfig& config, support::ConfigSchema& schema) {
              "side of a cell; cells of the map are joined up to it; MACONDO: 0.1");
   schema.add("markov.heading_sigma_rad", &config.heading_sigma_rad, 0.001, 1.0, "rad",
              "of the heading, which is that of odometry");
-  schema.add("markov.station", &config.station,
-             "place of the map that the robot starts at; where the map has none of that name, the "
-             "first pose of a localizer");
+  schema.add(
+      "markov.station", &config.station,
+      "base station of the map that the robot starts at; another name does where the map has "
+      "one base station alone, and where it has none the first pose of a localizer");
   schema.add("markov.station_heading_rad", &config.station_heading_rad, -3.1416, 3.1416, "rad",
-             "its heading there, map frame");
+             "its heading at a place of that name that has none in the map, map frame");
 }
 
 void check(const MarkovTrackerConfig& config) {

@@ -43,7 +43,7 @@ planning::OccupancyGrid moved(const planning::OccupancyGrid& grid, const geometr
 
 void move(storage::MapDrawing& drawing, const geometry::Pose2& T) {
   if (T == geometry::Pose2{}) return;  // keeps every bit
-  for (planning::Place& place : drawing.places) place.position_m = T * place.position_m;
+  for (planning::Place& place : drawing.places) place = planning::moved(place, T);
   for (planning::DrawnZone& zone : drawing.zones) {
     for (Eigen::Vector2d& corner : zone.polygon_m) corner = T * corner;
     if (zone.kind == planning::ZoneKind::kOneWay) {
@@ -90,7 +90,7 @@ storage::MapDrawing drawing_of_file(const std::filesystem::path& file, double re
     throw std::runtime_error(file.string() + ": " + error.what());
   }
   for (const world::NamedPlace& place : world.places) {
-    drawing.places.push_back({place.name, place.position_m});
+    drawing.places.push_back({place.name, place.position_m, place.station_heading_rad});
   }
   return drawing;
 }
@@ -104,7 +104,8 @@ void check(const HybridMapConfig& config) {
 }
 
 HybridMapParts parts_of(const storage::MapDocument& document) {
-  return {document.local_maps, document.trajectory.stops, &document.global_map, &document.drawing};
+  return {document.local_maps, document.trajectory.stops, &document.global_map, &document.drawing,
+          &document.rooms};
 }
 
 bool has_grid(const HybridMapParts& parts) {
@@ -124,12 +125,24 @@ planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMap
   planning::ZoneMap zones = make_zones(space, parts, config.zones);
   std::vector<planning::Place> places;
   if (parts.drawing != nullptr) places = parts.drawing->places;
-  planning::RoomNumbers numbers;
+  planning::RoomNumbers numbers(parts.rooms != nullptr ? *parts.rooms : planning::RoomMemory{});
   const bool drawn_grid = parts.drawing != nullptr && parts.drawing->grid;
   (rooms != nullptr ? *rooms : numbers)
       .assign(space.frame(), drawn_grid ? std::span<const topomap::StopPose>{} : parts.stops, zones,
               places);
   return {std::move(space), std::move(zones), std::move(places)};
+}
+
+void remember_rooms(storage::MapDocument& document, const HybridMapConfig& config) {
+  const HybridMapParts parts = parts_of(document);
+  if (!has_grid(parts)) return;
+  planning::RoomNumbers rooms(document.rooms);
+  try {
+    static_cast<void>(make_hybrid_map(parts, config, &rooms));
+  } catch (const std::invalid_argument&) {  // too large a floor, for instance
+    return;
+  }
+  document.rooms = rooms.memory();
 }
 
 storage::MapDrawing read_drawing(const std::filesystem::path& file,

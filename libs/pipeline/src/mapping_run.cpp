@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "topogeo/pipeline/hybrid_map_source.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/topomap/global_map_builder.hpp"
 
@@ -35,7 +36,8 @@ MappingRun::MappingRun(const Config& config, std::string robot_id,
       robot_id_(std::move(robot_id)),
       local_mapper_(config.local_mapper, robot_id_),
       slam_(config.localizer, pool_, nullptr,
-            {std::move(map), MapToUse::Use::kLocalize, initial_pose}) {}
+            {std::move(map), MapToUse::Use::kLocalize, initial_pose}),
+      maps_(false) {}
 
 void MappingRun::add(const scan::Scan& scan) {
   std::optional<topomap::LocalMap> map;
@@ -71,12 +73,14 @@ storage::MapDocument MappingRun::finish() {
   document.edges = map_edges(slam_->edges());
   if (continued_) {
     document.drawing = continued_->drawing;
+    document.rooms = continued_->rooms;
     document.map_id = continued_->map_id;
   } else if (!document.local_maps.empty()) {
     document.map_id = storage::map_id_of(document.local_maps.front().stop.session);
   }
   const auto scope = times_.measure("map_store");
   document.global_map = fuse(config_.global_map, document.local_maps, document.trajectory);
+  if (maps_) remember_rooms(document, config_.hybrid_map);
   return document;
 }
 

@@ -45,6 +45,16 @@ const Place* find_place(std::span<const Place> places, std::string_view name) {
   return count == 1 ? alike : nullptr;
 }
 
+const Place* find_base_station(std::span<const Place> places, std::string_view name) {
+  const Place* named = find_place(places, name);
+  if (named != nullptr && named->station_heading_rad) return named;
+  const auto is_station = [](const Place& place) { return place.station_heading_rad.has_value(); };
+  if (std::count_if(places.begin(), places.end(), is_station) == 1) {
+    return &*std::find_if(places.begin(), places.end(), is_station);
+  }
+  return named;
+}
+
 std::vector<std::string> similar_names(std::span<const Place> places, std::string_view name,
                                        std::size_t most) {
   const std::string small = in_small_letters(name);

@@ -23,7 +23,7 @@ void RoomNumbers::assign(const GridFrame& frame, std::span<const topomap::StopPo
   const Poses poses = poses_of(stops);
   find_again(frame, poses, zones);
   for (Zone& zone : zones.zones) {
-    if (zone.room == 0) zone.room = ++last_;
+    if (zone.room == 0) zone.room = ++memory_.last;
   }
   keep_places(frame, poses, zones, places);
   name(frame, places, zones);
@@ -38,8 +38,8 @@ RoomNumbers::Poses RoomNumbers::poses_of(std::span<const topomap::StopPose> stop
   return poses;
 }
 
-RoomNumbers::Point RoomNumbers::point_at(const Eigen::Vector2d& position_m, const Poses& poses) {
-  Point point{std::nullopt, position_m};
+RoomPoint RoomNumbers::point_at(const Eigen::Vector2d& position_m, const Poses& poses) {
+  RoomPoint point{std::nullopt, position_m};
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const auto& [key, T_map_stop] : poses) {
     const double away_m = (T_map_stop.position_m() - position_m).norm();
@@ -50,7 +50,8 @@ RoomNumbers::Point RoomNumbers::point_at(const Eigen::Vector2d& position_m, cons
   return point;
 }
 
-std::optional<Eigen::Vector2d> RoomNumbers::position_of(const Point& point, const Poses& poses) {
+std::optional<Eigen::Vector2d> RoomNumbers::position_of(const RoomPoint& point,
+                                                        const Poses& poses) {
   if (!point.stop) return point.position_m;
   const auto found = poses.find(*point.stop);
   if (found == poses.end()) return std::nullopt;
@@ -59,10 +60,10 @@ std::optional<Eigen::Vector2d> RoomNumbers::position_of(const Point& point, cons
 
 void RoomNumbers::find_again(const GridFrame& frame, const Poses& poses, ZoneMap& zones) const {
   // Common floor in cells, room, zone.
-  std::vector<std::tuple<double, const Room*, ZoneId>> common;
-  for (const Room& room : rooms_) {
+  std::vector<std::tuple<double, const RememberedRoom*, ZoneId>> common;
+  for (const RememberedRoom& room : memory_.rooms) {
     std::map<ZoneId, std::size_t> votes;
-    for (const Point& point : room.points) {
+    for (const RoomPoint& point : room.points) {
       const auto at_m = position_of(point, poses);
       if (at_m) ++votes[zone_at(frame, zones, *at_m)];
     }
@@ -75,7 +76,7 @@ void RoomNumbers::find_again(const GridFrame& frame, const Poses& poses, ZoneMap
   std::stable_sort(common.begin(), common.end(),
                    [](const auto& a, const auto& b) { return std::get<0>(a) > std::get<0>(b); });
   constexpr double kSame = 0.5;  // of the smaller of the two
-  std::vector<const Room*> taken;
+  std::vector<const RememberedRoom*> taken;
   for (const auto& [cells, room, id] : common) {
     Zone& zone = zones.zones[id];
     if (zone.room != 0 || std::find(taken.begin(), taken.end(), room) != taken.end()) continue;
@@ -88,20 +89,31 @@ void RoomNumbers::find_again(const GridFrame& frame, const Poses& poses, ZoneMap
 
 void RoomNumbers::keep_places(const GridFrame& frame, const Poses& poses, const ZoneMap& zones,
                               std::vector<Place>& places) {
+  std::erase_if(memory_.places, [&](const RememberedPlace& kept) {
+    return std::find(places.begin(), places.end(), kept.drawn) == places.end();
+  });
   for (Place& place : places) {
-    const auto kept = places_.find(place.name);
+    const auto kept = std::find_if(memory_.places.begin(), memory_.places.end(),
+                                   [&](const RememberedPlace& k) { return k.drawn == place; });
     const auto room_at = [&](const Eigen::Vector2d& at_m) {
       const ZoneId zone = zone_at(frame, zones, at_m);
       return zone == kNoZone ? 0 : zones.zones[zone].room;
     };
     const std::uint32_t room = room_at(place.position_m);
-    if (kept == places_.end()) {
-      if (room != 0) places_[place.name] = {room, point_at(place.position_m, poses)};
+    if (kept == memory_.places.end()) {
+      const RoomPoint point = point_at(place.position_m, poses);
+      const double heading_rad = point.stop ? poses.at(*point.stop).theta_rad : 0.0;
+      if (room != 0) memory_.places.push_back({place, room, point, heading_rad});
       continue;
     }
-    if (room == kept->second.room) continue;
-    const auto moved_m = position_of(kept->second.point, poses);
-    if (moved_m && room_at(*moved_m) == kept->second.room) place.position_m = *moved_m;
+    if (room == kept->room) continue;
+    const auto moved_m = position_of(kept->point, poses);
+    if (!moved_m || room_at(*moved_m) != kept->room) continue;
+    place.position_m = *moved_m;
+    if (place.station_heading_rad && kept->point.stop) {
+      const double turned_rad = poses.at(*kept->point.stop).theta_rad - kept->stop_heading_rad;
+      place.station_heading_rad = geometry::wrap_angle(*place.station_heading_rad + turned_rad);
+    }
   }
 }
 
@@ -121,10 +133,10 @@ void RoomNumbers::name(const GridFrame& frame, const std::vector<Place>& places,
 
 void RoomNumbers::remember(const GridFrame& frame, const Poses& poses, const ZoneMap& zones) {
   constexpr std::size_t kPoints = 64;  // a share is then exact to some per cent
-  rooms_.clear();
+  memory_.rooms.clear();
   for (const Zone& zone : zones.zones) {
     const bool named = zone.name != name_of(zone.room);
-    rooms_.push_back({zone.room, zone.cells, {}, named ? zone.name : ""});
+    memory_.rooms.push_back({zone.room, zone.cells, {}, named ? zone.name : ""});
   }
   std::vector<std::size_t> seen(zones.zones.size(), 0);
   for (std::size_t i = 0; i < zones.zone_of_cell.size(); ++i) {
@@ -136,8 +148,10 @@ void RoomNumbers::remember(const GridFrame& frame, const Poses& poses, const Zon
     const std::size_t before = seen[zone] * wanted / cells;
     ++seen[zone];
     if (seen[zone] * wanted / cells == before) continue;
-    rooms_[zone].points.push_back(point_at(frame.center_m(frame.cell_at(i)), poses));
+    memory_.rooms[zone].points.push_back(point_at(frame.center_m(frame.cell_at(i)), poses));
   }
+  std::sort(memory_.rooms.begin(), memory_.rooms.end(),
+            [](const auto& a, const auto& b) { return a.number < b.number; });
 }
 
 }  // namespace topogeo::planning

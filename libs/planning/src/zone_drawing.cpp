@@ -88,9 +88,13 @@ ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& sourc
   }
   std::set<std::string> place_names;
   for (const YamlNode& node : root.at("places").items("a place")) {
-    node.allow_keys({"name", "at"});
-    drawing.places.push_back(
-        {new_name(node.at("name"), place_names), drawn_point_of(node.at("at"))});
+    node.allow_keys({"name", "at", "heading"});
+    Place& place = drawing.places.emplace_back();
+    place.name = new_name(node.at("name"), place_names);
+    place.position_m = drawn_point_of(node.at("at"));
+    if (const YamlNode heading = node.at("heading"); heading.exists()) {
+      place.station_heading_rad = heading.number(-std::numbers::pi, std::numbers::pi, "rad");
+    }
   }
   return drawing;
 }

@@ -62,6 +62,15 @@ ZoneLabels no_labels(const FreeSpace& space) {
 
 }  // namespace
 
+Place moved(const Place& place, const geometry::Pose2& T) {
+  Place out = place;
+  out.position_m = T * place.position_m;
+  if (place.station_heading_rad) {
+    out.station_heading_rad = geometry::wrap_angle(*place.station_heading_rad + T.theta_rad);
+  }
+  return out;
+}
+
 std::vector<Passage> passages_of(const GlobalMap& map) {
   std::map<std::uint32_t, std::vector<Eigen::Vector2d>> ahead_of_node;
   for (const MapBranch& branch : map.branches) {

@@ -93,6 +93,7 @@ class RouteDrawing {
       const Eigen::Vector2d at_px = to_px(place.position_m);
       set_colour(cr, kBranch);
       draw_text_centred(cr, place.name, at_px.x(), at_px.y() - 5.0, 12.0);
+      if (place.station_heading_rad) draw_arrow(cr, place);
       circle(cr, at_px, 2.5);
       fill_and_edge(cr, kBranch, kWhite, 0.5);
     }
@@ -106,6 +107,30 @@ class RouteDrawing {
   }
   [[nodiscard]] Eigen::Vector2d to_px(const Eigen::Vector2d& point_m) const {
     return cells_to_px(map_.frame().in_cells(point_m));
+  }
+
+  // As long as a robot: how one stands on a base station.
+  void draw_arrow(cairo_t* cr, const planning::Place& station) const {
+    constexpr double kLength_m = 0.8;
+    constexpr double kBarb_m = 0.25;
+    constexpr double kBarb_rad = 2.6;
+    const double heading_rad = *station.station_heading_rad;
+    const auto at = [&](const Eigen::Vector2d& from_m, double length_m, double angle_rad) {
+      return Eigen::Vector2d(from_m +
+                             length_m * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)));
+    };
+    const Eigen::Vector2d tip_m = at(station.position_m, kLength_m, heading_rad);
+    set_colour(cr, kBranch);
+    cairo_set_line_width(cr, 1.5);
+    for (const Eigen::Vector2d& from_m :
+         {station.position_m, at(tip_m, kBarb_m, heading_rad + kBarb_rad),
+          at(tip_m, kBarb_m, heading_rad - kBarb_rad)}) {
+      const Eigen::Vector2d from_px = to_px(from_m);
+      const Eigen::Vector2d tip_px = to_px(tip_m);
+      cairo_move_to(cr, from_px.x(), from_px.y());
+      cairo_line_to(cr, tip_px.x(), tip_px.y());
+      cairo_stroke(cr);
+    }
   }
 
   // So many cells from one on to the right.

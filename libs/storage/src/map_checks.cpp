@@ -79,6 +79,7 @@ void check_document(const MapDocument& document) {
   check_sessions(document.local_maps);
   check_global_map(document.global_map);
   check(document.drawing);
+  check_rooms(document.rooms);
 }
 
 }  // namespace topogeo::storage

@@ -29,6 +29,9 @@ void to_proto(const planning::OccupancyGrid& grid, proto::DrawnGrid* out);
 /// What is drawn must have passed check(MapDrawing).
 void to_proto(const MapDrawing& drawing, proto::Drawing* out);
 void to_proto(const RefusedMerge& refused, proto::RefusedMerge* out);
+void to_proto(const planning::RememberedRoom& room, proto::Room* out);
+void to_proto(const planning::RememberedPlace& place, proto::PlaceInRoom* out);
+void to_proto(const planning::RoomMemory& rooms, proto::Rooms* out);
 
 topomap::LocalMap from_proto(const proto::LocalMap& in);
 topomap::StopPose from_proto(const proto::StopPose& in);
@@ -41,11 +44,15 @@ geometry::Pose2 from_proto(const proto::Pose2& in, const char* what);
 planning::Place from_proto(const proto::Place& in);
 planning::DrawnZone from_proto(const proto::DrawnZone& in);
 planning::OccupancyGrid from_proto(const proto::DrawnGrid& in);
-MapDrawing from_proto(const proto::Drawing& in);  ///< checked with check(MapDrawing)
+planning::RememberedRoom from_proto(const proto::Room& in);
+planning::RememberedPlace from_proto(const proto::PlaceInRoom& in);
+planning::RoomMemory from_proto(const proto::Rooms& in);  ///< checked with check_rooms()
+MapDrawing from_proto(const proto::Drawing& in);          ///< checked with check(MapDrawing)
 
 /// Throws std::runtime_error unless ids, robot ids and references between the parts fit together.
 void check_document(const MapDocument& document);
 void check_global_map(const topomap::GlobalMap& map);
+void check_rooms(const planning::RoomMemory& rooms);
 void check_edges(const std::vector<MapEdge>& edges, std::size_t map_count);
 
 /// Makes the std::runtime_error of a check a std::invalid_argument that names the file.

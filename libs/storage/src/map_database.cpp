@@ -88,7 +88,11 @@ void MapDatabase::migrate() {
   database_->exec("PRAGMA foreign_keys=OFF");  // which changes nothing inside of a transaction
   SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
   // Another program may have done it meanwhile.
-  if (stored_version(*database_) != kSchemaVersion) {
+  const std::int64_t version = stored_version(*database_);
+  if (version == 2) {
+    make_version_3_of_2(*database_);
+    transaction.commit();
+  } else if (version != kSchemaVersion) {
     MapDocument document = take_version_1(*database_);
     require_valid(name_, "damaged: ", [&] { check_document(document); });
     create_tables(*database_, document.robot_id, document.seed);
@@ -219,6 +223,10 @@ void MapDatabase::put_refused_merges(std::span<const RefusedMerge> refused) {
   change([&] { tables_->write_refused_merges(refused); });
 }
 
+void MapDatabase::put_rooms(const planning::RoomMemory& rooms) {
+  change([&] { tables_->write_rooms(rooms); });
+}
+
 void MapDatabase::put_document(const MapDocument& document) {
   require_valid(name_, "map to be stored: ", [&] { check_document(document); });
   change([&] { write_document(identified(document)); });
@@ -244,6 +252,7 @@ void MapDatabase::write_document(const MapDocument& document) {
   tables_->write_global_map(document.global_map);
   tables_->write_drawing(document.drawing);
   if (!document.refused_merges.empty()) tables_->write_refused_merges(document.refused_merges);
+  if (!document.rooms.empty()) tables_->write_rooms(document.rooms);
 }
 
 MapDocument MapDatabase::load() const try {

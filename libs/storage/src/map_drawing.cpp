@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -114,6 +115,9 @@ void check(const MapDrawing& drawing) {
   for (const planning::Place& place : drawing.places) {
     check_name("place", place.name, taken);
     check_point("place", place.name, place.position_m);
+    const double heading_rad = place.station_heading_rad.value_or(0.0);
+    require_drawing(std::fabs(heading_rad) <= std::numbers::pi,
+                    "place '{}': heading {}, allowed are -pi to pi", place.name, heading_rad);
   }
   require_drawing(drawing.zones.size() <= kMaxDrawnZones, "{} zones, allowed are {}",
                   drawing.zones.size(), kMaxDrawnZones);
@@ -133,10 +137,13 @@ void to_proto(const planning::Place& place, proto::Place* out) {
   out->set_name(place.name);
   out->set_x_m(place.position_m.x());
   out->set_y_m(place.position_m.y());
+  if (place.station_heading_rad) out->set_station_heading_rad(*place.station_heading_rad);
 }
 
 planning::Place from_proto(const proto::Place& in) {
-  return {in.name(), {in.x_m(), in.y_m()}};
+  planning::Place place{in.name(), {in.x_m(), in.y_m()}};
+  if (in.has_station_heading_rad()) place.station_heading_rad = in.station_heading_rad();
+  return place;
 }
 
 void to_proto(const planning::DrawnZone& zone, proto::DrawnZone* out) {

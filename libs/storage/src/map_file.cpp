@@ -86,6 +86,7 @@ MapDocument document_from_proto(const proto::MapFile& in) {
   for (const auto& refused : in.refused_merges()) {
     document.refused_merges.push_back(from_proto(refused));
   }
+  if (in.has_rooms()) document.rooms = from_proto(in.rooms());
   check_document(document);
   name_stops(document);
   return document;

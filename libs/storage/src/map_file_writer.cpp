@@ -52,6 +52,7 @@ void MapFileWriter::finish(const MapDocument& rest) {
   for (const RefusedMerge& refused : rest.refused_merges) {
     to_proto(refused, fields.add_refused_merges());
   }
+  if (!rest.rooms.empty()) to_proto(rest.rooms, fields.mutable_rooms());
   write(fields);
   // The checksum has the largest number, so it comes last. It is written by hand because Protobuf
   // would leave out a checksum of zero.

@@ -68,6 +68,14 @@ constexpr const char* kSchema = R"(
   CREATE TABLE drawn_grid(id INTEGER PRIMARY KEY, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
 )";
 
+// New in version 3: the rooms that have numbers, by number, and the places that lie in them.
+constexpr const char* kRoomTables = R"(
+  CREATE TABLE room(
+    id INTEGER PRIMARY KEY, name TEXT NOT NULL, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
+  CREATE TABLE room_place(
+    id INTEGER PRIMARY KEY, name TEXT NOT NULL, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
+)";
+
 std::int64_t pragma(SQLite::Database& database, const char* name) {
   const SQLite::Column value = database.execAndGet(fmt::format("PRAGMA {}", name));
   return value.getInt64();
@@ -170,6 +178,7 @@ std::unique_ptr<SQLite::Database> copy_in_memory(SQLite::Database& database) {
 
 void create_tables(SQLite::Database& database, const std::string& robot_id, std::uint64_t seed) {
   database.exec(kSchema);
+  database.exec(kRoomTables);
   database.exec(fmt::format("PRAGMA application_id={}; PRAGMA user_version={}", kApplicationId,
                             MapDatabase::kSchemaVersion));
   write_meta(database, "robot_id", robot_id);
@@ -177,6 +186,11 @@ void create_tables(SQLite::Database& database, const std::string& robot_id, std:
   for (const char* number : {"map_id", "trajectory_version", "global_map_version"}) {
     write_meta(database, number, "0");
   }
+}
+
+void make_version_3_of_2(SQLite::Database& database) {
+  database.exec(kRoomTables);
+  database.exec("PRAGMA user_version=3");
 }
 
 MapDocument take_version_1(SQLite::Database& database) {

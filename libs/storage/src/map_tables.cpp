@@ -27,6 +27,8 @@ void MapTables::read() {
   read_hashes("edge", edge_hashes_);
   read_hashes("map_node", node_hashes_);
   read_hashes("map_branch", branch_hashes_);
+  read_hashes("room", room_hashes_);
+  read_hashes("room_place", room_place_hashes_);
 }
 
 void MapTables::write_trajectory(std::uint64_t version, std::span<const topomap::StopPose> changed,
@@ -135,6 +137,27 @@ void MapTables::write_drawing(const MapDrawing& drawing) {
   }
 }
 
+void MapTables::write_rooms(const planning::RoomMemory& rooms) {
+  require_valid(file_, "", [&] { check_rooms(rooms); });
+  TableWriter room_writer(database_, "room", ", name", ", ?");
+  for (const planning::RememberedRoom& room : rooms.rooms) {
+    room_writer.put(room_hashes_, room.number, to_blob<proto::Room>(room), {}, {room.name});
+  }
+  room_writer.remove_others(room_hashes_, [&](std::uint32_t number) {
+    return std::ranges::find(rooms.rooms, number, &planning::RememberedRoom::number) !=
+           rooms.rooms.end();
+  });
+  TableWriter place_writer(database_, "room_place", ", name", ", ?");
+  for (std::size_t i = 0; i < rooms.places.size(); ++i) {
+    place_writer.put(room_place_hashes_, static_cast<std::uint32_t>(i),
+                     to_blob<proto::PlaceInRoom>(rooms.places[i]), {},
+                     {rooms.places[i].drawn.name});
+  }
+  place_writer.remove_others(room_place_hashes_,
+                             [&](std::uint32_t id) { return id < rooms.places.size(); });
+  write_meta(database_, "last_room", std::to_string(rooms.last));
+}
+
 void MapTables::load(MapDocument& document) const {
   document.robot_id = read_meta(database_, "robot_id");
   document.seed = read_meta_number(database_, "seed");
@@ -153,6 +176,9 @@ void MapTables::load(MapDocument& document) const {
   read_table<proto::DrawnGrid>(database_, file_, "drawn_grid", grids);
   if (!grids.empty()) document.drawing.grid = std::move(grids.front());
   document.refused_merges = refused_merges();
+  read_table<proto::Room>(database_, file_, "room", document.rooms.rooms);
+  read_table<proto::PlaceInRoom>(database_, file_, "room_place", document.rooms.places);
+  document.rooms.last = static_cast<std::uint32_t>(read_meta_number_or(database_, "last_room", 0));
 }
 
 // Few and short: a value of their own, so that programs of before read the file as well.

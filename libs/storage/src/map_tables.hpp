@@ -33,6 +33,7 @@ class MapTables {
   void write_global_map(const topomap::GlobalMap& map);
   void write_drawing(const MapDrawing& drawing);
   void write_refused_merges(std::span<const RefusedMerge> refused);
+  void write_rooms(const planning::RoomMemory& rooms);
 
   /// All of a map but its local maps, not checked as a whole.
   void load(MapDocument& document) const;
@@ -53,6 +54,8 @@ class MapTables {
   BlobHashes edge_hashes_;
   BlobHashes node_hashes_;
   BlobHashes branch_hashes_;
+  BlobHashes room_hashes_;
+  BlobHashes room_place_hashes_;
 };
 
 }  // namespace topogeo::storage

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -169,13 +170,17 @@ class WorldParser {
   }
 
   void add_place(const YamlNode& node) {
-    node.allow_keys({"name", "at"});
+    node.allow_keys({"name", "at", "heading"});
     const std::string name = node.required("name").text();
     const auto has_name = [&](const NamedPlace& place) { return place.name == name; };
     if (name.empty() || std::ranges::any_of(world_.places, has_name)) {
       node.at("name").fail("a name that is not empty, each once");
     }
-    world_.places.push_back({name, point_of(node.required("at"))});
+    NamedPlace place{name, point_of(node.required("at"))};
+    if (const YamlNode heading = node.at("heading"); heading.exists()) {
+      place.station_heading_rad = heading.number(-std::numbers::pi, std::numbers::pi, "rad");
+    }
+    world_.places.push_back(std::move(place));
   }
 
   void add_room(const YamlNode& node) {

@@ -161,7 +161,7 @@ msg::LivePose to_msg(const LivePose& pose, std::string_view robot_id) {
 
 LivePose from_msg(const msg::LivePose& message) {
   check(message.state() <= msg::kStateLost, "state", "0 to 3");
-  check(message.mode() <= msg::kModeLocalization, "mode", "0 or 1");
+  check(message.mode() <= msg::kModeMarkov, "mode", "0 to 2");
   check(message.confidence() >= 0.0 && message.confidence() <= 1.0, "confidence", "0 to 1");
   return {message.stamp_ns(),
           message.sequence_number(),

@@ -67,6 +67,7 @@ void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
     constexpr auto kMost = std::remove_cvref_t<decltype(entry.name())>::max_size;
     messaging::set_text(entry.name(), fitting(zone.name, kMost), "zone");
     entry.area_m2(static_cast<double>(zone.cells) * cell_m2);
+    entry.room(zone.room);
   }
   check_bound("rules", map.space().rules().zones().size(), msg::kMaxRules);
   for (const planning::DrawnZone& zone : map.space().rules().zones()) {
@@ -84,6 +85,8 @@ void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
     msg::HybridPlace& entry = out.places().emplace_back();
     messaging::set_text(entry.name(), place.name, "place");
     entry.position(to_point(place.position_m));
+    entry.is_station(place.station_heading_rad.has_value());
+    entry.heading_rad(place.station_heading_rad.value_or(0.0));
   }
 }
 
@@ -135,6 +138,7 @@ HybridMapMessages to_messages(const planning::HybridMap& map, std::string_view r
   summary.T_map_grid(to_msg(map.frame().T_map_grid));
   summary.forbidden_cells(map.space().inflation().forbidden_cells);
   summary.inflate_unknown(map.space().inflation().inflate_unknown);
+  summary.pocket_m2(map.space().inflation().min_pocket_m2);
   summary.tile_versions().assign(layout.count(), version);
   add_zones_and_places(map, summary);
   add_graph(map, summary);

@@ -1,6 +1,8 @@
 #include "topogeo/service/hybrid_map_mirror.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -21,7 +23,7 @@ namespace {
 static_assert(msg::kNoZone == planning::kNoZone);
 
 planning::InflationConfig inflation_of(const msg::HybridMap& summary) {
-  return {summary.forbidden_cells(), summary.inflate_unknown(), planning::kPocket_m2};
+  return {summary.forbidden_cells(), summary.inflate_unknown(), summary.pocket_m2()};
 }
 
 void check_zones_and_places(const msg::HybridMap& summary) {
@@ -46,6 +48,7 @@ void check_zones_and_places(const msg::HybridMap& summary) {
           "names that are not empty and not taken");
     finite(place.position().x_m(), "position of a place");
     finite(place.position().y_m(), "position of a place");
+    check(std::fabs(place.heading_rad()) <= std::numbers::pi, "heading of a place", "-pi to pi");
   }
 }
 
@@ -94,6 +97,7 @@ planning::ZoneMap zone_map(const planning::GridFrame& frame,
     planning::Zone& zone = map.zones.emplace_back();
     zone.id = static_cast<planning::ZoneId>(map.zones.size() - 1);
     zone.name = entry.name().to_string();
+    zone.room = entry.room();
   }
   for (std::size_t i = 0; i < map.zone_of_cell.size(); ++i) {
     const planning::ZoneId id = map.zone_of_cell[i];
@@ -177,7 +181,10 @@ std::shared_ptr<const planning::HybridMap> HybridMapMirror::build() const {
   }
   std::vector<planning::Place> places;
   for (const msg::HybridPlace& place : summary_->places()) {
-    places.push_back({place.name().to_string(), {place.position().x_m(), place.position().y_m()}});
+    planning::Place& known = places.emplace_back();
+    known.name = place.name().to_string();
+    known.position_m = {place.position().x_m(), place.position().y_m()};
+    if (place.is_station()) known.station_heading_rad = place.heading_rad();
   }
   return std::make_shared<const planning::HybridMap>(
       planning::FreeSpace(std::move(grid), inflation_of(*summary_), rules_of(*summary_)),

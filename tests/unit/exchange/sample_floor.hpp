@@ -45,7 +45,7 @@ inline topomap::GlobalMap sample_graph() {
 
 inline storage::MapDrawing sample_drawing() {
   storage::MapDrawing drawing;
-  drawing.places = {{"room <A> & \"B\"", {0.0, -0.6}}, {"Küche", {8.0, 1.0 / 3.0}}};
+  drawing.places = {{"room <A> & \"B\"", {0.0, -0.6}}, {"Küche", {8.0, 1.0 / 3.0}, -2.0 / 3.0}};
   // The last two lie on the two parallel branches; the hall goes round clockwise.
   using planning::ZoneKind;
   drawing.zones = {
@@ -89,6 +89,7 @@ inline void expect_same_places(const storage::MapDrawing& a, const storage::MapD
   for (std::size_t i = 0; i < a.places.size(); ++i) {
     EXPECT_EQ(a.places[i].name, b.places[i].name);
     EXPECT_EQ(a.places[i].position_m, b.places[i].position_m);
+    EXPECT_EQ(a.places[i].station_heading_rad, b.places[i].station_heading_rad);
   }
 }
 

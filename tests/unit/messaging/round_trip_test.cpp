@@ -46,6 +46,17 @@ void fill(msg::Sonar& sonar) {
   sonar.echoes().assign(24, echo);
 }
 
+void fill(msg::BodySensors& body) {
+  msg::InfraredReading reading;
+  reading.T_robot_sensor(pose(0.2));
+  reading.range_m(0.25F);
+  body.infrared().assign(msg::kMaxInfrared, reading);
+  body.body_pressed(0x800001);
+  body.body_panels(24);
+  body.base_pressed(0x80000000);
+  body.base_panels(32);
+}
+
 void fill(msg::BaseStatus& status) {
   status.state(msg::kBaseBumped);
   status.battery_v(47.5F);

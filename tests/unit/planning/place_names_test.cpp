@@ -34,5 +34,22 @@ TEST(PlaceNames, SimilarNamesAreThoseOfFewestChanges) {
   EXPECT_EQ(similar_names(kPlaces, "", 9).size(), kPlaces.size());
 }
 
+TEST(PlaceNames, BaseStationByItsNameOrAsTheOnlyOne) {
+  std::vector<Place> places{{"base station", {1.0, 2.0}}, {"dock", {3.0, 4.0}, 0.5}};
+  EXPECT_EQ(find_base_station(places, "Dock")->name, "dock");
+  EXPECT_EQ(find_base_station(places, "base station")->name, "dock") << "the other has no heading";
+  places.push_back({"lift", {5.0, 6.0}, 1.5});
+  EXPECT_EQ(find_base_station(places, "lift")->name, "lift");
+  EXPECT_EQ(find_base_station(places, "base station")->name, "base station");
+  EXPECT_EQ(find_base_station(places, "yard"), nullptr) << "two could be meant";
+}
+
+TEST(PlaceNames, BaseStationTurnsWithItsFrame) {
+  const Place moved_place = moved({"dock", {1.0, 0.0}, 3.0}, {10.0, 0.0, M_PI_2});
+  EXPECT_NEAR((moved_place.position_m - Eigen::Vector2d(10.0, 1.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(*moved_place.station_heading_rad, 3.0 + M_PI_2 - 2.0 * M_PI, 1e-12);
+  EXPECT_FALSE(moved({"room", {1.0, 0.0}}, {10.0, 0.0, M_PI_2}).station_heading_rad);
+}
+
 }  // namespace
 }  // namespace topogeo::planning

@@ -109,6 +109,66 @@ TEST(RoomNumbers, KeepTheNameOfThePlaceInTheRoom) {
   EXPECT_NEAR(after.places[0].position_m.x(), 22.5, 1e-9);
 }
 
+// As over a restart: the second one knows what the first one remembered, and the map has moved.
+TEST(RoomNumbers, GoOnFromWhatAnotherOneRemembered) {
+  RoomNumbers before;
+  const std::vector<Place> places{{"kitchen", {13.5, 2.5}, 0.5}};
+  const Numbered first = number(before, row_of_rooms(0, false), 0.0, places);
+  ASSERT_EQ(first.zones.zones.size(), 2U);
+  static_cast<void>(number(before, row_of_rooms(), 0.0, places));
+  RoomNumbers after(before.memory());
+  EXPECT_EQ(after.memory(), before.memory());
+  const Numbered moved = number(after, row_of_rooms(9), 9.0, places);
+  EXPECT_EQ(room_at(moved.space, moved.zones, {29, 3}), 2U);
+  EXPECT_EQ(room_at(moved.space, moved.zones, {21, 3}), 3U);
+  EXPECT_EQ(name_at(moved.space, moved.zones, {29, 3}), "kitchen");
+  RoomNumbers anew;
+  const Numbered other = number(anew, row_of_rooms(9), 9.0);
+  EXPECT_NE(room_at(other.space, other.zones, {21, 3}), 3U) << "else this shows nothing";
+}
+
+// The map has turned by a quarter around its origin: the arrow of a base station turns with it.
+TEST(RoomNumbers, TurnTheBaseStationWithItsRoom) {
+  const auto on_its_side = [](const FreeSpace& space) {
+    const GridFrame& frame = space.frame();
+    GridFrame turned;
+    turned.columns = frame.rows;
+    turned.rows = frame.columns;
+    turned.resolution_m = frame.resolution_m;
+    turned.T_map_grid = {-static_cast<double>(frame.rows) * frame.resolution_m, 0.0, 0.0};
+    OccupancyGrid grid(turned);
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      const Cell cell = frame.cell_at(i);
+      grid.set({frame.rows - 1 - cell.row, cell.column}, space.grid().at(cell));
+    }
+    InflationConfig config;
+    config.forbidden_cells = 0.0;
+    return FreeSpace(std::move(grid), config);
+  };
+  RoomNumbers numbers;
+  const std::vector<Place> places{{"base station", {13.5, 2.5}, 1.0}};
+  const Numbered before = number(numbers, row_of_rooms(), 0.0, places);
+  EXPECT_EQ(before.places[0], places[0]);
+  FreeSpace space = on_its_side(row_of_rooms());
+  std::vector<topomap::StopPose> stops = stops_at(0.0);
+  for (topomap::StopPose& stop : stops)
+    stop.T_map_robot = geometry::Pose2{0.0, 0.0, M_PI_2} * stop.T_map_robot;
+  ZoneMap zones = zones_of_rooms(space, {}, no_least_size());
+  std::vector<Place> after = places;
+  numbers.assign(space.frame(), stops, zones, after);
+  EXPECT_NEAR((after[0].position_m - Eigen::Vector2d(-2.5, 13.5)).norm(), 0.0, 1e-9);
+  ASSERT_TRUE(after[0].station_heading_rad);
+  EXPECT_NEAR(*after[0].station_heading_rad, 1.0 + M_PI_2, 1e-9);
+}
+
+// Who puts it elsewhere by hand means that.
+TEST(RoomNumbers, LeaveAPlaceThatWasDrawnAnew) {
+  RoomNumbers numbers;
+  static_cast<void>(number(numbers, row_of_rooms(), 0.0, {{"kitchen", {13.5, 2.5}}}));
+  const Numbered after = number(numbers, row_of_rooms(), 0.0, {{"kitchen", {4.5, 2.5}}});
+  EXPECT_EQ(after.places[0].position_m, Eigen::Vector2d(4.5, 2.5));
+}
+
 TEST(RoomNumbers, OfAFloorWithoutStopsStayWhereTheRoomsAre) {
   RoomNumbers numbers;
   const FreeSpace space = row_of_rooms();

@@ -196,14 +196,15 @@ TEST(ZoneDrawing, ReadsZonesAndPlaces) {
       "zones:\n"
       "  - {name: hall, polygon: [[0, 0], [4, 0], [4, 3]]}\n"
       "places:\n"
-      "  - {name: room A, at: [1.5, 2.0]}\n",
+      "  - {name: room A, at: [1.5, 2.0]}\n"
+      "  - {name: dock, at: [0.5, 1], heading: 1.5}\n",
       "floor");
   ASSERT_EQ(drawing.zones.size(), 1U);
   EXPECT_EQ(drawing.zones[0].name, "hall");
   EXPECT_EQ(drawing.zones[0].polygon_m[2], Eigen::Vector2d(4, 3));
-  ASSERT_EQ(drawing.places.size(), 1U);
-  EXPECT_EQ(drawing.places[0].name, "room A");
-  EXPECT_EQ(drawing.places[0].position_m, Eigen::Vector2d(1.5, 2.0));
+  const Place room{"room A", {1.5, 2.0}};
+  const Place dock{"dock", {0.5, 1.0}, 1.5};
+  EXPECT_EQ(drawing.places, (std::vector<Place>{room, dock}));
 }
 
 TEST(ZoneDrawing, ReadsWhatAZoneIsFor) {
@@ -235,6 +236,7 @@ TEST(ZoneDrawing, NamesTheLineOfWhatIsWrong) {
   expect("places:\n  - {name: a, at: [1, .inf]}", "f.yaml:2: at", "a number from");
   expect("places:\n  - {name: '', at: [1, 2]}", "f.yaml:2: name", "a text");
   expect("places:\n  - {at: [1, 2]}", "name", "a text");
+  expect("places:\n  - {name: a, at: [1, 2], heading: 4}", "f.yaml:2: heading", "a number from");
   expect("places:\n  - {name: a, at: [1, 2]}\n  - {name: a, at: [1, 2]}", "f.yaml:3: name",
          "each name once");
   expect("zones:\n  - {name: a, polygon: [[1, 2], [3, 4]]}", "f.yaml:2: polygon", "three corners");

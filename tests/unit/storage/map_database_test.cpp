@@ -66,6 +66,39 @@ TEST_F(MapDatabaseFile, KeepsRefusedMerges) {
   EXPECT_THAT(opening_error(), HasSubstr("refused_merges is no list of pairs of stops"));
 }
 
+TEST_F(MapDatabaseFile, KeepsTheNumbersOfRooms) {
+  MapDocument document = identified(sample_document(2));
+  const topomap::StopId stop{0xfedcba9876543210ULL, 7};
+  document.rooms.rooms = {{1, 300, {{stop, {1.0, -0.5}}, {std::nullopt, {4.0, 2.0}}}, "kitchen"},
+                          {4, 12, {}, ""}};
+  document.rooms.places = {{{"kitchen", {3.0, 1.0}, 0.5}, 1, {stop, {0.25, 0.0}}, -1.5}};
+  document.rooms.last = 5;
+  store(document);
+  EXPECT_EQ(open().load().rooms, document.rooms);
+  document.rooms.rooms.erase(document.rooms.rooms.begin());
+  document.rooms.places.clear();
+  document.rooms.last = 6;
+  open().put_rooms(document.rooms);
+  EXPECT_EQ(read_map(path()).rooms, document.rooms);
+  EXPECT_EQ(parse_map_file(map_file_bytes(document), "file").rooms, document.rooms);
+}
+
+TEST_F(MapDatabaseFile, RefusesNumbersOfRoomsThatCannotBe) {
+  store(identified(sample_document(2)));
+  MapDatabase database = open();
+  planning::RoomMemory rooms{{{2, 1, {}, ""}}, {}, 2};
+  database.put_rooms(rooms);
+  const auto refusal = [&](const planning::RoomMemory& bad) {
+    return error_of([&] { database.put_rooms(bad); });
+  };
+  EXPECT_THAT(refusal({{{3, 1, {}, ""}}, {}, 2}), HasSubstr("room 3 after 0"));
+  EXPECT_THAT(refusal({{{0, 1, {}, ""}}, {}, 2}), HasSubstr("room 0 after 0"));
+  EXPECT_THAT(refusal({{{2, 1, {}, ""}, {2, 1, {}, ""}}, {}, 2}), HasSubstr("room 2 after 2"));
+  EXPECT_THAT(refusal({{}, {{{"a", {0.0, 0.0}}, 3, {}, 0.0}}, 2}),
+              HasSubstr("place 'a' in room 3"));
+  EXPECT_EQ(database.load().rooms, rooms);
+}
+
 TEST_F(MapDatabaseFile, GrowsAndChangesWithTheMap) {
   MapDocument document = identified(sample_document(3));
   store(document);

@@ -33,7 +33,7 @@ planning::OccupancyGrid sample_grid() {
 
 MapDrawing sample_drawing() {
   MapDrawing drawing;
-  drawing.places = {{"room B", {1.0 / 3.0, -2.0}}, {"Küche", {-0.0, 1e6}}};
+  drawing.places = {{"room B", {1.0 / 3.0, -2.0}}, {"Küche", {-0.0, 1e6}, -0.0}};
   drawing.zones = {{"hall", {{0, 0}, {4, 0}, {4, 0.1}}},
                    {"room B", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}},
                    {"stairs", {{5, 0}, {6, 0}, {6, 1}}, planning::ZoneKind::kNoGo},
@@ -48,6 +48,7 @@ void expect_equal(const MapDrawing& a, const MapDrawing& b) {
   for (std::size_t i = 0; i < a.places.size(); ++i) {
     EXPECT_EQ(a.places[i].name, b.places[i].name);
     EXPECT_EQ(a.places[i].position_m, b.places[i].position_m);
+    EXPECT_EQ(a.places[i].station_heading_rad, b.places[i].station_heading_rad);
   }
   ASSERT_EQ(a.zones.size(), b.zones.size());
   for (std::size_t i = 0; i < a.zones.size(); ++i) {
@@ -122,6 +123,10 @@ TEST(MapDrawingFile, RefusesWhatIsNoDrawing) {
               HasSubstr("no printable UTF-8"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.zones[0].name = "caf\xe9"; }),
               HasSubstr("no printable UTF-8"));
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.places[0].station_heading_rad = 3.2; }),
+              HasSubstr("place 'room B': heading 3.2, allowed are -pi to pi"));
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.places[0].station_heading_rad = kNan; }),
+              HasSubstr("place 'room B': heading nan"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.places[0].position_m.x() = kNan; }),
               HasSubstr("place 'room B': coordinate nan"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.zones[1].polygon_m[0].y() = 2e6; }),

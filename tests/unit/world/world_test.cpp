@@ -124,12 +124,14 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(World, HasThePlacesThatItNames) {
   const World world = parse_world(
       "segments: [[0, 0, 1, 1]]\n"
-      "places: [{name: room A, at: [1.5, -2]}, {name: hall, at: [0, 4]}]\n",
+      "places: [{name: room A, at: [1.5, -2]}, {name: hall, at: [0, 4], heading: -1.5}]\n",
       "w");
   ASSERT_EQ(world.places.size(), 2U);
   EXPECT_EQ(world.places[0].name, "room A");
   EXPECT_EQ(world.places[0].position_m, Eigen::Vector2d(1.5, -2.0));
   EXPECT_EQ(world.places[1].name, "hall");
+  EXPECT_FALSE(world.places[0].station_heading_rad);
+  EXPECT_EQ(world.places[1].station_heading_rad, -1.5);
 }
 
 TEST(World, TheOfficeFloorHasRoomForTheRobotAtItsPlaces) {

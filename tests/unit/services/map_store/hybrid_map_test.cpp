@@ -58,6 +58,7 @@ void expect_same(const planning::HybridMap& a, const planning::HybridMap& b) {
   EXPECT_EQ(a.frame().T_map_grid, b.frame().T_map_grid);
   EXPECT_EQ(a.space().inflation().forbidden_cells, b.space().inflation().forbidden_cells);
   EXPECT_EQ(a.space().inflation().inflate_unknown, b.space().inflation().inflate_unknown);
+  EXPECT_EQ(a.space().inflation().min_pocket_m2, b.space().inflation().min_pocket_m2);
   EXPECT_TRUE(std::ranges::equal(a.space().grid().cells(), b.space().grid().cells()));
   EXPECT_EQ(a.zones().zone_of_cell, b.zones().zone_of_cell);
   ASSERT_EQ(a.zones().zones.size(), b.zones().zones.size());
@@ -67,6 +68,7 @@ void expect_same(const planning::HybridMap& a, const planning::HybridMap& b) {
     EXPECT_EQ(left.id, right.id);
     EXPECT_EQ(left.name, right.name);
     EXPECT_EQ(left.cells, right.cells);
+    EXPECT_EQ(left.room, right.room);
     EXPECT_EQ(left.box.low, right.box.low);
     EXPECT_EQ(left.box.high, right.box.high);
   }
@@ -85,6 +87,7 @@ void expect_same(const planning::HybridMap& a, const planning::HybridMap& b) {
   for (std::size_t i = 0; i < a.places().size(); ++i) {
     EXPECT_EQ(a.places()[i].name, b.places()[i].name);
     EXPECT_EQ(a.places()[i].position_m, b.places()[i].position_m);
+    EXPECT_EQ(a.places()[i].station_heading_rad, b.places()[i].station_heading_rad);
   }
 }
 
@@ -95,9 +98,10 @@ void put_all(service::HybridMapMirror& mirror, const service::HybridMapMessages&
 
 TEST(HybridMapMessages, AMapComesBackToTheLastBit) {
   const planning::BlockFloor floor = planning::block_floor({}, 3);
-  const planning::FreeSpace space(floor.grid, {3.0, true});
-  const planning::HybridMap map(space, planning::drawn_zones(space, floor.rooms),
-                                {{"a", {1.0, 2.0}}});
+  const planning::FreeSpace space(floor.grid, {3.0, true, 0.75});
+  planning::ZoneMap zones = planning::drawn_zones(space, floor.rooms);
+  for (planning::Zone& zone : zones.zones) zone.room = zone.id + 5U;
+  const planning::HybridMap map(space, zones, {{"a", {1.0, 2.0}}, {"b", {2.0, 2.0}, -0.5}});
   ASSERT_GT(map.edges().size(), 5U);
   const auto messages = service::to_messages(map, "robot", 7, kVersion);
   EXPECT_EQ(messages.tiles.size(), 4U * 2U);
@@ -297,6 +301,8 @@ TEST(HybridMapMirror, RefusesNonsenseAndStaysAsItWas) {
   refused([](auto& s) { s.places()[1].name("left"); }, "place 'left'");
   refused([](auto& s) { s.places()[1].name(""); }, "place ''");
   refused([&](auto& s) { s.places()[0].position().y_m(nan); }, "position of a place is nan");
+  refused([&](auto& s) { s.places()[0].heading_rad(nan); }, "heading of a place");
+  refused([&](auto& s) { s.pocket_m2(nan); }, "min_pocket_m2");
   refused([&](auto& s) { s.zones()[0].area_m2(nan); }, "area of a zone is nan");
   refused([](auto& s) { s.nodes()[0].zone_b(9); }, "zone of a node: expected less than 2");
   refused([&](auto& s) { s.nodes()[0].clearance_m(nan); }, "clearance of a node");

@@ -26,6 +26,7 @@ struct HybridMapParts {
   std::span<const topomap::StopPose> stops;
   const topomap::GlobalMap* global_map = nullptr;
   const storage::MapDrawing* drawing = nullptr;
+  const planning::RoomMemory* rooms = nullptr;
 };
 HybridMapParts parts_of(const storage::MapDocument& document);
 
@@ -35,9 +36,14 @@ bool has_grid(const HybridMapParts& parts);
 /// Throws std::invalid_argument saying why when there is nothing to make a grid of (no drawing and
 /// no scan points), the grid would be too large, or the configuration is out of range. The lower
 /// left corner of a grid of scans lies at a multiple of config.grid.snap_cells. Rooms have the
-/// numbers and names that `rooms` remembers from the maps before, without it from 1 on.
+/// numbers and names that `rooms` remembers from the maps before, without it those that the parts
+/// remember.
 planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config,
                                     planning::RoomNumbers* rooms = nullptr);
+
+/// Numbers the rooms of a map from what the document remembers of them, and makes it remember what
+/// came of that. Nothing where no hybrid map can be made.
+void remember_rooms(storage::MapDocument& document, const HybridMapConfig& config);
 
 /// A drawn floor: the grid and the places of a world file (.world.yaml, see world/world.hpp)
 /// with cells of `resolution_m`, or the grid of a YAML file (see planning/grid_file.hpp). The names

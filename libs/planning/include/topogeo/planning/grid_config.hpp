@@ -24,8 +24,8 @@ struct ScanGridConfig {
 struct InflationConfig {
   double forbidden_cells = 3.0;
   bool inflate_unknown = false;  ///< unknown cells themselves are always forbidden
-  /// What hangs together and is smaller is forbidden, too; >= 0. Not in the configuration file: who
-  /// sends a hybrid map and who gets it use kPocket_m2.
+  /// What hangs together and is smaller is forbidden, too; >= 0. Not in the configuration file, but
+  /// sent with a hybrid map.
   double min_pocket_m2 = 0.0;
 };
 inline constexpr double kPocket_m2 = 1.0;

@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/geometry/pose2.hpp"
 #include "topogeo/planning/drawn_zone.hpp"
 #include "topogeo/planning/free_space.hpp"
 #include "topogeo/planning/grid_config.hpp"
@@ -80,7 +81,15 @@ ZoneMap drawn_zones(const FreeSpace& space, std::span<const DrawnZone> drawn,
 struct Place {
   std::string name;
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< map frame
+  /// Of a base station, on which a robot is put to be found (MACONDO, III.3): the heading of who
+  /// stands there, (-pi, pi], map frame. Other places have none.
+  std::optional<double> station_heading_rad = std::nullopt;
+
+  friend bool operator==(const Place&, const Place&) = default;
 };
+
+/// The same place in a frame in which its own has the pose T; a heading turns with it.
+Place moved(const Place& place, const geometry::Pose2& T);
 
 struct ZoneDrawing {
   std::vector<DrawnZone> zones;
@@ -93,6 +102,7 @@ struct ZoneDrawing {
 ///     - {name: ramp, kind: slow, value: 0.3, polygon: [[4, 0], [6, 0], [6, 1]]}
 ///   places:
 ///     - {name: room A, at: [1.5, 2.0]}
+///     - {name: base station, at: [0.5, 0.5], heading: 1.57}
 /// Throws std::runtime_error naming file, line and what was expected: an unreadable file, broken
 /// YAML, an unknown key or kind, an empty or repeated name, a polygon of less than three corners, a
 /// coordinate or value out of range.

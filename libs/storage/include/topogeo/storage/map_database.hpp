@@ -50,7 +50,7 @@ struct SessionState {
 /// database is then as before the call.
 class MapDatabase {
  public:
-  static constexpr std::int64_t kSchemaVersion = 2;
+  static constexpr std::int64_t kSchemaVersion = 3;
 
   /// Opens the map of a robot, or creates it (an empty file counts as none). A file of an older
   /// version is changed to this one. Throws std::runtime_error when the file is no topogeo map
@@ -124,6 +124,10 @@ class MapDatabase {
 
   /// Makes these the merges that were refused.
   void put_refused_merges(std::span<const RefusedMerge> refused);
+
+  /// Makes this what is remembered of the rooms. Throws std::invalid_argument for numbers that do
+  /// not ascend from 1 to at most `last`.
+  void put_rooms(const planning::RoomMemory& rooms);
 
   /// Puts a whole map into a database without stops, identified() first. Throws
   /// std::invalid_argument when there are stops or the map contradicts itself.

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "topogeo/planning/room_memory.hpp"
 #include "topogeo/storage/map_drawing.hpp"
 #include "topogeo/topomap/global_map.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -52,6 +53,7 @@ struct MapDocument {
   std::uint64_t map_id = 0;    ///< the same in all states of a map; 0: it has none
   std::vector<MapEdge> edges;  ///< that the trajectory was made of; empty: not known
   std::vector<RefusedMerge> refused_merges = {};
+  planning::RoomMemory rooms = {};  ///< so that they keep their numbers; empty: none were given yet
 };
 
 /// The document with a session for all its stops and a map id: those that it lacks follow from its

@@ -27,7 +27,8 @@ inline constexpr std::size_t kMaxNameBytes = 64;
 
 /// Throws std::runtime_error naming the entry, its value and what is allowed: too many entries, a
 /// name that is empty, taken by another place or zone, longer than kMaxNameBytes or no printable
-/// UTF-8, a coordinate that is not finite or beyond 1,000 km, a zone of less than three corners.
+/// UTF-8, a coordinate that is not finite or beyond 1,000 km, a heading beyond pi, a zone of less
+/// than three corners.
 void check(const MapDrawing& drawing);
 
 }  // namespace topogeo::storage

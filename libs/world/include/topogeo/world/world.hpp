@@ -9,7 +9,9 @@
 //   columns: [{center: [4, 4], radius: 0.3}]
 //   segments: [[0, 0, 1, 1]]      # single lines: x1, y1, x2, y2
 //   tour: [[1, 1], [6, 1]]        # points of the drive, in order
-//   places: [{name: room A, at: [1, 1]}]         # named places; each name once
+//   places: [{name: room A, at: [1, 1]},         # named places; each name once
+//            {name: base station, at: [2, 1], heading: 1.57}]   # of a base station with the
+//                                 # heading, rad, of a robot that is put there
 //   rooms: [{name: hall, polygon: [[0, 0], [4, 0], [4, 3]]}]   # what people call a room here, to
 //                                 # compare with; each name once, of those that overlap the first
 //                                 # counts
@@ -93,6 +95,8 @@ struct Person {
 struct NamedPlace {
   std::string name;
   Eigen::Vector2d position_m;
+  /// Of a base station: the heading of a robot that is put there, [-pi, pi].
+  std::optional<double> station_heading_rad{};
 };
 
 /// A room as people would draw it.
