@@ -28,6 +28,8 @@ simulation::OdometryDrift drift(const std::string& name, std::uint64_t seed) {
 
 struct Arguments {
   std::filesystem::path world;
+  int sonars = 24;
+  std::string sonar_noise = "mild";
   std::string odometry = "mild";
   simulator::SimulatorOptions options;
 };
@@ -44,11 +46,27 @@ void add_options(command_line::Command& app, Arguments& arguments) {
   app.add_option("--base-baud", arguments.options.devices.base_baud, "rate of the base's line")
       ->check(command_line::one_of({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
+  // What a person does with the manufacturer's program at a real laser.
+  app.add_option("--protective-field", arguments.options.devices.protective_field_m,
+                 "radius of the field of the laser in which nothing may be ahead, metres; 0: none")
+      ->check(command_line::range(0.0, 4.0))
+      ->capture_default_str();
+  app.add_option("--warning-field", arguments.options.devices.warning_field_m,
+                 "radius of the field in which the robot goes slowly, metres; 0: none")
+      ->check(command_line::range(0.0, 15.0))
+      ->capture_default_str();
   app.add_option("--seed", robot.seed, "of noise, drift, slip, doors and people")
       ->capture_default_str();
   app.add_option("--odometry", arguments.odometry,
                  "how the wheels err: mild, b21 (as one in a recorded log) or none")
       ->check(command_line::one_of({"mild", "b21", "none"}))
+      ->capture_default_str();
+  app.add_option("--sonars", arguments.sonars, "24 as a B21 has them, or the 6 of MACONDO")
+      ->check(command_line::one_of({6, 24}))
+      ->capture_default_str();
+  app.add_option("--sonar-noise", arguments.sonar_noise,
+                 "how the sonars err: mild, or macondo (0.3 m and missing echoes beyond 2.5 m)")
+      ->check(command_line::one_of({"mild", "macondo"}))
       ->capture_default_str();
   app.add_option("--slip", robot.slip.per_m, "slippery places in a metre")
       ->check(command_line::range(0.0, 10.0))
@@ -89,6 +107,8 @@ int main(int argc, char** argv) {
         simulation::RobotOptions& robot = arguments.options.devices.robot;
         robot.T_robot_laser = setup.config.config.local_mapper.T_robot_laser;
         robot.odometry = drift(arguments.odometry, robot.seed);
+        if (arguments.sonars == 6) robot.sonars = devices::macondo_sonars();
+        if (arguments.sonar_noise == "macondo") robot.sonar = simulation::macondo_sonar_noise();
         const world::World world = load(arguments.world);
         go_first();
         service::Service service(setup);

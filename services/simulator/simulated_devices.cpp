@@ -13,10 +13,12 @@ namespace {
 constexpr std::int64_t kPiece_ns = 5'000'000;
 constexpr devices::Parity kLaserParity = devices::Parity::kEven;
 
-simulation::PlsEmulatorSettings laser_settings(std::uint64_t seed) {
+simulation::PlsEmulatorSettings laser_settings(const DeviceOptions& options) {
   simulation::PlsEmulatorSettings settings;
   settings.power_on.parity = kLaserParity;
-  settings.seed = seed;
+  settings.protective_field_m = options.protective_field_m;
+  settings.warning_field_m = options.warning_field_m;
+  settings.seed = options.robot.seed;
   return settings;
 }
 
@@ -38,7 +40,7 @@ std::uint16_t bumper_bits(double direction_rad) {
 
 SimulatedDevices::SimulatedDevices(world::World world, const DeviceOptions& options)
     : robot_(std::move(world), options.robot),
-      laser_(laser_settings(options.robot.seed), [this](std::int64_t) { return robot_.scan(); }),
+      laser_(laser_settings(options), [this](std::int64_t) { return robot_.scan(); }),
       base_(base_settings(options)),
       laser_port_(options.laser_port),
       base_port_(options.base_port) {

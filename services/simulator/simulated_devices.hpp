@@ -21,6 +21,9 @@ struct DeviceOptions {
   std::filesystem::path laser_port;  ///< link to make
   std::filesystem::path base_port;
   std::uint32_t base_baud = 9600;
+  /// Fields that the laser watches by itself, see PlsEmulatorSettings; 0: none is set up.
+  double protective_field_m = 0.0;
+  double warning_field_m = 0.0;
   simulation::RobotOptions robot;
 };
 
