@@ -58,6 +58,10 @@ NavigatorService::NavigatorService(service::Service& service)
       commands_(service.advertise<msg::MotionCommand>()),
       statuses_(service.advertise<msg::NavigatorStatus>()),
       blockages_(service.advertise<msg::Blockages>()) {
+  const navigation::NavigatorConfig& config = service.setup().config.config.navigator;
+  if (config.pose_source == navigation::PoseSource::kMarkov) {
+    poses_.emplace(service.advertise<msg::LivePose>());
+  }
   listen_to_orders();
   listen_to_sensors();
   messaging::EventLoop& loop = service_.loop();
@@ -87,6 +91,7 @@ void NavigatorService::listen_to_orders() {
 void NavigatorService::listen_to_sensors() {
   service_.subscribe<msg::LivePose>(
       [this](const msg::LivePose& pose) {
+        if (pose.mode() == msg::kModeMarkov) return;  // its own
         if (!is_newer(Source::kPose, pose.stamp_ns())) return;
         navigator_.add(service::to_pose_fix(service::from_msg(pose)));
       },
@@ -202,8 +207,22 @@ void NavigatorService::tick() {
   if (clock_.take_set_back()) begin_again();
   const geometry::Velocity velocity = navigator_.step(now_ns);
   command(velocity, now_ns);
+  publish_pose();
   publish_status(now_ns);
   publish_blockages(now_ns);
+}
+
+void NavigatorService::publish_pose() {
+  const std::optional<navigation::PoseFix>& pose = navigator_.markov_pose();
+  if (!poses_ || !pose || pose->stamp_ns == published_pose_ns_) return;
+  published_pose_ns_ = pose->stamp_ns;
+  const msg::LivePose message =
+      service::to_msg(service::to_live_pose(*pose, poses_sent_), service_.robot_id());
+  if (poses_->write(message)) {
+    ++poses_sent_;
+  } else {
+    service_.status().fault("send blocked", "pose");
+  }
 }
 
 void NavigatorService::begin_again() {

@@ -1,5 +1,5 @@
 // Takes goals, routes, pose and sensors; gives motion commands, its status and the blockages on its
-// path.
+// path, and with Markov localization the pose of the robot.
 //
 // Time is that of the sensors' stamps, see StampClock. Commands go out twenty times a second while
 // a goal is driven to, and zeros for a second after that; then nothing, so that others may drive. A
@@ -54,6 +54,8 @@ class NavigatorService {
   void begin_again();
   void command(const geometry::Velocity& velocity, std::int64_t now_ns);
   void send_command(const geometry::Velocity& velocity, std::int64_t now_ns);
+  /// Of Markov localization: planner and people have no other one.
+  void publish_pose();
   void publish_status(std::int64_t now_ns);
   void publish_blockages(std::int64_t now_ns);
 
@@ -81,6 +83,9 @@ class NavigatorService {
   messaging::Writer<msg::MotionCommand> commands_;
   messaging::Writer<msg::NavigatorStatus> statuses_;
   messaging::Writer<msg::Blockages> blockages_;
+  std::optional<messaging::Writer<msg::LivePose>> poses_;  // with Markov localization
+  std::int64_t published_pose_ns_ = 0;
+  std::uint64_t poses_sent_ = 0;
 };
 
 }  // namespace topogeo::navigator

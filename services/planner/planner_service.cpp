@@ -54,6 +54,11 @@ void PlannerService::note_what_is_missing() {
 }
 
 void PlannerService::on_pose(const msg::LivePose& message) {
+  // Both a localizer and a navigator may have one: that by which the robot is driven counts.
+  const bool of_navigator = message.mode() == msg::kModeMarkov;
+  const bool by_markov =
+      service_.setup().config.config.navigator.pose_source == navigation::PoseSource::kMarkov;
+  if (of_navigator != by_markov) return;
   const bool was_known = pose_ && localization::located(pose_->status.state);
   pose_ = service::from_msg(message);
   note_what_is_missing();

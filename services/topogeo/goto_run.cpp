@@ -1,6 +1,7 @@
 #include "goto_run.hpp"
 
 #include "topogeo/localization/mapping/localization_state.hpp"
+#include "topogeo/planning/place_names.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/format.hpp"
@@ -42,7 +43,7 @@ GotoResult GotoRun::run() {
     result_.goal_m = Eigen::Vector2d(route->points().back().x_m(), route->points().back().y_m());
   }
   if (!truth_.poses().empty()) {
-    const geometry::Pose2 T_world_map = truth_.poses().front().pose;
+    const geometry::Pose2 T_world_map = truth_.poses().front().pose * inverse(T_map_start());
     result_.truth = truth_.poses();
     for (topomap::StampedPose& pose : result_.truth) {
       pose.pose = geometry::between(T_world_map, pose.pose);
@@ -52,6 +53,15 @@ GotoResult GotoRun::run() {
   }
   static_cast<void>(run_.stop(true));
   return std::move(result_);
+}
+
+geometry::Pose2 GotoRun::T_map_start() {
+  const auto map = session_.client().map();
+  if (!options_.station || !map) return {};
+  const planning::Place* station = planning::find_base_station(map->places(), *options_.station);
+  if (station == nullptr) return {};
+  return {station->position_m.x(), station->position_m.y(),
+          station->station_heading_rad.value_or(0.0)};
 }
 
 void GotoRun::on_pose(const msg::LivePose& pose) {

@@ -36,8 +36,9 @@ class GotoRun {
   /// map. Throws like ServiceRun and GoalSession.
   explicit GotoRun(const RunOptions& options);
 
-  /// Comes back when no service runs any more. Call it once. The map's origin is taken for where
-  /// the robot stands at first, the start of the tour, where the drive began that made the map.
+  /// Comes back when no service runs any more. Call it once. The robot stands at the start of the
+  /// tour at first: that is taken for the map's origin, where the drive began that made the map,
+  /// and of a robot without a laser for its base station.
   GotoResult run();
 
  private:
@@ -48,6 +49,8 @@ class GotoRun {
   void drive();
   void call_off();
   void on_pose(const msg::LivePose& pose);
+  /// Where the robot stands at first, see run().
+  [[nodiscard]] geometry::Pose2 T_map_start();
   /// What there is still to wait for; empty: the robot may set out.
   [[nodiscard]] std::string waits_for();
 

@@ -213,9 +213,11 @@ void add_run_command(command_line::Command& app, int& exit_code) {
     }
     if (!goal->target.empty()) {
       options->goal = *goal;
-      exit_code = run_goto(with_start(*options, *unknown_start));
+      exit_code = run_goto(with_start(*options, *unknown_start || simulation->no_laser));
       return;
     }
+    if (simulation->no_laser)
+      throw service::UsageError("run: --no-laser needs --goto (see --help)");
     exit_code = log->count() > 0 ? run_log(*options) : run_devices(*options);
   });
 }

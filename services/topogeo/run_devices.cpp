@@ -30,7 +30,7 @@ void write_devices(const RunOptions& options) {
   const SimulatorOptions& simulation = *options.simulation;
   sensor_gateway::DeviceFile file;
   const support::ConfigSchema schema = describe(file);  // with the defaults as they are
-  file.laser.port = simulated_port(options, "laser").string();
+  if (!simulation.no_laser) file.laser.port = simulated_port(options, "laser").string();
   file.laser.settings.baud = simulation.laser_baud;
   file.laser.kind = sensor_gateway::DeviceFile::Laser::Kind::kPls;
   file.base.port = simulated_port(options, "base").string();
@@ -123,6 +123,10 @@ void add_simulation_options(command_line::Command& app, SimulatorOptions& option
           ->check(command_line::range(0.05, 2.0)),
       app.add_option("--people", options.people, "of a simulation: who walk about")
           ->check(command_line::range(0, 100))};
+  app.add_flag("--no-laser", options.no_laser,
+               "of a simulation with --goto: the robot has sonars alone; it stands on the base "
+               "station of the map, from which Markov localization follows it")
+      ->needs(simulation);
   for (command_line::Option* option : added) option->needs(simulation)->capture_default_str();
 }
 

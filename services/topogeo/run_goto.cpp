@@ -63,12 +63,34 @@ void print_arrival(const RunOptions& options, const GotoResult& result) {
   print_pose_errors(result.estimated, result.truth);
 }
 
+/// Without a laser no scan is matched: any map that has a grid will do.
+JobOptions inputs_of(JobOptions job, bool no_laser) {
+  if (!no_laser) return job;
+  job.map.reset();
+  job.initial_pose.reset();
+  return job;
+}
+
+/// The base station on which a robot without a laser stands.
+std::string station_of(const navigation::NavigatorConfig& config) {
+  if (config.pose_source == navigation::PoseSource::kMarkov && !config.markov_by_laser &&
+      !config.guard.needs_scan) {
+    return config.markov.station;
+  }
+  throw service::UsageError(
+      "--no-laser: expected navigator: {pose_source: markov} by sonars and guard: "
+      "{needs_scan: false} in --config, see deploy/sonar_robot.example.yaml");
+}
+
 }  // namespace
 
 int run_goto(RunOptions options) {
   static_cast<void>(to_goal(*options.goal));
   check_picture(options.goal->picture);
-  options.laser = check_inputs(options.job).config.config.local_mapper.T_robot_laser;
+  const bool no_laser = options.simulation && options.simulation->no_laser;
+  const pipeline::Config config = check_inputs(inputs_of(options.job, no_laser)).config.config;
+  options.laser = config.local_mapper.T_robot_laser;
+  if (no_laser) options.station = station_of(config.navigator);
   if (!options.goal->picture) options.goal->picture = options.job.out / "route.png";
   prepare_simulation(options);
   const GotoResult result = GotoRun(options).run();

@@ -22,6 +22,7 @@ struct SimulatorOptions {
   std::string odometry = "mild";  ///< see `simulator --help`
   double speed_m_per_s = 0.9;
   std::uint32_t people = 0;
+  bool no_laser = false;  ///< sonars alone: nothing is mapped, and nothing matched
 };
 
 struct RunOptions {
@@ -29,6 +30,7 @@ struct RunOptions {
   std::filesystem::path devices;               ///< file of the devices to use; empty: a log
   std::filesystem::path record;                ///< log to write of what is mapped; empty: none
   std::optional<SimulatorOptions> simulation;  ///< what is behind the ports of `devices`
+  std::optional<std::string> station;          ///< that a robot without a laser stands on
   std::optional<geometry::Pose2> laser;        ///< mounting in force; none: as configured
   std::uint32_t workers = 2;
   std::optional<std::uint32_t> wait_workers;  ///< before the first step; none: `workers`

@@ -69,14 +69,17 @@ Arguments map_arguments(const RunOptions& options) {
 void start_source(ProcessGroup& processes, const RunOptions& options, const std::string& partition,
                   const Arguments& common) {
   if (const auto& simulation = options.simulation) {
+    const Arguments sonars =
+        simulation->no_laser ? Arguments{"--sonar-noise", "macondo"} : Arguments{};
     processes.start(
         "simulator", "simulator",
-        common + Arguments{"--world", simulation->world.string(), "--seed",
-                           std::to_string(simulation->seed), "--odometry", simulation->odometry,
-                           "--people", std::to_string(simulation->people), "--laser-port",
-                           simulated_port(options, "laser").string(), "--base-port",
-                           simulated_port(options, "base").string(), "--base-baud",
-                           std::to_string(kSimulatedBaseBaud)});
+        common + sonars +
+            Arguments{"--world", simulation->world.string(), "--seed",
+                      std::to_string(simulation->seed), "--odometry", simulation->odometry,
+                      "--people", std::to_string(simulation->people), "--laser-port",
+                      simulated_port(options, "laser").string(), "--base-port",
+                      simulated_port(options, "base").string(), "--base-baud",
+                      std::to_string(kSimulatedBaseBaud)});
   }
   Arguments source = {"--log", options.job.log.string(), "--rate", options.rate};
   const recording::TopicChoice& topics = options.job.topics;
@@ -90,7 +93,8 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
     }
   }
   // All of them have the first scan.
-  const std::string readers = options.record.empty() ? "1" : "2";
+  const bool no_scans = options.simulation && options.simulation->no_laser;
+  const std::string readers = no_scans ? "0" : options.record.empty() ? "1" : "2";
   // A log cannot be taken up in its middle.
   processes.start(kScanSource, "sensor_gateway", common + source + Arguments{"--readers", readers},
                   Importance::kNeeded,
@@ -148,6 +152,11 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   if (options.job.log.empty() && options.devices.empty()) return;  // a map alone
   start("planner", common);
   if (options.goal || options.explore || options.web) start("navigator", common);
+  // Without a laser there is nothing to match, and the navigator finds the robot.
+  if (options.simulation && options.simulation->no_laser) {
+    start_source(processes, options, partition, common);
+    return;
+  }
   const std::uint32_t wait_workers = options.wait_workers.value_or(options.workers);
   const bool replay = options.devices.empty();
   const Arguments source = replay ? Arguments{"--replay"} : Arguments{};

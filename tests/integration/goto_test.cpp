@@ -76,6 +76,40 @@ TEST(Explore, SaysWhoIsMissing) {
   EXPECT_THAT(command.err(), HasSubstr("no planner and no navigator"));
 }
 
+// The floor is drawn, with a base station on which the robot is put; there is no laser, so neither
+// local mapper nor localizer.
+TEST(Goto, ARobotWithSonarsAloneIsSentFromItsBaseStationToARoom) {
+  use_udp_only();
+  const Scratch scratch;
+  const std::string world = scratch / "rooms.world.yaml";
+  // The last list of the file is that of the places.
+  std::ofstream(world) << read_file(std::string(TOPOGEO_TEST_DATA) + "/rooms.world.yaml")
+                       << "  - {name: base station, at: [2.0, 1.6], heading: 1.5707963}\n";
+  Program import(scratch, "topogeo",
+                 {"store", "import", world, "--format", "drawing", "--out", scratch / "map.pb"});
+  ASSERT_EQ(import.wait(60.0), 0) << import.err();
+  Program run(
+      scratch, "topogeo",
+      {"run", "--sim", world, "--no-laser", "--map", scratch / "map.pb", "--goto", "workroom",
+       "--config", std::string(TOPOGEO_TEST_DATA) + "/../../deploy/sonar_robot.example.yaml",
+       "--out", scratch / "out", "--workers", "0", "--domain", own_domain()});
+  ASSERT_EQ(run.wait(280.0), 0) << run.err();
+  EXPECT_THAT(run.out(), HasSubstr("arrived at workroom"));
+  EXPECT_THAT(run.out(), HasSubstr(" 0 collisions"));
+  const auto truth = storage::read_trajectory_tum(scratch / "out/truth.tum");
+  ASSERT_FALSE(truth.empty());
+  EXPECT_LT((truth.back().pose.position_m() - Eigen::Vector2d(2.6, 6.4)).norm(), 0.2);
+}
+
+TEST(Goto, WithoutALaserItHasToBeFoundByMarkovLocalization) {
+  const Scratch scratch;
+  Program run(scratch, "topogeo",
+              {"run", "--sim", std::string(TOPOGEO_TEST_DATA) + "/room.world.yaml", "--no-laser",
+               "--map", scratch / "map.pb", "--goto", "3,0", "--out", scratch / "out"});
+  EXPECT_EQ(run.wait(30), 2);
+  EXPECT_THAT(run.err(), HasSubstr("pose_source: markov"));
+}
+
 TEST(Goto, WithoutAMapNothingStarts) {
   const Scratch scratch;
   Program run(scratch, "topogeo",

@@ -110,6 +110,10 @@ const NavigatorStatus& Navigator::status() const {
   return state_->status;
 }
 
+const std::optional<PoseFix>& Navigator::markov_pose() const {
+  return state_->poses.markov_pose();
+}
+
 const BlockageReport& Navigator::blockages() const {
   return state_->surroundings.blockages();
 }

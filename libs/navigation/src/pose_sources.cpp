@@ -23,7 +23,8 @@ void PoseSources::add(const OdometrySample& odometry) {
 std::optional<double> PoseSources::update(bool primitive_finished, std::int64_t now_ns) {
   if (!markov_.on()) return std::nullopt;
   if (primitive_finished) markov_.primitive_done();
-  if (const auto fix = markov_.pose()) {
+  markov_pose_ = markov_.pose();
+  if (const auto& fix = markov_pose_) {
     keeper_.add(*fix);
     // It looks while the pose is still good enough to drive by, before it counts as lost.
     constexpr double kUnsure = 0.8;  // of the largest deviation
@@ -32,7 +33,8 @@ std::optional<double> PoseSources::update(bool primitive_finished, std::int64_t 
   }
   const auto corrected_m = markov_.look(now_ns);
   if (!corrected_m) return std::nullopt;
-  if (const auto fix = markov_.pose()) keeper_.add(*fix);
+  markov_pose_ = markov_.pose();
+  if (markov_pose_) keeper_.add(*markov_pose_);
   return corrected_m;
 }
 

@@ -34,6 +34,8 @@ class PoseSources {
   std::optional<double> update(bool primitive_finished, std::int64_t now_ns);
 
   [[nodiscard]] const PoseKeeper& keeper() const { return keeper_; }
+  /// As of the last update(); nothing where poses come from a localizer.
+  [[nodiscard]] const std::optional<PoseFix>& markov_pose() const { return markov_pose_; }
   double take_jump_m() { return keeper_.take_jump_m(); }
   double take_driven_m() { return keeper_.take_driven_m(); }
 
@@ -49,6 +51,7 @@ class PoseSources {
   double largest_sigma_m_;
   PoseKeeper keeper_;
   MarkovMode markov_;
+  std::optional<PoseFix> markov_pose_;
 };
 
 }  // namespace topogeo::navigation

@@ -13,16 +13,47 @@ using detail::check;
 using detail::check_bound;
 using detail::finite;
 
+namespace {
+
+/// Of a normal distribution, within the bounds of msg::LivePose; position and heading are taken
+/// for independent, and the position for equally unsure in all directions, as in the worst one.
+double confidence_of(const Eigen::Matrix3d& covariance) {
+  constexpr double kWithin_m = 0.3;
+  constexpr double kWithin_rad = 5.0 * std::numbers::pi / 180.0;
+  const double half_trace = 0.5 * (covariance(0, 0) + covariance(1, 1));
+  const double spread = std::hypot(0.5 * (covariance(0, 0) - covariance(1, 1)), covariance(0, 1));
+  const double variance_m2 = half_trace + spread;
+  const double variance_rad2 = covariance(2, 2);
+  if (!(variance_m2 > 0.0) || !(variance_rad2 > 0.0)) return 1.0;
+  return (1.0 - std::exp(-0.5 * kWithin_m * kWithin_m / variance_m2)) *
+         std::erf(kWithin_rad / std::sqrt(2.0 * variance_rad2));
+}
+
+}  // namespace
+
 navigation::PoseFix to_pose_fix(const LivePose& pose) {
   navigation::PoseFix fix;
   fix.stamp_ns = pose.stamp_ns;
   fix.T_map_robot = pose.T_map_robot;
   // While mapping it is relative to the first stop, not to the map around the robot.
-  if (pose.mode == msg::kModeLocalization) fix.covariance = pose.covariance;
+  if (pose.mode != msg::kModeMapping) fix.covariance = pose.covariance;
   fix.tracking = pose.status.state == localization::LocalizationState::kTracking;
   fix.located = localization::located(pose.status.state);
   fix.state_text = localization::to_string(pose.status.state);
   return fix;
+}
+
+LivePose to_live_pose(const navigation::PoseFix& fix, std::uint64_t sequence) {
+  using localization::LocalizationState;
+  LivePose pose;
+  pose.stamp_ns = fix.stamp_ns;
+  pose.sequence = sequence;
+  pose.mode = msg::kModeMarkov;
+  pose.T_map_robot = fix.T_map_robot;
+  pose.covariance = fix.covariance;
+  pose.status.state = fix.tracking ? LocalizationState::kTracking : LocalizationState::kSearching;
+  if (fix.tracking) pose.status.confidence = confidence_of(fix.covariance);
+  return pose;
 }
 
 navigation::OdometrySample odometry_from_msg(const msg::Odometry& message) {

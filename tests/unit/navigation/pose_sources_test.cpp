@@ -67,6 +67,21 @@ TEST_F(MarkovPoseSources, TheFirstFixIsTheBaseStation) {
   EXPECT_LT((pose->position_m() - Eigen::Vector2d(2.0, 3.0)).norm(), 0.1);
 }
 
+// A robot with sonars alone: nobody else says where it stands.
+TEST_F(MarkovPoseSources, TheMapsBaseStationNeedsNoFix) {
+  const planning::HybridMap with_station(map->space(), map->zones(),
+                                         {{"hall", {1.0, 1.0}}, {"dock", {2.0, 3.0}, 0.0}});
+  EXPECT_FALSE(poses.markov_pose());
+  poses.set_map(&with_station);
+  add_scan(kSecond_ns);
+  poses.update(false, kSecond_ns);
+  ASSERT_TRUE(poses.markov_pose());
+  EXPECT_TRUE(poses.markov_pose()->tracking);
+  EXPECT_EQ(poses.markov_pose()->stamp_ns, kSecond_ns);
+  EXPECT_LT((poses.markov_pose()->T_map_robot.position_m() - Eigen::Vector2d(2.0, 3.0)).norm(),
+            0.1);
+}
+
 TEST_F(MarkovPoseSources, StandsAtNodesAndAtTheEndUntilItHasLooked) {
   poses.set_map(map.get());
   add_scan(kSecond_ns);

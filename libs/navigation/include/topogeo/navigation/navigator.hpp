@@ -57,6 +57,9 @@ class Navigator {
   geometry::Velocity step(std::int64_t now_ns);
 
   [[nodiscard]] const NavigatorStatus& status() const;
+  /// The pose of Markov localization at the last step, for others: without a laser nobody else
+  /// has one. Nothing with another source of poses, and until there is odometry.
+  [[nodiscard]] const std::optional<PoseFix>& markov_pose() const;
   /// What stands in the way now. A new version asks the planner for another route.
   [[nodiscard]] const BlockageReport& blockages() const;
 

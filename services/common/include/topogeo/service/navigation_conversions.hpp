@@ -13,6 +13,8 @@
 namespace topogeo::service {
 
 navigation::PoseFix to_pose_fix(const LivePose& pose);
+/// The pose of a navigator's Markov localization. One that is not tracked means nothing.
+LivePose to_live_pose(const navigation::PoseFix& fix, std::uint64_t sequence);
 
 navigation::OdometrySample odometry_from_msg(const msg::Odometry& message);
 
