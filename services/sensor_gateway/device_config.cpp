@@ -225,6 +225,10 @@ ConfigSchema describe(DeviceFile& file) {
   describe_base_units(schema, file.base);
   describe_base_motion(schema, file.base);
   describe_base_states(schema, file.base);
+  schema.add("body.sensors", &file.body,
+             {{"none", DeviceFile::Body::kNone}, {"b21", DeviceFile::Body::kB21}},
+             "sonars, infrared and tactile sensors; those of a real b21 cannot be read: no source "
+             "documents their bus (docs/devices.md)");
   schema.add(
       "odometry.wait_s", &file.odometry_wait_s, 0.0, 1.0, "s",
       "a scan waits so long, at most, for the odometry after it. 0: it is published at once, "
@@ -257,6 +261,7 @@ DeviceConfig to_config(const DeviceFile& file) {
   base.error_delay_ticks = static_cast<std::uint16_t>(file.base.error_delay_ticks);
   base.torque.reset();
   if (file.base.torque >= 0) base.torque = static_cast<std::uint8_t>(file.base.torque);
+  config.body_sensors = file.body == DeviceFile::Body::kB21;
   config.odometry_wait_ns = nanoseconds(file.odometry_wait_s);
   config.longest_extrapolation_ns = nanoseconds(file.longest_extrapolation_s);
   laser.check();

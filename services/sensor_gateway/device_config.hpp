@@ -37,6 +37,7 @@ struct DeviceFile {
     std::uint32_t error_delay_ticks = 0;
     std::int32_t torque = -1;  ///< negative: left as it is
   } base;
+  enum class Body { kNone, kB21 } body = Body::kNone;
   double odometry_wait_s = 0.0;
   double longest_extrapolation_s = 0.5;
 
@@ -52,6 +53,7 @@ struct DeviceConfig {
   devices::PlsSettings laser;
   std::string base_port;  ///< empty: there is none
   devices::BaseSettings base;
+  bool body_sensors = false;  ///< sonars, infrared and tactile sensors of a B21
   std::int64_t odometry_wait_ns = 0;
   std::int64_t longest_extrapolation_ns = 0;
 };

@@ -19,6 +19,7 @@ namespace {
 
 constexpr milliseconds kPoll{20};            // for readers at the start: no scan waits noticeably
 constexpr milliseconds kStatePeriod{250};    // twice for each status, so that it is never older
+constexpr milliseconds kBodyPeriod{100};     // as a ring of sonars that fires in turns
 constexpr milliseconds kLastDelivery{2000};  // for readers to have what was published
 
 ScanGateOptions gate_options(const service::Service& service, const DeviceConfig& config,
@@ -66,6 +67,11 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
     laser_.emplace(service_, config, time_, gate_, laser_memory,
                    [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }
+  if (config.body_sensors) {
+    body_sensors_ = std::make_unique<devices::MspBodySensors>();
+    body_.emplace(service_, *body_sensors_, devices::b21_sonar_ring().mounts);
+    body_timer_ = service_.loop().add_timer(kBodyPeriod, [this] { read_body(); });
+  }
   timer_ = service_.loop().add_timer(kStatePeriod, [this] { publish_state(); });
   publish_state();
   wait_for_readers();
@@ -73,6 +79,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
 
 DeviceGateway::~DeviceGateway() {
   service_.loop().cancel_timer(timer_);
+  if (body_) service_.loop().cancel_timer(body_timer_);
   service_.loop().cancel_timer(release_timer_);
 }
 
@@ -119,6 +126,11 @@ bool DeviceGateway::publish(const scan::Scan& scan) {
   return true;
 }
 
+void DeviceGateway::read_body() {
+  const std::int64_t now_ns = steady_now_ns();
+  body_->publish(now_ns, time_.stamp_ns(now_ns));
+}
+
 void DeviceGateway::publish_state() {
   std::string text;
   std::string missing;
@@ -131,6 +143,10 @@ void DeviceGateway::publish_state() {
     base_->count();
     if (!base_->ready()) missing += missing.empty() ? "base" : " and base";
     text += (text.empty() ? "base " : "; base ") + base_->describe();
+  }
+  if (body_ && !body_->fault().empty()) {
+    missing += missing.empty() ? "body sensors" : " and body sensors";
+    text += "; " + body_->fault();
   }
   messaging::StatusPublisher& status = service_.status();
   status.set_counter("scan_latency_ms", static_cast<double>(latency_ns_) * 1e-6);

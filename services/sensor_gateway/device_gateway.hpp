@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "topogeo/devices/body_sensors.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/stream.h"
+#include "topogeo/service/body_sensor_publisher.hpp"
 #include "topogeo/service/service.hpp"
 
 #include "base_channel.hpp"
@@ -46,6 +49,7 @@ class DeviceGateway {
   /// False, and a fault, when it cannot be sent.
   bool publish(const scan::Scan& scan);
   void publish_state();
+  void read_body();
 
   service::Service& service_;
   HostTime time_;
@@ -64,6 +68,9 @@ class DeviceGateway {
   std::string published_;                // as the state of the service
   std::uint64_t timer_ = 0;              // of publish_state
   std::uint64_t release_timer_ = 0;      // while scans wait for odometry
+  std::uint64_t body_timer_ = 0;         // of read_body
+  std::unique_ptr<devices::BodySensors> body_sensors_;
+  std::optional<service::BodySensorPublisher> body_;
   std::optional<BaseChannel> base_;
   std::optional<LaserChannel> laser_;
 };

@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kTick{1};
 /// Of the true pose: often enough to judge every scan by it.
 constexpr std::int64_t kTruthPeriod_ns = 20'000'000;
 /// As a ring of sonars that fires in turns.
-constexpr std::int64_t kSonarPeriod_ns = 100'000'000;
+constexpr std::int64_t kBodyPeriod_ns = 100'000'000;
 /// Of the counters in the status, for people.
 constexpr std::int64_t kStatePeriod_ns = 1'000'000'000;
 /// Where the machine leaves this process without time for longer, the world's clock stands still
@@ -37,7 +37,10 @@ SimulatorService::SimulatorService(service::Service& service, world::World world
       devices_(std::move(world), options.devices),
       faults_(devices_),
       truth_(service.advertise<msg::GroundTruth>()),
-      sonar_(service.advertise<msg::Sonar>()),
+      body_sensors_([this](std::int64_t) { return devices_.robot().scene(); },
+                    [this](std::int64_t) { return devices_.robot().T_world_robot(); },
+                    [this] { return devices_.robot().sonar(); }),
+      body_(service, body_sensors_, options.devices.robot.sonars),
       start_(Clock::now()),
       start_stamp_ns_(nanoseconds(std::chrono::system_clock::now().time_since_epoch())) {
   service.subscribe<msg::SimulatorCommand>(
@@ -68,9 +71,9 @@ void SimulatorService::tick() {
     truth_due_ns_ = now_ns - now_ns % kTruthPeriod_ns + kTruthPeriod_ns;
     publish_truth();
   }
-  if (now_ns >= sonar_due_ns_) {
-    sonar_due_ns_ = now_ns - now_ns % kSonarPeriod_ns + kSonarPeriod_ns;
-    publish_sonar();
+  if (now_ns >= body_due_ns_) {
+    body_due_ns_ = now_ns - now_ns % kBodyPeriod_ns + kBodyPeriod_ns;
+    body_.publish(now_ns, stamp_ns());
   }
   if (now_ns >= state_due_ns_) {
     state_due_ns_ = now_ns + kStatePeriod_ns;
@@ -92,22 +95,6 @@ void SimulatorService::publish_truth() {
   truth.collisions(robot.collisions());
   truth.run_into(robot.run_into());
   if (!truth_.write(truth)) service_.status().fault("send blocked", "ground truth");
-}
-
-void SimulatorService::publish_sonar() {
-  simulation::SimulatedRobot& robot = devices_.robot();
-  const std::vector<float> readings_m = robot.sonar();
-  msg::Sonar round;
-  messaging::set_header(round, service_.robot_id(), stamp_ns(), rounds_++);
-  for (std::size_t i = 0; i < readings_m.size(); ++i) {
-    const devices::SonarMount& mount = robot.options().sonars[i];
-    msg::SonarEcho echo;
-    echo.T_robot_sonar(service::to_msg(mount.T_robot_sonar));
-    echo.range_m(readings_m[i]);
-    echo.half_cone_rad(static_cast<float>(mount.half_cone_rad));
-    round.echoes().push_back(echo);
-  }
-  if (!sonar_.write(round)) service_.status().fault("send blocked", "sonar");
 }
 
 void SimulatorService::publish_state() {

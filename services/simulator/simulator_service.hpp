@@ -1,14 +1,15 @@
 // A simulated robot on DDS and serial ports: paces the world, publishes where the robot really is
-// and what its sonars measure, and takes faults.
+// and what the sensors in its panels measure, and takes faults.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/sensor.h"
 #include "topogeo/msg/simulation.h"
+#include "topogeo/service/body_sensor_publisher.hpp"
 #include "topogeo/service/service.hpp"
+#include "topogeo/simulation/simulated_body_sensors.hpp"
 
 #include "fault_injector.hpp"
 #include "simulated_devices.hpp"
@@ -20,8 +21,8 @@ struct SimulatorOptions {
   double time_factor = 1.0;  ///< world time over real time, > 0
 };
 
-/// Lives in the loop of its service. The sonars of a B21 are on a bus of their own, not on the
-/// line of the base: their echoes go out directly.
+/// Lives in the loop of its service. The sonars, infrared and tactile sensors of a B21 are on a bus
+/// of their own, not on the line of the base: their readings go out directly.
 class SimulatorService {
  public:
   /// Throws like SimulatedDevices.
@@ -32,7 +33,6 @@ class SimulatorService {
 
   void tick();
   void publish_truth();
-  void publish_sonar();
   void publish_state();
   void on_command(const msg::SimulatorCommand& command);
   /// The stamp of what happens in the world now.
@@ -43,14 +43,14 @@ class SimulatorService {
   SimulatedDevices devices_;
   FaultInjector faults_;
   messaging::Writer<msg::GroundTruth> truth_;
-  messaging::Writer<msg::Sonar> sonar_;
+  simulation::SimulatedBodySensors body_sensors_;
+  service::BodySensorPublisher body_;
   Clock::time_point start_;        // when the world's clock was 0
   std::int64_t start_stamp_ns_;    // of that, since the epoch
   std::int64_t truth_due_ns_ = 0;  // in the world, and the next two
-  std::int64_t sonar_due_ns_ = 0;
+  std::int64_t body_due_ns_ = 0;
   std::int64_t state_due_ns_ = 0;
   std::uint64_t truths_ = 0;
-  std::uint64_t rounds_ = 0;
 };
 
 }  // namespace topogeo::simulator

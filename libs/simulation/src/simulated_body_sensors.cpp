@@ -28,7 +28,15 @@ std::bitset<kPanels> touched(const world::World& scene, const geometry::Pose2& T
 }  // namespace
 
 SimulatedBodySensors::SimulatedBodySensors(Scene scene, Pose pose, const BodySensorNoise& noise)
-    : scene_(std::move(scene)), pose_(std::move(pose)), noise_(noise), random_(noise.seed) {
+    : SimulatedBodySensors(std::move(scene), std::move(pose), Sonars(), noise) {}
+
+SimulatedBodySensors::SimulatedBodySensors(Scene scene, Pose pose, Sonars sonars,
+                                           const BodySensorNoise& noise)
+    : scene_(std::move(scene)),
+      pose_(std::move(pose)),
+      sonars_(std::move(sonars)),
+      noise_(noise),
+      random_(noise.seed) {
   if (!scene_ || !pose_ || !(noise.sonar_sigma_m >= 0.0) || !(noise.infrared_sigma_m >= 0.0) ||
       !(noise.touch_m >= 0.0)) {
     throw std::invalid_argument(
@@ -41,7 +49,9 @@ std::optional<devices::BodyReadings> SimulatedBodySensors::read(std::int64_t now
   const geometry::Pose2 T_world_robot = pose_(now_ns);
   devices::BodyReadings readings;
   readings.stamp_ns = now_ns;
-  readings.sonar_m = ranges(devices::b21_sonar_ring(), noise_.sonar_sigma_m, scene, T_world_robot);
+  readings.sonar_m =
+      sonars_ ? sonars_()
+              : ranges(devices::b21_sonar_ring(), noise_.sonar_sigma_m, scene, T_world_robot);
   readings.body_infrared_m =
       ranges(devices::b21_body_infrared(), noise_.infrared_sigma_m, scene, T_world_robot);
   readings.base_infrared_m =

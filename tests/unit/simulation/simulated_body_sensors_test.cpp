@@ -60,6 +60,19 @@ TEST(SimulatedBodySensors, PanelsFeelWhatTouchesThem) {
   EXPECT_LE(touching.base_pressed.count(), 4U);
 }
 
+TEST(SimulatedBodySensors, TakeTheSonarsThatARobotHas) {
+  const world::World world = world::parse_world("segments: [[2, -5, 2, 5]]", "wall");
+  SimulatedBodySensors sensors([&](std::int64_t) { return world; },
+                               [](std::int64_t) { return geometry::Pose2{}; },
+                               [] {
+                                 return std::vector<float>{1.5F, 0.0F};
+                               });
+  const auto readings = sensors.read(7);
+  ASSERT_TRUE(readings);
+  EXPECT_EQ(readings->sonar_m, (std::vector<float>{1.5F, 0.0F}));
+  EXPECT_EQ(readings->body_infrared_m.size(), 24U);
+}
+
 TEST(SimulatedBodySensors, RefuseNoiseOutOfRange) {
   const auto world = [](std::int64_t) { return world::World{}; };
   const auto pose = [](std::int64_t) { return geometry::Pose2{}; };

@@ -68,6 +68,11 @@ odometry:
   EXPECT_EQ(config.odometry_wait_ns, 150'000'000);
 }
 
+TEST(DeviceConfig, BodySensorsAreThereWhereTheFileSaysSo) {
+  EXPECT_FALSE(config_of("base.port: /dev/b\n").body_sensors);
+  EXPECT_TRUE(config_of("base.port: /dev/b\nbody.sensors: b21\n").body_sensors);
+}
+
 TEST(DeviceConfig, PrintedFileReadsBackToTheSame) {
   DeviceFile file;
   file.laser.port = "/dev/ttyUSB0";

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "topogeo/devices/body_sensors.hpp"
 #include "topogeo/geometry/pose2.hpp"
@@ -26,9 +27,13 @@ class SimulatedBodySensors final : public devices::BodySensors {
   /// What is there, and where the robot is, T_world_robot, at a time.
   using Scene = std::function<world::World(std::int64_t now_ns)>;
   using Pose = std::function<geometry::Pose2(std::int64_t now_ns)>;
+  /// Readings of other sonars than those of the ring, as BodyReadings::sonar_m.
+  using Sonars = std::function<std::vector<float>()>;
 
   /// Throws std::invalid_argument for noise out of range and missing functions.
   SimulatedBodySensors(Scene scene, Pose pose, const BodySensorNoise& noise = {});
+  /// With the sonars that a robot has.
+  SimulatedBodySensors(Scene scene, Pose pose, Sonars sonars, const BodySensorNoise& noise = {});
 
   std::optional<devices::BodyReadings> read(std::int64_t now_ns) override;
   [[nodiscard]] std::string fault() const override { return {}; }
@@ -40,6 +45,7 @@ class SimulatedBodySensors final : public devices::BodySensors {
 
   Scene scene_;
   Pose pose_;
+  Sonars sonars_;  // empty: those of the ring
   BodySensorNoise noise_;
   support::Random random_;
 };
