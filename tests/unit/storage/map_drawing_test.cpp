@@ -125,7 +125,7 @@ TEST(MapDrawingFile, RefusesWhatIsNoDrawing) {
               HasSubstr("no printable UTF-8"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.places[0].station_heading_rad = 3.2; }),
               HasSubstr("place 'room B': heading 3.2, allowed are -pi to pi"));
-  EXPECT_THAT(refusal([](MapDrawing& d) { d.places[0].station_heading_rad = kNan; }),
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.places[0].station_heading_rad = double{kNan}; }),
               HasSubstr("place 'room B': heading nan"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.places[0].position_m.x() = kNan; }),
               HasSubstr("place 'room B': coordinate nan"));

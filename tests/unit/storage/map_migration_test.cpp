@@ -32,6 +32,17 @@ MapDocument golden_document() {
   return document;
 }
 
+/// What is new in version 3.
+planning::RoomMemory numbered_rooms() {
+  const topomap::StopId stop{0xfedcba9876543210U, 2};
+  planning::RoomMemory rooms;
+  rooms.rooms = {{1, 40, {{stop, {1.0, -0.5}}, {std::nullopt, {4.0, 2.0}}}, "room A"},
+                 {3, 12, {}, ""}};
+  rooms.places = {{{"room A", {1.5, 2.0}}, 1, {stop, {0.25, 0.0}}, 0.75}};
+  rooms.last = 4;
+  return rooms;
+}
+
 class GoldenFile : public ScratchDirectory {
  protected:
   [[nodiscard]] std::filesystem::path path() const { return directory_ / "map.sqlite"; }
@@ -83,6 +94,17 @@ TEST_F(GoldenFile, DamagedDatabaseOfVersion1StaysAsItWas) {
   EXPECT_THAT(error_of([&] { MapDatabase::open_existing(path()); }),
               HasSubstr("local_map 2 is damaged (its hash is wrong)"));
   execute("SELECT count(*) FROM local_map");  // still there
+}
+
+// It has no numbers of rooms yet, and takes them then.
+TEST_F(GoldenFile, DatabaseOfVersion2TakesNumbersOfRooms) {
+  make("map_v2.sql");
+  const std::string before = content(path());
+  EXPECT_TRUE(read_map(path()).rooms.empty());
+  EXPECT_EQ(content(path()), before) << "read alone, it stays as it is";
+  const planning::RoomMemory rooms = numbered_rooms();
+  MapDatabase::open_existing(path()).put_rooms(rooms);
+  EXPECT_EQ(read_map(path()).rooms, rooms);
 }
 
 TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
