@@ -62,7 +62,8 @@ function(topogeo_add_idl)
 
   add_custom_command(
     OUTPUT ${outputs}
-    COMMAND ${FASTDDSGEN} -replace -cs -d ${staging} ${ARG_FILES} > ${staging}/log.txt
+    # -t: by default all runs on a machine share their temporary files, named as the IDL files are.
+    COMMAND ${FASTDDSGEN} -replace -cs -t ${staging} -d ${staging} ${ARG_FILES} > ${staging}/log.txt
             || ${CMAKE_COMMAND} -E env sh -c "cat '${staging}/log.txt'; exit 1"
     COMMAND sed -i -E -e "s/TypeCode@[0-9a-f]+/TypeCode/" ${staged_types}
     COMMAND sed -i -E
