@@ -38,7 +38,7 @@ MapOutput::MapOutput(RosSide& ros) : ros_(ros) {
       });
   service.subscribe<msg::HybridMap>([this](const msg::HybridMap& summary) { mirror_.put(summary); },
                                     {.of_map = true});
-  service.status().set_counter("maps_sent", 0.0);
+  service.status().set_counter("ros_maps_sent", 0.0);
   service.status().set_counter("map_updates_sent", 0.0);
   timer_ = service.loop().add_timer(kMapPeriod, [this] { tick(); });
 }
@@ -72,7 +72,7 @@ void MapOutput::publish_grid() {
 
 void MapOutput::publish_whole() {
   ros_.send(*grids_, mirror_.grid(ros_.settings().frames.map, ros_.now_ns()));
-  ros_.service().status().add_to_counter("maps_sent");
+  ros_.service().status().add_to_counter("ros_maps_sent");
   whole_is_old_ = false;
   whole_ns_ = steady_now_ns();
 }

@@ -25,6 +25,7 @@ namespace {
 
 /// Less than what the page waits for before it takes the connection for dead.
 constexpr std::chrono::seconds kTimePeriod{2};
+constexpr std::chrono::milliseconds kAcceptAgain{100};
 
 }  // namespace
 
@@ -48,6 +49,7 @@ struct Server::Impl {
        Tally& tally)
       : state{config, board, files, backend, tally, 0, {}, {}, 0},
         acceptor(context),
+        retry(context),
         timer(context) {}
 
   void use_certificate();
@@ -63,6 +65,7 @@ struct Server::Impl {
   std::optional<asio::ssl::context> tls;
   asio::io_context context{1};
   asio::ip::tcp::acceptor acceptor;
+  asio::steady_timer retry;
   asio::steady_timer timer;
   std::atomic<bool> woken = false;
   std::thread thread;
@@ -100,7 +103,14 @@ void Server::Impl::listen() {
 void Server::Impl::accept() {
   acceptor.async_accept([this](beast::error_code error, asio::ip::tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error) take(std::move(socket));
+    if (error) {  // perhaps no file descriptor is left: trying again at once would spin
+      retry.expires_after(kAcceptAgain);
+      retry.async_wait([this](beast::error_code stopped) {
+        if (!stopped) accept();
+      });
+      return;
+    }
+    take(std::move(socket));
     accept();
   });
 }

@@ -155,7 +155,7 @@ constexpr auto kCounterMetrics = std::to_array<CounterMetric>({
     {"scans_adapted", "topogeo_ros_adapted_scans_total", kTotal,
      "scans of ROS put on the beams of the first one"},
     {"poses_sent", "topogeo_ros_poses_sent_total", kTotal, "poses published on ROS"},
-    {"maps_sent", "topogeo_ros_maps_sent_total", kTotal, "whole maps published on ROS"},
+    {"ros_maps_sent", "topogeo_ros_maps_sent_total", kTotal, "whole maps published on ROS"},
     {"map_updates_sent", "topogeo_ros_map_updates_sent_total", kTotal,
      "parts of the map published on ROS"},
     {"initial_poses", "topogeo_ros_initial_poses_total", kTotal, "poses set from ROS"},

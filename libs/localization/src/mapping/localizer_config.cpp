@@ -22,7 +22,8 @@ void describe_matches(LocalizerConfig& l, support::ConfigSchema& schema) {
               {"branches", MatchEvidence::kBranches},
               {"fitness", MatchEvidence::kFitness}},
              "scan: scan points refine a solution and decide whether it is accepted; branches: "
-             "nodes and branches alone do; fitness: nothing does, as in the thesis");
+             "the walls that branches and their clearances stand for do; fitness: nothing does, as "
+             "in the thesis");
   schema.add("match.solutions", &l.solutions_wanted, 1U, 40U, "",
              "best distinct solutions kept of a match");
   schema.add("match.search_probability", &l.search_probability, 0.01, 0.9999, "",
