@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "body.h"
 #include "common.h"
 #include "dds/dds.h"
 #include "hybrid_map.h"
