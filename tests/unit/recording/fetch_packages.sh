@@ -4,7 +4,10 @@
 set -euo pipefail
 folder=$1
 [ -e "$folder/done" ] && exit 0
-command -v npm > /dev/null && command -v node > /dev/null || { echo "no node or npm"; exit 77; }
+if ! command -v npm > /dev/null || ! command -v node > /dev/null; then
+  echo "no node or npm"
+  exit 77
+fi
 mkdir -p "$folder"
 timeout 90 npm install --prefix "$folder" --no-audit --no-fund --ignore-scripts --fetch-retries 1 \
   @mcap/core@2.2.2 @foxglove/rosmsg@5.0.5 @foxglove/rosmsg2-serialization@3.1.0 fzstd@0.1.1 \

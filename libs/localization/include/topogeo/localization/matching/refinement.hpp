@@ -1,6 +1,6 @@
-// Least squares around a first guess, scan points to the lines of walls and edges of walls to edges:
-// what turns the centimetres of the genetic search into millimetres, and what tracks the scans
-// between two stops.
+// Least squares around a first guess, scan points to the lines of walls and edges of walls to
+// edges: what turns the centimetres of the genetic search into millimetres, and what tracks the
+// scans between two stops.
 #pragma once
 
 #include <Eigen/Core>
