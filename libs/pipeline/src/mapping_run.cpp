@@ -36,8 +36,7 @@ MappingRun::MappingRun(const Config& config, std::string robot_id,
       robot_id_(std::move(robot_id)),
       local_mapper_(config.local_mapper, robot_id_),
       slam_(config.localizer, pool_, nullptr,
-            {std::move(map), MapToUse::Use::kLocalize, initial_pose}),
-      maps_(false) {}
+            {std::move(map), MapToUse::Use::kLocalize, initial_pose}) {}
 
 void MappingRun::add(const scan::Scan& scan) {
   std::optional<topomap::LocalMap> map;
@@ -80,7 +79,7 @@ storage::MapDocument MappingRun::finish() {
   }
   const auto scope = times_.measure("map_store");
   document.global_map = fuse(config_.global_map, document.local_maps, document.trajectory);
-  if (maps_) remember_rooms(document, config_.hybrid_map);
+  remember_rooms(document, config_.hybrid_map);
   return document;
 }
 

@@ -63,7 +63,6 @@ class MappingRun {
   LocalMapper local_mapper_;
   std::shared_ptr<const storage::MapDocument> continued_;
   localization::SlamSession slam_;
-  bool maps_ = true;                           // false: it is to find the robot alone
   std::vector<topomap::LocalMap> local_maps_;  // of a drive in a finished map
   support::StageTimes times_;
 };
