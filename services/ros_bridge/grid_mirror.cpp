@@ -178,8 +178,9 @@ std::vector<std::optional<msg::Point2>> GridMirror::zone_middles() const {
     for (const auto& [number, tile] : tiles_) {
       for (std::uint32_t i = 0; i < msg::kTileArea; ++i) {
         if (tile.zones[i] >= sums.size()) continue;
-        visit(sums[tile.zones[i]], number % across * kSide + i % kSide + 0.5,
-              number / across * kSide + i / kSide + 0.5);
+        const std::uint32_t column = number % across * kSide + i % kSide;
+        const std::uint32_t row = number / across * kSide + i / kSide;
+        visit(sums[tile.zones[i]], column + 0.5, row + 0.5);
       }
     }
   };

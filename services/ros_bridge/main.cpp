@@ -22,7 +22,7 @@ namespace {
 
 using namespace topogeo;  // NOLINT(google-build-using-namespace)
 
-struct Options {
+struct BridgeOptions {
   ros_bridge::SettingOptions settings;
   std::optional<std::uint32_t> ros_domain;
   std::string map_robot;
@@ -45,7 +45,7 @@ std::uint32_t domain_of_environment(std::uint32_t otherwise) {
   return static_cast<std::uint32_t>(domain);
 }
 
-void add_options_to(command_line::Command& app, Options& options) {
+void add_bridge_options(command_line::Command& app, BridgeOptions& options) {
   app.add_option("--ros", options.settings.file,
                  "names, frames, directions and quality of service (YAML), as --print-settings has "
                  "them")
@@ -74,7 +74,7 @@ void add_options_to(command_line::Command& app, Options& options) {
   service::add_map_option(app, options.map_robot);
 }
 
-ros_bridge::Settings load(const Options& options) {
+ros_bridge::Settings load(const BridgeOptions& options) {
   try {
     return ros_bridge::load_settings(options.settings);
   } catch (const std::runtime_error& error) {
@@ -82,7 +82,7 @@ ros_bridge::Settings load(const Options& options) {
   }
 }
 
-void print_settings(const Options& options) {
+void print_settings(const BridgeOptions& options) {
   ros_bridge::Settings settings;
   const support::ConfigSchema schema = describe(settings);
   try {
@@ -115,12 +115,12 @@ void show_mounting(service::Setup setup, ros_bridge::Settings settings, std::uin
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options;
+  BridgeOptions options;
   return service::run_service(
       argc, argv, "ros_bridge",
       "Joins a robot that speaks ROS 2: takes its scans, odometry, transforms and goals, gives it "
       "map, pose, route and velocities.",
-      [&](command_line::Command& app) { add_options_to(app, options); },
+      [&](command_line::Command& app) { add_bridge_options(app, options); },
       [&](const service::Setup& setup) {
         if (options.print_settings) {
           print_settings(options);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::chrono::milliseconds kStatePeriod{500};
 constexpr std::chrono::milliseconds kLastDelivery{2000};
 /// Faster sideways than this is no error of measurement.
-constexpr double kSideways_m_per_s = 0.05;
+constexpr double kSideways_mps = 0.05;
 
 IntakeOptions intake_options(const RosSide& ros) {
   const Settings& settings = ros.settings();
@@ -99,7 +99,7 @@ void SensorInput::on_odometry(const ros::Odometry& message, const messaging::Sam
     intake_.count(IntakeDrop::kInvalidOdometry, "a pose or a speed that is no number");
     return;
   }
-  if (std::fabs(twist.linear_().y_()) > kSideways_m_per_s) {
+  if (std::fabs(twist.linear_().y_()) > kSideways_mps) {
     ros_.complain("sideways motion is left out", "the robot moves along its y axis");
   }
   add({from_ros(message.header_().stamp_()), *T_odom_robot, twist.linear_().x_(),

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/support/format.hpp"
+
 namespace topogeo::ros_bridge {
 namespace {
 
@@ -136,9 +138,9 @@ void remap(Settings::Topics& topics, const SettingOptions& options) {
     }
     if (!found) {
       std::string all;
-      for (const auto& [key, name] : names) all += " " + *name;
-      throw std::runtime_error("--remap " + text + ": no topic " + whole + ", expected one of" +
-                               all);
+      for (const auto& [key, name] : names) all.append(" ").append(*name);
+      throw std::runtime_error(
+          fmt::format("--remap {}: no topic {}, expected one of{}", text, whole, all));
     }
   }
   for (const auto& [key, name] : names) ros::check_topic_name(*name);

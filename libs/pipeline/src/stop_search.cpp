@@ -19,7 +19,7 @@ namespace {
 // What a match by this evidence reads of a map.
 localization::MatchFeatures features_for(const topomap::LocalMap& map,
                                          localization::MatchEvidence evidence) {
-  const localization::MatchFeatures features = localization::extract_features(map);
+  localization::MatchFeatures features = localization::extract_features(map);
   if (evidence == localization::MatchEvidence::kScan) return features;
   return with_walls(features, localization::walls_of_branches(map));
 }
