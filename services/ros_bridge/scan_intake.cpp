@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kTimeJump_ns = 1'000'000'000;
 /// No robot of a building is as fast, and no odometry as coarse.
-constexpr double kFastest_mps = 5.0;
+constexpr double kFastestMps = 5.0;
 constexpr double kJump_m = 0.5;
 /// As where a log contradicts the configuration.
 constexpr double kMountingTolerance_m = 0.02;
@@ -76,7 +76,7 @@ std::string ScanIntake::add(const geometry::OdometrySample& sample) {
     } else if (passed_ns <= 0) {
       count(IntakeDrop::kOldOdometry, std::to_string(sample.stamp_ns));
       return {};
-    } else if (moved_m > kJump_m + kFastest_mps * static_cast<double>(passed_ns) * 1e-9) {
+    } else if (moved_m > kJump_m + kFastestMps * static_cast<double>(passed_ns) * 1e-9) {
       why = "the odometry jumped by " + std::to_string(moved_m) + " m";
     }
   }

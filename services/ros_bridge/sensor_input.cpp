@@ -8,6 +8,7 @@
 
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/random.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 constexpr std::chrono::milliseconds kStatePeriod{500};
 constexpr std::chrono::milliseconds kLastDelivery{2000};
 /// Faster sideways than this is no error of measurement.
-constexpr double kSideways_mps = 0.05;
+constexpr double kSidewaysMps = 0.05;
 
 IntakeOptions intake_options(const RosSide& ros) {
   const Settings& settings = ros.settings();
@@ -99,7 +100,7 @@ void SensorInput::on_odometry(const ros::Odometry& message, const messaging::Sam
     intake_.count(IntakeDrop::kInvalidOdometry, "a pose or a speed that is no number");
     return;
   }
-  if (std::fabs(twist.linear_().y_()) > kSideways_mps) {
+  if (std::fabs(twist.linear_().y_()) > kSidewaysMps) {
     ros_.complain("sideways motion is left out", "the robot moves along its y axis");
   }
   add({from_ros(message.header_().stamp_()), *T_odom_robot, twist.linear_().x_(),
@@ -124,9 +125,9 @@ void SensorInput::on_transforms(const ros::TFMessage& message, const messaging::
     }
     const auto T_parent_child = isometry_from(transform);
     if (!T_parent_child) {
-      ros_.complain("invalid transform", parent + " -> " + child);
+      ros_.complain("invalid transform", fmt::format("{} -> {}", parent, child));
     } else if (!intake_.frames().put(parent, child, *T_parent_child)) {
-      ros_.complain("frame with two parents", child + " of " + parent);
+      ros_.complain("frame with two parents", fmt::format("{} of {}", child, parent));
     }
   }
 }

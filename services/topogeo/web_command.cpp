@@ -53,6 +53,7 @@ struct ViewCommand {
   for (const std::string& argument : web_arguments(command.web)) words.push_back(argument);
   if (command.web.token) export_token(command.web);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   ::execv(program.c_str(), arguments.data());

@@ -66,15 +66,17 @@ MapPicture::MapPicture(const planning::GridFrame& frame,
 }
 
 const GridSquare& MapPicture::square_of(const Cell& cell) const {
-  return *squares_[static_cast<std::size_t>(cell.row / kSquareCells * squares_in_row_ +
-                                            cell.column / kSquareCells)];
+  const std::int32_t square =
+      cell.row / kSquareCells * squares_in_row_ + cell.column / kSquareCells;
+  return *squares_[static_cast<std::size_t>(square)];
 }
 
 namespace {
 
 std::size_t index_in_square(const Cell& cell) {
   constexpr std::int32_t kSide = MapPicture::kSquareCells;
-  return static_cast<std::size_t>(cell.row % kSide * kSide + cell.column % kSide);
+  const std::int32_t index = cell.row % kSide * kSide + cell.column % kSide;
+  return static_cast<std::size_t>(index);
 }
 
 }  // namespace

@@ -78,6 +78,7 @@ std::vector<std::optional<planning::Cell>> middles_of(const MapPicture& picture,
     sum.cell = cell;
   });
   std::vector<std::optional<planning::Cell>> middles;
+  middles.reserve(sums.size());
   for (const Sum& sum : sums) middles.push_back(sum.cell);
   return middles;
 }

@@ -35,7 +35,7 @@ using std::chrono::milliseconds;
 constexpr int kPoses = 300;
 constexpr milliseconds kPosePeriod{50};
 
-std::uint32_t wait_for_port(const test::Program& web) {
+std::uint32_t wait_for_port(const topogeo::test::Program& web) {
   while (web.out().find("spectators: ") == std::string::npos) {
     std::this_thread::sleep_for(milliseconds(20));
   }
@@ -61,7 +61,7 @@ class Page {
       if (number + 1 == kPoses) return;
     }
   }
-  test::WebSocketClient socket_;
+  topogeo::test::WebSocketClient socket_;
   std::map<std::uint64_t, Clock::time_point> came_;
   std::thread thread_;  // last: it uses the others
 };
@@ -101,9 +101,9 @@ void measure(int viewers, messaging::Writer<msg::LivePose>& poses, std::uint32_t
 }
 
 void run(const std::vector<int>& viewers) {
-  const test::Scratch scratch;
-  const std::string domain = test::own_domain();
-  const test::Program web(scratch, "web", {"--domain", domain, "--port", "0"});
+  const topogeo::test::Scratch scratch;
+  const std::string domain = topogeo::test::own_domain();
+  const topogeo::test::Program web(scratch, "web", {"--domain", domain, "--port", "0"});
   const std::uint32_t port = wait_for_port(web);
   messaging::ParticipantOptions options;
   options.domain = static_cast<std::uint32_t>(std::stoul(domain));

@@ -127,7 +127,7 @@ TEST_F(RosBridge, MapsARobotOfRosAndShowsItsMapAndPose) {
   EXPECT_TRUE(comes_true(is_at_end)) << last_line(user.out(), "pose map ");
   EXPECT_THAT(last_line(user.out(), "tf map odom "), Not(IsEmpty()));
   EXPECT_TRUE(says(user, "diagnostics topogeo: ros_bridge 0"));
-  EXPECT_TRUE(comes_true([&] { return last_line(user.out(), "graph ").size() > 0; }));
+  EXPECT_TRUE(comes_true([&] { return !last_line(user.out(), "graph ").empty(); }));
 
   // Who comes late gets the whole map.
   const Program& late = start_peer({"watch"});
@@ -135,7 +135,7 @@ TEST_F(RosBridge, MapsARobotOfRosAndShowsItsMapAndPose) {
   EXPECT_TRUE(comes_true([&] { return std::fabs(free_m2(late) - 22.0) < 3.0; }))
       << last_line(late.out(), "map map ");
   EXPECT_THAT(late.out(), HasSubstr(" whole\n"));
-  EXPECT_TRUE(comes_true([&] { return last_line(late.out(), "graph ").size() > 0; }));
+  EXPECT_TRUE(comes_true([&] { return !last_line(late.out(), "graph ").empty(); }));
 }
 
 TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {

@@ -79,7 +79,8 @@ std::string request_text(std::uint32_t port, const std::string& method, const st
     return std::ranges::any_of(headers, [&](const auto& header) { return header.first == name; });
   };
   if (!has("Host")) text += "Host: 127.0.0.1:" + std::to_string(port) + "\r\n";
-  for (const auto& [name, value] : headers) text += name + ": " + value + "\r\n";
+  for (const auto& [name, value] : headers)
+    text.append(name).append(": ").append(value).append("\r\n");
   if (!has("Connection")) text += "Connection: close\r\n";
   if (method == "POST") text += "Content-Length: " + std::to_string(body.size()) + "\r\n";
   return text + "\r\n" + body;

@@ -100,7 +100,8 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   store_->wait();
   start_store();
   ASSERT_TRUE(page.wait_for(
-      *socket, [&] { return page.values["map"]["frame"] != "" && page.versions["tiles"] > 1; },
+      *socket,
+      [&] { return page.values["map"]["frame"].dump() != R"("")" && page.versions["tiles"] > 1; },
       kPatience));
   PageModel late;
   WebSocketClient late_socket(port_);

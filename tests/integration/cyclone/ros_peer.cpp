@@ -71,9 +71,9 @@ geometry_msgs_msg_dds__Quaternion_ quaternion(double yaw_rad) {
 }
 
 /// Writes what a robot writes.
-class Robot {
+class RosRobot {
  public:
-  explicit Robot(std::uint32_t domain)
+  explicit RosRobot(std::uint32_t domain)
       : peer_(domain),
         scans_(peer_.writer(sensor_msgs_msg_dds__LaserScan__desc, "/scan", PeerQos::kReliable)),
         odometry_(peer_.writer(nav_msgs_msg_dds__Odometry__desc, "/odom", PeerQos::kReliable)),
@@ -153,7 +153,7 @@ class Robot {
   std::int64_t last_pose_ns_ = 0;
 };
 
-void send(const Robot& robot, const scan::Scan& scan, std::int64_t at_ns) {
+void send(const RosRobot& robot, const scan::Scan& scan, std::int64_t at_ns) {
   robot.send_odometry(at_ns, scan.T_odom_robot, 0.0, 0.0);
   robot.send_scan(at_ns, scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m);
 }
@@ -161,7 +161,7 @@ void send(const Robot& robot, const scan::Scan& scan, std::int64_t at_ns) {
 int replay(std::uint32_t domain, const std::string& log) {
   constexpr std::int64_t kScan_ns = 100'000'000;
   constexpr std::int64_t kAhead_ns = 20 * kScan_ns;
-  Robot robot(domain);
+  RosRobot robot(domain);
   while (!robot.has_bridge()) pause_ms(20);
   std::cout << "connected" << std::endl;
   scan::CarmenLogReader reader(log);
@@ -197,7 +197,7 @@ int drive(std::uint32_t domain, const std::string& world) {
   options.angular_acceleration_rad_per_s2 = 4.0;
   simulation::SimulatedRobot simulated(world::load_world(world), options);
   const geometry::Pose2 start = simulated.T_world_robot();
-  Robot robot(domain);
+  RosRobot robot(domain);
   simulation::Velocity velocity;
   auto last = Clock::now();
   std::int64_t now_ns = kStart_ns;

@@ -61,7 +61,7 @@ TEST(SimulatedBodySensors, PanelsFeelWhatTouchesThem) {
 }
 
 TEST(SimulatedBodySensors, TakeTheSonarsThatARobotHas) {
-  const world::World world = world::parse_world("segments: [[2, -5, 2, 5]]", "wall");
+  world::World world = world::parse_world("segments: [[2, -5, 2, 5]]", "wall");
   SimulatedBodySensors sensors([&](std::int64_t) { return world; },
                                [](std::int64_t) { return geometry::Pose2{}; },
                                [] {

@@ -31,8 +31,8 @@ class Floor {
     }
   }
   void set(const Cell& cell, CellState state, std::uint16_t zone = 65535) {
-    GridSquare& square =
-        squares_.at(static_cast<std::size_t>(cell.row / 64 * 2 + cell.column / 64));
+    GridSquare& square = squares_.at(static_cast<std::size_t>(cell.row / 64) * 2 +
+                                     static_cast<std::size_t>(cell.column / 64));
     const auto index = static_cast<std::size_t>(cell.row % 64 * 64 + cell.column % 64);
     square.states.at(index) = static_cast<std::uint8_t>(state);
     square.zones.at(index) = zone;
@@ -63,7 +63,7 @@ std::uint32_t pixel(const std::string& png, std::uint32_t column, std::uint32_t 
   image.format = PNG_FORMAT_RGBA;
   std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(image));
   EXPECT_NE(png_image_finish_read(&image, nullptr, bytes.data(), 0, nullptr), 0);
-  const std::uint8_t* at = bytes.data() + 4 * (row * 256 + column);
+  const std::uint8_t* at = bytes.data() + std::size_t{4} * (std::size_t{row} * 256 + column);
   return static_cast<std::uint32_t>(at[0]) << 24U | static_cast<std::uint32_t>(at[1]) << 16U |
          static_cast<std::uint32_t>(at[2]) << 8U | at[3];
 }
@@ -125,13 +125,13 @@ TEST(MapPicture, WhereNothingIsKnownThereIsNoPicture) {
 /// Every cell of a random floor, against the cells themselves.
 TEST(MapPicture, EachLevelJoinsTheCellsBelowIt) {
   Floor floor;
-  std::vector<CellState> cells(100 * 70);
+  std::vector<CellState> cells(std::size_t{100} * 70);
   unsigned state = 1;
   for (int row = 0; row < 70; ++row) {
     for (int column = 0; column < 100; ++column) {
       state = state * 1664525U + 1013904223U;
       const auto cell = static_cast<CellState>((state >> 16U) % 40 < 3 ? (state >> 16U) % 40 : 2);
-      cells[static_cast<std::size_t>(row * 100 + column)] = cell;
+      cells[static_cast<std::size_t>(row) * 100 + static_cast<std::size_t>(column)] = cell;
       floor.set({column, row}, cell);
     }
   }
@@ -147,7 +147,8 @@ TEST(MapPicture, EachLevelJoinsTheCellsBelowIt) {
         bool free = false;
         for (int y = row * side; y < std::min(70, (row + 1) * side); ++y) {
           for (int x = column * side; x < std::min(100, (column + 1) * side); ++x) {
-            const CellState cell = cells[static_cast<std::size_t>(y * 100 + x)];
+            const CellState cell =
+                cells[static_cast<std::size_t>(y) * 100 + static_cast<std::size_t>(x)];
             occupied |= cell == CellState::kOccupied;
             free |= cell == CellState::kFree;
           }

@@ -287,6 +287,7 @@ TEST_F(WebServer, ViewersAreCountedAndLimited) {
   config_.most_viewers = 20;
   start();
   std::vector<std::unique_ptr<WebSocketClient>> sockets;
+  sockets.reserve(20);
   for (int i = 0; i < 20; ++i) sockets.push_back(std::make_unique<WebSocketClient>(port()));
   EXPECT_THROW(WebSocketClient{port()}, std::runtime_error);
   EXPECT_EQ(refused("too many viewers"), 1U);
