@@ -79,6 +79,7 @@ class Bridge {
         kPartition, "--ros-domain", std::to_string(kDomain), "--log-level",
         "error"};
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     if (::posix_spawn(&pid_, program.c_str(), nullptr, nullptr, arguments.data(), environ) != 0) {
@@ -204,6 +205,7 @@ void measure_map() {
   constexpr double kFirst_s = 60.0;
   if (!has_map(kFirst_s)) throw std::runtime_error("no map came");
   std::vector<double> took_s;
+  took_s.reserve(5);
   for (int i = 0; i < 5; ++i) took_s.push_back(has_map(kFirst_s).value_or(kFirst_s));
   std::cout << fmt::format(
       "/map of {0} x {0} cells to a late reader: median {1:.2f} s, most {2:.2f} s\n", kMapCells,

@@ -68,6 +68,7 @@ class Page {
 
 void measure(int viewers, messaging::Writer<msg::LivePose>& poses, std::uint32_t port) {
   std::vector<std::unique_ptr<Page>> pages;
+  pages.reserve(static_cast<std::size_t>(viewers));
   for (int i = 0; i < viewers; ++i) pages.push_back(std::make_unique<Page>(port));
   std::this_thread::sleep_for(milliseconds(500));
   std::vector<Clock::time_point> sent;
