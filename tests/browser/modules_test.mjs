@@ -1,19 +1,8 @@
-// Parts of the page that need no browser: the copy of the tables, the frame of the pictures, numbers of goals, units.
+// Parts of the page that need no browser: the copy of the tables, the frame of the pictures, numbers of goals, units;
+// drawing_test.mjs has those of the edit mode.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { join } from "node:path";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
-
-const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
-
-// esbuild takes types away, as for the page.
-async function load(module) {
-  const out = join(build, "tests/browser/modules", `${module.replace("/", "_")}.mjs`);
-  const file = join(source, "services/web/page/src", `${module}.ts`);
-  execFileSync("esbuild", [file, "--bundle", "--format=esm", "--log-level=warning", `--outfile=${out}`]);
-  return import(pathToFileURL(out));
-}
+import { load } from "./load_module.mjs";
 
 const { Channels } = await load("channels");
 const grid = await load("map/grid_frame");

@@ -17,8 +17,16 @@ export function take_token(): string {
   return sessionStorage.getItem(kTokenKey) ?? "";
 }
 
-/** Why an order was not taken, as a sentence for people. */
-export class ApiError extends Error {}
+/** Why an order was not taken, as a sentence for people; status: of HTTP, 0 without an answer. */
+export class ApiError extends Error {
+  constructor(
+    message: string,
+    readonly status = 0,
+    readonly answer: Record<string, unknown> = {},
+  ) {
+    super(message);
+  }
+}
 
 export class Api {
   constructor(private readonly token: string) {}
@@ -42,7 +50,10 @@ export class Api {
     try {
       const response = await fetch(path, { method, headers, body, signal: abort.signal });
       const answer = (await response.json().catch(() => ({}))) as Answer & { error?: string };
-      if (!response.ok) throw new ApiError(answer.error || texts.errors.status(response.status));
+      if (!response.ok) {
+        const message = answer.error || texts.errors.status(response.status);
+        throw new ApiError(message, response.status, answer);
+      }
       return answer;
     } catch (error) {
       if (error instanceof ApiError) throw error;

@@ -29,6 +29,11 @@ export class Rights {
     return this.offered === null || this.offered.has(what);
   }
 
+  /** Whether the service has said that it takes this order. */
+  knows(what: string): boolean {
+    return this.offered?.has(what) ?? false;
+  }
+
   can(what: string): boolean {
     return this.may_write && this.connected && this.offers(what);
   }

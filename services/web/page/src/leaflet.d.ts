@@ -50,12 +50,14 @@ declare module "leaflet" {
     zoomControl?: boolean;
     attributionControl?: boolean;
     keyboard?: boolean;
+    boxZoom?: boolean;
     zoomAnimation?: boolean;
     inertia?: boolean;
     tap?: boolean;
   }
   export class Map {
     dragging: Handler;
+    doubleClickZoom: Handler;
     keyboard: Handler;
     on(types: string, handler: (event: MapEvent) => void): this;
     off(types: string, handler: (event: MapEvent) => void): this;

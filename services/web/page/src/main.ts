@@ -13,6 +13,7 @@ import { Notices } from "./ui/notices";
 import { once_a_frame } from "./ui/schedule";
 import { Theme } from "./ui/theme";
 import { CorrectView } from "./views/correct";
+import { DrawView } from "./views/draw";
 import { NowView } from "./views/now";
 import { SendView } from "./views/send";
 import { UnderstandView } from "./views/understand";
@@ -76,7 +77,7 @@ class Tabs {
     sessionStorage.setItem("topogeo-view", name);
   }
 
-  /** Keys 1 to 4 open the views. */
+  /** Keys 1 to 5 open the views. */
   listen(): void {
     const names = [...this.tabs.keys()];
     document.addEventListener("keydown", (event) => {
@@ -174,6 +175,7 @@ function start(): void {
     send,
     correct: new CorrectView(app),
     understand: new UnderstandView(app),
+    draw: new DrawView(app),
   };
   const tabs = new Tabs(views);
   stage.append(map_controls(map));

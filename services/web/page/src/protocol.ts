@@ -115,6 +115,7 @@ export interface Values {
   map: MapInfo;
   truth: { x_m: number; y_m: number; theta_rad: number; collisions: number };
   local_map: LocalMap;
+  drawing: { version: string };
   viewers: { viewers: number; operators: number };
   time: { time_s: number };
 }

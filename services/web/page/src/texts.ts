@@ -1,4 +1,5 @@
 // All texts of the page, in English. Another language is another object of this type.
+import { draw_texts } from "./draw_texts";
 import { area, count, degrees, duration, length, Maybe, percent, point, speed } from "./format";
 
 export const texts = {
@@ -19,7 +20,13 @@ export const texts = {
     offline: "The page does not hear the robot; what it shows is old.",
   },
 
-  views: { now: "Now", send: "Send", correct: "Correct", understand: "Understand" },
+  views: {
+    now: "Now",
+    send: "Send",
+    correct: "Correct",
+    understand: "Understand",
+    draw: "Draw",
+  },
   map_label: "Map of the floor. Arrow keys move it, plus and minus zoom.",
   views_label: "Views",
 
@@ -45,6 +52,7 @@ export const texts = {
   layers: {
     rooms: "Rooms in colours",
     names: "Names",
+    drawing: "What was drawn",
     graph: "Nodes and branches",
     trail: "Trail of stops",
     loops: "Closed loops",
@@ -101,7 +109,7 @@ export const texts = {
     ["Space", "Stop"],
     ["F", "Show the whole map"],
     ["R", "Follow the robot"],
-    ["1 – 4", "The views"],
+    ["1 – 5", "The views"],
   ],
   legend: {
     real: "Junction",
@@ -289,6 +297,8 @@ export const texts = {
     no_events: "Nothing has happened yet.",
     levels: { info: "Info", warning: "Warning", error: "Error" },
   },
+
+  draw: draw_texts,
 
   panel: {
     title: "Panel",

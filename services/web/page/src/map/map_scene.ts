@@ -1,9 +1,11 @@
 // What is on the map: takes the channels, draws the still part and the moving part.
 import { Channels } from "../channels";
-import { Loop } from "../protocol";
+import { Loop, PointM, Rule } from "../protocol";
+import { Drawing, empty_drawing } from "../draw/drawing";
 import { recolor_grid, recolor_rooms, TileLayer } from "./tile_layer";
 import { Theme } from "../ui/theme";
 import { Box, box_of_cells, known_box, TileVersions } from "./grid_frame";
+import { draw_drawing } from "./drawing_layer";
 import { GraphLayer } from "./graph_layer";
 import { draw_labels, draw_rules } from "./label_layer";
 import { View } from "./map_canvas";
@@ -18,8 +20,18 @@ import {
 } from "./robot_layer";
 import { TrailLayer } from "./trail_layer";
 
-export const kLayers = ["rooms", "names", "graph", "trail", "loops", "scan", "local_map"] as const;
+export const kLayers = [
+  "rooms",
+  "names",
+  "drawing",
+  "graph",
+  "trail",
+  "loops",
+  "scan",
+  "local_map",
+] as const;
 const kBoxStepM = 1;
+const kEmptyPlane: Box = { min_x: -2, min_y: -2, max_x: 18, max_y: 12 };
 
 export type LayerName = (typeof kLayers)[number];
 
@@ -29,10 +41,19 @@ export interface Mark {
   y_m: number;
 }
 
+/** What is drawn on the map while it is edited, in place of the drawing that was saved. */
+export interface Overlay {
+  /** Nothing of the robot's map is shown. */
+  readonly alone: boolean;
+  draw_still(context: CanvasRenderingContext2D, view: View): void;
+  draw_moving(context: CanvasRenderingContext2D, view: View): void;
+}
+
 export class MapScene {
   readonly visible: Record<LayerName, boolean> = {
     rooms: true,
     names: true,
+    drawing: true,
     graph: true,
     trail: true,
     loops: false,
@@ -44,6 +65,8 @@ export class MapScene {
   preview: number[] = []; // x, y of each point of the route, metres
   pose_mark: PoseMark | null = null;
   chosen_loop: Loop | null = null;
+  drawn: Drawing = empty_drawing(); // as it was saved
+  overlay: Overlay | null = null;
 
   private readonly versions = new TileVersions();
   private readonly grid: TileLayer;
@@ -75,6 +98,7 @@ export class MapScene {
 
   /** The box around what is known of the floor; null without a map. */
   box(): Box | null {
+    if (this.overlay?.alone) return kEmptyPlane;
     const info = this.channels.value("map");
     if (!info) return null;
     const cells = this.grid.known_cells(this.versions);
@@ -90,6 +114,11 @@ export class MapScene {
   }
 
   draw_still(context: CanvasRenderingContext2D, view: View): void {
+    if (!this.overlay?.alone) this.draw_map(context, view);
+    this.overlay?.draw_still(context, view);
+  }
+
+  private draw_map(context: CanvasRenderingContext2D, view: View): void {
     const palette = this.theme.palette;
     const info = this.channels.value("map");
     if (info) {
@@ -101,20 +130,28 @@ export class MapScene {
         context.globalAlpha = 1;
       }
     }
-    const rules = this.channels.table("rules");
+    const drawn = this.visible.drawing && !this.overlay;
+    const rules = drawn ? this.channels.table("rules") : new Map<string, Rule>();
     draw_rules(context, view, rules, palette);
+    if (drawn) draw_drawing(context, view, this.drawn, palette, null, false);
     if (this.visible.trail) this.trail.draw(context, view, palette);
     if (this.visible.graph) this.graph.draw(context, view, palette);
     const loops = this.visible.loops ? this.channels.table("loops").values() : [];
     this.trail.draw_loops(context, view, loops, this.chosen_loop, palette);
     if (this.visible.names) {
       const rooms = this.channels.table("rooms").values();
-      const places = this.channels.table("places");
+      // While the drawing is edited its places and zones are named by the editor.
+      const places = this.overlay ? new Map<string, PointM>() : this.channels.table("places");
       draw_labels(context, view, { rooms, places, rules }, palette);
     }
   }
 
   draw_moving(context: CanvasRenderingContext2D, view: View): void {
+    if (!this.overlay?.alone) this.draw_robot(context, view);
+    this.overlay?.draw_moving(context, view);
+  }
+
+  private draw_robot(context: CanvasRenderingContext2D, view: View): void {
     const palette = this.theme.palette;
     const pose = this.channels.value("pose");
     const located = pose !== null && pose.state !== "SEARCHING" && pose.state !== "LOST";

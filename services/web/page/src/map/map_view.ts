@@ -4,11 +4,12 @@ import { Channels } from "../channels";
 import { Theme } from "../ui/theme";
 import { MapCanvas } from "./map_canvas";
 import { MapScene } from "./map_scene";
+import { MapPointer, MapTool, ToolListener } from "./map_tool";
+import { PoseTool } from "./pose_tool";
 import { PoseMark } from "./robot_layer";
 
 const kFirstZoom = 4; // 16 pixels a metre
 const kLargestFitZoom = 6;
-const kTapPx = 8; // a drag that is shorter gives no heading
 
 export class MapView {
   readonly scene: MapScene;
@@ -19,7 +20,7 @@ export class MapView {
   private moved = false; // by a person: until then a map that grows is kept in view
   private following = false;
   private fitted = ""; // the box that was last fitted
-  private pose_tool: ((mark: PoseMark, done: boolean) => void) | null = null;
+  private readonly tools: ToolListener;
 
   on_tap: (x_m: number, y_m: number, pixels_per_m: number) => void = () => undefined;
   on_follow: (following: boolean) => void = () => undefined;
@@ -54,7 +55,7 @@ export class MapView {
     this.still = new MapCanvas(this.map, 1, 0.25, (c, view) => this.scene.draw_still(c, view));
     this.moving = new MapCanvas(this.map, 2, 0.1, (c, view) => this.scene.draw_moving(c, view));
     this.map.on("click", (event) => {
-      if (this.pose_tool) return;
+      if (this.tools.active) return;
       this.on_tap(event.latlng.lng, event.latlng.lat, 2 ** this.map.getZoom());
     });
     this.map.on("dragstart", () => {
@@ -69,7 +70,7 @@ export class MapView {
     });
     this.map.on("zoom zoomend move resize", () => this.show_scale());
     new ResizeObserver(() => this.map.invalidateSize({ pan: false })).observe(container);
-    this.listen_for_pose(container);
+    this.tools = new ToolListener(this.map);
     this.show_scale();
   }
 
@@ -129,47 +130,46 @@ export class MapView {
   /**
    * Has press and drag on the map set a pose: the point where it begins, looking to where it ends.
    */
-  start_pose(on_change: (mark: PoseMark, done: boolean) => void): void {
-    this.pose_tool = on_change;
-    this.map.dragging.disable();
-    this.map.getContainer().classList.add("setting-pose");
+  start_pose(on_change: (mark: PoseMark) => void): void {
+    const before = () => this.scene.pose_mark?.theta ?? 0;
+    const show = (mark: PoseMark) => {
+      this.scene.pose_mark = mark;
+      this.moving.redraw();
+      on_change(mark);
+    };
+    this.tools.set(new PoseTool(before, show), "setting-pose");
   }
 
   end_pose(): void {
-    this.pose_tool = null;
-    this.map.dragging.enable();
-    this.map.getContainer().classList.remove("setting-pose");
+    this.end_tool();
   }
 
-  private listen_for_pose(container: HTMLElement): void {
-    let from: { x: number; y: number; at: L.LatLng } | null = null;
-    const mark = (event: PointerEvent): PoseMark | null => {
-      if (!from) return null;
-      const at = this.map.mouseEventToLatLng(event);
-      const moved = Math.hypot(event.clientX - from.x, event.clientY - from.y) > kTapPx;
-      const theta = moved ? Math.atan2(at.lat - from.at.lat, at.lng - from.at.lng) : null;
-      const before = this.scene.pose_mark?.theta ?? 0;
-      return { x: from.at.lng, y: from.at.lat, theta: theta ?? before };
-    };
-    const pass_on = (event: PointerEvent, done: boolean) => {
-      const pose = mark(event);
-      if (!pose || !this.pose_tool) return;
-      this.scene.pose_mark = pose;
-      this.moving.redraw();
-      this.pose_tool(pose, done);
-    };
-    container.addEventListener("pointerdown", (event) => {
-      if (!this.pose_tool || !event.isPrimary) return;
-      from = { x: event.clientX, y: event.clientY, at: this.map.mouseEventToLatLng(event) };
-      container.setPointerCapture(event.pointerId);
-      pass_on(event, false);
-    });
-    container.addEventListener("pointermove", (event) => pass_on(event, false));
-    container.addEventListener("pointerup", (event) => {
-      pass_on(event, true);
-      from = null;
-    });
-    container.addEventListener("pointercancel", () => (from = null));
+  /** Gives presses and drags to a tool. drawing: it draws, else it takes hold of what is there. */
+  start_tool(tool: MapTool, drawing: boolean): void {
+    this.tools.set(tool, drawing ? "drawing" : "selecting");
+  }
+
+  end_tool(): void {
+    this.tools.set(null);
+  }
+
+  /** What is in the middle of the view, metres, and its scale. */
+  middle(): MapPointer {
+    const { lng, lat } = this.map.getCenter();
+    return { x: lng, y: lat, pixels_per_m: 2 ** this.map.getZoom(), tapped: true };
+  }
+
+  /** Whether the map is an empty plane for a new floor. True: that is another than before. */
+  show_plane(plane: boolean): boolean {
+    const { classList } = this.map.getContainer();
+    const changed = classList.contains("plane") !== plane;
+    classList.toggle("plane", plane);
+    return changed;
+  }
+
+  /** Draws what moves anew. */
+  redraw_moving(): void {
+    this.moving.redraw();
   }
 
   private on_still_change(): void {

@@ -23,6 +23,9 @@ export interface Palette {
   no_go: string;
   slow: string;
   one_way: string;
+  drawn: string; // by people
+  selected: string;
+  grid: string;
   loop: string;
   local: string;
 }
@@ -97,6 +100,9 @@ function read_palette(): Palette {
     no_go: color("map-no-go"),
     slow: color("map-slow"),
     one_way: color("map-one-way"),
+    drawn: color("map-drawn"),
+    selected: color("map-selected"),
+    grid: color("map-grid"),
     loop: color("map-loop"),
     local: color("map-local"),
   };

@@ -1,0 +1,68 @@
+// A picture of a plan behind what is drawn: put in place by two points of known distance. It stays
+// in the page.
+import { View } from "../map/map_canvas";
+import { distance, heading, Point } from "./geometry";
+
+/** Where a picture lies: its upper left corner, and what a pixel of it is. */
+export interface Placement {
+  x_m: number; // upper left corner, map frame
+  y_m: number;
+  metres_per_pixel: number;
+  angle_rad: number; // of its lines, counter-clockwise
+}
+
+const kFirstWidth_m = 20;
+const kStraight_rad = 0.15; // plans are scanned a little askew
+
+/** A picture of so many pixels around a point, before it is measured. */
+export function first_placement(width: number, height: number, centre: Point): Placement {
+  const metres_per_pixel = kFirstWidth_m / width;
+  return {
+    x_m: centre.x - (width * metres_per_pixel) / 2,
+    y_m: centre.y + (height * metres_per_pixel) / 2,
+    metres_per_pixel,
+    angle_rad: 0,
+  };
+}
+
+/**
+ * The distance from a to b, as they lie now, is meant to be distance_m: a stays where it is. A line
+ * that is nearly along an axis is turned onto it.
+ */
+export function measured(at: Placement, a: Point, b: Point, distance_m: number): Placement {
+  const factor = distance_m / distance(a, b);
+  const angle = heading(a, b);
+  const axis = (Math.PI / 2) * Math.round(angle / (Math.PI / 2));
+  const turn = Math.abs(axis - angle) <= kStraight_rad ? axis - angle : 0;
+  const [cos, sin] = [factor * Math.cos(turn), factor * Math.sin(turn)];
+  const [dx, dy] = [at.x_m - a.x, at.y_m - a.y];
+  return {
+    x_m: a.x + cos * dx - sin * dy,
+    y_m: a.y + sin * dx + cos * dy,
+    metres_per_pixel: at.metres_per_pixel * factor,
+    angle_rad: at.angle_rad + turn,
+  };
+}
+
+export class Background {
+  placement: Placement;
+  opacity = 0.5;
+
+  constructor(
+    private readonly picture: ImageBitmap,
+    centre: Point,
+  ) {
+    this.placement = first_placement(picture.width, picture.height, centre);
+  }
+
+  draw(context: CanvasRenderingContext2D, view: View): void {
+    const { x_m, y_m, metres_per_pixel, angle_rad } = this.placement;
+    context.save();
+    context.globalAlpha = this.opacity;
+    context.translate(view.scale * x_m + view.offset_x, view.offset_y - view.scale * y_m);
+    context.rotate(-angle_rad);
+    context.scale(view.scale * metres_per_pixel, view.scale * metres_per_pixel);
+    context.drawImage(this.picture, 0, 0);
+    context.restore();
+  }
+}

@@ -1,0 +1,102 @@
+// The tools of the edit mode: the shape that each draws, and the item that comes of it.
+import { texts } from "../texts";
+import { Drawing, free_name, Item, ItemKind, ListName, name_is_free, to_mm, ZoneKind } from "./drawing";
+import { distance, heading, point_at } from "./geometry";
+import { Finished, Shape } from "./sketch";
+
+/** Those that make an item. */
+export type ItemTool = Exclude<ItemKind, "room">;
+/** Those about rooms that the map has, and about the picture in the background. */
+export type OtherTool = "split" | "join" | "rename" | "measure" | "shift";
+export type ToolName = "select" | ItemTool | OtherTool;
+
+const kShapes: Record<Exclude<ToolName, "select">, Shape> = {
+  place: "point",
+  base: "arrow",
+  wall: "line",
+  opening: "segment",
+  door: "segment",
+  no_go: "polygon",
+  slow: "polygon",
+  one_way: "polygon",
+  split: "segment",
+  join: "segment",
+  rename: "point",
+  measure: "segment",
+  shift: "segment",
+};
+
+const kItemTools: readonly ItemTool[] = [
+  "place",
+  "base",
+  "wall",
+  "opening",
+  "door",
+  "no_go",
+  "slow",
+  "one_way",
+];
+const kSlow_mps = 0.2;
+
+export function shape_of(tool: ToolName): Shape | null {
+  return tool === "select" ? null : kShapes[tool];
+}
+
+export function is_item_tool(tool: ToolName): tool is ItemTool {
+  return kItemTools.some((known) => known === tool);
+}
+
+/** Whether a tool is meant to draw where exactly the grid and corners are. */
+export function snaps(tool: ToolName): boolean {
+  return is_item_tool(tool) || tool === "split";
+}
+
+/** What a tool has drawn, with a name that the drawing does not have. */
+export function make_item(
+  tool: ItemTool,
+  drawn: Finished,
+  drawing: Drawing,
+): { list: ListName; item: Item } {
+  const points = drawn.points.map(to_mm);
+  switch (tool) {
+    case "place":
+    case "base":
+      return { list: "places", item: make_place(tool, points, drawn.heading_rad, drawing) };
+    case "wall":
+      return { list: "walls", item: { points_m: points } };
+    case "opening":
+      return { list: "openings", item: { points_m: points } };
+    case "door": {
+      const name = free_name(drawing, "doors", texts.draw.kinds.door);
+      return { list: "doors", item: { name, points_m: points } };
+    }
+    default:
+      return { list: "zones", item: make_zone(tool, points, drawing) };
+  }
+}
+
+function make_place(
+  tool: "place" | "base",
+  [x_m, y_m]: number[],
+  heading_rad: number,
+  drawing: Drawing,
+): Item {
+  if (tool === "place") {
+    return { name: free_name(drawing, "places", texts.draw.kinds.place), x_m, y_m };
+  }
+  // The name by which "Return to base" finds it.
+  const name = name_is_free(drawing, "places", "base") ? "base" : free_name(drawing, "places", "base");
+  return { name, x_m, y_m, heading_rad: to_mm(heading_rad) };
+}
+
+function make_zone(kind: ZoneKind, corners_m: number[], drawing: Drawing): Item {
+  const name = free_name(drawing, "zones", texts.draw.kinds[kind]);
+  const value = { room: 0, no_go: 0, slow: kSlow_mps, one_way: to_mm(along(corners_m)) }[kind];
+  return { name, kind, value, corners_m };
+}
+
+// Along the longer one of the first two edges.
+function along(corners: number[]): number {
+  const [a, b, c] = [point_at(corners, 0), point_at(corners, 1), point_at(corners, 2)];
+  return distance(a, b) >= distance(b, c) ? heading(a, b) : heading(b, c);
+}

@@ -1,0 +1,179 @@
+// What the edit mode shows besides the drawing: grid, handles, lengths, the item on its way.
+import { is_closed, Item, ItemRef, points_of } from "../draw/drawing";
+import { area_of, distance, middle_of, Point, segments_of } from "../draw/geometry";
+import { Handle } from "../draw/grab";
+import { Sketch } from "../draw/sketch";
+import * as format from "../format";
+import { Palette } from "../ui/theme";
+import { draw_arrow, to_pixels, trace_line } from "./drawing_layer";
+import { View } from "./map_canvas";
+
+const kFont = "600 13px system-ui, sans-serif";
+const kFewestGridPx = 9;
+const kMostGridLines = 400;
+const kHandlePx = 6;
+const kShortestLabelledPx = 56;
+
+/** Lines of the grid; where they would be too dense every 5th or 10th. */
+export function draw_grid(
+  context: CanvasRenderingContext2D,
+  view: View,
+  step_m: number,
+  palette: Palette,
+): void {
+  if (step_m <= 0) return;
+  const step = [1, 5, 10, 50, 100].map((n) => n * step_m).find((s) => s * view.scale >= kFewestGridPx);
+  if (!step || (view.max_x - view.min_x) / step > kMostGridLines) return;
+  context.beginPath();
+  for (let x = step * Math.ceil(view.min_x / step); x <= view.max_x; x += step) {
+    const [px] = to_pixels(view, x, 0);
+    context.moveTo(px, 0);
+    context.lineTo(px, view.height);
+  }
+  for (let y = step * Math.ceil(view.min_y / step); y <= view.max_y; y += step) {
+    const [, py] = to_pixels(view, 0, y);
+    context.moveTo(0, py);
+    context.lineTo(view.width, py);
+  }
+  context.strokeStyle = palette.grid;
+  context.lineWidth = 1;
+  context.stroke();
+}
+
+/** Handles of the selected item, and its lengths. */
+export function draw_selection(
+  context: CanvasRenderingContext2D,
+  view: View,
+  ref: ItemRef,
+  item: Item,
+  handles: Handle[],
+  palette: Palette,
+): void {
+  const points = points_of(item);
+  const closed = is_closed(ref.list);
+  if (ref.list === "places") {
+    ring(context, to_pixels(view, points[0], points[1]), 17, palette.selected);
+  }
+  for (const handle of handles) {
+    const at = to_pixels(view, handle.x, handle.y);
+    const middle = handle.part.what === "middle";
+    context.beginPath();
+    context.arc(...at, middle ? kHandlePx - 2 : kHandlePx, 0, 2 * Math.PI);
+    context.fillStyle = middle ? palette.halo : palette.selected;
+    context.fill();
+    context.strokeStyle = middle ? palette.selected : palette.halo;
+    context.lineWidth = 2;
+    context.stroke();
+  }
+  draw_lengths(context, view, points, closed, palette);
+}
+
+/** The item that is being drawn. */
+export function draw_sketch(
+  context: CanvasRenderingContext2D,
+  view: View,
+  sketch: Sketch,
+  color: string,
+  palette: Palette,
+): void {
+  const { base, cursor } = sketch;
+  if (base && cursor) {
+    draw_arrow(context, view, base, sketch.heading_rad(), color);
+    ring(context, to_pixels(view, base.x, base.y), 8, color);
+  }
+  const points = sketch.shown().flatMap(({ x, y }) => [x, y]);
+  const closed = sketch.shape === "polygon" && points.length > 4;
+  if (points.length >= 4) {
+    trace_line(context, view, points, closed);
+    if (closed) {
+      context.fillStyle = color;
+      context.globalAlpha = 0.15;
+      context.fill();
+      context.globalAlpha = 1;
+    }
+    context.strokeStyle = palette.halo;
+    context.lineWidth = 6;
+    context.stroke();
+    context.strokeStyle = color;
+    context.lineWidth = 3;
+    context.stroke();
+    draw_lengths(context, view, points, closed, palette);
+  }
+  for (const point of sketch.points) {
+    ring(context, to_pixels(view, point.x, point.y), 5, color);
+  }
+}
+
+/** Where the next point will be. */
+export function draw_cursor(
+  context: CanvasRenderingContext2D,
+  view: View,
+  at: Point,
+  snapped: boolean,
+  palette: Palette,
+): void {
+  const [x, y] = to_pixels(view, at.x, at.y);
+  context.beginPath();
+  for (const [dx, dy] of [
+    [1, 0],
+    [-1, 0],
+    [0, 1],
+    [0, -1],
+  ]) {
+    context.moveTo(x + 4 * dx, y + 4 * dy);
+    context.lineTo(x + 12 * dx, y + 12 * dy);
+  }
+  context.strokeStyle = palette.selected;
+  context.lineWidth = 2;
+  context.stroke();
+  if (snapped) ring(context, [x, y], 9, palette.selected);
+}
+
+function ring(
+  context: CanvasRenderingContext2D,
+  at: [number, number],
+  radius: number,
+  color: string,
+): void {
+  context.beginPath();
+  context.arc(...at, radius, 0, 2 * Math.PI);
+  context.strokeStyle = color;
+  context.lineWidth = 2;
+  context.stroke();
+}
+
+function draw_lengths(
+  context: CanvasRenderingContext2D,
+  view: View,
+  points: number[],
+  closed: boolean,
+  palette: Palette,
+): void {
+  for (const [a, b] of segments_of(points, closed)) {
+    const meters = distance(a, b);
+    if (meters * view.scale < kShortestLabelledPx) continue;
+    draw_text(context, view, { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 }, format.length(meters), palette);
+  }
+  if (closed && points.length >= 6 && Math.sqrt(area_of(points)) * view.scale > 90) {
+    draw_text(context, view, middle_of(points), format.area(area_of(points)), palette);
+  }
+}
+
+export function draw_text(
+  context: CanvasRenderingContext2D,
+  view: View,
+  at: Point,
+  text: string,
+  palette: Palette,
+): void {
+  const [x, y] = to_pixels(view, at.x, at.y);
+  context.font = kFont;
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.lineJoin = "round";
+  context.lineWidth = 4;
+  context.strokeStyle = palette.halo;
+  context.strokeText(text, x, y - 12);
+  context.fillStyle = palette.label;
+  context.fillText(text, x, y - 12);
+}

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# What the tests of the page in Chromium share; sourced.
+source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
+
+# Skips where there is no browser, page or playwright-core.
+need_browser() {
+  need node
+  need npm
+  need chromium
+  [ -e "$build/share/topogeo/web/app.js" ] || skip "the page is not built"
+  [ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18"
+  install_packages
+}
+
+# Fetched once; npm takes nothing else than what the lock file names by its hash.
+install_packages() {
+  local packages=$build/tests/browser
+  mkdir -p "$packages"
+  exec {lock}> "$packages/install.lock"
+  flock "$lock"
+  if ! cmp -s "$source_dir/tests/browser/package-lock.json" "$packages/installed.json"; then
+    cp "$source_dir"/tests/browser/package*.json "$packages"
+    (cd "$packages" && npm ci --no-audit --no-fund --ignore-scripts > npm.log 2>&1) ||
+      skip "npm cannot fetch playwright-core and axe-core, see $packages/npm.log"
+    cp "$packages/package-lock.json" "$packages/installed.json"
+  fi
+  exec {lock}>&-
+}
+
+# run_browser_test NAME: tests of NAME_test.mjs.
+run_browser_test() {
+  step "tests in $(chromium --version --no-sandbox)"
+  TOPOGEO_BUILD=$build TOPOGEO_SOURCE=$source_dir TOPOGEO_WORK=$work TOPOGEO_CHROMIUM=$(command -v chromium) \
+    node --test "$source_dir/tests/browser/$1_test.mjs" || { tail -n 5 "$work"/*.log; fail "$1"; }
+}

@@ -1,0 +1,404 @@
+// The edit mode of the page in a browser, with a service that stands in: drawing by mouse, finger and keyboard, undo,
+// saving, what happens when others save, rooms, a new floor with a picture, files.
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { eventually } from "./robot.mjs";
+import { kAddress, StandIn } from "./stand_in.mjs";
+
+const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium } = process.env;
+const packages = createRequire(join(build, "tests/browser/"));
+const playwright = packages("playwright-core");
+const axe = packages.resolve("axe-core/axe.min.js");
+const pictures = join(build, "tests/browser/screenshots");
+mkdirSync(pictures, { recursive: true });
+
+const kDesk = { width: 1280, height: 800 };
+const kPhone = { width: 390, height: 844 };
+const kPixelsPerMetre = 16; // of a page without a map, whose middle is (0, 0)
+
+let browser;
+
+before(async () => {
+  browser = await playwright.chromium.launch({
+    executablePath: chromium,
+    args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
+  });
+});
+
+after(() => browser?.close());
+
+/** The view Draw of a page with a service of its own. */
+async function open(options = {}, prepare = () => {}) {
+  const service = new StandIn(join(build, "share/topogeo/web"));
+  prepare(service);
+  const context = await browser.newContext({ viewport: kDesk, colorScheme: "light", bypassCSP: true, ...options });
+  await service.serve(context);
+  const page = await context.newPage();
+  page.faults = [];
+  page.on("pageerror", (error) => page.faults.push(error.stack));
+  await page.goto(`${kAddress}/#token=${"t".repeat(16)}`);
+  await page.click("#tab-draw");
+  await page.locator(".tool[data-tool=select]").waitFor();
+  return { page, service, context };
+}
+
+async function end({ page, context }) {
+  assert.deepEqual(page.faults, []);
+  await context.close();
+}
+
+/** Where a point of the map frame is on the screen. */
+async function on_screen(page, [x, y]) {
+  const box = await page.locator("#map").boundingBox();
+  return [box.x + box.width / 2 + kPixelsPerMetre * x, box.y + box.height / 2 - kPixelsPerMetre * y];
+}
+
+const choose = (page, tool) => page.click(`.tool[data-tool=${tool}]`);
+
+async function drag(page, from, to) {
+  await page.mouse.move(...(await on_screen(page, from)));
+  await page.mouse.down();
+  await page.mouse.move(...(await on_screen(page, to)), { steps: 6 });
+  await page.mouse.up();
+}
+
+async function click(page, at) {
+  await page.mouse.click(...(await on_screen(page, at)));
+}
+
+const press = (page, name) => page.getByRole("button", { name, exact: true }).click();
+
+/** Saves, and what the service has then. */
+async function saved({ page, service }) {
+  const before_save = service.version;
+  await press(page, "Save");
+  await eventually("the drawing is saved", () => service.version > before_save, 20);
+  return service.drawing;
+}
+
+test("a rectangle becomes a no-go zone, with names of their own", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await choose(page, "no_go");
+  await drag(page, [-3, 2], [1, -1]);
+  await drag(page, [3, 2], [5, 1]);
+  const { zones } = await saved(opened);
+  assert.deepEqual(
+    zones.map(({ name, kind, value }) => [name, kind, value]),
+    [
+      ["no-go 1", "no_go", 0],
+      ["no-go 2", "no_go", 0],
+    ],
+  );
+  assert.deepEqual(zones[0].corners_m, [-3, 2, 1, 2, 1, -1, -3, -1]);
+  await end(opened);
+});
+
+test("a wall of corners, closed at the first, snaps to grid and right angles", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await choose(page, "wall");
+  // A few pixels off each time.
+  for (const at of [[-6.04, -4.03], [5.97, -3.8], [6.15, 4.04], [-6.03, 3.9], [-6.1, -3.9]]) await click(page, at);
+  const { walls } = await saved(opened);
+  assert.deepEqual(walls, [{ points_m: [-6, -4, 6, -4, 6, 4, -6, 4, -6, -4] }]);
+  await end(opened);
+});
+
+test("undo and redo go through every step, and undone to the start nothing is unsaved", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await choose(page, "place");
+  await click(page, [1, 1]);
+  await choose(page, "door");
+  await drag(page, [-1, 0], [-2, 0]);
+  const list = () => page.locator(".draw-items li").count();
+  await eventually("both are drawn", async () => (await list()) === 2, 20);
+  await page.keyboard.press("Control+z");
+  await press(page, "Undo");
+  await eventually("all is undone", async () => (await list()) === 0, 20);
+  assert.equal(await page.getByRole("button", { name: "Save", exact: true }).isDisabled(), true);
+  await page.keyboard.press("Control+Shift+z");
+  await press(page, "Redo");
+  await eventually("all is back", async () => (await list()) === 2, 20);
+  await press(page, "Discard");
+  await eventually("all is discarded", async () => (await list()) === 0, 20);
+  await press(page, "Undo");
+  await eventually("discarding is undone", async () => (await list()) === 2, 20);
+  await end(opened);
+});
+
+test("items are moved by their corners, named, and deleted", async () => {
+  const opened = await open({}, (service) => {
+    service.drawing.zones = [{ name: "kitchen floor", kind: "slow", value: 0.2, corners_m: [-4, -2, 0, -2, 0, 2, -4, 2] }];
+    service.drawing.walls = [{ points_m: [2, 2, 6, 2] }];
+  });
+  const { page } = opened;
+  await click(page, [4, 2]);
+  await eventually("the wall is chosen", () => page.getByText("4.00 m long").first().isVisible(), 20);
+  await drag(page, [6, 2], [6, 5]);
+  await press(page, "Select");
+  await click(page, [-2, 1]);
+  await page.fill("#draw-name", "workshop");
+  await page.fill("#draw-speed", "0.35");
+  await page.locator("#draw-speed").blur();
+  let drawing = await saved(opened);
+  assert.deepEqual(drawing.walls, [{ points_m: [2, 2, 6, 5] }]);
+  assert.equal(drawing.zones[0].name, "workshop");
+  assert.equal(drawing.zones[0].value, 0.35);
+  await page.click("#draw-delete");
+  drawing = await saved(opened);
+  assert.deepEqual(drawing.zones, []);
+  await end(opened);
+});
+
+test("a base station gets its arrow by a drag", async () => {
+  const opened = await open();
+  await choose(opened.page, "base");
+  await drag(opened.page, [1, 1], [1.1, 4]);
+  const { places } = await saved(opened);
+  assert.deepEqual(places, [{ name: "base", x_m: 1, y_m: 1, heading_rad: 1.571 }]);
+  await end(opened);
+});
+
+test("the keyboard alone draws a wall", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await page.focus(".tool[data-tool=wall]");
+  await page.keyboard.press("Enter");
+  await page.focus("#map");
+  for (const key of ["ArrowRight", "Enter", ...Array(10).fill("ArrowRight"), "Enter", "Enter"]) {
+    await page.keyboard.press(key);
+  }
+  const { walls } = await saved(opened);
+  assert.equal(walls.length, 1);
+  const [ax, ay, bx, by] = walls[0].points_m;
+  assert.ok(Math.abs(bx - ax - 1) < 1e-6 && ay === by, JSON.stringify(walls));
+  await end(opened);
+});
+
+test("when somebody else has saved, theirs is taken or mine saved over it", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await choose(page, "place");
+  await click(page, [1, 1]);
+  service.save_elsewhere({ places: [{ name: "theirs", x_m: 0, y_m: 0 }] });
+  await page.getByText("Somebody else has saved").waitFor();
+  await press(page, "Take theirs");
+  await page.locator(".draw-items li").getByText("theirs").waitFor({ state: "attached" });
+  await press(page, "Undo");
+  service.save_elsewhere({ places: [{ name: "again", x_m: 0, y_m: 0 }] });
+  await page.getByText("Somebody else has saved").waitFor();
+  await press(page, "Save mine over it");
+  await eventually("mine is saved", () => service.drawing.places[0].name === "place 1", 20);
+  // What others save while nothing is edited here comes by itself.
+  service.save_elsewhere({ places: [{ name: "later", x_m: 0, y_m: 0 }] });
+  await page.locator(".draw-items li").getByText("later").waitFor({ state: "attached" });
+  await end(opened);
+});
+
+test("a save that crosses another one is refused, and offers both", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await choose(page, "place");
+  await click(page, [1, 1]);
+  ++service.version; // the page has not heard of it
+  service.drawing.places = [{ name: "theirs", x_m: 0, y_m: 0 }];
+  await press(page, "Save");
+  await page.getByText("Somebody else has saved").waitFor();
+  assert.equal(service.drawing.places[0].name, "theirs");
+  await end(opened);
+});
+
+test("leaving with something unsaved is asked about", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await choose(page, "place");
+  await click(page, [1, 1]);
+  await page.click("#tab-now");
+  await page.getByText("waits in the view Draw").waitFor();
+  const asked = page.waitForEvent("dialog");
+  const reloaded = page.reload({ timeout: 2000 }).catch(() => null);
+  const dialog = await asked;
+  assert.equal(dialog.type(), "beforeunload");
+  await dialog.dismiss();
+  await reloaded;
+  await page.click("#tab-draw");
+  await eventually("it is still there", async () => (await page.locator(".draw-items li").count()) === 1, 20);
+  await opened.context.close();
+});
+
+test("rooms are split, joined and renamed", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  const rooms = () => service.drawing.zones.map(({ name, kind, corners_m }) => [name, kind, corners_m[0], corners_m[2]]);
+  await choose(page, "split");
+  await drag(page, [-3, 2], [-3, -2]);
+  await page.getByText("The room is parted.").waitFor();
+  await saved(opened);
+  assert.deepEqual(rooms(), [
+    ["left room", "room", -4, -3],
+    ["left room 1", "room", -3, 0],
+  ]);
+  service.save_elsewhere({});
+  await choose(page, "join");
+  await click(page, [-2, 0]);
+  await click(page, [2, 0]);
+  await page.getByText("The rooms are one.").waitFor();
+  await saved(opened);
+  assert.deepEqual(rooms(), [["left room", "room", -4, 4]]);
+  service.save_elsewhere({});
+  await choose(page, "rename");
+  await click(page, [2, 0]);
+  await eventually("the name is asked for", () => page.evaluate(() => document.activeElement.id === "draw-name"), 20);
+  await page.keyboard.type("library");
+  await page.keyboard.press("Enter");
+  await saved(opened);
+  assert.deepEqual(rooms(), [["library", "room", 0, 4]]);
+  await choose(page, "split");
+  await drag(page, [7, 2], [7, -2]);
+  await page.getByText("There is no room here.").waitFor();
+  await end(opened);
+});
+
+test("a new floor is drawn, exported, imported and loaded", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.getByText("New floor", { exact: true }).click();
+  await press(page, "Draw a new floor");
+  await eventually("the plane is there", () => page.locator("#map.plane").isVisible(), 20);
+  await page.locator(".tool[data-tool=wall]").click();
+  const box = await page.locator("#map").boundingBox();
+  const at = (x, y) => [box.x + box.width * x, box.y + box.height * y];
+  await page.mouse.click(...at(0.3, 0.3));
+  await page.mouse.click(...at(0.7, 0.3));
+  await page.mouse.click(...at(0.7, 0.7));
+  await press(page, "Finish");
+  await press(page, "Load into the simulator");
+  await page.getByText("Set a base station first").waitFor();
+  await choose(page, "base");
+  await page.mouse.click(...at(0.5, 0.5));
+  const download = page.waitForEvent("download");
+  await press(page, "Export");
+  const file = await (await download).path();
+  const content = JSON.parse(readFileSync(file, "utf8"));
+  assert.equal(content.walls[0].points_m.length, 6);
+  await press(page, "Discard").catch(() => null);
+  await press(page, "Undo");
+  await page.locator("input[type=file][accept*=json]").setInputFiles(file);
+  await page.getByText("The file is read").waitFor();
+  await press(page, "Load into the simulator");
+  await press(page, "Yes, load it");
+  await eventually("the floor is sent", () => service.floors.length === 1, 20);
+  const [floor] = service.floors;
+  assert.equal(floor.target, "simulator");
+  assert.deepEqual(floor.walls, content.walls);
+  assert.equal(floor.start.x_m, content.places[0].x_m);
+  await eventually("the map is back", async () => !(await page.locator("#map.plane").count()), 20);
+  await end(opened);
+});
+
+test("a picture is measured by two points of known distance", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await page.getByText("New floor", { exact: true }).click();
+  await press(page, "Draw a new floor");
+  const picture = await page.evaluate(async () => {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [400, 200];
+    const context = canvas.getContext("2d");
+    context.fillStyle = "#f00";
+    context.fillRect(0, 0, 400, 200);
+    return canvas.toDataURL("image/png").split(",")[1];
+  });
+  const files = { name: "plan.png", mimeType: "image/png", buffer: Buffer.from(picture, "base64") };
+  await page.locator("input[type=file][accept*=png]").setInputFiles(files);
+  await page.locator("#picture-opacity").waitFor();
+  const red = () =>
+    page.evaluate(() => {
+      const [canvas] = document.querySelectorAll("canvas.map-canvas");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) if (data[i] > 200 && data[i + 1] < 80 && data[i + 3] > 60) ++count;
+      return count;
+    });
+  const before_measure = await eventually("the picture is shown", red, 20);
+  await press(page, "Measure");
+  const box = await page.locator("#map").boundingBox();
+  await page.mouse.click(box.x + box.width * 0.45, box.y + box.height / 2);
+  await page.mouse.click(box.x + box.width * 0.55, box.y + box.height / 2);
+  const now = Number(await page.inputValue("#known-distance"));
+  await page.fill("#known-distance", String(now / 2));
+  await press(page, "Apply");
+  // Half as long in both directions.
+  await eventually("the picture is smaller", async () => Math.abs((await red()) / before_measure - 0.25) < 0.02, 20);
+  await press(page, "Remove picture");
+  await eventually("it is gone", async () => (await red()) === 0, 20);
+  await end(opened);
+});
+
+test("a finger draws a zone, two fingers zoom", async () => {
+  const opened = await open({ viewport: kPhone, hasTouch: true, isMobile: true });
+  const { page, context } = opened;
+  const touch = await context.newCDPSession(page);
+  const send = (type, points) =>
+    touch.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  await page.locator(".tool[data-tool=no_go]").tap();
+  const [from, to] = [await on_screen(page, [-4, 3]), await on_screen(page, [4, -3])];
+  await send("touchStart", [from]);
+  for (let i = 1; i <= 5; ++i) await send("touchMove", [from.map((v, k) => v + ((to[k] - v) * i) / 5)]);
+  await send("touchEnd", []);
+  // A pinch is none: it draws nothing, the map is larger then.
+  const [x, y] = await on_screen(page, [0, 0]);
+  const scale = () => page.locator(".scale").innerText();
+  const before_pinch = await scale();
+  await send("touchStart", [[x - 30, y]]);
+  await send("touchStart", [[x - 30, y], [x + 30, y]]);
+  for (let i = 1; i <= 6; ++i) await send("touchMove", [[x - 30 - 15 * i, y], [x + 30 + 15 * i, y]]);
+  await send("touchEnd", []);
+  await eventually("the map is larger", async () => (await scale()) !== before_pinch, 20);
+  const { zones } = await saved(opened);
+  assert.equal(zones.length, 1);
+  const [left, top, right, , , bottom] = zones[0].corners_m;
+  assert.deepEqual([right - left, top - bottom], [8, 6]);
+  await end(opened);
+});
+
+test("exploring is started, shown and ended", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  await press(page, "Explore");
+  await page.getByText("The robot explores by itself.").waitFor();
+  await press(page, "Cancel");
+  await eventually("it ends", () => !service.exploring, 20);
+  await page.getByText("The robot has no goal.").waitFor();
+  await end(opened);
+});
+
+for (const scheme of ["light", "dark"]) {
+  test(`the edit mode is accessible, ${scheme}`, async () => {
+    const opened = await open({ colorScheme: scheme }, (service) => {
+      service.drawing.zones = [{ name: "hall", kind: "one_way", value: 1, corners_m: [-4, -2, 0, -2, 0, 2, -4, 2] }];
+      service.drawing.walls = [{ points_m: [2, 2, 6, 2] }];
+    });
+    const { page } = opened;
+    await click(page, [-2, 1]);
+    for (const title of ["Grid and snapping", "Corners", /^All items/, "New floor"]) {
+      await page.getByText(title, { exact: typeof title === "string" }).first().click();
+    }
+    for (const plane of [false, true]) {
+      if (plane) await press(page, "Draw a new floor");
+      await page.addScriptTag({ path: axe });
+      const { violations } = await page.evaluate(() => window.axe.run());
+      const serious = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
+      const found = serious.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
+      assert.deepEqual(found, []);
+      await page.screenshot({ path: join(pictures, `edit-${plane ? "floor" : "map"}-${scheme}.png`) });
+    }
+    await end(opened);
+  });
+}

@@ -1,0 +1,133 @@
+// A service in the test itself, for what a page does before there is a robot: files of the page, the drawing with its
+// versions, outlines of rooms. No process, no port: the browser's requests are answered here.
+import { readFileSync } from "node:fs";
+import { extname, join } from "node:path";
+
+const kTypes = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
+export const kAddress = "http://stand-in.test";
+const kRobot = "stand-in";
+// The map keeps its size, so that tests know where a point of it is on the screen.
+const kSteady = ".banners { display: none } .header { height: 72px; overflow: hidden }";
+
+const empty = () => ({ places: [], zones: [], walls: [], openings: [], doors: [] });
+
+export class StandIn {
+  drawing = empty();
+  version = 1;
+  floors = [];
+  exploring = false;
+  offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "stop"];
+  /** Two rooms of 4 x 4 m that meet at x = 0; zone 0 lies left. */
+  rooms = {
+    0: { name: "left room", area_m2: 16, x_m: -2, y_m: 0, color: 0 },
+    1: { name: "right room", area_m2: 16, x_m: 2, y_m: 0, color: 1 },
+  };
+  sockets = new Set();
+
+  /** page_files: folder of the built page. */
+  constructor(page_files) {
+    this.page_files = page_files;
+  }
+
+  /** Answers all that pages of a browser context ask. */
+  async serve(context) {
+    await context.route("**/*", (route) => this.answer(route));
+    await context.routeWebSocket("**/ws", (socket) => this.connect(socket));
+  }
+
+  /** Somebody else saves. */
+  save_elsewhere(drawing) {
+    this.drawing = { ...empty(), ...drawing };
+    ++this.version;
+    this.tell({ channel: "drawing", version: this.version, value: { version: String(this.version) } });
+  }
+
+  tell(message) {
+    for (const socket of this.sockets) socket.send(JSON.stringify(message));
+  }
+
+  connect(socket) {
+    this.sockets.add(socket);
+    socket.onClose(() => this.sockets.delete(socket));
+    const send = (message) => socket.send(JSON.stringify(message));
+    const table = (channel, set) => send({ channel, from: 0, version: 1, set, gone: [] });
+    socket.onMessage((text) => {
+      const { op } = JSON.parse(text);
+      if (op === "ping") send({ op: "pong", time_s: 0 });
+      if (op !== "hello") return;
+      send({ op: "welcome", protocol: 1, life: "a", may_write: true, robot_id: kRobot });
+      table("rooms", this.rooms);
+      table("places", {});
+      table("rules", {});
+      send({ channel: "drawing", version: 1, value: { version: String(this.version) } });
+      send({ channel: "navigator", version: 1, value: { state: "idle", reason: "none", message: "" } });
+      const beat = setInterval(() => {
+        if (!this.sockets.has(socket)) return clearInterval(beat);
+        send({ channel: "time", version: 1, value: { time_s: Date.now() / 1000 } });
+      }, 1000);
+    });
+  }
+
+  async answer(route) {
+    const request = route.request();
+    const { pathname, searchParams } = new URL(request.url());
+    const body = request.method() === "POST" ? JSON.parse(request.postData() || "{}") : null;
+    const json = (status, value) => route.fulfill({ status, json: value });
+    const goals = () => ({ current: null, waiting: [], exploring: this.exploring });
+    switch (pathname) {
+      case "/api/info":
+        return json(200, {
+          protocol: 1,
+          robot_id: kRobot,
+          version: "0",
+          life: "a",
+          may_write: true,
+          offers: this.offers,
+        });
+      case "/api/at": {
+        const x = Number(searchParams.get("x_m"));
+        const inside = Math.abs(x) < 4 && Math.abs(Number(searchParams.get("y_m"))) < 2;
+        return json(200, inside ? { inside, zone: x < 0 ? 0 : 1 } : { inside });
+      }
+      case "/api/drawing":
+        if (!body) return json(200, { version: String(this.version), ...this.drawing });
+        if (body.version !== String(this.version)) {
+          return json(409, { error: "made on an older version", version: String(this.version) });
+        }
+        delete body.version;
+        this.save_elsewhere(body);
+        return json(200, { version: String(this.version) });
+      case "/api/room_shapes":
+        return json(200, { shapes: room_shapes(body) });
+      case "/api/floor":
+        this.floors.push(body);
+        return json(202, {});
+      case "/api/explore":
+      case "/api/cancel":
+        this.exploring = pathname === "/api/explore";
+        this.tell({ channel: "goals", version: 2, value: goals() });
+        return json(202, {});
+      default:
+        return this.answer_file(route, pathname);
+    }
+  }
+
+  answer_file(route, pathname) {
+    const name = pathname === "/" ? "/index.html" : pathname;
+    try {
+      const file = readFileSync(join(this.page_files, name));
+      const body = name === "/style.css" ? `${file}${kSteady}` : file;
+      return route.fulfill({ body, contentType: kTypes[extname(name)] ?? "application/octet-stream" });
+    } catch {
+      return route.fulfill({ status: 404, json: { error: `there is no ${pathname}` } });
+    }
+  }
+}
+
+// The two rooms, joined or cut by an upright line.
+function room_shapes({ zones, cut_m }) {
+  const left = zones.includes(0) ? -4 : 0;
+  const right = zones.includes(1) ? 4 : 0;
+  const box = (a, b) => ({ corners_m: [a, -2, b, -2, b, 2, a, 2] });
+  return cut_m ? [box(left, cut_m[0]), box(cut_m[0], right)] : [box(left, right)];
+}
