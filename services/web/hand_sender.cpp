@@ -24,7 +24,8 @@ std::int64_t steady_ns() {
 
 }  // namespace
 
-HandSender::HandSender(service::Service& service, Board& board, EventLog& events)
+HandSender::HandSender(service::Service& service, Board& board, EventLog& events,
+                       std::function<void(const msg::Odometry&)> on_odometry)
     : service_(service),
       board_(board),
       events_(events),
@@ -34,10 +35,12 @@ HandSender::HandSender(service::Service& service, Board& board, EventLog& events
       drive_(service.setup().config.config.navigator.follower),
       commands_(service.advertise<msg::MotionCommand>()),
       orders_(service.advertise<msg::BaseCommand>()) {
-  service.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {
-    clock_.observe(odometry.stamp_ns(), steady_ns());
-    guard_.add(service::odometry_from_msg(odometry));
-  });
+  service.subscribe<msg::Odometry>(
+      [this, on_odometry = std::move(on_odometry)](const msg::Odometry& odometry) {
+        clock_.observe(odometry.stamp_ns(), steady_ns());
+        guard_.add(service::odometry_from_msg(odometry));
+        if (on_odometry) on_odometry(odometry);
+      });
   service.subscribe<msg::Sonar>(
       [this](const msg::Sonar& sonar) { guard_.add(service::sonar_from_msg(sonar)); });
   service.loop().add_timer(kHandPeriod, [this] { tick(); });

@@ -22,7 +22,9 @@ class EventLog;
 /// Lives in the loop of its service.
 class HandSender {
  public:
-  HandSender(service::Service& service, Board& board, EventLog& events);
+  /// `on_odometry` gets it, too; may be empty.
+  HandSender(service::Service& service, Board& board, EventLog& events,
+             std::function<void(const msg::Odometry&)> on_odometry = {});
   HandSender(const HandSender&) = delete;
   HandSender& operator=(const HandSender&) = delete;
   /// The last command is to stand still.

@@ -10,6 +10,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 
 #include "access.hpp"
+#include "foxglove_viewer.hpp"
 #include "viewer.hpp"
 
 namespace topogeo::web {
@@ -137,7 +138,9 @@ std::optional<Answer> HttpSession::refusal() {
 }
 
 void HttpSession::upgrade() {
-  if (parser_->get().target() != "/ws") {
+  // Programs that speak Foxglove's protocol ask for "/".
+  const std::string foxglove = foxglove_subprotocol(header(http::field::sec_websocket_protocol));
+  if (foxglove.empty() && parser_->get().target() != "/ws") {
     send(error_answer(404, "the WebSocket is at /ws"));
     return;
   }
@@ -147,8 +150,13 @@ void HttpSession::upgrade() {
     return;
   }
   connection_.expires_never();
-  std::make_shared<Viewer>(std::move(connection_), state_, shared_from_this())
-      ->start(parser_->release());
+  std::shared_ptr<Watcher> watcher;
+  if (foxglove.empty()) {
+    watcher = std::make_shared<Viewer>(std::move(connection_), state_, shared_from_this());
+  } else {
+    watcher = std::make_shared<FoxgloveViewer>(std::move(connection_), state_, shared_from_this());
+  }
+  watcher->start(parser_->release(), foxglove);
 }
 
 void HttpSession::route() {

@@ -29,6 +29,10 @@ constexpr std::array<Color, MapPicture::kColors + 1> kRoomColors = {{{255, 255, 
                                                                      {0x80, 0xb1, 0xd3, 255},
                                                                      {0xfd, 0xb4, 0x62, 255}}};
 
+std::span<const Color> palette_of(Layer layer) {
+  return layer == Layer::kGrid ? std::span<const Color>(kGridColors) : kRoomColors;
+}
+
 constexpr std::uint16_t kInNoZone = 65535;
 
 std::uint8_t color_of_state(std::uint8_t state) {
@@ -157,9 +161,24 @@ std::optional<std::string> MapPicture::png(const TilePlace& place) const {
     }
   }
   if (!anything) return std::nullopt;
-  const std::span<const Color> colors =
-      place.layer == Layer::kGrid ? std::span<const Color>(kGridColors) : kRoomColors;
-  return palette_png(kSide, kSide, pixels, colors);
+  return palette_png(kSide, kSide, pixels, palette_of(place.layer));
+}
+
+ColorImage MapPicture::colors(Layer layer, std::size_t most_pixels) const {
+  std::uint32_t level = 0;
+  while (level + 1 < kLevels && image(layer, level).pixels.size() > most_pixels) ++level;
+  const Image& from = image(layer, level);
+  ColorImage out{
+      from.columns, from.rows, frame_.resolution_m * static_cast<double>(1U << level), {}};
+  out.rgba.reserve(4 * from.pixels.size());
+  const std::span<const Color> palette = palette_of(layer);
+  for (const std::uint8_t pixel : from.pixels) {
+    const Color& color = palette[pixel];
+    for (const std::uint8_t part : {color.red, color.green, color.blue, color.alpha}) {
+      out.rgba += static_cast<char>(part);
+    }
+  }
+  return out;
 }
 
 }  // namespace topogeo::web

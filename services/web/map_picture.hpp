@@ -34,6 +34,13 @@ struct TilePlace {
   std::uint32_t row = 0;
 };
 
+struct ColorImage {
+  std::int32_t columns = 0;
+  std::int32_t rows = 0;
+  double pixel_m = 0.0;
+  std::string rgba;
+};
+
 /// Of one version of a map; never changed. For any thread.
 class MapPicture {
  public:
@@ -51,6 +58,10 @@ class MapPicture {
   /// PNG with a palette; nothing where no cell is known (Layer::kGrid) or in a zone
   /// (Layer::kRooms), and beyond the grid.
   [[nodiscard]] std::optional<std::string> png(const TilePlace& place) const;
+
+  /// The whole of it in four bytes a pixel (red, green, blue, alpha), row by row from the lower
+  /// left one, at the finest level with `most_pixels` at the most.
+  [[nodiscard]] ColorImage colors(Layer layer, std::size_t most_pixels) const;
 
   /// Of a cell of the grid.
   [[nodiscard]] planning::CellState state_at(const planning::Cell& cell) const;

@@ -98,7 +98,8 @@ std::string without_capitals(std::string_view text) {
 
 }  // namespace
 
-MapView::MapView(service::Service& service, Board& board) : service_(service), board_(board) {
+MapView::MapView(service::Service& service, Board& board, OnShown on_shown)
+    : service_(service), board_(board), on_shown_(std::move(on_shown)) {
   service.subscribe<msg::GridTile>(
       [this](const msg::GridTile& tile, const SampleInfo& info) { put(tile, info); },
       {.of_map = true},
@@ -176,6 +177,7 @@ void MapView::show() {
     const std::scoped_lock lock(mutex_);
     shown_ = shown;
   }
+  if (on_shown_) on_shown_(shown->picture);
   show_frame(name);
   show_tiles(squares, anew);
   show_rooms(*shown->picture, colors);

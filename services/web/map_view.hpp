@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -42,7 +43,9 @@ struct ShownMap {
 /// Lives in the loop of its service, but for shown().
 class MapView {
  public:
-  MapView(service::Service& service, Board& board);
+  /// `on_shown` gets each version that is shown; may be empty.
+  using OnShown = std::function<void(const std::shared_ptr<const MapPicture>&)>;
+  MapView(service::Service& service, Board& board, OnShown on_shown = {});
 
   /// Null before the first whole map. For any thread.
   [[nodiscard]] std::shared_ptr<const ShownMap> shown() const;
@@ -64,6 +67,7 @@ class MapView {
 
   service::Service& service_;
   Board& board_;
+  OnShown on_shown_;
   service::HybridMapMirror mirror_;
   std::map<std::uint32_t, std::shared_ptr<const GridSquare>> squares_;
   std::map<messaging::Handle, std::uint32_t> numbers_;

@@ -43,6 +43,7 @@ RobotView::RobotView(service::Service& service, Board& board, EventLog& events, 
 }
 
 void RobotView::on_pose(const msg::LivePose& pose) {
+  if (hooks_.on_pose) hooks_.on_pose(pose);
   if (!pose_ || pose_->state() != pose.state()) {
     events_.add(level_of(pose.state()), "localizer",
                 std::string(name_of(pose.state())) + ": " + reason_of(pose.state()));

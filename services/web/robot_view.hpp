@@ -21,6 +21,7 @@ class EventLog;
 /// Who else needs what the view gets; each may be empty.
 struct RobotHooks {
   std::function<void(const navigation::ScanPoints&)> on_scan;
+  std::function<void(const msg::LivePose&)> on_pose;
   std::function<void(const msg::LaserStatus&)> on_laser;
   std::function<void(const msg::NavigatorStatus&)> on_navigator;
 };

@@ -18,7 +18,7 @@
 #include "http_session.hpp"
 #include "json_values.hpp"
 #include "server_state.hpp"
-#include "viewer.hpp"
+#include "watcher.hpp"
 
 namespace topogeo::web {
 namespace {
@@ -38,7 +38,7 @@ Answer error_answer(unsigned status, const std::string& sentence) {
 
 void ServerState::show_viewers() {
   const auto operators =
-      std::ranges::count_if(viewers, [](const Viewer* viewer) { return viewer->is_operator(); });
+      std::ranges::count_if(viewers, [](const Watcher* viewer) { return viewer->is_operator(); });
   tally.set("viewers", viewers.size());
   board.set(Channel::kViewers,
             fmt::format(R"({{"viewers":{},"operators":{}}})", viewers.size(), operators));
@@ -46,8 +46,8 @@ void ServerState::show_viewers() {
 
 struct Server::Impl {
   Impl(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
-       Tally& tally)
-      : state{config, board, files, backend, tally, 0, {}, {}, 0},
+       Tally& tally, FoxgloveFeed& feed)
+      : state{config, board, files, backend, tally, feed, 0, {}, {}, 0},
         acceptor(context),
         retry(context),
         timer(context) {}
@@ -145,17 +145,18 @@ void Server::Impl::wake() {
   if (woken.exchange(true)) return;
   asio::post(context, [this] {
     woken = false;
-    for (Viewer* viewer : state.viewers) viewer->pump();
+    for (Watcher* viewer : state.viewers) viewer->pump();
   });
 }
 
 Server::Server(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
-               Tally& tally)
-    : impl_(std::make_unique<Impl>(config, board, files, backend, tally)) {
+               Tally& tally, FoxgloveFeed& feed)
+    : impl_(std::make_unique<Impl>(config, board, files, backend, tally, feed)) {
   impl_->use_certificate();
   impl_->listen();
   port_ = impl_->acceptor.local_endpoint().port();
   board.on_change([impl = impl_.get()](Channel) { impl->wake(); });
+  feed.on_change([impl = impl_.get()] { impl->wake(); });
   impl_->accept();
   impl_->tick();
   impl_->thread = std::thread([this] { impl_->context.run(); });
@@ -163,6 +164,7 @@ Server::Server(const ServerConfig& config, Board& board, const PageFiles& files,
 
 Server::~Server() {
   impl_->state.board.on_change({});
+  impl_->state.feed.on_change({});
   impl_->context.stop();
   impl_->thread.join();
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "board.hpp"
+#include "foxglove_feed.hpp"
 #include "page_files.hpp"
 #include "tally.hpp"
 #include "web_types.hpp"
@@ -16,7 +17,7 @@ class Server {
   /// All outlive it. Throws std::runtime_error naming address, port or file when it cannot listen
   /// there or cannot use the certificate.
   Server(const ServerConfig& config, Board& board, const PageFiles& files, Backend& backend,
-         Tally& tally);
+         Tally& tally, FoxgloveFeed& feed);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   /// Ends all connections. No function of the backend is called afterwards.

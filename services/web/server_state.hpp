@@ -10,6 +10,7 @@
 #include <string>
 
 #include "board.hpp"
+#include "foxglove_feed.hpp"
 #include "page_files.hpp"
 #include "rate_limit.hpp"
 #include "tally.hpp"
@@ -17,7 +18,7 @@
 
 namespace topogeo::web {
 
-class Viewer;
+class Watcher;
 
 /// What the pages at one address may ask for, all together.
 struct PeerLimits {
@@ -36,10 +37,11 @@ struct ServerState {
   const PageFiles& files;
   Backend& backend;
   Tally& tally;
+  FoxgloveFeed& feed;
 
   int connections = 0;
   std::map<std::string, PeerLimits> peers;  ///< by address
-  std::set<Viewer*> viewers;
+  std::set<Watcher*> viewers;
   std::uint64_t last_viewer = 0;
 
   /// Since any start.

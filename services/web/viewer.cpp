@@ -4,8 +4,6 @@
 #include <chrono>
 #include <stdexcept>
 
-#include <boost/beast/core/buffers_to_string.hpp>
-
 #include "topogeo/support/cpu_time.hpp"
 #include "topogeo/support/host.hpp"
 
@@ -14,81 +12,33 @@
 
 namespace topogeo::web {
 
-namespace websocket = beast::websocket;
-
 namespace {
 
 constexpr std::chrono::milliseconds kHelloPatience{250};
-constexpr std::chrono::seconds kSilence{20};  // pings are sent after half of it
-constexpr std::size_t kMostMessage_bytes = 4096;
-constexpr std::size_t kMostControls = 64;
-constexpr int kMostRefusals = 20;
 constexpr int kProtocol = 1;
 
 }  // namespace
 
 Viewer::Viewer(Connection connection, ServerState& state, std::shared_ptr<void> place)
-    : state_(state),
-      place_(std::move(place)),
+    : Watcher(std::move(connection), state, std::move(place)),
       number_(++state.last_viewer),
-      socket_(std::move(connection)),
-      hello_timer_(socket_.get_executor()) {
-  state_.viewers.insert(this);
-}
+      hello_timer_(socket().get_executor()) {}
 
 Viewer::~Viewer() {
-  state_.viewers.erase(this);
-  state_.backend.release(number_);
-  state_.show_viewers();
+  state().backend.release(number_);
 }
 
-void Viewer::start(beast::http::request<beast::http::string_body> request) {
-  beast::error_code ignored;
-  socket_.next_layer().socket().set_option(asio::ip::tcp::no_delay(true), ignored);
-  websocket::stream_base::timeout timeout{kSilence, kSilence, true};
-  socket_.set_option(timeout);
-  socket_.read_message_max(kMostMessage_bytes);
-  socket_.text(true);
-  const auto kept = std::make_shared<decltype(request)>(std::move(request));
-  socket_.async_accept(*kept, [self = shared_from_this(), kept](beast::error_code error) {
-    if (error) return;
-    self->state_.show_viewers();
-    self->wait_for_hello();
-    self->read();
-  });
-}
-
-void Viewer::wait_for_hello() {
+void Viewer::on_open() {
   hello_timer_.expires_after(kHelloPatience);
-  hello_timer_.async_wait([self = shared_from_this()](beast::error_code error) {
-    if (!error && !self->ready_) self->hello(ViewerMessage{});
+  hello_timer_.async_wait([weak = weak_from_this(), this](beast::error_code error) {
+    const auto self = weak.lock();
+    if (self && !error && !ready_) hello(ViewerMessage{});
   });
 }
 
-void Viewer::read() {
-  socket_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    self->on_read(error);
-  });
-}
-
-void Viewer::on_read(beast::error_code error) {
-  if (error) {
-    if (error == websocket::error::message_too_big) state_.refuse("too large");
-    hello_timer_.cancel();
-    state_.backend.release(number_);
-    closing_ = true;
-    return;
-  }
-  const std::string text = beast::buffers_to_string(buffer_.data());
-  buffer_.consume(buffer_.size());
-  if (!messages_.take(ServerState::now_s())) {
-    refuse("too often", "too many messages");
-  } else if (!socket_.got_text()) {
-    refuse("no message", "expected text, not binary");
-  } else {
-    on_text(text);
-  }
-  if (!closing_) read();
+void Viewer::on_end() {
+  hello_timer_.cancel();
+  state().backend.release(number_);
 }
 
 void Viewer::on_text(const std::string& text) {
@@ -120,7 +70,7 @@ void Viewer::on_message(const ViewerMessage& message) {
       drive(message);
       break;
     case Op::kRelease:
-      state_.backend.release(number_);
+      state().backend.release(number_);
       break;
   }
   pump();
@@ -128,28 +78,28 @@ void Viewer::on_message(const ViewerMessage& message) {
 
 void Viewer::hello(const ViewerMessage& message) {
   hello_timer_.cancel();
-  const std::string& token = state_.config.token;
+  const std::string& token = state().config.token;
   operator_ = !token.empty() && equal_in_constant_time(message.token, token);
   Json welcome = {{"op", "welcome"},
                   {"protocol", kProtocol},
-                  {"life", state_.config.life},
+                  {"life", state().config.life},
                   {"may_write", operator_},
-                  {"robot_id", state_.config.robot_id}};
+                  {"robot_id", state().config.robot_id}};
   if (!operator_ && !message.token.empty()) {
-    state_.refuse("no token");
+    state().refuse("no token");
     welcome["error"] = "wrong token";
   }
   control(welcome.dump());
-  if (message.life == state_.config.life) {
+  if (message.life == state().config.life) {
     for (const auto& [channel, version] : message.have) {
-      if (version <= state_.board.version(channel)) {
+      if (version <= state().board.version(channel)) {
         held_.at(static_cast<std::size_t>(channel)) = version;
       }
     }
   }
   want(message);
   ready_ = true;
-  state_.show_viewers();
+  state().show_viewers();
   pump();
 }
 
@@ -162,76 +112,37 @@ void Viewer::want(const ViewerMessage& message) {
 
 void Viewer::drive(const ViewerMessage& message) {
   if (operator_) {
-    state_.backend.drive(number_, message.linear_mps, message.angular_radps);
+    state().backend.drive(number_, message.linear_mps, message.angular_radps);
   } else {
     refuse("no token", "this needs the operator's token", "drive");
   }
 }
 
-void Viewer::refuse(std::string_view reason, const std::string& sentence, std::string_view what) {
-  state_.refuse(reason);
+std::string Viewer::refusal(const std::string& sentence, std::string_view what) const {
   Json out = {{"op", "refused"}, {"error", sentence}};
   if (!what.empty()) out["what"] = what;
-  control(out.dump(-1, ' ', false, Json::error_handler_t::replace));
-  if (++refusals_ > kMostRefusals) close();
-  pump();
-}
-
-void Viewer::close() {
-  if (closing_) return;
-  closing_ = true;
-  state_.backend.release(number_);
-  socket_.async_close(websocket::close_code::policy_error,
-                      [self = shared_from_this()](beast::error_code) {});
-}
-
-void Viewer::control(std::string text) {
-  if (controls_.size() >= kMostControls) controls_.pop_front();
-  controls_.push_back(std::move(text));
+  return text_of(out);
 }
 
 std::size_t Viewer::next_channel() const {
   std::size_t next = kChannels;
   for (std::size_t i = 0; i < kChannels; ++i) {
     if (!wanted_.at(i)) continue;
-    if (!anew_.at(i) && state_.board.version(static_cast<Channel>(i)) == held_.at(i)) continue;
+    if (!anew_.at(i) && state().board.version(static_cast<Channel>(i)) == held_.at(i)) continue;
     if (next == kChannels || sent_.at(i) < sent_.at(next)) next = i;
   }
   return next;
 }
 
-void Viewer::pump() {
-  if (writing_ || closing_ || !ready_) return;
-  if (!controls_.empty()) {
-    auto text = std::make_shared<const std::string>(std::move(controls_.front()));
-    controls_.pop_front();
-    write(std::move(text));
-    return;
-  }
+std::optional<Watcher::Frame> Viewer::next_frame() {
   const std::size_t next = next_channel();
-  if (next == kChannels) return;
+  if (!ready_ || next == kChannels) return std::nullopt;
   const Update update =
-      state_.board.update(static_cast<Channel>(next), anew_.at(next) ? 0 : held_.at(next));
+      state().board.update(static_cast<Channel>(next), anew_.at(next) ? 0 : held_.at(next));
   anew_.at(next) = false;
   held_.at(next) = update.version;
   sent_.at(next) = ++messages_sent_;
-  write(update.text);
-}
-
-void Viewer::write(std::shared_ptr<const std::string> text) {
-  writing_ = true;
-  state_.tally.add("messages_sent");
-  state_.tally.add("bytes_sent", text->size());
-  const auto buffer = asio::buffer(*text);
-  socket_.async_write(buffer, [self = shared_from_this(), text = std::move(text)](
-                                  beast::error_code error, std::size_t) {
-    self->writing_ = false;
-    if (error) {
-      self->closing_ = true;
-    } else {
-      self->pump();
-    }
-  });
+  return Frame{update.text, false};
 }
 
 }  // namespace topogeo::web

@@ -36,18 +36,25 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
     : service_(service),
       config_(config),
       files_(std::move(files)),
-      hand_(service, board_, events_),
-      map_(service, board_),
+      foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
+      hand_(service, board_, events_,
+            [this](const msg::Odometry& odometry) { foxglove_.take(odometry); }),
+      map_(service, board_,
+           [this](const std::shared_ptr<const MapPicture>& picture) { foxglove_.take(picture); }),
       graph_(service, board_),
       goals_(service, board_, map_, events_),
       robot_(service, board_, events_,
-             {[this](const navigation::ScanPoints& scan) { hand_.take(scan); },
+             {[this](const navigation::ScanPoints& scan) {
+                hand_.take(scan);
+                foxglove_.take(scan);
+              },
+              [this](const msg::LivePose& pose) { foxglove_.take(pose); },
               [this](const msg::LaserStatus& laser) { hand_.take(laser); },
               [this](const msg::NavigatorStatus& status) { goals_.take(status); }}),
       drive_(service, board_, events_),
       health_(service, board_, events_),
-      server_(
-          std::make_unique<Server>(config_, board_, files_, static_cast<Backend&>(*this), tally_)),
+      server_(std::make_unique<Server>(config_, board_, files_, static_cast<Backend&>(*this),
+                                       tally_, feed_)),
       localizer_(service) {
   timer_ = service_.loop().add_timer(kCountsPeriod, [this] { report_counts(); });
   report_counts();

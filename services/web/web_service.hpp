@@ -18,6 +18,8 @@
 #include "board.hpp"
 #include "drive_view.hpp"
 #include "event_log.hpp"
+#include "foxglove_feed.hpp"
+#include "foxglove_view.hpp"
 #include "goal_sender.hpp"
 #include "graph_view.hpp"
 #include "hand_sender.hpp"
@@ -66,7 +68,9 @@ class WebService : private Backend {
   PageFiles files_;
   Tally tally_;
   Board board_;
+  FoxgloveFeed feed_;
   EventLog events_{board_};
+  FoxgloveView foxglove_;
   HandSender hand_;
   MapView map_;
   GraphView graph_;

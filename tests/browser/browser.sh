@@ -1,19 +1,28 @@
 #!/usr/bin/env bash
-# What the tests of the page in Chromium share; sourced.
+# What the tests of the page in Chromium, and of other viewers, share; sourced.
 source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
 # Skips where there is no browser, page or playwright-core.
 need_browser() {
-  need node
-  need npm
   need chromium
   [ -e "$build/share/topogeo/web/app.js" ] || skip "the page is not built"
-  [ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18"
-  install_packages
+  need_node_packages
+}
+
+# A simulated robot with all of its services and the web service.
+need_robot() {
+  need_programs
+  local program
+  for program in web sensor_gateway local_mapper localizer map_store planner; do
+    [ -x "$bin/$program" ] || skip "the program $program is not built"
+  done
 }
 
 # Fetched once; npm takes nothing else than what the lock file names by its hash.
-install_packages() {
+need_node_packages() {
+  need node
+  need npm
+  [ "$(node -p 'parseInt(process.versions.node)')" -ge 18 ] || skip "Node $(node --version) is older than 18"
   local packages=$build/tests/browser
   mkdir -p "$packages"
   exec {lock}> "$packages/install.lock"
@@ -21,7 +30,7 @@ install_packages() {
   if ! cmp -s "$source_dir/tests/browser/package-lock.json" "$packages/installed.json"; then
     cp "$source_dir"/tests/browser/package*.json "$packages"
     (cd "$packages" && npm ci --no-audit --no-fund --ignore-scripts > npm.log 2>&1) ||
-      skip "npm cannot fetch playwright-core and axe-core, see $packages/npm.log"
+      skip "npm cannot fetch what the test needs, see $packages/npm.log"
     cp "$packages/package-lock.json" "$packages/installed.json"
   fi
   exec {lock}>&-
@@ -29,7 +38,9 @@ install_packages() {
 
 # run_browser_test NAME: tests of NAME_test.mjs.
 run_browser_test() {
-  step "tests in $(chromium --version --no-sandbox)"
-  TOPOGEO_BUILD=$build TOPOGEO_SOURCE=$source_dir TOPOGEO_WORK=$work TOPOGEO_CHROMIUM=$(command -v chromium) \
+  local chromium
+  chromium=$(command -v chromium) || true
+  [ -z "$chromium" ] || step "tests in $(chromium --version --no-sandbox)"
+  TOPOGEO_BUILD=$build TOPOGEO_SOURCE=$source_dir TOPOGEO_WORK=$work TOPOGEO_CHROMIUM=$chromium \
     node --test "$source_dir/tests/browser/$1_test.mjs" || { tail -n 5 "$work"/*.log; fail "$1"; }
 }

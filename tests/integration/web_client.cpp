@@ -98,6 +98,7 @@ HttpReply parse_reply(const std::string& text) {
 
 constexpr unsigned kContinuation = 0;
 constexpr unsigned kText = 1;
+constexpr unsigned kBinary = 2;
 constexpr unsigned kClose = 8;
 constexpr unsigned kPing = 9;
 constexpr unsigned kPong = 10;
@@ -152,6 +153,7 @@ WebSocketClient::WebSocketClient(std::uint32_t port, const Headers& headers)
     ::close(socket_);
     throw std::runtime_error(status);
   }
+  handshake_ = buffer_.substr(0, head + 2);
   buffer_.erase(0, head + 4);
 }
 
@@ -206,7 +208,7 @@ std::optional<std::string> WebSocketClient::receive(milliseconds timeout) {
     const bool final = (byte(0) & 0x80U) != 0;
     std::string payload = buffer_.substr(head, size);
     buffer_.erase(0, head + size);
-    if (opcode == kText || opcode == kContinuation) {
+    if (opcode == kText || opcode == kBinary || opcode == kContinuation) {
       message_ += payload;
       if (!final) continue;
       return std::exchange(message_, {});

@@ -46,9 +46,11 @@ class WebSocketClient {
 
   void send_text(const std::string& text);
   void send(const nlohmann::json& json) { send_text(json.dump()); }
-  /// The next message; nothing when none comes in time or the connection has ended.
+  /// The next message, text or binary; nothing when none comes in time or the connection has ended.
   std::optional<std::string> receive(std::chrono::milliseconds timeout);
   [[nodiscard]] bool ended() const { return ended_; }
+  /// The answer to it: status line and headers.
+  [[nodiscard]] const std::string& handshake() const { return handshake_; }
   /// Reads nothing with small buffers from here on: what a bad link looks like to the other side.
   [[nodiscard]] int socket() const { return socket_; }
 
@@ -57,6 +59,7 @@ class WebSocketClient {
   void send_frame(unsigned opcode, const std::string& payload);
 
   int socket_ = -1;
+  std::string handshake_;
   std::string buffer_;
   std::string message_;  // of which more is to come
   bool ended_ = false;

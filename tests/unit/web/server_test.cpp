@@ -65,7 +65,9 @@ class WebServer : public testing::Test {
     config_.hosts = {"desk"};
     start();
   }
-  void start() { server_ = std::make_unique<Server>(config_, board_, files_, backend_, tally_); }
+  void start() {
+    server_ = std::make_unique<Server>(config_, board_, files_, backend_, tally_, feed_);
+  }
   [[nodiscard]] std::uint32_t port() const { return server_->port(); }
   [[nodiscard]] std::uint64_t refused(const std::string& reason) const {
     const auto counts = tally_.counts();
@@ -87,6 +89,7 @@ class WebServer : public testing::Test {
   PageFiles files_;
   EchoBackend backend_;
   Tally tally_;
+  FoxgloveFeed feed_;
   std::unique_ptr<Server> server_;
 };
 
@@ -302,14 +305,14 @@ TEST_F(WebServer, ViewersAreCountedAndLimited) {
 
 TEST_F(WebServer, ATakenPortIsNamed) {
   config_.port = port();
-  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_); },
+  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_, feed_); },
               testing::ThrowsMessage<std::runtime_error>(HasSubstr(std::to_string(config_.port))));
 }
 
 TEST_F(WebServer, ACertificateThatIsNoneIsNamed) {
   config_.certificate_file = "/dev/null";
   config_.key_file = "/dev/null";
-  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_); },
+  EXPECT_THAT([this] { const Server other(config_, board_, files_, backend_, tally_, feed_); },
               testing::ThrowsMessage<std::runtime_error>(HasSubstr("/dev/null")));
 }
 
