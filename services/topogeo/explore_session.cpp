@@ -65,25 +65,20 @@ void ExploreSession::listen(messaging::EventLoop& loop) {
 }
 
 void ExploreSession::take_map() {
-  const std::shared_ptr<const planning::HybridMap> map = client_.map();
-  bool changed = map != map_;
+  map_ = client_.map();
   if (std::exchange(graph_changed_, false)) {
     try {
       graph_ = std::make_shared<const topomap::GlobalMap>(service::from_elements(*follower_.map()));
-      changed = true;
     } catch (const std::invalid_argument&) {  // the one before stays
     }
   }
-  map_ = map;
-  if (!changed || !map_) return;
-  navigation::ExploredMap explored;
-  explored.version = ++map_versions_;
-  explored.graph = graph_ ? graph_ : std::make_shared<const topomap::GlobalMap>();
-  explored.map = map_;
-  for (const topomap::StopPose& stop : trajectory_.newest().stops) {
-    if (stop.located) explored.T_map_stops.push_back(stop.T_map_robot);
-  }
-  tour_.set_map(std::move(explored));
+  tour_.follow(graph_, map_, [this] {
+    std::vector<geometry::Pose2> T_map_stops;
+    for (const topomap::StopPose& stop : trajectory_.newest().stops) {
+      if (stop.located) T_map_stops.push_back(stop.T_map_robot);
+    }
+    return T_map_stops;
+  });
 }
 
 navigation::NavigatorStatus ExploreSession::navigator() const {

@@ -65,7 +65,6 @@ class ExploreSession {
   bool graph_changed_ = false;
   std::shared_ptr<const topomap::GlobalMap> graph_;
   std::shared_ptr<const planning::HybridMap> map_;
-  std::uint64_t map_versions_ = 0;
   std::uint64_t goal_id_ = 0;  // as the tour numbers it
   std::optional<msg::LivePose> pose_;
   std::vector<Eigen::Vector2d> path_m_;  // map frame

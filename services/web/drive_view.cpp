@@ -86,6 +86,13 @@ void DriveView::on_segment(const msg::TrajectorySegment& message) {
   if (trajectory_.add(message)) trail_changed_ = true;
 }
 
+std::vector<geometry::Pose2> DriveView::T_map_stops() const {
+  std::vector<geometry::Pose2> T_map_stops;
+  T_map_stops.reserve(located_.size());
+  for (const auto& [stop, T_map_stop] : located_) T_map_stops.push_back(T_map_stop);
+  return T_map_stops;
+}
+
 void DriveView::show_trail() {
   const topomap::Trajectory trajectory = trajectory_.newest();
   located_.clear();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/merge.h"
@@ -22,6 +23,9 @@ class EventLog;
 class DriveView {
  public:
   DriveView(service::Service& service, Board& board, EventLog& events);
+
+  /// Where the stops of the map are.
+  [[nodiscard]] std::vector<geometry::Pose2> T_map_stops() const;
 
  private:
   void on_segment(const msg::TrajectorySegment& message);

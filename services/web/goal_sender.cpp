@@ -79,6 +79,24 @@ std::uint64_t GoalSender::add(const GoalOrders& orders) {
   return first;
 }
 
+std::uint64_t GoalSender::send_to(const geometry::Pose2& T_map_goal, const std::string& text) {
+  WantedGoal wanted;
+  wanted.point_m = T_map_goal.position_m();
+  wanted.heading_rad = T_map_goal.theta_rad;
+  Goal goal = make(wanted);
+  goal.text = text;
+  const std::uint64_t id = goal.id;
+  std::deque<Goal> goals;
+  goals.push_back(std::move(goal));
+  if (list_.add(std::move(goals), false)) send_current();
+  show();
+  return id;
+}
+
+void GoalSender::set_exploring(bool exploring) {
+  if (std::exchange(exploring_, exploring) != exploring) show();
+}
+
 void GoalSender::send_current() {
   const Goal& goal = *list_.current();
   events_.add(EventLog::Level::kInfo, "web", "goal: " + goal.text);
@@ -111,10 +129,10 @@ void GoalSender::cancel() {
   show();
 }
 
-void GoalSender::take(const msg::NavigatorStatus& status) {
+std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status) {
   const std::string text = list_.current() ? list_.current()->text : std::string();
   const auto end = list_.take(status);
-  if (!end) return;
+  if (!end) return std::nullopt;
   if (*end == GoalList::End::kArrived) {
     events_.add(EventLog::Level::kInfo, "web", "arrived: " + text);
     if (list_.current()) send_current();
@@ -123,12 +141,13 @@ void GoalSender::take(const msg::NavigatorStatus& status) {
                 "another client has taken the goal " + text + " away");
   }
   show();
+  return end;
 }
 
 void GoalSender::show() {
   Json waiting = Json::array();
   for (const Goal& goal : list_.waiting()) waiting.push_back(goal_json(goal));
-  Json json = {{"current", nullptr}, {"waiting", std::move(waiting)}};
+  Json json = {{"current", nullptr}, {"waiting", std::move(waiting)}, {"exploring", exploring_}};
   if (list_.current()) json["current"] = goal_json(*list_.current());
   board_.set(Channel::kGoals, text_of(json));
 }

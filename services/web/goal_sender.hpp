@@ -26,10 +26,15 @@ class GoalSender {
   /// Throws std::invalid_argument naming a place that the map does not have; then nothing has
   /// changed. The id of the first of these goals.
   std::uint64_t add(const GoalOrders& orders);
+  /// One goal of an exploration, in place of all others; its id.
+  std::uint64_t send_to(const geometry::Pose2& T_map_goal, const std::string& text);
   void pause();
   void resume();
   void cancel();
-  void take(const msg::NavigatorStatus& status);
+  /// How the current goal has ended, if it has; then the next one is on its way.
+  std::optional<GoalList::End> take(const msg::NavigatorStatus& status);
+  /// Whether goals come from an exploration.
+  void set_exploring(bool exploring);
 
   [[nodiscard]] std::size_t waiting() const { return list_.waiting().size(); }
   /// Where a goal is on the map of now.
@@ -48,6 +53,7 @@ class GoalSender {
   EventLog& events_;
   std::string client_id_;
   GoalList list_;
+  bool exploring_ = false;
   std::uint64_t sent_ = 0;
   messaging::Writer<msg::Goal> goals_;
 };

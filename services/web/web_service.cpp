@@ -22,9 +22,9 @@ namespace {
 constexpr std::chrono::milliseconds kCountsPeriod{500};
 constexpr int kProtocolVersion = 1;
 /// What POST takes, below /api/.
-constexpr std::array<std::string_view, 12> kOffers = {"goal",   "preview", "pause",   "resume",
-                                                      "cancel", "stop",    "release", "return",
-                                                      "pose",   "search",  "mode",    "merge"};
+constexpr std::array<std::string_view, 13> kOffers = {
+    "goal",   "preview", "pause",  "resume", "cancel", "stop",   "release",
+    "return", "pose",    "search", "mode",   "merge",  "explore"};
 
 Answer accepted() {
   return {202, "{}"};
@@ -50,8 +50,11 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
               },
               [this](const msg::LivePose& pose) { foxglove_.take(pose); },
               [this](const msg::LaserStatus& laser) { hand_.take(laser); },
-              [this](const msg::NavigatorStatus& status) { goals_.take(status); }}),
+              [this](const msg::NavigatorStatus& status) {
+                exploration_.take(status, goals_.take(status));
+              }}),
       drive_(service, board_, events_),
+      exploration_(service, goals_, events_, robot_, [this] { return explored_floor(); }),
       health_(service, board_, events_),
       server_(std::make_unique<Server>(config_, board_, files_, static_cast<Backend&>(*this),
                                        tally_, feed_)),
@@ -143,10 +146,15 @@ void WebService::obey(const Request& request, const Respond& respond) {
       {"/api/preview", [&](const std::string& body) { respond(preview(body)); }},
       {"/api/pause", plain([this] { goals_.pause(); })},
       {"/api/resume", plain([this] { goals_.resume(); })},
-      {"/api/cancel", plain([this] { goals_.cancel(); })},
+      {"/api/cancel", plain([this] { cancel(); })},
+      {"/api/explore",
+       [&](const std::string& body) {
+         check_plain(body);
+         respond(exploration_.start());
+       }},
       {"/api/stop", plain([this] {
          hand_.stop();
-         goals_.cancel();
+         cancel();
        })},
       {"/api/release", plain([this] { hand_.release_stop(); })},
       {"/api/return",
@@ -175,11 +183,21 @@ void WebService::obey(const Request& request, const Respond& respond) {
   order->second(request.body);
 }
 
+void WebService::cancel() {
+  exploration_.stop();
+  goals_.cancel();
+}
+
+ExploredFloor WebService::explored_floor() {
+  return {graph_.map(), map_.map(), [this] { return drive_.T_map_stops(); }};
+}
+
 Answer WebService::give_goals(const std::string& body) {
   const GoalOrders orders = parse_goals(body);
   std::uint64_t id = 0;
   try {
     id = goals_.add(orders);
+    exploration_.stop();
   } catch (const std::invalid_argument& error) {  // a name that is not there
     return error_answer(409, error.what());
   }
@@ -192,6 +210,7 @@ Answer WebService::go_back() {
     if (const auto found = map_.find(name); found && found->place) goal.name = found->name;
   }
   if (goal.name.empty()) goal.point_m = Eigen::Vector2d(0.0, 0.0);  // where the map began
+  exploration_.stop();
   const std::uint64_t id = goals_.add({{goal}, false});
   return {202, text_of(Json{{"goal_id", std::to_string(id)}, {"waiting", 0}})};
 }

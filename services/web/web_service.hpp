@@ -18,6 +18,7 @@
 #include "board.hpp"
 #include "drive_view.hpp"
 #include "event_log.hpp"
+#include "exploration_sender.hpp"
 #include "foxglove_feed.hpp"
 #include "foxglove_view.hpp"
 #include "goal_sender.hpp"
@@ -61,6 +62,8 @@ class WebService : private Backend {
   [[nodiscard]] Answer give_goals(const std::string& body);
   [[nodiscard]] Answer preview(const std::string& body);
   [[nodiscard]] Answer go_back();
+  void cancel();
+  [[nodiscard]] ExploredFloor explored_floor();
   void report_counts();
 
   service::Service& service_;
@@ -77,6 +80,7 @@ class WebService : private Backend {
   GoalSender goals_;
   RobotView robot_;
   DriveView drive_;
+  ExplorationSender exploration_;
   HealthView health_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for what is posted
   std::uint64_t timer_ = 0;

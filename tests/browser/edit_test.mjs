@@ -1,31 +1,20 @@
 // The edit mode of the page in a browser, with a service that stands in: drawing by mouse, finger and keyboard, undo,
 // saving, what happens when others save, rooms, a new floor with a picture, files.
 import assert from "node:assert/strict";
-import { mkdirSync, readFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { assert_accessible, kPictures, kSizes, launch, open_page } from "./page.mjs";
 import { eventually } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
-const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium } = process.env;
-const packages = createRequire(join(build, "tests/browser/"));
-const playwright = packages("playwright-core");
-const axe = packages.resolve("axe-core/axe.min.js");
-const pictures = join(build, "tests/browser/screenshots");
-mkdirSync(pictures, { recursive: true });
-
-const kDesk = { width: 1280, height: 800 };
-const kPhone = { width: 390, height: 844 };
+const { TOPOGEO_BUILD: build } = process.env;
 const kPixelsPerMetre = 16; // of a page without a map, whose middle is (0, 0)
 
 let browser;
 
 before(async () => {
-  browser = await playwright.chromium.launch({
-    executablePath: chromium,
-    args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
-  });
+  browser = await launch();
 });
 
 after(() => browser?.close());
@@ -34,12 +23,9 @@ after(() => browser?.close());
 async function open(options = {}, prepare = () => {}) {
   const service = new StandIn(join(build, "share/topogeo/web"));
   prepare(service);
-  const context = await browser.newContext({ viewport: kDesk, colorScheme: "light", bypassCSP: true, ...options });
+  const context = await browser.newContext({ viewport: kSizes.desk, colorScheme: "light", bypassCSP: true, ...options });
   await service.serve(context);
-  const page = await context.newPage();
-  page.faults = [];
-  page.on("pageerror", (error) => page.faults.push(error.stack));
-  await page.goto(`${kAddress}/#token=${"t".repeat(16)}`);
+  const page = await open_page(context, `${kAddress}/#token=${"t".repeat(16)}`);
   await page.click("#tab-draw");
   await page.locator(".tool[data-tool=select]").waitFor();
   return { page, service, context };
@@ -341,7 +327,7 @@ test("a picture is measured by two points of known distance", async () => {
 });
 
 test("a finger draws a zone, two fingers zoom", async () => {
-  const opened = await open({ viewport: kPhone, hasTouch: true, isMobile: true });
+  const opened = await open({ viewport: kSizes.phone, hasTouch: true, isMobile: true });
   const { page, context } = opened;
   const touch = await context.newCDPSession(page);
   const send = (type, points) =>
@@ -364,6 +350,34 @@ test("a finger draws a zone, two fingers zoom", async () => {
   assert.equal(zones.length, 1);
   const [left, top, right, , , bottom] = zones[0].corners_m;
   assert.deepEqual([right - left, top - bottom], [8, 6]);
+  await end(opened);
+});
+
+test("a tap sends the robot, a finger that is held drives it", async () => {
+  const opened = await open({ viewport: kSizes.phone, hasTouch: true, isMobile: true });
+  const { page, service, context } = opened;
+  await page.locator("#tab-send").tap();
+  await page.touchscreen.tap(...(await on_screen(page, [3, 1])));
+  await page.locator("#go").tap();
+  await eventually("the robot is sent", () => service.goal, 20);
+  assert.ok(Math.abs(service.goal.x_m - 3) < 0.2, JSON.stringify(service.goal));
+  await page.getByText("Drive by hand", { exact: true }).tap();
+  await page.getByRole("button", { name: "Take the controls" }).tap();
+  const forward = page.getByRole("button", { name: "Forward" });
+  await forward.scrollIntoViewIfNeeded();
+  const box = await forward.boundingBox();
+  const touch = await context.newCDPSession(page);
+  const point = { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+  const drives = () => service.ops.filter((op) => op === "drive").length;
+  await touch.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [point] });
+  await eventually("it drives for as long as the finger is there", () => drives() > 5, 20);
+  // A finger that slips is none that lets go.
+  await touch.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: [{ ...point, y: point.y + 15 }] });
+  const before_slip = drives();
+  await eventually("it goes on", () => drives() > before_slip + 2, 20);
+  assert.equal(service.ops.includes("release"), false);
+  await touch.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+  await eventually("it stops", () => service.ops[service.ops.length - 1] === "release", 20);
   await end(opened);
 });
 
@@ -392,12 +406,8 @@ for (const scheme of ["light", "dark"]) {
     }
     for (const plane of [false, true]) {
       if (plane) await press(page, "Draw a new floor");
-      await page.addScriptTag({ path: axe });
-      const { violations } = await page.evaluate(() => window.axe.run());
-      const serious = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
-      const found = serious.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(", ")}`);
-      assert.deepEqual(found, []);
-      await page.screenshot({ path: join(pictures, `edit-${plane ? "floor" : "map"}-${scheme}.png`) });
+      await assert_accessible(page, plane ? "floor" : "map");
+      await page.screenshot({ path: join(kPictures, `edit-${plane ? "floor" : "map"}-${scheme}.png`) });
     }
     await end(opened);
   });

@@ -1,25 +1,14 @@
 // The operator's page in a browser, with a simulated robot: the page is clicked as a person does, and the truth of the
 // simulator says what came of it.
 import assert from "node:assert/strict";
-import { mkdirSync } from "node:fs";
-import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { assert_accessible, kPictures, kSizes, launch, open_page, text } from "./page.mjs";
 import { eventually, in_map, Robot } from "./robot.mjs";
 import { watch } from "./watcher.mjs";
 
-const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_CHROMIUM: chromium } = process.env;
-const packages = createRequire(join(build, "tests/browser/"));
-const playwright = packages("playwright-core");
-const axe = packages.resolve("axe-core/axe.min.js");
-const pictures = join(build, "tests/browser/screenshots");
-mkdirSync(pictures, { recursive: true });
+const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
-const kSizes = {
-  desk: { width: 1280, height: 800 },
-  tablet: { width: 820, height: 1180 },
-  phone: { width: 390, height: 844 },
-};
 const kViews = ["now", "send", "correct", "understand"];
 
 const robot = new Robot(join(build, "bin"), source, process.env.TOPOGEO_WORK);
@@ -29,10 +18,7 @@ let truth;
 
 before(async () => {
   await robot.start();
-  browser = await playwright.chromium.launch({
-    executablePath: chromium,
-    args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
-  });
+  browser = await launch();
   context = await browser.newContext({ viewport: kSizes.desk, colorScheme: "light" });
   truth = await watch(context, robot.address);
   await eventually("the robot has a pose", async () => (await truth.newest("pose"))?.state === "TRACKING", 120);
@@ -46,10 +32,7 @@ after(async () => {
 /** A page of the operator (or of a spectator), with the errors that it had. */
 async function open(view, { token = robot.token, path = "/", options = undefined } = {}) {
   const own = options ? await browser.newContext(options) : context;
-  const page = await own.newPage();
-  page.faults = [];
-  page.on("pageerror", (error) => page.faults.push(error.stack));
-  await page.goto(`${robot.address}${path}${token ? `#token=${token}` : ""}`);
+  const page = await open_page(own, `${robot.address}${path}${token ? `#token=${token}` : ""}`);
   if (view) await page.click(`#tab-${view}`);
   page.close_all = () => (options ? own.close() : page.close());
   return page;
@@ -58,18 +41,6 @@ async function open(view, { token = robot.token, path = "/", options = undefined
 async function end(page) {
   assert.deepEqual(page.faults, []);
   await page.close_all();
-}
-
-/** Waits until a selector has a text. */
-function text(page, selector, pattern, seconds) {
-  return eventually(
-    `${selector} with ${pattern}`,
-    async () => {
-      const found = await page.locator(selector).allInnerTexts();
-      return found.some((entry) => pattern.test(entry));
-    },
-    seconds,
-  );
 }
 
 async function true_place() {
@@ -216,15 +187,6 @@ test("the panel sends by number", async () => {
   await end(page);
 });
 
-/** What axe-core finds serious on a page. */
-async function serious_findings(page) {
-  await page.addScriptTag({ path: axe });
-  const { violations } = await page.evaluate(() => window.axe.run());
-  return violations
-    .filter((finding) => ["serious", "critical"].includes(finding.impact))
-    .map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`);
-}
-
 for (const scheme of ["light", "dark"]) {
   test(`every view is accessible, ${scheme}`, async () => {
     for (const [size, viewport] of Object.entries(kSizes)) {
@@ -237,13 +199,13 @@ for (const scheme of ["light", "dark"]) {
           await page.getByRole("button", { name: "room A", exact: true }).click();
           await text(page, ".card [role=status]", /m, about|no /i);
         }
-        await page.screenshot({ path: join(pictures, `${view}-${size}-${scheme}.png`) });
-        if (size !== "tablet") assert.deepEqual(await serious_findings(page), [], `${view}, ${size}`);
+        await page.screenshot({ path: join(kPictures, `${view}-${size}-${scheme}.png`) });
+        if (size !== "tablet") await assert_accessible(page, `${view}, ${size}`);
       }
       await page.goto(`${robot.address}/panel`);
       await text(page, ".panel-names", /room A/);
-      await page.screenshot({ path: join(pictures, `panel-${size}-${scheme}.png`) });
-      if (size !== "tablet") assert.deepEqual(await serious_findings(page), [], `panel, ${size}`);
+      await page.screenshot({ path: join(kPictures, `panel-${size}-${scheme}.png`) });
+      if (size !== "tablet") await assert_accessible(page, `panel, ${size}`);
       await end(page);
     }
   });

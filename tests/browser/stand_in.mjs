@@ -16,6 +16,7 @@ export class StandIn {
   version = 1;
   floors = [];
   exploring = false;
+  ops = []; // of messages that pages sent
   offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "stop"];
   /** Two rooms of 4 x 4 m that meet at x = 0; zone 0 lies left. */
   rooms = {
@@ -53,6 +54,7 @@ export class StandIn {
     const table = (channel, set) => send({ channel, from: 0, version: 1, set, gone: [] });
     socket.onMessage((text) => {
       const { op } = JSON.parse(text);
+      this.ops.push(op);
       if (op === "ping") send({ op: "pong", time_s: 0 });
       if (op !== "hello") return;
       send({ op: "welcome", protocol: 1, life: "a", may_write: true, robot_id: kRobot });
@@ -99,6 +101,11 @@ export class StandIn {
         return json(200, { version: String(this.version) });
       case "/api/room_shapes":
         return json(200, { shapes: room_shapes(body) });
+      case "/api/preview":
+        return json(200, { found: true, length_m: 3, time_s: 9, min_clearance_m: 1, points_m: [0, 0, 3, 0] });
+      case "/api/goal":
+        this.goal = body;
+        return json(202, { goal_id: "1", waiting: 0 });
       case "/api/floor":
         this.floors.push(body);
         return json(202, {});

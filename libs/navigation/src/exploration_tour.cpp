@@ -31,6 +31,15 @@ void ExplorationTour::set_map(ExploredMap map) {
   if (map_.map) planner_ = std::make_unique<planning::HybridPlanner>(*map_.map, config);
 }
 
+void ExplorationTour::follow(std::shared_ptr<const topomap::GlobalMap> graph,
+                             std::shared_ptr<const planning::HybridMap> map,
+                             const std::function<std::vector<geometry::Pose2>()>& T_map_stops) {
+  if (!map || (map == map_.map && graph == followed_graph_)) return;
+  followed_graph_ = graph;
+  if (!graph) graph = std::make_shared<const topomap::GlobalMap>();
+  set_map({map_.version + 1, std::move(graph), std::move(map), T_map_stops()});
+}
+
 std::optional<TourGoal> ExplorationTour::step(const NavigatorStatus& navigator,
                                               std::int64_t now_ns) {
   if (done_ || !planner_ || !navigator.T_map_robot) return std::nullopt;

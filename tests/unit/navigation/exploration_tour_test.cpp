@@ -244,5 +244,23 @@ TEST(ExplorationTour, WaitsForMapAndPose) {
   EXPECT_TRUE(tour.step(robot.step({}), 2 * kTourStep_ns));
 }
 
+TEST(ExplorationTour, FollowsWhatHasChangedAlone) {
+  const auto map = TextRobot().map().map;
+  int asked = 0;
+  const auto stops = [&] {
+    ++asked;
+    return std::vector<geometry::Pose2>{};
+  };
+  ExplorationTour tour;
+  tour.follow(nullptr, nullptr, stops);
+  EXPECT_EQ(tour.message(), "waits for a map");
+  tour.follow(nullptr, map, stops);
+  EXPECT_EQ(tour.message(), "looks for a target");
+  tour.follow(nullptr, map, stops);
+  EXPECT_EQ(asked, 1);
+  tour.follow(std::make_shared<const topomap::GlobalMap>(), map, stops);
+  EXPECT_EQ(asked, 2) << "another graph";
+}
+
 }  // namespace
 }  // namespace topogeo::navigation

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,12 @@ class ExplorationTour {
   /// To be called whenever it has changed.
   void set_map(ExploredMap map);
 
+  /// The same for who holds graph and map as they come: nothing happens while both are those of the
+  /// call before, or without a map. `T_map_stops` is asked for where scans were made.
+  void follow(std::shared_ptr<const topomap::GlobalMap> graph,
+              std::shared_ptr<const planning::HybridMap> map,
+              const std::function<std::vector<geometry::Pose2>()>& T_map_stops);
+
   /// To be called several times a second. A goal for the navigator, when there is another one than
   /// before. Nothing happens while the navigator does not know where it is.
   std::optional<TourGoal> step(const NavigatorStatus& navigator, std::int64_t now_ns);
@@ -60,6 +67,7 @@ class ExplorationTour {
   TourConfig config_;
   Explorer explorer_;
   ExploredMap map_;
+  std::shared_ptr<const topomap::GlobalMap> followed_graph_;
   std::unique_ptr<planning::HybridPlanner> planner_;
   std::uint64_t next_goal_id_;
   std::optional<ExplorationTarget> target_;

@@ -75,7 +75,7 @@ export class SendView implements ViewPart {
     app.channels.on_table("rooms", names);
     const rights = once_a_frame(() => this.show_rights());
     app.rights.on_change(rights);
-    app.channels.on_value(["navigator"], rights);
+    app.channels.on_value(["navigator", "goals"], rights);
     this.show_names();
     this.show_rights();
   }
@@ -264,7 +264,9 @@ export class SendView implements ViewPart {
     set_text(this.note, note);
     show(this.orders, rights.may_write);
     for (const element of this.orders.querySelectorAll<HTMLElement>("[data-order]")) {
-      show(element, rights.offers(element.dataset.order ?? ""));
+      const order = element.dataset.order ?? "";
+      const running = order === "explore" && channels.value("goals")?.exploring === true;
+      show(element, rights.offers(order) && !running);
     }
   }
 }

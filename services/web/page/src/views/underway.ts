@@ -61,7 +61,8 @@ export class Underway {
     const goals = channels.value("goals");
     const goal = goals?.current ?? null;
     const exploring = goals?.exploring ?? false;
-    set_text(this.goal, exploring ? words.exploring : goal ? words.to(goal.text) : words.idle);
+    const to = goal ? words.to(goal.text) : words.idle;
+    set_text(this.goal, exploring ? words.exploring : to);
     set_text(this.state, navigator_text(channels));
     show(this.state, navigator?.state !== "idle" || navigator.message !== "");
 
@@ -83,8 +84,9 @@ export class Underway {
     set_text(this.waiting, waiting.length > 0 ? words.waiting(waiting.join(", ")) : "");
 
     const paused = navigator?.state === "stopped" && navigator.reason === "paused";
-    const under_way = moving && !arrived && navigator.reason !== "cancelled";
-    show(this.buttons.pause, rights.can("pause") && under_way && !paused);
+    const driving = moving && !arrived && navigator.reason !== "cancelled";
+    const under_way = exploring || driving;
+    show(this.buttons.pause, rights.can("pause") && driving && !paused);
     show(this.buttons.resume, rights.can("resume") && moving && paused);
     show(this.buttons.cancel, rights.can("cancel") && (under_way || waiting.length > 0));
   }

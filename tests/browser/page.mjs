@@ -1,0 +1,59 @@
+// The operator's page in a browser, for tests: pages of a robot, and what they show.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { eventually } from "./robot.mjs";
+
+const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium } = process.env;
+const packages = createRequire(join(build, "tests/browser/"));
+const playwright = packages("playwright-core");
+const axe = packages.resolve("axe-core/axe.min.js");
+
+/** Where screenshots go. */
+export const kPictures = join(build, "tests/browser/screenshots");
+mkdirSync(kPictures, { recursive: true });
+
+export const kSizes = {
+  desk: { width: 1280, height: 800 },
+  tablet: { width: 820, height: 1180 },
+  phone: { width: 390, height: 844 },
+};
+
+export function launch() {
+  return playwright.chromium.launch({
+    executablePath: chromium,
+    args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
+  });
+}
+
+/** A page with the errors that it had. */
+export async function open_page(context, address) {
+  const page = await context.newPage();
+  page.faults = [];
+  page.on("pageerror", (error) => page.faults.push(error.stack));
+  await page.goto(address);
+  return page;
+}
+
+/** Waits until a selector has a text. */
+export function text(page, selector, pattern, seconds) {
+  return eventually(
+    `${selector} with ${pattern}`,
+    async () => {
+      const found = await page.locator(selector).allInnerTexts();
+      return found.some((entry) => pattern.test(entry));
+    },
+    seconds,
+  );
+}
+
+/** Fails when axe-core finds something serious on a page. */
+export async function assert_accessible(page, what) {
+  await page.addScriptTag({ path: axe });
+  const { violations } = await page.evaluate(() => window.axe.run());
+  const serious = violations
+    .filter((finding) => ["serious", "critical"].includes(finding.impact))
+    .map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`);
+  assert.deepEqual(serious, [], what);
+}
