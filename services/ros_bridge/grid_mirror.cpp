@@ -4,14 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geometry.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/ros_conversions/grid.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
 
-constexpr std::int8_t kFree = 0;
-constexpr std::int8_t kOccupied = 100;
-constexpr std::int8_t kUnknown = -1;
 constexpr std::uint32_t kSide = msg::kTileCells;
 
 void need(bool good, const std::string& field, const std::string& expected) {
@@ -20,12 +18,6 @@ void need(bool good, const std::string& field, const std::string& expected) {
 
 std::uint32_t tiles_across(std::uint32_t cells) {
   return (cells + kSide - 1) / kSide;
-}
-
-std::int8_t cell_of(std::uint8_t state) {
-  constexpr std::uint8_t kStateOccupied = 1;
-  if (state == 0) return kFree;
-  return state == kStateOccupied ? kOccupied : kUnknown;
 }
 
 bool same_frame(const msg::HybridMap& a, const msg::HybridMap& b) {
@@ -46,7 +38,7 @@ void GridMirror::put(const msg::GridTile& tile, messaging::Handle instance) {
   Tile& kept = tiles_[tile.tile()];
   kept.version = tile.version();
   kept.cells.resize(msg::kTileArea);
-  std::ranges::transform(tile.states(), kept.cells.begin(), cell_of);
+  std::ranges::transform(tile.states(), kept.cells.begin(), ros::cell_of);
   kept.zones = tile.zones();
   keys_[instance] = tile.tile();
 }
@@ -94,7 +86,8 @@ std::optional<GridMirror::Change> GridMirror::take() {
   std::uint32_t high_column = 0;
   std::uint32_t high_row = 0;
   if (change.whole) {
-    cells_.assign(static_cast<std::size_t>(summary_->columns()) * summary_->rows(), kUnknown);
+    cells_.assign(static_cast<std::size_t>(summary_->columns()) * summary_->rows(),
+                  ros::kUnknownCell);
   }
   for (std::uint32_t number = 0; number < summary_->tile_versions().size(); ++number) {
     if (!change.whole && map_->tile_versions()[number] == summary_->tile_versions()[number])
@@ -134,21 +127,15 @@ void GridMirror::copy(const Tile& tile, std::uint32_t number) {
 }
 
 ros::OccupancyGrid GridMirror::grid(const std::string& frame, std::int64_t stamp_ns) const {
-  ros::OccupancyGrid grid;
-  grid.header_(header_of(frame, stamp_ns));
-  grid.info_().map_load_time_(to_ros(stamp_ns));
-  grid.info_().resolution_(static_cast<float>(map_->resolution_m()));
-  grid.info_().width_(map_->columns());
-  grid.info_().height_(map_->rows());
-  grid.info_().origin_(to_ros(origin_of(*map_)));
-  grid.data_().assign(cells_.begin(), cells_.end());
-  return grid;
+  return ros::occupancy_grid(
+      {map_->columns(), map_->rows(), map_->resolution_m(), origin_of(*map_)}, cells_,
+      ros::header_of(frame, stamp_ns));
 }
 
 ros::OccupancyGridUpdate GridMirror::update(const Change& change, const std::string& frame,
                                             std::int64_t stamp_ns) const {
   ros::OccupancyGridUpdate update;
-  update.header_(header_of(frame, stamp_ns));
+  update.header_(ros::header_of(frame, stamp_ns));
   update.x_(change.column);
   update.y_(change.row);
   update.width_(change.columns);

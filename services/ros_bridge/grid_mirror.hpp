@@ -10,7 +10,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/messaging/events.hpp"
 #include "topogeo/msg/hybrid_map.h"
-#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 
 namespace topogeo::ros_bridge {
 

@@ -26,6 +26,8 @@ struct BridgeOptions {
   ros_bridge::SettingOptions settings;
   std::optional<std::uint32_t> ros_domain;
   std::string map_robot;
+  std::optional<ros_bridge::Direction> sensors;
+  bool clock = false;
   bool replay = false;
   bool ros_arguments = false;
   bool print_settings = false;
@@ -63,8 +65,17 @@ void add_bridge_options(command_line::Command& app, BridgeOptions& options) {
   app.add_option("--ros-domain", options.ros_domain,
                  "DDS domain of the ROS nodes (default: ROS_DOMAIN_ID, else --domain)")
       ->check(command_line::range(0U, 232U));
-  app.add_flag("--replay", options.replay,
-               "with `directions: {sensors: out}`: the scans are those of a log");
+  app.add_option_function(
+         "--sensors",
+         [&options](const std::string& direction) {
+           options.sensors = direction == "in"    ? ros_bridge::Direction::kIn
+                             : direction == "out" ? ros_bridge::Direction::kOut
+                                                  : ros_bridge::Direction::kOff;
+         },
+         "directions.sensors, whatever the file has; with out no velocity goes out")
+      ->check(command_line::one_of({"in", "out", "off"}));
+  app.add_flag("--clock", options.clock, "directions.clock: true, whatever the file has");
+  app.add_flag("--replay", options.replay, "with sensors out: the scans are those of a log");
   app.add_option(
          "--show-mounting", options.show_mounting_s,
          "print where the frames of ROS have the laser, as --laser takes it, and end; waits "
@@ -76,7 +87,18 @@ void add_bridge_options(command_line::Command& app, BridgeOptions& options) {
 
 ros_bridge::Settings load(const BridgeOptions& options) {
   try {
-    return ros_bridge::load_settings(options.settings);
+    ros_bridge::Settings settings = ros_bridge::load_settings(options.settings);
+    ros_bridge::Directions& directions = settings.directions;
+    if (options.sensors) {
+      directions.sensors = *options.sensors;
+      // The base is ours then.
+      const bool ours = directions.sensors == ros_bridge::Direction::kOut;
+      if (ours && directions.velocity == ros_bridge::Direction::kOut) {
+        directions.velocity = ros_bridge::Direction::kOff;
+      }
+    }
+    directions.clock |= options.clock;
+    return settings;
   } catch (const std::runtime_error& error) {
     throw service::UsageError(error.what());
   }

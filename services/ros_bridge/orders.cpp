@@ -1,13 +1,12 @@
 #include "orders.hpp"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
 
-#include "geometry.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
@@ -32,13 +31,13 @@ service::Goal to_goal(const ros::PoseStamped& message, const Settings::Frames& f
                       const std::optional<geometry::Pose2>& T_map_odom,
                       const std::optional<geometry::Pose2>& T_map_robot) {
   const geometry::Pose2 T_map_frame =
-      map_from(frame_name(message.header_().frame_id_()), frames, T_map_odom, T_map_robot);
+      map_from(ros::frame_name(message.header_().frame_id_()), frames, T_map_odom, T_map_robot);
   const Eigen::Vector2d at_m(message.pose_().position_().x_(), message.pose_().position_().y_());
   if (!at_m.allFinite()) throw std::invalid_argument("position: expected finite numbers");
   service::Goal goal;
   goal.kind = msg::kGoalPosition;
   goal.target = Eigen::Vector2d(T_map_frame * at_m);
-  if (const auto pose = planar(message.pose_())) {
+  if (const auto pose = ros::planar(message.pose_())) {
     goal.heading_rad = geometry::wrap_angle(T_map_frame.theta_rad + pose->theta_rad);
   }
   return goal;
@@ -46,26 +45,16 @@ service::Goal to_goal(const ros::PoseStamped& message, const Settings::Frames& f
 
 service::LocalizationCommand to_set_pose(const ros::PoseWithCovarianceStamped& message,
                                          const std::string& map_frame) {
-  const std::string frame = frame_name(message.header_().frame_id_());
+  const std::string frame = ros::frame_name(message.header_().frame_id_());
   if (frame != map_frame) {
     throw std::invalid_argument("frame '" + frame + "': expected " + map_frame);
   }
-  const auto pose = planar(message.pose_().pose_());
+  const auto pose = ros::planar(message.pose_().pose_());
   if (!pose) throw std::invalid_argument("pose: expected numbers and a quaternion of length 1");
   service::LocalizationCommand command;
   command.kind = msg::kCommandSetPose;
   command.T_map_robot = *pose;
-  constexpr std::array<std::size_t, 3> kRows = {0, 1, 5};
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) {
-      const auto i = static_cast<Eigen::Index>(row);
-      const auto j = static_cast<Eigen::Index>(column);
-      // Halves of both sides: what rounding makes unequal is refused otherwise.
-      command.covariance(i, j) =
-          0.5 * (message.pose_().covariance_()[kRows[row] * 6 + kRows[column]] +
-                 message.pose_().covariance_()[kRows[column] * 6 + kRows[row]]);
-    }
-  }
+  command.covariance = ros::planar_covariance(message.pose_().covariance_());
   constexpr double kLeast = 1e-12;
   const Eigen::LLT<Eigen::Matrix3d> factor(command.covariance);
   if (!command.covariance.allFinite() || factor.info() != Eigen::Success ||

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 #include "topogeo/service/conversions.hpp"
 
 #include "settings.hpp"

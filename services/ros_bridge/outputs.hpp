@@ -9,7 +9,7 @@
 #include "topogeo/msg/planning.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/status.h"
-#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/topomap/global_map.hpp"
 

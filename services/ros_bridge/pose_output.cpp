@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "topogeo/localization/mapping/localization_state.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 
-#include "geometry.hpp"
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
@@ -84,7 +84,7 @@ void PoseOutput::publish_transform() {
   if (sent_ns_.size() > kStampsKept) sent_ns_.pop_front();
   ros::TFMessage message;
   message.transforms_().push_back(
-      to_transform(settings.frames.map, settings.frames.odom, *T_map_odom_, stamp_ns));
+      ros::transform_of(settings.frames.map, settings.frames.odom, *T_map_odom_, stamp_ns));
   ros_.send(*transforms_, message);
 }
 

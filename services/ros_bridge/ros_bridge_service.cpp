@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "geometry.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
+
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
@@ -69,7 +70,7 @@ void RosBridgeService::publish_plan(const msg::Route& route) {
 
 void RosBridgeService::publish_diagnostics() {
   ros::DiagnosticArray array;
-  array.header_(header_of("", ros_.now_ns()));
+  array.header_(ros::header_of("", ros_.now_ns()));
   for (const auto& [instance, status] : services_) array.status_().push_back(to_ros(status));
   ros_.send(*diagnostics_, array);
 }
@@ -78,7 +79,7 @@ void RosBridgeService::finish() {
   if (sensors_in_) sensors_in_->finish();
 }
 
-std::optional<Mounting> RosBridgeService::mounting() const {
+std::optional<ros::LaserMounting> RosBridgeService::mounting() const {
   return sensors_in_ ? sensors_in_->intake().mounting() : std::nullopt;
 }
 

@@ -32,7 +32,7 @@ class RosBridgeService {
   void finish();
 
   /// Where the laser is, once it is known; with sensors of ROS.
-  [[nodiscard]] std::optional<Mounting> mounting() const;
+  [[nodiscard]] std::optional<ros::LaserMounting> mounting() const;
 
  private:
   /// Where sensors are ours.

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geometry.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
@@ -16,9 +16,6 @@ constexpr double kFastestMps = 5.0;
 constexpr double kJump_m = 0.5;
 /// As where a log contradicts the configuration.
 constexpr double kMountingTolerance_m = 0.02;
-/// Motion over a sweep that the beams do not show.
-constexpr double kStill_m = 0.002;
-constexpr double kStill_rad = 0.001;
 
 std::string text(const geometry::Pose2& pose) {
   return std::to_string(pose.x_m) + "," + std::to_string(pose.y_m) + "," +
@@ -43,6 +40,8 @@ std::string_view describe(IntakeDrop drop) {
       return "laser mounted elsewhere";
     case IntakeDrop::kOldScan:
       return "time not increasing";
+    case IntakeDrop::kOtherBeams:
+      return "scan of other beams";
     case IntakeDrop::kInvalidOdometry:
       return "invalid ROS odometry";
     case IntakeDrop::kOldOdometry:
@@ -94,7 +93,7 @@ std::vector<ScanIntake::Leaving> ScanIntake::take(std::int64_t now_ns) {
   std::vector<Leaving> scans;
   while (!waiting_.empty()) {
     const Waiting& first = waiting_.front();
-    const std::int64_t stamp_ns = from_ros(first.message.header_().stamp_());
+    const std::int64_t stamp_ns = ros::stamp_ns_of(first.message.header_().stamp_());
     const bool bracketed = track_.last_ns() && *track_.last_ns() >= stamp_ns;
     if (!bracketed && now_ns < due_ns()) break;
     if (auto scan = finish(first.message)) scans.push_back({*std::move(scan), first.arrival_ns});
@@ -110,7 +109,7 @@ std::int64_t ScanIntake::due_ns() const {
 
 bool ScanIntake::find_mounting(const std::string& laser_frame) {
   if (!options_.mounting_from_tf) {
-    mounting_ = Mounting{options_.T_robot_laser, false};
+    mounting_ = ros::LaserMounting{options_.T_robot_laser};
     return true;
   }
   const auto T_robot_laser = frames_.find(robot_frame_, laser_frame);
@@ -118,34 +117,34 @@ bool ScanIntake::find_mounting(const std::string& laser_frame) {
     count(IntakeDrop::kNoMounting, "no transform from " + robot_frame_ + " to " + laser_frame);
     return false;
   }
-  const auto mounting = mounting_of(*T_robot_laser);
-  if (!mounting) {
+  const ros::LaserMounting mounting = ros::planar_mounting(*T_robot_laser);
+  if (mounting.tilt_rad > ros::kLargestTilt_rad) {
     count(IntakeDrop::kTilted, laser_frame + " does not look along the floor of " + robot_frame_);
     return false;
   }
   mounting_ = mounting;
   const Eigen::Vector2d apart_m =
-      mounting->T_robot_laser.position_m() - options_.T_robot_laser.position_m();
+      mounting.T_robot_laser.position_m() - options_.T_robot_laser.position_m();
   if (apart_m.norm() > kMountingTolerance_m) {
     count(IntakeDrop::kOtherMounting,
-          "/tf_static has it at " + text(mounting->T_robot_laser) + ", the configuration at " +
+          "/tf_static has it at " + text(mounting.T_robot_laser) + ", the configuration at " +
               text(options_.T_robot_laser) +
-              ": start the services with --laser=" + text(mounting->T_robot_laser));
+              ": start the services with --laser=" + text(mounting.T_robot_laser));
     return false;
   }
   return true;
 }
 
 std::optional<scan::Scan> ScanIntake::finish(const ros::LaserScan& message) {
-  const std::string frame = frame_name(message.header_().frame_id_());
+  const std::string frame = ros::frame_name(message.header_().frame_id_());
   if (laser_frame_ && *laser_frame_ != frame) {
     count(IntakeDrop::kOtherFrame, frame + ", the first was of " + *laser_frame_);
     return std::nullopt;
   }
   if (!find_mounting(frame)) return std::nullopt;
   try {
-    const Sweep sweep = thinned(to_sweep(message, mounting_->upside_down), options_.most_beams);
-    auto scan = finish(sweep, from_ros(message.header_().stamp_()));
+    const ros::Sweep sweep = ros::to_sweep(message, mounting_->upside_down, options_.most_beams);
+    auto scan = finish(sweep, ros::stamp_ns_of(message.header_().stamp_()));
     if (scan) laser_frame_ = frame;
     return scan;
   } catch (const std::invalid_argument& error) {
@@ -154,7 +153,7 @@ std::optional<scan::Scan> ScanIntake::finish(const ros::LaserScan& message) {
   }
 }
 
-std::optional<scan::Scan> ScanIntake::finish(const Sweep& sweep, std::int64_t stamp_ns) {
+std::optional<scan::Scan> ScanIntake::finish(const ros::Sweep& sweep, std::int64_t stamp_ns) {
   if (stamp_ns <= last_stamp_ns_) {
     count(IntakeDrop::kOldScan, std::to_string(stamp_ns));
     return std::nullopt;
@@ -165,6 +164,11 @@ std::optional<scan::Scan> ScanIntake::finish(const Sweep& sweep, std::int64_t st
     return std::nullopt;
   }
   if (!pattern_) pattern_ = sweep.pattern;
+  if (!ros::alike(sweep.pattern, *pattern_)) {
+    count(IntakeDrop::kOtherBeams,
+          text_of(sweep.pattern) + ", the first scan had " + text_of(*pattern_));
+    return std::nullopt;
+  }
   scan::Scan scan;
   scan.ranges_m = ranges_of(sweep, stamp_ns);
   scan.stamp_ns = stamp_ns;
@@ -180,32 +184,21 @@ std::optional<scan::Scan> ScanIntake::finish(const Sweep& sweep, std::int64_t st
   return scan;
 }
 
-std::vector<float> ScanIntake::ranges_of(const Sweep& sweep, std::int64_t stamp_ns) {
-  constexpr double kSameAngle_rad = 1e-4;
-  Sweep straight = sweep;
-  const auto T_odom_laser_after = [&](double after_s) -> std::optional<geometry::Pose2> {
-    const auto odometry = track_.at(stamp_ns + std::llround(after_s * 1e9));
-    if (!odometry) return std::nullopt;
-    return odometry->T_odom_robot * mounting_->T_robot_laser;
-  };
-  const double length_s = std::fabs(sweep.time_step_s) * static_cast<double>(sweep.ranges_m.size());
-  const auto start = T_odom_laser_after(0.0);
-  const auto end = T_odom_laser_after(length_s);
-  if (length_s > 0.0 && start && end) {
-    const geometry::Pose2 moved = geometry::between(*start, *end);
-    if (moved.position_m().norm() > kStill_m || std::fabs(moved.theta_rad) > kStill_rad) {
-      straight.ranges_m = deskewed(sweep, T_odom_laser_after);
-    }
+std::vector<float> ScanIntake::ranges_of(const ros::Sweep& sweep, std::int64_t stamp_ns) {
+  ros::Sweep straight = sweep;
+  if (sweep.time_step_s != 0.0) {
+    straight.ranges_m = ros::deskewed(sweep, [&](double after_s) -> std::optional<geometry::Pose2> {
+      const auto odometry = track_.at(stamp_ns + std::llround(after_s * 1e9));
+      if (!odometry) return std::nullopt;
+      return odometry->T_odom_robot * mounting_->T_robot_laser;
+    });
   }
-  const BeamPattern& pattern = sweep.pattern;
-  const bool same = pattern.beams == pattern_->beams &&
-                    std::fabs(pattern.angle_min_rad - pattern_->angle_min_rad) < kSameAngle_rad &&
-                    std::fabs(pattern.angle_step_rad - pattern_->angle_step_rad) *
-                            static_cast<double>(pattern.beams) <
-                        kSameAngle_rad;
-  if (same) return straight.ranges_m;
-  ++adapted_;
-  return on_pattern(straight, *pattern_);
+  if (!ros::same_beams(sweep.pattern, *pattern_)) {
+    ++adapted_;
+    straight.ranges_m = ros::on_pattern(straight, *pattern_);
+  }
+  ros::limit_ranges(straight.ranges_m, options_.range_limit_m);
+  return std::move(straight.ranges_m);
 }
 
 }  // namespace topogeo::ros_bridge

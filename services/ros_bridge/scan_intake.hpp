@@ -15,11 +15,10 @@
 
 #include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
-#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/ros_conversions/frame_tree.hpp"
+#include "topogeo/ros_conversions/laser_scan.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 #include "topogeo/scan/scan.hpp"
-
-#include "frame_tree.hpp"
-#include "laser_scan.hpp"
 
 namespace topogeo::ros_bridge {
 
@@ -32,10 +31,11 @@ enum class IntakeDrop : std::uint8_t {
   kTilted,         ///< the laser does not look along the floor
   kOtherMounting,  ///< not where the configuration has the laser
   kOldScan,        ///< not after the scan before it
+  kOtherBeams,     ///< not those of the first scan, nor a part of them
   kInvalidOdometry,
   kOldOdometry
 };
-inline constexpr std::size_t kIntakeDrops = 9;
+inline constexpr std::size_t kIntakeDrops = 10;
 /// For people.
 std::string_view describe(IntakeDrop drop);
 
@@ -45,6 +45,7 @@ struct IntakeOptions {
   std::int64_t odometry_wait_ns = 0;  ///< a scan waits for odometry so long at most; >= 0
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
   std::size_t most_beams = 2048;              ///< scans of more are thinned out
+  double range_limit_m = 1e9;                 ///< ranges at or above it are no echo
 };
 
 /// Arrival times are of a steady clock, stamps those of the messages.
@@ -54,7 +55,7 @@ class ScanIntake {
 
   /// The frame of the robot, of whose mountings and odometry the rest speaks.
   void set_robot_frame(const std::string& frame) { robot_frame_ = frame; }
-  FrameTree& frames() { return frames_; }
+  ros::FrameTree& frames() { return frames_; }
 
   /// The pose of the robot by odometry. A stamp over a second before the last one, or a pose that
   /// no robot gets to since then, begins another epoch; returns why, or an empty text.
@@ -72,7 +73,7 @@ class ScanIntake {
   [[nodiscard]] std::int64_t due_ns() const;
 
   /// Where the laser of the last scan is; empty before one whose mounting is known.
-  [[nodiscard]] const std::optional<Mounting>& mounting() const { return mounting_; }
+  [[nodiscard]] const std::optional<ros::LaserMounting>& mounting() const { return mounting_; }
   [[nodiscard]] std::uint64_t epochs() const { return epochs_; }
   /// Numbers scans and odometry of an epoch; the service makes the epoch's own number of it.
   [[nodiscard]] std::uint64_t scans() const { return next_sequence_; }
@@ -94,18 +95,18 @@ class ScanIntake {
   void begin();
   [[nodiscard]] bool find_mounting(const std::string& laser_frame);
   std::optional<scan::Scan> finish(const ros::LaserScan& message);
-  std::optional<scan::Scan> finish(const Sweep& sweep, std::int64_t stamp_ns);
-  std::vector<float> ranges_of(const Sweep& sweep, std::int64_t stamp_ns);
+  std::optional<scan::Scan> finish(const ros::Sweep& sweep, std::int64_t stamp_ns);
+  std::vector<float> ranges_of(const ros::Sweep& sweep, std::int64_t stamp_ns);
 
   IntakeOptions options_;
   std::string robot_frame_;
-  FrameTree frames_;
+  ros::FrameTree frames_;
   geometry::OdometryTrack track_;
   std::optional<geometry::OdometrySample> last_odometry_;
   std::deque<Waiting> waiting_;
   std::optional<std::string> laser_frame_;
-  std::optional<Mounting> mounting_;
-  std::optional<BeamPattern> pattern_;  // of the first scan, which all have from then on
+  std::optional<ros::LaserMounting> mounting_;
+  std::optional<ros::BeamPattern> pattern_;  // of the first scan, which all have from then on
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t next_sequence_ = 0;
   std::uint64_t epochs_ = 0;

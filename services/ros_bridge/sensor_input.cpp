@@ -7,12 +7,11 @@
 #include <stdexcept>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/random.hpp"
-
-#include "geometry.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
@@ -30,6 +29,7 @@ IntakeOptions intake_options(const RosSide& ros) {
   options.odometry_wait_ns = std::llround(settings.odometry_wait_s * 1e9);
   options.longest_extrapolation_ns = std::llround(settings.longest_extrapolation_s * 1e9);
   options.most_beams = msg::kMaxBeams;
+  options.range_limit_m = ros.service().setup().config.config.log.range_max_m;
   return options;
 }
 
@@ -83,7 +83,7 @@ void SensorInput::on_odometry(const ros::Odometry& message, const messaging::Sam
     ros_.complain("second publisher of odometry", ros_.settings().topics.odometry);
     return;
   }
-  const std::string child = frame_name(message.child_frame_id_());
+  const std::string child = ros::frame_name(message.child_frame_id_());
   if (robot_frame_.empty()) {
     if (child.empty()) throw std::invalid_argument("child_frame_id: expected a name");
     robot_frame_ = child;
@@ -93,7 +93,7 @@ void SensorInput::on_odometry(const ros::Odometry& message, const messaging::Sam
     ros_.complain("odometry of another frame", child + ", expected " + robot_frame_);
     return;
   }
-  const auto T_odom_robot = planar(message.pose_().pose_());
+  const auto T_odom_robot = ros::planar(message.pose_().pose_());
   const ros::Twist& twist = message.twist_().twist_();
   if (!T_odom_robot || !std::isfinite(twist.linear_().x_()) ||
       !std::isfinite(twist.angular_().z_())) {
@@ -103,7 +103,7 @@ void SensorInput::on_odometry(const ros::Odometry& message, const messaging::Sam
   if (std::fabs(twist.linear_().y_()) > kSidewaysMps) {
     ros_.complain("sideways motion is left out", "the robot moves along its y axis");
   }
-  add({from_ros(message.header_().stamp_()), *T_odom_robot, twist.linear_().x_(),
+  add({ros::stamp_ns_of(message.header_().stamp_()), *T_odom_robot, twist.linear_().x_(),
        twist.angular_().z_()});
 }
 
@@ -111,11 +111,11 @@ void SensorInput::on_transforms(const ros::TFMessage& message, const messaging::
                                 bool are_static) {
   const Settings::Frames& frames = ros_.settings().frames;
   for (const ros::TransformStamped& transform : message.transforms_()) {
-    const std::string parent = frame_name(transform.header_().frame_id_());
-    const std::string child = frame_name(transform.child_frame_id_());
+    const std::string parent = ros::frame_name(transform.header_().frame_id_());
+    const std::string child = ros::frame_name(transform.child_frame_id_());
     if (!are_static && (child == frames.odom || parent == frames.map)) {
       if (on_foreign_transform) {
-        on_foreign_transform(parent, child, from_ros(transform.header_().stamp_()));
+        on_foreign_transform(parent, child, ros::stamp_ns_of(transform.header_().stamp_()));
       }
       continue;
     }
@@ -123,7 +123,7 @@ void SensorInput::on_transforms(const ros::TFMessage& message, const messaging::
       if (child == robot_frame_) on_odometry_transform(transform, info);
       continue;
     }
-    const auto T_parent_child = isometry_from(transform);
+    const auto T_parent_child = ros::isometry_of(transform.transform_());
     if (!T_parent_child) {
       ros_.complain("invalid transform", fmt::format("{} -> {}", parent, child));
     } else if (!intake_.frames().put(parent, child, *T_parent_child)) {
@@ -139,12 +139,12 @@ void SensorInput::on_odometry_transform(const ros::TransformStamped& message,
     ros_.complain("second publisher of odometry", "odom -> " + robot_frame_);
     return;
   }
-  const auto T_odom_robot = isometry_from(message);
+  const auto T_odom_robot = ros::planar(message.transform_());
   if (!T_odom_robot) {
     intake_.count(IntakeDrop::kInvalidOdometry, "a transform that is no number");
     return;
   }
-  geometry::OdometrySample sample{from_ros(message.header_().stamp_()), planar(*T_odom_robot), 0.0,
+  geometry::OdometrySample sample{ros::stamp_ns_of(message.header_().stamp_()), *T_odom_robot, 0.0,
                                   0.0};
   if (last_transform_ && sample.stamp_ns > last_transform_->stamp_ns) {
     const double passed_s = static_cast<double>(sample.stamp_ns - last_transform_->stamp_ns) * 1e-9;

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "topogeo/messaging/topics.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 
-#include "geometry.hpp"
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
@@ -34,7 +34,7 @@ void SensorOutput::publish_time(std::int64_t stamp_ns) {
   ros_.set_now(stamp_ns);
   if (!clock_) return;
   ros::Clock clock;
-  clock.clock_(to_ros(stamp_ns));
+  clock.clock_(ros::time_of(stamp_ns));
   ros_.send(*clock_, clock);
 }
 
@@ -42,8 +42,8 @@ void SensorOutput::publish_mounting(std::int64_t stamp_ns) {
   mounting_sent_ = true;
   ros::TFMessage message;
   message.transforms_().push_back(
-      to_transform(robot_frame_, ros_.settings().frames.laser,
-                   ros_.service().setup().config.config.local_mapper.T_robot_laser, stamp_ns));
+      ros::transform_of(robot_frame_, ros_.settings().frames.laser,
+                        ros_.service().setup().config.config.local_mapper.T_robot_laser, stamp_ns));
   ros_.send(static_transforms_, message);
 }
 
@@ -62,7 +62,7 @@ void SensorOutput::on_odometry(const msg::Odometry& odometry) {
   const std::string& odom = ros_.settings().frames.odom;
   ros_.send(odometry_, to_ros(odometry, odom, robot_frame_));
   ros::TFMessage message;
-  message.transforms_().push_back(to_transform(
+  message.transforms_().push_back(ros::transform_of(
       odom, robot_frame_, service::from_msg(odometry.T_odom_robot()), odometry.stamp_ns()));
   ros_.send(transforms_, message);
 }

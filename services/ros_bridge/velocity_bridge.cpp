@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 #include "topogeo/support/log.hpp"
 
-#include "geometry.hpp"
 #include "outputs.hpp"
 
 namespace topogeo::ros_bridge {
@@ -84,7 +84,7 @@ void VelocityBridge::send(double linear_mps, double angular_radps) {
   if (stamped_) {
     ros::TwistStamped message;
     const std::string& robot = ros_.settings().frames.robot;
-    message.header_(header_of(robot.empty() ? "base_link" : robot, ros_.now_ns()));
+    message.header_(ros::header_of(robot.empty() ? "base_link" : robot, ros_.now_ns()));
     message.twist_(twist);
     ros_.send(*stamped_, message);
   } else if (twists_) {

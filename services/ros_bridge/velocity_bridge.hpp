@@ -6,7 +6,7 @@
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
-#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 
 #include "ros_side.hpp"
 

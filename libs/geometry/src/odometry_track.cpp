@@ -7,15 +7,6 @@ namespace topogeo::geometry {
 
 namespace {
 
-Pose2 interpolate(const OdometrySample& a, const OdometrySample& b, std::int64_t stamp_ns) {
-  const double share =
-      static_cast<double>(stamp_ns - a.stamp_ns) / static_cast<double>(b.stamp_ns - a.stamp_ns);
-  const Pose2& from = a.T_odom_robot;
-  const Pose2& to = b.T_odom_robot;
-  return {from.x_m + share * (to.x_m - from.x_m), from.y_m + share * (to.y_m - from.y_m),
-          wrap_angle(from.theta_rad + share * wrap_angle(to.theta_rad - from.theta_rad))};
-}
-
 /// The chord of the arc, which for the small turns between two reports is the arc.
 Pose2 extrapolate(const OdometrySample& last, std::int64_t stamp_ns) {
   const double time_s = static_cast<double>(stamp_ns - last.stamp_ns) * 1e-9;
@@ -27,6 +18,15 @@ Pose2 extrapolate(const OdometrySample& last, std::int64_t stamp_ns) {
 }
 
 }  // namespace
+
+Pose2 interpolate(const OdometrySample& a, const OdometrySample& b, std::int64_t stamp_ns) {
+  const double share =
+      static_cast<double>(stamp_ns - a.stamp_ns) / static_cast<double>(b.stamp_ns - a.stamp_ns);
+  const Pose2& from = a.T_odom_robot;
+  const Pose2& to = b.T_odom_robot;
+  return {from.x_m + share * (to.x_m - from.x_m), from.y_m + share * (to.y_m - from.y_m),
+          wrap_angle(from.theta_rad + share * wrap_angle(to.theta_rad - from.theta_rad))};
+}
 
 bool OdometryTrack::add(const OdometrySample& sample) {
   if (!samples_.empty() && sample.stamp_ns <= samples_.back().stamp_ns) return false;

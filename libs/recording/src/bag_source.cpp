@@ -1,6 +1,6 @@
 #include "bag_source.hpp"
 
-#include <algorithm>
+#include <utility>
 
 #include "topogeo/recording/ros_definitions.hpp"
 
@@ -52,52 +52,30 @@ std::string text_of_field(
 }  // namespace
 
 BagSource::BagSource(const std::filesystem::path& path, TopicFilter wanted)
-    : file_(path), wanted_(std::move(wanted)), at_(bag::kMagic.size()) {
-  const std::span<const std::byte> magic = file_.view(0, bag::kMagic.size());
-  if (!std::ranges::equal(magic, std::as_bytes(std::span(bag::kMagic)))) {
-    throw std::runtime_error(file_.name() +
-                             ": byte 0: expected a bag of version 2.0, '#ROSBAG V2.0'");
-  }
-}
-
-bool BagSource::next(RawMessage& message) {
-  while (!ended_) {
-    try {
-      if (chunk_at_ < chunk_.size()) {
-        if (read_record_of_chunk(message)) return true;
-      } else if (read_record(message)) {
-        return true;
-      }
-    } catch (const FormatError& error) {
-      damage_ = file_.name() + ": byte " + std::to_string(record_) + ": " + error.what();
-      ended_ = true;
-    }
-  }
-  return false;
-}
+    : ChunkedSource(path, std::move(wanted), std::as_bytes(std::span(bag::kMagic)),
+                    "a bag of version 2.0, '#ROSBAG V2.0'") {}
 
 bool BagSource::read_record(RawMessage& message) {
-  record_ = at_;
-  if (at_ >= file_.size()) {
-    ended_ = true;
+  if (at() >= file().size()) {
+    end();
     return false;
   }
   constexpr std::size_t kLength = sizeof(std::uint32_t);
-  const auto header_length = Cursor(file_.view(at_, kLength)).number<std::uint32_t>();
+  const auto header_length = Cursor(file().view(at(), kLength)).number<std::uint32_t>();
   if (header_length > kLargestHeader) {
     throw FormatError("expected a header of up to 16 MiB, got " + std::to_string(header_length) +
                       " bytes");
   }
-  const std::uint64_t data_length_at = at_ + kLength + header_length;
-  const auto data_length = Cursor(file_.view(data_length_at, kLength)).number<std::uint32_t>();
-  const std::uint64_t end = data_length_at + kLength + data_length;
-  if (end > file_.size()) {
-    throw FormatError("expected a record of " + std::to_string(end - at_) +
+  const std::uint64_t data_length_at = at() + kLength + header_length;
+  const auto data_length = Cursor(file().view(data_length_at, kLength)).number<std::uint32_t>();
+  const std::uint64_t end_at = data_length_at + kLength + data_length;
+  if (end_at > file().size()) {
+    throw FormatError("expected a record of " + std::to_string(end_at - at()) +
                       " bytes, got the end of the file");
   }
   if (data_length > kLargestBlock) throw FormatError("expected a record of up to 1 GiB");
-  Cursor record(file_.view(at_, static_cast<std::size_t>(end - at_)));
-  at_ = end;
+  Cursor record(file().view(at(), static_cast<std::size_t>(end_at - at())));
+  move_to(end_at);
   const Fields header = header_fields(record.take(record.number<std::uint32_t>()));
   const std::span<const std::byte> data = record.take(record.number<std::uint32_t>());
   if (number_of<std::uint8_t>(header, "op") == bag::kChunk) {
@@ -107,11 +85,9 @@ bool BagSource::read_record(RawMessage& message) {
   return take(header, data, message);
 }
 
-bool BagSource::read_record_of_chunk(RawMessage& message) {
-  Cursor cursor(std::span<const std::byte>(chunk_).subspan(chunk_at_));
+bool BagSource::read_record_of_chunk(Cursor& cursor, RawMessage& message) {
   const Fields header = header_fields(cursor.take(cursor.number<std::uint32_t>()));
   const std::span<const std::byte> data = cursor.take(cursor.number<std::uint32_t>());
-  chunk_at_ += cursor.at();
   return take(header, data, message);
 }
 
@@ -149,25 +125,12 @@ void BagSource::take_connection(const Fields& header, std::span<const std::byte>
     topic.type += " (md5 " + md5 + ")";
     topic.encoding = Encoding::kOther;
   }
-  const auto known = std::ranges::find(topics_, topic);
-  connections_[number_of<std::uint32_t>(header, "conn")] = {
-      static_cast<std::size_t>(known - topics_.begin()), wanted_(topic)};
-  if (known == topics_.end()) topics_.push_back(topic);
+  connections_[number_of<std::uint32_t>(header, "conn")] = channel_of(topic);
 }
 
 void BagSource::open_chunk(const Fields& header, std::span<const std::byte> data) {
-  chunk_.clear();
-  chunk_at_ = 0;
   decompress(data, compression_by_name(text_of_field(header, "compression")),
-             number_of<std::uint32_t>(header, "size"), chunk_);
-}
-
-std::string BagSource::position() const {
-  return "byte " + std::to_string(record_);
-}
-
-double BagSource::fraction_read() const {
-  return ended_ ? 1.0 : static_cast<double>(at_) / static_cast<double>(file_.size());
+             number_of<std::uint32_t>(header, "size"), begin_chunk());
 }
 
 }  // namespace topogeo::recording

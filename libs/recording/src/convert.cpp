@@ -6,7 +6,7 @@
 #include "topogeo/recording/log_reader.hpp"
 #include "topogeo/recording/log_writer.hpp"
 #include "topogeo/recording/message_source.hpp"
-#include "topogeo/recording/ros_types.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 
 #include "message_sink.hpp"
 
@@ -80,7 +80,7 @@ class Copy {
       return &done_.odometry;
     }
     if (topic.type == kTfType) {
-      translate<ros::TfMessage>(message, topic.encoding, to, bytes_);
+      translate<ros::TFMessage>(message, topic.encoding, to, bytes_);
       type_ = kTfType;
       return &done_.transforms;
     }
@@ -109,7 +109,7 @@ Conversion convert_scans(const std::filesystem::path& in, const std::filesystem:
   }
   writer.close();
   done.odometry = done.scans;
-  if (out.extension() == ".mcap" || out.extension() == ".db3" || out.extension() == ".bag") {
+  if (is_recording_name(out)) {
     done.transforms = done.scans + 1;
   }
   const scan::CarmenLogStatistics& statistics = reader.statistics();
@@ -126,9 +126,7 @@ Conversion convert(const std::filesystem::path& in, const std::filesystem::path&
   if (std::filesystem::equivalent(in, out, ignored)) {
     throw std::runtime_error(out.string() + ": expected another file than the one that is read");
   }
-  const std::string ending = out.extension().string();
-  const bool to_recording = ending == ".mcap" || ending == ".db3" || ending == ".bag";
-  if (!to_recording || !is_recording(in)) return convert_scans(in, out, options);
+  if (!is_recording_name(out) || !is_recording(in)) return convert_scans(in, out, options);
   const std::unique_ptr<MessageSource> source =
       open_messages(in, [](const Topic& /*topic*/) { return true; });
   const std::unique_ptr<MessageSink> sink = create_sink(out, options.compression);

@@ -43,7 +43,7 @@ class RecordedScans final : public LogReader::Source {
   RecordedScans(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
                 const TopicChoice& topics)
       : name_(path.string()),
-        scans_(path, topics, options.range_max_m, skip()),
+        scans_(path, topics, options.range_max_m, RosScans::Beams::kOnePattern, skip()),
         sequence_(
             options.jump_s, [this] { return scans_.next(); }, skip()) {
     ready_ = sequence_.next();
@@ -130,7 +130,7 @@ scan::LogCheck check_log(const std::filesystem::path& path, const scan::LogCheck
   if (!is_recording(path)) return scan::check_carmen_log(path, options);
   constexpr double kNoLimit_m = 1e9;
   scan::ScanCheck check(options);
-  RosScans scans(path, topics, kNoLimit_m,
+  RosScans scans(path, topics, kNoLimit_m, RosScans::Beams::kAsMeasured,
                  [&](scan::SkipReason reason, std::uint64_t scan, const std::string& text) {
                    check.found(scan::fault_of(reason), scan, text);
                  });

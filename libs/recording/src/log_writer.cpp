@@ -1,15 +1,16 @@
 #include "topogeo/recording/log_writer.hpp"
 
-#include <array>
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "topogeo/recording/laser_scan.hpp"
 #include "topogeo/recording/message_source.hpp"
 #include "topogeo/recording/ros_codec.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/ros_conversions/laser_scan.hpp"
 #include "topogeo/scan/carmen_log_writer.hpp"
 
 #include "message_sink.hpp"
@@ -25,7 +26,9 @@ struct LogWriter::Target {
   virtual void write(const scan::Scan& scan) = 0;
   virtual void write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
                           const Eigen::Matrix3d& covariance) = 0;
-  virtual void write_graph(std::int64_t stamp_ns, const GraphDrawing& graph) = 0;
+  virtual void write_graph(std::int64_t stamp_ns, const ros::GraphDrawing& graph) = 0;
+  virtual void write_grid(std::int64_t stamp_ns, const ros::GridPlace& place,
+                          std::vector<std::int8_t> cells) = 0;
   [[nodiscard]] virtual bool holds_poses() const = 0;
   virtual void close() = 0;
 };
@@ -37,6 +40,7 @@ constexpr const char* kOdomFrame = "odom";
 constexpr const char* kRobotFrame = "base_link";
 constexpr const char* kLaserFrame = "laser";
 constexpr std::string_view kMarkersType = "visualization_msgs/msg/MarkerArray";
+constexpr std::string_view kGridType = "nav_msgs/msg/OccupancyGrid";
 constexpr std::string_view kPoseType = "geometry_msgs/msg/PoseWithCovarianceStamped";
 
 class CarmenTarget final : public LogWriter::Target {
@@ -46,7 +50,9 @@ class CarmenTarget final : public LogWriter::Target {
   void write(const scan::Scan& scan) override { log_.write(scan); }
   void write_pose(const scan::Scan& /*scan*/, const geometry::Pose2& /*T_map_robot*/,
                   const Eigen::Matrix3d& /*covariance*/) override {}
-  void write_graph(std::int64_t /*stamp_ns*/, const GraphDrawing& /*graph*/) override {}
+  void write_graph(std::int64_t /*stamp_ns*/, const ros::GraphDrawing& /*graph*/) override {}
+  void write_grid(std::int64_t /*stamp_ns*/, const ros::GridPlace& /*place*/,
+                  std::vector<std::int8_t> /*cells*/) override {}
   [[nodiscard]] bool holds_poses() const override { return false; }
   void close() override { log_.close(); }
 
@@ -54,89 +60,11 @@ class CarmenTarget final : public LogWriter::Target {
   scan::CarmenLogWriter log_;
 };
 
-ros::TransformStamped transform_of(const geometry::Pose2& pose, const char* parent,
-                                   const char* child, std::int64_t stamp_ns) {
-  ros::TransformStamped stated;
-  stated.header_().stamp_(from_stamp_ns(stamp_ns));
-  stated.header_().frame_id_(parent);
-  stated.child_frame_id_(child);
-  stated.transform_().translation_().x_(pose.x_m);
-  stated.transform_().translation_().y_(pose.y_m);
-  stated.transform_().rotation_(to_quaternion(pose.theta_rad));
-  return stated;
-}
-
-ros::Pose to_pose(const geometry::Pose2& pose) {
-  ros::Pose message;
-  message.position_().x_(pose.x_m);
-  message.position_().y_(pose.y_m);
-  message.orientation_(to_quaternion(pose.theta_rad));
-  return message;
-}
-
-/// Places of x, y and heading in a row of six.
-constexpr std::array<std::size_t, 3> kPlanar = {0, 1, 5};
-/// Of height, roll and pitch, which a robot on a floor does not change; not zero, so that the
-/// matrix can be inverted.
-constexpr double kFlat = 1e-6;
-
-std::array<double, 36> to_covariance(const Eigen::Matrix3d& covariance) {
-  std::array<double, 36> out{};
-  for (const std::size_t i : {2U, 3U, 4U}) out[i * 6 + i] = kFlat;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      out[kPlanar[i] * 6 + kPlanar[j]] =
-          covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-    }
-  }
-  return out;
-}
-
-ros::Point to_point(const Eigen::Vector2d& point_m) {
-  ros::Point point;
-  point.x_(point_m.x());
-  point.y_(point_m.y());
-  return point;
-}
-
-enum class MarkerType : std::int32_t { kLineStrip = 4, kSphereList = 7 };
-enum class MarkerAction : std::int32_t { kAdd = 0, kDeleteAll = 3 };
-
-ros::Marker graph_marker(const char* kind, std::size_t id, MarkerType type,
-                         const std::vector<Eigen::Vector2d>& points, double size_m,
-                         std::int64_t stamp_ns) {
-  ros::Marker marker;
-  marker.header_().stamp_(from_stamp_ns(stamp_ns));
-  marker.header_().frame_id_(kMapFrame);
-  marker.ns_(kind);
-  marker.id_(static_cast<std::int32_t>(id));
-  marker.type_(static_cast<std::int32_t>(type));
-  marker.action_(static_cast<std::int32_t>(MarkerAction::kAdd));
-  marker.pose_().orientation_().w_(1.0);
-  marker.scale_().x_(size_m);
-  marker.scale_().y_(size_m);
-  marker.scale_().z_(size_m);
-  marker.color_().g_(0.45F);
-  marker.color_().b_(0.7F);
-  marker.color_().a_(1.0F);
-  for (const Eigen::Vector2d& point_m : points) marker.points_().push_back(to_point(point_m));
-  return marker;
-}
-
-/// The branches as lines and the nodes as spheres, after what clears those before.
-ros::MarkerArray graph_markers(const GraphDrawing& graph, std::int64_t stamp_ns) {
-  constexpr double kBranch_m = 0.05;
-  constexpr double kNode_m = 0.2;
-  ros::MarkerArray array;
-  array.markers_().push_back(graph_marker("", 0, MarkerType::kSphereList, {}, kNode_m, stamp_ns));
-  array.markers_().back().action_(static_cast<std::int32_t>(MarkerAction::kDeleteAll));
-  for (std::size_t i = 0; i < graph.branches.size(); ++i) {
-    array.markers_().push_back(graph_marker("branches", i, MarkerType::kLineStrip,
-                                            graph.branches[i], kBranch_m, stamp_ns));
-  }
-  array.markers_().push_back(
-      graph_marker("nodes", 0, MarkerType::kSphereList, graph.nodes, kNode_m, stamp_ns));
-  return array;
+/// Beyond what lasers of this kind measure: twice the farthest echo at least.
+float range_max_of(const scan::Scan& scan) {
+  float farthest_m = 100.0F;
+  for (const float range_m : scan.ranges_m) farthest_m = std::max(farthest_m, 2.0F * range_m);
+  return farthest_m;
 }
 
 class RosTarget final : public LogWriter::Target {
@@ -151,37 +79,44 @@ class RosTarget final : public LogWriter::Target {
     }
     const std::int64_t stamp_ns = scan.stamp_ns;
     if (!std::exchange(mounting_stated_, true)) {
-      put_transform(transform_of(T_robot_laser_, kRobotFrame, kLaserFrame, stamp_ns), "/tf_static",
-                    stamp_ns);
+      put_transform(ros::transform_of(kRobotFrame, kLaserFrame, T_robot_laser_, stamp_ns),
+                    "/tf_static", stamp_ns);
     }
     ros::Odometry odometry;
-    odometry.header_().stamp_(from_stamp_ns(stamp_ns));
-    odometry.header_().frame_id_(kOdomFrame);
+    odometry.header_(ros::header_of(kOdomFrame, stamp_ns));
     odometry.child_frame_id_(kRobotFrame);
-    odometry.pose_().pose_(to_pose(scan.T_odom_robot));
+    odometry.pose_().pose_(ros::pose_of(scan.T_odom_robot));
     set_speed(odometry, scan);
     put(odometry, "/odom", kOdometryType, stamp_ns);
-    put_transform(transform_of(scan.T_odom_robot, kOdomFrame, kRobotFrame, stamp_ns), "/tf",
+    put_transform(ros::transform_of(kOdomFrame, kRobotFrame, scan.T_odom_robot, stamp_ns), "/tf",
                   stamp_ns);
-    put(from_scan(scan, kLaserFrame), "/scan", kLaserScanType, stamp_ns);
+    put(ros::to_laser_scan(scan, kLaserFrame, range_max_of(scan)), "/scan", kLaserScanType,
+        stamp_ns);
   }
 
   void write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_robot,
                   const Eigen::Matrix3d& covariance) override {
     if (!holds_poses()) return;
-    ros::PoseWithCovarianceStamped pose;
-    pose.header_().stamp_(from_stamp_ns(scan.stamp_ns));
-    pose.header_().frame_id_(kMapFrame);
-    pose.pose_().pose_(to_pose(T_map_robot));
-    pose.pose_().covariance_(to_covariance(covariance));
-    put(pose, "/pose", kPoseType, scan.stamp_ns);
-    put_transform(transform_of(T_map_robot * geometry::inverse(scan.T_odom_robot), kMapFrame,
-                               kOdomFrame, scan.stamp_ns),
-                  "/tf", scan.stamp_ns);
+    put(ros::pose_of(kMapFrame, scan.stamp_ns, T_map_robot, covariance), "/pose", kPoseType,
+        scan.stamp_ns);
+    put_transform(
+        ros::transform_of(kMapFrame, kOdomFrame, T_map_robot * geometry::inverse(scan.T_odom_robot),
+                          scan.stamp_ns),
+        "/tf", scan.stamp_ns);
   }
 
-  void write_graph(std::int64_t stamp_ns, const GraphDrawing& graph) override {
-    if (holds_poses()) put(graph_markers(graph, stamp_ns), "/graph", kMarkersType, stamp_ns);
+  void write_graph(std::int64_t stamp_ns, const ros::GraphDrawing& graph) override {
+    if (holds_poses()) {
+      put(ros::graph_markers(graph, ros::header_of(kMapFrame, stamp_ns)), "/graph", kMarkersType,
+          stamp_ns);
+    }
+  }
+
+  void write_grid(std::int64_t stamp_ns, const ros::GridPlace& place,
+                  std::vector<std::int8_t> cells) override {
+    if (!holds_poses()) return;
+    put(ros::occupancy_grid(place, std::move(cells), ros::header_of(kMapFrame, stamp_ns)), "/map",
+        kGridType, stamp_ns);
   }
 
   // ROS 1 has other definitions of these messages, which nobody here reads.
@@ -204,7 +139,7 @@ class RosTarget final : public LogWriter::Target {
 
   void put_transform(const ros::TransformStamped& stated, const char* topic,
                      std::int64_t stamp_ns) {
-    ros::TfMessage message;
+    ros::TFMessage message;
     message.transforms_().push_back(stated);
     put(message, topic, kTfType, stamp_ns);
   }
@@ -253,8 +188,13 @@ void LogWriter::write_pose(const scan::Scan& scan, const geometry::Pose2& T_map_
   target_->write_pose(scan, T_map_robot, covariance);
 }
 
-void LogWriter::write_graph(std::int64_t stamp_ns, const GraphDrawing& graph) {
+void LogWriter::write_graph(std::int64_t stamp_ns, const ros::GraphDrawing& graph) {
   target_->write_graph(stamp_ns, graph);
+}
+
+void LogWriter::write_grid(std::int64_t stamp_ns, const ros::GridPlace& place,
+                           std::vector<std::int8_t> cells) {
+  target_->write_grid(stamp_ns, place, std::move(cells));
 }
 
 bool LogWriter::holds_poses() const {

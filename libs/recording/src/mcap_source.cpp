@@ -1,7 +1,7 @@
 #include "mcap_source.hpp"
 
-#include <algorithm>
-#include <array>
+#include <utility>
+#include <vector>
 
 #include <zlib.h>
 
@@ -22,55 +22,32 @@ Encoding encoding_of_channel(std::string_view message_encoding) {
 }  // namespace
 
 McapSource::McapSource(const std::filesystem::path& path, TopicFilter wanted)
-    : file_(path), wanted_(std::move(wanted)), at_(mcap::kMagic.size()) {
-  const std::span<const std::byte> magic = file_.view(0, mcap::kMagic.size());
-  if (!std::ranges::equal(magic, std::as_bytes(std::span(mcap::kMagic)))) {
-    throw std::runtime_error(file_.name() + ": byte 0: expected the first bytes of an MCAP file");
-  }
-}
-
-bool McapSource::next(RawMessage& message) {
-  while (!ended_) {
-    try {
-      if (chunk_at_ < chunk_.size()) {
-        if (read_record_of_chunk(message)) return true;
-      } else if (read_record(message)) {
-        return true;
-      }
-    } catch (const FormatError& error) {
-      // Inside a chunk the length of each record leads to the next; what follows a damaged one
-      // cannot be trusted.
-      damage_ = file_.name() + ": byte " + std::to_string(record_) + ": " + error.what();
-      ended_ = true;
-    }
-  }
-  return false;
-}
+    : ChunkedSource(path, std::move(wanted), std::as_bytes(std::span(mcap::kMagic)),
+                    "the first bytes of an MCAP file") {}
 
 bool McapSource::read_record(RawMessage& message) {
-  record_ = at_;
-  const std::span<const std::byte> head = file_.view(at_, mcap::kRecordHead);
+  const std::span<const std::byte> head = file().view(at(), mcap::kRecordHead);
   if (head.empty()) throw FormatError("expected the end of the data, got the end of the file");
   Cursor cursor(head);
   const auto opcode = static_cast<mcap::Opcode>(cursor.number<std::uint8_t>());
   const auto length = cursor.number<std::uint64_t>();
-  const std::uint64_t start = at_ + mcap::kRecordHead;
-  if (length > file_.size() - start) {
+  const std::uint64_t start = at() + mcap::kRecordHead;
+  if (length > file().size() - start) {
     throw FormatError("expected a record of " + std::to_string(length) +
                       " bytes, got the end of the file");
   }
-  at_ = start + length;
+  move_to(start + length);
   const auto content = [&] {
     if (length > kLargestRecord) {
       throw FormatError("expected a record of up to 1 GiB, got " + std::to_string(length) +
                         " bytes");
     }
-    return file_.view(start, static_cast<std::size_t>(length));
+    return file().view(start, static_cast<std::size_t>(length));
   };
   switch (opcode) {
     case mcap::Opcode::kDataEnd:
     case mcap::Opcode::kFooter:
-      ended_ = true;
+      end();
       return false;
     case mcap::Opcode::kSchema:
       take_schema(content());
@@ -88,12 +65,10 @@ bool McapSource::read_record(RawMessage& message) {
   }
 }
 
-bool McapSource::read_record_of_chunk(RawMessage& message) {
-  Cursor cursor(std::span<const std::byte>(chunk_).subspan(chunk_at_));
+bool McapSource::read_record_of_chunk(Cursor& cursor, RawMessage& message) {
   const auto opcode = static_cast<mcap::Opcode>(cursor.number<std::uint8_t>());
   const auto length = cursor.number<std::uint64_t>();
   const std::span<const std::byte> content = cursor.take(length);
-  chunk_at_ += cursor.at();
   switch (opcode) {
     case mcap::Opcode::kSchema:
       take_schema(content);
@@ -136,10 +111,8 @@ void McapSource::take_channel(std::span<const std::byte> content) {
   const auto schema = schemas_.find(cursor.number<std::uint16_t>());
   const std::string name(cursor.counted_text());
   const Encoding encoding = encoding_of_channel(cursor.counted_text());
-  const Topic topic{name, schema == schemas_.end() ? "" : ros2_type_name(schema->second), encoding};
-  const auto known = std::ranges::find(topics_, topic);
-  channels_[id] = {static_cast<std::size_t>(known - topics_.begin()), wanted_(topic)};
-  if (known == topics_.end()) topics_.push_back(topic);
+  channels_[id] =
+      channel_of({name, schema == schemas_.end() ? "" : ros2_type_name(schema->second), encoding});
 }
 
 void McapSource::open_chunk(std::span<const std::byte> content) {
@@ -150,26 +123,14 @@ void McapSource::open_chunk(std::span<const std::byte> content) {
   const auto crc = cursor.number<std::uint32_t>();
   const Compression compression = compression_by_name(cursor.counted_text());
   const auto block = cursor.take(cursor.number<std::uint64_t>());
-  chunk_.clear();
-  chunk_at_ = 0;
-  decompress(block, compression, size, chunk_);
+  std::vector<std::byte>& chunk = begin_chunk();
+  decompress(block, compression, size, chunk);
   const auto sum = static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(chunk_.data()), chunk_.size()));
+      crc32_z(0, reinterpret_cast<const unsigned char*>(chunk.data()), chunk.size()));
   if (crc != 0 && crc != sum) {
-    chunk_.clear();
     throw FormatError("expected a chunk of CRC " + std::to_string(crc) + ", got " +
                       std::to_string(sum));
   }
-}
-
-std::string McapSource::position() const {
-  return "byte " + std::to_string(record_);
-}
-
-double McapSource::fraction_read() const {
-  return ended_ ? 1.0
-                : static_cast<double>(at_) /
-                      static_cast<double>(std::max<std::uint64_t>(file_.size(), 1));
 }
 
 }  // namespace topogeo::recording

@@ -4,6 +4,7 @@
 
 #include "bag_sink.hpp"
 #include "compression.hpp"
+#include "folder_sink.hpp"
 #include "input_file.hpp"
 #include "mcap_sink.hpp"
 #include "sqlite_sink.hpp"
@@ -21,6 +22,11 @@ Compression known_compression(const std::string& name) {
 
 }  // namespace
 
+bool is_recording_name(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  return ending.empty() || ending == ".mcap" || ending == ".db3" || ending == ".bag";
+}
+
 std::unique_ptr<MessageSink> create_sink(const std::filesystem::path& path,
                                          const std::string& compression) {
   const Compression wanted = known_compression(compression);
@@ -36,6 +42,7 @@ std::unique_ptr<MessageSink> create_sink(const std::filesystem::path& path,
                                      wanted == Compression::kZstd ? Compression::kNone : wanted);
   }
   if (ending == ".db3") return std::make_unique<SqliteSink>(path);
+  if (ending.empty()) return std::make_unique<FolderSink>(path);
   return nullptr;
 }
 

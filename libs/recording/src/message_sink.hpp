@@ -34,7 +34,11 @@ class MessageSink {
   virtual void close() = 0;
 };
 
-/// By the ending of the name: .mcap, .db3, .bag; null for another. `compression`: see
+/// Whether create_sink() makes one of a file of that name.
+bool is_recording_name(const std::filesystem::path& path);
+
+/// By the ending of the name: .mcap, .db3, .bag; a folder of rosbag2 where there is none, or a
+/// slash; null for another. `compression`: see
 /// ConvertOptions. Throws std::runtime_error when the file cannot be created, std::invalid_argument
 /// for a compression that the format lacks.
 std::unique_ptr<MessageSink> create_sink(const std::filesystem::path& path,

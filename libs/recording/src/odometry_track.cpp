@@ -27,7 +27,7 @@ void OdometryTrack::add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_rob
     place->T_odom_robot = T_odom_robot;
     return;
   }
-  samples_.insert(place, {stamp_ns, T_odom_robot});
+  samples_.insert(place, {stamp_ns, T_odom_robot, 0.0, 0.0});
   if (samples_.size() > kMostSamples) samples_.pop_front();
 }
 
@@ -37,29 +37,26 @@ bool OdometryTrack::reaches(std::int64_t stamp_ns) const {
 
 std::optional<geometry::Pose2> OdometryTrack::at(std::int64_t stamp_ns) const {
   if (samples_.empty()) return std::nullopt;
-  const auto after = std::ranges::lower_bound(samples_, stamp_ns, {}, &Sample::stamp_ns);
+  const auto after =
+      std::ranges::lower_bound(samples_, stamp_ns, {}, &geometry::OdometrySample::stamp_ns);
   if (after != samples_.end() && after->stamp_ns == stamp_ns) return after->T_odom_robot;
   if (after == samples_.begin() || after == samples_.end()) {
-    const Sample& nearest = after == samples_.end() ? samples_.back() : *after;
+    const geometry::OdometrySample& nearest = after == samples_.end() ? samples_.back() : *after;
     if (std::llabs(nearest.stamp_ns - stamp_ns) > kLongestHold_ns) return std::nullopt;
     return nearest.T_odom_robot;
   }
-  const Sample& a = *std::prev(after);
-  const Sample& b = *after;
+  const geometry::OdometrySample& a = *std::prev(after);
+  const geometry::OdometrySample& b = *after;
   if (b.stamp_ns - a.stamp_ns > kLongestGap_ns && !stood(a.T_odom_robot, b.T_odom_robot)) {
     return std::nullopt;
   }
-  const double share =
-      static_cast<double>(stamp_ns - a.stamp_ns) / static_cast<double>(b.stamp_ns - a.stamp_ns);
-  const Eigen::Vector3d step = geometry::difference(b.T_odom_robot, a.T_odom_robot);
-  return geometry::Pose2{a.T_odom_robot.x_m + share * step.x(),
-                         a.T_odom_robot.y_m + share * step.y(),
-                         geometry::wrap_angle(a.T_odom_robot.theta_rad + share * step.z())};
+  return geometry::interpolate(a, b, stamp_ns);
 }
 
 std::optional<double> OdometryTrack::distance_s(std::int64_t stamp_ns) const {
   if (samples_.empty()) return std::nullopt;
-  const auto after = std::ranges::lower_bound(samples_, stamp_ns, {}, &Sample::stamp_ns);
+  const auto after =
+      std::ranges::lower_bound(samples_, stamp_ns, {}, &geometry::OdometrySample::stamp_ns);
   double nearest_s = 1e18;
   if (after != samples_.end()) {
     nearest_s = static_cast<double>(after->stamp_ns - stamp_ns) * 1e-9;

@@ -1,6 +1,6 @@
 #include "topogeo/recording/ros_codec.hpp"
 
-#include "topogeo/recording/ros_types.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 
 #include "field_codec.hpp"
 
@@ -128,7 +128,7 @@ void fields(auto& field, Is<ros::OccupancyGrid> auto& m) {
   field(m.data_());
 }
 
-void fields(auto& field, Is<ros::TfMessage> auto& m) {
+void fields(auto& field, Is<ros::TFMessage> auto& m) {
   field(m.transforms_());
 }
 
@@ -171,7 +171,7 @@ void fields(auto& field, Is<ros::MarkerArray> auto& m) {
 template <typename Message>
 constexpr bool kInRos1 =
     std::same_as<Message, ros::LaserScan> || std::same_as<Message, ros::Odometry> ||
-    std::same_as<Message, ros::TfMessage>;
+    std::same_as<Message, ros::TFMessage>;
 
 template <typename Message>
 Message decode(std::span<const std::byte> bytes, Encoding encoding) {
@@ -214,7 +214,7 @@ void encode(const Message& message, Encoding encoding, std::vector<std::byte>& b
 
 TOPOGEO_ROS_CODEC(ros::LaserScan);
 TOPOGEO_ROS_CODEC(ros::Odometry);
-TOPOGEO_ROS_CODEC(ros::TfMessage);
+TOPOGEO_ROS_CODEC(ros::TFMessage);
 TOPOGEO_ROS_CODEC(ros::OccupancyGrid);
 TOPOGEO_ROS_CODEC(ros::PoseWithCovarianceStamped);
 TOPOGEO_ROS_CODEC(ros::MarkerArray);

@@ -5,6 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "topogeo/recording/ros_codec.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
+
 namespace topogeo::recording {
 namespace {
 
@@ -19,12 +23,16 @@ constexpr std::int64_t kLastStamp_ns = 9'000'000'000'000'000'000;
 
 /// That of the header, or where it has none, that of the recording.
 std::int64_t stamp_of(const ros::Header& header, std::int64_t log_time_ns) {
-  const std::int64_t stamp_ns = to_stamp_ns(header.stamp_());
+  const std::int64_t stamp_ns = ros::stamp_ns_of(header.stamp_());
   return stamp_ns != 0 ? stamp_ns : log_time_ns;
 }
 
 bool is_usable(std::int64_t stamp_ns) {
   return stamp_ns >= 0 && stamp_ns <= kLastStamp_ns;
+}
+
+std::int64_t nanoseconds_of(double seconds) {
+  return std::llround(seconds * 1e9);
 }
 
 std::string seconds_text_of(double seconds) {
@@ -36,9 +44,10 @@ std::string seconds_text_of(double seconds) {
 }  // namespace
 
 RosScans::RosScans(const std::filesystem::path& path, const TopicChoice& choice,
-                   double range_limit_m, scan::ScanSequence::Skip skip)
+                   double range_limit_m, Beams beams, scan::ScanSequence::Skip skip)
     : survey_(survey(path, choice)),
       range_limit_m_(range_limit_m),
+      beams_(beams),
       skip_(std::move(skip)),
       source_(open_messages(path, [this](const Topic& topic) {
         if (topic.encoding == Encoding::kOther) return false;
@@ -63,26 +72,55 @@ std::optional<RosScans::Candidate> RosScans::next() {
 }
 
 bool RosScans::front_is_due() const {
-  return !waiting_.empty() && (ended_ || waiting_.size() > kMostWaiting ||
-                               track_.reaches(waiting_.front().scan.stamp_ns));
+  if (waiting_.empty()) return false;
+  const Waiting& front = waiting_.front();
+  return ended_ || waiting_.size() > kMostWaiting ||
+         track_.reaches(front.stamp_ns + nanoseconds_of(front.sweep.duration_s()));
 }
 
 std::optional<RosScans::Candidate> RosScans::take_front() {
-  Candidate candidate = std::move(waiting_.front());
+  const Waiting front = std::move(waiting_.front());
   waiting_.pop_front();
-  const std::int64_t stamp_ns = candidate.scan.stamp_ns;
-  const std::optional<geometry::Pose2> pose = track_.at(stamp_ns);
+  const std::optional<geometry::Pose2> pose = track_.at(front.stamp_ns);
   if (!pose) {
-    const std::optional<double> distance_s = track_.distance_s(stamp_ns);
-    skip_(SkipReason::kPose, candidate.place,
+    const std::optional<double> distance_s = track_.distance_s(front.stamp_ns);
+    skip_(SkipReason::kPose, front.place,
           "expected odometry around the time of the scan, got " +
               (distance_s ? "the nearest " + seconds_text_of(*distance_s) + " off"
                           : std::string("none")));
     return std::nullopt;
   }
-  track_.forget_before(stamp_ns);
+  Candidate candidate;
+  candidate.place = front.place;
+  candidate.scan.stamp_ns = front.stamp_ns;
   candidate.scan.T_odom_robot = *pose;
+  put_beams(front, candidate.scan);
+  track_.forget_before(front.stamp_ns);
   return candidate;
+}
+
+void RosScans::put_beams(const Waiting& from, scan::Scan& scan) const {
+  ros::Sweep sweep = from.sweep;
+  if (beams_ == Beams::kOnePattern) {
+    // A mounting that is not known is taken for the middle of the robot.
+    const geometry::Pose2 T_robot_laser =
+        survey_.mounting ? survey_.mounting->T_robot_laser : geometry::Pose2{};
+    if (sweep.time_step_s != 0.0) {
+      sweep.ranges_m = ros::deskewed(sweep, [&](double after_s) -> std::optional<geometry::Pose2> {
+        const auto T_odom_robot = track_.at(from.stamp_ns + nanoseconds_of(after_s));
+        if (!T_odom_robot) return std::nullopt;
+        return *T_odom_robot * T_robot_laser;
+      });
+    }
+    if (!ros::same_beams(sweep.pattern, *survey_.beams)) {
+      sweep.ranges_m = ros::on_pattern(sweep, *survey_.beams);
+    }
+    sweep.pattern = *survey_.beams;
+  }
+  ros::limit_ranges(sweep.ranges_m, range_limit_m_);
+  scan.angle_min_rad = sweep.pattern.angle_min_rad;
+  scan.angle_step_rad = sweep.pattern.angle_step_rad;
+  scan.ranges_m = std::move(sweep.ranges_m);
 }
 
 void RosScans::take(const RawMessage& message) {
@@ -101,16 +139,22 @@ void RosScans::take_scan(const RawMessage& message, const Topic& topic) {
   ++scans_;
   try {
     const auto laser = decode<ros::LaserScan>(message.data, topic.encoding);
-    Candidate candidate;
-    candidate.place = scans_;
-    candidate.scan =
-        to_scan(laser, survey_.mounting && survey_.mounting->upside_down, range_limit_m_);
-    candidate.scan.stamp_ns = stamp_of(laser.header_(), message.log_time_ns);
-    if (!is_usable(candidate.scan.stamp_ns)) {
+    const std::string frame = ros::frame_name(laser.header_().frame_id_());
+    if (frame != survey_.laser_frame && !survey_.laser_frame.empty()) {
+      throw std::invalid_argument("frame_id: expected " + survey_.laser_frame + ", got " + frame);
+    }
+    Waiting scan{scans_, stamp_of(laser.header_(), message.log_time_ns),
+                 ros::to_sweep(laser, survey_.mounting && survey_.mounting->upside_down,
+                               scan::CarmenLogReader::kMaxBeams)};
+    if (beams_ == Beams::kOnePattern && !ros::alike(scan.sweep.pattern, *survey_.beams)) {
+      throw std::invalid_argument("expected " + text_of(*survey_.beams) + " as most scans, got " +
+                                  text_of(scan.sweep.pattern));
+    }
+    if (!is_usable(scan.stamp_ns)) {
       skip_(SkipReason::kStamp, scans_, "expected a time since 1970, got another");
       return;
     }
-    waiting_.push_back(std::move(candidate));
+    waiting_.push_back(std::move(scan));
   } catch (const DecodeError& error) {
     skip_(SkipReason::kFields, scans_, source_->position() + ": " + error.what());
   } catch (const std::invalid_argument& error) {
@@ -122,7 +166,7 @@ void RosScans::take_odometry(const RawMessage& message, const Topic& topic) {
   ++odometry_;
   try {
     const auto odometry = decode<ros::Odometry>(message.data, topic.encoding);
-    add_pose(odometry.header_(), message.log_time_ns, planar_pose(odometry.pose_().pose_()));
+    add_pose(odometry.header_(), message.log_time_ns, ros::planar(odometry.pose_().pose_()));
   } catch (const DecodeError& error) {
     skip_(SkipReason::kPose, scans_, source_->position() + ": " + error.what());
   }
@@ -130,14 +174,14 @@ void RosScans::take_odometry(const RawMessage& message, const Topic& topic) {
 
 void RosScans::take_transforms(const RawMessage& message, const Topic& topic) {
   try {
-    const auto transforms = decode<ros::TfMessage>(message.data, topic.encoding);
+    const auto transforms = decode<ros::TFMessage>(message.data, topic.encoding);
     for (const ros::TransformStamped& stated : transforms.transforms_()) {
-      if (frame_name(stated.header_().frame_id_()) != survey_.odom_frame ||
-          frame_name(stated.child_frame_id_()) != survey_.robot_frame) {
+      if (ros::frame_name(stated.header_().frame_id_()) != survey_.odom_frame ||
+          ros::frame_name(stated.child_frame_id_()) != survey_.robot_frame) {
         continue;
       }
       ++odometry_;
-      add_pose(stated.header_(), message.log_time_ns, planar_pose(stated.transform_()));
+      add_pose(stated.header_(), message.log_time_ns, ros::planar(stated.transform_()));
     }
   } catch (const DecodeError& error) {
     skip_(SkipReason::kPose, scans_, source_->position() + ": " + error.what());

@@ -1,5 +1,5 @@
 // The scans of a recording with the odometry at their times, readable by themselves, not yet in
-// order.
+// order of time.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,14 @@ namespace topogeo::recording {
 
 class RosScans {
  public:
+  enum class Beams : std::uint8_t {
+    kOnePattern,  ///< the motion of each sweep taken out, all on the beams of most scans
+    kAsMeasured
+  };
+
+  /// Ranges at or above `range_limit_m` are no echo.
   RosScans(const std::filesystem::path& path, const TopicChoice& choice, double range_limit_m,
-           scan::ScanSequence::Skip skip);
+           Beams beams, scan::ScanSequence::Skip skip);
 
   std::optional<scan::ScanSequence::Candidate> next();
 
@@ -32,10 +38,16 @@ class RosScans {
 
  private:
   using Candidate = scan::ScanSequence::Candidate;
+  struct Waiting {
+    std::uint64_t place = 0;
+    std::int64_t stamp_ns = 0;
+    ros::Sweep sweep;
+  };
 
   [[nodiscard]] bool front_is_due() const;
   std::optional<Candidate> take_front();
   void take(const RawMessage& message);
+  void put_beams(const Waiting& from, scan::Scan& scan) const;
   void take_scan(const RawMessage& message, const Topic& topic);
   void take_odometry(const RawMessage& message, const Topic& topic);
   void take_transforms(const RawMessage& message, const Topic& topic);
@@ -45,10 +57,11 @@ class RosScans {
 
   Survey survey_;
   double range_limit_m_;
+  Beams beams_;
   scan::ScanSequence::Skip skip_;
   std::unique_ptr<MessageSource> source_;
   OdometryTrack track_;
-  std::deque<Candidate> waiting_;  // for odometry at or after their times
+  std::deque<Waiting> waiting_;  // for odometry at or after their last beams
   std::uint64_t messages_ = 0;
   std::uint64_t scans_ = 0;
   std::uint64_t odometry_ = 0;

@@ -7,19 +7,26 @@
 #include <stdexcept>
 
 #include "topogeo/recording/message_source.hpp"
-#include "topogeo/recording/transform_tree.hpp"
+#include "topogeo/recording/ros_codec.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/scan/carmen_log_reader.hpp"
 
 namespace topogeo::recording {
 namespace {
 
-/// A plane that leans more than this measures other walls than those of the floor plan.
-constexpr double kLargestTilt_rad = 10.0 * std::numbers::pi / 180.0;
+/// Scans of one pattern of beams.
+struct BeamKind {
+  ros::BeamPattern upright;
+  ros::BeamPattern upside_down;
+  std::uint64_t scans = 0;
+};
 
 struct TopicFacts {
   Topic topic;
   std::uint64_t messages = 0;
-  std::string frame;        // of the first message: of the laser, or of odometry
-  std::string child_frame;  // of the first odometry
+  std::vector<BeamKind> beams;  // of its scans
+  std::string frame;            // of the first message: of the laser, or of odometry
+  std::string child_frame;      // of the first odometry
 };
 
 bool is_used(const Topic& topic) {
@@ -42,6 +49,7 @@ class Surveyor {
     choose_scans();
     choose_odometry();
     find_mounting();
+    choose_beams();
     return std::move(survey_);
   }
 
@@ -51,6 +59,7 @@ class Surveyor {
   void choose_odometry();
   void use_transforms(const std::string& topic);
   void find_mounting();
+  void choose_beams();
   [[nodiscard]] std::vector<const TopicFacts*> of_type(std::string_view type) const;
   [[nodiscard]] std::string topics_text() const;
 
@@ -58,9 +67,23 @@ class Surveyor {
   const TopicChoice& choice_;
   std::map<std::string, TopicFacts> facts_;  // by name
   std::vector<Topic> all_topics_;
-  TransformTree transforms_;
+  ros::FrameTree transforms_;
   Survey survey_;
 };
+
+void count_beams(std::vector<BeamKind>& kinds, const ros::LaserScan& scan) {
+  constexpr std::size_t kMostKinds = 256;
+  constexpr std::size_t kMostBeams = scan::CarmenLogReader::kMaxBeams;
+  const ros::BeamPattern upright = ros::pattern_of(scan, false, kMostBeams);
+  for (BeamKind& kind : kinds) {
+    if (!ros::same_beams(kind.upright, upright)) continue;
+    ++kind.scans;
+    return;
+  }
+  if (kinds.size() < kMostKinds) {
+    kinds.push_back({upright, ros::pattern_of(scan, true, kMostBeams), 1});
+  }
+}
 
 void Surveyor::take(const Topic& topic, const RawMessage& message) {
   TopicFacts& facts = facts_[topic.name];
@@ -68,18 +91,20 @@ void Surveyor::take(const Topic& topic, const RawMessage& message) {
   ++facts.messages;
   try {
     if (topic.type == kTfType) {
-      transforms_.add(decode<ros::TfMessage>(message.data, topic.encoding),
+      transforms_.add(decode<ros::TFMessage>(message.data, topic.encoding),
                       topic.name.ends_with("tf_static"));
-    } else if (facts.frame.empty() && topic.type == kLaserScanType) {
+    } else if (topic.type == kLaserScanType) {
       const auto scan = decode<ros::LaserScan>(message.data, topic.encoding);
-      facts.frame = frame_name(scan.header_().frame_id_());
+      if (facts.frame.empty()) facts.frame = ros::frame_name(scan.header_().frame_id_());
+      count_beams(facts.beams, scan);
     } else if (facts.frame.empty()) {
       const auto odometry = decode<ros::Odometry>(message.data, topic.encoding);
-      facts.frame = frame_name(odometry.header_().frame_id_());
-      facts.child_frame = frame_name(odometry.child_frame_id_());
+      facts.frame = ros::frame_name(odometry.header_().frame_id_());
+      facts.child_frame = ros::frame_name(odometry.child_frame_id_());
     }
   } catch (const DecodeError&) {
     // The reader of the log counts and explains them.
+  } catch (const std::invalid_argument&) {  // NOLINT(bugprone-empty-catch): as those
   }
 }
 
@@ -160,7 +185,7 @@ void Surveyor::choose_odometry() {
 }
 
 /// How good a guess it is that this transform is the odometry's; 0: it is not.
-int odometry_rank(const TransformTree::Edge& edge) {
+int odometry_rank(const ros::FrameTree::Edge& edge) {
   const std::string parent = edge.parent.substr(edge.parent.rfind('/') + 1);
   const std::string child = edge.child.substr(edge.child.rfind('/') + 1);
   if (edge.is_static || !parent.starts_with("odom")) return 0;
@@ -169,7 +194,7 @@ int odometry_rank(const TransformTree::Edge& edge) {
 }
 
 void Surveyor::use_transforms(const std::string& topic) {
-  const std::vector<TransformTree::Edge>& edges = transforms_.edges();
+  const std::vector<ros::FrameTree::Edge>& edges = transforms_.edges();
   const auto best = std::ranges::max_element(edges, {}, odometry_rank);
   if (best == edges.end() || odometry_rank(*best) == 0) return;
   survey_.odometry_topic = topic;
@@ -183,7 +208,7 @@ void Surveyor::use_transforms(const std::string& topic) {
 void Surveyor::find_mounting() {
   const std::string frames = survey_.robot_frame + " -> " + survey_.laser_frame;
   if (survey_.robot_frame == survey_.laser_frame) {
-    survey_.mounting = LaserMounting{};
+    survey_.mounting = ros::LaserMounting{};
     return;
   }
   const auto T_robot_laser = transforms_.find(survey_.robot_frame, survey_.laser_frame);
@@ -191,13 +216,38 @@ void Surveyor::find_mounting() {
     survey_.notes.push_back("no transforms " + frames + ": the laser's mounting is not known");
     return;
   }
-  survey_.mounting = planar_mounting(*T_robot_laser);
+  survey_.mounting = ros::planar_mounting(*T_robot_laser);
   if (survey_.mounting->upside_down) survey_.notes.push_back("the laser is mounted upside down");
-  if (survey_.mounting->tilt_rad > kLargestTilt_rad) {
+  if (survey_.mounting->tilt_rad > ros::kLargestTilt_rad) {
     survey_.notes.push_back(
         "the laser is tilted by " +
         std::to_string(std::lround(survey_.mounting->tilt_rad * 180.0 / std::numbers::pi)) +
         " degrees (" + frames + "): its ranges are taken as if it were level");
+  }
+}
+
+/// Those of most scans; the first of as many.
+void Surveyor::choose_beams() {
+  const std::vector<BeamKind>& kinds = facts_.at(survey_.scan_topic).beams;
+  const auto most = std::ranges::max_element(kinds, {}, &BeamKind::scans);
+  if (most == kinds.end()) return;
+  survey_.beams =
+      survey_.mounting && survey_.mounting->upside_down ? most->upside_down : most->upright;
+  std::uint64_t alike = 0;
+  std::uint64_t others = 0;
+  for (const BeamKind& kind : kinds) {
+    if (&kind == &*most) continue;
+    (ros::alike(kind.upright, most->upright) ? alike : others) += kind.scans;
+  }
+  const std::string pattern = text_of(*survey_.beams);
+  if (alike > 0) {
+    survey_.notes.push_back(std::to_string(alike) + " scans have other beams than " + pattern +
+                            ": they are put on these");
+  }
+  if (others > 0) {
+    survey_.notes.push_back(std::to_string(others) + " scans have other beams than " + pattern +
+                            " and share less than half of the field of view, or have another step: "
+                            "they are left out");
   }
 }
 

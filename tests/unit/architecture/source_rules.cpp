@@ -85,7 +85,7 @@ std::vector<std::string> against_order(const std::vector<Include>& includes,
     const std::string of = part_after(include.header, "topogeo/");
     if (by.empty() || of.empty()) continue;
     if (of == "msg" && (by == "messaging" || by == "map_client")) continue;
-    if (of == "ros2" && (by == "recording" || by == "ros_messaging")) continue;
+    if (of == "ros2" && (by == "ros_conversions" || by == "ros_messaging")) continue;
     const auto user = std::ranges::find(libraries, by);
     if (user == libraries.end()) {
       found.push_back(

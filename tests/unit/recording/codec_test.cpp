@@ -5,7 +5,7 @@
 
 #include "topogeo/recording/ros_codec.hpp"
 #include "topogeo/recording/ros_definitions.hpp"
-#include "topogeo/recording/ros_types.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 
 namespace topogeo::recording {
 namespace {
@@ -42,8 +42,8 @@ ros::LaserScan some_scan() {
   return scan;
 }
 
-ros::TfMessage some_transforms() {
-  ros::TfMessage message;
+ros::TFMessage some_transforms() {
+  ros::TFMessage message;
   for (const char* child : {"base_link", "laser_of_the_front"}) {
     ros::TransformStamped& stated = message.transforms_().emplace_back();
     stated.header_().frame_id_("odom");
@@ -96,7 +96,7 @@ TEST(RosCodec, WritesAndReadsWhatFastCdrDoes) {
 }
 
 TEST(RosCodec, WritesHeadersOfRos1WithASequenceNumberAndNoAlignment) {
-  ros::TfMessage message;
+  ros::TFMessage message;
   const std::vector<std::byte> none = encoded(message, Encoding::kRos1);
   EXPECT_EQ(none, std::vector<std::byte>(4));
   const std::vector<std::byte> scan = encoded(some_scan(), Encoding::kRos1);
@@ -105,7 +105,7 @@ TEST(RosCodec, WritesHeadersOfRos1WithASequenceNumberAndNoAlignment) {
   EXPECT_EQ(scan[4], std::byte{7});
   EXPECT_EQ(scan[16], static_cast<std::byte>('l'));
   EXPECT_TRUE(decode<ros::LaserScan>(scan, Encoding::kRos1) == some_scan());
-  EXPECT_TRUE(decode<ros::TfMessage>(encoded(some_transforms(), Encoding::kRos1),
+  EXPECT_TRUE(decode<ros::TFMessage>(encoded(some_transforms(), Encoding::kRos1),
                                      Encoding::kRos1) == some_transforms());
 }
 
@@ -118,12 +118,12 @@ TEST(RosCodec, RefusesWhatEndsEarlyWithItsPosition) {
           << size;
     }
   }
-  std::vector<std::byte> huge = encoded(ros::TfMessage(), Encoding::kCdr);
+  std::vector<std::byte> huge = encoded(ros::TFMessage(), Encoding::kCdr);
   for (std::size_t i = 4; i < 8; ++i) huge[i] = std::byte{0xFF};
-  EXPECT_THROW((void)decode<ros::TfMessage>(huge, Encoding::kCdr), DecodeError);
+  EXPECT_THROW((void)decode<ros::TFMessage>(huge, Encoding::kCdr), DecodeError);
   huge[1] = std::byte{7};
   try {
-    (void)decode<ros::TfMessage>(huge, Encoding::kCdr);
+    (void)decode<ros::TFMessage>(huge, Encoding::kCdr);
     FAIL();
   } catch (const DecodeError& error) {
     EXPECT_STREQ(error.what(), "byte 0: expected plain CDR, got representation 7");

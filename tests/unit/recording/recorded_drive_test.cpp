@@ -5,7 +5,8 @@
 
 #include "topogeo/recording/convert.hpp"
 #include "topogeo/recording/message_source.hpp"
-#include "topogeo/recording/ros_types.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 
 namespace topogeo::recording {
 namespace {
@@ -77,6 +78,23 @@ TEST_F(RecordedDrive, IsReadFromAFolderOfSeveralFiles) {
   expect_same_scans(read_scans(path("bag")), read_scans(write_drive(path("whole.mcap"))));
 }
 
+// As `ros2 bag` has it: a folder whose name has no ending.
+TEST_F(RecordedDrive, IsWrittenAsAFolder) {
+  for (const char* name : {"bag", "other/"}) {
+    SCOPED_TRACE(name);
+    expect_same_scans(read_scans(write_drive(path(name))), read_scans(write_drive(path("a.db3"))));
+  }
+  EXPECT_TRUE(std::filesystem::exists(path("other/other_0.db3")));
+  const std::string metadata = bytes_of(path("bag/metadata.yaml"));
+  for (const char* line :
+       {"rosbag2_bagfile_information:\n", "  version: 5\n", "  storage_identifier: sqlite3\n",
+        "  message_count: 61\n", "    nanoseconds_since_epoch: 1600000000123456789\n",
+        "    nanoseconds: 1900000000\n", "    - bag_0.db3\n"}) {
+    EXPECT_THAT(metadata, HasSubstr(line));
+  }
+  EXPECT_THROW(write_drive(path("bag")), std::runtime_error);  // it is not empty
+}
+
 TEST_F(RecordedDrive, IsChosenByTopic) {
   const auto file = write_drive(path("a.mcap"));
   EXPECT_THAT(
@@ -97,11 +115,13 @@ TEST_F(RecordedDrive, HoldsPosesAndTheGraph) {
     EXPECT_FALSE(LogWriter(path("a.clf")).holds_poses());
     for (const scan::Scan& scan : short_drive()) writer.write(scan);
     writer.write_pose(at, T_map_robot, Eigen::Vector3d(1.0, 2.0, 3.0).asDiagonal());
-    writer.write_graph(at.stamp_ns, {{{1.0, 2.0}}, {{{1.0, 2.0}, {3.0, 4.0}}}});
+    writer.write_grid(at.stamp_ns, {2, 3, 0.5, {1.0, 2.0, 0.1}}, {0, 100, -1, 0, 0, 100});
+    writer.write_graph(at.stamp_ns, {{{7, {1.0, 2.0}}}, {{8, false, {{1.0, 2.0}, {3.0, 4.0}}}}});
     writer.close();
   }
   const auto source = open_messages(path("a.mcap"), [](const Topic& topic) {
-    return topic.name == "/pose" || topic.name == "/graph" || topic.name == "/tf";
+    return topic.name == "/pose" || topic.name == "/graph" || topic.name == "/map" ||
+           topic.name == "/tf";
   });
   std::map<std::string, int> counts;
   RawMessage message;
@@ -110,28 +130,36 @@ TEST_F(RecordedDrive, HoldsPosesAndTheGraph) {
     const Topic& topic = source->topics()[message.topic];
     ++counts[topic.name];
     if (topic.name == "/tf") {
-      last = decode<ros::TfMessage>(message.data, topic.encoding).transforms_().front();
+      last = decode<ros::TFMessage>(message.data, topic.encoding).transforms_().front();
     } else if (topic.name == "/pose") {
       const auto pose = decode<ros::PoseWithCovarianceStamped>(message.data, topic.encoding);
       EXPECT_EQ(pose.header_().frame_id_(), "map");
-      EXPECT_EQ(to_stamp_ns(pose.header_().stamp_()), at.stamp_ns);
+      EXPECT_EQ(ros::stamp_ns_of(pose.header_().stamp_()), at.stamp_ns);
       EXPECT_EQ(pose.pose_().pose_().position_().x_(), 5.0);
       EXPECT_EQ(pose.pose_().covariance_()[0], 1.0);
       EXPECT_EQ(pose.pose_().covariance_()[7], 2.0);
       EXPECT_EQ(pose.pose_().covariance_()[35], 3.0);
+    } else if (topic.name == "/map") {
+      const auto grid = decode<ros::OccupancyGrid>(message.data, topic.encoding);
+      EXPECT_EQ(grid.info_().width_(), 2U);
+      EXPECT_EQ(grid.info_().height_(), 3U);
+      EXPECT_EQ(grid.info_().resolution_(), 0.5F);
+      EXPECT_EQ(grid.info_().origin_().position_().y_(), 2.0);
+      EXPECT_THAT(grid.data_(), testing::ElementsAre(0, 100, -1, 0, 0, 100));
     } else {
       const auto graph = decode<ros::MarkerArray>(message.data, topic.encoding);
       ASSERT_EQ(graph.markers_().size(), 3U);
       EXPECT_EQ(graph.markers_()[0].action_(), 3);  // clears what was drawn before
-      EXPECT_EQ(graph.markers_()[1].points_().size(), 2U);
-      EXPECT_EQ(graph.markers_()[2].points_()[0].y_(), 2.0);
+      EXPECT_EQ(graph.markers_()[1].pose_().position_().y_(), 2.0);
+      EXPECT_EQ(graph.markers_()[2].points_().size(), 2U);
     }
   }
   EXPECT_EQ(counts["/pose"], 1);
   EXPECT_EQ(counts["/graph"], 1);
+  EXPECT_EQ(counts["/map"], 1);
   // T_map_odom takes the odometry of the scan to the pose in the map.
   EXPECT_EQ(last.header_().frame_id_(), "map");
-  const geometry::Pose2 T_map_odom = *planar_pose(last.transform_());
+  const geometry::Pose2 T_map_odom = *ros::planar(last.transform_());
   const geometry::Pose2 back = T_map_odom * at.T_odom_robot;
   EXPECT_NEAR(back.x_m, T_map_robot.x_m, 1e-12);
   EXPECT_NEAR(back.y_m, T_map_robot.y_m, 1e-12);

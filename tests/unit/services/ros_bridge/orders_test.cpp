@@ -6,15 +6,15 @@
 
 #include <gtest/gtest.h>
 
-#include "ros_messages.hpp"
+#include "ros_conversions/ros_messages.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
 
 ros::PoseStamped pose_in(const std::string& frame, const geometry::Pose2& pose) {
   ros::PoseStamped message;
-  message.header_(header_of(frame, 0));
-  message.pose_(to_ros(pose));
+  message.header_(ros::header_of(frame, 0));
+  message.pose_(ros::pose_of(pose));
   return message;
 }
 
@@ -42,8 +42,8 @@ TEST(RosOrders, AQuaternionOfNoLengthIsNoHeading) {
 
 TEST(RosOrders, APoseThatIsSetKeepsItsCovarianceWhereItHasOne) {
   ros::PoseWithCovarianceStamped message;
-  message.header_(header_of("map", 0));
-  message.pose_().pose_(to_ros({1.0, 2.0, 0.3}));
+  message.header_(ros::header_of("map", 0));
+  message.pose_().pose_(ros::pose_of({1.0, 2.0, 0.3}));
   const service::LocalizationCommand click = to_set_pose(message, "map");
   EXPECT_NEAR(click.T_map_robot.theta_rad, 0.3, 1e-12);
   EXPECT_NEAR(click.covariance(0, 0), 0.25, 1e-12);

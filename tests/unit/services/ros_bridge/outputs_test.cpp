@@ -9,7 +9,7 @@
 
 #include "topogeo/messaging/message.hpp"
 
-#include "ros_messages.hpp"
+#include "ros_conversions/ros_messages.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
@@ -49,7 +49,7 @@ TEST(RosOutputs, APoseHasItsCovarianceInTheRowsOfRos) {
   EXPECT_EQ(covariance[35], 0.6);
   EXPECT_GT(covariance[14], 0.0);
   EXPECT_NEAR(out.pose_().pose_().orientation_().z_(), std::sin(kPi / 4.0), 1e-12);
-  EXPECT_NEAR(planar(out.pose_().pose_())->theta_rad, kPi / 2.0, 1e-12);
+  EXPECT_NEAR(ros::planar(out.pose_().pose_())->theta_rad, kPi / 2.0, 1e-12);
 }
 
 TEST(RosOutputs, APathLooksWhereItGoesAndInTheEndAsTheGoalDemands) {
@@ -65,9 +65,9 @@ TEST(RosOutputs, APathLooksWhereItGoesAndInTheEndAsTheGoalDemands) {
   route.heading_rad(-1.0);
   const ros::Path path = to_path(route, "map");
   ASSERT_THAT(path.poses_(), SizeIs(3));
-  EXPECT_NEAR(planar(path.poses_()[0].pose_())->theta_rad, 0.0, 1e-12);
-  EXPECT_NEAR(planar(path.poses_()[1].pose_())->theta_rad, kPi / 2.0, 1e-12);
-  EXPECT_NEAR(planar(path.poses_()[2].pose_())->theta_rad, -1.0, 1e-12);
+  EXPECT_NEAR(ros::planar(path.poses_()[0].pose_())->theta_rad, 0.0, 1e-12);
+  EXPECT_NEAR(ros::planar(path.poses_()[1].pose_())->theta_rad, kPi / 2.0, 1e-12);
+  EXPECT_NEAR(ros::planar(path.poses_()[2].pose_())->theta_rad, -1.0, 1e-12);
   route.status(msg::kRouteNoPose);
   EXPECT_THAT(to_path(route, "map").poses_(), SizeIs(0));
 }

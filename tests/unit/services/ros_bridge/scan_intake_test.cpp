@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ros_messages.hpp"
+#include "ros_conversions/ros_messages.hpp"
 
 namespace topogeo::ros_bridge {
 namespace {
@@ -15,42 +15,11 @@ using testing::IsEmpty;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-TEST(FrameTree, JoinsFramesThroughTheirParents) {
-  FrameTree tree;
-  EXPECT_TRUE(tree.put("base_footprint", "base_link", at(0.0, 0.0, 0.0)));
-  EXPECT_TRUE(tree.put("base_link", "mast", at(0.2, 0.0, std::numbers::pi / 2.0)));
-  EXPECT_TRUE(tree.put("mast", "laser", at(0.1, 0.0, 0.0)));
-  const auto found = tree.find("base_footprint", "laser");
-  ASSERT_TRUE(found);
-  const geometry::Pose2 pose = planar(*found);
-  EXPECT_NEAR(pose.x_m, 0.2, 1e-9);
-  EXPECT_NEAR(pose.y_m, 0.1, 1e-9);
-  EXPECT_NEAR(pose.theta_rad, std::numbers::pi / 2.0, 1e-9);
-  EXPECT_FALSE(tree.find("base_link", "camera"));
-  EXPECT_FALSE(tree.put("base_link", "laser", at(0.0, 0.0, 0.0)));  // it has a parent
-}
-
-TEST(FrameTree, ACircleEnds) {
-  FrameTree tree;
-  tree.put("a", "b", at(0.0, 0.0, 0.0));
-  tree.put("b", "a", at(0.0, 0.0, 0.0));
-  EXPECT_FALSE(tree.find("a", "c"));
-}
-
-TEST(FrameTree, TellsHowALaserIsMounted) {
-  EXPECT_FALSE(mounting_of(at(0.1, 0.0, 0.0))->upside_down);
-  const auto turned = mounting_of(at(0.1, 0.0, 0.5, std::numbers::pi));
-  ASSERT_TRUE(turned);
-  EXPECT_TRUE(turned->upside_down);
-  EXPECT_NEAR(turned->T_robot_laser.theta_rad, 0.5, 1e-9);
-  EXPECT_FALSE(mounting_of(at(0.1, 0.0, 0.0, 0.5)));
-}
-
 class ScanIntakeTest : public testing::Test {
  protected:
   explicit ScanIntakeTest(const IntakeOptions& options = options_of()) : intake_(options) {
     intake_.set_robot_frame("base_link");
-    intake_.frames().put("base_link", "laser", at(0.1, 0.0, 0.0));
+    intake_.frames().put("base_link", "laser", ros::at(0.1, 0.0, 0.0));
   }
   static IntakeOptions options_of() {
     IntakeOptions options;
@@ -62,7 +31,7 @@ class ScanIntakeTest : public testing::Test {
     intake_.add(geometry::OdometrySample{stamp(time_s), {x_m, 0.0, 0.0}, 1.0, 0.0});
   }
   void scan(double time_s, const std::string& frame = "laser") {
-    intake_.add(laser_scan(-0.1, 0.1, {1.0F, 2.0F, 3.0F}, stamp(time_s), frame), 0);
+    intake_.add(ros::laser_scan(-0.1, 0.1, {1.0F, 2.0F, 3.0F}, stamp(time_s), frame), 0);
   }
   static std::int64_t stamp(double time_s) {
     return static_cast<std::int64_t>(time_s * static_cast<double>(kSecond_ns));
@@ -105,7 +74,7 @@ TEST_F(ScanIntakeTest, CountsWhatItCannotUse) {
   scan(10.1);
   EXPECT_EQ(intake_.take(0).size(), 1U);
   EXPECT_EQ(intake_.dropped(IntakeDrop::kOldScan), 1U);
-  intake_.add(laser_scan(0.0, 0.1, {}, stamp(10.2)), 0);
+  intake_.add(ros::laser_scan(0.0, 0.1, {}, stamp(10.2)), 0);
   intake_.take(0);
   EXPECT_EQ(intake_.dropped(IntakeDrop::kInvalidScan), 1U);
   odometry(9.9, 1.0);
@@ -113,7 +82,7 @@ TEST_F(ScanIntakeTest, CountsWhatItCannotUse) {
 }
 
 TEST_F(ScanIntakeTest, ALaserElsewhereThanConfiguredIsRefusedWithTheFlagThatHelps) {
-  intake_.frames().put("base_link", "front", at(0.3, 0.0, 0.0));
+  intake_.frames().put("base_link", "front", ros::at(0.3, 0.0, 0.0));
   odometry(10.0, 0.0);
   scan(10.0, "front");
   EXPECT_THAT(intake_.take(0), IsEmpty());
@@ -121,7 +90,7 @@ TEST_F(ScanIntakeTest, ALaserElsewhereThanConfiguredIsRefusedWithTheFlagThatHelp
 }
 
 TEST_F(ScanIntakeTest, AnotherHeadingOfTheLaserTurnsTheBeams) {
-  intake_.frames().put("base_link", "turned", at(0.1, 0.0, 0.5));
+  intake_.frames().put("base_link", "turned", ros::at(0.1, 0.0, 0.5));
   odometry(10.0, 0.0);
   scan(10.0, "turned");
   const auto leaving = intake_.take(0);
@@ -132,11 +101,20 @@ TEST_F(ScanIntakeTest, AnotherHeadingOfTheLaserTurnsTheBeams) {
 TEST_F(ScanIntakeTest, AScanWithOneBeamMoreHasTheBeamsOfTheFirst) {
   odometry(10.0, 0.0);
   scan(10.0);
-  intake_.add(laser_scan(-0.1, 0.1, {1.5F, 2.5F, 3.5F, 4.5F}, stamp(10.1)), 0);
+  intake_.add(ros::laser_scan(-0.1, 0.1, {1.5F, 2.5F, 3.5F, 4.5F}, stamp(10.1)), 0);
   const auto leaving = intake_.take(0);
   ASSERT_EQ(leaving.size(), 2U);
   EXPECT_THAT(leaving[1].scan.ranges_m, testing::ElementsAre(1.5F, 2.5F, 3.5F));
   EXPECT_EQ(intake_.adapted(), 1U);
+}
+
+TEST_F(ScanIntakeTest, AScanOfOtherBeamsIsRefused) {
+  odometry(10.0, 0.0);
+  scan(10.0);
+  intake_.add(ros::laser_scan(2.0, 0.1, {1.5F, 2.5F, 3.5F}, stamp(10.1)), 0);
+  EXPECT_EQ(intake_.take(0).size(), 1U);
+  EXPECT_EQ(intake_.dropped(IntakeDrop::kOtherBeams), 1U);
+  EXPECT_THAT(intake_.detail(IntakeDrop::kOtherBeams), HasSubstr("the first scan had 3 beams"));
 }
 
 TEST_F(ScanIntakeTest, TimeThatGoesBackBeginsAnotherEpoch) {

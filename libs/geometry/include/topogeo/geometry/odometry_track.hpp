@@ -16,6 +16,10 @@ struct OdometrySample {
   double angular_radps = 0.0;  ///< counter-clockwise
 };
 
+/// The pose at a time from that of `a` to that of `b`, which is later: x and y on the straight
+/// line, the heading by the shorter turn.
+Pose2 interpolate(const OdometrySample& a, const OdometrySample& b, std::int64_t stamp_ns);
+
 class OdometryTrack {
  public:
   /// Older samples than this are forgotten.
@@ -37,9 +41,8 @@ class OdometryTrack {
     Pose2 T_odom_robot;
     bool extrapolated = false;
   };
-  /// Between two samples: x and y on the straight line, the heading by the shorter turn. After the
-  /// last one: on the arc of its speeds. Nothing before the first sample or too long after the
-  /// last.
+  /// Between two samples: see interpolate(). After the last one: on the arc of its speeds. Nothing
+  /// before the first sample or too long after the last.
   [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
 
  private:

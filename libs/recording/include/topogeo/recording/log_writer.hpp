@@ -11,21 +11,18 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/ros_conversions/grid.hpp"
+#include "topogeo/ros_conversions/markers.hpp"
 #include "topogeo/scan/scan.hpp"
 
 namespace topogeo::recording {
 
-/// A graph as viewers draw it, in the map frame, metres.
-struct GraphDrawing {
-  std::vector<Eigen::Vector2d> nodes;
-  std::vector<std::vector<Eigen::Vector2d>> branches;  ///< two points or more each
-};
-
 class LogWriter {
  public:
-  /// Creates or replaces the file, whose name states the format: .mcap, .db3, .bag; all others are
-  /// CARMEN logs, gzip for .gz. `T_robot_laser`: mounting of the laser, which the log states.
-  /// `compression`: see ConvertOptions. Throws std::runtime_error when the file cannot be written,
+  /// Creates or replaces the file, whose name states the format: .mcap, .db3, .bag; without an
+  /// ending or with a slash a new folder of rosbag2; all others are CARMEN logs, gzip for .gz.
+  /// `T_robot_laser`: mounting of the laser, which the log states. `compression`: see
+  /// ConvertOptions. Throws std::runtime_error when the file cannot be written,
   /// std::invalid_argument for a compression it does not have.
   explicit LogWriter(const std::filesystem::path& path, const geometry::Pose2& T_robot_laser = {},
                      const std::string& compression = "zstd");
@@ -50,9 +47,14 @@ class LogWriter {
 
   /// Appends the graph as it is at that time, instead of those before: markers on /graph. As
   /// write_pose().
-  void write_graph(std::int64_t stamp_ns, const GraphDrawing& graph);
+  void write_graph(std::int64_t stamp_ns, const ros::GraphDrawing& graph);
 
-  /// Whether write_pose() and write_graph() leave something in the file.
+  /// Appends the occupancy grid of the map as it is at that time: /map. `cells`: see
+  /// ros::occupancy_grid(). As write_pose().
+  void write_grid(std::int64_t stamp_ns, const ros::GridPlace& place,
+                  std::vector<std::int8_t> cells);
+
+  /// Whether write_pose(), write_graph() and write_grid() leave something in the file.
   [[nodiscard]] bool holds_poses() const;
 
   /// Flushes and closes. Throws std::runtime_error when that fails.

@@ -1,10 +1,12 @@
-// Odometry poses over time, for the pose at the time of a scan.
+// Odometry poses of a recording over time, for the pose at the time of a scan: they may come late
+// and with gaps, and all of them come in the end. That of live odometry is in geometry.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <optional>
 
+#include "topogeo/geometry/odometry_track.hpp"
 #include "topogeo/geometry/pose2.hpp"
 
 namespace topogeo::recording {
@@ -33,11 +35,7 @@ class OdometryTrack {
   void forget_before(std::int64_t stamp_ns);
 
  private:
-  struct Sample {
-    std::int64_t stamp_ns;
-    geometry::Pose2 T_odom_robot;
-  };
-  std::deque<Sample> samples_;
+  std::deque<geometry::OdometrySample> samples_;  // speeds are not known
 };
 
 }  // namespace topogeo::recording

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "topogeo/recording/laser_scan.hpp"
+#include "topogeo/ros_conversions/frame_tree.hpp"
+#include "topogeo/ros_conversions/laser_scan.hpp"
 
 namespace topogeo::recording {
 
@@ -29,8 +30,9 @@ struct Survey {
   bool odometry_from_tf = false;
   std::string odom_frame;
   std::string robot_frame;  ///< child frame of the odometry
-  std::optional<LaserMounting>
+  std::optional<ros::LaserMounting>
       mounting;  ///< empty where no transforms connect robot_frame and laser_frame
+  std::optional<ros::BeamPattern> beams;  ///< of most scans; empty where none has beams
   /// For people, a line each: which topics are used of which, what is known of the mounting.
   std::vector<std::string> notes;
 };

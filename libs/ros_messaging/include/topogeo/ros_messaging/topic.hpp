@@ -7,6 +7,7 @@
 #pragma once
 
 #include <chrono>
+#include <concepts>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -14,9 +15,18 @@
 
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/ros_conversions/messages.hpp"
 
 namespace topogeo::ros {
+
+template <class T, class... Types>
+concept OneOf = (std::same_as<T, Types> || ...);
+
+/// The messages that have topics of their own.
+template <class T>
+concept Message =
+    OneOf<T, Clock, DiagnosticArray, LaserScan, MarkerArray, OccupancyGrid, OccupancyGridUpdate,
+          Odometry, Path, PoseStamped, PoseWithCovarianceStamped, TFMessage, Twist, TwistStamped>;
 
 /// Names the profiles of deploy/dds_profiles.xml.
 enum class Qos {

@@ -8,15 +8,16 @@
 
 #include <Eigen/Geometry>
 
-#include "topogeo/ros_messaging/messages.hpp"
+#include "topogeo/ros_conversions/geometry.hpp"
 
-#include "ros_bridge/geometry.hpp"
+namespace topogeo::ros {
 
-namespace topogeo::ros_bridge {
+/// Beams, at most, of scans that are not thinned out.
+inline constexpr std::size_t kMost = 2048;
 
-inline ros::LaserScan laser_scan(double first_rad, double step_rad, std::vector<float> ranges_m,
-                                 std::int64_t stamp_ns = 0, const std::string& frame = "laser") {
-  ros::LaserScan scan;
+inline LaserScan laser_scan(double first_rad, double step_rad, std::vector<float> ranges_m,
+                            std::int64_t stamp_ns = 0, const std::string& frame = "laser") {
+  LaserScan scan;
   scan.header_(header_of(frame, stamp_ns));
   scan.angle_min_(static_cast<float>(first_rad));
   scan.angle_increment_(static_cast<float>(step_rad));
@@ -34,4 +35,4 @@ inline Eigen::Isometry3d at(double x_m, double y_m, double yaw_rad, double roll_
          Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
 }
 
-}  // namespace topogeo::ros_bridge
+}  // namespace topogeo::ros
