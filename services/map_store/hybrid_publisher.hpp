@@ -31,6 +31,11 @@ class HybridPublisher {
   /// Tries what could not be sent once more. True when nothing is left.
   bool send_rest();
 
+  /// Of the last one that was published; 0 before the first.
+  [[nodiscard]] std::uint64_t version() const {
+    return rest_.summary ? rest_.summary->version() : updates_.sent_version();
+  }
+
   /// Goes on with other numbers of rooms.
   void remember(planning::RoomMemory rooms) { rooms_ = planning::RoomNumbers(std::move(rooms)); }
   [[nodiscard]] const planning::RoomMemory& rooms() const { return rooms_.memory(); }

@@ -35,6 +35,10 @@ class HybridUpdates {
   void sent(const msg::GridTile& tile);
   void sent(const msg::HybridMap& summary);
   void disposed(const msg::GridTile& tile) { sent_.erase(tile.tile()); }
+  /// Of the last summary that was sent; 0 before the first.
+  [[nodiscard]] std::uint64_t sent_version() const {
+    return sent_summary_ ? sent_summary_->version() : 0;
+  }
   /// Tiles sent so far.
   [[nodiscard]] std::uint64_t count() const { return count_; }
 

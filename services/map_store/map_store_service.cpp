@@ -351,14 +351,16 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   hybrid_.remember(document.rooms);
   write_results(options_.directory, document, options_.title);
 
+  hybrid_.publish(pipeline::parts_of(document), trajectory.stops.back().stamp_ns);
+
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), trajectory.stops.back().stamp_ns, 0);
   end.stage(msg::kStageMapStore);
   end.count(document.global_map.nodes.size() + document.global_map.branches.size());
+  end.last_id(hybrid_.version());
   end.version(trajectory.version);
   if (!service_.send(ends_out_, end, "stream end")) return;
   finished_ = true;
-  hybrid_.publish(pipeline::parts_of(document), trajectory.stops.back().stamp_ns);
   count();
   spdlog::info("{} local maps, {} nodes and {} branches in {}", document.local_maps.size(),
                document.global_map.nodes.size(), document.global_map.branches.size(),

@@ -197,14 +197,23 @@ void add_run_command(command_line::Command& app, int& exit_code) {
       "--web", *with_web,
       "a page in the browser; with --sim the robot stands until the page sends it, up to Ctrl-C");
   add_web_options(*command, *web, page);
+  auto ros = std::make_shared<RosOptions>();
+  auto joins_ros = std::make_shared<bool>(false);
+  command_line::Option* with_ros =
+      command->add_flag("--ros", *joins_ros,
+                        "join nodes of ROS 2: alone it maps their robot, up to Ctrl-C; with --log, "
+                        "--devices or --sim they get its scans, odometry, map and pose");
+  add_ros_options(*command, *ros, with_ros);
   auto goal = std::make_shared<GoalOptions>();
   auto unknown_start = std::make_shared<bool>(false);
   add_goal_run_options(*command, *goal, *unknown_start, sim);
   explore->excludes(command->get_option("--goto"));
   command->callback([=, &exit_code] {
-    if (log->count() + devices->count() + sim->count() == 0) {
-      throw service::UsageError("run: expected --log, --devices or --sim (see --help)");
+    const bool has_source = log->count() + devices->count() + sim->count() > 0;
+    if (!has_source && !*joins_ros) {
+      throw service::UsageError("run: expected --log, --devices, --sim or --ros (see --help)");
     }
+    if (*joins_ros) options->ros = *ros;
     if (sim->count() > 0) options->simulation = *simulation;
     if (*with_web) options->web = *web;
     if (*with_web && options->simulation && goal->target.empty() && !options->explore) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/pipeline/laser_mounting.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/simulation/simulated_robot.hpp"
 #include "topogeo/storage/tum.hpp"
@@ -82,6 +83,16 @@ void check_devices(const RunOptions& options) {
   }
 }
 
+/// All services must have the mounting that the robot of ROS states.
+void ask_for_mounting(RunOptions& options) {
+  std::cerr << "topogeo: waiting for a scan of ROS and its transforms\n";
+  options.laser.reset();
+  options.laser = mounting_of_ros(*options.ros, common_arguments(options, "ros-mounting"),
+                                  options.job.out / "logs" / "ros_mounting.log");
+  std::cerr << "topogeo: laser at " << pipeline::mounting_argument(*options.laser)
+            << ": from the transforms\n";
+}
+
 void compare_with_truth(const RunOptions& options, const RunResult& result) {
   const std::filesystem::path& out = options.job.out;
   const std::filesystem::path truth_file = out / "truth.tum";
@@ -136,10 +147,11 @@ int run_devices(RunOptions options) {
   options.laser = inputs.config.config.local_mapper.T_robot_laser;  // for a recording
   if (options.simulation) {
     prepare_simulation(options);
-  } else {
+  } else if (!from_ros(options)) {
     check_devices(options);
   }
   support::check_writable_directory(options.job.out);
+  if (from_ros(options) && !inputs.config.laser_set) ask_for_mounting(options);
   const RunResult result = RunSupervisor(options, 0).run();
   if (result.signal_number != 0) {
     std::cerr << "topogeo: stopped, what was mapped is in " << options.job.out.string() << "\n";

@@ -20,8 +20,9 @@ namespace topogeo::cli {
 /// cannot be started and std::runtime_error for a run that failed.
 int run_log(const RunOptions& options);
 
-/// The same with the devices of options.devices, to the first Ctrl-C, or of options.simulation, to
-/// the end of the tour of its world; the error against the truth is printed then.
+/// The same with the devices of options.devices or the robot of ROS, to the first Ctrl-C, or of
+/// options.simulation, to the end of the tour of its world; the error against the truth is printed
+/// then.
 int run_devices(RunOptions options);
 
 /// Sends the simulated robot of options.simulation to options.goal in options.job.map and compares

@@ -10,6 +10,7 @@
 
 #include "goal_session.hpp"
 #include "job.hpp"
+#include "ros_run.hpp"
 #include "web_options.hpp"
 
 namespace topogeo::cli {
@@ -39,6 +40,7 @@ struct RunOptions {
   std::filesystem::path profiles_file;  ///< empty: built in
   bool explore = false;                 ///< the robot drives where it has not been, to the end
   std::optional<WebOptions> web;  ///< a page; with a simulation the robot stands until it sends it
+  std::optional<RosOptions> ros;  ///< nodes of ROS; without log and devices their robot is mapped
   std::optional<GoalOptions> goal;  ///< to drive to in job.map; none: a drive that maps
 };
 

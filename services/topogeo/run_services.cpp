@@ -15,6 +15,8 @@ using supervision::Restart;
 using Arguments = std::vector<std::string>;
 
 constexpr std::string_view kWorker = "ga_worker";
+constexpr const char* kGateway = "sensor_gateway";
+constexpr const char* kRosBridge = "ros_bridge";
 
 Arguments operator+(Arguments arguments, const Arguments& more) {
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -25,19 +27,6 @@ Arguments operator+(Arguments arguments, const Arguments& more) {
 Arguments laser_argument(const RunOptions& options) {
   if (!options.laser) return {};
   return {"--laser=" + pipeline::mounting_argument(*options.laser)};
-}
-
-/// Flags that all services have.
-Arguments common_arguments(const RunOptions& options, const std::string& partition) {
-  Arguments arguments = {"--domain",    std::to_string(options.domain),
-                         "--partition", partition,
-                         "--robot-id",  options.job.robot_id};
-  if (options.job.config)
-    arguments.insert(arguments.end(), {"--config", options.job.config->string()});
-  if (!options.profiles_file.empty()) {
-    arguments.insert(arguments.end(), {"--profiles", options.profiles_file.string()});
-  }
-  return arguments + laser_argument(options);
 }
 
 /// What a map store keeps, or the map that it shows as it is.
@@ -65,9 +54,14 @@ Arguments map_arguments(const RunOptions& options) {
   return arguments;
 }
 
-/// The devices or the log, and a simulator where there are no real devices.
+/// The devices, the log or the robot of ROS, and a simulator where there are no real devices.
 void start_source(ProcessGroup& processes, const RunOptions& options, const std::string& partition,
                   const Arguments& common) {
+  if (from_ros(options)) {
+    processes.start(kRosBridge, kRosBridge, common + ros_arguments(*options.ros),
+                    Importance::kNeeded, Restart::kWhenItDies);
+    return;
+  }
   if (const auto& simulation = options.simulation) {
     const Arguments sonars =
         simulation->no_laser ? Arguments{"--sonar-noise", "macondo"} : Arguments{};
@@ -93,11 +87,20 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
     }
   }
   // All of them have the first scan.
-  const bool no_scans = options.simulation && options.simulation->no_laser;
-  const std::string readers = no_scans ? "0" : options.record.empty() ? "1" : "2";
+  const bool maps = !options.simulation || !options.simulation->no_laser;
+  const int readers =
+      (maps ? 1 : 0) + (options.record.empty() || !maps ? 0 : 1) + (options.ros ? 1 : 0);
   // A log cannot be taken up in its middle.
-  processes.start(kScanSource, "sensor_gateway", common + source + Arguments{"--readers", readers},
-                  Importance::kNeeded,
+  processes.start(
+      kGateway, kGateway, common + source + Arguments{"--readers", std::to_string(readers)},
+      Importance::kNeeded, options.devices.empty() ? Restart::kNever : Restart::kWhenItDies);
+}
+
+/// Beside the source of the scans, whose scans it gives to ROS.
+void start_bridge(ProcessGroup& processes, const RunOptions& options, const Arguments& common) {
+  Arguments arguments = common + ros_arguments(*options.ros) + Arguments{"--sensors", "out"};
+  if (options.devices.empty()) arguments = arguments + Arguments{"--replay", "--clock"};
+  processes.start(kRosBridge, kRosBridge, arguments, Importance::kNeeded,
                   options.devices.empty() ? Restart::kNever : Restart::kWhenItDies);
 }
 
@@ -115,12 +118,34 @@ void start_recorder(ProcessGroup& processes, const RunOptions& options,
   if (!options.profiles_file.empty()) {
     arguments.insert(arguments.end(), {"--profiles", options.profiles_file.string()});
   }
-  processes.start("record", "topogeo", arguments + laser_argument(options), Importance::kMayFinish);
+  processes.start(kRecorder, "topogeo", arguments + laser_argument(options),
+                  Importance::kMayFinish);
 }
 
 }  // namespace
 
+bool from_ros(const RunOptions& options) {
+  return options.ros && options.job.log.empty() && options.devices.empty();
+}
+
+std::string scan_source(const RunOptions& options) {
+  return from_ros(options) ? kRosBridge : kGateway;
+}
+
+Arguments common_arguments(const RunOptions& options, const std::string& partition) {
+  Arguments arguments = {"--domain",    std::to_string(options.domain),
+                         "--partition", partition,
+                         "--robot-id",  options.job.robot_id};
+  if (options.job.config)
+    arguments.insert(arguments.end(), {"--config", options.job.config->string()});
+  if (!options.profiles_file.empty()) {
+    arguments.insert(arguments.end(), {"--profiles", options.profiles_file.string()});
+  }
+  return arguments + laser_argument(options);
+}
+
 std::string source_name(const RunOptions& options) {
+  if (from_ros(options)) return "ROS";
   if (options.simulation) return options.simulation->world.filename().string();
   return (options.devices.empty() ? options.job.log : options.devices).filename().string();
 }
@@ -149,7 +174,8 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
     export_token(*options.web);
     start("web", common + web_arguments(*options.web));
   }
-  if (options.job.log.empty() && options.devices.empty()) return;  // a map alone
+  if (options.ros && !from_ros(options)) start_bridge(processes, options, common);
+  if (options.job.log.empty() && options.devices.empty() && !options.ros) return;  // a map alone
   start("planner", common);
   if (options.goal || options.explore || options.web) start("navigator", common);
   // Without a laser there is nothing to match, and the navigator finds the robot.
@@ -158,7 +184,7 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
     return;
   }
   const std::uint32_t wait_workers = options.wait_workers.value_or(options.workers);
-  const bool replay = options.devices.empty();
+  const bool replay = !options.job.log.empty();
   const Arguments source = replay ? Arguments{"--replay"} : Arguments{};
   start("localizer", common + source + Arguments{"--wait-workers", std::to_string(wait_workers)} +
                          map_arguments(options));
@@ -173,9 +199,9 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
 }
 
 std::vector<support::StageTime> by_stage(std::vector<support::StageTime> times) {
-  constexpr std::array<std::string_view, 9> kOrder = {"simulator", "sensor_gateway", "local_mapper",
-                                                      "localizer", kWorker,          "map_store",
-                                                      "planner",   "navigator",      "web"};
+  constexpr std::array<std::string_view, 10> kOrder = {
+      "simulator", kGateway,    kRosBridge, "local_mapper", "localizer",
+      kWorker,     "map_store", "planner",  "navigator",    "web"};
   const auto place = [&](const support::StageTime& time) {
     return std::find_if(kOrder.begin(), kOrder.end(),
                         [&](std::string_view name) { return time.stage.starts_with(name); });

@@ -26,8 +26,17 @@ std::filesystem::path simulated_port(const RunOptions& options, const std::strin
 /// seconds. To be removed at the end.
 std::filesystem::path odometry_memory(const std::string& partition);
 
+/// Whether the scans are those of a robot that speaks ROS.
+bool from_ros(const RunOptions& options);
+
 /// The one that scans come from: to be asked to end before all others.
-inline constexpr const char* kScanSource = "sensor_gateway";
+std::string scan_source(const RunOptions& options);
+
+/// Flags that all services of a run have.
+std::vector<std::string> common_arguments(const RunOptions& options, const std::string& partition);
+
+/// The one that writes a recording.
+inline constexpr const char* kRecorder = "record";
 
 /// Starts all services in the given partition, the source of the scans last. Throws
 /// std::runtime_error when one cannot be started.

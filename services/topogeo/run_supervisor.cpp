@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <iostream>
+#include <string>
 
 #include "topogeo/pipeline/config.hpp"
 #include "topogeo/support/format.hpp"
@@ -70,7 +72,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
   }
   ServiceRun::Hooks hooks;
   hooks.on_tick = [this] { tick(); };
-  if (!options_.devices.empty()) hooks.on_first_signal = [this] { end_stream(); };
+  if (options_.job.log.empty()) hooks.on_first_signal = [this] { end_stream(); };
   hooks.log = [this](const std::string& line) { print(line); };
   run_.start(options_, std::move(hooks));
 }
@@ -84,6 +86,7 @@ RunResult RunSupervisor::run() {
   }
   finish_bar();
   if (result_.finished) wait_for_summary();
+  if (result_.finished && !options_.record.empty()) wait_for_recorder();
   // Without the end of the stream samples are still on their way.
   result_.times = run_.stop(!result_.finished);
   result_.failure = run_.failure();
@@ -203,6 +206,17 @@ void RunSupervisor::wait_for_summary() {
                 ? fmt::format("{} of {} loop decisions came from the localizer",
                               result_.loop_decisions.size(), result_.summary.loop_decisions())
                 : "no summary came from the localizer: there is a map, but no report");
+}
+
+// What the last services have published is still to be written.
+void RunSupervisor::wait_for_recorder() {
+  if (!run_.wait_for_end(kRecorder, kSummaryPatience_s)) {
+    print("the recording is not complete: its program still waits for what it records");
+  }
+  std::ifstream log(options_.job.out / "logs" / (std::string(kRecorder) + ".log"));
+  for (std::string line; std::getline(log, line);) {
+    if (line.starts_with("topogeo: ")) std::cerr << line << '\n';
+  }
 }
 
 }  // namespace topogeo::cli

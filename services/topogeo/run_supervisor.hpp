@@ -58,6 +58,7 @@ class RunSupervisor {
   void finish_bar();
   void print(const std::string& text);
   void wait_for_summary();
+  void wait_for_recorder();
 
   RunOptions options_;
   std::uint64_t laser_lines_;

@@ -46,6 +46,7 @@ std::filesystem::path folder_of_this_program() {
 
 ServiceRun::ServiceRun(const RunOptions& options)
     : partition_(own_partition()),
+      source_(scan_source(options)),
       participant_(join(options, partition_)),
       processes_(folder_of_this_program(), options.job.out / "logs") {}
 
@@ -152,12 +153,19 @@ void ServiceRun::fail(const std::string& why) {
   loop_.stop();
 }
 
+bool ServiceRun::wait_for_end(const std::string& name, double patience_s) {
+  const double end_s = support::monotonic_s() + patience_s;
+  while (!processes_.has_ended(name) && support::monotonic_s() < end_s) {
+    if (loop_.run_for(kRunTick)) break;  // a signal
+  }
+  return processes_.has_ended(name);
+}
+
 // The source alone and first: a writer whose reader goes while samples are on their way to it can
 // lock up inside Fast DDS 2.9.1 (matched_reader_remove against the flow controller's thread).
 std::vector<support::StageTime> ServiceRun::stop(bool source_first) {
   const auto pause = [this](std::chrono::milliseconds duration) { loop_.run_for(duration); };
-  for (const std::string& name :
-       processes_.stop(kStopTime_s, pause, source_first ? kScanSource : "")) {
+  for (const std::string& name : processes_.stop(kStopTime_s, pause, source_first ? source_ : "")) {
     hooks_.log(name + " did not stop in time and is killed");
   }
   loop_.run_for(std::chrono::milliseconds(20));

@@ -56,7 +56,7 @@ class ServiceRun {
   void note_state(const msg::ServiceStatus& status);
 
   /// Asks the source of the scans to end, so that the others finish their work.
-  void end_stream() { processes_.finish(kScanSource); }
+  void end_stream() { processes_.finish(source_); }
 
   /// The run cannot succeed any more, and ends. The first reason stays.
   void fail(const std::string& why);
@@ -65,6 +65,9 @@ class ServiceRun {
   [[nodiscard]] const std::string& failure() const { return failure_; }
   /// Number of the last signal that came, 0 if none has.
   [[nodiscard]] int signal_number() const { return signal_.load(); }
+
+  /// Runs the loop until the process of that name has ended; false: it still runs after so long.
+  bool wait_for_end(const std::string& name, double patience_s);
 
   /// Stops all services while the loop goes on: they publish their final counters. Returns their
   /// times. `source_first`: while scans may be on their way.
@@ -78,6 +81,7 @@ class ServiceRun {
   void restart(const std::string& name, const std::string& description);
 
   const std::string partition_;
+  const std::string source_;  // of the scans
   bool ended_ = false;
   std::filesystem::path web_log_;  // where the links are to come; empty: nowhere
   std::string failure_;

@@ -1,11 +1,17 @@
 // topogeo record and topogeo check-log.
 #include <csignal>
+#include <cstdint>
 #include <fstream>
+#include <map>
+#include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
+
+#include "topogeo/recording/message_source.hpp"
 
 #include "command_test.hpp"
 #include "program.hpp"
@@ -64,6 +70,40 @@ TEST_F(Record, MapOfARunIsTheMapOfItsRecord) {
                (scratch_ / "run.clf.gz").string(), "--workers", "0", "--domain", own_domain()});
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(scratch_ / "run.clf.gz", "map"));
+}
+
+/// Messages by topic, and the time of the last one of each.
+std::map<std::string, std::pair<int, std::int64_t>> topics_of(const fs::path& file) {
+  std::map<std::string, std::pair<int, std::int64_t>> topics;
+  const auto source =
+      recording::open_messages(file, [](const recording::Topic& /*topic*/) { return true; });
+  recording::RawMessage message;
+  while (source->next(message)) {
+    auto& [count, last_ns] = topics[source->topics()[message.topic].name];
+    ++count;
+    last_ns = message.log_time_ns;
+  }
+  return topics;
+}
+
+// The replay is faster than the map is made: what it makes of the last scans is waited for.
+TEST_F(Record, ARunsPosesGraphAndGridAreWhole) {
+  const fs::path log = scratch_ / "log.clf";
+  write_log("room", log);
+  for (const char* name : {"run.mcap", "bag"}) {
+    Program run(scratch_, "topogeo",
+                {"run", "--log", log.string(), "--out", (scratch_ / "run").string(), "--record",
+                 (scratch_ / name).string(), "--workers", "0", "--domain", own_domain()});
+    ASSERT_EQ(run.wait(), 0) << run.err();
+    EXPECT_THAT(run.err(), HasSubstr("with poses, the graph"));
+    EXPECT_THAT(run.err(), testing::Not(HasSubstr("did not come")));
+    auto topics = topics_of(scratch_ / name);
+    EXPECT_EQ(topics["/pose"].second, topics["/scan"].second);
+    EXPECT_GT(topics["/pose"].first, 10);
+    EXPECT_EQ(topics["/odom"].first, topics["/scan"].first);
+    EXPECT_GE(topics["/map"].first, 1);
+    EXPECT_GE(topics["/graph"].first, 1);
+  }
 }
 
 TEST_F(Record, WhatCannotBeRecordedIsSaid) {

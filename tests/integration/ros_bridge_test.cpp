@@ -17,6 +17,7 @@
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
+#include "topogeo/msg/motion.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/storage/tum.hpp"
 
@@ -94,10 +95,24 @@ class RosBridge : public testing::Test {
     return false;
   }
 
-  void start_bridge() {
-    // What a test sends is to arrive.
+  /// What a test sends is to arrive.
+  void write_settings(const std::string& more = {}) {
     std::ofstream(scratch_ / "ros.yaml") << "qos:\n  scan: reliable\n  odometry: reliable\n"
-                                            "odometry:\n  wait_s: 0.5\n";
+                                            "odometry:\n  wait_s: 0.5\n"
+                                         << more;
+  }
+
+  /// All services by one command.
+  Program& start_run(Words words) {
+    const Words common = {"run",      "--ros",          "--ros-domain", ros_domain(),
+                          "--out",    scratch_ / "run", "--workers",    "0",
+                          "--domain", domain_};
+    words.insert(words.begin(), common.begin(), common.end());
+    return *programs_.emplace_back(std::make_unique<Program>(scratch_, "topogeo", words));
+  }
+
+  void start_bridge() {
+    write_settings();
     start("ros_bridge", {"--ros", scratch_ / "ros.yaml", "--ros-domain", ros_domain()});
   }
 
@@ -165,6 +180,70 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   EXPECT_TRUE(comes_true(has_arrived)) << last_line(robot.out(), "truth ");
   EXPECT_THAT(last_line(robot.out(), "truth "), HasSubstr("collisions 0"));
   EXPECT_THAT(user.out(), HasSubstr("plan "));
+}
+
+// `topogeo run --ros` alone: the robot is one of ROS, the laser where its transforms have it.
+TEST_F(RosBridge, ARunMapsARobotOfRos) {
+  write_log("room", scratch_ / "room.clf");
+  write_settings();
+  const Program& robot = start_peer({"replay", scratch_ / "room.clf"});
+  Program& run = start_run({"--ros-settings", scratch_ / "ros.yaml"});
+  ASSERT_TRUE(says(robot, "driven")) << robot.out() << run.err();
+  run.send_signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.err(), HasSubstr("laser at 0,0,0: from the transforms"));
+  EXPECT_THAT(run.out(), HasSubstr("ROS: "));
+  EXPECT_TRUE(std::filesystem::exists(scratch_ / "run/map.pb"));
+}
+
+// The other way round: nodes of ROS get the sensors and the time of a log.
+TEST_F(RosBridge, ARunGivesTheSensorsOfALogToRos) {
+  write_log("room", scratch_ / "room.clf");
+  const Program& node = start_peer({"listen"});
+  const Program& user = start_peer({"watch"});
+  ASSERT_TRUE(says(node, "ready"));
+  Program& run = start_run({"--log", scratch_ / "room.clf", "--rate", "realtime"});
+  for (const char* line : {"scan laser ", "odom odom base_link ", "tf base_link laser 0",
+                           "tf odom base_link ", "clock "}) {
+    EXPECT_TRUE(says(node, line)) << line << run.err();
+  }
+  EXPECT_TRUE(says(user, "pose map ")) << run.err();
+  // The time is that of the scans and the odometry.
+  const auto scan_has_its_time = [&] {
+    const std::string scan = last_line(node.out(), "scan laser ");
+    return node.out().find("clock " + scan.substr(scan.find(' ') + 1) + "\n") != std::string::npos;
+  };
+  EXPECT_TRUE(comes_true(scan_has_its_time));
+  run.send_signal(SIGINT);
+  (void)run.wait();
+}
+
+class SteeredByRos : public RosBridge, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(Twists, SteeredByRos, testing::Bool());
+
+// Velocities of nodes, of either type, are those of the base.
+TEST_P(SteeredByRos, TheBaseGetsTheirVelocity) {
+  const bool stamped = GetParam();
+  write_settings("directions:\n  sensors: out\n  velocity: in\n" +
+                 std::string(stamped ? "velocity:\n  stamped: true\n" : ""));
+  start("ros_bridge", {"--ros", scratch_ / "ros.yaml", "--ros-domain", ros_domain()});
+  start_peer({stamped ? "steer-stamped" : "steer", "0.25", "-0.5"});
+  messaging::ParticipantOptions options;
+  options.domain = static_cast<std::uint32_t>(std::stoul(domain_));
+  options.partition = "ros-test";
+  const messaging::Participant participant(options);
+  messaging::Reader<msg::MotionCommand> commands(participant);
+  ASSERT_TRUE(commands.wait_for_data(std::chrono::seconds(100 * kTimeFactor)))
+      << programs_.front()->err();
+  std::size_t came = 0;
+  commands.take([&](const msg::MotionCommand& command, const messaging::SampleInfo& info) {
+    if (!info.valid) return;
+    ++came;
+    EXPECT_EQ(command.linear_mps(), 0.25);
+    EXPECT_EQ(command.angular_radps(), -0.5);
+    EXPECT_GT(command.valid_for_s(), 0.0);
+  });
+  EXPECT_GT(came, 0U);
 }
 
 // Our side is encrypted, that of ROS is not, and its scans come through.

@@ -1,5 +1,6 @@
 #include "topogeo/supervision/process_group.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <utility>
 
@@ -56,6 +57,12 @@ pid_t ProcessGroup::pid(const std::string& name) const {
     if (member.process->name() == name) return member.process->pid();
   }
   return -1;
+}
+
+bool ProcessGroup::has_ended(const std::string& name) {
+  return std::ranges::all_of(members_, [&](Member& member) {
+    return member.process->name() != name || member.process->poll().has_value();
+  });
 }
 
 std::optional<UnexpectedEnd> ProcessGroup::next_unexpected_end() {

@@ -5,7 +5,10 @@
 //                                          goes on as fast as its poses come back, then stands
 //   ros_peer DOMAIN drive WORLD            a simulated robot, in real time, driven by /cmd_vel
 //   ros_peer DOMAIN watch                  prints what it hears: map, tf, pose, plan, graph, ...
-//   ros_peer DOMAIN goal X Y YAW           sends a goal and ends when a plan has come
+//   ros_peer DOMAIN listen                 prints what it hears of a robot: scans, odometry, clock,
+//   ... ros_peer DOMAIN steer V W              sends velocities as Twist on /cmd_vel ros_peer
+//   DOMAIN steer-stamped V W      the same as TwistStamped ros_peer DOMAIN goal X Y YAW sends a
+//   goal and ends when a plan has come
 //
 // One line for each thing, until it is killed. Exit code 1 with a line on standard error when it
 // cannot.
@@ -26,6 +29,7 @@
 #include "map_msgs.h"
 #include "nav_msgs.h"
 #include "ros_dds.hpp"
+#include "rosgraph_msgs.h"
 #include "sensor_msgs.h"
 #include "tf2_msgs.h"
 #include "visualization_msgs.h"
@@ -305,6 +309,63 @@ class Watcher {
   dds_entity_t diagnostics_;
 };
 
+/// Prints what the sensors of a robot are to a node.
+int listen(std::uint32_t domain) {
+  const RosPeer peer(domain);
+  const dds_entity_t scans =
+      peer.reader(sensor_msgs_msg_dds__LaserScan__desc, "/scan", PeerQos::kSensor);
+  const dds_entity_t odometry =
+      peer.reader(nav_msgs_msg_dds__Odometry__desc, "/odom", PeerQos::kSensor);
+  const dds_entity_t transforms =
+      peer.reader(tf2_msgs_msg_dds__TFMessage__desc, "/tf", PeerQos::kReliable);
+  const dds_entity_t fixed =
+      peer.reader(tf2_msgs_msg_dds__TFMessage__desc, "/tf_static", PeerQos::kLatched);
+  const dds_entity_t clock =
+      peer.reader(rosgraph_msgs_msg_dds__Clock__desc, "/clock", PeerQos::kReliable);
+  const auto print_transforms = [](const tf2_msgs_msg_dds__TFMessage_& message) {
+    for (std::uint32_t i = 0; i < message.transforms_._length; ++i) {
+      const auto& transform = message.transforms_._buffer[i];
+      std::cout << "tf " << transform.header_.frame_id_ << ' ' << transform.child_frame_id_ << ' '
+                << transform.transform_.translation_.x_ << '\n';
+    }
+  };
+  std::cout << "ready" << std::endl;
+  for (;; pause_ms(20)) {
+    take<sensor_msgs_msg_dds__LaserScan_>(scans, [](const sensor_msgs_msg_dds__LaserScan_& scan) {
+      std::cout << "scan " << scan.header_.frame_id_ << ' ' << scan.ranges_._length << ' '
+                << stamp_ns(scan.header_) << '\n';
+    });
+    take<nav_msgs_msg_dds__Odometry_>(odometry, [](const nav_msgs_msg_dds__Odometry_& message) {
+      std::cout << "odom " << message.header_.frame_id_ << ' ' << message.child_frame_id_ << ' '
+                << message.pose_.pose_.position_.x_ << '\n';
+    });
+    take<tf2_msgs_msg_dds__TFMessage_>(transforms, print_transforms);
+    take<tf2_msgs_msg_dds__TFMessage_>(fixed, print_transforms);
+    take<rosgraph_msgs_msg_dds__Clock_>(clock, [](const rosgraph_msgs_msg_dds__Clock_& message) {
+      std::cout << "clock " << message.clock_.sec_ * kSecond_ns + message.clock_.nanosec_ << '\n';
+    });
+    std::cout << std::flush;
+  }
+}
+
+int steer(std::uint32_t domain, double linear_mps, double angular_radps, bool stamped) {
+  const RosPeer peer(domain);
+  const dds_entity_t velocities = peer.writer(
+      stamped ? geometry_msgs_msg_dds__TwistStamped__desc : geometry_msgs_msg_dds__Twist__desc,
+      "/cmd_vel", PeerQos::kReliable);
+  geometry_msgs_msg_dds__TwistStamped_ message{};
+  message.header_ = header(kBase, kStart_ns);
+  message.twist_.linear_.x_ = linear_mps;
+  message.twist_.angular_.z_ = angular_radps;
+  for (;; pause_ms(50)) {
+    if (stamped) {
+      write(velocities, message);
+    } else {
+      write(velocities, message.twist_);
+    }
+  }
+}
+
 int send_goal(std::uint32_t domain, double x_m, double y_m, double yaw_rad) {
   const RosPeer peer(domain);
   const dds_entity_t goals =
@@ -341,6 +402,10 @@ int main(int argc, char** argv) {
     const auto domain = static_cast<std::uint32_t>(std::stoul(words[0]));
     if (words[1] == "replay" && words.size() == 3) return replay(domain, words[2]);
     if (words[1] == "drive" && words.size() == 3) return drive(domain, words[2]);
+    if (words[1] == "listen" && words.size() == 2) return listen(domain);
+    if (words[1].starts_with("steer") && words.size() == 4) {
+      return steer(domain, std::stod(words[2]), std::stod(words[3]), words[1] == "steer-stamped");
+    }
     if (words[1] == "goal" && words.size() == 5) {
       return send_goal(domain, std::stod(words[2]), std::stod(words[3]), std::stod(words[4]));
     }
@@ -350,6 +415,7 @@ int main(int argc, char** argv) {
       for (;; pause_ms(20)) watcher.print();
     }
   }
-  std::cerr << "ros_peer: expected DOMAIN and replay LOG, drive WORLD, watch or goal X Y YAW\n";
+  std::cerr << "ros_peer: expected DOMAIN and replay LOG, drive WORLD, watch, listen, "
+               "steer V W, steer-stamped V W or goal X Y YAW\n";
   return 2;
 }

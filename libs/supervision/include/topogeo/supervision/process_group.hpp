@@ -57,6 +57,9 @@ class ProcessGroup {
   /// The process of that name; -1 if there is none.
   [[nodiscard]] pid_t pid(const std::string& name) const;
 
+  /// Whether the process of that name, if there is one, has ended. Does not wait.
+  [[nodiscard]] bool has_ended(const std::string& name);
+
   /// How often one is started again at most.
   static constexpr std::uint32_t kMostRestarts = 20;
 
