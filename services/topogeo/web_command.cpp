@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <random>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -14,7 +13,7 @@
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/storage/read_map.hpp"
-#include "topogeo/support/format.hpp"
+#include "topogeo/support/temporary_folder.hpp"
 
 #include "commands.hpp"
 #include "run_log.hpp"
@@ -60,33 +59,13 @@ struct ViewCommand {
   throw std::system_error(errno, std::generic_category(), program.string());
 }
 
-/// A folder for the logs of the services, gone at the end.
-class LogFolder {
- public:
-  LogFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              fmt::format("topogeo-view-{}-{:08x}", ::getpid(), std::random_device{}())) {
-    std::filesystem::create_directories(path_);
-  }
-  LogFolder(const LogFolder&) = delete;
-  LogFolder& operator=(const LogFolder&) = delete;
-  ~LogFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 int view(const ViewCommand& command) {
   try {
     static_cast<void>(storage::read_map(command.map));
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());
   }
-  const LogFolder logs;
+  const support::TemporaryFolder logs("view");  // of the services
   RunOptions options;
   options.domain = command.domain;
   options.job.map = command.map;

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Statement.h>
-#include <unistd.h>
 
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/hash.hpp"
+#include "topogeo/support/temporary_folder.hpp"
 
 #include "table_writer.hpp"
 
@@ -23,32 +22,15 @@ namespace fs = std::filesystem;
 class SalvageCopy {
  public:
   explicit SalvageCopy(const fs::path& path) {
-    std::string name = (fs::temp_directory_path() / "topogeo-repair-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("no folder for a copy of " + path.string());
-    }
-    folder_ = name;
-    try {
-      fs::copy_file(path, file());
-      const fs::path log = path.string() + "-wal";
-      if (fs::exists(log)) fs::copy_file(log, file().string() + "-wal");
-    } catch (...) {
-      remove();
-      throw;
-    }
+    fs::copy_file(path, file());
+    const fs::path log = path.string() + "-wal";
+    if (fs::exists(log)) fs::copy_file(log, file().string() + "-wal");
   }
-  SalvageCopy(const SalvageCopy&) = delete;
-  SalvageCopy& operator=(const SalvageCopy&) = delete;
-  ~SalvageCopy() { remove(); }
 
-  [[nodiscard]] fs::path file() const { return folder_ / "map.sqlite"; }
+  [[nodiscard]] fs::path file() const { return folder_.path() / "map.sqlite"; }
 
  private:
-  void remove() const {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  fs::path folder_;
+  support::TemporaryFolder folder_{"repair"};
 };
 
 SalvagedRow row_of(SQLite::Statement& statement) {
