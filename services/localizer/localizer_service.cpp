@@ -54,6 +54,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
             [&service](std::string_view reason, std::string_view detail) {
               service.status().fault(reason, detail);
             }),
+      watched_(service, pool_),
       commands_(service, [this] { schedule(); }),
       trajectory_(service),
       poses_(service.advertise<msg::LivePose>()),
@@ -75,7 +76,7 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
       if (ready_ && !finished_) missing_->check();
     });
   }
-  slam_.emplace(make_slam(service, options, pool_, optimizer_));
+  slam_.emplace(make_slam(service, options, watched_, optimizer_));
   count();
   if (options.standalone || options.map || options.continued) {
     resume({});
@@ -89,7 +90,7 @@ void LocalizerService::resume(ResumeFrom from) {
     using Use = localization::MapToUse::Use;
     const topomap::LocalMap& last = from.map->maps.back();
     slam_.emplace(
-        service_.setup().config.config.localizer, pool_, &optimizer_,
+        service_.setup().config.config.localizer, watched_, &optimizer_,
         localization::MapToUse{from.map, from.goes_on ? Use::kGoOn : Use::kContinue, std::nullopt});
     if (from.goes_on) {
       queue_.start_after(last.stop);

@@ -24,6 +24,7 @@
 #include "resume.hpp"
 #include "stop_queue.hpp"
 #include "trajectory_publisher.hpp"
+#include "watched_pool.hpp"
 
 namespace topogeo::localizer {
 
@@ -64,6 +65,7 @@ class LocalizerService {
   service::Service& service_;
   LocalizerOptions options_;
   RemotePool pool_;
+  WatchedPool watched_;
   BackgroundOptimizer optimizer_;
   std::optional<localization::SlamSession> slam_;
   CommandChannel commands_;

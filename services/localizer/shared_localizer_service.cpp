@@ -33,6 +33,7 @@ SharedLocalizerService::SharedLocalizerService(service::Service& service, bool s
             [&service](std::string_view reason, std::string_view detail) {
               service.status().fault(reason, detail);
             }),
+      watched_(service, pool_),
       merges_(service, [this] { schedule(); }),
       trajectory_(service),
       poses_(service.advertise<msg::LivePose>()),
@@ -69,7 +70,7 @@ SharedLocalizerService::SharedLocalizerService(service::Service& service, bool s
 }
 
 void SharedLocalizerService::resume(SharedResumeFrom from) {
-  map_.emplace(service_.setup().config.config.localizer, pool_, from.map);
+  map_.emplace(service_.setup().config.config.localizer, watched_, from.map);
   for (const storage::RefusedMerge& refused : from.refused_merges) {
     map_->remember_refused(refused.stop, refused.other);
   }

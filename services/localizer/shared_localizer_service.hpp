@@ -23,6 +23,7 @@
 #include "shared_resume.hpp"
 #include "stop_queue.hpp"
 #include "trajectory_publisher.hpp"
+#include "watched_pool.hpp"
 
 namespace topogeo::localizer {
 
@@ -56,6 +57,7 @@ class SharedLocalizerService {
 
   service::Service& service_;
   RemotePool pool_;
+  WatchedPool watched_;
   std::optional<localization::SharedMap> map_;
   std::map<std::string, Robot> robots_;
   MergeChannel merges_;

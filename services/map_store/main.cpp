@@ -17,9 +17,11 @@
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/service/sole_service.hpp"
+#include "topogeo/storage/map_snapshots.hpp"
 #include "topogeo/storage/read_map.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/file_lock.hpp"
+#include "topogeo/support/log.hpp"
 
 #include "drawing_options.hpp"
 #include "map_server.hpp"
@@ -121,6 +123,24 @@ void serve(const service::Setup& setup, const StoreOptions& options) {
   service.run();
 }
 
+/// Until the program is to end, or a snapshot is to take the place of the map: its name then.
+std::optional<std::string> keep_until_restored(const service::Setup& setup,
+                                               const StoreOptions& options) {
+  const map_store::MapStoreOptions& store = options.store;
+  service::Service service(service::with_robots(setup, options.robots));
+  const service::SoleService sole(service);
+  const std::uint64_t seed = setup.config.config.localizer.seed;
+  storage::MapDatabase database =
+      options.anew ? map_store::fresh_database(store.database, setup.options.robot_id, seed)
+                   : map_store::last_database(store.database, setup.options.robot_id, seed);
+  if (store.continued) map_store::begin_with(database, *store.continued);
+  map_store::MapStoreService running(service, store, std::move(database));
+  service.run();
+  if (running.wanted_snapshot() && !service::Service::stopping()) return running.wanted_snapshot();
+  running.end();
+  return std::nullopt;
+}
+
 /// Keeps the map of a drive.
 void keep(const service::Setup& setup, StoreOptions options) {
   map_store::MapStoreOptions& store = options.store;
@@ -135,18 +155,14 @@ void keep(const service::Setup& setup, StoreOptions options) {
   if (store.database.empty()) store.database = store.directory / "map.sqlite";
   if (store.title.empty()) store.title = setup.options.robot_id;
   const std::vector<support::FileLock> locks = lock(store);
-  service::Service service(service::with_robots(setup, options.robots));
-  const service::SoleService sole(service);
-  const std::uint64_t seed = setup.config.config.localizer.seed;
-  storage::MapDatabase database =
-      options.anew ? map_store::fresh_database(store.database, setup.options.robot_id, seed)
-                   : map_store::last_database(store.database, setup.options.robot_id, seed);
-  if (store.continued) map_store::begin_with(database, *store.continued);
   // A file that may not grow any more is a full disk and no reason to die.
   std::signal(SIGXFSZ, SIG_IGN);
-  map_store::MapStoreService running(service, std::move(store), std::move(database));
-  service.run();
-  running.end();
+  while (const auto snapshot = keep_until_restored(setup, options)) {
+    storage::restore_snapshot(store.database, *snapshot);
+    spdlog::info("the map is that of snapshot {}", *snapshot);
+    options.anew = false;
+    store.continued.reset();
+  }
 }
 
 /// Memory that is needed for a moment, as when the live map is drawn up or a snapshot is made, goes

@@ -32,7 +32,9 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
           [this](const msg::SnapshotRequest& request, const SnapshotQueue::Sink& sink) {
             if (request.kind() == msg::kSnapshotMap) sink(storage::map_file_bytes(document_));
           },
-          [this](const msg::SnapshotPiece& piece) { return pieces_out_.write(piece); }) {
+          [this](const msg::SnapshotPiece& piece) { return pieces_out_.write(piece); }),
+      copies_(
+          service, {}, [] {}, [](const std::string&) {}) {
   if (!document_.local_maps.empty()) stamp_ns_ = document_.local_maps.back().stamp_ns;
   hybrid_.publish(hybrid, stamp_ns_);
   send();

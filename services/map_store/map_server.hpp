@@ -5,6 +5,7 @@
 #include "topogeo/service/service.hpp"
 #include "topogeo/storage/map_document.hpp"
 
+#include "archive_channel.hpp"
 #include "element_publisher.hpp"
 #include "hybrid_publisher.hpp"
 #include "snapshot_queue.hpp"
@@ -32,6 +33,7 @@ class MapServer {
   messaging::Writer<msg::StoredMap> stored_out_;
   messaging::Writer<msg::SnapshotPiece> pieces_out_;
   SnapshotQueue snapshots_;
+  ArchiveChannel copies_;  // refuses all: there is no database
   bool announced_ = false;
   bool elements_sent_ = false;
 };

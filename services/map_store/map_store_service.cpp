@@ -82,7 +82,17 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
       snapshots_(
           service.robot_id(),
           [this](const auto& request, const auto& sink) { write_snapshot(request, sink); },
-          [this](const msg::SnapshotPiece& piece) { return send_piece(piece); }) {
+          [this](const msg::SnapshotPiece& piece) { return send_piece(piece); }),
+      copies_(
+          service, options_.database,
+          [this] {
+            if (!finished_ && !store(true))
+              throw std::runtime_error("the map cannot be stored now");
+          },
+          [this](const std::string& name) {
+            wanted_snapshot_ = name;
+            service_.loop().stop();
+          }) {
   stored_refusals_ = input_.refused_merges().size();
   if (!options_.drawing.empty()) archive_.put(options_.drawing);
   // There is a map before any scan, be it empty; one that has to be fused first comes when it is.
@@ -211,6 +221,10 @@ bool MapStoreService::keep(const Part& part) {
 
 void MapStoreService::write_snapshot(const msg::SnapshotRequest& request,
                                      const SnapshotQueue::Sink& sink) {
+  if (request.kind() == msg::kSnapshotMap && request.session() != 0) {
+    storage::MapDatabase::open_read_only(copies_.path_of(request.session())).write_map_file(sink);
+    return;
+  }
   if (!finished_) store(true);  // what cannot be stored is not in it
   const storage::MapDatabase& database = archive_.database();
   if (request.kind() == msg::kSnapshotMap) {

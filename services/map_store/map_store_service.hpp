@@ -18,6 +18,7 @@
 #include "topogeo/storage/map_database.hpp"
 #include "topogeo/storage/map_document.hpp"
 
+#include "archive_channel.hpp"
 #include "element_publisher.hpp"
 #include "hybrid_publisher.hpp"
 #include "live_map.hpp"
@@ -48,6 +49,11 @@ class MapStoreService {
   /// After the loop: writes the files of the map as far as it came. Throws std::runtime_error
   /// naming the file.
   void end();
+
+  /// After the loop: the snapshot that is to take the place of the map, if that is why it ended.
+  [[nodiscard]] const std::optional<std::string>& wanted_snapshot() const {
+    return wanted_snapshot_;
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -97,6 +103,8 @@ class MapStoreService {
   StoredChannel acknowledged_;
   messaging::Writer<msg::SnapshotPiece> pieces_out_;
   SnapshotQueue snapshots_;
+  ArchiveChannel copies_;
+  std::optional<std::string> wanted_snapshot_;
 
   Clock::time_point next_store_;  // after a failure
   Clock::time_point next_edges_;

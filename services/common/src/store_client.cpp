@@ -46,12 +46,12 @@ void StoreClient::request(msg::SnapshotKind kind, std::uint64_t session, std::ui
   request.session(session);
   request.first(first);
   handler_ = std::move(handler);
-  send();
+  send(true);
 }
 
-void StoreClient::send() {
-  messaging::set_header(*request_, service_.robot_id(), 0, requests_sent_);
-  request_->request_id(++requests_sent_);
+void StoreClient::send(bool anew) {
+  messaging::set_header(*request_, service_.robot_id(), 0, requests_sent_++);
+  if (anew) request_->request_id(requests_sent_);
   pieces_.clear();
   last_heard_ = Clock::now();
   // One that cannot be sent now, or that nobody hears yet, is sent again by the timer.
@@ -88,9 +88,15 @@ void StoreClient::on_piece(const msg::SnapshotPiece& piece) {
 
 void StoreClient::tick() {
   if (!request_) return;
-  const bool silent = pieces_.empty() && Clock::now() - last_heard_ >= kSilence;
+  const auto silence = Clock::now() - last_heard_;
   const bool first_reader = heard_by_nobody_ && requests_.matched() > 0;
-  if (first_reader || silent || Clock::now() - last_heard_ >= kPatience) send();
+  // A store that still works on a long answer drops the same request; another one would have it
+  // begin again, for ever where the answer takes longer than the patience.
+  if (first_reader || (pieces_.empty() && silence >= kSilence)) {
+    send(false);
+  } else if (silence >= kPatience) {
+    send(true);
+  }
 }
 
 }  // namespace topogeo::service

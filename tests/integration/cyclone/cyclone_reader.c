@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "archive.h"
 #include "body.h"
 #include "common.h"
 #include "dds/dds.h"
@@ -17,6 +18,7 @@
 #include "merge.h"
 #include "motion.h"
 #include "planning.h"
+#include "search.h"
 #include "sensor.h"
 #include "simulation.h"
 #include "status.h"

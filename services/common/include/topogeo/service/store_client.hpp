@@ -35,7 +35,8 @@ class StoreClient {
   void request(msg::SnapshotKind kind, std::uint64_t session, std::uint32_t first, Handler handler);
 
  private:
-  void send();
+  /// `anew`: under a number of its own, so that pieces of an earlier answer are none of this one.
+  void send(bool anew);
   void on_piece(const msg::SnapshotPiece& piece);
   void tick();
 

@@ -1,0 +1,122 @@
+#include "archive_channel.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/host.hpp"
+#include "topogeo/support/log.hpp"
+
+namespace topogeo::map_store {
+
+namespace {
+
+msg::StoredSnapshot described(const storage::MapSnapshot& snapshot) {
+  msg::StoredSnapshot out;
+  messaging::set_text(out.name(), snapshot.name, "name");
+  out.name_key(messaging::key_of(snapshot.name));
+  out.time_s(snapshot.time_s);
+  out.bytes(snapshot.bytes);
+  out.map_id(snapshot.map_id);
+  out.trajectory_version(snapshot.trajectory_version);
+  out.stops(snapshot.stops);
+  messaging::set_text_cut(out.damage(), snapshot.damage);
+  return out;
+}
+
+/// By time; the newest ones where there are more than a message has room for, and of files with
+/// names that no snapshot may have none.
+std::vector<msg::StoredSnapshot> described(const std::vector<storage::MapSnapshot>& snapshots) {
+  std::vector<msg::StoredSnapshot> out;
+  for (const storage::MapSnapshot& snapshot : snapshots) {
+    try {
+      storage::check_snapshot_name(snapshot.name);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    out.push_back(described(snapshot));
+  }
+  if (out.size() > msg::kMaxStoredSnapshots) {
+    out.erase(out.begin(), out.end() - static_cast<std::ptrdiff_t>(msg::kMaxStoredSnapshots));
+  }
+  return out;
+}
+
+}  // namespace
+
+ArchiveChannel::ArchiveChannel(service::Service& service, std::filesystem::path database,
+                               Store store, Restore restore)
+    : service_(service),
+      database_(std::move(database)),
+      store_(std::move(store)),
+      restore_(std::move(restore)),
+      replies_(service.advertise<msg::ArchiveReply>()) {
+  service.subscribe<msg::ArchiveRequest>(
+      [this](const msg::ArchiveRequest& request) { on_request(request); }, {.team = true});
+}
+
+std::filesystem::path ArchiveChannel::path_of(std::uint64_t name_key) const {
+  for (const storage::MapSnapshot& snapshot : storage::snapshots_of(database_)) {
+    if (messaging::key_of(snapshot.name) == name_key) return snapshot.path;
+  }
+  throw std::runtime_error("there is no such snapshot");
+}
+
+void ArchiveChannel::on_request(const msg::ArchiveRequest& request) {
+  if (last_ && last_->request_id() == request.request_id() &&
+      last_->client_id() == request.client_id()) {
+    static_cast<void>(replies_.write(*last_));
+    return;
+  }
+  msg::ArchiveReply& reply = last_.emplace();
+  messaging::set_header(reply, service_.robot_id(), support::wall_clock_ns(), sent_++);
+  messaging::set_text(reply.client_id(), request.client_id().to_string(), "client_id");
+  reply.request_id(request.request_id());
+  std::string message;
+  try {
+    if (database_.empty()) throw std::runtime_error("a map that is only shown has no snapshots");
+    message = carry_out(request);
+    reply.accepted(true);
+  } catch (const std::exception& error) {
+    message = error.what();
+  }
+  messaging::set_text_cut(reply.message(), message);
+  if (!database_.empty()) reply.snapshots() = described(storage::snapshots_of(database_));
+  static_cast<void>(replies_.write(reply));
+  if (reply.accepted() && request.action() == msg::kArchiveRestore) {
+    // The client has the reply before its writer goes.
+    constexpr std::chrono::milliseconds kReplyPatience{500};
+    static_cast<void>(replies_.wait_for_acknowledgments(kReplyPatience));
+    restore_(request.name().to_string());
+  }
+}
+
+std::string ArchiveChannel::carry_out(const msg::ArchiveRequest& request) {
+  const std::string name = request.name().to_string();
+  switch (request.action()) {
+    case msg::kArchiveList:
+      return {};
+    case msg::kArchiveTake: {
+      store_();
+      const storage::MapSnapshot taken = storage::take_snapshot(database_, name);
+      spdlog::info("made snapshot {}", taken.path.string());
+      return fmt::format("snapshot {} has {} stops", name, taken.stops);
+    }
+    case msg::kArchiveRestore: {
+      storage::check_snapshot_name(name);
+      const auto known = storage::snapshots_of(database_);
+      const auto found = std::ranges::find(known, name, &storage::MapSnapshot::name);
+      if (found == known.end()) throw std::runtime_error("there is no snapshot " + name);
+      if (!found->damage.empty()) throw std::runtime_error(found->damage);
+      return fmt::format("the map becomes that of snapshot {}; that of now is kept as before-{}",
+                         name, name);
+    }
+    default:
+      throw std::runtime_error("unknown action");
+  }
+}
+
+}  // namespace topogeo::map_store
