@@ -21,7 +21,8 @@ constexpr std::array<ChannelInfo, kChannels> kInfo = {{
     {"places", true},   {"rules", true},   {"scan", false},      {"route", false},
     {"truth", false},   {"laser", false},  {"trail", true},      {"graph", true},
     {"services", true}, {"workers", true}, {"merges", true},     {"local_map", false},
-    {"loops", true},    {"events", true},  {"viewers", false},   {"time", false},
+    {"search", false},  {"loops", true},   {"events", true},     {"viewers", false},
+    {"time", false},
 }};
 
 /// A text in quotes.

@@ -43,6 +43,7 @@ enum class Channel : std::uint8_t {
   kWorkers,
   kMerges,
   kLocalMap,
+  kSearch,
   kLoops,
   kEvents,
   kViewers,

@@ -11,6 +11,7 @@
 
 #include "event_log.hpp"
 #include "json_values.hpp"
+#include "local_map_json.hpp"
 #include "protocol_names.hpp"
 
 namespace topogeo::web {
@@ -29,41 +30,18 @@ Json decision_json(const msg::LoopDecision& decision) {
                {"explanation", text_of_message(decision.explanation())},
                {"source", name_of(decision.source())}};
   set_pose(json, service::from_msg(decision.T_earlier_later()));
+  Json predicted;
+  set_pose(predicted, service::from_msg(decision.T_predicted()));
+  predicted["covariance"] = Json::array();
+  for (const double value : decision.predicted_covariance()) {
+    predicted["covariance"].push_back(exact(value));
+  }
+  json["predicted"] = std::move(predicted);
   json["correction_m"] = rounded(decision.correction_m());
   json["correction_rad"] = rounded(decision.correction_rad());
   json["fitness"] = rounded(decision.fitness());
   json["probability"] = rounded(decision.probability());
   return json;
-}
-
-std::string local_map_json(const msg::LocalMap& map,
-                           const std::optional<geometry::Pose2>& T_map_stop) {
-  Json nodes = Json::array();
-  for (const msg::LocalNode& node : map.nodes()) {
-    if (!node.in_main_graph()) continue;
-    nodes.push_back(Json::array({rounded(node.x_m()), rounded(node.y_m()), name_of(node.kind())}));
-  }
-  Json branches = Json::array();
-  for (const msg::LocalBranch& branch : map.branches()) {
-    if (!branch.in_main_graph()) continue;
-    Json points = Json::array();
-    for (const msg::BranchPoint& point : branch.points()) {
-      points.push_back(rounded(point.x_m()));
-      points.push_back(rounded(point.y_m()));
-    }
-    branches.push_back(std::move(points));
-  }
-  Json points = Json::array();
-  for (const msg::ScanPoint& point : map.points()) {
-    points.push_back(rounded(point.x_m()));
-    points.push_back(rounded(point.y_m()));
-  }
-  Json json = {{"session", std::to_string(map.session())}, {"number", map.id()}};
-  if (T_map_stop) set_pose(json, *T_map_stop);
-  json["nodes"] = std::move(nodes);
-  json["branches"] = std::move(branches);
-  json["points_m"] = std::move(points);
-  return text_of(json);
 }
 
 }  // namespace
@@ -94,12 +72,18 @@ std::vector<geometry::Pose2> DriveView::T_map_stops() const {
 }
 
 void DriveView::show_trail() {
-  const topomap::Trajectory trajectory = trajectory_.newest();
+  show_stops(trajectory_.newest().stops);
+  show_local_map();
+}
+
+void DriveView::show_stops(std::span<const topomap::StopPose> stops) {
   located_.clear();
+  stops_.clear();
   std::vector<Edit> edits;
   Json chunk = Json::array();
-  for (std::size_t i = 0; i < trajectory.stops.size(); ++i) {
-    const topomap::StopPose& stop = trajectory.stops[i];
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const topomap::StopPose& stop = stops[i];
+    stops_.push_back(stop.stop);
     if (stop.located) {
       located_[stop.stop] = stop.T_map_robot;
       chunk.push_back(Json::array({rounded(stop.T_map_robot.x_m), rounded(stop.T_map_robot.y_m),
@@ -107,13 +91,49 @@ void DriveView::show_trail() {
     } else {
       chunk.push_back(nullptr);
     }
-    if (chunk.size() == kChunk || i + 1 == trajectory.stops.size()) {
+    if (chunk.size() == kChunk || i + 1 == stops.size()) {
       edits.push_back({std::to_string(i / kChunk), text_of(chunk)});
       chunk = Json::array();
     }
   }
   board_.edit(Channel::kTrail, std::move(edits), true);
-  show_local_map();
+}
+
+void DriveView::show_stored(const storage::MapDocument& map) {
+  if (trajectory_.version() != 0) return;
+  show_stops(map.trajectory.stops);
+  std::vector<Edit> edits;
+  for (const topomap::LoopClosure& loop : map.loop_closures) {
+    Json json = {{"step", loop.later_id},
+                 {"earlier", loop.earlier_id},
+                 {"later", loop.later_id},
+                 {"accepted", true},
+                 {"outcome", "accepted"},
+                 {"explanation", "closed, as the map file has it"},
+                 {"source", ""}};
+    set_pose(json, loop.T_earlier_later);
+    for (const char* unknown : {"correction_m", "correction_rad", "fitness", "probability"}) {
+      json[unknown] = nullptr;
+    }
+    edits.push_back({std::to_string(edits.size()), text_of(json)});
+  }
+  board_.edit(Channel::kLoops, std::move(edits), true);
+}
+
+std::optional<topomap::StopId> DriveView::stop_at(std::size_t number) const {
+  if (number >= stops_.size()) return std::nullopt;
+  return stops_[number];
+}
+
+std::optional<geometry::Pose2> DriveView::pose_of(const topomap::StopId& stop) const {
+  const auto found = located_.find(stop);
+  if (found == located_.end()) return std::nullopt;
+  return found->second;
+}
+
+const topomap::LocalMap* DriveView::heard(const topomap::StopId& stop) const {
+  const auto found = heard_.find(stop);
+  return found == heard_.end() ? nullptr : &found->second;
 }
 
 void DriveView::on_decisions(const msg::LoopDecisions& message) {
@@ -139,19 +159,25 @@ void DriveView::on_decisions(const msg::LoopDecisions& message) {
 }
 
 void DriveView::on_local_map(const msg::LocalMap& message) {
-  if (local_map_ && local_map_->session() == message.session() && local_map_->id() > message.id()) {
-    return;
+  topomap::LocalMap map = service::from_msg(message);
+  map.track.clear();
+  const topomap::StopId stop = map.stop;
+  if (heard_.insert_or_assign(stop, std::move(map)).second) {
+    order_heard_.push_back(stop);
+    if (order_heard_.size() > kMostHeard) {
+      heard_.erase(order_heard_.front());
+      order_heard_.pop_front();
+    }
   }
-  local_map_ = message;
+  if (last_stop_ && last_stop_->session == stop.session && last_stop_->number > stop.number) return;
+  last_stop_ = stop;
   show_local_map();
 }
 
 void DriveView::show_local_map() {
-  if (!local_map_) return;
-  const auto found = located_.find(topomap::StopId{local_map_->session(), local_map_->id()});
-  std::optional<geometry::Pose2> T_map_stop;
-  if (found != located_.end()) T_map_stop = found->second;
-  board_.set(Channel::kLocalMap, local_map_json(*local_map_, T_map_stop));
+  const topomap::LocalMap* map = last_stop_ ? heard(*last_stop_) : nullptr;
+  if (map == nullptr) return;
+  board_.set(Channel::kLocalMap, text_of(local_map_json(*map, pose_of(*last_stop_))));
 }
 
 void DriveView::on_proposal(const msg::MergeProposal& message) {

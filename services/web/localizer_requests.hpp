@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <string>
 
 #include "topogeo/messaging/writer.hpp"
@@ -13,6 +11,7 @@
 #include "topogeo/service/service.hpp"
 
 #include "order_text.hpp"
+#include "pending_requests.hpp"
 #include "web_types.hpp"
 
 namespace topogeo::web {
@@ -29,24 +28,13 @@ class LocalizerRequests {
   void answer_merge(const MergeOrder& order, Respond respond);
 
  private:
-  struct Pending {
-    Respond respond;
-    std::function<void()> send;
-    double since_s = 0.0;  // by the steady clock
-    double sent_s = 0.0;
-  };
-
   void send(service::LocalizationCommand command, Respond respond);
-  void begin(std::uint64_t id, Pending pending);
   void on_reply(const msg::LocalizationReply& reply);
-  void tick();
-  [[nodiscard]] std::uint64_t new_id();
 
   service::Service& service_;
   std::string client_id_;
-  std::uint64_t last_id_;
   std::uint64_t sent_ = 0;
-  std::map<std::uint64_t, Pending> pending_;
+  PendingRequests pending_;
   messaging::Writer<msg::LocalizationCommand> commands_;
   messaging::Writer<msg::MergeAnswer> answers_;
 };

@@ -112,6 +112,15 @@ bool parse_mapping_mode(const std::string& body) {
   throw std::invalid_argument("mode: expected mapping or localization");
 }
 
+std::string parse_name(const std::string& body) {
+  const Json json = object_of(body);
+  const auto name = json.find("name");
+  if (name == json.end() || !name->is_string()) {
+    throw std::invalid_argument("name: expected a text");
+  }
+  return name->get<std::string>();
+}
+
 void check_plain(const std::string& body) {
   if (!body.empty()) static_cast<void>(object_of(body));
 }

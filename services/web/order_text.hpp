@@ -41,6 +41,8 @@ PoseOrder parse_pose_order(const std::string& body);
 MergeOrder parse_merge_order(const std::string& body);
 /// "mapping" (true) or "localization".
 bool parse_mapping_mode(const std::string& body);
+/// {"name": "monday"}: the name.
+std::string parse_name(const std::string& body);
 /// A body that says nothing: empty, or an object.
 void check_plain(const std::string& body);
 

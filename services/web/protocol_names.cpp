@@ -73,6 +73,14 @@ string_view name_of(msg::ProposalSource source) {
   return word(kWords, source);
 }
 
+string_view name_of(msg::MatchReason reason) {
+  static constexpr std::array<string_view, 7> kWords = {
+      "none",     "nothing_in_common", "little_overlap", "few_inliers",
+      "doubtful", "implausible",       "second_solution"};
+  static_assert(kWords.size() == msg::kReasonSecondSolution + 1);
+  return word(kWords, reason);
+}
+
 string_view name_of(msg::ServiceState state) {
   static constexpr std::array<string_view, 6> kWords = {"starting", "waiting", "running",
                                                         "finished", "failed",  "stopped"};

@@ -20,6 +20,7 @@ std::string_view name_of(msg::LaserState state);
 std::string_view name_of(msg::NodeKind kind);
 std::string_view name_of(msg::LoopOutcome outcome);
 std::string_view name_of(msg::ProposalSource source);
+std::string_view name_of(msg::MatchReason reason);
 std::string_view name_of(msg::ServiceState state);
 std::string_view name_of(msg::MergeState state);
 

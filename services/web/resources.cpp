@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <optional>
+#include <stdexcept>
 #include <system_error>
 
 #include "json_values.hpp"
@@ -68,6 +69,12 @@ std::string query_value(std::string_view query, std::string_view key) {
     query.remove_prefix(end == std::string_view::npos ? query.size() : end + 1);
   }
   return {};
+}
+
+std::uint64_t parse_number(std::string_view text, const char* key) {
+  const auto number = number_of<std::uint64_t>(text);
+  if (!number) throw std::invalid_argument(std::string(key) + ": expected a whole number");
+  return *number;
 }
 
 Answer tile_answer(const Request& request, const ShownMap* map) {

@@ -2,6 +2,7 @@
 // service.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@ namespace topogeo::web {
 
 /// Of "x_m=1.2&y_m=3.4": the value of a key; empty when it is not there.
 std::string query_value(std::string_view query, std::string_view key);
+
+/// A whole number, 0 or more. Throws std::invalid_argument naming `key`.
+std::uint64_t parse_number(std::string_view text, const char* key);
 
 /// "/tiles/{layer}/{frame}/{level}/{column}/{row}.png" of a map; `map` may be null.
 Answer tile_answer(const Request& request, const ShownMap* map);

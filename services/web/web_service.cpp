@@ -22,9 +22,9 @@ namespace {
 constexpr std::chrono::milliseconds kCountsPeriod{500};
 constexpr int kProtocolVersion = 1;
 /// What POST takes, below /api/.
-constexpr std::array<std::string_view, 13> kOffers = {
-    "goal",   "preview", "pause",  "resume", "cancel", "stop",   "release",
-    "return", "pose",    "search", "mode",   "merge",  "explore"};
+constexpr std::array<std::string_view, 15> kOffers = {
+    "goal", "preview", "pause", "resume", "cancel",  "stop",     "release", "return",
+    "pose", "search",  "mode",  "merge",  "explore", "snapshot", "restore"};
 
 Answer accepted() {
   return {202, "{}"};
@@ -76,12 +76,12 @@ void WebService::post(Work work) {
 }
 
 void WebService::handle(const Request& request, Respond respond) {
-  if (request.post) {
+  if (request.post || History::has(request.path)) {
     {
       const std::scoped_lock lock(mutex_);
-      orders_.emplace_back(request, std::move(respond));
+      requests_.emplace_back(request, std::move(respond));
     }
-    post([this] { work_off_orders(); });
+    post([this] { work_off_requests(); });
   } else if (request.path.starts_with("/tiles/")) {
     respond(tile_answer(request, map_.shown().get()));
   } else if (request.path == "/api/at") {
@@ -116,19 +116,27 @@ void WebService::release(std::uint64_t viewer) {
   post([this, viewer] { hand_.release(viewer); });
 }
 
-void WebService::work_off_orders() {
-  std::deque<std::pair<Request, Respond>> orders;
+void WebService::work_off_requests() {
+  std::deque<std::pair<Request, Respond>> requests;
   {
     const std::scoped_lock lock(mutex_);
-    orders.swap(orders_);
+    requests.swap(requests_);
   }
-  for (const auto& [request, respond] : orders) {
+  for (const auto& [request, respond] : requests) {
     try {
-      obey(request, respond);
+      answer(request, respond);
     } catch (const std::invalid_argument& error) {
       tally_.add("refused: invalid");
       respond(error_answer(400, error.what()));
     }
+  }
+}
+
+void WebService::answer(const Request& request, const Respond& respond) {
+  if (request.post) {
+    obey(request, respond);
+  } else {
+    history_.get(request, respond);
   }
 }
 
@@ -173,6 +181,8 @@ void WebService::obey(const Request& request, const Respond& respond) {
        [&](const std::string& body) { localizer_.switch_mode(parse_mapping_mode(body), respond); }},
       {"/api/merge",
        [&](const std::string& body) { localizer_.answer_merge(parse_merge_order(body), respond); }},
+      {"/api/snapshot", [&](const std::string& body) { history_.take_snapshot(body, respond); }},
+      {"/api/restore", [&](const std::string& body) { history_.restore(body, respond); }},
   };
   const auto order = orders.find(request.path);
   if (order == orders.end()) {

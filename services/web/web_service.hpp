@@ -25,10 +25,12 @@
 #include "graph_view.hpp"
 #include "hand_sender.hpp"
 #include "health_view.hpp"
+#include "history.hpp"
 #include "localizer_requests.hpp"
 #include "map_view.hpp"
 #include "page_files.hpp"
 #include "robot_view.hpp"
+#include "search_view.hpp"
 #include "server.hpp"
 #include "tally.hpp"
 #include "web_types.hpp"
@@ -57,7 +59,8 @@ class WebService : private Backend {
   void post(Work work);
 
   // In the loop.
-  void work_off_orders();
+  void work_off_requests();
+  void answer(const Request& request, const Respond& respond);
   void obey(const Request& request, const Respond& respond);
   [[nodiscard]] Answer give_goals(const std::string& body);
   [[nodiscard]] Answer preview(const std::string& body);
@@ -80,15 +83,17 @@ class WebService : private Backend {
   GoalSender goals_;
   RobotView robot_;
   DriveView drive_;
+  SearchView search_{service_, board_, drive_};
   ExplorationSender exploration_;
   HealthView health_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for what is posted
   std::uint64_t timer_ = 0;
   std::unique_ptr<Server> server_;
   // Below the server: an answer that is still to be given holds on to a connection.
+  History history_{service_, drive_};
   LocalizerRequests localizer_;
   std::mutex mutex_;
-  std::deque<std::pair<Request, Respond>> orders_;
+  std::deque<std::pair<Request, Respond>> requests_;
 };
 
 }  // namespace topogeo::web

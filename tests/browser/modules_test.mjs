@@ -8,6 +8,8 @@ const { Channels } = await load("channels");
 const grid = await load("map/grid_frame");
 const { destinations, numbered } = await load("destinations");
 const format = await load("format");
+const { agreement, apart, compose } = await load("map/match_layer");
+const { Film } = await load("map/film");
 
 const delta = (from, version, set, gone = []) => ({ channel: "events", from, version, set, gone });
 
@@ -156,4 +158,60 @@ test("numbers have units, and what is not known is a dash", () => {
   assert.equal(format.degrees(Math.PI / 2), "90.0°");
   assert.equal(format.length(null), "–");
   assert.equal(format.speed(undefined), "–");
+});
+
+/** A square room of 4 x 4 m as a stop in its middle sees it: points every 5 cm. */
+function room_points() {
+  const points = [];
+  for (let s = -2; s < 2; s += 0.05) points.push(2, s);
+  for (let s = -2; s < 2; s += 0.05) points.push(-s, 2);
+  for (let s = -2; s < 2; s += 0.05) points.push(-2, -s);
+  for (let s = -2; s < 2; s += 0.05) points.push(s, -2);
+  return points;
+}
+
+test("two stops agree as far as they see the same walls", () => {
+  const room = { points_m: room_points(), laser_m: [0, 0] };
+  const at = (x_m, y_m, theta_rad = 0) => ({ x_m, y_m, theta_rad });
+  const same = agreement(room, room, at(0, 0));
+  assert.deepEqual(same, { overlap: 1, near: 1 });
+  assert.deepEqual(agreement(room, room, at(0, 0, Math.PI / 2)), { overlap: 1, near: 1 });
+  assert.equal(agreement(room, room, at(50, 0)).overlap, 0);
+  // Shifted by half a room: half of its points lie in the other's view, and of these the parts of two walls.
+  const shifted = agreement(room, room, at(2, 0));
+  assert.ok(Math.abs(shifted.overlap - 0.5) < 0.05, JSON.stringify(shifted));
+  assert.ok(Math.abs(shifted.near - 0.5) < 0.07, JSON.stringify(shifted));
+});
+
+test("poses are composed and compared", () => {
+  const composed = compose({ x_m: 1, y_m: 2, theta_rad: Math.PI / 2 }, { x_m: 3, y_m: 0, theta_rad: Math.PI });
+  assert.ok(Math.abs(composed.x_m - 1) < 1e-12 && Math.abs(composed.y_m - 5) < 1e-12);
+  assert.ok(Math.abs(composed.theta_rad + Math.PI / 2) < 1e-12);
+  const [meters, turn] = apart({ x_m: 0, y_m: 0, theta_rad: 3 }, { x_m: 3, y_m: 4, theta_rad: -3 });
+  assert.equal(meters, 5);
+  assert.ok(Math.abs(turn - (2 * Math.PI - 6)) < 1e-12);
+});
+
+test("a drive plays by its stamps, without long pauses, and shows what was seen until then", () => {
+  globalThis.document = { createElement: () => ({}) };
+  const outline_cm = room_points().map((value) => Math.round(100 * value));
+  const stop = (stamp_s, x_m) => ({ stamp_s, x_m, y_m: 0, theta_rad: 0, outline_cm });
+  const film = new Film([stop(10, 0), stop(12, 10), stop(500, 20), { stamp_s: 501 }], [0, 0]);
+  assert.deepEqual(film.times_s, [0, 2, 7, 8]);
+  assert.deepEqual([0, 1.9, 2, 7.5, 8].map((time_s) => film.stop_at(time_s)), [0, 0, 1, 2, 3]);
+  assert.equal(film.pose_at(1).x_m, 5);
+  assert.equal(film.pose_at(7.5).x_m, 20); // on the way to where nobody knows
+  assert.equal(film.pose_at(8), null);
+  film.see(0, 4);
+  for (const [index, rooms] of [
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [3, 3],
+  ]) {
+    const { known, walls } = film.count(index);
+    // 40 x 40 cells of 10 cm, and a row of walls around them.
+    assert.ok(Math.abs(known / rooms - 1640) < 60, `${known} cells of ${rooms} rooms`);
+    assert.ok(Math.abs(walls / rooms - 160) < 12, `${walls} wall cells of ${rooms} rooms`);
+  }
 });

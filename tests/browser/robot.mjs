@@ -78,6 +78,13 @@ export class Robot {
     await this.start_web();
   }
 
+  /** Starts a map store with these options, and the web service: no robot. */
+  async start_store(...options) {
+    this.run("map_store", ...options);
+    this.port ??= await free_port();
+    await this.start_web();
+  }
+
   /** Starts the web service at the port that it had before. */
   async start_web() {
     this.run("web", "--port", String(this.port), "--token", this.token);
@@ -93,6 +100,13 @@ export class Robot {
     });
     const ended = new Promise((resolve) => started.on("exit", resolve));
     this.processes.set(name, { process: started, ended });
+  }
+
+  /** CPU time of a service since its start. */
+  cpu_s(name) {
+    const { pid } = this.processes.get(name).process;
+    const fields = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
+    return (Number(fields[11]) + Number(fields[12])) / 100; // user and system, in ticks of 10 ms
   }
 
   /** Ends a service by a signal. */

@@ -32,29 +32,38 @@ export class Api {
   constructor(private readonly token: string) {}
 
   /** GET of a resource as JSON. Throws an ApiError. */
-  get<Answer>(path: string): Promise<Answer> {
-    return this.request<Answer>("GET", path, undefined);
+  async get<Answer>(path: string, timeout_ms = kTimeoutMs): Promise<Answer> {
+    return read_json<Answer>(await this.request("GET", path, undefined, timeout_ms));
+  }
+
+  /** GET of a file. Throws an ApiError. */
+  async download(path: string, timeout_ms: number): Promise<Blob> {
+    return (await this.request("GET", path, undefined, timeout_ms)).blob();
   }
 
   /** POST of an order, its answer. Throws an ApiError. */
-  post<Answer = unknown>(what: string, body: unknown = {}): Promise<Answer> {
-    return this.request<Answer>("POST", `/api/${what}`, JSON.stringify(body));
+  async post<Answer = unknown>(what: string, body: unknown = {}): Promise<Answer> {
+    const text = JSON.stringify(body);
+    return read_json<Answer>(await this.request("POST", `/api/${what}`, text, kTimeoutMs));
   }
 
-  private async request<Answer>(method: string, path: string, body?: string): Promise<Answer> {
+  private async request(
+    method: string,
+    path: string,
+    body: string | undefined,
+    timeout_ms: number,
+  ): Promise<Response> {
     const abort = new AbortController();
-    const timer = window.setTimeout(() => abort.abort(), kTimeoutMs);
+    const timer = window.setTimeout(() => abort.abort(), timeout_ms);
     const headers: Record<string, string> = {};
     if (this.token) headers.Authorization = `Bearer ${this.token}`;
     if (body !== undefined) headers["Content-Type"] = "application/json";
     try {
       const response = await fetch(path, { method, headers, body, signal: abort.signal });
-      const answer = (await response.json().catch(() => ({}))) as Answer & { error?: string };
-      if (!response.ok) {
-        const message = answer.error || texts.errors.status(response.status);
-        throw new ApiError(message, response.status, answer);
-      }
-      return answer;
+      if (response.ok) return response;
+      const answer = await read_json<{ error?: string }>(response);
+      const message = answer.error || texts.errors.status(response.status);
+      throw new ApiError(message, response.status, answer);
     } catch (error) {
       if (error instanceof ApiError) throw error;
       throw new ApiError(abort.signal.aborted ? texts.errors.slow : texts.errors.unreachable);
@@ -62,4 +71,8 @@ export class Api {
       window.clearTimeout(timer);
     }
   }
+}
+
+async function read_json<Answer>(response: Response): Promise<Answer> {
+  return (await response.json().catch(() => ({}))) as Answer;
 }

@@ -61,6 +61,13 @@ export function clock(time_s: number): string {
   return new Date(1000 * time_s).toLocaleTimeString("en-GB");
 }
 
+/** Day and time of seconds since 1970; of a source that counts from elsewhere the seconds. */
+export function moment(time_s: number): string {
+  if (time_s < 1e8) return `${time_s.toFixed(1)} s`;
+  const date = new Date(1000 * time_s);
+  return `${date.toLocaleDateString("en-GB")} ${date.toLocaleTimeString("en-GB")}`;
+}
+
 /** "3.20, -1.05 m". */
 export function point(x_m: number, y_m: number): string {
   return `${x_m.toFixed(2)}, ${y_m.toFixed(2)} m`;

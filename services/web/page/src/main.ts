@@ -16,6 +16,7 @@ import { CorrectView } from "./views/correct";
 import { DrawView } from "./views/draw";
 import { NowView } from "./views/now";
 import { SendView } from "./views/send";
+import { TimeView } from "./views/time";
 import { UnderstandView } from "./views/understand";
 
 type ViewName = keyof typeof texts.views;
@@ -176,6 +177,7 @@ function start(): void {
     correct: new CorrectView(app),
     understand: new UnderstandView(app),
     draw: new DrawView(app),
+    time: new TimeView(app),
   };
   const tabs = new Tabs(views);
   stage.append(map_controls(map));

@@ -92,15 +92,46 @@ export interface MapInfo {
   theta_rad: number;
 }
 
+export interface Pose2 {
+  x_m: number;
+  y_m: number;
+  theta_rad: number;
+}
+
 export interface LocalMap {
   session: string;
   number: number;
   x_m?: number; // where the stop is on the map; missing where unknown
   y_m?: number;
   theta_rad?: number;
-  nodes: [number, number, NodeKind][]; // robot frame of the stop
+  laser_m?: [number, number]; // robot frame of the stop, as what follows
+  nodes: [number, number, NodeKind][];
   branches: number[][];
   points_m: number[];
+}
+
+/** x, y, heading, fitness: metres, radians, [0, 1]; map frame. */
+export type Hypothesis = [number, number, number, number | null];
+
+export interface SearchedMatch extends Pose2 {
+  // x_m .. of the prediction, where the search space has its middle
+  base_theta_rad: number; // heading of the search space and of the covariance
+  half_widths: [number, number, number];
+  covariance: (number | null)[];
+  done: boolean;
+  accepted?: boolean;
+  reason?: string;
+  fitness?: number | null;
+  hypotheses: Hypothesis[];
+}
+
+export interface Search {
+  stamp_s: number;
+  tasks: number;
+  running: boolean;
+  whole_map: boolean;
+  matches: SearchedMatch[];
+  hypotheses: Hypothesis[];
 }
 
 export interface Values {
@@ -116,6 +147,7 @@ export interface Values {
   truth: { x_m: number; y_m: number; theta_rad: number; collisions: number };
   local_map: LocalMap;
   drawing: { version: string };
+  search: Search;
   viewers: { viewers: number; operators: number };
   time: { time_s: number };
 }
@@ -145,7 +177,8 @@ export interface GraphObject {
   branches?: number;
 }
 
-export interface Loop {
+export interface Loop extends Pose2 {
+  // x_m .. of the later stop in the frame of the earlier one, as matched
   step: number;
   earlier: number;
   later: number;
@@ -153,10 +186,60 @@ export interface Loop {
   outcome: "accepted" | "gate" | "unconfirmed" | "no_closing" | "outvoted";
   explanation: string;
   source: "prediction" | "place" | "window";
+  predicted?: Pose2 & { covariance: (number | null)[] }; // the same before the match
   correction_m: number | null;
   correction_rad: number | null;
   fitness: number | null;
   probability: number | null;
+}
+
+/** A stop of the drive that a map was made of; x_m .. missing where the robot was not located. */
+export interface DriveStop extends Partial<Pose2> {
+  stamp_s: number;
+  outline_cm?: number[]; // x, y of points that the laser hit, robot frame
+  starts_drive?: boolean;
+}
+
+export interface DrivePart {
+  total: number;
+  first: number;
+  stops: DriveStop[];
+  laser_m?: [number, number];
+}
+
+export interface Snapshot {
+  name: string;
+  time_s: number;
+  bytes: number;
+  stops?: number;
+  damage?: string;
+}
+
+export interface Snapshots {
+  snapshots: Snapshot[];
+}
+
+interface ComparedVersion {
+  name: string;
+  stops: number;
+  version: string;
+}
+
+export interface Comparison extends Pose2 {
+  before: ComparedVersion;
+  after: ComparedVersion;
+  columns: number;
+  rows: number;
+  resolution_m: number;
+  gone_m2: number;
+  new_m2: number;
+  seen_m2: number;
+  lost_m2: number;
+  picture: string;
+}
+
+export interface ExportFormats {
+  formats: { format: string; files: string[] }[];
 }
 
 export interface Service {

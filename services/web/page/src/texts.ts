@@ -26,6 +26,7 @@ export const texts = {
     correct: "Correct",
     understand: "Understand",
     draw: "Draw",
+    time: "Time",
   },
   map_label: "Map of the floor. Arrow keys move it, plus and minus zoom.",
   views_label: "Views",
@@ -266,10 +267,39 @@ export const texts = {
       prediction: "Compared because the poses predict it.",
       place: "Compared because it looks like that place.",
       window: "Compared because it looks like that place, as a whole.",
-    },
+    } as Record<string, string>,
     loop_facts: (fitness: Maybe, probability: Maybe, moved: Maybe, turned: Maybe) =>
       `Fitness ${percent(fitness)}, probability ${percent(probability)}; moves the stop by ` +
       `${length(moved)}, ${degrees(turned)}.`,
+    loading_maps: "Fetching both local maps …",
+    key_earlier: "earlier stop",
+    key_later: "later stop, as matched",
+    key_predicted: "later stop, as the poses had put it",
+    fitness: "Fitness",
+    probability: "Probability",
+    share: (value: Maybe) => (typeof value === "number" ? percent(value) : "not kept"),
+    overlap: "In common",
+    overlap_value: (overlap: number, near: number) =>
+      `${percent(overlap)} of what the later stop saw lies in the earlier one's view; of that ` +
+      `${percent(near)} within 10 cm of its walls`,
+    moved: "Match and poses differ by",
+    moved_value: (meters: Maybe, turn: Maybe) => `${length(meters)}, ${degrees(turn)}`,
+    corrected: "Moves the stop by",
+    search: "Search",
+    search_hint:
+      "What the localizer compares at the moment: the rectangle that it searches, the ellipse where " +
+      "the poses expect the robot (2 sigma), and what it found.",
+    no_search: "No search was heard yet.",
+    search_map: (places: number, running: boolean) =>
+      running && places === 0
+        ? "The whole map is searched …"
+        : `Search of the whole map: ${places} ${places === 1 ? "place fits" : "places fit"} best.`,
+    search_matches: (tasks: number, accepted: number, running: boolean) =>
+      running
+        ? `${tasks} ${tasks === 1 ? "match is" : "matches are"} worked on …`
+        : `${tasks} ${tasks === 1 ? "match" : "matches"}, ${accepted} accepted.`,
+    search_best: (fitness: number, old: boolean) =>
+      `Best fitness ${fitness.toFixed(2)}.${old ? " Nothing is searched at the moment." : ""}`,
     more: (n: number) => `${count(n)} earlier ones are not listed.`,
     workers: "Search workers",
     no_workers: "No worker is heard: the localizer searches in its own process.",
@@ -299,6 +329,68 @@ export const texts = {
   },
 
   draw: draw_texts,
+  time: {
+    film: "Play the drive",
+    film_hint: "How the map came to be: the robot, what it saw, and the floor known until then.",
+    load: "Load the drive",
+    fetching: (stops: number, total: number) => `Fetched ${count(stops)} of ${count(total)} stops …`,
+    loading: (stops: number, total: number) => `Laid out ${count(stops)} of ${count(total)} stops …`,
+    no_drive: "The map has no stops: nobody has driven it.",
+    drive: (stops: number, seconds: number) =>
+      `${count(stops)} stops, ${duration(seconds)} without the pauses.`,
+    slider: "Moment of the drive",
+    play: "Play",
+    pause: "Pause",
+    speed: "Speed",
+    times: (speed: number) => `${speed} ×`,
+    close: "Back to now",
+    moment: (stop: number, total: number, when: string) =>
+      `Stop ${count(stop)} of ${count(total)}, ${when}`,
+    snapshots: "Snapshots",
+    no_snapshots: "There is no snapshot yet.",
+    name: "Name",
+    name_rule: "Letters, digits, '.', '-' and '_'; no '.' first",
+    make: "Make a snapshot",
+    made: "The snapshot is made.",
+    snapshot_facts: (when: string, stops: number, bytes: number) =>
+      `${when}, ${count(stops)} stops, ${(bytes / 1e6).toFixed(1)} MB`,
+    restore: "Restore",
+    restore_warning:
+      "The map becomes what it was; that of now is kept as a snapshot. A drive that is under way " +
+      "adds again what its services still have: end it before, or start them again.",
+    restore_sure: "Restore it",
+    restored: "The map is restored.",
+    comparison: "Compare",
+    compare_hint: "What differs between two versions of the map, on the map in colours.",
+    before: "Before",
+    after: "After",
+    now: "the map of now",
+    compare: "Compare",
+    comparing: "Comparing …",
+    hide: "Hide",
+    stops: "Stops",
+    stops_value: (before: number, after: number) => `${count(before)} before, ${count(after)} after`,
+    changes: { gone: "Gone", new: "New", seen: "Seen since", lost: "Not known any more" },
+    export: "Export",
+    export_hint: "The map of now as a file for other programs.",
+    download: "Download",
+    download_file: (file: string) => `Download ${file}`,
+    formats: {
+      pgm: "grid, for map_server of ROS",
+      masks: "zones as masks, for costmap filters of Nav2",
+      geojson: "graph, places and zones, for the route server of Nav2",
+      lif: "graph and places, Layout Interchange Format",
+      zones: "zones, VDA 5050",
+      rmf: "graph, for Open-RMF",
+      graphml: "graph without loss, for graph programs",
+      g2o: "pose graph of the stops",
+      svg: "picture",
+      png: "picture",
+      tum: "corrected pose of each scan",
+      carmen: "scans of the stops as a log",
+      pb: "the whole map",
+    } as Record<string, string>,
+  },
 
   panel: {
     title: "Panel",

@@ -3,7 +3,7 @@ import { Channels } from "../channels";
 import { Loop, PointM, Rule } from "../protocol";
 import { Drawing, empty_drawing } from "../draw/drawing";
 import { recolor_grid, recolor_rooms, TileLayer } from "./tile_layer";
-import { Theme } from "../ui/theme";
+import { Palette, Theme } from "../ui/theme";
 import { Box, box_of_cells, known_box, TileVersions } from "./grid_frame";
 import { draw_drawing } from "./drawing_layer";
 import { GraphLayer } from "./graph_layer";
@@ -34,6 +34,12 @@ const kBoxStepM = 1;
 const kEmptyPlane: Box = { min_x: -2, min_y: -2, max_x: 18, max_y: 12 };
 
 export type LayerName = (typeof kLayers)[number];
+
+export type DrawAbove = (
+  context: CanvasRenderingContext2D,
+  view: View,
+  palette: Palette,
+) => void;
 
 /** A goal that is chosen and not given yet. */
 export interface Mark {
@@ -67,6 +73,7 @@ export class MapScene {
   chosen_loop: Loop | null = null;
   drawn: Drawing = empty_drawing(); // as it was saved
   overlay: Overlay | null = null;
+  readonly above = new Map<string, DrawAbove>(); // of the views: drawn above the map
 
   private readonly versions = new TileVersions();
   private readonly grid: TileLayer;
@@ -158,7 +165,7 @@ export class MapScene {
     const route = this.channels.value("route");
     const goal = this.channels.value("goals")?.current;
     const local = this.channels.value("local_map");
-    if (local && this.visible.local_map) draw_local_map(context, view, local, palette);
+    if (local && this.visible.local_map) draw_local_map(context, view, local, palette.local);
     if (route?.found && goal) draw_route(context, view, route.points_m, palette, false);
     if (goal && route?.found) this.draw_route_end(context, view, route.points_m);
     if (this.preview.length > 0) draw_route(context, view, this.preview, palette, true);
@@ -173,6 +180,7 @@ export class MapScene {
       draw_robot(context, view, pose, palette, color);
     }
     if (this.pose_mark) draw_body(context, view, this.pose_mark, palette.goal, palette);
+    for (const draw of this.above.values()) draw(context, view, palette);
   }
 
   /** Draws all anew, after something chosen has changed. */

@@ -2,6 +2,7 @@
 import * as L from "leaflet";
 import { Channels } from "../channels";
 import { Theme } from "../ui/theme";
+import { Box } from "./grid_frame";
 import { MapCanvas } from "./map_canvas";
 import { MapScene } from "./map_scene";
 import { MapPointer, MapTool, ToolListener } from "./map_tool";
@@ -119,6 +120,17 @@ export class MapView {
   /** Brings a point into view. */
   show(x_m: number, y_m: number): void {
     if (!this.map.getBounds().contains([y_m, x_m])) this.map.panTo([y_m, x_m]);
+  }
+
+  /** Brings a rectangle into view. */
+  show_box(box: Box): void {
+    this.follow(false);
+    this.moved = true;
+    const bounds = L.latLngBounds([
+      [box.min_y, box.min_x],
+      [box.max_y, box.max_x],
+    ]);
+    this.map.fitBounds(bounds, { padding: [32, 32], maxZoom: kLargestFitZoom });
   }
 
   /** Whether arrow keys move the map. */

@@ -99,7 +99,8 @@ export function draw_scan(
   draw_points(context, view, scan.points_robot_m, scan.x_m, scan.y_m, scan.theta_rad, palette.scan);
 }
 
-function draw_points(
+/** Points of a scan, in the frame of a robot that stands there. */
+export function draw_points(
   context: CanvasRenderingContext2D,
   view: View,
   points: number[],
@@ -177,20 +178,20 @@ export function draw_goal(
   }
 }
 
-/** The local Voronoi diagram of a stop. */
+/** The local Voronoi diagram of a stop, and what it was made of. */
 export function draw_local_map(
   context: CanvasRenderingContext2D,
   view: View,
   local: LocalMap,
-  palette: Palette,
+  color: string,
 ): void {
   if (local.x_m === undefined || local.y_m === undefined || local.theta_rad === undefined) return;
   const { x_m, y_m, theta_rad } = local;
   const [cos, sin] = [Math.cos(theta_rad), Math.sin(theta_rad)];
   const place = (x: number, y: number) =>
     to_pixels(view, x_m + cos * x - sin * y, y_m + sin * x + cos * y);
-  draw_points(context, view, local.points_m, x_m, y_m, theta_rad, palette.local);
-  context.strokeStyle = palette.local;
+  draw_points(context, view, local.points_m, x_m, y_m, theta_rad, color);
+  context.strokeStyle = color;
   context.lineWidth = 2.5;
   context.beginPath();
   for (const branch of local.branches) {
@@ -201,7 +202,7 @@ export function draw_local_map(
     }
   }
   context.stroke();
-  context.fillStyle = palette.local;
+  context.fillStyle = color;
   for (const [x, y] of local.nodes) {
     context.beginPath();
     context.arc(...place(x, y), 4, 0, 2 * Math.PI);

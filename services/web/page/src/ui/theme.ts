@@ -28,6 +28,9 @@ export interface Palette {
   grid: string;
   loop: string;
   local: string;
+  earlier: string; // of two stops that are compared
+  later: string;
+  search: string;
 }
 
 const kThemeKey = "topogeo-theme";
@@ -105,5 +108,8 @@ function read_palette(): Palette {
     grid: color("map-grid"),
     loop: color("map-loop"),
     local: color("map-local"),
+    earlier: color("map-earlier"),
+    later: color("map-later"),
+    search: color("map-search"),
   };
 }

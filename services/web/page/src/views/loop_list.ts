@@ -5,6 +5,7 @@ import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
+import { LoopDetail } from "./loop_detail";
 
 const words = texts.understand;
 const kShownLoops = 100;
@@ -18,6 +19,7 @@ export class LoopList {
   private readonly more = h("p", { class: "quiet" });
   private readonly filters: [Filter, HTMLButtonElement][];
   private readonly list: KeyedList<Loop>;
+  private readonly detail: LoopDetail;
   private filter: Filter = "all";
   private chosen = "";
 
@@ -31,6 +33,7 @@ export class LoopList {
       (key) => this.entry(key),
       (element, loop, key) => this.show_entry(element, loop, key),
     );
+    this.detail = new LoopDetail(app);
     this.element = h(
       "div",
       {},
@@ -42,6 +45,7 @@ export class LoopList {
         ...this.filters.map(([, element]) => element),
       ),
       this.empty,
+      this.detail.element,
       this.list.element,
       this.more,
     );
@@ -53,6 +57,7 @@ export class LoopList {
     const { scene } = this.app.map;
     const loop = this.app.channels.table("loops").get(this.chosen) ?? null;
     scene.chosen_loop = loop;
+    this.detail.show(loop);
     const stop = loop && (scene.trail.stop(loop.later) ?? scene.trail.stop(loop.earlier));
     if (stop) {
       this.app.map.follow(false);

@@ -10,6 +10,7 @@ import { KeyedList } from "../ui/list";
 import { at_most_every } from "../ui/schedule";
 import { folded, section } from "../ui/section";
 import { LoopList } from "./loop_list";
+import { SearchPart } from "./search_part";
 import { ServiceList } from "./service_list";
 
 const words = texts.understand;
@@ -21,6 +22,7 @@ export class UnderstandView implements ViewPart {
   private readonly reason = h("p");
   private readonly confidence = new Bar(texts.now.confidence);
   private readonly loops: LoopList;
+  private readonly search: SearchPart;
   private readonly services: ServiceList;
   private readonly no_workers = h("p", { class: "quiet" }, words.no_workers);
   private readonly workers: KeyedList<Worker>;
@@ -30,6 +32,7 @@ export class UnderstandView implements ViewPart {
 
   constructor(private readonly app: App) {
     this.loops = new LoopList(app);
+    this.search = new SearchPart(app);
     this.services = new ServiceList(app);
     const bars = new WeakMap<HTMLElement, Bar>();
     this.workers = new KeyedList<Worker>(
@@ -54,6 +57,7 @@ export class UnderstandView implements ViewPart {
       { class: "view" },
       section(words.why, this.reason, this.confidence.element),
       folded(words.loops, true, this.loops.element),
+      folded(words.search, true, this.search.element),
       folded(words.services, true, this.services.element),
       folded(words.workers, true, this.no_workers, this.workers.element),
       folded(words.events, true, this.no_events, this.events.element),
@@ -68,6 +72,7 @@ export class UnderstandView implements ViewPart {
 
   shown(visible: boolean): void {
     this.visible = visible;
+    this.search.set_visible(visible);
     if (visible) this.update();
     else this.loops.choose(null);
   }

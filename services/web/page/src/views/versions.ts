@@ -1,0 +1,210 @@
+// Snapshots of the map: made, restored, and compared with each other and the map of now.
+import { App } from "../app";
+import * as format from "../format";
+import { Comparison, Snapshot, Snapshots } from "../protocol";
+import { sentence } from "../robot_state";
+import { texts } from "../texts";
+import { Facts } from "../ui/bar";
+import { button, fill, h, set_text, show } from "../ui/dom";
+import { KeyedList } from "../ui/list";
+import { section } from "../ui/section";
+
+const words = texts.time;
+const kAbove = "difference";
+const kPatienceMs = 60000; // of large maps
+
+export class Versions {
+  readonly element: HTMLElement;
+  private readonly none = h("p", { class: "quiet" }, words.no_snapshots);
+  private readonly name: HTMLInputElement;
+  private readonly form: HTMLFormElement;
+  private readonly list: KeyedList<Snapshot>;
+  private readonly before = h("select", { class: "field", id: "compare-before" });
+  private readonly after = h("select", { class: "field", id: "compare-after" });
+  private readonly compare: HTMLElement;
+  private readonly result = h("div", { hidden: true });
+  private snapshots: Snapshot[] = [];
+  private available = false; // the map store keeps some
+
+  constructor(private readonly app: App) {
+    this.name = h("input", {
+      class: "field",
+      id: "snapshot-name",
+      required: true,
+      maxlength: 64,
+      pattern: "[A-Za-z0-9_\\-][A-Za-z0-9._\\-]*",
+      title: words.name_rule,
+    });
+    this.form = h(
+      "form",
+      { class: "field-row" },
+      h("label", { for: "snapshot-name" }, words.name),
+      this.name,
+      h("button", { type: "submit", class: "button" }, words.make),
+    );
+    this.form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      void this.make();
+    });
+    this.list = new KeyedList<Snapshot>(
+      "rows snapshots",
+      (name) => this.entry(name),
+      (element, snapshot) => this.show_entry(element, snapshot),
+    );
+    this.compare = section(
+      words.comparison,
+      h("p", { class: "quiet" }, words.compare_hint),
+      h(
+        "div",
+        { class: "field-grid compared" },
+        pair(words.before, this.before),
+        pair(words.after, this.after),
+      ),
+      button(words.compare, () => void this.compare_now()),
+      this.result,
+    );
+    this.element = h(
+      "div",
+      {},
+      section(words.snapshots, this.none, this.form, this.list.element),
+      this.compare,
+    );
+    app.rights.on_change(() => this.show_all());
+  }
+
+  async update(): Promise<void> {
+    try {
+      this.snapshots = (await this.app.api.get<Snapshots>("/api/snapshots", kPatienceMs)).snapshots;
+      this.available = true;
+      set_text(this.none, words.no_snapshots);
+    } catch (error) {
+      this.snapshots = [];
+      this.available = false;
+      set_text(this.none, sentence(error instanceof Error ? error.message : String(error)));
+    }
+    this.show_all();
+  }
+
+  /** Takes the difference off the map. */
+  close(): void {
+    this.app.map.scene.above.delete(kAbove);
+    this.app.map.scene.refresh();
+    show(this.result, false);
+  }
+
+  private show_all(): void {
+    show(this.none, this.snapshots.length === 0);
+    show(this.form, this.available && this.app.rights.can("snapshot"));
+    this.list.show([...this.snapshots].reverse().map((snapshot) => [snapshot.name, snapshot]));
+    const sound = this.snapshots.filter((snapshot) => !snapshot.damage);
+    show(this.compare, sound.length > 0);
+    const options = (select: HTMLSelectElement, otherwise: string) => {
+      const chosen = select.value || otherwise;
+      const names = sound.map((snapshot) => h("option", { value: snapshot.name }, snapshot.name));
+      fill(select, ...names, h("option", { value: "" }, words.now));
+      select.value = sound.some((snapshot) => snapshot.name === chosen) ? chosen : "";
+    };
+    options(this.before, sound[sound.length - 1]?.name ?? "");
+    options(this.after, "");
+  }
+
+  private async make(): Promise<void> {
+    const order = this.app.api.post("snapshot", { name: this.name.value });
+    if (!(await this.app.notices.report(order, words.made))) return;
+    this.name.value = "";
+    await this.update();
+  }
+
+  private entry(name: string): HTMLElement {
+    const restore = button(words.restore, () => {
+      show(restore, false);
+      show(sure, true);
+    });
+    const sure = h(
+      "div",
+      { hidden: true },
+      h("p", {}, words.restore_warning),
+      h(
+        "div",
+        { class: "buttons" },
+        button(words.restore_sure, () => void this.restore(name), { class: "button primary" }),
+        button(texts.correct.cancel, () => {
+          show(restore, true);
+          show(sure, false);
+        }),
+      ),
+    );
+    return h("li", {}, h("h3", {}, name), h("p", { class: "quiet" }), restore, sure);
+  }
+
+  private show_entry(element: HTMLElement, snapshot: Snapshot): void {
+    const [, facts, restore] = element.children as unknown as HTMLElement[];
+    const when = format.moment(snapshot.time_s);
+    set_text(
+      facts,
+      snapshot.damage ?? words.snapshot_facts(when, snapshot.stops ?? 0, snapshot.bytes),
+    );
+    const sure = element.children[3] as HTMLElement;
+    show(restore, this.app.rights.can("restore") && !snapshot.damage && sure.hidden);
+  }
+
+  private async restore(name: string): Promise<void> {
+    await this.app.notices.report(this.app.api.post("restore", { name }), words.restored);
+    window.setTimeout(() => void this.update(), 3000); // the map store starts with it
+  }
+
+  private async compare_now(): Promise<void> {
+    const query = `before=${this.before.value}&after=${this.after.value}`;
+    show(this.result, true);
+    fill(this.result, h("p", { class: "quiet", role: "status" }, words.comparing));
+    try {
+      const made = await this.app.api.get<Comparison>(`/api/compare?${query}`, kPatienceMs);
+      const picture = new Image();
+      picture.src = made.picture;
+      await picture.decode();
+      this.show_difference(made, picture);
+    } catch (error) {
+      const text = error instanceof Error ? error.message : String(error);
+      fill(this.result, h("p", { class: "quiet", role: "status" }, text));
+    }
+  }
+
+  private show_difference(made: Comparison, picture: HTMLImageElement): void {
+    const { scene } = this.app.map;
+    const [width, height] = [made.columns * made.resolution_m, made.rows * made.resolution_m];
+    scene.above.set(kAbove, (context, view) => {
+      context.imageSmoothingEnabled = false;
+      context.drawImage(
+        picture,
+        view.scale * made.x_m + view.offset_x,
+        view.offset_y - view.scale * (made.y_m + height),
+        view.scale * width,
+        view.scale * height,
+      );
+      context.imageSmoothingEnabled = true;
+    });
+    scene.refresh();
+    const facts = new Facts();
+    facts.set(words.stops, words.stops_value(made.before.stops, made.after.stops));
+    for (const change of ["gone", "new", "seen", "lost"] as const) {
+      facts.set(words.changes[change], format.area(made[`${change}_m2`]));
+    }
+    const sign = (change: "gone" | "new" | "seen" | "lost") =>
+      h(
+        "span",
+        { class: "sign" },
+        h("span", { class: `sign-color change-${change}` }),
+        words.changes[change],
+      );
+    fill(
+      this.result,
+      h("p", { class: "signs" }, sign("gone"), sign("new"), sign("seen"), sign("lost")),
+      facts.element,
+      button(words.hide, () => this.close()),
+    );
+  }
+}
+
+function pair(label: string, input: HTMLElement): HTMLElement {
+  return h("div", { class: "field-pair" }, h("label", { for: input.id }, label), input);
+}

@@ -1,0 +1,227 @@
+// Understand and Time in a browser: loops with both local maps, the drive played, snapshots, versions compared and
+// restored, files for other programs. A map store and the web service run, no robot: first on a map that is only shown,
+// then on a database.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { drive_log } from "./drive_log.mjs";
+import { eventually, Robot } from "./robot.mjs";
+
+const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_WORK: work, TOPOGEO_CHROMIUM: chromium } = process.env;
+const packages = createRequire(join(build, "tests/browser/"));
+const playwright = packages("playwright-core");
+const axe = packages.resolve("axe-core/axe.min.js");
+const pictures = join(build, "tests/browser/screenshots");
+mkdirSync(pictures, { recursive: true });
+
+const robot = new Robot(join(build, "bin"), source, work);
+const file = (name) => join(work, name);
+const topogeo = (...options) => execFileSync(join(build, "bin/topogeo"), options, { stdio: ["ignore", "pipe", "ignore"] });
+let browser;
+let page;
+
+/** Stops and loops of a map file, of its report. */
+function facts(folder) {
+  const report = topogeo("store", "info", file(`${folder}/map.pb`)).toString();
+  return { stops: Number(/stops\s+(\d+)/.exec(report)[1]), loops: Number(/loops\s+(\d+)/.exec(report)[1]) };
+}
+
+before(async () => {
+  for (const [name, corners] of [
+    ["round", 6],
+    ["half", 2],
+  ]) {
+    writeFileSync(file(`${name}.clf`), drive_log(corners));
+    topogeo("map", "--log", file(`${name}.clf`), "--out", file(name));
+  }
+  await robot.start_store("--map", file("round/map.pb"));
+  browser = await playwright.chromium.launch({
+    executablePath: chromium,
+    args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
+  });
+  page = await open();
+});
+
+after(async () => {
+  await browser?.close();
+  await robot.stop();
+});
+
+async function open() {
+  const context = await browser.newContext({
+    viewport: { width: 1280, height: 800 },
+    colorScheme: "light",
+    bypassCSP: true,
+  });
+  const opened = await context.newPage();
+  opened.faults = [];
+  opened.on("pageerror", (error) => opened.faults.push(error.stack));
+  await opened.goto(`${robot.address}/#token=${robot.token}`);
+  return opened;
+}
+
+/** Waits until a selector has a text; the text then. */
+function text(selector, pattern, seconds) {
+  return eventually(
+    `${selector} with ${pattern}`,
+    async () => (await page.locator(selector).allInnerTexts()).find((entry) => pattern.test(entry)),
+    seconds,
+  );
+}
+
+async function get(path) {
+  const answer = await fetch(`${robot.address}${path}`);
+  return { status: answer.status, bytes: Buffer.from(await answer.arrayBuffer()) };
+}
+
+/** A screenshot, and nothing serious found by axe-core. */
+async function picture(name) {
+  await page.screenshot({ path: join(pictures, `${name}.png`) });
+  await page.addScriptTag({ path: axe });
+  const { violations } = await page.evaluate(() => window.axe.run());
+  const serious = violations.filter((finding) => ["serious", "critical"].includes(finding.impact));
+  assert.deepEqual(
+    serious.map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`),
+    [],
+    name,
+  );
+}
+
+test("a loop of a stored map shows both local maps laid on each other", async () => {
+  await page.click("#tab-understand");
+  const { loops } = facts("round");
+  await text(".section p", new RegExp(`^${loops} accepted, 0 rejected`));
+  const row = page.locator(".loops .row-title").first();
+  const [, later, earlier] = /Stop (\d+) at stop (\d+)/.exec(await row.innerText());
+  await row.click();
+  const agreement = await text(".loop-detail dd", /of what the later stop saw/);
+  const [overlap, near] = /(\d+) %.*?(\d+) %/s.exec(agreement).slice(1).map(Number);
+  assert.ok(overlap > 5 && near > 80, agreement); // it was accepted, perhaps looking elsewhere
+  await picture("understand-loop");
+  const served = JSON.parse((await get(`/api/local_map?stop=${later}`)).bytes);
+  assert.equal(served.number, Number(later));
+  assert.ok(served.points_m.length > 100 && served.branches.length > 0);
+  assert.ok(Number(earlier) < Number(later));
+  await row.click();
+  assert.equal(await page.locator(".loop-detail").isVisible(), false);
+});
+
+test("local maps that there are not, and requests that mean nothing, are refused", async () => {
+  assert.equal((await get("/api/local_map?stop=100000")).status, 404);
+  assert.equal((await get("/api/local_map?session=1&number=7")).status, 404);
+  assert.equal((await get("/api/local_map?stop=-1")).status, 400);
+  assert.equal((await get("/api/drive?first=x")).status, 400);
+  assert.equal((await get("/api/compare?before=a/b&after=")).status, 400);
+  assert.equal((await get("/api/export/pgm/..%2Fmap.pgm")).status, 404);
+});
+
+test("the drive plays: the floor grows with it", async () => {
+  await page.click("#tab-time");
+  await page.getByRole("button", { name: "Load the drive" }).click();
+  const { stops } = facts("round");
+  await text(".film-moment", new RegExp(`^Stop ${stops} of ${stops}`));
+  await page.locator("#film-slider").fill("0");
+  await text(".film-moment", new RegExp(`^Stop 1 of ${stops}`));
+  await page.locator("#film-slider").fill("400");
+  await picture("time-film");
+  await page.selectOption("#film-speed", "64");
+  await page.click("#film-play");
+  await text(".film-moment", new RegExp(`^Stop ${stops} of ${stops}`));
+  const frames = await page.evaluate(() =>
+    performance.getEntriesByName("film-drawn").map((entry) => entry.duration),
+  );
+  frames.sort((a, b) => a - b);
+  const [load] = await page.evaluate(() => performance.getEntriesByName("film-loaded").map((entry) => entry.duration));
+  console.log(
+    `${stops} stops loaded in ${load.toFixed(0)} ms, drawn in ${frames[frames.length >> 1].toFixed(1)} ms (median)`,
+  );
+  await page.getByRole("button", { name: "Back to now" }).click();
+  assert.equal(await page.locator(".film-controls").isVisible(), false);
+});
+
+test("every format of the store is a download, with the bytes that the command writes", async () => {
+  const { formats } = JSON.parse((await get("/api/export")).bytes);
+  assert.equal(formats.length, 13);
+  for (const { format, files } of formats) {
+    for (const name of files) {
+      const { status, bytes } = await get(`/api/export/${format}/${name}`);
+      // The map has no zones: masks and zone sets are of none.
+      assert.equal(status, 200, `${format}: ${bytes.toString().slice(0, 200)}`);
+      assert.ok(bytes.length > 0, name);
+    }
+  }
+  for (const [format, name] of [
+    ["g2o", "map.g2o"],
+    ["pgm", "map.pgm"],
+    ["pb", "map.pb"],
+  ]) {
+    const out = file(name.replace(/\.pgm$/, ""));
+    topogeo("store", "export", file("round/map.pb"), "--format", format, "--out", out);
+    const written = readFileSync(file(name));
+    assert.ok(written.equals((await get(`/api/export/${format}/${name}`)).bytes), `${name} differs`);
+  }
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: "Download map.pb" }).click(),
+  ]);
+  assert.ok(readFileSync(await download.path()).equals(readFileSync(file("map.pb"))));
+});
+
+test("a map that is only shown has no snapshots, and says so", async () => {
+  assert.equal(await robot.post("snapshot", { name: "one" }), 409);
+  await text(".section p", /A map that is only shown has no snapshots/);
+});
+
+test("snapshots are made, compared and restored", async () => {
+  // Half of the drive as a snapshot of the whole one: a snapshot is a database that may be copied elsewhere.
+  await robot.end("web");
+  await robot.end("map_store");
+  await robot.start_store("--continue", file("half/map.pb"), "--out", file("store_half"), "--new");
+  await eventually("a snapshot of the half", async () => (await robot.post("snapshot", { name: "half" })) === 200);
+  await robot.end("web");
+  await robot.end("map_store");
+  await robot.start_store("--continue", file("round/map.pb"), "--out", file("store"), "--new");
+  mkdirSync(file("store/map.snapshots"));
+  copyFileSync(file("store_half/map.snapshots/half.sqlite"), file("store/map.snapshots/half.sqlite"));
+  await page.reload();
+  await page.click("#tab-time");
+
+  await page.fill("#snapshot-name", "whole");
+  await page.getByRole("button", { name: "Make a snapshot" }).click();
+  await text(".snapshots h3", /^whole$/);
+  assert.equal(await robot.post("snapshot", { name: "whole" }), 409); // there is one
+  assert.equal(await robot.post("snapshot", { name: "more" }, "wrong"), 401);
+  assert.equal(await robot.post("restore", { name: "none" }), 409);
+
+  const areas = async (before, after) => {
+    await page.selectOption("#compare-before", before);
+    await page.selectOption("#compare-after", after);
+    await page.getByRole("button", { name: "Compare", exact: true }).click();
+    await text("dl dt", /Seen since/);
+    return JSON.parse((await get(`/api/compare?before=${before}&after=${after}`)).bytes);
+  };
+  const none = await areas("whole", "");
+  assert.deepEqual([none.gone_m2, none.new_m2, none.seen_m2, none.lost_m2], [0, 0, 0, 0]);
+  const grown = await areas("half", "");
+  // What two sides of the corridor do not show of it: most of the 2 x 5 m behind the block.
+  assert.ok(grown.seen_m2 > 5 && grown.seen_m2 < 11, JSON.stringify(grown));
+  assert.ok(grown.gone_m2 < 1 && grown.new_m2 < 1, JSON.stringify(grown));
+  await picture("time-versions");
+
+  const half = facts("half").stops;
+  assert.notEqual(half, facts("round").stops);
+  const row = page.locator(".snapshots li", { has: page.getByRole("heading", { name: "half", exact: true }) });
+  await row.getByRole("button", { name: "Restore" }).click();
+  await row.getByRole("button", { name: "Restore it" }).click();
+  await text(".notice", /becomes that of snapshot half/);
+  await eventually("the map of half", async () => {
+    const { status, bytes } = await get("/api/drive");
+    return status === 200 && JSON.parse(bytes).total === half;
+  });
+  const { snapshots } = JSON.parse((await get("/api/snapshots")).bytes);
+  assert.ok(snapshots.some((snapshot) => snapshot.name === "before-half" && snapshot.stops === facts("round").stops));
+  assert.deepEqual(page.faults, []);
+});
