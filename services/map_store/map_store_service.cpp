@@ -11,6 +11,7 @@
 #include "topogeo/support/log.hpp"
 
 #include "result_files.hpp"
+#include "stored_input.hpp"
 
 namespace topogeo::map_store {
 
@@ -38,32 +39,6 @@ constexpr milliseconds kSnapshotPeriod{40};
 constexpr milliseconds kSnapshotSlice{10};
 constexpr std::uint32_t kPiecesUnderWay = 64;  // 3.6 MB
 constexpr std::chrono::seconds kRetryPeriod{5};
-
-/// The map that is there, and its drawing under what is drawn now.
-/// `shown` becomes its global map, if it has one.
-/// `rooms` becomes what is remembered of its rooms.
-MapInput::Stored stored_input(const storage::MapDatabase& database, storage::MapDrawing& drawing,
-                              std::optional<topomap::GlobalMap>& shown,
-                              planning::RoomMemory& rooms) {
-  storage::MapDocument document = database.load();
-  rooms = std::move(document.rooms);
-  if (!document.global_map.nodes.empty()) shown = std::move(document.global_map);
-  pipeline::lay_over(document.drawing, std::move(drawing));
-  drawing = std::move(document.drawing);
-  MapInput::Stored stored;
-  stored.local_maps = std::move(document.local_maps);
-  stored.trajectory = std::move(document.trajectory);
-  stored.closures = std::move(document.loop_closures);
-  stored.edges = std::move(document.edges);
-  stored.refused_merges = std::move(document.refused_merges);
-  for (const topomap::StopId& stop : database.waiting_stops()) {
-    if (auto map = database.stop(stop)) stored.waiting.push_back(std::move(*map));
-  }
-  for (const storage::SessionState& session : database.sessions()) {
-    stored.first_kept[session.id] = session.first_kept;
-  }
-  return stored;
-}
 
 }  // namespace
 
