@@ -9,6 +9,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drive_log } from "./drive_log.mjs";
 import { eventually, Robot } from "./robot.mjs";
+import { kAddress, StandIn } from "./stand_in.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_WORK: work, TOPOGEO_CHROMIUM: chromium } = process.env;
 const packages = createRequire(join(build, "tests/browser/"));
@@ -50,24 +51,25 @@ after(async () => {
   await robot.stop();
 });
 
-async function open() {
+async function open(address = robot.address, service = null) {
   const context = await browser.newContext({
     viewport: { width: 1280, height: 800 },
     colorScheme: "light",
     bypassCSP: true,
   });
+  await service?.serve(context);
   const opened = await context.newPage();
   opened.faults = [];
   opened.on("pageerror", (error) => opened.faults.push(error.stack));
-  await opened.goto(`${robot.address}/#token=${robot.token}`);
+  await opened.goto(`${address}/#token=${robot.token}`);
   return opened;
 }
 
 /** Waits until a selector has a text; the text then. */
-function text(selector, pattern, seconds) {
+function text(selector, pattern, seconds, on = page) {
   return eventually(
     `${selector} with ${pattern}`,
-    async () => (await page.locator(selector).allInnerTexts()).find((entry) => pattern.test(entry)),
+    async () => (await on.locator(selector).allInnerTexts()).find((entry) => pattern.test(entry)),
     seconds,
   );
 }
@@ -78,10 +80,10 @@ async function get(path) {
 }
 
 /** A screenshot, and nothing serious found by axe-core. */
-async function picture(name) {
-  await page.screenshot({ path: join(pictures, `${name}.png`) });
-  await page.addScriptTag({ path: axe });
-  const { violations } = await page.evaluate(() => window.axe.run());
+async function picture(name, on = page) {
+  await on.screenshot({ path: join(pictures, `${name}.png`) });
+  await on.addScriptTag({ path: axe });
+  const { violations } = await on.evaluate(() => window.axe.run());
   const serious = violations.filter((finding) => ["serious", "critical"].includes(finding.impact));
   assert.deepEqual(
     serious.map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`),
@@ -224,4 +226,54 @@ test("snapshots are made, compared and restored", async () => {
   const { snapshots } = JSON.parse((await get("/api/snapshots")).bytes);
   assert.ok(snapshots.some((snapshot) => snapshot.name === "before-half" && snapshot.stops === facts("round").stops));
   assert.deepEqual(page.faults, []);
+});
+
+/** A service whose robot has come to two rooms that look alike. */
+class TwoRooms extends StandIn {
+  async answer(route) {
+    const url = new URL(route.request().url());
+    if (url.pathname !== "/api/local_map") return super.answer(route);
+    const number = Number(url.searchParams.get("stop"));
+    const walls = [];
+    for (let s = -2; s <= 2; s += 0.05) walls.push(2, s, s, 2, s, -2);
+    const branches = [[-1, 0, 0, 0, 1, 0.1]];
+    const nodes = [[0, 0, "real"]];
+    return route.fulfill({ json: { session: "1", number, laser_m: [0, 0], nodes, branches, points_m: walls } });
+  }
+
+  show(channel, value) {
+    this.tell({ channel, version: 1, value });
+  }
+}
+
+test("the search shows while it runs, and why a loop was rejected", async () => {
+  const service = new TwoRooms(join(build, "share/topogeo/web"));
+  const own = await open(kAddress, service);
+  await own.click("#tab-understand");
+  await text(".search-state", /No search was heard/, 20, own);
+  const covariance = [0.09, 0, 0, 0, 0.04, 0, 0, 0, 0.01];
+  const table = (channel, set) => service.tell({ channel, from: 0, version: 1, set, gone: [] });
+  const stops = Array.from({ length: 9 }, (_, i) => [i - 4, 0, 0]);
+  table("trail", { 0: stops });
+  const loop = { step: 8, earlier: 1, later: 8, accepted: false, outcome: "gate", source: "place" };
+  Object.assign(loop, { x_m: 6.2, y_m: 0.1, theta_rad: 0.02, fitness: 0.71, probability: 0.2 });
+  Object.assign(loop, { predicted: { x_m: 7, y_m: 0, theta_rad: 0, covariance }, explanation: "the maps fit elsewhere" });
+  table("loops", { 0: { ...loop, correction_m: 0.8, correction_rad: 0.02 } });
+  const match = { x_m: 3, y_m: 0, theta_rad: 0, base_theta_rad: 0.1, half_widths: [1, 0.7, 0.3], covariance };
+  service.show("search", { stamp_s: 1, tasks: 1, running: true, whole_map: false, matches: [{ ...match, done: false, hypotheses: [] }], hypotheses: [] });
+  await text(".search-state", /1 match is worked on/, 20, own);
+  const hypotheses = [[2.4, 0.3, 0.1, 0.83], [3.6, -0.2, 3, 0.41]];
+  const done = { ...match, done: true, accepted: true, fitness: 0.83, hypotheses };
+  service.show("search", { stamp_s: 1, tasks: 1, running: false, whole_map: false, matches: [done], hypotheses: [] });
+  await text(".search-state", /1 match, 1 accepted/, 20, own);
+  await own.screenshot({ path: join(pictures, "understand-search.png") });
+  service.show("search", { stamp_s: 2, tasks: 72, running: false, whole_map: true, matches: [], hypotheses });
+  await text(".search-state", /2 places fit best/, 20, own);
+
+  await own.locator(".loops .row-title").click();
+  await text(".loop-detail p", /The maps fit elsewhere/, 20, own);
+  await text(".loop-detail dd", /0\.81 m, 1\.1°/, 20, own);
+  await text(".loop-detail dd", /71 %/, 20, own);
+  await picture("understand-rejected", own);
+  assert.deepEqual(own.faults, []);
 });

@@ -1,6 +1,6 @@
 // How old a pose is when the page has drawn it, and what viewers cost the localizer. Prints a table; asserts nothing.
 //
-//   TOPOGEO_BUILD=build TOPOGEO_SOURCE=. node tests/browser/latency.mjs [SECONDS=20] [VIEWERS=20]
+//   TOPOGEO_BUILD=$PWD/build TOPOGEO_SOURCE=$PWD node tests/browser/latency.mjs [SECONDS=20] [VIEWERS=20]
 //
 // A simulated robot turns on the spot. The stamp of a pose is the clock of this machine when the base sent its odometry,
 // so gateway and localizer are in the figure, too.
@@ -25,6 +25,7 @@ const browser = await browsers.launch({
 /** Counts, in a page, how old each pose is when its frame has been drawn. */
 function watch_poses() {
   window.ages_ms = [];
+  window.arrived_ms = [];
   const Plain = window.WebSocket;
   window.WebSocket = class extends Plain {
     set onmessage(handler) {
@@ -32,6 +33,7 @@ function watch_poses() {
         handler(event);
         const message = JSON.parse(event.data);
         if (message.channel !== "pose" || !message.value) return;
+        window.arrived_ms.push(Date.now() - 1000 * message.value.stamp_s);
         // The page draws with the next frame; the one after that begins when it is on the screen.
         requestAnimationFrame(() =>
           requestAnimationFrame(() => window.ages_ms.push(Date.now() - 1000 * message.value.stamp_s)),
@@ -60,19 +62,23 @@ try {
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();
   await page.keyboard.down("a");
-  console.log("| viewers | poses | median ms | 95 % ms | CPU of localizer, ms a second | of web |\n|---|---|---|---|---|---|");
+  console.log("| viewers | poses | age on the screen: median, 95 %, ms | age when the page has it | CPU of localizer, ms a second | of web |\n|---|---|---|---|---|---|");
   const crowd = await browser.newPage();
   await crowd.goto(`${robot.address}/icon.svg`);
   for (const others of [0, viewers]) {
     await crowd.evaluate(open_viewers, others);
-    await page.evaluate(() => (window.ages_ms.length = 0));
+    await page.evaluate(() => (window.ages_ms.length = window.arrived_ms.length = 0));
     const before = { localizer: robot.cpu_s("localizer"), web: robot.cpu_s("web") };
     await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
     const cpu = (name) => ((1000 * (robot.cpu_s(name) - before[name])) / seconds).toFixed(1);
     const ages = await page.evaluate(() => window.ages_ms);
-    ages.sort((a, b) => a - b);
-    const quantile = (share) => ages[Math.floor(share * (ages.length - 1))]?.toFixed(0);
-    console.log(`| ${others + 1} | ${ages.length} | ${quantile(0.5)} | ${quantile(0.95)} | ${cpu("localizer")} | ${cpu("web")} |`);
+    const arrived = await page.evaluate(() => window.arrived_ms);
+    const quantiles = (values) => {
+      values.sort((a, b) => a - b);
+      return [0.5, 0.95].map((share) => values[Math.floor(share * (values.length - 1))]?.toFixed(0)).join(", ");
+    };
+    const costs = `${cpu("localizer")} | ${cpu("web")}`;
+    console.log(`| ${others + 1} | ${ages.length} | ${quantiles(ages)} | ${quantiles(arrived)} | ${costs} |`);
     await crowd.evaluate(() => window.sockets.forEach((socket) => socket.close()));
   }
   await page.keyboard.up("a");

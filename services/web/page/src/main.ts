@@ -78,7 +78,7 @@ class Tabs {
     sessionStorage.setItem("topogeo-view", name);
   }
 
-  /** Keys 1 to 5 open the views. */
+  /** Keys 1 to 6 open the views. */
   listen(): void {
     const names = [...this.tabs.keys()];
     document.addEventListener("keydown", (event) => {

@@ -1,6 +1,7 @@
 // All texts of the page, in English. Another language is another object of this type.
 import { draw_texts } from "./draw_texts";
 import { area, count, degrees, duration, length, Maybe, percent, point, speed } from "./format";
+import { time_texts } from "./time_texts";
 
 export const texts = {
   title: "topogeo",
@@ -110,7 +111,7 @@ export const texts = {
     ["Space", "Stop"],
     ["F", "Show the whole map"],
     ["R", "Follow the robot"],
-    ["1 – 5", "The views"],
+    ["1 – 6", "The views"],
   ],
   legend: {
     real: "Junction",
@@ -329,68 +330,7 @@ export const texts = {
   },
 
   draw: draw_texts,
-  time: {
-    film: "Play the drive",
-    film_hint: "How the map came to be: the robot, what it saw, and the floor known until then.",
-    load: "Load the drive",
-    fetching: (stops: number, total: number) => `Fetched ${count(stops)} of ${count(total)} stops …`,
-    loading: (stops: number, total: number) => `Laid out ${count(stops)} of ${count(total)} stops …`,
-    no_drive: "The map has no stops: nobody has driven it.",
-    drive: (stops: number, seconds: number) =>
-      `${count(stops)} stops, ${duration(seconds)} without the pauses.`,
-    slider: "Moment of the drive",
-    play: "Play",
-    pause: "Pause",
-    speed: "Speed",
-    times: (speed: number) => `${speed} ×`,
-    close: "Back to now",
-    moment: (stop: number, total: number, when: string) =>
-      `Stop ${count(stop)} of ${count(total)}, ${when}`,
-    snapshots: "Snapshots",
-    no_snapshots: "There is no snapshot yet.",
-    name: "Name",
-    name_rule: "Letters, digits, '.', '-' and '_'; no '.' first",
-    make: "Make a snapshot",
-    made: "The snapshot is made.",
-    snapshot_facts: (when: string, stops: number, bytes: number) =>
-      `${when}, ${count(stops)} stops, ${(bytes / 1e6).toFixed(1)} MB`,
-    restore: "Restore",
-    restore_warning:
-      "The map becomes what it was; that of now is kept as a snapshot. A drive that is under way " +
-      "adds again what its services still have: end it before, or start them again.",
-    restore_sure: "Restore it",
-    restored: "The map is restored.",
-    comparison: "Compare",
-    compare_hint: "What differs between two versions of the map, on the map in colours.",
-    before: "Before",
-    after: "After",
-    now: "the map of now",
-    compare: "Compare",
-    comparing: "Comparing …",
-    hide: "Hide",
-    stops: "Stops",
-    stops_value: (before: number, after: number) => `${count(before)} before, ${count(after)} after`,
-    changes: { gone: "Gone", new: "New", seen: "Seen since", lost: "Not known any more" },
-    export: "Export",
-    export_hint: "The map of now as a file for other programs.",
-    download: "Download",
-    download_file: (file: string) => `Download ${file}`,
-    formats: {
-      pgm: "grid, for map_server of ROS",
-      masks: "zones as masks, for costmap filters of Nav2",
-      geojson: "graph, places and zones, for the route server of Nav2",
-      lif: "graph and places, Layout Interchange Format",
-      zones: "zones, VDA 5050",
-      rmf: "graph, for Open-RMF",
-      graphml: "graph without loss, for graph programs",
-      g2o: "pose graph of the stops",
-      svg: "picture",
-      png: "picture",
-      tum: "corrected pose of each scan",
-      carmen: "scans of the stops as a log",
-      pb: "the whole map",
-    } as Record<string, string>,
-  },
+  time: time_texts,
 
   panel: {
     title: "Panel",
