@@ -9,7 +9,7 @@ import { watch } from "./watcher.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
-const kViews = ["now", "send", "correct", "understand", "draw"];
+const kViews = ["now", "send", "correct", "understand", "draw", "time"];
 
 const robot = new Robot(join(build, "bin"), source, process.env.TOPOGEO_WORK);
 let browser;

@@ -279,12 +279,12 @@ export const texts = {
     fitness: "Fitness",
     probability: "Probability",
     share: (value: Maybe) => (typeof value === "number" ? percent(value) : "not kept"),
-    overlap: "In common",
-    overlap_value: (overlap: number, near: number) =>
-      `${percent(overlap)} of what the later stop saw lies in the earlier one's view; of that ` +
-      `${percent(near)} within 10 cm of its walls`,
+    overlap: "Of what the later stop saw, in the earlier one's view",
+    near: "Of that within 10 cm of its walls",
     moved: "Match and poses differ by",
-    moved_value: (meters: Maybe, turn: Maybe) => `${length(meters)}, ${degrees(turn)}`,
+    none: "nothing",
+    moved_value: (meters: Maybe, turn: Maybe) =>
+      typeof meters === "number" ? `${length(meters)}, ${degrees(turn)}` : "not kept",
     corrected: "Moves the stop by",
     search: "Search",
     search_hint:

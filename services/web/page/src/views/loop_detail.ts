@@ -84,14 +84,11 @@ export class LoopDetail {
     const { overlap, near } = agreement(earlier, later, loop);
     this.facts.set(words.fitness, words.share(loop.fitness));
     this.facts.set(words.probability, words.share(loop.probability));
-    this.facts.set(words.overlap, words.overlap_value(overlap, near));
-    if (loop.predicted) {
-      const [meters, turn] = apart(loop.predicted, loop);
-      this.facts.set(words.moved, words.moved_value(meters, turn));
-    }
-    if (loop.correction_m !== null) {
-      this.facts.set(words.corrected, words.moved_value(loop.correction_m, loop.correction_rad));
-    }
+    this.facts.set(words.overlap, words.share(overlap));
+    this.facts.set(words.near, overlap > 0 ? words.share(near) : words.none);
+    const [meters, turn] = loop.predicted ? apart(loop.predicted, loop) : [null, null];
+    this.facts.set(words.moved, words.moved_value(meters, turn));
+    this.facts.set(words.corrected, words.moved_value(loop.correction_m, loop.correction_rad));
     this.app.map.scene.refresh();
   }
 
