@@ -163,7 +163,7 @@ test("taps and drags make shapes", () => {
   const b = { x: 3, y: 2 };
   assert.deepEqual(stroke(new Sketch("polygon"), a, b).points, [0, 0, 3, 0, 3, 2, 0, 2]);
   assert.equal(stroke(new Sketch("polygon"), a, { x: 3, y: 0 }), null); // no area
-  assert.deepEqual(stroke(new Sketch("segment"), a, b).points, [0, 0, 3, 2]);
+  for (const shape of ["segment", "line"]) assert.deepEqual(stroke(new Sketch(shape), a, b).points, [0, 0, 3, 2]);
   const arrow = stroke(new Sketch("arrow"), a, { x: 0.1, y: 3 });
   assert.deepEqual(arrow, { points: [0, 0], heading_rad: Math.PI / 2 });
   const polygon = new Sketch("polygon");

@@ -33,20 +33,42 @@ const kPlaces = `places:
   - {name: base, at: [0, 0]}
 `;
 
-export class Robot {
+/** What its web service is ordered and asked. */
+class Orders {
   token = "token-of-the-test";
+
+  get address() {
+    return `http://127.0.0.1:${this.port}`;
+  }
+
+  /** POST of an order, its status code. */
+  async post(order, body, token = this.token) {
+    return (await this.send(order, body, token)).status;
+  }
+
+  /** POST of a question, its answer. */
+  async ask(order, body) {
+    return (await this.send(order, body, this.token)).json();
+  }
+
+  send(order, body, token) {
+    const headers = { "Content-Type": "application/json" };
+    if (token) headers.Authorization = `Bearer ${token}`;
+    return fetch(`${this.address}/api/${order}`, { method: "POST", headers, body: JSON.stringify(body) });
+  }
+}
+
+/** All services as processes of their own, which can be ended one by one. */
+export class Robot extends Orders {
   processes = new Map();
 
   /** bin: folder of the programs; source: of the project; work: where files go, made if missing. */
   constructor(bin, source, work) {
+    super();
     this.bin = bin;
     this.world = join(source, "tests/data/room.world.yaml");
     this.work = work;
     mkdirSync(work, { recursive: true });
-  }
-
-  get address() {
-    return `http://127.0.0.1:${this.port}`;
   }
 
   /** Starts everything; the web service last. */
@@ -130,17 +152,32 @@ export class Robot {
       .slice(-15)
       .join("\n");
   }
+}
 
-  /** POST of an order, its status code. */
-  async post(order, body, token = this.token) {
-    const headers = { "Content-Type": "application/json" };
-    if (token) headers.Authorization = `Bearer ${token}`;
-    const answer = await fetch(`${this.address}/api/${order}`, {
-      method: "POST",
-      headers,
-      body: JSON.stringify(body),
+/** The same robot by `topogeo run`, as an operator starts it: it takes floors for its simulator. */
+export class SimulatedRun extends Orders {
+  /** bin: folder of the programs; source: of the project; work: where files go. */
+  constructor(bin, source, work) {
+    super();
+    this.bin = bin;
+    this.world = join(source, "tests/data/room.world.yaml");
+    this.work = work;
+  }
+
+  async start() {
+    this.port = await free_port();
+    const log = openSync(join(this.work, "run.log"), "a");
+    const options = ["run", "--sim", this.world, "--web", "--port", String(this.port), "--token", this.token];
+    this.process = spawn(join(this.bin, "topogeo"), [...options, "--out", join(this.work, "run")], {
+      stdio: ["ignore", log, log],
     });
-    return answer.status;
+    this.ended = new Promise((resolve) => this.process.on("exit", resolve));
+    await eventually("the web service answers", () => fetch(`${this.address}/api/info`).catch(() => null));
+  }
+
+  async stop() {
+    this.process?.kill("SIGTERM");
+    await this.ended;
   }
 }
 

@@ -20,6 +20,7 @@ export interface DrawnZone {
 }
 
 export interface DrawnLine {
+  name?: string;
   points_m: number[];
 }
 
@@ -203,5 +204,5 @@ function parse_item(list: ListName, fields: Fields): Item | null {
   }
   const points_m = numbers(fields.points_m, 2);
   if (!points_m || (list !== "walls" && points_m.length !== 4)) return null;
-  return list === "doors" ? { name, points_m } : { points_m };
+  return list === "doors" || name !== "" ? { name, points_m } : { points_m };
 }

@@ -4,6 +4,11 @@ import { Rights } from "../app";
 import { Channels } from "../channels";
 import { Drawing, empty_drawing, parse_drawing } from "./drawing";
 
+export interface Saved {
+  version: string;
+  message?: string;
+}
+
 const kMostReads = 3; // in a row
 
 export class DrawingStore {
@@ -34,12 +39,14 @@ export class DrawingStore {
     return this.reading;
   }
 
-  /** Saves on top of a version, the new one. Throws an ApiError, 409 when others have saved. */
-  async save(drawing: Drawing, version: string): Promise<string> {
-    const body = { version, ...drawing };
-    const answer = await this.api.post<{ version: string }>("drawing", body);
+  /**
+   * Saves on top of a version; the new one, and what the service has to say about it. Throws an
+   * ApiError, 409 when others have saved.
+   */
+  async save(drawing: Drawing, version: string): Promise<Saved> {
+    const answer = await this.api.post<Saved>("drawing", { version, ...drawing });
     this.take(drawing, answer.version);
-    return answer.version;
+    return answer;
   }
 
   private is_old(): boolean {

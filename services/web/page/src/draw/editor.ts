@@ -1,6 +1,6 @@
 // The edit mode on the map: gives presses and keys to the tool that is chosen, and draws what is
 // edited.
-import { draw_drawing, zone_color } from "../map/drawing_layer";
+import { draw_drawing, kArrowPx, zone_color } from "../map/drawing_layer";
 import {
   draw_cursor,
   draw_grid,
@@ -31,7 +31,7 @@ import { snap, Snapped, SnapSettings } from "./snapping";
 import { is_item_tool, make_item, OtherTool, shape_of, snaps, ToolName } from "./tools";
 
 const kReachPx = 11; // how near a press takes hold, and how far corners draw
-const kArrowPx = 30;
+const kNamePx = 12; // how far names stand above lines and places
 const kKeyStep_m = 0.1; // of the cursor, without a grid
 
 export interface EditorHooks {
@@ -103,6 +103,12 @@ export class Editor implements MapTool, Overlay {
   progress(): { points: number; complete: boolean } {
     const complete = this.sketch !== null && !this.sketch.is_empty && this.sketch.finish() !== null;
     return { points: this.sketch?.points.length ?? 0, complete };
+  }
+
+  /** Another tool: what is on its way and could end here is kept. */
+  switch_to(tool: ToolName): void {
+    this.finish();
+    this.choose(tool);
   }
 
   finish(): void {
@@ -225,8 +231,8 @@ export class Editor implements MapTool, Overlay {
     const { drawing, selected } = this.edited;
     draw_drawing(context, view, drawing, palette, selected);
     for (const { ref, item } of all_items(drawing)) {
-      if (!("name" in item) || item.name === "") continue;
-      const shift = is_closed(ref.list) ? 0 : 8 / view.scale;
+      if (!("name" in item) || !item.name) continue;
+      const shift = is_closed(ref.list) ? 0 : kNamePx / view.scale;
       const at = middle_of(points_of(item));
       draw_text(context, view, { x: at.x, y: at.y + shift }, item.name, palette);
     }

@@ -32,8 +32,6 @@ export interface Handle extends Point {
   part: Part;
 }
 
-const kHeadingNear_rad = 0.12;
-
 /** The arrow of a base station or of a one-way zone; null where an item has none. */
 export function heading_of(item: Item): number | null {
   if ("kind" in item) return item.kind === "one_way" ? item.value : null;
@@ -123,7 +121,7 @@ export function moved(item: Item, part: Part, to: Point): Item {
   const points = [...points_of(item)];
   switch (part.what) {
     case "heading":
-      return with_heading(item, snap_heading(heading(middle_of(points), to), kHeadingNear_rad));
+      return with_heading(item, snap_heading(heading(middle_of(points), to)));
     case "corner":
       points.splice(2 * part.index, 2, to.x, to.y);
       break;

@@ -11,8 +11,6 @@ export interface Finished {
   heading_rad: number; // of an arrow
 }
 
-const kHeadingNear_rad = 0.12;
-
 export class Sketch {
   readonly points: Point[] = [];
   /** Where the pointer is: the end of the rubber band. */
@@ -41,7 +39,7 @@ export class Sketch {
 
   heading_rad(): number {
     const { base, cursor } = this;
-    return base && cursor ? snap_heading(heading(base, cursor), kHeadingNear_rad) : 0;
+    return base && cursor ? snap_heading(heading(base, cursor)) : 0;
   }
 
   press(at: Point): void {
@@ -122,7 +120,7 @@ export class Sketch {
       return this.finish();
     }
     this.points.push(from, to);
-    return this.is_full() ? this.finish() : null;
+    return this.finish();
   }
 
   private is_full(): boolean {

@@ -21,6 +21,7 @@ export interface Snapped extends Point {
 
 const kQuarter = Math.PI / 2;
 const kSameDirection = 1e-9;
+const kHeadingNear_rad = 0.12;
 
 /** Corners count more than right angles, these more than the grid. */
 export function snap(at: Point, settings: SnapSettings, context: SnapContext): Snapped {
@@ -39,9 +40,9 @@ export function on_grid(at: Point, step_m: number): Point {
 }
 
 /** The nearest multiple of 45 degrees where it is near, else the angle itself. */
-export function snap_heading(angle: number, near_rad: number): number {
+export function snap_heading(angle: number): number {
   const eighth = (Math.PI / 4) * Math.round(angle / (Math.PI / 4));
-  return Math.abs(angle - eighth) <= near_rad ? eighth : angle;
+  return Math.abs(angle - eighth) <= kHeadingNear_rad ? eighth : angle;
 }
 
 function to_step(value: number, step: number): number {

@@ -3,15 +3,12 @@ import { Drawing, DrawnDoor, DrawnLine, DrawnPlace, DrawnZone, ItemRef } from ".
 import { heading_of } from "../draw/grab";
 import { middle_of } from "../draw/geometry";
 import { Palette } from "../ui/theme";
-import { View } from "./map_canvas";
+import { to_pixels, View } from "./map_canvas";
 
 const kHatchPx = 11;
-const kArrowPx = 30;
+/** Length of arrows at each zoom. */
+export const kArrowPx = 30;
 const kStationPx = 11;
-
-export function to_pixels(view: View, x: number, y: number): [number, number] {
-  return [view.scale * x + view.offset_x, view.offset_y - view.scale * y];
-}
 
 export function trace_line(
   context: CanvasRenderingContext2D,

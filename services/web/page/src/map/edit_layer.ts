@@ -5,8 +5,8 @@ import { Handle } from "../draw/grab";
 import { Sketch } from "../draw/sketch";
 import * as format from "../format";
 import { Palette } from "../ui/theme";
-import { draw_arrow, to_pixels, trace_line } from "./drawing_layer";
-import { View } from "./map_canvas";
+import { draw_arrow, trace_line } from "./drawing_layer";
+import { to_pixels, View } from "./map_canvas";
 
 const kFont = "600 13px system-ui, sans-serif";
 const kFewestGridPx = 9;

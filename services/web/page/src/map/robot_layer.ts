@@ -2,7 +2,7 @@
 // sent.
 import { LocalMap, Pose, Scan } from "../protocol";
 import { Palette } from "../ui/theme";
-import { View } from "./map_canvas";
+import { to_pixels, View } from "./map_canvas";
 
 const kBodyRadiusM = 0.27;
 const kSmallestBodyPx = 9;
@@ -12,10 +12,6 @@ export interface PoseMark {
   x: number; // metres, map frame
   y: number;
   theta: number; // radians
-}
-
-function to_pixels(view: View, x: number, y: number): [number, number] {
-  return [view.scale * x + view.offset_x, view.offset_y - view.scale * y];
 }
 
 /**

@@ -56,6 +56,11 @@ export function button(
   return h("button", { type: "button", class: "button", onclick: on_click, ...extra }, text);
 }
 
+/** An input under its label; wide: over all columns of its grid. */
+export function field(label: string, input: HTMLElement, wide = ""): HTMLElement {
+  return h("div", { class: `field-pair ${wide}` }, h("label", { for: input.id }, label), input);
+}
+
 const kIcons = {
   fit: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
   follow: "M12 3v3M12 18v3M3 12h3M18 12h3M12 7a5 5 0 1 0 0 10 5 5 0 0 0 0-10z",

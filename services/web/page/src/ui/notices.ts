@@ -28,8 +28,13 @@ export class Notices {
       this.show(answer?.message ? sentence(answer.message) : done);
       return true;
     } catch (error) {
-      this.show(sentence(error instanceof Error ? error.message : String(error)), "error");
+      this.fail(error);
       return false;
     }
+  }
+
+  /** Says why something was not done. */
+  fail(error: unknown): void {
+    this.show(sentence(error instanceof Error ? error.message : String(error)), "error");
   }
 }

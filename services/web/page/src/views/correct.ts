@@ -3,7 +3,7 @@ import { App, ViewPart } from "../app";
 import { PoseMark } from "../map/robot_layer";
 import { Merge } from "../protocol";
 import { texts } from "../texts";
-import { button, h, set_attribute, set_text, show } from "../ui/dom";
+import { button, field, h, set_attribute, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { once_a_frame } from "../ui/schedule";
 import { section } from "../ui/section";
@@ -91,8 +91,6 @@ export class CorrectView implements ViewPart {
   }
 
   private pose_form(): HTMLFormElement {
-    const field = (label: string, input: HTMLElement, wide = "") =>
-      h("div", { class: `field-pair ${wide}` }, h("label", { for: input.id }, label), input);
     const form = h(
       "form",
       { class: "card", hidden: true },

@@ -120,7 +120,7 @@ export class DrawView implements ViewPart {
   }
 
   private choose(tool: ToolName): void {
-    this.editor.choose(tool);
+    this.editor.switch_to(tool);
     const drawing = tool !== "select";
     this.app.map.start_tool(this.editor, drawing);
     this.app.map.take_keys(!drawing);
@@ -175,7 +175,7 @@ export class DrawView implements ViewPart {
       notices.show(done[tool]);
       if (tool === "rename") this.ask_name();
     } catch (error) {
-      notices.show(error instanceof Error ? error.message : String(error), "error");
+      notices.fail(error);
     }
   }
 

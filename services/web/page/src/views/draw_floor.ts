@@ -159,7 +159,7 @@ export class DrawFloor {
     try {
       this.editor.document.edit(parse_drawing(content), null);
     } catch (error) {
-      return this.app.notices.show(error instanceof Error ? error.message : words.no_json, "error");
+      return this.app.notices.fail(error);
     }
     const { name } = content as { name?: unknown };
     if (typeof name === "string") this.name.value = name;

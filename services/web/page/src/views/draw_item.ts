@@ -14,7 +14,7 @@ import {
 import { area_of, length_of } from "../draw/geometry";
 import { heading_of, with_heading, without_corner } from "../draw/grab";
 import { texts } from "../texts";
-import { button, fill, h, set_text, show } from "../ui/dom";
+import { button, field, fill, h, set_text, show } from "../ui/dom";
 import { folded } from "../ui/section";
 
 const words = texts.draw;
@@ -98,7 +98,7 @@ export class DrawItem {
         this.set(ref, { ...item, name });
       }
     });
-    this.updates.push((item) => show_value(input, "name" in item ? item.name : ""));
+    this.updates.push((item) => show_value(input, ("name" in item && item.name) || ""));
     return field(words.name, input, "wide");
   }
 
@@ -175,8 +175,4 @@ function number_input(id: string, limits: Record<string, number> = {}): HTMLInpu
 // What is being typed stays.
 function show_value(input: HTMLInputElement, value: string): void {
   if (document.activeElement !== input && input.value !== value) input.value = value;
-}
-
-function field(label: string, input: HTMLElement, wide = ""): HTMLElement {
-  return h("div", { class: `field-pair ${wide}` }, h("label", { for: input.id }, label), input);
 }

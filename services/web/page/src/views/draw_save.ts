@@ -3,6 +3,7 @@ import { ApiError } from "../api";
 import { App } from "../app";
 import { DrawingStore } from "../draw/drawing_store";
 import { Editor } from "../draw/editor";
+import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, icon, IconName, set_text, show } from "../ui/dom";
 
@@ -81,12 +82,12 @@ export class DrawSave {
     this.saving = true;
     this.update();
     try {
-      document.mark_saved(drawing, await this.store.save(drawing, version));
-      this.app.notices.show(words.saved);
+      const saved = await this.store.save(drawing, version);
+      document.mark_saved(drawing, saved.version);
+      this.app.notices.show(saved.message ? sentence(saved.message) : words.saved);
     } catch (error) {
       if (error instanceof ApiError && error.status === 409) await this.store.read();
-      const text = error instanceof Error ? error.message : String(error);
-      this.app.notices.show(text, "error");
+      this.app.notices.fail(error);
     }
     this.saving = false;
     this.take_newest();

@@ -51,7 +51,7 @@ export class Underway {
     try {
       await this.app.api.post(what);
     } catch (error) {
-      this.app.notices.show(error instanceof Error ? error.message : String(error), "error");
+      this.app.notices.fail(error);
     }
   }
 
