@@ -3,7 +3,8 @@ import { Drawing, DrawnDoor, DrawnLine, DrawnPlace, DrawnZone, ItemRef } from ".
 import { heading_of } from "../draw/grab";
 import { middle_of } from "../draw/geometry";
 import { Palette } from "../ui/theme";
-import { to_pixels, View } from "./map_canvas";
+import { View } from "./map_canvas";
+import { to_pixels } from "./to_pixels";
 
 const kHatchPx = 11;
 /** Length of arrows at each zoom. */

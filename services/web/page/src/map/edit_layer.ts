@@ -6,7 +6,8 @@ import { Sketch } from "../draw/sketch";
 import * as format from "../format";
 import { Palette } from "../ui/theme";
 import { draw_arrow, trace_line } from "./drawing_layer";
-import { to_pixels, View } from "./map_canvas";
+import { View } from "./map_canvas";
+import { to_pixels } from "./to_pixels";
 
 const kFont = "600 13px system-ui, sans-serif";
 const kFewestGridPx = 9;

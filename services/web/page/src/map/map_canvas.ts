@@ -19,11 +19,6 @@ export interface View {
   max_y: number;
 }
 
-/** A point of the map frame (metres) on the canvas. */
-export function to_pixels(view: View, x: number, y: number): [number, number] {
-  return [view.scale * x + view.offset_x, view.offset_y - view.scale * y];
-}
-
 export type Draw = (context: CanvasRenderingContext2D, view: View) => void;
 
 export class MapCanvas {

@@ -2,7 +2,8 @@
 // sent.
 import { LocalMap, Pose, Scan } from "../protocol";
 import { Palette } from "../ui/theme";
-import { to_pixels, View } from "./map_canvas";
+import { View } from "./map_canvas";
+import { to_pixels } from "./to_pixels";
 
 const kBodyRadiusM = 0.27;
 const kSmallestBodyPx = 9;
