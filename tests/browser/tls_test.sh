@@ -18,7 +18,7 @@ openssl genpkey -algorithm EC -pkeyopt ec_paramgen_curve:prime256v1 -out "$work/
   fail "it took the key of another certificate"
 grep -q other.pem "$work/other.log" || fail "the error does not name the file: $(cat "$work/other.log")"
 
-token=token-of-the-test
+token="token-of-the-test"
 TOPOGEO_DDS_PARTICIPANT=udp_only "$bin/web" --port 0 --bind 0.0.0.0 --certificate "$work/cert.pem" --key "$work/key.pem" --host localhost --token $token \
   > "$work/web.log" 2>&1 &
 web=$!
