@@ -143,7 +143,8 @@ std::optional<scan::Scan> ScanIntake::finish(const ros::LaserScan& message) {
   }
   if (!find_mounting(frame)) return std::nullopt;
   try {
-    const ros::Sweep sweep = ros::to_sweep(message, mounting_->upside_down, options_.most_beams);
+    const ros::Sweep sweep =
+        ros::to_sweep(message, mounting_->upside_down, options_.most_beams, options_.sweep);
     auto scan = finish(sweep, ros::stamp_ns_of(message.header_().stamp_()));
     if (scan) laser_frame_ = frame;
     return scan;

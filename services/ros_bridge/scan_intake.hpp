@@ -45,7 +45,8 @@ struct IntakeOptions {
   std::int64_t odometry_wait_ns = 0;  ///< a scan waits for odometry so long at most; >= 0
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
   std::size_t most_beams = 2048;              ///< scans of more are thinned out
-  double range_limit_m = 1e9;                 ///< ranges at or above it are no echo
+  ros::SweepOrder sweep = ros::SweepOrder::kNone;
+  double range_limit_m = 1e9;  ///< ranges at or above it are no echo
 };
 
 /// Arrival times are of a steady clock, stamps those of the messages.

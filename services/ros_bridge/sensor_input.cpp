@@ -29,6 +29,7 @@ IntakeOptions intake_options(const RosSide& ros) {
   options.odometry_wait_ns = std::llround(settings.odometry_wait_s * 1e9);
   options.longest_extrapolation_ns = std::llround(settings.longest_extrapolation_s * 1e9);
   options.most_beams = msg::kMaxBeams;
+  options.sweep = settings.sweep;
   options.range_limit_m = ros.service().setup().config.config.log.range_max_m;
   return options;
 }

@@ -165,6 +165,13 @@ ConfigSchema describe(Settings& settings) {
   schema.add("laser.mounting_from_tf", &settings.mounting_from_tf,
              "whether the frames of tf say where the laser is; false: the configuration of the "
              "services alone, upright");
+  schema.add("laser.sweep", &settings.sweep,
+             {{"none", ros::SweepOrder::kNone},
+              {"forward", ros::SweepOrder::kForward},
+              {"backward", ros::SweepOrder::kBackward}},
+             "whether the motion during a scan is taken out by time_increment: its rays come one "
+             "after the other (forward) or, as of many clockwise scanners, the last first "
+             "(backward)");
   schema.add("velocity.stamped", &settings.stamped_velocity,
              "TwistStamped, the default of Nav2 from Kilted on, in place of Twist");
   schema.add("transforms.tolerance_s", &settings.transform_tolerance_s, 0.0, 5.0, "s",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "topogeo/ros_conversions/laser_scan.hpp"
 #include "topogeo/ros_messaging/topic.hpp"
 #include "topogeo/support/config_schema.hpp"
 
@@ -68,6 +69,7 @@ struct Settings {
   double odometry_wait_s = 0.0;
   double longest_extrapolation_s = 0.5;
   bool mounting_from_tf = true;
+  ros::SweepOrder sweep = ros::SweepOrder::kNone;
   bool stamped_velocity = false;
   double transform_tolerance_s = 0.2;
   double map_period_s = 5.0;

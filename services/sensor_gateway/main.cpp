@@ -63,6 +63,13 @@ void add_options_to(command_line::Command& app, Options& options) {
          "of a log: realtime, lossless (as fast as the readers take it) or a factor of real time")
       ->needs(log)
       ->default_str("lossless");
+  app.add_option_function(
+         "--sweep",
+         [&topics = options.replay.topics](const std::string& order) {
+           topics.sweep = ros::sweep_order(order);
+         },
+         "motion during a scan of such a recording, see topogeo map --help")
+      ->check(command_line::one_of({"none", "forward", "backward"}));
   app.add_option("--scan-topic", options.replay.topics.scan, "laser scans of a recording of ROS")
       ->needs(log)
       ->type_name("TOPIC");

@@ -92,6 +92,12 @@ void add_common_options(command_line::Command& app, JobOptions& options) {
 }
 
 void add_topic_options(command_line::Command& app, recording::TopicChoice& topics) {
+  app.add_option_function(
+         "--sweep", [&topics](const std::string& order) { topics.sweep = ros::sweep_order(order); },
+         "of a recording of ROS: take the motion during a scan out by time_increment, whose rays "
+         "come one after the other (forward) or, as of many clockwise scanners, the last first "
+         "(backward)")
+      ->check(command_line::one_of({"none", "forward", "backward"}));
   app.add_option("--scan-topic", topics.scan,
                  "laser scans of a recording (default: /scan, else the one with most messages)")
       ->type_name("TOPIC");

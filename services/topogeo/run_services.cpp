@@ -77,6 +77,10 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
   }
   Arguments source = {"--log", options.job.log.string(), "--rate", options.rate};
   const recording::TopicChoice& topics = options.job.topics;
+  if (topics.sweep != ros::SweepOrder::kNone) {
+    const bool forward = topics.sweep == ros::SweepOrder::kForward;
+    source.insert(source.end(), {"--sweep", forward ? "forward" : "backward"});
+  }
   if (topics.scan) source.insert(source.end(), {"--scan-topic", *topics.scan});
   if (topics.odometry) source.insert(source.end(), {"--odometry-topic", *topics.odometry});
   if (!options.devices.empty()) {

@@ -1,5 +1,6 @@
 #include "ros_scans.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -46,6 +47,7 @@ std::string seconds_text_of(double seconds) {
 RosScans::RosScans(const std::filesystem::path& path, const TopicChoice& choice,
                    double range_limit_m, Beams beams, scan::ScanSequence::Skip skip)
     : survey_(survey(path, choice)),
+      sweep_(beams == Beams::kOnePattern ? choice.sweep : ros::SweepOrder::kNone),
       range_limit_m_(range_limit_m),
       beams_(beams),
       skip_(std::move(skip)),
@@ -74,8 +76,9 @@ std::optional<RosScans::Candidate> RosScans::next() {
 bool RosScans::front_is_due() const {
   if (waiting_.empty()) return false;
   const Waiting& front = waiting_.front();
-  return ended_ || waiting_.size() > kMostWaiting ||
-         track_.reaches(front.stamp_ns + nanoseconds_of(front.sweep.duration_s()));
+  const std::int64_t last_beam_ns =
+      front.stamp_ns + nanoseconds_of(std::max(0.0, front.sweep.farthest_s()));
+  return ended_ || waiting_.size() > kMostWaiting || track_.reaches(last_beam_ns);
 }
 
 std::optional<RosScans::Candidate> RosScans::take_front() {
@@ -95,7 +98,7 @@ std::optional<RosScans::Candidate> RosScans::take_front() {
   candidate.scan.stamp_ns = front.stamp_ns;
   candidate.scan.T_odom_robot = *pose;
   put_beams(front, candidate.scan);
-  track_.forget_before(front.stamp_ns);
+  track_.forget_before(front.stamp_ns + nanoseconds_of(std::min(0.0, front.sweep.farthest_s())));
   return candidate;
 }
 
@@ -145,7 +148,7 @@ void RosScans::take_scan(const RawMessage& message, const Topic& topic) {
     }
     Waiting scan{scans_, stamp_of(laser.header_(), message.log_time_ns),
                  ros::to_sweep(laser, survey_.mounting && survey_.mounting->upside_down,
-                               scan::CarmenLogReader::kMaxBeams)};
+                               scan::CarmenLogReader::kMaxBeams, sweep_)};
     if (beams_ == Beams::kOnePattern && !ros::alike(scan.sweep.pattern, *survey_.beams)) {
       throw std::invalid_argument("expected " + text_of(*survey_.beams) + " as most scans, got " +
                                   text_of(scan.sweep.pattern));

@@ -20,7 +20,7 @@ namespace topogeo::recording {
 class RosScans {
  public:
   enum class Beams : std::uint8_t {
-    kOnePattern,  ///< the motion of each sweep taken out, all on the beams of most scans
+    kOnePattern,  ///< the motion of each sweep taken out as chosen, all on the beams of most scans
     kAsMeasured
   };
 
@@ -56,6 +56,7 @@ class RosScans {
   void finish();
 
   Survey survey_;
+  ros::SweepOrder sweep_;
   double range_limit_m_;
   Beams beams_;
   scan::ScanSequence::Skip skip_;

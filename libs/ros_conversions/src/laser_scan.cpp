@@ -151,15 +151,24 @@ bool alike(const BeamPattern& a, const BeamPattern& b) {
          std::max(a.angle_step_rad, b.angle_step_rad) <= 2.0 * finer_rad;
 }
 
-double Sweep::duration_s() const {
-  return std::fabs(time_step_s) * static_cast<double>(pattern.beams - 1);
+SweepOrder sweep_order(std::string_view name) {
+  if (name == "none") return SweepOrder::kNone;
+  if (name == "forward") return SweepOrder::kForward;
+  if (name == "backward") return SweepOrder::kBackward;
+  throw std::invalid_argument("sweep: expected none, forward or backward, got " + std::string(name));
+}
+
+double Sweep::farthest_s() const {
+  const double last_beam_s = first_beam_s + time_step_s * static_cast<double>(pattern.beams - 1);
+  return std::fabs(first_beam_s) > std::fabs(last_beam_s) ? first_beam_s : last_beam_s;
 }
 
 BeamPattern pattern_of(const LaserScan& message, bool upside_down, std::size_t most_beams) {
   return layout_of(message, upside_down, most_beams).pattern;
 }
 
-Sweep to_sweep(const LaserScan& message, bool upside_down, std::size_t most_beams) {
+Sweep to_sweep(const LaserScan& message, bool upside_down, std::size_t most_beams,
+               SweepOrder order) {
   const Layout layout = layout_of(message, upside_down, most_beams);
   const auto time_step_s = static_cast<double>(message.time_increment_());
   require(time_step_s >= 0.0 &&
@@ -169,7 +178,10 @@ Sweep to_sweep(const LaserScan& message, bool upside_down, std::size_t most_beam
   Sweep sweep;
   sweep.pattern = layout.pattern;
   const std::size_t beams = layout.pattern.beams;
-  sweep.time_step_s = time_step_s * static_cast<double>(layout.every);
+  if (order != SweepOrder::kNone) {
+    sweep.time_step_s = time_step_s * static_cast<double>(layout.every);
+  }
+  if (order == SweepOrder::kBackward) sweep.time_step_s = -sweep.time_step_s;
   if (layout.reversed) {
     sweep.first_beam_s = sweep.time_step_s * static_cast<double>(beams - 1);
     sweep.time_step_s = -sweep.time_step_s;
@@ -206,7 +218,7 @@ std::vector<float> deskewed(
     const Sweep& sweep,
     const std::function<std::optional<geometry::Pose2>(double)>& T_odom_laser_after) {
   const std::optional<geometry::Pose2> T_odom_start = T_odom_laser_after(0.0);
-  const std::optional<geometry::Pose2> T_odom_end = T_odom_laser_after(sweep.duration_s());
+  const std::optional<geometry::Pose2> T_odom_end = T_odom_laser_after(sweep.farthest_s());
   if (!T_odom_start || !T_odom_end) return sweep.ranges_m;
   const geometry::Pose2 moved = geometry::between(*T_odom_start, *T_odom_end);
   if (moved.position_m().norm() <= kStill_m && std::fabs(moved.theta_rad) <= kStill_rad) {

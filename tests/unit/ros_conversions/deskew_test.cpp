@@ -38,7 +38,7 @@ TEST(Deskewing, TakesTheMotionOfTheSweepOut) {
   }
   LaserScan message = laser_scan(-kStraight_rad, kStep_rad, measured_m);
   message.time_increment_(static_cast<float>(kTimeStep_s));
-  const Sweep sweep = to_sweep(message, false, kMost);
+  const Sweep sweep = to_sweep(message, false, kMost, SweepOrder::kForward);
   const std::vector<float> straight_m = deskewed(sweep, pose_after);
   ASSERT_EQ(straight_m.size(), kBeams);
   double skewed_error_m = 0.0;
@@ -61,7 +61,7 @@ TEST(Deskewing, TakesTheMotionOfTheSweepOut) {
 TEST(Deskewing, AStandingRobotsSweepStaysAsItIs) {
   LaserScan message = laser_scan(-1.0, 0.1, {2.0F, 2.1F, 0.0F, 5.0F, 5.1F});
   message.time_increment_(0.001F);
-  const Sweep sweep = to_sweep(message, false, kMost);
+  const Sweep sweep = to_sweep(message, false, kMost, SweepOrder::kForward);
   const std::vector<float> same_m = deskewed(sweep, [](double) {
     return std::optional<geometry::Pose2>({3.0, 1.0, 0.5});
   });
@@ -72,16 +72,34 @@ TEST(Deskewing, AStandingRobotsSweepStaysAsItIs) {
 TEST(Deskewing, OfAClockwiseScannerGoesTheOtherWay) {
   LaserScan message = laser_scan(0.5, -0.25, {2.0F, 2.0F, 2.0F, 2.0F, 2.0F});
   message.time_increment_(0.1F);
-  const Sweep sweep = to_sweep(message, false, kMost);
+  const Sweep sweep = to_sweep(message, false, kMost, SweepOrder::kForward);
   EXPECT_NEAR(sweep.first_beam_s, 0.4, 1e-6);
   EXPECT_NEAR(sweep.time_step_s, -0.1, 1e-6);
-  EXPECT_NEAR(sweep.duration_s(), 0.4, 1e-6);
+  EXPECT_NEAR(sweep.farthest_s(), 0.4, 1e-6);
+  const Sweep none = to_sweep(message, false, kMost);
+  EXPECT_EQ(none.farthest_s(), 0.0);
+}
+
+// As drivers of clockwise scanners have it that turn the ranges round: the first was measured last.
+TEST(Deskewing, MayGoBackwardFromTheStamp) {
+  LaserScan message = laser_scan(-0.5, 0.25, {2.0F, 2.0F, 2.0F, 2.0F, 2.0F});
+  message.time_increment_(0.1F);
+  const Sweep sweep = to_sweep(message, false, kMost, SweepOrder::kBackward);
+  EXPECT_EQ(sweep.first_beam_s, 0.0);
+  EXPECT_NEAR(sweep.time_step_s, -0.1, 1e-6);
+  EXPECT_NEAR(sweep.farthest_s(), -0.4, 1e-6);
+  // 1 m/s ahead: seen from where the robot is at the stamp the ray ahead (the third) met the wall
+  // 0.2 m nearer than it measured.
+  const std::vector<float> ranges_m = deskewed(sweep, [](double after_s) {
+    return std::optional<geometry::Pose2>({after_s, 0.0, 0.0});
+  });
+  EXPECT_NEAR(ranges_m[2], 1.8, 1e-3);
 }
 
 TEST(Deskewing, WithoutPosesLeavesTheRanges) {
   LaserScan message = laser_scan(-1.0, 0.1, {2.0F, 2.1F, 2.2F});
   message.time_increment_(0.01F);
-  const Sweep sweep = to_sweep(message, false, kMost);
+  const Sweep sweep = to_sweep(message, false, kMost, SweepOrder::kForward);
   const auto poses_until = [](double end_s) {
     return [end_s](double s) -> std::optional<geometry::Pose2> {
       if (s > end_s) return std::nullopt;

@@ -84,7 +84,7 @@ TEST(LaserScan, OfTooManyBeamsKeepsEveryOther) {
   message.time_increment_(0.00001F);
   message.ranges_().assign(3000, 1.0F);
   message.ranges_()[2] = 2.0F;
-  const Sweep sweep = to_sweep(message, false, kMost);
+  const Sweep sweep = to_sweep(message, false, kMost, SweepOrder::kForward);
   EXPECT_EQ(sweep.ranges_m.size(), 1500U);
   EXPECT_EQ(sweep.pattern.beams, 1500U);
   EXPECT_EQ(sweep.ranges_m[1], 2.0F);
@@ -124,6 +124,13 @@ TEST(LaserScan, IsRefusedWithBeamsOfNoLaser) {
 TEST(LaserScan, PutsOtherNumbersOfBeamsOnOnePattern) {
   const Sweep sweep = to_sweep(laser_scan(0.01, 0.1, {1.0F, 2.0F, 3.0F}), false, kMost);
   EXPECT_THAT(on_pattern(sweep, {-0.1, 0.1, 5}), ElementsAre(0.0F, 1.0F, 2.0F, 3.0F, 0.0F));
+}
+
+TEST(SweepOrder, HasAName) {
+  EXPECT_EQ(sweep_order("none"), SweepOrder::kNone);
+  EXPECT_EQ(sweep_order("forward"), SweepOrder::kForward);
+  EXPECT_EQ(sweep_order("backward"), SweepOrder::kBackward);
+  EXPECT_THROW((void)sweep_order("sideways"), std::invalid_argument);
 }
 
 TEST(BeamPattern, AreAlikeWhereBeamsLack) {

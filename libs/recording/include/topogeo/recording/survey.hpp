@@ -20,6 +20,7 @@ struct TopicChoice {
   std::optional<std::string>
       odometry;  ///< of nav_msgs/Odometry or tf2_msgs/TFMessage; none: /odom, else the
                  ///< Odometry with most messages, else odom -> base of /tf
+  ros::SweepOrder sweep = ros::SweepOrder::kNone;  ///< by which the motion of a scan is taken out
 };
 
 struct Survey {
