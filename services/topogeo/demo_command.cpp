@@ -99,10 +99,9 @@ std::filesystem::path world_file(const DemoOptions& options) {
   return file;
 }
 
-/// Sends a simulated robot to a place on the floor, in the map of a drive before.
-int show_goto(DemoOptions options) {
-  static_cast<void>(to_goal(options.goal));
-  check_picture(options.goal.picture);
+/// Maps the floor by a drive; a simulated robot starts in that map, whose file is among the
+/// results.
+void put_robot_on_mapped_floor(DemoOptions& options) {
   const Inputs inputs = check_inputs(options.run.job);
   const world::World world = read_world(options.world);
   support::check_writable_directory(options.run.job.out);
@@ -111,8 +110,15 @@ int show_goto(DemoOptions options) {
   storage::write_map_file(*options.run.job.map, make_map(options, inputs.config.config, world));
   options.simulation.world = world_file(options);
   options.run.simulation = options.simulation;
-  options.run.goal = options.goal;
   if (!options.unknown_start) options.run.job.initial_pose = "0,0,0";
+}
+
+/// Sends a simulated robot to a place on the floor, in the map of a drive before.
+int show_goto(DemoOptions options) {
+  static_cast<void>(to_goal(options.goal));
+  check_picture(options.goal.picture);
+  put_robot_on_mapped_floor(options);
+  options.run.goal = options.goal;
   std::cerr << "a simulated robot is sent to " << options.goal.target
             << "; this takes as long as the drive\n";
   return run_goto(options.run);
@@ -120,15 +126,7 @@ int show_goto(DemoOptions options) {
 
 /// A page for a simulated robot in the map of a drive before.
 int show_web(DemoOptions options) {
-  const Inputs inputs = check_inputs(options.run.job);
-  const world::World world = read_world(options.world);
-  support::check_writable_directory(options.run.job.out);
-  std::cerr << "mapping '" << world.name << "' from a simulated drive\n";
-  options.run.job.map = options.run.job.out / "floor.map.pb";
-  storage::write_map_file(*options.run.job.map, make_map(options, inputs.config.config, world));
-  options.simulation.world = world_file(options);
-  options.run.simulation = options.simulation;
-  if (!options.unknown_start) options.run.job.initial_pose = "0,0,0";
+  put_robot_on_mapped_floor(options);
   return run_web(options.run);
 }
 

@@ -1,5 +1,4 @@
 // topogeo follow: the map of a robot as it changes.
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -22,6 +21,7 @@
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 #include "commands.hpp"
 #include "domain_view.hpp"
@@ -43,9 +43,7 @@ const char* kind_name(const msg::MapElement& element) {
 
 /// The words of GraphML and GeoJSON for msg::NodeKind.
 std::string_view node_kind_name(const msg::MapElement& node) {
-  constexpr std::array<std::string_view, 6> kNames = {"real", "fictitious", "virtual",
-                                                      "door", "narrowing",  "hall_corridor"};
-  return node.node_kind() < kNames.size() ? kNames.at(node.node_kind()) : "unknown";
+  return topomap::name_of(static_cast<topomap::NodeKind>(node.node_kind()));
 }
 
 std::string text_of(const map_client::Change& change) {

@@ -2,6 +2,10 @@
 
 #include <array>
 
+#include "topogeo/localization/mapping/localization_state.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
+
 namespace topogeo::web {
 namespace {
 
@@ -17,17 +21,16 @@ string_view word(const std::array<string_view, size>& words, Enum value) {
 }  // namespace
 
 string_view name_of(msg::LocalizationState state) {
-  static constexpr std::array<string_view, 4> kWords = {"TRACKING", "AMBIGUOUS", "SEARCHING",
-                                                        "LOST"};
-  static_assert(kWords.size() == msg::kStateLost + 1);
-  return word(kWords, state);
+  static_assert(localization::kLocalizationStates == msg::kStateLost + 1);
+  const auto number = static_cast<std::size_t>(state);
+  if (number >= localization::kLocalizationStates) return "unknown";
+  return localization::to_string(static_cast<localization::LocalizationState>(number));
 }
 
 string_view name_of(msg::NavigatorState state) {
-  static constexpr std::array<string_view, 6> kWords = {"idle",    "driving", "relocalizing",
-                                                        "blocked", "arrived", "stopped"};
-  static_assert(kWords.size() == msg::kNavigatorStopped + 1);
-  return word(kWords, state);
+  static_assert(static_cast<std::size_t>(navigation::NavigatorState::kStopped) ==
+                msg::kNavigatorStopped);
+  return navigation::describe(static_cast<navigation::NavigatorState>(state));
 }
 
 string_view name_of(msg::HaltReason reason) {
@@ -54,10 +57,9 @@ string_view name_of(msg::LaserState state) {
 }
 
 string_view name_of(msg::NodeKind kind) {
-  static constexpr std::array<string_view, 6> kWords = {"real", "fictitious", "virtual",
-                                                        "door", "narrowing",  "hall_corridor"};
-  static_assert(kWords.size() == msg::kNodeHallCorridor + 1);
-  return word(kWords, kind);
+  static_assert(static_cast<std::size_t>(topomap::NodeKind::kHallCorridor) ==
+                msg::kNodeHallCorridor);
+  return topomap::name_of(static_cast<topomap::NodeKind>(kind));
 }
 
 string_view name_of(msg::LoopOutcome outcome) {

@@ -1,7 +1,10 @@
 // The map store that shows a map that there is, and the command that lists its places.
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -289,6 +292,34 @@ TEST_F(MapStoreShows, PlacesOfAFileCanBeChanged) {
   refused({"--add", "=1,2"}, 2, "expected a name of 1 to 64 bytes");
   refused({"--add", "1,2=3,4"}, 2, "would be taken for a point");
   refused({"--add", "far=1e9,0"}, 2, "coordinate 1000000000");
+}
+
+TEST_F(MapStoreShows, ABaseStationHasItsHeadingInDegrees) {
+  const std::string map = write_map().string();
+  ASSERT_EQ(places({map, "--add", "base station=1.5,-2,90", "--add", "dock=0,0,-450"}), 0) << err_;
+  EXPECT_THAT(out_, HasSubstr("base station             1.50    -2.00"));
+  EXPECT_THAT(out_, HasSubstr(", base station, heading 90.0 deg"));
+  const auto place = [&](const std::string& name) {
+    const auto all = storage::read_map_file(map).drawing.places;
+    const auto found = std::ranges::find(all, name, &planning::Place::name);
+    return found == all.end() ? planning::Place{} : *found;
+  };
+  ASSERT_TRUE(place("base station").station_heading_rad);
+  EXPECT_NEAR(*place("base station").station_heading_rad, std::numbers::pi / 2.0, 1e-12);
+  EXPECT_EQ(place("base station").position_m, Eigen::Vector2d(1.5, -2.0));
+  ASSERT_TRUE(place("dock").station_heading_rad);
+  EXPECT_NEAR(std::cos(*place("dock").station_heading_rad), 0.0, 1e-12) << "once round and back";
+  EXPECT_NEAR(std::sin(*place("dock").station_heading_rad), -1.0, 1e-12);
+
+  // Put there anew without a heading it is a place like any other.
+  ASSERT_EQ(places({map, "--add", "base station=1,1"}), 0) << err_;
+  EXPECT_FALSE(place("base station").station_heading_rad);
+  const std::string before = read_file(map);
+  for (const char* text : {"a=1,2,", "a=1,2,north", "a=1,2,nan", "a=1,2,3,4"}) {
+    EXPECT_EQ(places({map, "--add", text}), 2) << text;
+    EXPECT_THAT(err_, HasSubstr("NAME=X,Y,DEG")) << text;
+  }
+  EXPECT_EQ(read_file(map), before);
 }
 
 TEST_F(MapStoreShows, PlacesOfAWorldAreListed) {

@@ -1,12 +1,16 @@
-// The elements of a map database, of schema 1 or 2, as far as its rows can be read.
+// The elements of a map database, of schema 1 to 3, as far as its rows can be read.
+#include <array>
 #include <map>
+#include <sstream>
 #include <utility>
 
 #include "topogeo/exchange/repair.hpp"
 #include "topogeo/storage/salvage.hpp"
 #include "topogeo/support/format.hpp"
 
+#include "map_fields.hpp"
 #include "text.hpp"
+#include "wire.hpp"
 
 namespace topogeo::exchange {
 namespace {
@@ -43,6 +47,8 @@ class DatabaseReader {
     pieces_.branches = blobs("map_branch");
     pieces_.places = blobs("place");
     pieces_.zones = blobs("zone");
+    pieces_.rooms = blobs("room");
+    pieces_.room_places = blobs("room_place");
     const std::vector<std::string> grids = blobs("drawn_grid");
     if (!grids.empty()) pieces_.grid = grids.back();
     return std::move(pieces_);
@@ -81,6 +87,22 @@ class DatabaseReader {
     pieces_.map_id = number("map_id");
     pieces_.trajectory_version = number("trajectory_version");
     pieces_.map_version = number("global_map_version");
+    pieces_.last_room = number("last_room");
+    read_refused_merges(values["refused_merges"]);
+  }
+
+  void read_refused_merges(const std::string& text) {
+    std::istringstream in(text);
+    std::array<std::uint64_t, 2> session{};
+    std::array<std::uint64_t, 2> number{};
+    while (in >> std::hex >> session[0] >> std::dec >> number[0] >> std::hex >> session[1] >>
+           std::dec >> number[1]) {
+      pieces_.refused_merges.push_back(fixed64_field(MapFields::kSession, session[0]) +
+                                       varint_field(MapFields::kNumber, number[0]) +
+                                       fixed64_field(MapFields::kOtherSession, session[1]) +
+                                       varint_field(MapFields::kOtherNumber, number[1]));
+    }
+    if (!in.eof()) pieces_.damage.emplace_back("the list of refused merges is damaged");
   }
 
   void read_stops() {

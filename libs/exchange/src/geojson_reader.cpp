@@ -4,6 +4,7 @@
 
 #include "topogeo/exchange/geojson.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 #include "graph_checks.hpp"
 #include "json_reader.hpp"
@@ -72,7 +73,7 @@ class GeojsonReader {
     const JsonValue metadata = properties.at("metadata");
     if (metadata.is_object()) {
       const JsonValue kind = metadata.at("kind");
-      const auto known = kind.is_text() ? node_kind_of(kind.text()) : std::nullopt;
+      const auto known = kind.is_text() ? topomap::node_kind_of(kind.text()) : std::nullopt;
       // Bends and places are nodes of the file alone.
       if (own_ && !known) return;
       if (known) node.kind = *known;

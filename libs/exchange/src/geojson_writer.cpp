@@ -1,4 +1,5 @@
 #include "topogeo/exchange/geojson.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 #include "json_reader.hpp"
 #include "text.hpp"

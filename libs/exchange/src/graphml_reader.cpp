@@ -9,6 +9,7 @@
 
 #include "topogeo/exchange/graphml.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 #include "graph_checks.hpp"
 #include "text.hpp"
@@ -148,7 +149,8 @@ class GraphmlReader {
     node.node.clearance_m = number(data, "clearance", 0.0);
     node.node.observations = count(data);
     node.node.last_seen_ns = last_seen(data);
-    if (kind != data.end()) node.node.kind = node_kind_of(kind->second).value_or(node.node.kind);
+    if (kind != data.end())
+      node.node.kind = topomap::node_kind_of(kind->second).value_or(node.node.kind);
     nodes_.push_back(std::move(node));
   }
 

@@ -4,6 +4,7 @@
 #include "topogeo/exchange/graphml.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/markup.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 #include "segments.hpp"
 #include "text.hpp"

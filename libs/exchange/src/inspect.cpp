@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 #include "topogeo/topomap/trajectory.hpp"
 
 #include "text.hpp"

@@ -6,6 +6,7 @@
 
 #include "topogeo/exchange/lif.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 #include "graph_checks.hpp"
 #include "json_reader.hpp"
@@ -70,7 +71,7 @@ class LifReader {
       node.id = own ? *lif_number(id.text(), 'n')
                     : static_cast<std::uint32_t>(graph_.map.nodes.size() + 1);
       node.position_m = lif_position(item.required("nodePosition"));
-      node.kind = node_kind_of(item.at("nodeDescription").text_or("")).value_or(node.kind);
+      node.kind = topomap::node_kind_of(item.at("nodeDescription").text_or("")).value_or(node.kind);
       if (!nodes_.emplace(id.text(), node).second) id.fail("each nodeId once");
       graph_.map.nodes.push_back(node);
     }

@@ -6,6 +6,7 @@
 
 #include "topogeo/exchange/lif.hpp"
 #include "topogeo/support/format.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 #include "json_reader.hpp"
 #include "segments.hpp"

@@ -16,7 +16,9 @@ struct MapFields {
   static constexpr std::uint32_t kGlobalMap = 8;
   static constexpr std::uint32_t kDrawing = 9;
   static constexpr std::uint32_t kMapId = 10;
-  static constexpr std::uint32_t kEdge = 12;
+  static constexpr std::uint32_t kEdge = 11;
+  static constexpr std::uint32_t kRefusedMerge = 12;
+  static constexpr std::uint32_t kRooms = 13;
   static constexpr std::uint32_t kChecksum = 15;
 
   static constexpr std::uint32_t kRobotOfLocalMap = 1;
@@ -32,6 +34,13 @@ struct MapFields {
   static constexpr std::uint32_t kPlaces = 1;  // of Drawing
   static constexpr std::uint32_t kZones = 2;
   static constexpr std::uint32_t kGrid = 3;
+  static constexpr std::uint32_t kRoom = 1;  // of Rooms
+  static constexpr std::uint32_t kPlaceInRoom = 2;
+  static constexpr std::uint32_t kLastRoom = 3;
+  static constexpr std::uint32_t kSession = 1;  // of RefusedMerge
+  static constexpr std::uint32_t kNumber = 2;
+  static constexpr std::uint32_t kOtherSession = 3;
+  static constexpr std::uint32_t kOtherNumber = 4;
 };
 
 }  // namespace topogeo::exchange

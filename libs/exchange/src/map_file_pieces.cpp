@@ -113,6 +113,13 @@ class MapFileReader {
       case MapFields::kEdge:
         pieces_.edges.push_back(payload);
         break;
+      case MapFields::kRefusedMerge:
+        pieces_.refused_merges.push_back(payload);
+        break;
+      case MapFields::kRooms:
+        pieces_.last_room = number_in(payload, MapFields::kLastRoom).value_or(0);
+        take_parts(field.payload, ignored_, {nullptr, &pieces_.rooms, &pieces_.room_places});
+        break;
       default:
         break;
     }

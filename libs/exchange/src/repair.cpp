@@ -1,38 +1,23 @@
 #include "topogeo/exchange/repair.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "topogeo/pipeline/mapping_run.hpp"
-#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
-#include "topogeo/support/hash.hpp"
 
+#include "element_reader.hpp"
 #include "map_fields.hpp"
+#include "repaired_rooms.hpp"
 #include "wire.hpp"
 
 namespace topogeo::exchange {
 namespace {
 
 using F = MapFields;
-
-/// A map file of these fields; the reader of map files then checks what is in them. A number that
-/// comes twice in a message counts as it comes last, so `bytes` may correct ids.
-storage::MapDocument read_alone(const std::string& robot_id, const std::string& fields) {
-  std::string bytes = bytes_field(F::kFormat, "topogeo-map") +
-                      varint_field(F::kVersion, storage::kMapFormatVersion) +
-                      bytes_field(F::kRobot, robot_id) + fields;
-  const std::uint64_t checksum = support::fnv1a(bytes);
-  bytes += static_cast<char>((F::kChecksum << 3U) | 1U);
-  for (unsigned shift = 0; shift < 64; shift += 8) {
-    bytes += std::bit_cast<char>(static_cast<unsigned char>((checksum >> shift) & 0xffU));
-  }
-  return storage::parse_map_file(bytes, "element");
-}
 
 std::string with_id(std::string message, std::uint32_t field, std::uint64_t id) {
   return std::move(message) + varint_field(field, id);
@@ -84,8 +69,10 @@ class Assembler {
     take_stops();
     take_poses();
     take_pairs();
+    take_refused_merges();
     take_drawing();
     take_graph();
+    out_.document.rooms = repaired_rooms(pieces_, robot_, out_.lost);
     if (out_.document.local_maps.empty() && out_.document.drawing.empty() &&
         out_.document.global_map.nodes.empty()) {
       throw std::runtime_error(name + ": nothing in it can be saved");
@@ -112,18 +99,9 @@ class Assembler {
     out_.lost.push_back(fmt::format(format, std::forward<Args>(args)...));
   }
 
-  /// What `take` makes of the elements that can be read; counts the others.
   template <typename Take>
   void take_each(const std::vector<std::string>& elements, const char* what, const Take& take) {
-    std::size_t lost = 0;
-    for (const std::string& element : elements) {
-      try {
-        take(element);
-      } catch (const std::exception&) {
-        ++lost;
-      }
-    }
-    if (lost > 0) lose("{} of {} {} cannot be read", lost, elements.size(), what);
+    exchange::take_each(elements, what, out_.lost, take);
   }
 
   void take_stops() {
@@ -286,6 +264,13 @@ class Assembler {
         edge.later_id = second;
         document.edges.push_back(edge);
       });
+    });
+  }
+
+  void take_refused_merges() {
+    take_each(pieces_.refused_merges, "refused merges", [&](const std::string& element) {
+      out_.document.refused_merges.push_back(
+          read_alone(robot_, bytes_field(F::kRefusedMerge, element)).refused_merges.at(0));
     });
   }
 

@@ -1,6 +1,5 @@
 #include "text.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,10 +9,6 @@
 
 namespace topogeo::exchange {
 namespace {
-
-// By topomap::NodeKind.
-constexpr std::array<std::string_view, 6> kKindNames = {"real", "fictitious", "virtual",
-                                                        "door", "narrowing",  "hall_corridor"};
 
 template <typename Number>
 std::optional<Number> parsed(std::string_view text) {
@@ -61,16 +56,6 @@ std::optional<std::int64_t> stamp_of(std::string_view seconds) {
   const std::int64_t ns =
       static_cast<std::int64_t>(*whole) * kNanoseconds + static_cast<std::int64_t>(*rest);
   return negative ? -ns : ns;
-}
-
-std::string_view name_of(topomap::NodeKind kind) {
-  return kKindNames[static_cast<std::size_t>(kind)];
-}
-
-std::optional<topomap::NodeKind> node_kind_of(std::string_view name) {
-  const auto found = std::ranges::find(kKindNames, name);
-  if (found == kKindNames.end()) return std::nullopt;
-  return static_cast<topomap::NodeKind>(found - kKindNames.begin());
 }
 
 }  // namespace topogeo::exchange

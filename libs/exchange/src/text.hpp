@@ -6,8 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "topogeo/topomap/local_map.hpp"
-
 namespace topogeo::exchange {
 
 /// The shortest text that reads back to the same value.
@@ -20,10 +18,6 @@ std::optional<std::uint64_t> whole_number_of(std::string_view text);
 /// A stamp in seconds with nine digits behind the point, and back; nothing for any other text.
 std::string seconds_text(std::int64_t stamp_ns);
 std::optional<std::int64_t> stamp_of(std::string_view seconds);
-
-/// "real", "fictitious", "virtual", "door", "narrowing", "hall_corridor".
-std::string_view name_of(topomap::NodeKind kind);
-std::optional<topomap::NodeKind> node_kind_of(std::string_view name);
 
 /// What a station is described as that is a base station of ours.
 inline constexpr std::string_view kBaseStation = "base station";

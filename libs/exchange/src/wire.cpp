@@ -85,6 +85,15 @@ std::string varint_field(std::uint32_t number, std::uint64_t value) {
   return bytes;
 }
 
+std::string fixed64_field(std::uint32_t number, std::uint64_t value) {
+  std::string bytes;
+  append_varint(bytes, (std::uint64_t{number} << 3U) | 1U);
+  for (unsigned shift = 0; shift < 64; shift += 8) {
+    bytes += std::bit_cast<char>(static_cast<unsigned char>((value >> shift) & 0xffU));
+  }
+  return bytes;
+}
+
 std::string bytes_field(std::uint32_t number, std::string_view payload) {
   std::string bytes;
   append_varint(bytes, (std::uint64_t{number} << 3U) | 2U);

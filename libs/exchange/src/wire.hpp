@@ -27,6 +27,7 @@ std::optional<std::uint64_t> number_in(std::string_view message, std::uint32_t f
 
 /// A field as bytes.
 std::string varint_field(std::uint32_t number, std::uint64_t value);
+std::string fixed64_field(std::uint32_t number, std::uint64_t value);
 std::string bytes_field(std::uint32_t number, std::string_view payload);
 
 }  // namespace topogeo::exchange

@@ -34,6 +34,15 @@ void describe(SonarModelConfig& config, support::ConfigSchema& schema) {
              "a mean difference of the readings by this much makes a place e times less likely");
   schema.add("markov.difference_cap_m", &config.difference_cap_m, 0.01, 20.0, "m",
              "a larger difference counts as this: one reading of a person must not decide");
+  schema.add(
+      "markov.formula", &config.formula,
+      {{"exponential", PerceptualFormula::kExponential},
+       {"inverse", PerceptualFormula::kInverse},
+       {"linear", PerceptualFormula::kLinear}},
+      "probability from the mean difference d and scale_m s: exp(-d / s), 1 / (1 + d / s) or "
+      "1 - d / s; MACONDO says only that it falls");
+  schema.add("markov.weigh_by_reliability", &config.weigh_by_reliability,
+             "each difference by the reliability of its reading; MACONDO: all alike");
 }
 
 void describe(MarkovConfig& config, support::ConfigSchema& schema) {
@@ -42,6 +51,15 @@ void describe(MarkovConfig& config, support::ConfigSchema& schema) {
              "side of the window of probabilities, odd; MACONDO: 21");
   schema.add("markov.perceptual_weight", &config.perceptual_weight, 0.0, 1.0, "",
              "of readings that are wholly reliable, against the movement; MACONDO: 0.6");
+  schema.add(
+      "markov.arrow_sense", &config.transition.sense,
+      {{"right", ArrowSense::kRight}, {"left", ArrowSense::kLeft}},
+      "of the arrow beside MACONDO's matrix of an advance, which the print does not show: the "
+      "right column is ahead of the robot, which rather goes too far, or left, behind it");
+  schema.add("markov.advance_step_m", &config.transition.advance_step_m, 0.0, 100.0, "m",
+             "length that the matrix of an advance stands for, from 0.01 on; 0: a whole primitive");
+  schema.add("markov.turn_step_rad", &config.transition.turn_step_rad, 0.0, 6.3, "rad",
+             "angle that the matrix of a turn stands for, from 0.01 on; 0: a whole primitive");
   describe(config.sonar, schema);
 }
 

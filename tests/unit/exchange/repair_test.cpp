@@ -25,6 +25,13 @@ storage::MapDocument whole_map() {
   document.global_map.version = 9;
   document.drawing = sample_drawing();
   document.drawing.grid = sample_space().grid();
+  document.edges = {{0, 1, {1.0, 0.0, 0.0}, Eigen::Matrix3d::Identity()},
+                    {1, 3, {2.0, 0.1, 0.0}, 2.0 * Eigen::Matrix3d::Identity()}};
+  document.refused_merges = {{{0xfedcba9876543210U, 1}, {7, 3}}};
+  document.rooms.rooms = {{1, 40, {{topomap::StopId{7, 2}, {1.0, -0.5}}}, "room A"},
+                          {3, 12, {}, ""}};
+  document.rooms.places = {{{"desk", {1.5, 2.0}}, 1, {topomap::StopId{7, 2}, {0.25, 0.0}}, 0.75}};
+  document.rooms.last = 4;
   return document;
 }
 
@@ -174,6 +181,20 @@ TEST_F(Repair, FlippedBitsNeverCostMoreThanTheyTouch) {
   EXPECT_GE(saved, static_cast<std::size_t>(kFlips) * 9 / 10);
 }
 
+TEST_F(Repair, ADamagedRoomCostsItselfAloneAndNoNumberIsGivenTwice) {
+  StoredPieces pieces = pieces_of_map_file(storage::map_file_bytes(whole_map()), "f");
+  ASSERT_EQ(pieces.rooms.size(), 2U);
+  pieces.rooms.push_back(pieces.rooms[1]);  // its number twice
+  pieces.rooms[0] = "\x08";
+  pieces.last_room = 0;
+  const RepairedMap map = assemble(pieces, {}, "f");
+  EXPECT_THAT(map.lost, testing::ElementsAre("2 of 3 rooms cannot be read"));
+  ASSERT_EQ(map.document.rooms.rooms.size(), 1U);
+  EXPECT_EQ(map.document.rooms.rooms[0].number, 3U);
+  EXPECT_EQ(map.document.rooms.last, 3U);
+  EXPECT_EQ(map.document.rooms.places, whole_map().rooms.places);
+}
+
 TEST_F(Repair, WhatIsNoMapIsRefused) {
   EXPECT_EQ(error_of([] { repaired("hello"); }),
             "f: not a topogeo map (no 'topogeo-map' at its beginning)");
@@ -182,14 +203,30 @@ TEST_F(Repair, WhatIsNoMapIsRefused) {
               HasSubstr("no.sqlite: nothing can be read"));
 }
 
-TEST_F(Repair, ADatabaseWithDamagedPagesGivesTheOthers) {
-  // A file of schema 1, as the last program of that version wrote it, made by SQLite's own shell.
-  const std::filesystem::path file = directory_ / "map.sqlite";
+/// A database as the last program of a version wrote it, made by SQLite's own library.
+void make_database(const std::filesystem::path& file, const std::string& golden) {
   const std::string script =
       "import sqlite3,sys; d=sqlite3.connect(sys.argv[1]); "
       "d.executescript(open(sys.argv[2]).read())";
-  const std::string text = std::string(TOPOGEO_TEST_DATA) + "/map_v1.sql";
-  run_program({"/usr/bin/python3", "-c", script, file.string(), text});
+  run_program({"/usr/bin/python3", "-c", script, file.string(),
+               std::string(TOPOGEO_TEST_DATA) + "/" + golden});
+}
+
+TEST_F(Repair, ADatabaseKeepsNumbersOfRoomsAndRefusedMerges) {
+  const std::filesystem::path file = directory_ / "map.sqlite";
+  make_database(file, "map_v3.sql");
+  const storage::MapDocument good = storage::read_map(file);
+  ASSERT_FALSE(good.rooms.empty());
+  ASSERT_FALSE(good.refused_merges.empty());
+  const RepairedMap map = assemble(pieces_of_database(file), {}, "map.sqlite");
+  EXPECT_THAT(map.lost, IsEmpty());
+  EXPECT_EQ(map.document.rooms, good.rooms);
+  EXPECT_EQ(map.document.refused_merges, good.refused_merges);
+}
+
+TEST_F(Repair, ADatabaseWithDamagedPagesGivesTheOthers) {
+  const std::filesystem::path file = directory_ / "map.sqlite";
+  make_database(file, "map_v1.sql");
   const storage::MapDocument good = storage::read_map(file);
   const RepairedMap map = assemble(pieces_of_database(file), {}, "map.sqlite");
   EXPECT_THAT(map.lost, IsEmpty());

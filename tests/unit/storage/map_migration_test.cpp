@@ -107,8 +107,8 @@ TEST_F(GoldenFile, DatabaseOfVersion2TakesNumbersOfRooms) {
   EXPECT_EQ(read_map(path()).rooms, rooms);
 }
 
-TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
-  make("map_v2.sql");
+/// What the golden file of version 2 holds.
+MapDocument golden_document_2() {
   MapDocument expected = golden_document();
   for (topomap::LocalMap& map : expected.local_maps) {
     map.stop =
@@ -119,6 +119,12 @@ TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
   expected.edges = {{0, 1, {1.0, 0.5, 0.25}, Eigen::Matrix3d::Identity()}};
   expected.drawing.zones.push_back(
       {"ramp", {{0.0, 0.0}, {4.0, 0.0}, {4.0, 3.0}}, planning::ZoneKind::kSlow, 0.3});
+  return expected;
+}
+
+TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
+  make("map_v2.sql");
+  const MapDocument expected = golden_document_2();
   EXPECT_EQ(map_file_bytes(read_map(path())), map_file_bytes(expected));
   const MapDatabase database = MapDatabase::open_existing(path());
   EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(expected));
@@ -130,6 +136,24 @@ TEST_F(GoldenFile, DatabaseOfVersion2IsRead) {
   EXPECT_EQ(database.sessions()[0].joined, 3U);
   EXPECT_EQ(database.sessions()[1].stops, 4U) << "stop 0 was dropped";
   EXPECT_FALSE(database.sessions()[1].is_over);
+}
+
+TEST_F(GoldenFile, DatabaseOfVersion3IsRead) {
+  make("map_v3.sql");
+  const std::string before = content(path());
+  MapDocument expected = golden_document_2();
+  expected.rooms = numbered_rooms();
+  expected.refused_merges = {{{0xfedcba9876543210U, 1}, {7, 2}}};
+  EXPECT_EQ(map_file_bytes(read_map(path())), map_file_bytes(expected));
+  EXPECT_EQ(content(path()), before) << "read alone, it stays as it is";
+  // The map goes on.
+  MapDatabase database = MapDatabase::open_existing(path());
+  EXPECT_EQ(map_file_bytes(database.load()), map_file_bytes(expected));
+  planning::RoomMemory rooms = expected.rooms;
+  rooms.rooms.push_back({5, 9, {}, "lab"});
+  rooms.last = 5;
+  database.put_rooms(rooms);
+  EXPECT_EQ(MapDatabase::open_existing(path()).load().rooms, rooms);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "topogeo/topomap/node_kind_name.hpp"
+
 namespace topogeo::topomap {
 namespace {
 
@@ -22,6 +24,17 @@ LocalMap sample() {
   branch.points = {{{1.0, 1.0}, 0.8}, {{2.0, 1.0}, 0.7}};
   map.branches = {branch};
   return map;
+}
+
+TEST(NodeKindName, IsAWordForEachKindAndBack) {
+  for (int number = 0; number < 6; ++number) {
+    const auto kind = static_cast<NodeKind>(number);
+    EXPECT_EQ(node_kind_of(name_of(kind)), kind);
+  }
+  EXPECT_EQ(name_of(NodeKind::kHallCorridor), "hall_corridor");
+  EXPECT_EQ(name_of(static_cast<NodeKind>(6)), "unknown");
+  EXPECT_FALSE(node_kind_of("unknown"));
+  EXPECT_FALSE(node_kind_of("Door"));
 }
 
 TEST(ContentHash, ChangesWithEverythingThatAMatchDependsOn) {

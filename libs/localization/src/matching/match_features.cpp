@@ -10,6 +10,7 @@
 
 #include "topogeo/geometry/portable_math.hpp"
 
+#include "principal_axes.hpp"
 #include "wall_edges.hpp"
 
 namespace topogeo::localization {
@@ -86,14 +87,7 @@ SurfacePoint fit_surface(const std::vector<Eigen::Vector2d>& points, std::size_t
     xy += dx * dy;
     yy += dy * dy;
   }
-  const double spread = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
-  const double smallest = std::max(0.0, 0.5 * (xx + yy) - spread);
-  const double largest = 0.5 * (xx + yy) + spread;
-  // Eigenvector of the smallest eigenvalue, from the row of (S - smallest I) that is better
-  // conditioned.
-  const Eigen::Vector2d normal = xx - smallest > yy - smallest
-                                     ? Eigen::Vector2d(-xy, xx - smallest)
-                                     : Eigen::Vector2d(yy - smallest, -xy);
+  const auto [smallest, largest, normal] = principal_axes(xx, xy, yy);
   const double length = std::sqrt(normal.squaredNorm());
   const bool on_line = !around.few() && length > 0.0 && smallest < 0.1 * largest &&
                        smallest <= count * kLargestThickness_m * kLargestThickness_m;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "principal_axes.hpp"
+
 namespace topogeo::localization {
 namespace {
 
@@ -114,16 +116,11 @@ class EdgeFinder {
 
   // By principal components of both sides about their own means.
   [[nodiscard]] std::optional<Step> step_between(const Side& before, const Side& after) const {
-    const double xx = before.xx + after.xx;
-    const double xy = before.xy + after.xy;
-    const double yy = before.yy + after.yy;
-    const double spread = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
-    const double smallest = std::max(0.0, 0.5 * (xx + yy) - spread);
-    const double largest = 0.5 * (xx + yy) + spread;
+    auto [smallest, largest, normal] =
+        principal_axes(before.xx + after.xx, before.xy + after.xy, before.yy + after.yy);
     const double noise_m =
         std::max(kLeastNoise_m, std::sqrt(smallest / (before.count() + after.count() - 3.0)));
     if (noise_m > kRoughest_m) return {};
-    Vector2d normal = xx > yy ? Vector2d(-xy, xx - smallest) : Vector2d(yy - smallest, -xy);
     const double length = std::sqrt(normal.squaredNorm());
     if (length <= 0.0) return {};
     normal /= normal.dot(laser_m_ - before.mean_m) < 0.0 ? -length : length;

@@ -32,16 +32,20 @@ struct StoredPieces {
   std::uint64_t trajectory_version = 0;
   std::uint64_t map_version = 0;
   std::vector<StoredStop> stops;
-  std::vector<std::string> poses;     ///< StopPose
-  std::vector<std::string> loops;     ///< LoopClosure
-  std::vector<std::string> edges;     ///< MapEdge
-  std::vector<std::string> nodes;     ///< MapNode
-  std::vector<std::string> branches;  ///< MapBranch
-  std::vector<std::string> places;    ///< Place
-  std::vector<std::string> zones;     ///< DrawnZone
-  std::string grid;                   ///< DrawnGrid; "": none
-  bool graph_incomplete = false;      ///< nodes or branches are among what was lost
-  Notes damage;                       ///< what was lost already
+  std::vector<std::string> poses;           ///< StopPose
+  std::vector<std::string> loops;           ///< LoopClosure
+  std::vector<std::string> edges;           ///< MapEdge
+  std::vector<std::string> nodes;           ///< MapNode
+  std::vector<std::string> branches;        ///< MapBranch
+  std::vector<std::string> places;          ///< Place
+  std::vector<std::string> zones;           ///< DrawnZone
+  std::string grid;                         ///< DrawnGrid; "": none
+  std::vector<std::string> refused_merges;  ///< RefusedMerge
+  std::vector<std::string> rooms;           ///< Room
+  std::vector<std::string> room_places;     ///< PlaceInRoom
+  std::uint64_t last_room = 0;
+  bool graph_incomplete = false;  ///< nodes or branches are among what was lost
+  Notes damage;                   ///< what was lost already
 };
 
 /// The elements of a map file, as far as their lengths can be followed. Throws std::runtime_error

@@ -1,0 +1,17 @@
+// The words for the kinds of nodes, in files, messages and commands.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "topogeo/topomap/local_map.hpp"
+
+namespace topogeo::topomap {
+
+/// "real", "fictitious", "virtual", "door", "narrowing", "hall_corridor"; "unknown" for a number
+/// that is none of them.
+std::string_view name_of(NodeKind kind);
+/// Nothing for any other word.
+std::optional<NodeKind> node_kind_of(std::string_view name);
+
+}  // namespace topogeo::topomap
