@@ -105,27 +105,29 @@ Json empty_entity(const std::string& id, std::int64_t now_ns) {
 
 void draw_graph(const Json& object, Json& entity) {
   if (object.contains("points_m")) {
-    entity["lines"].push_back(line_json(object["points_m"], kGraphHeight_m, kBranchWidth_m,
+    entity["lines"].push_back(line_json(object.at("points_m"), kGraphHeight_m, kBranchWidth_m,
                                         kLineStrip,
                                         object.value("virtual", false) ? kPurple : kBlue));
   } else if (object.contains("kind")) {  // the summary of the map has none
-    entity["spheres"].push_back(
-        sphere_json(object["x_m"], object["y_m"], kNodeSize_m, color_of_node(object["kind"])));
+    entity["spheres"].push_back(sphere_json(object.at("x_m"), object.at("y_m"), kNodeSize_m,
+                                            color_of_node(object.at("kind"))));
   }
 }
 
 void draw_room(const Json& object, Json& entity) {
-  entity["texts"].push_back(text_json(object["x_m"], object["y_m"], object["name"], kGreen));
+  entity["texts"].push_back(
+      text_json(object.at("x_m"), object.at("y_m"), object.at("name"), kGreen));
 }
 
 void draw_place(const std::string& name, const Json& object, Json& entity) {
-  entity["spheres"].push_back(sphere_json(object["x_m"], object["y_m"], kPlaceSize_m, kOrange));
-  entity["texts"].push_back(text_json(object["x_m"], object["y_m"], name, kOrange));
+  entity["spheres"].push_back(
+      sphere_json(object.at("x_m"), object.at("y_m"), kPlaceSize_m, kOrange));
+  entity["texts"].push_back(text_json(object.at("x_m"), object.at("y_m"), name, kOrange));
 }
 
 void draw_rule(const std::string& name, const Json& object, Json& entity) {
-  const Json& corners_m = object["corners_m"];
-  const SceneColor color = color_of_rule(object["kind"]);
+  const Json& corners_m = object.at("corners_m");
+  const SceneColor color = color_of_rule(object.at("kind"));
   entity["lines"].push_back(line_json(corners_m, kRuleHeight_m, kRuleWidth_m, kLineLoop, color));
   if (corners_m.size() >= 2) {
     entity["texts"].push_back(text_json(corners_m[0], corners_m[1], name, color));
@@ -135,7 +137,7 @@ void draw_rule(const std::string& name, const Json& object, Json& entity) {
 void draw_route(const Json& route, Json& entity) {
   if (route.is_null() || !route.value("found", false)) return;
   entity["lines"].push_back(
-      line_json(route["points_m"], kRouteHeight_m, kRouteWidth_m, kLineStrip, kGreen));
+      line_json(route.at("points_m"), kRouteHeight_m, kRouteWidth_m, kLineStrip, kGreen));
 }
 
 void draw(Channel channel, const std::string& key, const Json& object, Json& entity) {
@@ -168,16 +170,21 @@ std::string scene_update(Channel channel, const Json& update, std::int64_t now_n
   Json entities = Json::array();
   const auto add = [&](const std::string& key, const Json& object) {
     Json entity = empty_entity(key, now_ns);
-    draw(channel, key, object, entity);
+    try {
+      draw(channel, key, object, entity);
+    } catch (const Json::exception&) {  // a number that is not known
+      return;
+    }
     if (is_visible(entity)) entities.push_back(std::move(entity));
   };
   if (is_table(channel)) {
-    if (update["from"] == 0) deletions.push_back(deletion(kDeleteAll, "", now_ns));
-    for (const auto& [key, object] : update["set"].items()) add(key, object);
-    for (const Json& key : update["gone"]) deletions.push_back(deletion(kDeleteOne, key, now_ns));
+    if (update.at("from") == 0) deletions.push_back(deletion(kDeleteAll, "", now_ns));
+    for (const auto& [key, object] : update.at("set").items()) add(key, object);
+    for (const Json& key : update.at("gone"))
+      deletions.push_back(deletion(kDeleteOne, key, now_ns));
   } else {
     deletions.push_back(deletion(kDeleteAll, "", now_ns));
-    add(std::string(name_of(channel)), update["value"]);
+    add(std::string(name_of(channel)), update.at("value"));
   }
   return text_of(Json{{"deletions", std::move(deletions)}, {"entities", std::move(entities)}});
 }
@@ -192,16 +199,17 @@ int log_level(const std::string& level) {
 
 std::vector<std::string> log_messages(const Json& update) {
   std::map<std::uint64_t, const Json*> events;  // keys of the table are numbers
-  for (const auto& [key, event] : update["set"].items()) events.emplace(std::stoull(key), &event);
+  for (const auto& [key, event] : update.at("set").items())
+    events.emplace(std::stoull(key), &event);
   std::vector<std::string> messages;
   messages.reserve(events.size());
   for (const auto& [number, event] : events) {
     const auto stamp_ns =
-        static_cast<std::int64_t>(std::llround((*event)["time_s"].get<double>() * 1e9));
+        static_cast<std::int64_t>(std::llround(event->at("time_s").get<double>() * 1e9));
     messages.push_back(text_of(Json{{"timestamp", foxglove_time(stamp_ns)},
-                                    {"level", log_level((*event)["level"])},
-                                    {"message", (*event)["text"]},
-                                    {"name", (*event)["source"]},
+                                    {"level", log_level(event->at("level"))},
+                                    {"message", event->at("text")},
+                                    {"name", event->at("source")},
                                     {"file", ""},
                                     {"line", 0}}));
   }

@@ -153,6 +153,19 @@ TEST(FoxgloveScene, NodesAreSpheresAndBranchesLines) {
   EXPECT_EQ(delta["entities"][0]["id"], "n4");
 }
 
+TEST(FoxgloveScene, WhatHasNoPlaceIsLeftOut) {
+  Board board;
+  board.edit(Channel::kGraph, {{"n1", R"({"kind":"door","x_m":null,"y_m":2})"},
+                               {"n2", R"({"kind":"door"})"},
+                               {"b1", R"({"a":1,"b":2,"points_m":[0,null]})"},
+                               {"n3", R"({"kind":"real","x_m":1,"y_m":2})"}});
+  const auto messages =
+      foxglove_messages(Channel::kGraph, *board.update(Channel::kGraph, 0).text, 0);
+  const json entities = json::parse(messages.at(0))["entities"];
+  ASSERT_THAT(entities, SizeIs(1));
+  EXPECT_EQ(entities[0]["id"], "n3");
+}
+
 TEST(FoxgloveScene, RoomsPlacesAndRulesHaveTheirNames) {
   Board board;
   board.edit(Channel::kRooms, {{"0", R"({"name":"hall","area_m2":9,"x_m":1,"y_m":2,"color":0})"}});
