@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What the tests of the page in Chromium, and of other viewers, share; sourced.
+# What the tests of the page in Chromium share; sourced.
+# shellcheck disable=SC2317  # those that source it call its functions
 source "$(dirname "${BASH_SOURCE[0]}")/../container/common.sh"
 
 # Skips where there is no browser, page or playwright-core.
