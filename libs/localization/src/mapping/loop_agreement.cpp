@@ -8,6 +8,7 @@
 #include <set>
 
 #include "topogeo/localization/mapping/covariance_calibration.hpp"
+#include "topogeo/localization/mapping/loop_probability.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"
 
@@ -35,6 +36,9 @@ constexpr double kShareOfWindow = kMostShare / PlaceRecognition::kQuery_m;
 constexpr double kWanted = 3.0;
 constexpr double kPerSurprise = 0.75;
 constexpr double kOverRival = 2.0;  // how much heavier than its rivals an accepted set is
+// Of a match in a set that the prediction agrees with: less probable ones measure worse than the
+// rest of their set, and one in fifty of them is more than half a metre off.
+constexpr double kLeastProbability = 0.98;
 constexpr std::size_t kRivalSeeds = 8;
 // Older ones have had their chance: bounds the work of a step.
 constexpr double kForgotten_m = 60.0;
@@ -247,16 +251,15 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       for (const std::size_t i : set) {
         // What slid along a corridor agrees with the others, but not with the prediction that they
         // agree with. Windows slide most easily: where they move nothing, stops measure better.
-        const StopMatch& match = hypotheses_[i].match;
+        StopMatch match = hypotheses_[i].match;
+        match.agreement = weight;
+        match.rival_agreement = rival;
         if (as_predicted && (match.source == ProposalSource::kWindow ||
-                             match.surprise() > geometry::kMahalanobis2Of99Percent)) {
+                             match.surprise() > geometry::kMahalanobis2Of99Percent ||
+                             loop_probability(match.loop_evidence()) < kLeastProbability)) {
           continue;
         }
-        if (!hypotheses_[i].accepted) {
-          out.push_back(hypotheses_[i].match);
-          out.back().agreement = weight;
-          out.back().rival_agreement = rival;
-        }
+        if (!hypotheses_[i].accepted) out.push_back(std::move(match));
         hypotheses_[i].accepted = true;
         hypotheses_[i].weight = AgreementWeights::kPassed;
       }

@@ -163,6 +163,20 @@ TEST_F(LoopAgreementTest, WhatAloneContradictsThePredictionIsLeftOut) {
   for (const StopMatch& one : all) EXPECT_NE(one.edge.from, 6U);
 }
 
+// 0.35 m along the corridor, which the prediction does not exclude: its inliers decide.
+TEST_F(LoopAgreementTest, WhatIsImprobableAmongOthersIsLeftOut) {
+  for (const double inliers : {0.0, 0.9}) {
+    LoopAgreement agreement;
+    for (std::uint32_t i = 0; i < 7; ++i) {
+      StopMatch one = match(i, 30 + i, 1.0);
+      one.predicted = {{30.0, i == 6 ? 0.65 : 1.0, 0.0}, spread_of(0.14, 0.05)};
+      one.inliers = i == 6 ? inliers : 0.9;
+      agreement.add(one, path_m_);
+    }
+    EXPECT_EQ(agreement.accepted(graph_, path_m_).size(), inliers > 0.0 ? 7U : 6U);
+  }
+}
+
 // Of a place where the robot is expected stops measure better.
 TEST_F(LoopAgreementTest, WindowsAreTakenOnlyWhereTheySurprise) {
   for (const bool surprising : {false, true}) {
