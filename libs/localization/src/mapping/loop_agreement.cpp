@@ -43,6 +43,14 @@ constexpr std::size_t kRivalSeeds = 8;
 // Older ones have had their chance: bounds the work of a step.
 constexpr double kForgotten_m = 60.0;
 
+/// How far the way round two loops leads from where it began, metres.
+double off_by_way_of(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b) {
+  const std::vector<Pose2>& poses = graph.poses();
+  const Pose2 T_around = geometry::between(poses[b.from], poses[a.from]) * a.T_from_to *
+                         geometry::between(poses[a.to], poses[b.to]);
+  return (T_around.position_m() - b.T_from_to.position_m()).norm();
+}
+
 }  // namespace
 
 double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b,
@@ -52,12 +60,7 @@ double disagreement(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGr
     return std::numeric_limits<double>::infinity();
   }
   // Most pairs are far from agreeing: seen without covariances.
-  const std::vector<geometry::Pose2>& poses = graph.poses();
-  const geometry::Pose2 T_around = geometry::between(poses[b.from], poses[a.from]) * a.T_from_to *
-                                   geometry::between(poses[a.to], poses[b.to]);
-  if ((T_around.position_m() - b.T_from_to.position_m()).squaredNorm() > kFarOff_m * kFarOff_m) {
-    return std::numeric_limits<double>::infinity();
-  }
+  if (off_by_way_of(graph, a, b) > kFarOff_m) return std::numeric_limits<double>::infinity();
   return disagreement(graph, a, b, graph.along_path(b.from, a.from));
 }
 
@@ -89,21 +92,60 @@ void LoopAgreement::keep(Hypothesis hypothesis, std::span<const double> path_m) 
   hypotheses_.push_back(std::move(hypothesis));
 }
 
+double LoopAgreement::disagreement(std::size_t a, std::size_t b, const Ways& ways) const {
+  const PoseGraphEdge& first = edge_of(a);
+  const PoseGraphEdge& second = edge_of(b);
+  const auto far_apart = [&](std::uint32_t i, std::uint32_t k) {
+    return std::fabs(ways.path_m[i] - ways.path_m[k]) > kFarthest_m;
+  };
+  if (!far_apart(first.from, second.from)) {
+    return localization::disagreement(ways.graph, first, second, ways.path_m, kFarthest_m);
+  }
+  const UncertainPose* const T_seed_first = ways.T_seed_stop.find(first.from);
+  const UncertainPose* const T_seed_second = ways.T_seed_stop.find(second.from);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (T_seed_first == nullptr || T_seed_second == nullptr) return kNone;
+  if (far_apart(first.to, second.to)) return kNone;
+  const UncertainPose T_second_first = compose(inverse(*T_seed_second), *T_seed_first);
+  if (!well_known(T_second_first.covariance)) return kNone;
+  return localization::disagreement(ways.graph, first, second, T_second_first);
+}
+
+// Earlier ends of the loops that may agree with this one; none where all are of its visit, or could
+// not weigh enough together.
+std::vector<std::uint32_t> LoopAgreement::other_visits(std::size_t seed, const Ways& ways) const {
+  const PoseGraphEdge& seed_edge = edge_of(seed);
+  Set near;
+  bool others = false;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    const PoseGraphEdge& edge = edge_of(i);
+    if (std::fabs(ways.path_m[edge.to] - ways.path_m[seed_edge.to]) > kFarthest_m ||
+        off_by_way_of(ways.graph, edge, seed_edge) > kFarOff_m) {
+      continue;
+    }
+    near.push_back(i);
+    others |= std::fabs(ways.path_m[edge.from] - ways.path_m[seed_edge.from]) > kFarthest_m;
+  }
+  std::vector<std::uint32_t> stops;
+  if (!others || weight_of(near, ways.path_m) < kWanted) return stops;
+  for (const std::size_t i : near) stops.push_back(edge_of(i).from);
+  std::sort(stops.begin(), stops.end());
+  stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+  return stops;
+}
+
 // Greedily: the heaviest and newest first.
 LoopAgreement::Set LoopAgreement::set_around(std::size_t seed, std::span<const std::size_t> among,
-                                             const PoseGraph& graph,
-                                             std::span<const double> path_m) const {
+                                             const Ways& ways) const {
   struct Partner {
     std::size_t index;
     double weight;
     double disagreement;
   };
-  const PoseGraphEdge& seed_edge = hypotheses_[seed].match.edge;
   std::vector<Partner> partners;
   for (const std::size_t i : among) {
     if (i == seed) continue;
-    const double apart =
-        disagreement(graph, hypotheses_[i].match.edge, seed_edge, path_m, kFarthest_m);
+    const double apart = disagreement(i, seed, ways);
     if (apart <= kAgree) partners.push_back({i, hypotheses_[i].weight, apart});
   }
   std::stable_sort(partners.begin(), partners.end(), [](const Partner& a, const Partner& b) {
@@ -112,8 +154,7 @@ LoopAgreement::Set LoopAgreement::set_around(std::size_t seed, std::span<const s
   Set set{seed};
   for (const Partner& partner : partners) {
     const bool all = std::all_of(set.begin() + 1, set.end(), [&](std::size_t other) {
-      return disagreement(graph, hypotheses_[partner.index].match.edge,
-                          hypotheses_[other].match.edge, path_m, kFarthest_m) <= kAgree;
+      return disagreement(partner.index, other, ways) <= kAgree;
     });
     if (all) set.push_back(partner.index);
   }
@@ -176,17 +217,19 @@ bool LoopAgreement::spread(const Set& set, std::span<const double> path_m) const
   return high_m - low_m >= AgreementWeights::kLeastSpread_m;
 }
 
+bool LoopAgreement::is_heavy(const Set& set, std::span<const double> path_m) const {
+  const double wanted = kWanted + kPerSurprise * std::log1p(surprise_of(set));
+  return weight_of(set, path_m) >= wanted && spread(set, path_m);
+}
+
 // Those of the same later stretch that put the robot elsewhere. Loops with another earlier visit of
 // the same place do not: where that lies is what the graph predicts, and as far as the set
 // surprises the graph they must contradict each other. That was charged for once, by what is
 // wanted.
 LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
-                                            const PoseGraph& graph,
-                                            std::span<const double> path_m) const {
-  const PoseGraphEdge& seed_edge = hypotheses_[seed].match.edge;
-  const auto edge_of = [this](std::size_t i) -> const PoseGraphEdge& {
-    return hypotheses_[i].match.edge;
-  };
+                                            const Ways& ways) const {
+  const std::span<const double> path_m = ways.path_m;
+  const PoseGraphEdge& seed_edge = edge_of(seed);
   const auto of_one_visit = [&](std::size_t i) {
     return std::fabs(path_m[edge_of(i).from] - path_m[seed_edge.from]) <= kFarthest_m;
   };
@@ -198,13 +241,16 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
       continue;
     }
     const bool agrees = std::any_of(set.begin(), set.end(), [&](std::size_t other) {
-      return disagreement(graph, edge_of(i), edge_of(other), path_m, kFarthest_m) <= kAgree;
+      return disagreement(i, other, ways) <= kAgree;
     });
     if (agrees) continue;
     others.push_back(i);
     if (!of_one_visit(i)) of_other_visits.insert(edge_of(i).from);
   }
-  const RelativePoses T_seed_stop = graph.predict_from(
+  for (const std::size_t i : set) {
+    if (!of_one_visit(i)) of_other_visits.insert(edge_of(i).from);
+  }
+  const RelativePoses T_seed_stop = ways.graph.predict_from(
       seed_edge.from, std::vector<std::uint32_t>(of_other_visits.begin(), of_other_visits.end()));
   const double surprise = surprise_of(set);
   const auto elsewhere = [&](std::size_t i) {
@@ -216,9 +262,14 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
         edge_of(*std::min_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
           return later_apart_m(a) < later_apart_m(b);
         }));
-    const UncertainPose T_from_nearest = compose(inverse(T_seed_stop.at(edge_of(i).from)),
-                                                 graph.along_path(seed_edge.from, nearest.from));
-    return disagreement(graph, nearest, edge_of(i), T_from_nearest) > kAgree + surprise;
+    const UncertainPose T_seed_nearest =
+        std::fabs(path_m[nearest.from] - path_m[seed_edge.from]) <= kFarthest_m
+            ? ways.graph.along_path(seed_edge.from, nearest.from)
+            : T_seed_stop.at(nearest.from);
+    const UncertainPose T_from_nearest =
+        compose(inverse(T_seed_stop.at(edge_of(i).from)), T_seed_nearest);
+    return localization::disagreement(ways.graph, nearest, edge_of(i), T_from_nearest) >
+           kAgree + surprise;
   };
   std::erase_if(others, [&](std::size_t i) { return !elsewhere(i); });
   return others;
@@ -234,17 +285,24 @@ std::vector<StopMatch> LoopAgreement::accepted(const PoseGraph& graph,
       hypotheses_[seed].fresh = false;
       std::vector<std::size_t> all(hypotheses_.size());
       for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-      const Set set = set_around(seed, all, graph, path_m);
+      Ways ways{graph, path_m};
+      Set set = set_around(seed, all, ways);
+      if (!is_heavy(set, path_m)) {
+        const std::vector<std::uint32_t> visits = other_visits(seed, ways);
+        if (visits.empty()) continue;
+        ways.T_seed_stop = graph.predict_from(edge_of(seed).from, visits, PoseGraph::kUnlimited,
+                                              PoseGraph::kMostVisited);
+        set = set_around(seed, all, ways);
+        if (!is_heavy(set, path_m)) continue;
+      }
       const double weight = weight_of(set, path_m);
-      const double wanted = kWanted + kPerSurprise * std::log1p(surprise_of(set));
-      if (weight < wanted || !spread(set, path_m)) continue;
-      std::vector<std::size_t> rivals = rivals_of(seed, set, graph, path_m);
+      std::vector<std::size_t> rivals = rivals_of(seed, set, ways);
       double rival = 0.0;
       std::stable_sort(rivals.begin(), rivals.end(), [&](std::size_t a, std::size_t b) {
         return hypotheses_[a].weight > hypotheses_[b].weight;
       });
       for (std::size_t k = 0; k < std::min(kRivalSeeds, rivals.size()); ++k) {
-        rival = std::max(rival, weight_of(set_around(rivals[k], rivals, graph, path_m), path_m));
+        rival = std::max(rival, weight_of(set_around(rivals[k], rivals, ways), path_m));
       }
       if (weight < kOverRival * rival) continue;
       const bool as_predicted = surprise_of(set) <= geometry::kMahalanobis2Of99Percent;

@@ -28,9 +28,6 @@ constexpr double kFarthestCompared_m = 20.0;
 constexpr std::size_t kMostConsidered = 100;
 // No drift between two closed loops is larger: places further off are not looked for.
 constexpr double kFarthestPlace_m = 100.0;
-// Visited for the predictions of a stop: all of a log of 4 km. Of a longer one these are the
-// nearest by what is known of them, and with them the stops that show the place.
-constexpr std::size_t kMostVisited = 4000;
 constexpr double kWidening =
     3.0;  // of the deviations, when nothing was found where odometry predicts
 
@@ -213,8 +210,9 @@ std::vector<StopMatch> StopMatching::match_revisited(const PoseGraph& graph,
         graph.stops_near(place_m, kFarthestCompared_m, kMostConsidered, first_recent(stop));
     RelativePoses relative =
         ask ? graph.predict_from(stop, graph.stops_near(place_m, kFarthestPlace_m, stop, stop),
-                                 PoseGraph::kUnlimited, kMostVisited)
-            : graph.predict_from(stop, near, largest_searchable_cost(config_), kMostVisited);
+                                 PoseGraph::kUnlimited, PoseGraph::kMostVisited)
+            : graph.predict_from(stop, near, largest_searchable_cost(config_),
+                                 PoseGraph::kMostVisited);
     relative.widen(map_noise());
     for (const MatchCandidate& candidate : revisited_candidates(graph, stop, near, relative)) {
       const UncertainPose& T_stop_earlier = relative.at(candidate.id);

@@ -17,6 +17,12 @@ UncertainPose inverse(const UncertainPose& a) {
   return {geometry::inverse(a.T_a_b), geometry::inverse_covariance(a.T_a_b, a.covariance)};
 }
 
+bool well_known(const Eigen::Matrix3d& covariance) {
+  constexpr double kKnown2_m2 = 0.3 * 0.3;
+  constexpr double kKnown2_rad2 = 0.1 * 0.1;
+  return covariance(0, 0) + covariance(1, 1) <= kKnown2_m2 && covariance(2, 2) <= kKnown2_rad2;
+}
+
 UncertainPose advance(const UncertainPose& from, const Pose2& T_before_after,
                       const OdometryNoise& noise) {
   const double distance_m =

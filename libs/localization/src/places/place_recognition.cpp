@@ -66,12 +66,6 @@ std::vector<SurfacePoint> thinned(std::vector<SurfacePoint> points, double spaci
   return some;
 }
 
-bool well_known(const Eigen::Matrix3d& covariance) {
-  constexpr double kKnown2_m2 = 0.3 * 0.3;
-  constexpr double kKnown2_rad2 = 0.1 * 0.1;
-  return covariance(0, 0) + covariance(1, 1) <= kKnown2_m2 && covariance(2, 2) <= kKnown2_rad2;
-}
-
 std::vector<Eigen::Vector2d> positions(std::span<const SurfacePoint> points) {
   std::vector<Eigen::Vector2d> out;
   for (const SurfacePoint& p : points) out.push_back(p.position_m);

@@ -98,6 +98,36 @@ TEST_F(LoopAgreementTest, LoopsWithAnotherVisitOfThePlaceAreNoRivals) {
   EXPECT_EQ(accepted().size(), 12U);
 }
 
+// Two stops each with two visits of the place, 35 m of path apart: too few with either alone.
+TEST_F(LoopAgreementTest, VisitsWhoseRelationIsKnownSpeakTogether) {
+  const auto add_visits = [&](LoopAgreement& agreement, double second_off_m) {
+    agreement.add(match(0, 70, 1.0), path_m_);
+    agreement.add(match(1, 71, 1.0), path_m_);
+    agreement.add(match(36, 72, second_off_m), path_m_);
+    agreement.add(match(37, 73, second_off_m), path_m_);
+  };
+  add_visits(agreement_, 1.0);
+  EXPECT_EQ(accepted().size(), 4U);
+
+  LoopAgreement contradictory;
+  add_visits(contradictory, -1.0);
+  EXPECT_TRUE(contradictory.accepted(graph_, path_m_).empty());
+
+  PoseGraph hardly_known;
+  hardly_known.add_pose({});
+  for (std::uint32_t i = 1; i < 80; ++i) {
+    hardly_known.add_pose({1.0 * i, 0.0, 0.0});
+    hardly_known.add_edge({i - 1,
+                           i,
+                           EdgeKind::kOdometry,
+                           {1.0, 0.0, 0.0},
+                           i == 20 ? spread_of(0.4, 0.002) : spread_of(0.02, 0.002)});
+  }
+  LoopAgreement open;
+  add_visits(open, 1.0);
+  EXPECT_TRUE(open.accepted(hardly_known, path_m_).empty());
+}
+
 TEST_F(LoopAgreementTest, LoopsWithALookAlikeFarAwayAreRivals) {
   for (std::uint32_t i = 0; i < 6; ++i) {
     add(i, 70 + i, 1.0);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "topogeo/localization/mapping/pose_graph.hpp"
+#include "topogeo/localization/mapping/relative_poses.hpp"
 #include "topogeo/localization/mapping/stop_match.hpp"
 
 namespace topogeo::localization {
@@ -43,10 +44,22 @@ class LoopAgreement {
   void keep(Hypothesis hypothesis, std::span<const double> path_m);
   using Set = std::vector<std::size_t>;  // of indices, ascending
 
+  /// What pairs are judged by: the paths between their ends, and between the earlier ends of
+  /// loops with different visits of a place what the graph knows, where that was asked for.
+  struct Ways {
+    const PoseGraph& graph;
+    std::span<const double> path_m;
+    RelativePoses T_seed_stop{};
+  };
+  [[nodiscard]] const PoseGraphEdge& edge_of(std::size_t i) const {
+    return hypotheses_[i].match.edge;
+  }
+  [[nodiscard]] double disagreement(std::size_t a, std::size_t b, const Ways& ways) const;
   [[nodiscard]] Set set_around(std::size_t seed, std::span<const std::size_t> among,
-                               const PoseGraph& graph, std::span<const double> path_m) const;
-  [[nodiscard]] Set rivals_of(std::size_t seed, const Set& set, const PoseGraph& graph,
-                              std::span<const double> path_m) const;
+                               const Ways& ways) const;
+  [[nodiscard]] std::vector<std::uint32_t> other_visits(std::size_t seed, const Ways& ways) const;
+  [[nodiscard]] bool is_heavy(const Set& set, std::span<const double> path_m) const;
+  [[nodiscard]] Set rivals_of(std::size_t seed, const Set& set, const Ways& ways) const;
   [[nodiscard]] double weight_of(const Set& set, std::span<const double> path_m) const;
   [[nodiscard]] double surprise_of(const Set& set) const;
   [[nodiscard]] bool spread(const Set& set, std::span<const double> path_m) const;

@@ -109,6 +109,9 @@ class PoseGraph {
                                                       std::uint32_t end) const;
 
   static constexpr std::size_t kAllStops = std::numeric_limits<std::size_t>::max();
+  /// For the predictions of a stop: all of a log of 4 km. Of a longer one these are the nearest by
+  /// what is known of them, and with them the stops that show the place.
+  static constexpr std::size_t kMostVisited = 4000;
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   /// Relative poses of the wanted stops (ascending) seen from `origin` with their covariances, each
   /// along the path on which the variance grows least. All edges between two stops count together:

@@ -21,6 +21,9 @@ UncertainPose compose(const UncertainPose& T_a_b, const UncertainPose& T_b_c);
 /// T_b_a.
 UncertainPose inverse(const UncertainPose& T_a_b);
 
+/// To 0.3 m and 0.1 rad (one deviation).
+bool well_known(const Eigen::Matrix3d& covariance);
+
 /// Adds one step of odometry to a relative pose (Thesis, eq. 6.4, 6.6, 6.7).
 UncertainPose advance(const UncertainPose& from, const geometry::Pose2& T_before_after,
                       const OdometryNoise& noise);
