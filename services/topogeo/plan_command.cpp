@@ -131,6 +131,7 @@ int plan_route(const PlanOptions& options) {
   const storage::MapDocument document = read_map(options.map);
   planning::PlanScene scene;
   scene.zones = document.drawing.zones;
+  scene.lines = document.drawing.lines;
   scene.filled_m = blocked_m;
   const planning::PlanResult result =
       planning::plan(document.global_map, from_m, to_m, config.config.planning, scene);

@@ -49,6 +49,7 @@ class DatabaseReader {
     pieces_.zones = blobs("zone");
     pieces_.rooms = blobs("room");
     pieces_.room_places = blobs("room_place");
+    pieces_.lines = blobs("drawn_line");
     const std::vector<std::string> grids = blobs("drawn_grid");
     if (!grids.empty()) pieces_.grid = grids.back();
     return std::move(pieces_);

@@ -40,7 +40,7 @@ class MapExport {
     header_.robot_id = map.robot_id;
   }
 
-  void grid() { out_.files = grid_files(path_, hybrid_map().space().grid()); }
+  void grid() { out_.files = grid_files(path_, hybrid_map().space().seen()); }
   void masks() {
     MaskFiles masks = mask_files(path_, hybrid_map().frame(), map_.drawing.zones);
     note(masks.notes);

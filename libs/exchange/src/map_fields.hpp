@@ -34,6 +34,7 @@ struct MapFields {
   static constexpr std::uint32_t kPlaces = 1;  // of Drawing
   static constexpr std::uint32_t kZones = 2;
   static constexpr std::uint32_t kGrid = 3;
+  static constexpr std::uint32_t kLines = 4;
   static constexpr std::uint32_t kRoom = 1;  // of Rooms
   static constexpr std::uint32_t kPlaceInRoom = 2;
   static constexpr std::uint32_t kLastRoom = 3;

@@ -107,7 +107,8 @@ class MapFileReader {
         }
         break;
       case MapFields::kDrawing:
-        take_parts(field.payload, ignored_, {nullptr, &pieces_.places, &pieces_.zones, &grids_});
+        take_parts(field.payload, ignored_,
+                   {nullptr, &pieces_.places, &pieces_.zones, &grids_, &pieces_.lines});
         if (!grids_.empty()) pieces_.grid = grids_.back();
         break;
       case MapFields::kEdge:

@@ -14,23 +14,7 @@ void move(MapGraph& graph, const geometry::Pose2& T_map_graph) {
   for (topomap::MapBranch& branch : graph.map.branches) {
     for (topomap::BranchPoint& p : branch.points) p.position_m = T_map_graph * p.position_m;
   }
-  for (planning::Place& place : graph.drawing.places) {
-    place = planning::moved(place, T_map_graph);
-  }
-  for (planning::DrawnZone& zone : graph.drawing.zones) {
-    for (Eigen::Vector2d& corner : zone.polygon_m) corner = T_map_graph * corner;
-    if (zone.kind == planning::ZoneKind::kOneWay) {
-      zone.value = geometry::wrap_angle(zone.value + T_map_graph.theta_rad);
-    }
-  }
-  if (!graph.drawing.grid) return;
-  planning::GridFrame frame = graph.drawing.grid->frame();
-  frame.T_map_grid = T_map_graph * frame.T_map_grid;
-  planning::OccupancyGrid moved(frame);
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    moved.set(frame.cell_at(i), graph.drawing.grid->cells()[i]);
-  }
-  graph.drawing.grid = std::move(moved);
+  pipeline::move(graph.drawing, T_map_graph);
 }
 
 void take_clearances(topomap::GlobalMap& map, const planning::FreeSpace& space) {

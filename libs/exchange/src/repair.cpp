@@ -287,6 +287,10 @@ class Assembler {
       drawing.zones.push_back(alone(F::kZones, element).zones.at(0));
       drop_if_bad(drawing, drawing.zones);
     });
+    take_each(pieces_.lines, "walls, openings and doors", [&](const std::string& element) {
+      drawing.lines.push_back(alone(F::kLines, element).lines.at(0));
+      drop_if_bad(drawing, drawing.lines);
+    });
     if (pieces_.grid.empty()) return;
     take_each({pieces_.grid}, "grids",
               [&](const std::string& element) { drawing.grid = alone(F::kGrid, element).grid; });

@@ -71,7 +71,7 @@ double distance_to_line_m(const Eigen::Vector2d& a_m, const Eigen::Vector2d& b_m
 }
 
 // Everything near that a path must keep off: the obstacles, all that the scan shows, and the cells
-// of no-go zones.
+// of no-go zones and drawn walls.
 std::vector<Eigen::Vector2d> to_keep_off_m(const SeenScan& seen,
                                            std::span<const Eigen::Vector2d> obstacles_m,
                                            const planning::FreeSpace& floor) {
@@ -107,6 +107,7 @@ class DetourSearch {
     constexpr std::size_t kEvery = 6;  // points of a branch: some 0.3 m
     planning::PlanScene scene;
     scene.zones = floor_.rules().zones();
+    scene.lines = floor_.rules().lines();
     for (const topomap::MapBranch& branch : graph_.branches) {
       for (std::size_t i = 0; i < branch.points.size(); i += kEvery) {
         const planning::PlanResult result =

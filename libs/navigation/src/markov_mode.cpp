@@ -23,7 +23,7 @@ void MarkovMode::set_map(const planning::HybridMap* map) {
         geometry::Pose2{place->position_m.x(), place->position_m.y(),
                         place->station_heading_rad.value_or(markov.station_heading_rad)};
   }
-  tracker_.emplace(map->space().grid(), config_.markov);
+  tracker_.emplace(map->space().seen(), config_.markov);
   if (odometry_) tracker_->add(*odometry_);
 }
 

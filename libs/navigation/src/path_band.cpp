@@ -80,12 +80,12 @@ class Field {
   }
 
   [[nodiscard]] Eigen::Vector2d uphill(const Eigen::Vector2d& point_m) const {
-    constexpr double kReach_m = 0.05;
-    const Eigen::Vector2d x(kReach_m, 0.0);
-    const Eigen::Vector2d y(0.0, kReach_m);
+    constexpr double kSlopeReach_m = 0.05;
+    const Eigen::Vector2d x(kSlopeReach_m, 0.0);
+    const Eigen::Vector2d y(0.0, kSlopeReach_m);
     const Eigen::Vector2d slope(clearance_m(point_m + x) - clearance_m(point_m - x),
                                 clearance_m(point_m + y) - clearance_m(point_m - y));
-    return slope / (2.0 * kReach_m);
+    return slope / (2.0 * kSlopeReach_m);
   }
 
  private:

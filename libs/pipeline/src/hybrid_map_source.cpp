@@ -41,18 +41,6 @@ planning::OccupancyGrid moved(const planning::OccupancyGrid& grid, const geometr
   return out;
 }
 
-void move(storage::MapDrawing& drawing, const geometry::Pose2& T) {
-  if (T == geometry::Pose2{}) return;  // keeps every bit
-  for (planning::Place& place : drawing.places) place = planning::moved(place, T);
-  for (planning::DrawnZone& zone : drawing.zones) {
-    for (Eigen::Vector2d& corner : zone.polygon_m) corner = T * corner;
-    if (zone.kind == planning::ZoneKind::kOneWay) {
-      zone.value = geometry::wrap_angle(zone.value + T.theta_rad);
-    }
-  }
-  if (drawing.grid) drawing.grid = moved(*drawing.grid, T);
-}
-
 bool is_world(const std::filesystem::path& file) {
   return file.filename().string().ends_with(".world.yaml");
 }
@@ -119,14 +107,14 @@ bool has_grid(const HybridMapParts& parts) {
 planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config,
                                     planning::RoomNumbers* rooms) {
   check(config);
-  std::span<const planning::DrawnZone> drawn;
-  if (parts.drawing != nullptr) drawn = parts.drawing->zones;
-  planning::FreeSpace space(make_grid(parts, config), config.inflation, drawn);
+  const storage::MapDrawing nothing;
+  const storage::MapDrawing& drawing = parts.drawing != nullptr ? *parts.drawing : nothing;
+  planning::FreeSpace space(make_grid(parts, config), config.inflation, drawing.zones,
+                            drawing.lines);
   planning::ZoneMap zones = make_zones(space, parts, config.zones);
-  std::vector<planning::Place> places;
-  if (parts.drawing != nullptr) places = parts.drawing->places;
+  std::vector<planning::Place> places = drawing.places;
   planning::RoomNumbers numbers(parts.rooms != nullptr ? *parts.rooms : planning::RoomMemory{});
-  const bool drawn_grid = parts.drawing != nullptr && parts.drawing->grid;
+  const bool drawn_grid = drawing.grid.has_value();
   (rooms != nullptr ? *rooms : numbers)
       .assign(space.frame(), drawn_grid ? std::span<const topomap::StopPose>{} : parts.stops, zones,
               places);
@@ -143,6 +131,21 @@ void remember_rooms(storage::MapDocument& document, const HybridMapConfig& confi
     return;
   }
   document.rooms = rooms.memory();
+}
+
+void move(storage::MapDrawing& drawing, const geometry::Pose2& T) {
+  if (T == geometry::Pose2{}) return;  // keeps every bit
+  for (planning::Place& place : drawing.places) place = planning::moved(place, T);
+  for (planning::DrawnZone& zone : drawing.zones) {
+    for (Eigen::Vector2d& corner : zone.polygon_m) corner = T * corner;
+    if (zone.kind == planning::ZoneKind::kOneWay) {
+      zone.value = geometry::wrap_angle(zone.value + T.theta_rad);
+    }
+  }
+  for (planning::DrawnLine& line : drawing.lines) {
+    for (Eigen::Vector2d& point : line.points_m) point = T * point;
+  }
+  if (drawing.grid) drawing.grid = moved(*drawing.grid, T);
 }
 
 storage::MapDrawing read_drawing(const std::filesystem::path& file,
@@ -164,6 +167,7 @@ storage::MapDrawing read_zones_and_places(const std::filesystem::path& file) {
   storage::MapDrawing drawing;
   drawing.places = std::move(read.places);
   drawing.zones = std::move(read.zones);
+  drawing.lines = std::move(read.lines);
   check_drawing(file, drawing);
   return drawing;
 }
@@ -172,6 +176,11 @@ void lay_over(storage::MapDrawing& drawing, storage::MapDrawing added) {
   if (added.grid) drawing.grid = std::move(added.grid);
   replace_or_add(drawing.places, std::move(added.places));
   replace_or_add(drawing.zones, std::move(added.zones));
+  for (planning::DrawnLine& line : added.lines) {
+    if (std::ranges::find(drawing.lines, line) == drawing.lines.end()) {
+      drawing.lines.push_back(std::move(line));
+    }
+  }
 }
 
 storage::MapDocument read_floor(const std::filesystem::path& file,

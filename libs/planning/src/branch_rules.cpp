@@ -8,8 +8,9 @@
 namespace topogeo::planning {
 
 BranchRules::BranchRules(const GridFrame& frame, std::span<const DrawnZone> zones,
+                         std::span<const DrawnLine> lines,
                          std::span<const Eigen::Vector2d> filled_m, double keep_off_m)
-    : frame_(frame), rules_(frame, zones) {
+    : frame_(frame), rules_(frame, zones, lines) {
   std::vector<Cell> cells = rules_.no_go();
   for (const Eigen::Vector2d& point_m : filled_m) {
     if (const auto cell = frame.cell_of(point_m)) cells.push_back(*cell);

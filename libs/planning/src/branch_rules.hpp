@@ -1,5 +1,5 @@
 // What closes branches or makes them slow besides their clearance: no-go, slow and one-way zones,
-// and what fills places now that is not on the map.
+// drawn walls, and what fills places now that is not on the map.
 //
 // The rules are those of the grid (driving_rules.hpp), on a grid of their own that needs no map.
 #pragma once
@@ -20,16 +20,17 @@ class BranchRules {
   /// Everything is open.
   BranchRules() = default;
   /// `frame` covers what is to be ruled; beyond it everything is open. The robot's middle keeps
-  /// `keep_off_m` from the middles of cells that are in a no-go zone or filled.
+  /// `keep_off_m` from the middles of cells that are in a no-go zone, of a drawn wall or filled.
   BranchRules(const GridFrame& frame, std::span<const DrawnZone> zones,
-              std::span<const Eigen::Vector2d> filled_m, double keep_off_m);
+              std::span<const DrawnLine> lines, std::span<const Eigen::Vector2d> filled_m,
+              double keep_off_m);
 
   /// Nothing is closed, slow or one-way.
   [[nodiscard]] bool empty() const { return !frame_; }
 
   /// Whether the robot's middle must keep out of a place.
   [[nodiscard]] bool shut(const Eigen::Vector2d& point_m) const;
-  /// Whether the place itself is filled or in a no-go zone.
+  /// Whether the place itself is filled, in a no-go zone or of a drawn wall.
   [[nodiscard]] bool filled(const Eigen::Vector2d& point_m) const;
 
   struct Passage {

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "topogeo/geometry/portable_math.hpp"
 
+#include "line_cells.hpp"
 #include "polygon_cells.hpp"
 
 namespace topogeo::planning {
@@ -40,7 +42,13 @@ bool along(const Eigen::Vector2d& heading, const Eigen::Vector2d& direction) {
 
 }  // namespace
 
-DrivingRules::DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zones) {
+DrivingRules::DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zones,
+                           std::span<const DrawnLine> lines)
+    : lines_(lines.begin(), lines.end()) {
+  LineCells cells = cells_of_lines(frame, lines_);
+  walls_ = std::move(cells.walls);
+  open_ = std::move(cells.open);
+  no_go_ = walls_;
   for (const DrawnZone& zone : zones) {
     if (zone.kind != ZoneKind::kRoom && zone.polygon_m.size() >= 3) zones_.push_back(zone);
   }

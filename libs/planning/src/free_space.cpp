@@ -92,9 +92,10 @@ std::vector<std::int32_t> squared_distances(const OccupancyGrid& grid, bool unkn
 }  // namespace
 
 FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config,
-                     std::span<const DrawnZone> zones)
-    : grid_(std::move(grid)), config_(config), rules_(grid_.frame(), zones) {
+                     std::span<const DrawnZone> zones, std::span<const DrawnLine> lines)
+    : grid_(std::move(grid)), config_(config), rules_(grid_.frame(), zones, lines) {
   check(config);
+  draw_lines();
   squared_ = squared_distances(grid_, config.inflate_unknown);
   passable_.resize(squared_.size());
   const double forbidden = config.forbidden_cells * config.forbidden_cells;
@@ -103,6 +104,13 @@ FreeSpace::FreeSpace(OccupancyGrid grid, const InflationConfig& config,
   }
   keep_out_of_no_go(forbidden);
   close_pockets();
+}
+
+void FreeSpace::draw_lines() {
+  if (rules_.walls().empty() && rules_.open().empty()) return;
+  seen_ = grid_;
+  for (const Cell& cell : rules_.walls()) grid_.set(cell, CellState::kOccupied);
+  for (const Cell& cell : rules_.open()) grid_.set(cell, CellState::kFree);
 }
 
 void FreeSpace::keep_out_of_no_go(double forbidden) {
@@ -137,9 +145,9 @@ void FreeSpace::close_pockets() {
 }
 
 FreeSpace FreeSpace::opened(std::span<const Cell> freed, std::span<const Cell> entered) const {
-  OccupancyGrid grid = grid_;
+  OccupancyGrid grid = seen();
   for (const Cell& cell : freed) grid.set(cell, CellState::kFree);
-  FreeSpace space(std::move(grid), config_, rules_.zones());
+  FreeSpace space(std::move(grid), config_, rules_.zones(), rules_.lines());
   for (const Cell& cell : entered) space.passable_[frame().index(cell)] = 1;
   return space;
 }

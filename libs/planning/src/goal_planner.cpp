@@ -118,6 +118,7 @@ HybridRoute plan_on_graph(const PlanningMaps& maps, const Eigen::Vector2d& from_
   if (maps.hybrid != nullptr) {
     scene.space = &maps.hybrid->space();
     scene.zones = maps.hybrid->space().rules().zones();
+    scene.lines = maps.hybrid->space().rules().lines();
   }
   return along_branches(plan(*maps.graph, from_m, to_m, config, scene), from_m, to_m);
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "cell_line.hpp"
 
@@ -179,6 +180,52 @@ class Evidence {
   std::vector<Eigen::Vector2d> ends_;
 };
 
+/// Which share of a wall lies in an opening: from where to where; empty where none does.
+std::pair<double, double> share_in(const Drawing::Line& wall, const DrawnLine& opening) {
+  const Eigen::Vector2d& from_m = opening.points_m.front();
+  const Eigen::Vector2d stretch_m = opening.points_m.back() - from_m;
+  const Eigen::Vector2d along = stretch_m.normalized();
+  const Eigen::Vector2d across(-along.y(), along.x());
+  const Eigen::Vector2d way_m = wall.b_m - wall.a_m;
+  double begin = 0.0;
+  double end = 1.0;
+  const auto clip = [&](const Eigen::Vector2d& axis, double low_m, double high_m) {
+    const double at_m = (wall.a_m - from_m).dot(axis);
+    const double step_m = way_m.dot(axis);
+    if (step_m == 0.0) {
+      if (at_m < low_m || at_m > high_m) end = begin;
+      return;
+    }
+    const double one = (low_m - at_m) / step_m;
+    const double other = (high_m - at_m) / step_m;
+    begin = std::max(begin, std::min(one, other));
+    end = std::min(end, std::max(one, other));
+  };
+  clip(along, 0.0, stretch_m.norm());
+  clip(across, -kOpeningReach_m, kOpeningReach_m);
+  return {begin, end};
+}
+
+void add_pieces(const Drawing::Line& wall, std::span<const DrawnLine> lines,
+                std::vector<Drawing::Line>& pieces) {
+  std::vector<std::pair<double, double>> gaps;
+  for (const DrawnLine& line : lines) {
+    if (line.kind == LineKind::kWall) continue;
+    const auto gap = share_in(wall, line);
+    if (gap.first < gap.second) gaps.push_back(gap);
+  }
+  std::sort(gaps.begin(), gaps.end());
+  const auto at_m = [&](double share) -> Eigen::Vector2d {
+    return wall.a_m + share * (wall.b_m - wall.a_m);
+  };
+  double done = 0.0;
+  for (const auto& [begin, end] : gaps) {
+    if (begin > done) pieces.push_back({at_m(done), at_m(begin)});
+    done = std::max(done, end);
+  }
+  if (done < 1.0) pieces.push_back({at_m(done), wall.b_m});
+}
+
 void check_stops(std::span<const topomap::LocalMap> maps,
                  std::span<const topomap::StopPose> stops) {
   if (stops.size() <= maps.size()) return;
@@ -223,6 +270,28 @@ OccupancyGrid grid_of(const Drawing& drawing, double resolution_m, double margin
   for (const Drawing::Line& line : drawing.lines) draw_line(grid, line);
   for (const Drawing::Disc& disc : drawing.discs) draw_disc(grid, disc);
   if (!drawing.inside_m.empty()) keep_reached(grid, drawing.inside_m);
+  return grid;
+}
+
+std::vector<Drawing::Line> open_walls(std::span<const DrawnLine> lines) {
+  std::vector<Drawing::Line> pieces;
+  for (const DrawnLine& line : lines) {
+    if (line.kind != LineKind::kWall) continue;
+    for (std::size_t i = 0; i + 1 < line.points_m.size(); ++i) {
+      add_pieces({line.points_m[i], line.points_m[i + 1]}, lines, pieces);
+    }
+  }
+  return pieces;
+}
+
+OccupancyGrid grid_of_floor(std::span<const DrawnLine> lines, const Eigen::Vector2d& inside_m,
+                            double resolution_m, double margin_m) {
+  OccupancyGrid grid = grid_of({.lines = open_walls(lines)}, resolution_m, margin_m);
+  const auto inside = grid.frame().cell_of(inside_m);
+  if (!inside || grid.at(*inside) != CellState::kFree) {
+    throw std::invalid_argument("floor: the point that is to lie in it is in a wall or outside");
+  }
+  keep_reached(grid, {inside_m});
   return grid;
 }
 

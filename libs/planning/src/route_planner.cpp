@@ -218,11 +218,11 @@ PlanResult plan(const GlobalMap& map, const Eigen::Vector2d& from_m, const Eigen
     set_too_far(result, PlanStatus::kGoalTooFar, "goal", *result.goal, config);
     return result;
   }
-  if (scene.zones.empty() && scene.filled_m.empty()) {
+  if (scene.zones.empty() && scene.lines.empty() && scene.filled_m.empty()) {
     RouteSearch(map, config, BranchRules(), scene).run(from_m, to_m, result);
     return result;
   }
-  const BranchRules rules(rules_frame(map, scene), scene.zones, scene.filled_m,
+  const BranchRules rules(rules_frame(map, scene), scene.zones, scene.lines, scene.filled_m,
                           config.min_clearance_m);
   RouteSearch(with_dense_branches(map), config, rules, scene).run(from_m, to_m, result);
   return result;

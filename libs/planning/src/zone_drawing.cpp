@@ -2,9 +2,11 @@
 #include <array>
 #include <numbers>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "topogeo/planning/zones.hpp"
+#include "topogeo/support/format.hpp"
 #include "topogeo/support/yaml_reader.hpp"
 
 #include "text_file.hpp"
@@ -58,6 +60,34 @@ double value_of(const YamlNode& node, ZoneKind kind) {
   return 0.0;
 }
 
+constexpr std::array<const char*, kLineKinds> kLineLists{"walls", "openings", "doors"};
+constexpr std::array<const char*, kLineKinds> kLineWords{"a wall", "an opening", "a door"};
+
+DrawnLine line_of(const YamlNode& node, LineKind kind, std::set<std::string>& taken) {
+  node.allow_keys({"name", "points"});
+  DrawnLine line{kind, {}, {}};
+  const YamlNode name = node.at("name");
+  if (kind == LineKind::kDoor || name.exists()) line.name = new_name(name, taken);
+  const YamlNode points = node.at("points");
+  if (points.is_list()) {
+    for (const YamlNode& point : points.items()) line.points_m.push_back(drawn_point_of(point));
+  }
+  const bool wall = kind == LineKind::kWall;
+  if (wall && line.points_m.size() < 2) points.fail("a list of two points [x, y] or more");
+  if (!wall && (line.points_m.size() != 2 || line.points_m[0] == line.points_m[1])) {
+    points.fail("two points [x, y] that differ");
+  }
+  return line;
+}
+
+std::string points_text(const std::vector<Eigen::Vector2d>& points_m) {
+  std::string text;
+  for (const Eigen::Vector2d& point_m : points_m) {
+    text += fmt::format("{}[{}, {}]", text.empty() ? "[" : ", ", point_m.x(), point_m.y());
+  }
+  return text + "]";
+}
+
 }  // namespace
 
 const char* to_string(ZoneKind kind) {
@@ -77,7 +107,7 @@ ZoneDrawing read_zone_drawing(const std::filesystem::path& path) {
 
 ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& source) {
   const YamlNode root = support::parse_yaml(text, source, "the file");
-  root.allow_keys({"zones", "places"});
+  root.allow_keys({"zones", "places", "walls", "openings", "doors"});
   ZoneDrawing drawing;
   std::set<std::string> zone_names;
   for (const YamlNode& node : root.at("zones").items("a zone")) {
@@ -96,7 +126,46 @@ ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& sourc
       place.station_heading_rad = heading.number(-std::numbers::pi, std::numbers::pi, "rad");
     }
   }
+  std::set<std::string> line_names;
+  for (std::size_t kind = 0; kind < kLineKinds; ++kind) {
+    for (const YamlNode& node : root.at(kLineLists.at(kind)).items(kLineWords.at(kind))) {
+      drawing.lines.push_back(line_of(node, static_cast<LineKind>(kind), line_names));
+    }
+  }
   return drawing;
+}
+
+std::string zone_drawing_text(const ZoneDrawing& drawing) {
+  std::string zones;
+  for (const DrawnZone& zone : drawing.zones) {
+    zones += fmt::format("  - name: {}\n    kind: {}\n", support::yaml_scalar(zone.name),
+                         to_string(zone.kind));
+    const bool valued = zone.kind == ZoneKind::kSlow || zone.kind == ZoneKind::kOneWay;
+    if (valued) zones += fmt::format("    value: {}\n", zone.value);
+    zones += fmt::format("    polygon: {}\n", points_text(zone.polygon_m));
+  }
+  std::string places;
+  for (const Place& place : drawing.places) {
+    places += fmt::format("  - name: {}\n    at: [{}, {}]\n", support::yaml_scalar(place.name),
+                          place.position_m.x(), place.position_m.y());
+    if (place.station_heading_rad) {
+      places += fmt::format("    heading: {}\n", *place.station_heading_rad);
+    }
+  }
+  std::array<std::string, kLineKinds> lines;
+  for (const DrawnLine& line : drawing.lines) {
+    std::string& list = lines.at(static_cast<std::size_t>(line.kind));
+    list += fmt::format("  - points: {}\n", points_text(line.points_m));
+    if (!line.name.empty()) list += fmt::format("    name: {}\n", support::yaml_scalar(line.name));
+  }
+  std::string text;
+  const auto add = [&](const char* list, const std::string& entries) {
+    if (!entries.empty()) text += fmt::format("{}:\n{}", list, entries);
+  };
+  add("zones", zones);
+  add("places", places);
+  for (std::size_t kind = 0; kind < kLineKinds; ++kind) add(kLineLists.at(kind), lines.at(kind));
+  return text;
 }
 
 }  // namespace topogeo::planning

@@ -7,6 +7,7 @@
 
 #include "clearance_basins.hpp"
 #include "furniture.hpp"
+#include "line_cells.hpp"
 #include "polygon_cells.hpp"
 #include "room_merger.hpp"
 #include "zone_labels.hpp"
@@ -54,6 +55,20 @@ void fill_polygon(const FreeSpace& space, const std::vector<Eigen::Vector2d>& po
     const std::size_t i = space.frame().index(cell);
     if (space.passable(i) && owner[i] == kNoLabel) owner[i] = index;
   });
+}
+
+// Takes the cells across drawn doors from their owners, so that these fall into parts there. What
+// has a name stays whole.
+void part_at_doors(const FreeSpace& space, const std::vector<std::string>& names,
+                   std::vector<std::uint32_t>& owner) {
+  for (const DrawnLine& line : space.rules().lines()) {
+    if (line.kind != LineKind::kDoor) continue;
+    for (const Cell& cell : cells_across(space.frame(), line.points_m.front(), line.points_m.back(),
+                                         kOpeningReach_m)) {
+      std::uint32_t& of_cell = owner[space.frame().index(cell)];
+      if (of_cell != kNoLabel && names[of_cell].empty()) of_cell = kNoLabel;
+    }
+  }
 }
 
 ZoneLabels no_labels(const FreeSpace& space) {
@@ -106,8 +121,10 @@ ZoneMap zones_of_rooms(const FreeSpace& space, std::span<const Passage> passages
     const std::uint32_t basin = basins.of_cell[i];
     if (space.passable(i) && basin != kNoBasin) owner[i] = room_of[basin];
   }
+  const std::vector<std::string> names(basins.peak_m.size());
+  part_at_doors(space, names, owner);
   ZoneLabels labels = no_labels(space);
-  label_parts(space, owner, std::vector<std::string>(basins.peak_m.size()), labels);
+  label_parts(space, owner, names, labels);
   return complete(space, std::move(labels), config);
 }
 
@@ -139,6 +156,7 @@ ZoneMap drawn_zones(const FreeSpace& space, std::span<const DrawnZone> drawn,
   for (std::size_t i = 0; i < owner.size(); ++i) {
     if (space.passable(i) && owner[i] == kNoLabel) owner[i] = outside;
   }
+  part_at_doors(space, names, owner);
   ZoneLabels labels = no_labels(space);
   label_parts(space, owner, names, labels);
   return complete(space, std::move(labels), config);

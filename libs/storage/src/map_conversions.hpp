@@ -25,6 +25,7 @@ void to_proto(const topomap::MapBranch& branch, proto::MapBranch* out);
 void to_proto(const geometry::Pose2& pose, proto::Pose2* out);
 void to_proto(const planning::Place& place, proto::Place* out);
 void to_proto(const planning::DrawnZone& zone, proto::DrawnZone* out);
+void to_proto(const planning::DrawnLine& line, proto::DrawnLine* out);
 void to_proto(const planning::OccupancyGrid& grid, proto::DrawnGrid* out);
 /// What is drawn must have passed check(MapDrawing).
 void to_proto(const MapDrawing& drawing, proto::Drawing* out);
@@ -43,6 +44,7 @@ topomap::MapBranch from_proto(const proto::MapBranch& in);
 geometry::Pose2 from_proto(const proto::Pose2& in, const char* what);
 planning::Place from_proto(const proto::Place& in);
 planning::DrawnZone from_proto(const proto::DrawnZone& in);
+planning::DrawnLine from_proto(const proto::DrawnLine& in);
 planning::OccupancyGrid from_proto(const proto::DrawnGrid& in);
 planning::RememberedRoom from_proto(const proto::Room& in);
 planning::RememberedPlace from_proto(const proto::PlaceInRoom& in);

@@ -89,8 +89,9 @@ void MapDatabase::migrate() {
   SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
   // Another program may have done it meanwhile.
   const std::int64_t version = stored_version(*database_);
-  if (version == 2) {
-    make_version_3_of_2(*database_);
+  if (version == 2 || version == 3) {
+    if (version == 2) make_version_3_of_2(*database_);
+    make_version_4_of_3(*database_);
     transaction.commit();
   } else if (version != kSchemaVersion) {
     MapDocument document = take_version_1(*database_);

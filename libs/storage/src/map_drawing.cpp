@@ -1,6 +1,7 @@
 #include "topogeo/storage/map_drawing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -22,6 +23,7 @@ namespace {
 // Farther away double rounding shows in pictures; no building is as large.
 constexpr double kMaxCoordinate_m = 1e6;
 constexpr std::size_t kLeastCorners = 3;  // of an area
+constexpr std::size_t kLeastPoints = 2;   // of a line
 
 template <typename... Args>
 void require_drawing(bool condition, fmt::format_string<Args...> format, Args&&... args) {
@@ -52,6 +54,52 @@ void check_point(const char* what, const std::string& name, const Eigen::Vector2
     require_drawing(std::fabs(value) <= kMaxCoordinate_m,
                     "{} '{}': coordinate {}, allowed are {} to {} m", what, name, value,
                     -kMaxCoordinate_m, kMaxCoordinate_m);
+  }
+}
+
+void check_place(const planning::Place& place, std::set<std::string>& taken) {
+  check_name("place", place.name, taken);
+  check_point("place", place.name, place.position_m);
+  const double heading_rad = place.station_heading_rad.value_or(0.0);
+  require_drawing(std::fabs(heading_rad) <= std::numbers::pi,
+                  "place '{}': heading {}, allowed are -pi to pi", place.name, heading_rad);
+}
+
+void check_zone(const planning::DrawnZone& zone, std::set<std::string>& taken) {
+  check_name("zone", zone.name, taken);
+  require_drawing(zone.polygon_m.size() >= kLeastCorners && zone.polygon_m.size() <= kMaxCorners,
+                  "zone '{}': {} corners, allowed are {} to {}", zone.name, zone.polygon_m.size(),
+                  kLeastCorners, kMaxCorners);
+  for (const Eigen::Vector2d& corner : zone.polygon_m) check_point("zone", zone.name, corner);
+  require_drawing(std::isfinite(zone.value), "zone '{}': its value is not a finite number",
+                  zone.name);
+}
+
+void check_line(const planning::DrawnLine& line, std::set<std::string>& taken) {
+  constexpr std::array<const char*, planning::kLineKinds> kWords{"wall", "opening", "door"};
+  const char* const what = kWords.at(static_cast<std::size_t>(line.kind));
+  if (line.kind == planning::LineKind::kDoor || !line.name.empty()) {
+    check_name(what, line.name, taken);
+  }
+  const std::vector<Eigen::Vector2d>& points_m = line.points_m;
+  for (const Eigen::Vector2d& point_m : points_m) check_point(what, line.name, point_m);
+  if (line.kind == planning::LineKind::kWall) {
+    require_drawing(points_m.size() >= kLeastPoints && points_m.size() <= kMaxCorners,
+                    "wall '{}': {} points, allowed are {} to {}", line.name, points_m.size(),
+                    kLeastPoints, kMaxCorners);
+    return;
+  }
+  require_drawing(points_m.size() == kLeastPoints && points_m[0] != points_m[1],
+                  "{} '{}': expected two points that differ", what, line.name);
+}
+
+/// Makes the error of a check one that knows where the entry stands.
+template <typename Check>
+void of_entry(const char* list, std::size_t index, const Check& check_entry) {
+  try {
+    check_entry();
+  } catch (const std::runtime_error& error) {
+    throw DrawingError(list, index, error.what());
   }
 }
 
@@ -111,26 +159,34 @@ planning::OccupancyGrid grid_from_proto(const proto::DrawnGrid& in) {
 void check(const MapDrawing& drawing) {
   require_drawing(drawing.places.size() <= kMaxPlaces, "{} places, allowed are {}",
                   drawing.places.size(), kMaxPlaces);
-  std::set<std::string> taken;
-  for (const planning::Place& place : drawing.places) {
-    check_name("place", place.name, taken);
-    check_point("place", place.name, place.position_m);
-    const double heading_rad = place.station_heading_rad.value_or(0.0);
-    require_drawing(std::fabs(heading_rad) <= std::numbers::pi,
-                    "place '{}': heading {}, allowed are -pi to pi", place.name, heading_rad);
-  }
   require_drawing(drawing.zones.size() <= kMaxDrawnZones, "{} zones, allowed are {}",
                   drawing.zones.size(), kMaxDrawnZones);
-  taken.clear();
-  for (const planning::DrawnZone& zone : drawing.zones) {
-    check_name("zone", zone.name, taken);
-    require_drawing(zone.polygon_m.size() >= kLeastCorners && zone.polygon_m.size() <= kMaxCorners,
-                    "zone '{}': {} corners, allowed are {} to {}", zone.name, zone.polygon_m.size(),
-                    kLeastCorners, kMaxCorners);
-    for (const Eigen::Vector2d& corner : zone.polygon_m) check_point("zone", zone.name, corner);
-    require_drawing(std::isfinite(zone.value), "zone '{}': its value is not a finite number",
-                    zone.name);
+  require_drawing(drawing.lines.size() <= kMaxDrawnLines,
+                  "{} walls, openings and doors, allowed are {}", drawing.lines.size(),
+                  kMaxDrawnLines);
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < drawing.places.size(); ++i) {
+    of_entry("places", i, [&] { check_place(drawing.places[i], taken); });
   }
+  taken.clear();
+  for (std::size_t i = 0; i < drawing.zones.size(); ++i) {
+    of_entry("zones", i, [&] { check_zone(drawing.zones[i], taken); });
+  }
+  taken.clear();
+  std::array<std::size_t, planning::kLineKinds> counts{};
+  for (const planning::DrawnLine& line : drawing.lines) {
+    const std::size_t index = counts.at(static_cast<std::size_t>(line.kind))++;
+    of_entry(list_of(line.kind), index, [&] { check_line(line, taken); });
+  }
+}
+
+std::string located(const DrawingError& error) {
+  return fmt::format("{}[{}]: {}", error.list(), error.index(), error.what());
+}
+
+const char* list_of(planning::LineKind kind) {
+  constexpr std::array<const char*, planning::kLineKinds> kLists{"walls", "openings", "doors"};
+  return kLists.at(static_cast<std::size_t>(kind));
 }
 
 void to_proto(const planning::Place& place, proto::Place* out) {
@@ -169,6 +225,28 @@ planning::DrawnZone from_proto(const proto::DrawnZone& in) {
   return zone;
 }
 
+void to_proto(const planning::DrawnLine& line, proto::DrawnLine* out) {
+  out->set_kind(static_cast<proto::LineKind>(line.kind));
+  for (const Eigen::Vector2d& point : line.points_m) {
+    out->add_points(point.x());
+    out->add_points(point.y());
+  }
+  out->set_name(line.name);
+}
+
+planning::DrawnLine from_proto(const proto::DrawnLine& in) {
+  require_drawing(in.points_size() % 2 == 0, "line '{}' with {} numbers: expected two per point",
+                  in.name(), in.points_size());
+  require_drawing(in.kind() >= 0 && static_cast<std::size_t>(in.kind()) < planning::kLineKinds,
+                  "line '{}' of kind {}: expected 0 to {}", in.name(), static_cast<int>(in.kind()),
+                  planning::kLineKinds - 1);
+  planning::DrawnLine line{static_cast<planning::LineKind>(in.kind()), {}, in.name()};
+  for (int i = 0; i < in.points_size(); i += 2) {
+    line.points_m.emplace_back(in.points(i), in.points(i + 1));
+  }
+  return line;
+}
+
 void to_proto(const planning::OccupancyGrid& grid, proto::DrawnGrid* out) {
   const planning::GridFrame& frame = grid.frame();
   out->set_columns(static_cast<std::uint32_t>(frame.columns));
@@ -185,15 +263,19 @@ planning::OccupancyGrid from_proto(const proto::DrawnGrid& in) {
 void to_proto(const MapDrawing& drawing, proto::Drawing* out) {
   for (const planning::Place& place : drawing.places) to_proto(place, out->add_places());
   for (const planning::DrawnZone& zone : drawing.zones) to_proto(zone, out->add_zones());
+  for (const planning::DrawnLine& line : drawing.lines) to_proto(line, out->add_lines());
   if (drawing.grid) to_proto(*drawing.grid, out->mutable_grid());
+  out->set_version(drawing.version);
 }
 
 MapDrawing from_proto(const proto::Drawing& in) {
   MapDrawing drawing;
   for (const proto::Place& place : in.places()) drawing.places.push_back(from_proto(place));
   for (const proto::DrawnZone& zone : in.zones()) drawing.zones.push_back(from_proto(zone));
+  for (const proto::DrawnLine& line : in.lines()) drawing.lines.push_back(from_proto(line));
   check(drawing);
   if (in.has_grid()) drawing.grid = from_proto(in.grid());
+  drawing.version = in.version();
   return drawing;
 }
 

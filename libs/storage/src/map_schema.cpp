@@ -76,6 +76,12 @@ constexpr const char* kRoomTables = R"(
     id INTEGER PRIMARY KEY, name TEXT NOT NULL, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
 )";
 
+// New in version 4: walls, openings and doors that people draw.
+constexpr const char* kDrawnLineTable = R"(
+  CREATE TABLE drawn_line(
+    id INTEGER PRIMARY KEY, kind TEXT NOT NULL, blob_hash INTEGER NOT NULL, blob BLOB NOT NULL);
+)";
+
 std::int64_t pragma(SQLite::Database& database, const char* name) {
   const SQLite::Column value = database.execAndGet(fmt::format("PRAGMA {}", name));
   return value.getInt64();
@@ -179,6 +185,7 @@ std::unique_ptr<SQLite::Database> copy_in_memory(SQLite::Database& database) {
 void create_tables(SQLite::Database& database, const std::string& robot_id, std::uint64_t seed) {
   database.exec(kSchema);
   database.exec(kRoomTables);
+  database.exec(kDrawnLineTable);
   database.exec(fmt::format("PRAGMA application_id={}; PRAGMA user_version={}", kApplicationId,
                             MapDatabase::kSchemaVersion));
   write_meta(database, "robot_id", robot_id);
@@ -191,6 +198,11 @@ void create_tables(SQLite::Database& database, const std::string& robot_id, std:
 void make_version_3_of_2(SQLite::Database& database) {
   database.exec(kRoomTables);
   database.exec("PRAGMA user_version=3");
+}
+
+void make_version_4_of_3(SQLite::Database& database) {
+  database.exec(kDrawnLineTable);
+  database.exec("PRAGMA user_version=4");
 }
 
 MapDocument take_version_1(SQLite::Database& database) {

@@ -38,6 +38,9 @@ void create_tables(SQLite::Database& database, const std::string& robot_id, std:
 /// Adds what version 2 has not; all that it has stays. Part of a transaction.
 void make_version_3_of_2(SQLite::Database& database);
 
+/// The same with version 3.
+void make_version_4_of_3(SQLite::Database& database);
+
 /// The map of a database of version 1; the tables of version 1 are gone then. Part of a
 /// transaction, without foreign keys. Throws std::runtime_error when it is damaged.
 MapDocument take_version_1(SQLite::Database& database);

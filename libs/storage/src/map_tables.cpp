@@ -114,7 +114,7 @@ void MapTables::write_global_map(const topomap::GlobalMap& map) {
 
 void MapTables::write_drawing(const MapDrawing& drawing) {
   require_valid(file_, "", [&] { check(drawing); });
-  for (const char* table : {"place", "zone", "drawn_grid"}) {
+  for (const char* table : {"place", "zone", "drawn_line", "drawn_grid"}) {
     database_.exec(fmt::format("DELETE FROM {}", table));
   }
   BlobHashes none_stored;
@@ -131,10 +131,17 @@ void MapTables::write_drawing(const MapDrawing& drawing) {
                     {zone.name, planning::to_string(zone.kind)});
   }
   none_stored.clear();
+  TableWriter line_writer(database_, "drawn_line", ", kind", ", ?");
+  for (const planning::DrawnLine& line : drawing.lines) {
+    line_writer.put(none_stored, static_cast<std::uint32_t>(none_stored.size()),
+                    to_blob<proto::DrawnLine>(line), {}, {list_of(line.kind)});
+  }
+  none_stored.clear();
   if (drawing.grid) {
     TableWriter(database_, "drawn_grid")
         .put(none_stored, 0, to_blob<proto::DrawnGrid>(*drawing.grid));
   }
+  write_meta(database_, "drawing_version", std::to_string(drawing.version));
 }
 
 void MapTables::write_rooms(const planning::RoomMemory& rooms) {
@@ -172,6 +179,8 @@ void MapTables::load(MapDocument& document) const {
   read_table<proto::MapBranch>(database_, file_, "map_branch", document.global_map.branches);
   read_table<proto::Place>(database_, file_, "place", document.drawing.places);
   read_table<proto::DrawnZone>(database_, file_, "zone", document.drawing.zones);
+  read_table<proto::DrawnLine>(database_, file_, "drawn_line", document.drawing.lines);
+  document.drawing.version = read_meta_number_or(database_, "drawing_version", 0);
   std::vector<planning::OccupancyGrid> grids;
   read_table<proto::DrawnGrid>(database_, file_, "drawn_grid", grids);
   if (!grids.empty()) document.drawing.grid = std::move(grids.front());

@@ -215,10 +215,10 @@ TEST_F(MapDatabaseFile, RefusesAnotherRobotSeedVersionOrProgram) {
               HasSubstr("map.db: holds the map of robot 'robot-1'"));
   EXPECT_THAT(error_of([&] { MapDatabase::open_or_create(path(), "robot-1", 3); }),
               HasSubstr("expected 'robot-1' with seed 3"));
-  execute("PRAGMA user_version=4");
-  EXPECT_THAT(opening_error(), HasSubstr("map database version 4, this program reads 1 to 3"));
-  EXPECT_THAT(error_of([&] { read_map(path()); }), HasSubstr("map database version 4"));
-  execute("PRAGMA user_version=3; PRAGMA application_id=5");
+  execute("PRAGMA user_version=5");
+  EXPECT_THAT(opening_error(), HasSubstr("map database version 5, this program reads 1 to 4"));
+  EXPECT_THAT(error_of([&] { read_map(path()); }), HasSubstr("map database version 5"));
+  execute("PRAGMA user_version=4; PRAGMA application_id=5");
   EXPECT_THAT(opening_error(), HasSubstr("no topogeo map database"));
 }
 

@@ -39,7 +39,11 @@ MapDrawing sample_drawing() {
                    {"stairs", {{5, 0}, {6, 0}, {6, 1}}, planning::ZoneKind::kNoGo},
                    {"ramp", {{7, 0}, {8, 0}, {8, 1}}, planning::ZoneKind::kSlow, 0.3},
                    {"lane", {{9, 0}, {10, 0}, {10, 1}}, planning::ZoneKind::kOneWay, -1.5}};
+  drawing.lines = {{planning::LineKind::kWall, {{0, 0}, {4, 0}, {4, 1.0 / 3.0}}},
+                   {planning::LineKind::kOpening, {{1, 0}, {2, 0}}},
+                   {planning::LineKind::kDoor, {{4, 0}, {4, 0.25}}, "front door"}};
   drawing.grid = sample_grid();
+  drawing.version = 7;
   return drawing;
 }
 
@@ -57,6 +61,8 @@ void expect_equal(const MapDrawing& a, const MapDrawing& b) {
     EXPECT_EQ(a.zones[i].name, b.zones[i].name);
     EXPECT_EQ(a.zones[i].polygon_m, b.zones[i].polygon_m);
   }
+  EXPECT_EQ(a.lines, b.lines);
+  EXPECT_EQ(a.version, b.version);
   ASSERT_EQ(a.grid.has_value(), b.grid.has_value());
   if (!a.grid) return;
   EXPECT_EQ(a.grid->frame().columns, b.grid->frame().columns);
@@ -80,11 +86,12 @@ TEST(MapDrawingFile, GivesBackEveryField) {
 }
 
 TEST(MapDrawingFile, PartsMayBeMissing) {
-  for (int missing = 0; missing < 3; ++missing) {
+  for (int missing = 0; missing < 4; ++missing) {
     MapDrawing drawing = sample_drawing();
     if (missing == 0) drawing.places.clear();
     if (missing == 1) drawing.zones.clear();
     if (missing == 2) drawing.grid.reset();
+    if (missing == 3) drawing.lines.clear();
     expect_equal(parse_map_file(map_file_bytes(document_with(drawing)), "map.pb").drawing, drawing);
   }
 }
@@ -135,10 +142,33 @@ TEST(MapDrawingFile, RefusesWhatIsNoDrawing) {
               HasSubstr("zone 'ramp': its value is not a finite number"));
   EXPECT_THAT(refusal([](MapDrawing& d) { d.zones[0].polygon_m.pop_back(); }),
               HasSubstr("zone 'hall': 2 corners, allowed are 3 to"));
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.lines[0].points_m.resize(1); }),
+              HasSubstr("wall '': 1 points, allowed are 2 to"));
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.lines[1].points_m[0].x() = kNan; }),
+              HasSubstr("opening '': coordinate nan"));
+  EXPECT_THAT(refusal([](MapDrawing& d) {
+                d.lines[1].points_m.push_back({3, 3});
+              }),
+              HasSubstr("opening '': expected two points that differ"));
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.lines[2].points_m[1] = d.lines[2].points_m[0]; }),
+              HasSubstr("door 'front door': expected two points that differ"));
+  EXPECT_THAT(refusal([](MapDrawing& d) { d.lines[2].name = ""; }),
+              HasSubstr("door '': expected a name"));
   EXPECT_THAT(refusal([](MapDrawing& d) {
                 for (int i = 0; i < 5000; ++i) d.places.push_back({std::to_string(i), {0, 0}});
               }),
               HasSubstr("5002 places, allowed are 4096"));
+}
+
+TEST(MapDrawingFile, AnEntryIsFoundByItsListAndPlace) {
+  MapDrawing drawing = sample_drawing();
+  drawing.lines.push_back(drawing.lines[2]);
+  try {
+    check(drawing);
+    FAIL() << "the name of the door is taken";
+  } catch (const DrawingError& error) {
+    EXPECT_EQ(located(error), "doors[1]: door 'front door': the name is taken");
+  }
 }
 
 TEST(MapDrawingFile, RefusesACorruptGrid) {

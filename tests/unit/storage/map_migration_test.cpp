@@ -107,6 +107,24 @@ TEST_F(GoldenFile, DatabaseOfVersion2TakesNumbersOfRooms) {
   EXPECT_EQ(read_map(path()).rooms, rooms);
 }
 
+// It has no walls, openings and doors yet, and takes them then.
+TEST_F(GoldenFile, DatabaseOfVersion3TakesDrawnLines) {
+  make("map_v3.sql");
+  const std::string before = content(path());
+  MapDrawing drawing = read_map(path()).drawing;
+  EXPECT_TRUE(drawing.lines.empty());
+  EXPECT_EQ(drawing.version, 0U);
+  EXPECT_EQ(content(path()), before) << "read alone, it stays as it is";
+  drawing.lines = {{planning::LineKind::kDoor, {{1.0, 0.0}, {1.0, 0.75}}, "front door"}};
+  drawing.version = 1;
+  MapDatabase::open_existing(path()).put_drawing(drawing);
+  const MapDrawing read = read_map(path()).drawing;
+  EXPECT_EQ(read.lines, drawing.lines);
+  EXPECT_EQ(read.version, 1U);
+  EXPECT_EQ(read.places, drawing.places);
+  EXPECT_TRUE(read.grid);
+}
+
 /// What the golden file of version 2 holds.
 MapDocument golden_document_2() {
   MapDocument expected = golden_document();

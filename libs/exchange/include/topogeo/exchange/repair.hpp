@@ -39,6 +39,7 @@ struct StoredPieces {
   std::vector<std::string> branches;        ///< MapBranch
   std::vector<std::string> places;          ///< Place
   std::vector<std::string> zones;           ///< DrawnZone
+  std::vector<std::string> lines;           ///< DrawnLine
   std::string grid;                         ///< DrawnGrid; "": none
   std::vector<std::string> refused_merges;  ///< RefusedMerge
   std::vector<std::string> rooms;           ///< Room

@@ -45,6 +45,9 @@ planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMap
 /// came of that. Nothing where no hybrid map can be made.
 void remember_rooms(storage::MapDocument& document, const HybridMapConfig& config);
 
+/// Takes a drawing of frame b to frame a; T is T_a_b.
+void move(storage::MapDrawing& drawing, const geometry::Pose2& T);
+
 /// A drawn floor: the grid and the places of a world file (.world.yaml, see world/world.hpp)
 /// with cells of `resolution_m`, or the grid of a YAML file (see planning/grid_file.hpp). The names
 /// of `zones` (see planning::read_zone_drawing), in the frame of the drawing, are added to it. All
@@ -57,7 +60,8 @@ storage::MapDrawing read_drawing(const std::filesystem::path& file,
 storage::MapDrawing read_zones_and_places(const std::filesystem::path& file);
 
 /// Puts what `added` has on `drawing`: its grid takes the place of the one there, and so do places
-/// and zones of the same names; others come behind those there.
+/// and zones of the same names; others come behind those there,
+/// as do walls, openings and doors that are not there yet.
 void lay_over(storage::MapDrawing& drawing, storage::MapDrawing added);
 
 /// The floor of one file: a world, a grid (both as read_drawing, with no robot) or a map file.

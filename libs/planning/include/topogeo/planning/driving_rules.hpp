@@ -1,4 +1,4 @@
-// What drawn zones demand of those who drive, cell by cell (docs/navigation.md, "Zones").
+// What drawn zones and lines demand of those who drive, cell by cell (docs/navigation.md, "Zones").
 //
 // Where zones overlap the strictest of each counts: the lowest speed, the directions that all
 // allow.
@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "topogeo/planning/drawn_line.hpp"
 #include "topogeo/planning/drawn_zone.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
 
@@ -18,16 +19,22 @@ class DrivingRules {
  public:
   /// There are none.
   DrivingRules() = default;
-  /// Those of no-go, slow and one-way zones; rooms demand nothing.
-  DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zones);
+  /// Those of no-go, slow and one-way zones, walls, openings and doors; rooms demand nothing.
+  DrivingRules(const GridFrame& frame, std::span<const DrawnZone> zones,
+               std::span<const DrawnLine> lines = {});
 
   /// The zones that demand something, in their order.
   [[nodiscard]] const std::vector<DrawnZone>& zones() const { return zones_; }
+  [[nodiscard]] const std::vector<DrawnLine>& lines() const { return lines_; }
   /// Whether any cell has a speed or directions.
   [[nodiscard]] bool guides() const { return !area_.empty(); }
 
-  /// Cells whose middle lies in a no-go zone.
+  /// Cells whose middle lies in a no-go zone, and those of walls.
   [[nodiscard]] const std::vector<Cell>& no_go() const { return no_go_; }
+  /// Cells of walls alone.
+  [[nodiscard]] const std::vector<Cell>& walls() const { return walls_; }
+  /// Cells that openings and doors free, whatever the map has there.
+  [[nodiscard]] const std::vector<Cell>& open() const { return open_; }
 
   // Of a cell by its index; only while guides().
   /// Equal for cells in the same slow and one-way zones; 0 for those in none.
@@ -56,7 +63,10 @@ class DrivingRules {
   static void add(const DrawnZone& zone, const GridFrame& frame, Area& area);
 
   std::vector<DrawnZone> zones_;
+  std::vector<DrawnLine> lines_;
   std::vector<Cell> no_go_;
+  std::vector<Cell> walls_;
+  std::vector<Cell> open_;
   std::vector<std::uint32_t> area_;  // by cell
   std::vector<Area> areas_;
 };

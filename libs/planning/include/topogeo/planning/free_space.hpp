@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,17 +20,21 @@ namespace topogeo::planning {
 
 class FreeSpace {
  public:
-  /// The robot keeps out of no-go zones among `zones` as far as from obstacles. Throws
+  /// The robot keeps out of no-go zones among `zones` as far as from obstacles. Cells of drawn
+  /// walls are occupied, those of openings and doors free, whatever `grid` has there. Throws
   /// std::invalid_argument as `check`.
   explicit FreeSpace(OccupancyGrid grid, const InflationConfig& config = {},
-                     std::span<const DrawnZone> zones = {});
+                     std::span<const DrawnZone> zones = {}, std::span<const DrawnLine> lines = {});
 
   /// The same floor where something better than the grid shows that it is open: `freed` cells are
-  /// free, and the robot's middle may be in `entered` ones, too, however near to an obstacle they
-  /// are. All must lie inside.
+  /// free, unless a drawn wall stands there, and the robot's middle may be in `entered` ones, too,
+  /// however near to an obstacle they are. All must lie inside.
   [[nodiscard]] FreeSpace opened(std::span<const Cell> freed, std::span<const Cell> entered) const;
 
+  /// To plan on: with drawn walls, openings and doors.
   [[nodiscard]] const OccupancyGrid& grid() const { return grid_; }
+  /// As it was given: what sensors see.
+  [[nodiscard]] const OccupancyGrid& seen() const { return seen_ ? *seen_ : grid_; }
   [[nodiscard]] const GridFrame& frame() const { return grid_.frame(); }
   [[nodiscard]] const InflationConfig& inflation() const { return config_; }
   /// What the zones demand besides.
@@ -50,10 +55,12 @@ class FreeSpace {
   static constexpr std::int32_t kNoObstacle = std::numeric_limits<std::int32_t>::max();
 
  private:
+  void draw_lines();
   void keep_out_of_no_go(double forbidden);
   void close_pockets();
 
   OccupancyGrid grid_;
+  std::optional<OccupancyGrid> seen_;  // nothing: the same
   InflationConfig config_;
   std::vector<std::int32_t> squared_;
   std::vector<std::uint8_t> passable_;

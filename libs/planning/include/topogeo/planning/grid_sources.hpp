@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/planning/drawn_line.hpp"
 #include "topogeo/planning/grid_config.hpp"
 #include "topogeo/planning/occupancy_grid.hpp"
 #include "topogeo/topomap/local_map.hpp"
@@ -37,6 +38,15 @@ struct Drawing {
 /// Every cell that a line or disc touches is occupied. Throws std::invalid_argument for an empty
 /// drawing, a coordinate that is not finite and a grid out of range (see check(GridFrame)).
 OccupancyGrid grid_of(const Drawing& drawing, double resolution_m = 0.1, double margin_m = 1.0);
+
+/// The pieces of walls that openings and doors leave, in order.
+std::vector<Drawing::Line> open_walls(std::span<const DrawnLine> lines);
+
+/// The grid of a floor that was drawn from nothing: walls are occupied but where openings and doors
+/// are, what no path leads to from `inside_m` is unknown. Throws std::invalid_argument like
+/// grid_of, and where that point is in a wall or outside.
+OccupancyGrid grid_of_floor(std::span<const DrawnLine> lines, const Eigen::Vector2d& inside_m,
+                            double resolution_m = 0.1, double margin_m = 1.0);
 
 /// What the scans of the located stops saw, in the order of the stops: a cell is occupied when its
 /// log-odds are above zero, free when they are below, unknown at zero and where no beam went. Only

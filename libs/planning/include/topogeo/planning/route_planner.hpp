@@ -80,6 +80,7 @@ struct PlanScene {
   /// The grid of the same map: lines from start and goal to a branch cross none of its obstacles.
   const FreeSpace* space = nullptr;
   std::span<const DrawnZone> zones{};           ///< no-go, slow and one-way ones count
+  std::span<const DrawnLine> lines{};           ///< walls count
   std::span<const Eigen::Vector2d> filled_m{};  ///< something is there that is not on the map
   /// Whether the line from the last branch to the goal must be proved to be free: by the grid, or
   /// by the clearance of the branch. Otherwise config.max_snap_m alone decides.

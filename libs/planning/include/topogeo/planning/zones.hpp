@@ -19,6 +19,7 @@
 #include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
+#include "topogeo/planning/drawn_line.hpp"
 #include "topogeo/planning/drawn_zone.hpp"
 #include "topogeo/planning/free_space.hpp"
 #include "topogeo/planning/grid_config.hpp"
@@ -58,7 +59,8 @@ std::vector<Passage> passages_of(const topomap::GlobalMap& map);
 /// parts nothing), joined where the place between them is no door and no mouth of a corridor. At a
 /// passage of the map less of a narrowing is enough. After Bormann et al., "Room segmentation:
 /// survey, implementation, and analysis", ICRA 2016, distance transform and Voronoi methods; they
-/// part the floor by areas and lengths, here the widths on either side decide.
+/// part the floor by areas and lengths, here the widths on either side decide. Drawn doors of the
+/// space part it in any case.
 ZoneMap zones_of_rooms(const FreeSpace& space, std::span<const Passage> passages = {},
                        const ZoneConfig& config = {});
 
@@ -73,7 +75,7 @@ std::optional<ZoneKind> zone_kind_of(std::string_view name);
 
 /// A zone for each polygon; when walls separate it into parts, the largest has the name and the
 /// others are "NAME 2", "NAME 3", ... The free space outside of all polygons becomes zones without
-/// a name.
+/// a name, parted at the drawn doors of the space.
 ZoneMap drawn_zones(const FreeSpace& space, std::span<const DrawnZone> drawn,
                     const ZoneConfig& config = {});
 
@@ -94,6 +96,7 @@ Place moved(const Place& place, const geometry::Pose2& T);
 struct ZoneDrawing {
   std::vector<DrawnZone> zones;
   std::vector<Place> places;
+  std::vector<DrawnLine> lines;
 };
 
 /// Reads zones and places:
@@ -103,12 +106,22 @@ struct ZoneDrawing {
 ///   places:
 ///     - {name: room A, at: [1.5, 2.0]}
 ///     - {name: base station, at: [0.5, 0.5], heading: 1.57}
+///   walls:                                  # names of walls and openings may be left out
+///     - {points: [[0, 0], [4, 0], [4, 3]]}
+///   openings:
+///     - {points: [[1, 0], [2, 0]]}
+///   doors:
+///     - {name: front door, points: [[4, 1], [4, 2]]}
 /// Throws std::runtime_error naming file, line and what was expected: an unreadable file, broken
 /// YAML, an unknown key or kind, an empty or repeated name, a polygon of less than three corners, a
-/// coordinate or value out of range.
+/// wall of less than two points, an opening or door of other than two, a coordinate or value out of
+/// range.
 ZoneDrawing read_zone_drawing(const std::filesystem::path& path);
 
 /// The same from text; `source` stands for the file in messages.
 ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& source);
+
+/// Such a file, to the last digit; lists that are empty are left out.
+std::string zone_drawing_text(const ZoneDrawing& drawing);
 
 }  // namespace topogeo::planning

@@ -50,7 +50,7 @@ struct SessionState {
 /// database is then as before the call.
 class MapDatabase {
  public:
-  static constexpr std::int64_t kSchemaVersion = 3;
+  static constexpr std::int64_t kSchemaVersion = 4;
 
   /// Opens the map of a robot, or creates it (an empty file counts as none). A file of an older
   /// version is changed to this one. Throws std::runtime_error when the file is no topogeo map

@@ -1,0 +1,192 @@
+#include "topogeo/planning/zone_outlines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <boost/geometry/algorithms/simplify.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/ring.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
+
+#include "cell_neighbours.hpp"
+#include "line_cells.hpp"
+
+namespace topogeo::planning {
+namespace {
+
+using Points = std::vector<Eigen::Vector2d>;
+using Corner = std::pair<std::int32_t, std::int32_t>;  // of cells: column, row of its lower left
+
+constexpr std::uint32_t kOutside = 0;  // of the parts: others count from 1
+
+/// Whether a cell belongs to the zones, or to none and lies beside one of theirs.
+std::vector<bool> cells_of(const GridFrame& frame, const ZoneMap& zones,
+                           std::span<const ZoneId> ids) {
+  constexpr double kToWalls_m = 0.3;
+  std::vector<bool> in(frame.size(), false);
+  std::vector<std::size_t> front;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const ZoneId zone = zones.zone_of_cell[i];
+    if (zone == kNoZone || std::ranges::find(ids, zone) == ids.end()) continue;
+    in[i] = true;
+    front.push_back(i);
+  }
+  const int steps = static_cast<int>(kToWalls_m / frame.resolution_m);
+  for (int step = 0; step < steps; ++step) {
+    std::vector<std::size_t> next;
+    for (const std::size_t i : front) {
+      visit_neighbours(frame, i, [&](std::size_t j) {
+        if (in[j] || zones.zone_of_cell[j] != kNoZone) return;
+        in[j] = true;
+        next.push_back(j);
+      });
+    }
+    front.swap(next);
+  }
+  return in;
+}
+
+/// Gives each cell of one part, found from a first cell, its number. Returns their count.
+std::size_t flood(const GridFrame& frame, std::size_t first, std::uint32_t number,
+                  const std::vector<bool>& in, std::vector<std::uint32_t>& part_of) {
+  std::vector<std::size_t> open{first};
+  part_of[first] = number;
+  for (std::size_t done = 0; done < open.size(); ++done) {
+    visit_neighbours(frame, open[done], [&](std::size_t j) {
+      if (!in[j] || part_of[j] != kOutside) return;
+      part_of[j] = number;
+      open.push_back(j);
+    });
+  }
+  return open.size();
+}
+
+/// What the cut took goes to the part that is nearest by steps.
+void give_back(const GridFrame& frame, const std::vector<std::size_t>& taken,
+               std::vector<std::uint32_t>& part_of) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    std::vector<std::pair<std::size_t, std::uint32_t>> given;
+    for (const std::size_t i : taken) {
+      if (part_of[i] != kOutside) continue;
+      std::uint32_t part = kOutside;
+      visit_neighbours(frame, i, [&](std::size_t j) { part = std::max(part, part_of[j]); });
+      if (part != kOutside) given.emplace_back(i, part);
+    }
+    for (const auto& [i, part] : given) part_of[i] = part;
+    changed = !given.empty();
+  }
+}
+
+/// Twice the area inside of a closed line; positive where it goes counter-clockwise.
+double twice_area(const std::vector<Corner>& loop) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const auto& [x, y] = loop[i];
+    const auto& [next_x, next_y] = loop[(i + 1) % loop.size()];
+    sum += static_cast<double>(x) * next_y - static_cast<double>(next_x) * y;
+  }
+  return sum;
+}
+
+/// The outer outline of a part along the sides of its cells, the part on its left.
+std::vector<Corner> outer_loop(const GridFrame& frame, std::uint32_t number,
+                               const std::vector<std::uint32_t>& part_of) {
+  const auto is_in = [&](const Cell& cell) {
+    return frame.contains(cell) && part_of[frame.index(cell)] == number;
+  };
+  std::multimap<Corner, Corner> sides;  // from corner to corner
+  for (std::size_t i = 0; i < part_of.size(); ++i) {
+    if (part_of[i] != number) continue;
+    const auto [x, y] = frame.cell_at(i);
+    if (!is_in({x, y - 1})) sides.insert({{x, y}, {x + 1, y}});
+    if (!is_in({x + 1, y})) sides.insert({{x + 1, y}, {x + 1, y + 1}});
+    if (!is_in({x, y + 1})) sides.insert({{x + 1, y + 1}, {x, y + 1}});
+    if (!is_in({x - 1, y})) sides.insert({{x, y + 1}, {x, y}});
+  }
+  std::vector<Corner> best;
+  while (!sides.empty()) {
+    std::vector<Corner> loop;
+    Corner at = sides.begin()->first;
+    std::array<std::int32_t, 2> along{};
+    while (true) {
+      auto [side, end] = sides.equal_range(at);
+      if (side == end) break;
+      // Where two cells touch at a corner alone, the line stays with its cell: it turns left.
+      for (auto other = std::next(side); other != end; ++other) {
+        const auto turn = [&](const Corner& to) {
+          return along[0] * (to.second - at.second) - along[1] * (to.first - at.first);
+        };
+        if (turn(other->second) > turn(side->second)) side = other;
+      }
+      loop.push_back(at);
+      along = {side->second.first - at.first, side->second.second - at.second};
+      at = side->second;
+      sides.erase(side);
+    }
+    if (twice_area(loop) > twice_area(best)) best = std::move(loop);
+  }
+  return best;
+}
+
+Points straightened(const GridFrame& frame, const std::vector<Corner>& loop) {
+  constexpr std::size_t kMostCorners = 256;
+  constexpr double kFirst_cells = 0.75;
+  namespace bg = boost::geometry;
+  using Ring = bg::model::ring<bg::model::d2::point_xy<double>, false>;
+  Ring ring;
+  for (const auto& [x, y] : loop) ring.push_back({static_cast<double>(x), static_cast<double>(y)});
+  ring.push_back(ring.front());
+  Ring simple;
+  for (double tolerance = kFirst_cells; simple.empty() || simple.size() > kMostCorners + 1;
+       tolerance *= 2.0) {
+    simple.clear();
+    bg::simplify(ring, simple, tolerance);
+    if (simple.size() < 4) {
+      simple = ring;
+      break;
+    }
+  }
+  Points points_m;
+  for (std::size_t i = 0; i + 1 < simple.size(); ++i) {
+    points_m.push_back(frame.T_map_grid * Eigen::Vector2d(frame.resolution_m * simple[i].x(),
+                                                          frame.resolution_m * simple[i].y()));
+  }
+  return points_m;
+}
+
+}  // namespace
+
+std::vector<Points> outlines_of(
+    const GridFrame& frame, const ZoneMap& zones, std::span<const ZoneId> ids,
+    const std::optional<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& cut_m) {
+  constexpr std::size_t kLeastCells = 4;
+  constexpr double kBeyond_m = 0.5;
+  std::vector<bool> in = cells_of(frame, zones, ids);
+  std::vector<std::size_t> taken;
+  if (cut_m && cut_m->first != cut_m->second) {
+    for (const Cell& cell : cells_across(frame, cut_m->first, cut_m->second, kBeyond_m)) {
+      const std::size_t i = frame.index(cell);
+      if (in[i]) taken.push_back(i);
+      in[i] = false;
+    }
+  }
+  std::vector<std::uint32_t> part_of(frame.size(), kOutside);
+  std::uint32_t parts = kOutside;
+  std::vector<std::uint32_t> large;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    if (!in[i] || part_of[i] != kOutside) continue;
+    if (flood(frame, i, ++parts, in, part_of) >= kLeastCells) large.push_back(parts);
+  }
+  give_back(frame, taken, part_of);
+  std::vector<Points> outlines;
+  outlines.reserve(large.size());
+  for (const std::uint32_t part : large) {
+    outlines.push_back(straightened(frame, outer_loop(frame, part, part_of)));
+  }
+  return outlines;
+}
+
+}  // namespace topogeo::planning
