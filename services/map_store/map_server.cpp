@@ -24,7 +24,7 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
     : service_(service),
       document_(std::move(document)),
       elements_(service),
-      hybrid_(service),
+      hybrid_(service, document_.rooms),
       stored_out_(service.advertise<msg::StoredMap>()),
       pieces_out_(service.advertise<msg::SnapshotPiece>()),
       snapshots_(
@@ -34,9 +34,16 @@ MapServer::MapServer(service::Service& service, storage::MapDocument document,
           },
           [this](const msg::SnapshotPiece& piece) { return pieces_out_.write(piece); }),
       copies_(
-          service, {}, [] {}, [](const std::string&) {}) {
+          service, {}, [] {}, [](const std::string&) {}),
+      drawing_(service, document_.drawing, false,
+               service.setup().config.config.hybrid_map.grid.resolution_m,
+               [this](storage::MapDrawing drawing) {
+                 document_.drawing = std::move(drawing);
+                 hybrid_.publish(pipeline::parts_of(document_), stamp_ns_);
+               }) {
   if (!document_.local_maps.empty()) stamp_ns_ = document_.local_maps.back().stamp_ns;
   hybrid_.publish(hybrid, stamp_ns_);
+  drawing_.publish(stamp_ns_);
   send();
   service_.subscribe<msg::SnapshotRequest>(
       [this](const msg::SnapshotRequest& request) { snapshots_.add(request); });

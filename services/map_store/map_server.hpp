@@ -6,6 +6,7 @@
 #include "topogeo/storage/map_document.hpp"
 
 #include "archive_channel.hpp"
+#include "drawing_channel.hpp"
 #include "element_publisher.hpp"
 #include "hybrid_publisher.hpp"
 #include "snapshot_queue.hpp"
@@ -34,6 +35,7 @@ class MapServer {
   messaging::Writer<msg::SnapshotPiece> pieces_out_;
   SnapshotQueue snapshots_;
   ArchiveChannel copies_;  // refuses all: there is no database
+  DrawingChannel drawing_;
   bool announced_ = false;
   bool elements_sent_ = false;
 };

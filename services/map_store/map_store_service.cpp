@@ -27,9 +27,6 @@ constexpr milliseconds kCatchUpSlice{150};
 constexpr std::size_t kFarBehind = 1000;  // local maps, a tenth of a second of work
 constexpr int kLiveShare = 5;
 constexpr std::chrono::seconds kPublishPeriod{2};
-// The hybrid map is made in one go and may take much longer: at most a tenth.
-constexpr std::chrono::seconds kHybridPeriod{4};
-constexpr int kHybridShare = 10;
 constexpr milliseconds kStorePeriod{200};
 constexpr std::chrono::seconds kStoreRetryPeriod{1};
 constexpr std::chrono::seconds kEdgePeriod{2};  // measurements: at most a twentieth of the time
@@ -47,10 +44,10 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
     : service_(service),
       options_(std::move(options)),
       archive_(std::move(database), options_.database),
-      input_(stored_input(archive_.database(), options_.drawing, hybrid_pending_, stored_rooms_)),
+      input_(stored_input(archive_.database(), options_.drawing, shown_, stored_rooms_)),
       live_map_(service.setup().config.config.global_map),
       elements_(service),
-      hybrid_(service, stored_rooms_),
+      hybrid_(service, stored_rooms_, std::exchange(shown_, std::nullopt)),
       ends_out_(service.advertise<msg::StreamEnd>()),
       acknowledged_(service),
       pieces_out_(service.advertise<msg::SnapshotPiece>()),
@@ -67,14 +64,18 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
           [this](const std::string& name) {
             wanted_snapshot_ = name;
             service_.loop().stop();
-          }) {
+          }),
+      drawing_(service, options_.drawing, true,
+               service.setup().config.config.hybrid_map.grid.resolution_m,
+               [this](storage::MapDrawing drawing) { take_drawing(std::move(drawing)); }) {
   stored_refusals_ = input_.refused_merges().size();
   if (!options_.drawing.empty()) archive_.put(options_.drawing);
   // There is a map before any scan, be it empty; one that has to be fused first comes when it is.
-  if (hybrid_pending_ || input_.local_maps().empty()) {
-    publish(hybrid_pending_.value_or(topomap::GlobalMap{}));
+  if (hybrid_.map() || input_.local_maps().empty()) {
+    publish(hybrid_.map().value_or(topomap::GlobalMap{}));
   }
-  if (options_.drawing.grid && !hybrid_pending_) hybrid_pending_.emplace();
+  if (options_.drawing.grid) hybrid_.redraw();
+  drawing_.publish(last_stamp_ns());
   listen<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); },
                         {.team = true, .main_input = true});
   listen<msg::TrajectorySegment>(
@@ -101,7 +102,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
                             [this] { snapshots_.work(Clock::now(), kSnapshotSlice); });
   service_.loop().add_timer(kLivePeriod, [this] {
     if (finished_) {
-      hybrid_.send_rest();
+      publish_hybrid();
     } else {
       work_on_live_map();
     }
@@ -239,9 +240,9 @@ void MapStoreService::work_on_live_map() {
       live_map_.size() != published_maps_ || trajectory.version != published_version_;
   if (more || !changed || Clock::now() < next_publish_) return;
   const auto publish_start = Clock::now();
-  hybrid_pending_ = live_map_.snapshot(trajectory.version);
-  const bool sent = publish(*hybrid_pending_);
-  keep(*hybrid_pending_);
+  hybrid_.take(live_map_.snapshot(trajectory.version));
+  const bool sent = publish(*hybrid_.map());
+  keep(*hybrid_.map());
   if (sent) {
     published_maps_ = live_map_.size();
     published_version_ = trajectory.version;
@@ -252,26 +253,30 @@ void MapStoreService::work_on_live_map() {
 }
 
 bool MapStoreService::publish(const topomap::GlobalMap& map) {
+  return elements_.publish(map, archive_.database().map_id(), last_stamp_ns());
+}
+
+std::int64_t MapStoreService::last_stamp_ns() const {
   const std::vector<topomap::LocalMap>& maps = input_.local_maps();
-  return elements_.publish(map, archive_.database().map_id(),
-                           maps.empty() ? 0 : maps.back().stamp_ns);
+  return maps.empty() ? 0 : maps.back().stamp_ns;
+}
+
+void MapStoreService::take_drawing(storage::MapDrawing drawing) {
+  archive_.put(drawing);
+  options_.drawing = std::move(drawing);
+  drawn_since_ = finished_;
+  hybrid_.redraw();
 }
 
 void MapStoreService::publish_hybrid() {
-  hybrid_.send_rest();
-  if (!hybrid_pending_ || Clock::now() < next_hybrid_) return;
-  const auto start = Clock::now();
+  if (!hybrid_.due()) return;
   const topomap::Trajectory trajectory = input_.newest_trajectory();
   pipeline::HybridMapParts parts;
   parts.local_maps = input_.local_maps();
   parts.stops = trajectory.stops;
-  parts.global_map = &*hybrid_pending_;
   parts.drawing = &options_.drawing;
-  hybrid_.publish(parts, parts.local_maps.empty() ? 0 : parts.local_maps.back().stamp_ns);
-  hybrid_pending_.reset();
+  hybrid_.make(parts, last_stamp_ns());
   if (hybrid_.rooms() != stored_rooms_ && keep(hybrid_.rooms())) stored_rooms_ = hybrid_.rooms();
-  const auto now = Clock::now();
-  next_hybrid_ = now + std::max<Clock::duration>(kHybridPeriod, kHybridShare * (now - start));
 }
 
 void MapStoreService::finish_if_complete() {
@@ -315,7 +320,7 @@ storage::MapDocument MapStoreService::final_document(const topomap::Trajectory& 
 }
 
 void MapStoreService::end() {
-  if (finished_ || input_.newest_trajectory().stops.empty()) return;
+  if ((finished_ && !drawn_since_) || input_.newest_trajectory().stops.empty()) return;
   next_store_ = {};
   live_map_ = LiveMap(service_.setup().config.config.global_map);  // its memory is needed
   store(true);
@@ -340,7 +345,7 @@ void MapStoreService::finish(const topomap::Trajectory& trajectory) {
   hybrid_.remember(document.rooms);
   write_results(options_.directory, document, options_.title);
 
-  hybrid_.publish(pipeline::parts_of(document), trajectory.stops.back().stamp_ns);
+  hybrid_.finish(pipeline::parts_of(document), trajectory.stops.back().stamp_ns);
 
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), trajectory.stops.back().stamp_ns, 0);

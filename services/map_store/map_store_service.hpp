@@ -19,8 +19,9 @@
 #include "topogeo/storage/map_document.hpp"
 
 #include "archive_channel.hpp"
+#include "drawing_channel.hpp"
 #include "element_publisher.hpp"
-#include "hybrid_publisher.hpp"
+#include "live_hybrid.hpp"
 #include "live_map.hpp"
 #include "map_archive.hpp"
 #include "map_input.hpp"
@@ -79,6 +80,9 @@ class MapStoreService {
   bool keep(const Part& part);
   /// Makes and sends the hybrid map of what is there, when it is time to.
   void publish_hybrid();
+  [[nodiscard]] std::int64_t last_stamp_ns() const;
+  /// Stores a drawing and shows it soon. Throws std::runtime_error when it cannot be stored.
+  void take_drawing(storage::MapDrawing drawing);
   void finish_if_complete();
   /// The map of a run; the stored one when it was to be extended and no stop joined it. Its rooms
   /// have the numbers that are remembered.
@@ -92,12 +96,12 @@ class MapStoreService {
   service::Service& service_;
   MapStoreOptions options_;
   MapArchive archive_;
-  std::optional<topomap::GlobalMap> hybrid_pending_;  // what the next hybrid map is made of
+  std::optional<topomap::GlobalMap> shown_;  // stored, shown until the live map is made
   planning::RoomMemory stored_rooms_;
   MapInput input_;
   LiveMap live_map_;
   ElementPublisher elements_;
-  HybridPublisher hybrid_;
+  LiveHybrid hybrid_;
 
   messaging::Writer<msg::StreamEnd> ends_out_;
   StoredChannel acknowledged_;
@@ -105,6 +109,7 @@ class MapStoreService {
   SnapshotQueue snapshots_;
   ArchiveChannel copies_;
   std::optional<std::string> wanted_snapshot_;
+  DrawingChannel drawing_;
 
   Clock::time_point next_store_;  // after a failure
   Clock::time_point next_edges_;
@@ -114,9 +119,9 @@ class MapStoreService {
   std::size_t published_maps_ = 0;
   std::uint64_t published_version_ = 0;
   Clock::time_point next_publish_;
-  Clock::time_point next_hybrid_;
   Clock::time_point next_attempt_;  // to finish, after a failure
   bool finished_ = false;
+  bool drawn_since_ = false;  // it was finished
 };
 
 }  // namespace topogeo::map_store

@@ -12,7 +12,7 @@ MapInput::Stored stored_input(const storage::MapDatabase& database, storage::Map
   storage::MapDocument document = database.load();
   rooms = std::move(document.rooms);
   if (!document.global_map.nodes.empty()) shown = std::move(document.global_map);
-  pipeline::lay_over(document.drawing, std::move(drawing));
+  if (document.drawing.version == 0) pipeline::lay_over(document.drawing, std::move(drawing));
   drawing = std::move(document.drawing);
   MapInput::Stored stored;
   stored.local_maps = std::move(document.local_maps);

@@ -12,7 +12,8 @@
 
 namespace topogeo::map_store {
 
-/// The map that is there. `drawing` becomes what is drawn now, laid over the drawing of the map;
+/// The map that is there. `drawing` becomes what is drawn now, laid over the drawing of the map
+/// unless people have drawn on that since;
 /// `shown` its global map, if it has one; `rooms` what is remembered of its rooms. Throws like
 /// MapDatabase::load.
 MapInput::Stored stored_input(const storage::MapDatabase& database, storage::MapDrawing& drawing,

@@ -21,6 +21,7 @@
 #include "topogeo/planning/zones.hpp"
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/decision_assembly.hpp"
+#include "topogeo/service/drawing_conversions.hpp"
 #include "topogeo/service/hybrid_map_messages.hpp"
 #include "topogeo/service/hybrid_map_mirror.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
@@ -28,6 +29,7 @@
 
 #include "address_filter.hpp"
 #include "checks.hpp"
+#include "map_store/drawing_order.hpp"
 #include "map_store/map_input.hpp"
 #include "planner/answer.hpp"
 
@@ -140,6 +142,32 @@ void navigate(const Input& input) {
 
 template <class Message>
 void receive(const Message& /*message*/) {}  // they only show it
+
+/// A floor with what is drawn on it can be planned on.
+void plan_on_drawing(const storage::MapDrawing& drawing) {
+  const planning::FreeSpace space(floor().space().grid(), {0.5, false}, drawing.zones,
+                                  drawing.lines);
+  const planning::HybridMap map(space, planning::drawn_zones(space, {}));
+  const service::HybridMapMessages messages = service::to_messages(map, "robot", kNow_ns, 1);
+  require(messages.summary.rules().size() >= drawing.lines.size(), "lines travel with the map");
+}
+
+void receive(const msg::DrawingState& message) {
+  plan_on_drawing(service::from_msg(message.content()));
+}
+
+void receive(const msg::DrawingOrder& message) {
+  storage::MapDrawing now;
+  now.version = message.version();
+  // Cells of a metre: a floor may be as large as one likes.
+  const map_store::DrawingOutcome outcome = map_store::carry_out(message, now, 1.0);
+  require(outcome.drawing.has_value() == (outcome.result == msg::kDrawingDone),
+          "an order is carried out or refused");
+}
+
+void receive(const msg::FloorOrder& message) {
+  plan_on_drawing(service::from_msg(message.content()));
+}
 
 void receive(const msg::Scan& message) {
   const scan::Scan scan = service::from_msg(message);
@@ -463,6 +491,35 @@ void fill(msg::Route& message) {
   goal.target().x_m(1.5);
   goal.target().y_m(0.5);
   message = planner::answer(goal, {.hybrid = &floor()}, pose, {});
+}
+
+msg::DrawingContent sample_drawing_content() {
+  storage::MapDrawing drawing;
+  drawing.places = {{"left", {0.5, 1.0}}, {"base station", {1.0, 1.0}, 1.5}};
+  drawing.zones = {{"wet", {{0.5, 0.5}, {1.0, 0.5}, {1.0, 1.0}}, planning::ZoneKind::kNoGo},
+                   {"ramp", {{2.5, 0.5}, {3.0, 0.5}, {3.0, 1.0}}, planning::ZoneKind::kSlow, 0.3}};
+  drawing.lines = {{planning::LineKind::kWall, {{0.0, 0.0}, {3.0, 0.0}, {3.0, 2.5}, {0.0, 2.5}}},
+                   {planning::LineKind::kOpening, {{3.0, 1.0}, {3.0, 2.0}}},
+                   {planning::LineKind::kDoor, {{2.0, 1.2}, {2.0, 2.0}}, "door"}};
+  return service::to_msg(drawing);
+}
+
+void fill(msg::DrawingState& message) {
+  message.version(7);
+  message.content(sample_drawing_content());
+}
+
+void fill(msg::DrawingOrder& message) {
+  message.kind(msg::kDrawingFloor);
+  message.version(7);
+  message.inside().x_m(1.5);
+  message.inside().y_m(1.5);
+  message.content(sample_drawing_content());
+}
+
+void fill(msg::FloorOrder& message) {
+  messaging::set_text(message.name(), "new floor", "name");
+  message.content(sample_drawing_content());
 }
 
 void fill(msg::LocalizationCommand& message) {

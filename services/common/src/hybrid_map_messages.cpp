@@ -37,7 +37,7 @@ msg::GridTile tile_of(const planning::HybridMap& map, std::uint32_t number,
     for (std::int32_t column = corner.column; column < corner.column + kSide; ++column, ++at) {
       const planning::Cell cell{column, row};
       if (!frame.contains(cell)) continue;
-      tile.states()[at] = static_cast<std::uint8_t>(map.space().grid().at(cell));
+      tile.states()[at] = static_cast<std::uint8_t>(map.space().seen().at(cell));
       tile.zones()[at] = map.zone_of(cell);
     }
   }
@@ -59,6 +59,16 @@ std::string fitting(const std::string& name, std::size_t most) {
   return name.substr(0, kept) + name.substr(number);
 }
 
+void add_rule(const std::string& name, std::uint8_t kind, double value,
+              const std::vector<Eigen::Vector2d>& corners_m, msg::HybridMap& out) {
+  msg::HybridRule& entry = out.rules().emplace_back();
+  messaging::set_text(entry.name(), name, "rule");
+  entry.kind(kind);
+  entry.value(value);
+  check_bound("corners of a rule", corners_m.size(), msg::kMaxRuleCorners);
+  for (const Eigen::Vector2d& corner_m : corners_m) entry.corners().push_back(to_point(corner_m));
+}
+
 void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
   const double cell_m2 = map.frame().resolution_m * map.frame().resolution_m;
   check_bound("zones", map.zones().zones.size(), msg::kMaxZones);
@@ -69,16 +79,13 @@ void add_zones_and_places(const planning::HybridMap& map, msg::HybridMap& out) {
     entry.area_m2(static_cast<double>(zone.cells) * cell_m2);
     entry.room(zone.room);
   }
-  check_bound("rules", map.space().rules().zones().size(), msg::kMaxRules);
-  for (const planning::DrawnZone& zone : map.space().rules().zones()) {
-    msg::HybridRule& entry = out.rules().emplace_back();
-    messaging::set_text(entry.name(), zone.name, "zone");
-    entry.kind(static_cast<std::uint8_t>(zone.kind));
-    entry.value(zone.value);
-    check_bound("corners of a zone", zone.polygon_m.size(), msg::kMaxRuleCorners);
-    for (const Eigen::Vector2d& corner_m : zone.polygon_m) {
-      entry.corners().push_back(to_point(corner_m));
-    }
+  const planning::DrivingRules& rules = map.space().rules();
+  check_bound("rules", rules.zones().size() + rules.lines().size(), msg::kMaxRules);
+  for (const planning::DrawnZone& zone : rules.zones()) {
+    add_rule(zone.name, static_cast<std::uint8_t>(zone.kind), zone.value, zone.polygon_m, out);
+  }
+  for (const planning::DrawnLine& line : rules.lines()) {
+    add_rule(line.name, rule_kind_of(line.kind), 0.0, line.points_m, out);
   }
   check_bound("places", map.places().size(), msg::kMaxPlaces);
   for (const planning::Place& place : map.places()) {

@@ -26,13 +26,18 @@ planning::InflationConfig inflation_of(const msg::HybridMap& summary) {
   return {summary.forbidden_cells(), summary.inflate_unknown(), summary.pocket_m2()};
 }
 
+bool is_line(const msg::HybridRule& rule) {
+  return rule.kind() >= planning::kZoneKinds;
+}
+
 void check_zones_and_places(const msg::HybridMap& summary) {
   check_bound("zones", summary.zones().size(), msg::kMaxZones);
   for (const msg::HybridZone& zone : summary.zones()) finite(zone.area_m2(), "area of a zone");
   check_bound("rules", summary.rules().size(), msg::kMaxRules);
   for (const msg::HybridRule& rule : summary.rules()) {
-    check(rule.kind() > 0 && rule.kind() < planning::kZoneKinds, "kind of a rule", "1 to 3");
-    check(rule.corners().size() >= 3, "corners of a rule", "at least 3");
+    check(rule.kind() > 0 && rule.kind() < kRuleKinds, "kind of a rule", "1 to 6");
+    const std::size_t least = is_line(rule) ? 2 : 3;
+    check(rule.corners().size() >= least, "corners of a rule", "at least " + std::to_string(least));
     check_bound("corners of a rule", rule.corners().size(), msg::kMaxRuleCorners);
     finite(rule.value(), "value of a rule");
     for (const msg::Point2& corner : rule.corners()) {
@@ -52,18 +57,28 @@ void check_zones_and_places(const msg::HybridMap& summary) {
   }
 }
 
-std::vector<planning::DrawnZone> rules_of(const msg::HybridMap& summary) {
+struct DrawnRules {
   std::vector<planning::DrawnZone> zones;
+  std::vector<planning::DrawnLine> lines;
+};
+
+DrawnRules rules_of(const msg::HybridMap& summary) {
+  DrawnRules rules;
   for (const msg::HybridRule& rule : summary.rules()) {
-    planning::DrawnZone& zone = zones.emplace_back();
-    zone.name = rule.name().to_string();
-    zone.kind = static_cast<planning::ZoneKind>(rule.kind());
-    zone.value = rule.value();
+    std::vector<Eigen::Vector2d> corners_m;
     for (const msg::Point2& corner : rule.corners()) {
-      zone.polygon_m.emplace_back(corner.x_m(), corner.y_m());
+      corners_m.emplace_back(corner.x_m(), corner.y_m());
+    }
+    const std::string name = rule.name().to_string();
+    if (is_line(rule)) {
+      const auto kind = static_cast<planning::LineKind>(rule.kind() - planning::kZoneKinds);
+      rules.lines.push_back({kind, std::move(corners_m), name});
+    } else {
+      const auto kind = static_cast<planning::ZoneKind>(rule.kind());
+      rules.zones.push_back({name, std::move(corners_m), kind, rule.value()});
     }
   }
-  return zones;
+  return rules;
 }
 
 void check_graph(const msg::HybridMap& summary) {
@@ -186,8 +201,9 @@ std::shared_ptr<const planning::HybridMap> HybridMapMirror::build() const {
     known.position_m = {place.position().x_m(), place.position().y_m()};
     if (place.is_station()) known.station_heading_rad = place.heading_rad();
   }
+  const DrawnRules rules = rules_of(*summary_);
   return std::make_shared<const planning::HybridMap>(
-      planning::FreeSpace(std::move(grid), inflation_of(*summary_), rules_of(*summary_)),
+      planning::FreeSpace(std::move(grid), inflation_of(*summary_), rules.zones, rules.lines),
       zone_map(frame, std::move(zones), *summary_), std::move(places));
 }
 

@@ -11,6 +11,7 @@
 #include "body.h"
 #include "common.h"
 #include "dds/dds.h"
+#include "drawing.h"
 #include "hybrid_map.h"
 #include "local_map.h"
 #include "map_update.h"

@@ -366,6 +366,26 @@ void fill(msg::HybridMap& map) {
   map.edges().front().cost_m(4.5);
 }
 
+void fill(msg::DrawingOrder& order) {
+  order.request_id(7);
+  set_client_id(order, "page-1");
+  order.kind(msg::kDrawingFloor);
+  order.version(~0ULL);
+  order.content().places().resize(2);
+  set_text(order.content().places().back().name(), "kitchen", "name");
+  order.content().zones().resize(msg::kMaxDrawnZones);
+  order.content().zones().back().corners().resize(msg::kMaxDrawnPoints);
+  order.content().lines().resize(msg::kMaxDrawnLines);
+  order.content().lines().back().points().resize(2);
+  order.content().lines().back().points().back().y_m(-3.5);
+}
+
+void fill(msg::DrawingAnswer& answer) {
+  answer.result(msg::kDrawingNotDone);
+  answer.version(9);
+  set_text(answer.message(), "the disk is full", "message");
+}
+
 void fill(msg::MotionCommand& command) {
   command.linear_mps(0.3);
   command.valid_for_s(0.2);

@@ -60,6 +60,8 @@ void expect_same(const planning::HybridMap& a, const planning::HybridMap& b) {
   EXPECT_EQ(a.space().inflation().inflate_unknown, b.space().inflation().inflate_unknown);
   EXPECT_EQ(a.space().inflation().min_pocket_m2, b.space().inflation().min_pocket_m2);
   EXPECT_TRUE(std::ranges::equal(a.space().grid().cells(), b.space().grid().cells()));
+  EXPECT_TRUE(std::ranges::equal(a.space().seen().cells(), b.space().seen().cells()));
+  EXPECT_EQ(a.space().rules().lines(), b.space().rules().lines());
   EXPECT_EQ(a.zones().zone_of_cell, b.zones().zone_of_cell);
   ASSERT_EQ(a.zones().zones.size(), b.zones().zones.size());
   for (std::size_t i = 0; i < a.zones().zones.size(); ++i) {
@@ -98,7 +100,11 @@ void put_all(service::HybridMapMirror& mirror, const service::HybridMapMessages&
 
 TEST(HybridMapMessages, AMapComesBackToTheLastBit) {
   const planning::BlockFloor floor = planning::block_floor({}, 3);
-  const planning::FreeSpace space(floor.grid, {3.0, true, 0.75});
+  const std::vector<planning::DrawnLine> lines{
+      {planning::LineKind::kWall, {{0.5, 0.5}, {2.0, 3.5}, {4.0, 3.0}}},
+      {planning::LineKind::kOpening, {{5.05, 0.5}, {5.05, 3.5}}},
+      {planning::LineKind::kDoor, {{10.05, 0.5}, {10.05, 3.5}}, "door"}};
+  const planning::FreeSpace space(floor.grid, {3.0, true, 0.75}, {}, lines);
   planning::ZoneMap zones = planning::drawn_zones(space, floor.rooms);
   for (planning::Zone& zone : zones.zones) zone.room = zone.id + 5U;
   const planning::HybridMap map(space, zones, {{"a", {1.0, 2.0}}, {"b", {2.0, 2.0}, -0.5}});

@@ -11,6 +11,12 @@
 
 namespace topogeo::service {
 
+/// HybridRule::kind of a drawn line: those of zones come before.
+constexpr std::uint8_t rule_kind_of(planning::LineKind kind) {
+  return static_cast<std::uint8_t>(planning::kZoneKinds + static_cast<std::size_t>(kind));
+}
+inline constexpr std::size_t kRuleKinds = planning::kZoneKinds + planning::kLineKinds;
+
 /// Tiles in a row and rows of tiles of a grid.
 struct TileLayout {
   std::uint32_t columns = 0;

@@ -1,0 +1,47 @@
+#include "drawing_order.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "topogeo/planning/grid_sources.hpp"
+#include "topogeo/service/drawing_conversions.hpp"
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::map_store {
+
+namespace {
+
+/// Walls, openings and doors become the grid; doors stay, because rooms meet there.
+void make_floor(storage::MapDrawing& drawing, const msg::Point2& inside, double resolution_m) {
+  if (!std::isfinite(inside.x_m()) || !std::isfinite(inside.y_m())) {
+    throw std::invalid_argument("inside: expected finite coordinates");
+  }
+  drawing.grid = planning::grid_of_floor(drawing.lines, {inside.x_m(), inside.y_m()}, resolution_m);
+  std::erase_if(drawing.lines, [](const planning::DrawnLine& line) {
+    return line.kind != planning::LineKind::kDoor;
+  });
+}
+
+}  // namespace
+
+DrawingOutcome carry_out(const msg::DrawingOrder& order, const storage::MapDrawing& now,
+                         double resolution_m) {
+  if (order.version() != now.version) {
+    return {msg::kDrawingOtherVersion,
+            fmt::format("somebody else has saved meanwhile: version {} was edited, this is {}",
+                        order.version(), now.version),
+            {}};
+  }
+  try {
+    storage::MapDrawing drawing = service::from_msg(order.content());
+    drawing.grid = now.grid;
+    drawing.version = now.version + 1;
+    if (order.kind() == msg::kDrawingFloor) make_floor(drawing, order.inside(), resolution_m);
+    return {msg::kDrawingDone, "", std::move(drawing)};
+  } catch (const std::invalid_argument& error) {
+    return {msg::kDrawingInvalid, error.what(), {}};
+  }
+}
+
+}  // namespace topogeo::map_store
