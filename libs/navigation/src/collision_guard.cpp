@@ -54,6 +54,24 @@ void CollisionGuard::add(const LaserFields& fields) {
   if (!fields_ || fields.stamp_ns > fields_->stamp_ns) fields_ = fields;
 }
 
+void CollisionGuard::keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m) {
+  drawn_m_ = std::move(points_m);
+  if (drawn_m_.empty()) return;
+  if (const auto then = odometry_.at(stamp_ns)) {
+    T_odom_drawn_ = then->T_odom_robot;
+  } else {
+    T_odom_drawn_ = last_ ? last_->T_odom_robot : geometry::Pose2{};
+  }
+}
+
+void CollisionGuard::add_drawn(std::vector<Eigen::Vector2d>& points_m) const {
+  constexpr double kCarried_m = 3.0;  // as far as a navigator drives on without a sure pose
+  if (drawn_m_.empty() || !last_) return;
+  const geometry::Pose2 T_now_then = between(last_->T_odom_robot, T_odom_drawn_);
+  if (T_now_then.position_m().norm() > kCarried_m) return;
+  for (const Eigen::Vector2d& point_m : drawn_m_) points_m.push_back(T_now_then * point_m);
+}
+
 // Notes since when the sonars have no echo although the laser sees something in their reach.
 void CollisionGuard::watch_silence(const SonarRound& sonar) {
   const bool any = std::any_of(sonar.readings.begin(), sonar.readings.end(), has_echo);
@@ -199,13 +217,16 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
     verdict.limited = wanted != geometry::Velocity{};
     return verdict;
   }
-  const std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
+  std::vector<Eigen::Vector2d> points_m = obstacles_m(now_ns);
+  const std::size_t standing = points_m.size();
+  add_drawn(points_m);
   const double body_m = config_.radius_m + std::min(config_.margin_m, config_.side_margin_m);
   const bool still = std::fabs(wanted.linear_m_per_s) < kStanding_m_s;
   const SweptArc arc =
       sweep(still ? geometry::Velocity{1.0, 0.0} : wanted, points_m, body_m, kFarthest_m);
   verdict.free_m = arc.length_m;
-  if (arc.contact) verdict.contact_m = points_m[*arc.contact];
+  const bool is_drawn = arc.contact && *arc.contact >= standing;
+  if (arc.contact && !is_drawn) verdict.contact_m = points_m[*arc.contact];
   verdict.allowed = wanted;
   if (still) return verdict;
   if (wanted.linear_m_per_s < 0.0 && (!sonar_ || !fresh(sonar_->stamp_ns, now_ns))) {
@@ -232,7 +253,9 @@ GuardVerdict CollisionGuard::judge_by_distances(const geometry::Velocity& wanted
     verdict.allowed = {};
     verdict.reason = HaltReason::kObstacle;
   }
-  verdict.message = fmt::format("something is {:.2f} m ahead of the body", arc.length_m);
+  verdict.message =
+      fmt::format("{} is {:.2f} m ahead of the body",
+                  is_drawn ? "a drawn wall or no-go zone" : "something", arc.length_m);
   return verdict;
 }
 

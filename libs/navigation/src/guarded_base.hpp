@@ -5,6 +5,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
@@ -24,6 +28,9 @@ class GuardedBase {
   void add(const SonarRound& sonar) { guard_.add(sonar); }
   void add(const LaserFields& fields) { guard_.add(fields); }
   void add(const BaseCondition& base) { base_ = base; }
+  void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m) {
+    guard_.keep_off(stamp_ns, std::move(points_m));
+  }
 
   /// Why no motion at all is possible, with one line for people; kNone when it is.
   HaltReason halted(std::int64_t now_ns, std::string& message) const;

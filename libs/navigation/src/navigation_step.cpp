@@ -72,6 +72,10 @@ void NavigationStep::locate() {
   const double jump_m = poses.take_jump_m();
   if (jump_m > kMemory_m) surroundings.forget();
   if (jump_m > kRoute_m) driver.doubt_route();
+  // Of a pose that is not sure the points would be in a wrong place: those of before stay.
+  if (status.T_map_robot && poses.keeper().tracking()) {
+    base.keep_off(now_ns, limits.near_m(*status.T_map_robot));
+  }
 }
 
 /// Why it must not move at all; kNone when it may.

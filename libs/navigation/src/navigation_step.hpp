@@ -7,6 +7,7 @@
 
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/geometry/velocity.hpp"
+#include "topogeo/navigation/drawn_limits.hpp"
 #include "topogeo/navigation/navigator_config.hpp"
 #include "topogeo/navigation/navigator_inputs.hpp"
 
@@ -57,6 +58,7 @@ struct NavigationStep {
   Surroundings surroundings;
   RouteKeeper routes;
   RouteDriver driver;
+  DrawnLimits limits;
   ObstacleWait wait;
   Arrival arrival;
   Relocalization relocalization;

@@ -21,6 +21,7 @@ void Navigator::set_map(std::shared_ptr<const planning::HybridMap> map, std::uin
   const planning::HybridMap* now = state.routes.map();
   state.surroundings.forget();
   state.poses.set_map(now);
+  state.limits = now != nullptr ? DrawnLimits(now->space()) : DrawnLimits();
   if (now == nullptr) {
     state.driver.forget();
     return;

@@ -1,6 +1,7 @@
 // Keeps a robot from driving into what its laser and sonars see, whatever the planner of its path
 // wants. It has no map, no pose and no route (MACONDO, I and III; docs/algorithms.md, "Driving and
-// collision guard").
+// collision guard"). Drawn walls and no-go zones are points that its owner puts around the robot
+// while it knows where that is.
 //
 // The points of the last scan, carried on by odometry, and the echoes of the sonars where the laser
 // sees nothing in their cone are what the body's disc must not touch on the arc that is wanted, nor
@@ -31,7 +32,8 @@ struct GuardVerdict {
   std::string message;                    ///< for people; empty when the motion is allowed
   double free_m = 0.0;   ///< along the wanted motion before the body touches something; <= 5
   bool limited = false;  ///< slower than wanted
-  /// What ends the free distance, robot frame; nothing when nothing does within 5 m.
+  /// What stands where the free distance ends, robot frame; nothing when nothing does within 5 m,
+  /// or what is there is only drawn.
   std::optional<Eigen::Vector2d> contact_m;
 };
 
@@ -48,6 +50,11 @@ class CollisionGuard {
   void add(const SonarRound& sonar);
   void add(const LaserFields& fields);
 
+  /// Points (robot frame at that time) that must not be touched though nothing stands there, in
+  /// place of those before. Odometry carries them on for 3 m; then, without newer ones, nobody
+  /// knows where they are, and they do not count.
+  void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m);
+
   /// What of a wanted velocity is safe now. Turning on the spot of a round body always is, as long
   /// as the sensors work. Backwards it goes only where fresh sonars point.
   [[nodiscard]] GuardVerdict judge(const geometry::Velocity& wanted, std::int64_t now_ns) const;
@@ -58,6 +65,8 @@ class CollisionGuard {
  private:
   [[nodiscard]] bool fresh(std::int64_t stamp_ns, std::int64_t now_ns) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> obstacles_m(std::int64_t now_ns) const;
+  /// Adds what is to be kept off, in the robot frame of now.
+  void add_drawn(std::vector<Eigen::Vector2d>& points_m) const;
   [[nodiscard]] geometry::Velocity driven() const;
   [[nodiscard]] double speed_for(double free_m) const;
   /// Whether the scan has a point in the sonar's cone, at most so far from it.
@@ -82,6 +91,8 @@ class CollisionGuard {
   std::optional<geometry::Pose2> T_odom_sonar_round_;
   std::optional<std::int64_t> silent_since_ns_;
   std::optional<LaserFields> fields_;
+  std::vector<Eigen::Vector2d> drawn_m_;  ///< robot frame at T_odom_drawn_
+  geometry::Pose2 T_odom_drawn_;
 };
 
 }  // namespace topogeo::navigation
