@@ -33,6 +33,7 @@ enum class Channel : std::uint8_t {
   kRooms,
   kPlaces,
   kRules,
+  kDrawing,
   kScan,
   kRoute,
   kTruth,

@@ -2,8 +2,11 @@
 
 #include <chrono>
 #include <exception>
+#include <stdexcept>
+#include <utility>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
@@ -24,11 +27,12 @@ std::int64_t steady_ns() {
 
 }  // namespace
 
-HandSender::HandSender(service::Service& service, Board& board, EventLog& events,
+HandSender::HandSender(service::Service& service, Board& board, EventLog& events, MapSource map,
                        std::function<void(const msg::Odometry&)> on_odometry)
     : service_(service),
       board_(board),
       events_(events),
+      map_source_(std::move(map)),
       client_id_(support::process_name()),
       clock_(support::wall_clock_ns() - steady_ns()),
       guard_(service.setup().config.config.navigator.guard),
@@ -54,6 +58,27 @@ HandSender::~HandSender() {
   } catch (const std::exception& error) {
     spdlog::error("the last command was not sent: {}", error.what());
   }
+}
+
+void HandSender::take(const msg::LivePose& pose) {
+  if (pose.state() != msg::kStateTracking) return;  // the points of before are carried on
+  pose_.emplace();
+  pose_->stamp_ns = pose.stamp_ns();
+  pose_->T_map_robot = service::from_msg(pose.T_map_robot());
+}
+
+void HandSender::keep_off_drawn() {
+  try {
+    if (auto map = map_source_(); map && map != map_) {
+      limits_ = navigation::DrawnLimits(map->space());
+      map_ = std::move(map);
+    }
+  } catch (const std::invalid_argument& error) {
+    service_.status().fault("invalid hybrid map", error.what());
+  }
+  if (!pose_) return;
+  guard_.keep_off(pose_->stamp_ns, limits_.near_m(pose_->T_map_robot));
+  pose_.reset();
 }
 
 void HandSender::take(const navigation::ScanPoints& scan) {
@@ -89,6 +114,7 @@ void HandSender::release(std::uint64_t viewer) {
 void HandSender::tick() {
   const std::int64_t now_ns = steady_ns();
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
+  if (drive_.held(now_ns)) keep_off_drawn();
   const auto verdict = drive_.step(guard_, now_ns, stamp_ns);
   if (!verdict) {
     if (commanding_) board_.set(Channel::kDrive, "null");

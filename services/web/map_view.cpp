@@ -243,6 +243,7 @@ void MapView::show_drawing() {
   board_.edit(Channel::kPlaces, std::move(places), true);
   std::vector<Edit> rules;
   for (const msg::HybridRule& rule : summary_->rules()) {
+    if (rule.kind() >= planning::kZoneKinds) continue;  // walls and the like are in the drawing
     Json corners = Json::array();
     for (const msg::Point2& corner : rule.corners()) {
       corners.push_back(rounded(corner.x_m()));

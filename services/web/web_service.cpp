@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "topogeo/planning/zone_outlines.hpp"
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
@@ -22,9 +23,9 @@ namespace {
 constexpr std::chrono::milliseconds kCountsPeriod{500};
 constexpr int kProtocolVersion = 1;
 /// What POST takes, below /api/.
-constexpr std::array<std::string_view, 15> kOffers = {
-    "goal", "preview", "pause", "resume", "cancel",  "stop",     "release", "return",
-    "pose", "search",  "mode",  "merge",  "explore", "snapshot", "restore"};
+constexpr std::array<std::string_view, 17> kOffers = {
+    "goal",   "preview", "pause", "resume",  "cancel",   "stop",    "release", "return",     "pose",
+    "search", "mode",    "merge", "explore", "snapshot", "restore", "drawing", "room_shapes"};
 
 Answer accepted() {
   return {202, "{}"};
@@ -37,8 +38,9 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
       config_(config),
       files_(std::move(files)),
       foxglove_(feed_, service.setup().config.config.local_mapper.T_robot_laser),
-      hand_(service, board_, events_,
-            [this](const msg::Odometry& odometry) { foxglove_.take(odometry); }),
+      hand_(
+          service, board_, events_, [this] { return map_.map(); },
+          [this](const msg::Odometry& odometry) { foxglove_.take(odometry); }),
       map_(service, board_,
            [this](const std::shared_ptr<const MapPicture>& picture) { foxglove_.take(picture); }),
       graph_(service, board_),
@@ -48,7 +50,10 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
                 hand_.take(scan);
                 foxglove_.take(scan);
               },
-              [this](const msg::LivePose& pose) { foxglove_.take(pose); },
+              [this](const msg::LivePose& pose) {
+                hand_.take(pose);
+                foxglove_.take(pose);
+              },
               [this](const msg::LaserStatus& laser) { hand_.take(laser); },
               [this](const msg::NavigatorStatus& status) {
                 exploration_.take(status, goals_.take(status));
@@ -56,6 +61,7 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
       drive_(service, board_, events_),
       exploration_(service, goals_, events_, robot_, [this] { return explored_floor(); }),
       health_(service, board_, events_),
+      drawing_(service, board_, events_),
       server_(std::make_unique<Server>(config_, board_, files_, static_cast<Backend&>(*this),
                                        tally_, feed_)),
       localizer_(service) {
@@ -66,6 +72,7 @@ WebService::WebService(service::Service& service, const ServerConfig& config, Pa
 
 WebService::~WebService() {
   service_.loop().cancel_timer(timer_);
+  drawing_.abandon();
 }
 
 template <class Work>
@@ -86,6 +93,8 @@ void WebService::handle(const Request& request, Respond respond) {
     respond(tile_answer(request, map_.shown().get()));
   } else if (request.path == "/api/at") {
     respond(point_answer(request, map_.shown().get()));
+  } else if (request.path == "/api/drawing") {
+    respond(drawing_.shown());
   } else if (request.path == "/api/info") {
     respond(info(request));
   } else {
@@ -95,6 +104,8 @@ void WebService::handle(const Request& request, Respond respond) {
 
 Answer WebService::info(const Request& request) const {
   const std::string& other = service_.setup().options.map_robot;
+  Json offers(kOffers);
+  if (drawing_.takes_floors()) offers.push_back("floor");
   Answer answer;
   answer.body = text_of(Json{{"protocol", kProtocolVersion},
                              {"robot_id", service_.robot_id()},
@@ -102,7 +113,7 @@ Answer WebService::info(const Request& request) const {
                              {"version", support::kVersion},
                              {"life", config_.life},
                              {"may_write", request.authorized},
-                             {"offers", kOffers}});
+                             {"offers", std::move(offers)}});
   return answer;
 }
 
@@ -183,6 +194,9 @@ void WebService::obey(const Request& request, const Respond& respond) {
        [&](const std::string& body) { localizer_.answer_merge(parse_merge_order(body), respond); }},
       {"/api/snapshot", [&](const std::string& body) { history_.take_snapshot(body, respond); }},
       {"/api/restore", [&](const std::string& body) { history_.restore(body, respond); }},
+      {"/api/drawing", [&](const std::string& body) { drawing_.replace(body, respond); }},
+      {"/api/floor", [&](const std::string& body) { load_floor(body, respond); }},
+      {"/api/room_shapes", [&](const std::string& body) { respond(room_shapes(body)); }},
   };
   const auto order = orders.find(request.path);
   if (order == orders.end()) {
@@ -247,6 +261,36 @@ Answer WebService::preview(const std::string& body) {
   return preview_route(maps, {pose->T_map_robot().x_m(), pose->T_map_robot().y_m()}, goals_m,
                        {config.planner, config.hybrid_planner, config.planning},
                        config.navigator.follower);
+}
+
+// Goals of another floor mean nothing.
+void WebService::load_floor(const std::string& body, const Respond& respond) {
+  drawing_.load_floor(body, [this, respond](Answer answer) {
+    if (answer.status < 300) cancel();
+    respond(std::move(answer));
+  });
+}
+
+Answer WebService::room_shapes(const std::string& body) {
+  const ShapesOrder order = parse_shapes_order(body);
+  const std::shared_ptr<const planning::HybridMap> map = map_.map();
+  if (!map) return error_answer(409, "there is no map yet");
+  for (const planning::ZoneId zone : order.zones) {
+    if (zone >= map->zones().zones.size()) {
+      return error_answer(409, "there is no zone " + std::to_string(zone) + " any more");
+    }
+  }
+  Json shapes = Json::array();
+  for (const auto& outline_m :
+       planning::outlines_of(map->frame(), map->zones(), order.zones, order.cut_m)) {
+    Json corners = Json::array();
+    for (const Eigen::Vector2d& corner_m : outline_m) {
+      corners.push_back(rounded(corner_m.x()));
+      corners.push_back(rounded(corner_m.y()));
+    }
+    shapes.push_back({{"corners_m", std::move(corners)}});
+  }
+  return {200, text_of(Json{{"shapes", std::move(shapes)}})};
 }
 
 void WebService::report_counts() {

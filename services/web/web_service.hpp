@@ -16,6 +16,7 @@
 #include "topogeo/service/service.hpp"
 
 #include "board.hpp"
+#include "drawing_desk.hpp"
 #include "drive_view.hpp"
 #include "event_log.hpp"
 #include "exploration_sender.hpp"
@@ -67,6 +68,8 @@ class WebService : private Backend {
   [[nodiscard]] Answer go_back();
   void cancel();
   [[nodiscard]] ExploredFloor explored_floor();
+  void load_floor(const std::string& body, const Respond& respond);
+  [[nodiscard]] Answer room_shapes(const std::string& body);
   void report_counts();
 
   service::Service& service_;
@@ -86,6 +89,7 @@ class WebService : private Backend {
   SearchView search_{service_, board_, drive_};
   ExplorationSender exploration_;
   HealthView health_;
+  DrawingDesk drawing_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for what is posted
   std::uint64_t timer_ = 0;
   std::unique_ptr<Server> server_;

@@ -13,7 +13,7 @@ struct Request {
   std::string path;         ///< "/api/goal"
   std::string query;        ///< what follows the question mark, as it came
   std::string body;         ///< of POST
-  bool authorized = false;  ///< has the operator's token; of POST always
+  bool authorized = false;  ///< has the operator's token; of POST that writes always
 };
 
 struct Answer {
