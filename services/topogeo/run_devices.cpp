@@ -47,25 +47,6 @@ void write_devices(const RunOptions& options) {
   support::write_file_atomically(options.devices, text.str());
 }
 
-/// Finds out before anything starts whether the world can be driven through.
-void check_world(const SimulatorOptions& simulation) {
-  const world::World world = [&] {
-    try {
-      return world::load_world(simulation.world);
-    } catch (const std::exception& error) {
-      throw service::BadInputError(error.what());
-    }
-  }();
-  simulation::RobotOptions robot;
-  robot.seed = simulation.seed;
-  robot.wanderers = simulation.people;
-  try {
-    const simulation::SimulatedRobot at_start(world, robot);
-  } catch (const std::exception& error) {
-    throw service::BadInputError(simulation.world.string() + ": " + error.what());
-  }
-}
-
 /// Finds out before anything starts whether the devices are those that a run needs.
 void check_devices(const RunOptions& options) {
   const auto check = [&options](const std::string& port, const char* key, const char* why) {
@@ -113,6 +94,24 @@ std::vector<StampedPose> truth_at(std::span<const StampedPose> poses,
     }
   }
   return found;
+}
+
+void check_world(const SimulatorOptions& simulation) {
+  const world::World world = [&] {
+    try {
+      return world::load_world(simulation.world);
+    } catch (const std::exception& error) {
+      throw service::BadInputError(error.what());
+    }
+  }();
+  simulation::RobotOptions robot;
+  robot.seed = simulation.seed;
+  robot.wanderers = simulation.people;
+  try {
+    const simulation::SimulatedRobot at_start(world, robot);
+  } catch (const std::exception& error) {
+    throw service::BadInputError(simulation.world.string() + ": " + error.what());
+  }
 }
 
 void prepare_simulation(RunOptions& options) {

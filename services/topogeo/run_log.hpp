@@ -33,6 +33,9 @@ int run_goto(RunOptions options);
 /// for the gateway. Throws service::BadInputError and std::runtime_error.
 void prepare_simulation(RunOptions& options);
 
+/// Throws service::BadInputError when the world cannot be read or no robot fits at its start.
+void check_world(const SimulatorOptions& simulation);
+
 /// The true pose at each time of `poses` that lies within the truth.
 std::vector<topomap::StampedPose> truth_at(std::span<const topomap::StampedPose> poses,
                                            std::span<const topomap::StampedPose> truth);

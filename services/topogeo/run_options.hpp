@@ -26,11 +26,19 @@ struct SimulatorOptions {
   bool no_laser = false;  ///< sonars alone: nothing is mapped, and nothing matched
 };
 
+/// A drawn floor that a simulated robot stands in: the drawing of its map.
+struct DrawnFloor {
+  std::filesystem::path world;  ///< file
+  std::filesystem::path zones;  ///< file, in the frame of the world
+  std::string pose;             ///< of the frame of the world in the map: X,Y,DEG
+};
+
 struct RunOptions {
   JobOptions job;
   std::filesystem::path devices;               ///< file of the devices to use; empty: a log
   std::filesystem::path record;                ///< log to write of what is mapped; empty: none
   std::optional<SimulatorOptions> simulation;  ///< what is behind the ports of `devices`
+  std::optional<DrawnFloor> floor;
   std::optional<std::string> station;          ///< that a robot without a laser stands on
   std::optional<geometry::Pose2> laser;        ///< mounting in force; none: as configured
   std::uint32_t workers = 2;

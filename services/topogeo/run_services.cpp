@@ -37,6 +37,10 @@ Arguments store_arguments(const RunOptions& options) {
   if (options.job.continued) {
     arguments.insert(arguments.end(), {"--continue", options.job.continued->string()});
   }
+  if (const auto& floor = options.floor) {
+    arguments.insert(arguments.end(), {"--drawing", floor->world.string(), "--zones",
+                                       floor->zones.string(), "--drawing-pose=" + floor->pose});
+  }
   return arguments;
 }
 

@@ -51,6 +51,10 @@ ServiceRun::ServiceRun(const RunOptions& options)
       processes_(folder_of_this_program(), options.job.out / "logs") {}
 
 ServiceRun::~ServiceRun() {
+  forget_odometry();
+}
+
+void ServiceRun::forget_odometry() const {
   std::error_code ignored;
   for (const char* file : {"", ".laser"}) {
     std::filesystem::remove(odometry_memory(partition_).string() + file, ignored);
@@ -83,6 +87,10 @@ void ServiceRun::run() {
 
 void ServiceRun::tick() {
   if (ended_) return;
+  if (next_ && processes_.retired(support::monotonic_s() > retire_until_s_)) {
+    forget_odometry();  // the base of another simulator was switched off
+    start_services(processes_, *std::exchange(next_, std::nullopt), partition_);
+  }
   while (const auto end = processes_.next_unexpected_end()) {
     if (end->can_restart && signal_.load() == 0) {
       restart(end->name, end->description);
@@ -113,6 +121,14 @@ void ServiceRun::look_for_links() {
   }
 }
 
+void ServiceRun::begin_again(const RunOptions& options) {
+  away_since_s_.clear();
+  at_work_since_s_.clear();
+  next_ = options;
+  retire_until_s_ = support::monotonic_s() + kStopTime_s;
+  processes_.retire("web");
+}
+
 // One that dies again and again is started less and less often.
 void ServiceRun::restart(const std::string& name, const std::string& description) {
   const double now_s = support::monotonic_s();
@@ -127,7 +143,7 @@ void ServiceRun::restart(const std::string& name, const std::string& description
   hooks_.log(fmt::format("{}; started again ({})", description, ++restarts_[name]));
   away_since_s_[name] = now_s;
   loop_.call_after(delay, [this, name] {
-    if (!ended_) processes_.restart(name);
+    if (!ended_ && !next_) processes_.restart(name);
   });
 }
 

@@ -52,6 +52,10 @@ class ServiceRun {
   /// it is needed, or by a signal. No hook is called afterwards.
   void run();
 
+  /// Ends all services but the page and starts them with other options; at once when they have ended.
+  /// One that does not end in time is killed.
+  void begin_again(const RunOptions& options);
+
   /// Logs how long a service was away that was started again and is at work.
   void note_state(const msg::ServiceStatus& status);
 
@@ -79,6 +83,7 @@ class ServiceRun {
   /// Passes the links of the page on when the web service has printed them.
   void look_for_links();
   void restart(const std::string& name, const std::string& description);
+  void forget_odometry() const;
 
   const std::string partition_;
   const std::string source_;  // of the scans
@@ -86,6 +91,8 @@ class ServiceRun {
   std::filesystem::path web_log_;  // where the links are to come; empty: nowhere
   std::string failure_;
   Hooks hooks_;
+  std::optional<RunOptions> next_;  // to begin again with, once the others have ended
+  double retire_until_s_ = 0.0;
   std::atomic<int> signal_ = 0;
   std::map<std::string, std::uint32_t> restarts_;       // by name of the process
   std::map<std::string, std::uint32_t> deaths_in_row_;  // without settled work between

@@ -36,7 +36,8 @@ void export_token(const WebOptions& options) {
   std::string token = options.token.value_or("");
   // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread uses the environment yet
   const char* const given = std::getenv(kVariable);
-  if (!options.token && given != nullptr && *given != '\0') return;
+  const bool set = given != nullptr && *given != '\0';
+  if (set && (!options.token || *options.token == given)) return;
   std::random_device random;
   for (int i = 0; i < 4 && !options.token; ++i) token += fmt::format("{:08x}", random());
   // NOLINTNEXTLINE(concurrency-mt-unsafe): the same

@@ -1,6 +1,7 @@
 #include "web_run.hpp"
 
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 #include <unistd.h>
@@ -12,6 +13,7 @@
 
 #include "browser.hpp"
 #include "commands.hpp"
+#include "floor_loader.hpp"
 #include "run_log.hpp"
 
 namespace topogeo::cli {
@@ -29,6 +31,12 @@ class WebRun {
     hooks.on_tick = [] {};
     hooks.log = [](const std::string& line) { std::cerr << "topogeo: " << line << '\n'; };
     hooks.on_links = [this](const std::string& links) { show(links); };
+    if (options.simulation && !options.simulation->no_laser) {
+      floors_.emplace(run_.participant(), run_.loop(), options, [this](const RunOptions& next) {
+        std::cerr << "topogeo: the robot is put into " << next.simulation->world.string() << '\n';
+        run_.begin_again(next);
+      });
+    }
     run_.start(options, std::move(hooks));
   }
 
@@ -48,6 +56,7 @@ class WebRun {
   bool open_browser_;
   ServiceRun run_;
   messaging::Reader<msg::ServiceStatus> statuses_;
+  std::optional<FloorLoader> floors_;
 };
 
 }  // namespace

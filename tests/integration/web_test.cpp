@@ -16,6 +16,7 @@
 
 #include "program.hpp"
 #include "web_client.hpp"
+#include "web_programs.hpp"
 
 namespace topogeo::test {
 namespace {
@@ -24,25 +25,6 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using testing::HasSubstr;
-
-constexpr milliseconds kPatience{60'000};
-const std::string kToken = "token-of-this-test";
-
-/// Of the first link that a program prints.
-std::uint32_t port_in(const std::string& out) {
-  const std::size_t begin = out.find("127.0.0.1:");
-  if (begin == std::string::npos) return 0;
-  return static_cast<std::uint32_t>(std::stoul(out.substr(begin + 10)));
-}
-
-std::uint32_t wait_for_port(const Program& program, milliseconds patience = kPatience) {
-  const auto end = steady_clock::now() + patience * kTimeFactor;
-  while (steady_clock::now() < end) {
-    if (program.out().find("spectators: ") != std::string::npos) return port_in(program.out());
-    std::this_thread::sleep_for(milliseconds(50));
-  }
-  throw std::runtime_error("no link: " + program.err());
-}
 
 /// A map store that shows the map of a drive through a room, and a web service.
 class WebOnMap : public testing::Test {
@@ -192,38 +174,6 @@ TEST(WebCommand, NamesWhatDoesNotGoTogether) {
   Program no_map(scratch, "topogeo", {"view", "/nowhere.pb"});
   EXPECT_EQ(no_map.wait(), 3);
 }
-
-/// `topogeo demo --web`: all services with a simulated robot, in real time.
-class WebOnRobot : public testing::Test {
- protected:
-  WebOnRobot() {
-    use_udp_only();
-    demo_ = std::make_unique<Program>(
-        scratch_, "topogeo",
-        std::vector<std::string>{"demo", "--web", "--port", "0", "--token", kToken, "--out",
-                                 (scratch_ / "demo").string(), "--domain", own_domain()});
-    port_ = wait_for_port(*demo_, milliseconds(90'000));
-    socket_ = std::make_unique<WebSocketClient>(port_);
-    socket_->send({{"op", "hello"}, {"token", kToken}});
-  }
-  template <class Condition>
-  bool wait_for(const Condition& condition, milliseconds patience = kPatience) {
-    return page_.wait_for(*socket_, condition, patience * kTimeFactor);
-  }
-  /// In the world.
-  [[nodiscard]] std::pair<double, double> truth() {
-    return {page_.values["truth"]["x_m"], page_.values["truth"]["y_m"]};
-  }
-  static double distance(const std::pair<double, double>& a, const std::pair<double, double>& b) {
-    return std::hypot(a.first - b.first, a.second - b.second);
-  }
-
-  Scratch scratch_;
-  std::unique_ptr<Program> demo_;
-  std::uint32_t port_ = 0;
-  std::unique_ptr<WebSocketClient> socket_;
-  PageModel page_;
-};
 
 TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
   ASSERT_TRUE(wait_for([&] {

@@ -22,12 +22,34 @@ void ProcessGroup::start(const std::string& name, const std::string& program,
                          const std::vector<std::string>& arguments, Importance importance,
                          Restart restart) {
   Member member{nullptr, importance, restart, program, arguments};
+  for (Member& before : members_) {
+    if (before.process->name() != name) continue;
+    if (!before.retires) return;
+    member.process = std::move(before.process);
+    member.lives = before.lives;
+    member.earlier_wall_s = before.earlier_wall_s;
+    member.earlier_cpu_s = before.earlier_cpu_s;
+    before = std::move(member);
+    begin_life(before);
+    return;
+  }
   member.process = make(member, name);
   members_.push_back(std::move(member));
 }
 
+/// The next one, of a member whose process has ended.
+void ProcessGroup::begin_life(Member& member) {
+  if (const auto& exit = member.process->poll()) {
+    member.earlier_wall_s += exit->wall_s;
+    member.earlier_cpu_s += exit->cpu_s;
+  }
+  ++member.lives;
+  member.process = make(member, member.process->name());
+  member.reported = false;
+}
+
 std::unique_ptr<ChildProcess> ProcessGroup::make(const Member& member, const std::string& name) {
-  const std::string life = member.restarts == 0 ? "" : "-" + std::to_string(member.restarts + 1);
+  const std::string life = member.lives == 1 ? "" : "-" + std::to_string(member.lives);
   return std::make_unique<ChildProcess>(name, programs_ / member.program, member.arguments,
                                         logs_ / (name + life + ".log"));
 }
@@ -41,14 +63,9 @@ void ProcessGroup::leave_out_at_restart(const std::string& name, const std::stri
 void ProcessGroup::restart(const std::string& name) {
   for (Member& member : members_) {
     if (member.process->name() != name) continue;
-    if (const auto& exit = member.process->poll()) {
-      member.earlier_wall_s += exit->wall_s;
-      member.earlier_cpu_s += exit->cpu_s;
-    }
     ++member.restarts;
     if (!member.left_out.empty()) std::erase(member.arguments, member.left_out);
-    member.process = make(member, name);
-    member.reported = false;
+    begin_life(member);
   }
 }
 
@@ -90,6 +107,25 @@ void ProcessGroup::finish(const std::string& name) {
     if (member.process->name() == name) member.importance = Importance::kMayFinish;
   }
   send_signal(SIGTERM, name);
+}
+
+void ProcessGroup::retire(const std::string& all_but) {
+  for (Member& member : members_) {
+    if (member.process->name() == all_but) continue;
+    member.retires = true;
+    member.reported = true;
+    member.process->send_signal(SIGTERM);
+  }
+}
+
+bool ProcessGroup::retired(bool kill) {
+  bool all = true;
+  for (Member& member : members_) {
+    if (!member.retires || member.process->poll()) continue;
+    if (kill) member.process->send_signal(SIGKILL);
+    all = false;
+  }
+  return all;
 }
 
 void ProcessGroup::send_signal(int signal_number, const std::string& name) {

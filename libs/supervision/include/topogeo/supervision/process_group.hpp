@@ -44,7 +44,8 @@ class ProcessGroup {
   /// is not possible.
   ProcessGroup(std::filesystem::path programs, std::filesystem::path logs);
 
-  /// Starts a program under a name of its own. Throws like ChildProcess.
+  /// Starts a program under a name of its own; one of that name that was retired is started anew
+  /// with these arguments, one that runs goes on as it is. Throws like ChildProcess.
   void start(const std::string& name, const std::string& program,
              const std::vector<std::string>& arguments, Importance importance = Importance::kNeeded,
              Restart restart = Restart::kNever);
@@ -69,6 +70,11 @@ class ProcessGroup {
   /// Asks the process of that name to finish (SIGTERM), which is in order from then on.
   void finish(const std::string& name);
 
+  /// Asks all processes to end (SIGTERM), which is in order, but the one of that name, which goes on.
+  void retire(const std::string& all_but);
+  /// True when those that were asked to retire have ended. `kill`: those that have not are killed.
+  bool retired(bool kill);
+
   /// Passes so much time, in which the caller's other work goes on.
   using Pause = std::function<void(std::chrono::milliseconds duration)>;
   /// Asks all processes to end, `first` alone before the others (empty: all at once), and kills
@@ -88,12 +94,15 @@ class ProcessGroup {
     std::vector<std::string> arguments;
     std::string left_out = {};  // of them at a restart
     bool reported = false;      // its end
+    bool retires = false;       // it was asked to end
+    std::uint32_t lives = 1;
     std::uint32_t restarts = 0;
     double earlier_wall_s = 0.0;  // of its lives before
     double earlier_cpu_s = 0.0;
   };
 
   std::unique_ptr<ChildProcess> make(const Member& member, const std::string& name);
+  void begin_life(Member& member);
 
   void send_signal(int signal_number, const std::string& name);
   [[nodiscard]] bool runs(const std::string& name);

@@ -1,0 +1,18 @@
+// Floors that people draw, as worlds to simulate.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "topogeo/geometry/pose2.hpp"
+#include "topogeo/storage/map_drawing.hpp"
+
+namespace topogeo::pipeline {
+
+/// A world file (see world/world.hpp) of the walls of a drawing, open where its openings and doors
+/// are, with a robot that stands at `T_floor_start`. Places and zones are not in it. Throws
+/// std::invalid_argument without a wall.
+std::string drawn_world_text(std::string_view name, const storage::MapDrawing& drawing,
+                             const geometry::Pose2& T_floor_start);
+
+}  // namespace topogeo::pipeline
