@@ -29,6 +29,7 @@ void add_doctor_command(command_line::Command& app, int& exit_code);
 void add_follow_command(command_line::Command& app, int& exit_code);
 void add_explore_command(command_line::Command& app, int& exit_code);
 void add_goto_command(command_line::Command& app, int& exit_code);
+void add_draw_command(command_line::Command& app, int& exit_code);
 void add_places_command(command_line::Command& app, int& exit_code);
 void add_plan_command(command_line::Command& app, int& exit_code);
 void add_simulate_route_command(command_line::Command& app, int& exit_code);

@@ -15,9 +15,9 @@
 
 namespace topogeo::cli {
 
-/// The same run with the simulated robot in a drawn floor, where a new map begins that has the floor
-/// as its drawing. Writes NAME.world.yaml and NAME.zones.yaml into the folder of the run. Throws
-/// std::invalid_argument saying what is wrong with the floor.
+/// The same run with the simulated robot in a drawn floor, where a new map begins that has the
+/// floor as its drawing. Writes NAME.world.yaml and NAME.zones.yaml into the folder of the run.
+/// Throws std::invalid_argument saying what is wrong with the floor.
 RunOptions with_floor(RunOptions options, const msg::FloorOrder& order, const std::string& name);
 
 /// Takes orders to simulate a drawn floor and answers them. Lives in the loop of its run.

@@ -12,7 +12,7 @@
 
 #include "commands.hpp"
 #include "domain_view.hpp"
-#include "localizer_request.hpp"
+#include "service_request.hpp"
 
 namespace topogeo::cli {
 namespace {
@@ -29,8 +29,8 @@ struct LocalizerRequest {
 int send_localizer_command(const LocalizerRequest& request,
                            const service::LocalizationCommand& command) {
   const msg::LocalizationReply reply =
-      ask_localizer({request.view, request.robot_id, request.wait_s},
-                    service::to_msg(command, request.robot_id, 0, 0));
+      ask<msg::LocalizationReply>({request.view, request.robot_id, request.wait_s},
+                                  service::to_msg(command, request.robot_id, 0, 0));
   (reply.accepted() ? std::cout : std::cerr)
       << (reply.accepted() ? "accepted: " : "topogeo: refused: ") << reply.message().c_str()
       << '\n';

@@ -42,6 +42,7 @@ int run(int argc, const char* const* argv) {
   cli::add_web_command(app, exit_code);
   cli::add_view_command(app, exit_code);
   cli::add_places_command(app, exit_code);
+  cli::add_draw_command(app, exit_code);
   cli::add_plan_command(app, exit_code);
   cli::add_simulate_route_command(app, exit_code);
   cli::add_dvl_command(app, exit_code);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -87,7 +88,9 @@ void remove_place(std::vector<planning::Place>& places, const std::string& name)
 void edit(const PlacesOptions& options) {
   storage::MapDrawing added;
   for (const std::string& text : options.added) {
-    pipeline::lay_over(added, {{place_of(text)}, {}, {}});
+    storage::MapDrawing drawn;
+    drawn.places.push_back(place_of(text));
+    pipeline::lay_over(added, std::move(drawn));
   }
   const std::filesystem::path file = options.source;
   if (options.source == kLive || file.extension() == ".yaml") {

@@ -200,7 +200,7 @@ void Recorder::take_grid() {
   const planning::GridFrame& frame = map->frame();
   std::vector<std::int8_t> cells;
   cells.reserve(frame.size());
-  for (const planning::CellState state : map->space().grid().cells()) {
+  for (const planning::CellState state : map->space().seen().cells()) {
     cells.push_back(ros::cell_of(static_cast<std::uint8_t>(state)));
   }
   log_.write_grid(last_stamp_ns_,

@@ -39,8 +39,8 @@ struct RunOptions {
   std::filesystem::path record;                ///< log to write of what is mapped; empty: none
   std::optional<SimulatorOptions> simulation;  ///< what is behind the ports of `devices`
   std::optional<DrawnFloor> floor;
-  std::optional<std::string> station;          ///< that a robot without a laser stands on
-  std::optional<geometry::Pose2> laser;        ///< mounting in force; none: as configured
+  std::optional<std::string> station;    ///< that a robot without a laser stands on
+  std::optional<geometry::Pose2> laser;  ///< mounting in force; none: as configured
   std::uint32_t workers = 2;
   std::optional<std::uint32_t> wait_workers;  ///< before the first step; none: `workers`
   std::uint32_t domain = 0;

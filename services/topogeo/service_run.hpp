@@ -52,8 +52,8 @@ class ServiceRun {
   /// it is needed, or by a signal. No hook is called afterwards.
   void run();
 
-  /// Ends all services but the page and starts them with other options; at once when they have ended.
-  /// One that does not end in time is killed.
+  /// Ends all services but the page and starts them with other options; at once when they have
+  /// ended. One that does not end in time is killed.
   void begin_again(const RunOptions& options);
 
   /// Logs how long a service was away that was started again and is at work.

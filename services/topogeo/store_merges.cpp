@@ -21,7 +21,7 @@
 #include "topogeo/support/format.hpp"
 
 #include "domain_view.hpp"
-#include "localizer_request.hpp"
+#include "service_request.hpp"
 #include "store_commands.hpp"
 
 namespace topogeo::cli {
@@ -124,7 +124,7 @@ int answer_merge(const MergeRequest& request, bool accepted) {
   messaging::set_header(answer, request.robot_id, 0, 0);
   answer.number(request.number);
   answer.accepted(accepted);
-  const msg::LocalizationReply reply = ask_localizer(
+  const msg::LocalizationReply reply = ask<msg::LocalizationReply>(
       {request.view, request.robot_id, request.wait_s, "localizer of several robots"}, answer);
   (reply.accepted() ? std::cout : std::cerr)
       << (reply.accepted() ? "" : "topogeo: ") << reply.message().c_str() << '\n';

@@ -119,9 +119,8 @@ void DrawingDesk::on_answer(const msg::DrawingAnswer& answer) {
   Json json = {{"version", std::to_string(answer.version())}};
   if (answer.result() == msg::kDrawingDone) {
     if (!message.empty()) json["message"] = message;
-    events_.add(
-        EventLog::Level::kInfo, "drawing",
-        message.empty() ? "the drawing was changed" : "the drawing was changed: " + message);
+    events_.add(EventLog::Level::kInfo, "drawing",
+                message.empty() ? "the drawing was changed" : message);
     (*respond)({200, text_of(json)});
     return;
   }

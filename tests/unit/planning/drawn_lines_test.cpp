@@ -221,6 +221,40 @@ TEST(FloorGrid, HasWallsWithOpeningsAndNothingOutside) {
   EXPECT_THROW(grid_of_floor({}, {0.0, 0.0}), std::invalid_argument);
 }
 
+TEST(ZoneDrawingFile, IsReadAsItIsWritten) {
+  ZoneDrawing drawn;
+  drawn.zones = {{"hall, large", {{0, 0}, {4, 0}, {4, 1.0 / 3.0}}},
+                 {"ramp: slow", {{5, 0}, {6, 0}, {6, 1}}, ZoneKind::kSlow, 0.3},
+                 {"- lane", {{7, 0}, {8, 0}, {8, 1}}, ZoneKind::kOneWay, -1.5}};
+  drawn.places = {{"7", {1.0, -2.5}}, {"base \"station\"", {0.1, 0.2}, 1.25}};
+  drawn.lines = {wall({{0, 0}, {4, 0}, {4, 3}}),
+                 {LineKind::kOpening, {{1, 0}, {2, 0}}},
+                 {LineKind::kDoor, {{4, 1}, {4, 2}}, "front # door"}};
+  const ZoneDrawing read = parse_zone_drawing(zone_drawing_text(drawn), "text");
+  ASSERT_EQ(read.zones.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read.zones[i].name, drawn.zones[i].name);
+    EXPECT_EQ(read.zones[i].kind, drawn.zones[i].kind);
+    EXPECT_EQ(read.zones[i].value, drawn.zones[i].value);
+    EXPECT_EQ(read.zones[i].polygon_m, drawn.zones[i].polygon_m);
+  }
+  EXPECT_EQ(read.places, drawn.places);
+  EXPECT_EQ(read.lines, drawn.lines);
+  EXPECT_EQ(zone_drawing_text({}), "");
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      static_cast<void>(parse_zone_drawing(text, "f.yaml"));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(refusal("walls: [{points: [[0, 0]]}]"), HasSubstr("two points [x, y] or more"));
+  EXPECT_THAT(refusal("openings: [{points: [[0, 0], [0, 0]]}]"), HasSubstr("that differ"));
+  EXPECT_THAT(refusal("doors: [{points: [[0, 0], [1, 0]]}]"), HasSubstr("name"));
+  EXPECT_THAT(refusal("walls: [{line: 1}]"), HasSubstr("line"));
+}
+
 double area_m2(const Points& outline_m) {
   double twice = 0.0;
   for (std::size_t i = 0; i < outline_m.size(); ++i) {

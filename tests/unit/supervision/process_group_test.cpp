@@ -134,6 +134,27 @@ TEST_F(ProcessGroupTest, StopWaitsForThoseThatEnd) {
   EXPECT_THAT(names, ElementsAre("first", "second")) << "in the order of their start";
 }
 
+TEST_F(ProcessGroupTest, ThoseThatRetireAreStartedAnewAndOneGoesOn) {
+  start_endless("page", "exit 0");
+  start_endless("store", "exit 0");
+  start_endless("stubborn", "");
+  const pid_t page = group_.pid("page");
+  group_.retire("page");
+  EXPECT_FALSE(group_.retired(false)) << "one does not end by itself";
+  while (!group_.retired(true)) std::this_thread::yield();
+  EXPECT_FALSE(group_.next_unexpected_end()) << "they were asked to";
+  start("page", "echo other page");
+  start("store", "echo other store; exit 3");
+  EXPECT_EQ(group_.pid("page"), page);
+  while (log_of("store-2").empty()) std::this_thread::yield();
+  EXPECT_EQ(log_of("store-2"), "other store\n");
+  std::optional<UnexpectedEnd> end;
+  while (!end) end = group_.next_unexpected_end();
+  EXPECT_EQ(end->name, "store") << "it is watched again";
+  group_.stop(1.0, [](auto duration) { std::this_thread::sleep_for(duration); });
+  EXPECT_EQ(group_.wait().size(), 3U);
+}
+
 TEST_F(ProcessGroupTest, AProgramThatIsNotThereIsAnError) {
   EXPECT_THROW(group_.start("none", "no_such_program", {}), std::runtime_error);
 }
