@@ -11,7 +11,7 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
-#include "access.hpp"
+#include "server/access.hpp"
 #include "web_options.hpp"
 #include "web_service.hpp"
 

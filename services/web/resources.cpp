@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "json_values.hpp"
+#include "server/json_values.hpp"
 
 namespace topogeo::web {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "map_view.hpp"
-#include "web_types.hpp"
+#include "channels/map_view.hpp"
+#include "server/web_types.hpp"
 
 namespace topogeo::web {
 

@@ -9,7 +9,7 @@
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 
-#include "access.hpp"
+#include "server/access.hpp"
 
 namespace topogeo::web {
 namespace {

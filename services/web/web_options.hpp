@@ -9,8 +9,8 @@
 
 #include "topogeo/command_line/command_line.hpp"
 
-#include "page_files.hpp"
-#include "web_types.hpp"
+#include "server/page_files.hpp"
+#include "server/web_types.hpp"
 
 namespace topogeo::web {
 

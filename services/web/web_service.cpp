@@ -12,10 +12,10 @@
 #include "topogeo/support/log.hpp"
 #include "topogeo/support/version.hpp"
 
-#include "json_values.hpp"
-#include "order_text.hpp"
+#include "orders/order_text.hpp"
+#include "orders/route_preview.hpp"
 #include "resources.hpp"
-#include "route_preview.hpp"
+#include "server/json_values.hpp"
 
 namespace topogeo::web {
 namespace {

@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr std::int64_t kNow_ns = 5'000'000'000;
+constexpr std::int64_t kDrivenAt_ns = 5'000'000'000;
 
 /// A hall of 12 x 12 m, cells of 0.1 m.
 planning::FreeSpace hall_with(const std::vector<planning::DrawnZone>& zones,
@@ -34,41 +34,43 @@ const std::vector<planning::DrawnZone> kPool{
 
 CollisionGuard guard_at(const DrawnLimits& limits, const geometry::Pose2& T_map_robot) {
   CollisionGuard guard({});
-  guard.add(OdometrySample{kNow_ns, {}});
+  guard.add(OdometrySample{kDrivenAt_ns, {}});
   ScanPoints scan;
-  scan.stamp_ns = kNow_ns;
+  scan.stamp_ns = kDrivenAt_ns;
   guard.add(scan);
-  guard.keep_off(kNow_ns, limits.near_m(T_map_robot));
+  guard.keep_off(kDrivenAt_ns, limits.near_m(T_map_robot));
   return guard;
 }
 
 TEST(DrawnLimits, ADrawnWallStopsLikeAWall) {
   const DrawnLimits limits(hall_with({}, kWall));
   const GuardConfig config;
-  const GuardVerdict verdict = guard_at(limits, {}).judge({2.0, 0.0}, kNow_ns);
+  const GuardVerdict verdict = guard_at(limits, {}).judge({2.0, 0.0}, kDrivenAt_ns);
   // To the middles of its cells, which lie 5 cm off the robot's line.
   const double body_m = config.radius_m + config.side_margin_m;
   EXPECT_NEAR(verdict.free_m, 2.05 - std::sqrt(body_m * body_m - 0.05 * 0.05), 1e-9);
   EXPECT_TRUE(verdict.limited);
   EXPECT_THAT(verdict.message, HasSubstr("a drawn wall or no-go zone"));
   EXPECT_FALSE(verdict.contact_m) << "nothing stands there that the planner should hear of";
-  const GuardVerdict before = guard_at(limits, {1.75, 0.0, 0.0}).judge({0.3, 0.0}, kNow_ns);
+  const GuardVerdict before = guard_at(limits, {1.75, 0.0, 0.0}).judge({0.3, 0.0}, kDrivenAt_ns);
   EXPECT_EQ(before.allowed, geometry::Velocity{});
   EXPECT_EQ(before.reason, HaltReason::kObstacle);
-  EXPECT_EQ(guard_at(limits, {1.75, 0.0, 3.1}).judge({0.3, 0.0}, kNow_ns).allowed.linear_m_per_s,
-            0.3)
+  EXPECT_EQ(
+      guard_at(limits, {1.75, 0.0, 3.1}).judge({0.3, 0.0}, kDrivenAt_ns).allowed.linear_m_per_s,
+      0.3)
       << "away from it";
 }
 
 TEST(DrawnLimits, ANoGoZoneStopsFromOutsideAndLetsOut) {
   const DrawnLimits limits(hall_with(kPool, {}));
-  EXPECT_EQ(guard_at(limits, {0.75, 2.0, 0.0}).judge({0.3, 0.0}, kNow_ns).allowed,
+  EXPECT_EQ(guard_at(limits, {0.75, 2.0, 0.0}).judge({0.3, 0.0}, kDrivenAt_ns).allowed,
             geometry::Velocity{});
-  EXPECT_EQ(guard_at(limits, {2.0, 2.0, 0.0}).judge({0.3, 0.0}, kNow_ns).allowed.linear_m_per_s,
-            0.3)
+  EXPECT_EQ(
+      guard_at(limits, {2.0, 2.0, 0.0}).judge({0.3, 0.0}, kDrivenAt_ns).allowed.linear_m_per_s, 0.3)
       << "inside: it may leave";
-  EXPECT_EQ(guard_at(limits, {-4.2, -4.8, 0.0}).judge({0.3, 0.0}, kNow_ns).allowed.linear_m_per_s,
-            0.3)
+  EXPECT_EQ(
+      guard_at(limits, {-4.2, -4.8, 0.0}).judge({0.3, 0.0}, kDrivenAt_ns).allowed.linear_m_per_s,
+      0.3)
       << "rooms stop nobody";
   EXPECT_TRUE(DrawnLimits().empty());
   EXPECT_THAT(DrawnLimits().near_m({}), IsEmpty());
@@ -121,14 +123,14 @@ TEST(DrawnLimits, OdometryCarriesThemOnForThreeMetres) {
     guard.add(scan);
     return guard.judge({0.5, 0.0}, now_ns).free_m;
   };
-  const double at_first_m = free_after_m(0.0, kNow_ns + 1);
-  EXPECT_NEAR(free_after_m(1.0, kNow_ns + 100'000'000), at_first_m - 1.0, 1e-9);
+  const double at_first_m = free_after_m(0.0, kDrivenAt_ns + 1);
+  EXPECT_NEAR(free_after_m(1.0, kDrivenAt_ns + 100'000'000), at_first_m - 1.0, 1e-9);
   // Backwards, away from it, until nobody knows where it is.
-  EXPECT_LT(free_after_m(-2.9, kNow_ns + 200'000'000), CollisionGuard::kFarthest_m);
-  EXPECT_EQ(free_after_m(-3.1, kNow_ns + 300'000'000), CollisionGuard::kFarthest_m);
-  EXPECT_NEAR(free_after_m(1.0, kNow_ns + 400'000'000), at_first_m - 1.0, 1e-9);
-  guard.keep_off(kNow_ns + 400'000'000, {});
-  EXPECT_EQ(free_after_m(1.0, kNow_ns + 500'000'000), CollisionGuard::kFarthest_m);
+  EXPECT_LT(free_after_m(-2.9, kDrivenAt_ns + 200'000'000), CollisionGuard::kFarthest_m);
+  EXPECT_EQ(free_after_m(-3.1, kDrivenAt_ns + 300'000'000), CollisionGuard::kFarthest_m);
+  EXPECT_NEAR(free_after_m(1.0, kDrivenAt_ns + 400'000'000), at_first_m - 1.0, 1e-9);
+  guard.keep_off(kDrivenAt_ns + 400'000'000, {});
+  EXPECT_EQ(free_after_m(1.0, kDrivenAt_ns + 500'000'000), CollisionGuard::kFarthest_m);
 }
 
 }  // namespace

@@ -231,7 +231,7 @@ TEST(ZoneDrawing, NamesTheLineOfWhatIsWrong) {
                 ThrowsMessage<std::runtime_error>(AllOf(HasSubstr(where), HasSubstr(what))))
         << text;
   };
-  expect("- 1", "f.yaml:1", "a map with the keys zones and places");
+  expect("- 1", "f.yaml:1", "a map with the keys zones, places, walls, openings and doors");
   expect("places:\n  - {name: a, at: [1]}", "f.yaml:2: at", "[x, y]");
   expect("places:\n  - {name: a, at: [1, .inf]}", "f.yaml:2: at", "a number from");
   expect("places:\n  - {name: '', at: [1, 2]}", "f.yaml:2: name", "a text");

@@ -1,8 +1,8 @@
-#include "access.hpp"
+#include "server/access.hpp"
 
 #include <gmock/gmock.h>
 
-#include "rate_limit.hpp"
+#include "server/rate_limit.hpp"
 
 namespace topogeo::web {
 namespace {

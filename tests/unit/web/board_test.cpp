@@ -1,4 +1,4 @@
-#include "board.hpp"
+#include "server/board.hpp"
 
 #include <map>
 #include <random>

@@ -1,5 +1,5 @@
 // Drawings as the page sends and gets them.
-#include "drawing_text.hpp"
+#include "orders/drawing_text.hpp"
 
 #include <limits>
 #include <stdexcept>

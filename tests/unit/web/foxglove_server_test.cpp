@@ -11,8 +11,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "foxglove_feed.hpp"
-#include "server.hpp"
+#include "foxglove/foxglove_feed.hpp"
+#include "server/server.hpp"
 #include "web_client.hpp"
 
 namespace topogeo::web {

@@ -12,11 +12,11 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "foxglove_feed.hpp"
-#include "foxglove_scene.hpp"
-#include "foxglove_topics.hpp"
-#include "foxglove_view.hpp"
-#include "foxglove_viewer.hpp"
+#include "foxglove/foxglove_feed.hpp"
+#include "foxglove/foxglove_scene.hpp"
+#include "foxglove/foxglove_topics.hpp"
+#include "foxglove/foxglove_view.hpp"
+#include "foxglove/foxglove_viewer.hpp"
 
 namespace topogeo::web {
 namespace {

@@ -1,4 +1,4 @@
-#include "goal_list.hpp"
+#include "orders/goal_list.hpp"
 
 #include <gtest/gtest.h>
 

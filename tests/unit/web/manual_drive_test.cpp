@@ -1,4 +1,4 @@
-#include "manual_drive.hpp"
+#include "orders/manual_drive.hpp"
 
 #include <gtest/gtest.h>
 

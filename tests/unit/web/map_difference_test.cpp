@@ -1,4 +1,4 @@
-#include "map_difference.hpp"
+#include "history/map_difference.hpp"
 
 #include <stdexcept>
 #include <string>

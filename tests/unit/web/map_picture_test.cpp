@@ -1,4 +1,4 @@
-#include "map_picture.hpp"
+#include "channels/map_picture.hpp"
 
 #include <cstring>
 #include <string>

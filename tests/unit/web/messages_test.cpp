@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "order_text.hpp"
-#include "viewer_message.hpp"
+#include "orders/order_text.hpp"
+#include "server/viewer_message.hpp"
 
 namespace topogeo::web {
 namespace {

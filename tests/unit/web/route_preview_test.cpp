@@ -1,4 +1,4 @@
-#include "route_preview.hpp"
+#include "orders/route_preview.hpp"
 
 #include <numbers>
 

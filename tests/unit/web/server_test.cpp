@@ -1,5 +1,5 @@
 // The server alone, with a board and a backend of the test.
-#include "server.hpp"
+#include "server/server.hpp"
 
 #include <algorithm>
 #include <atomic>

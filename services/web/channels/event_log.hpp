@@ -1,0 +1,27 @@
+// What has happened, in sentences, the newest of it: channel `events`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "server/board.hpp"
+
+namespace topogeo::web {
+
+/// Lives in the loop of the service.
+class EventLog {
+ public:
+  enum class Level : std::uint8_t { kInfo, kWarning, kError };
+  static constexpr std::uint64_t kKept = 500;
+
+  explicit EventLog(Board& board) : board_(board) {}
+
+  /// `source`: service or part of the robot.
+  void add(Level level, const std::string& source, const std::string& sentence);
+
+ private:
+  Board& board_;
+  std::uint64_t last_ = 0;
+};
+
+}  // namespace topogeo::web

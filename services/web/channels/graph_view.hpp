@@ -1,0 +1,32 @@
+// Nodes and branches of the map on the board.
+#pragma once
+
+#include <string>
+
+#include "topogeo/map_client/map_follower.hpp"
+#include "topogeo/service/service.hpp"
+#include "topogeo/topomap/global_map.hpp"
+
+#include "server/board.hpp"
+
+namespace topogeo::web {
+
+/// Lives in the loop of its service.
+class GraphView {
+ public:
+  GraphView(service::Service& service, Board& board);
+
+  /// For routes: the newest whole one; null before. Throws std::invalid_argument like
+  /// from_elements.
+  std::shared_ptr<const topomap::GlobalMap> map();
+
+ private:
+  void show();
+
+  Board& board_;
+  map_client::MapFollower follower_;
+  bool changed_ = false;  // since map() was called last
+  std::shared_ptr<const topomap::GlobalMap> map_;
+};
+
+}  // namespace topogeo::web

@@ -1,0 +1,81 @@
+// The hybrid map on the board: grid, rooms, places, rules; its pictures, and the map itself for
+// routes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/msg/hybrid_map.h"
+#include "topogeo/service/hybrid_map_mirror.hpp"
+#include "topogeo/service/service.hpp"
+
+#include "channels/map_picture.hpp"
+#include "server/board.hpp"
+
+namespace topogeo::web {
+
+/// A room or a place, by its name.
+struct NamedPoint {
+  bool place = false;  ///< else a room
+  std::string name;    ///< as the map writes it
+  Eigen::Vector2d position_m =
+      Eigen::Vector2d::Zero();  ///< map frame; of a room, well inside of it
+};
+
+/// A version of the map as it is shown. For any thread.
+struct ShownMap {
+  std::string
+      frame;  ///< 8 hexadecimal digits: another grid, or another life of the map store, has others
+  std::uint64_t version = 0;
+  std::vector<std::string> rooms;  ///< names, by zone
+  std::shared_ptr<const MapPicture> picture;
+};
+
+/// Lives in the loop of its service, but for shown().
+class MapView {
+ public:
+  /// `on_shown` gets each version that is shown; may be empty.
+  using OnShown = std::function<void(const std::shared_ptr<const MapPicture>&)>;
+  MapView(service::Service& service, Board& board, OnShown on_shown = {});
+
+  /// Null before the first whole map. For any thread.
+  [[nodiscard]] std::shared_ptr<const ShownMap> shown() const;
+  /// For routes; null before the first. Throws std::invalid_argument like HybridMapMirror::map.
+  std::shared_ptr<const planning::HybridMap> map() { return mirror_.map(); }
+  /// A place, or else a room; capitals (A to Z) matter only where names differ by them alone.
+  [[nodiscard]] std::optional<NamedPoint> find(std::string_view name) const;
+
+ private:
+  void put(const msg::GridTile& tile, const messaging::SampleInfo& info);
+  void put(const msg::HybridMap& summary, const messaging::SampleInfo& info);
+  /// Shows the map if all of it has come.
+  void show();
+  [[nodiscard]] std::vector<std::shared_ptr<const GridSquare>> squares_if_whole() const;
+  void show_frame(const std::string& frame);
+  void show_tiles(const std::vector<std::shared_ptr<const GridSquare>>& squares, bool anew);
+  void show_rooms(const MapPicture& picture, const std::vector<std::uint8_t>& colors);
+  void show_drawing();
+
+  service::Service& service_;
+  Board& board_;
+  OnShown on_shown_;
+  service::HybridMapMirror mirror_;
+  std::map<std::uint32_t, std::shared_ptr<const GridSquare>> squares_;
+  std::map<messaging::Handle, std::uint32_t> numbers_;
+  std::optional<msg::HybridMap> summary_;
+  messaging::Handle writer_;  // of the summary
+  std::vector<NamedPoint> names_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const ShownMap> shown_;
+};
+
+}  // namespace topogeo::web

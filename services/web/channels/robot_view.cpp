@@ -1,0 +1,189 @@
+#include "channels/robot_view.hpp"
+
+#include <string>
+#include <utility>
+
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/service/navigation_conversions.hpp"
+#include "topogeo/support/cpu_time.hpp"
+
+#include "channels/event_log.hpp"
+#include "channels/protocol_names.hpp"
+#include "server/json_values.hpp"
+
+namespace topogeo::web {
+namespace {
+
+bool is_located(msg::LocalizationState state) {
+  return state == msg::kStateTracking || state == msg::kStateAmbiguous;
+}
+
+using Level = EventLog::Level;
+
+constexpr double kPoseAge_s = 0.5;  // a scan is not drawn where the robot was before
+
+Level level_of(msg::LocalizationState state) {
+  if (state == msg::kStateTracking) return Level::kInfo;
+  return state == msg::kStateLost ? Level::kError : Level::kWarning;
+}
+
+}  // namespace
+
+RobotView::RobotView(service::Service& service, Board& board, EventLog& events, RobotHooks hooks)
+    : board_(board), events_(events), hooks_(std::move(hooks)), service_(service) {
+  service.subscribe<msg::LivePose>([this](const msg::LivePose& pose) { on_pose(pose); },
+                                   {.main_input = true});
+  service.subscribe<msg::Scan>([this](const msg::Scan& scan) { on_scan(scan); });
+  service.subscribe<msg::NavigatorStatus>(
+      [this](const msg::NavigatorStatus& status) { on_navigator(status); });
+  service.subscribe<msg::Route>([this](const msg::Route& route) { on_route(route); });
+  service.subscribe<msg::BaseStatus>([this](const msg::BaseStatus& base) { on_base(base); });
+  service.subscribe<msg::LaserStatus>([this](const msg::LaserStatus& laser) { on_laser(laser); });
+  service.subscribe<msg::GroundTruth>([this](const msg::GroundTruth& truth) { on_truth(truth); });
+}
+
+void RobotView::on_pose(const msg::LivePose& pose) {
+  if (hooks_.on_pose) hooks_.on_pose(pose);
+  if (!pose_ || pose_->state() != pose.state()) {
+    events_.add(level_of(pose.state()), "localizer",
+                std::string(name_of(pose.state())) + ": " + reason_of(pose.state()));
+  }
+  pose_ = pose;
+  pose_came_s_ = support::monotonic_s();
+  Json json = {{"stamp_s", seconds(pose.stamp_ns())},
+               {"sequence", pose.sequence_number()},
+               {"state", name_of(pose.state())},
+               {"mode", pose.mode() == msg::kModeMapping ? "mapping" : "localization"},
+               {"confidence", rounded(pose.confidence())}};
+  set_pose(json, service::from_msg(pose.T_map_robot()));
+  Json covariance = Json::array();
+  for (const double value : pose.covariance()) covariance.push_back(exact(value));
+  json["covariance"] = std::move(covariance);
+  json["reason"] = reason_of(pose.state());
+  board_.set(Channel::kPose, text_of(json));
+  show_scan();
+}
+
+void RobotView::on_scan(const msg::Scan& message) {
+  const geometry::Pose2& T_robot_laser = service_.setup().config.config.local_mapper.T_robot_laser;
+  scan_ = service::to_scan_points(service::from_msg(message), T_robot_laser);
+  scan_sequence_ = message.sequence_number();
+  if (hooks_.on_scan) hooks_.on_scan(*scan_);
+  const bool waits = pose_ && is_located(pose_->state()) &&
+                     pose_->sequence_number() < scan_sequence_ &&
+                     support::monotonic_s() - pose_came_s_ < kPoseAge_s;
+  if (!waits) show_scan();
+}
+
+// The localizer gives the pose of a scan a few milliseconds after it: until then the scan waits,
+// and the next one takes its place.
+void RobotView::show_scan() {
+  if (!scan_) return;
+  Json json = {{"stamp_s", seconds(scan_->stamp_ns)}, {"sequence", scan_sequence_}};
+  Json points = Json::array();
+  for (const Eigen::Vector2d& point_m : scan_->points_m) {
+    points.push_back(rounded(point_m.x()));
+    points.push_back(rounded(point_m.y()));
+  }
+  json["points_robot_m"] = std::move(points);
+  if (pose_ && is_located(pose_->state()) && support::monotonic_s() - pose_came_s_ < kPoseAge_s) {
+    set_pose(json, service::from_msg(pose_->T_map_robot()));
+  }
+  board_.set(Channel::kScan, text_of(json));
+  scan_.reset();
+}
+
+void RobotView::on_navigator(const msg::NavigatorStatus& status) {
+  if (hooks_.on_navigator) hooks_.on_navigator(status);
+  const std::string message = text_of_message(status.message());
+  if (navigator_state_ != status.state()) {
+    if (navigator_state_) {
+      const bool trouble = status.state() == msg::kNavigatorBlocked ||
+                           status.state() == msg::kNavigatorStopped ||
+                           status.state() == msg::kNavigatorRelocalizing;
+      events_.add(trouble ? Level::kWarning : Level::kInfo, "navigator",
+                  std::string(name_of(status.state())) + (message.empty() ? "" : ": " + message));
+    }
+    navigator_state_ = status.state();
+  }
+  const bool ended =
+      status.state() == msg::kNavigatorIdle || status.state() == msg::kNavigatorArrived;
+  if (ended) board_.set(Channel::kRoute, "null");
+  const Json json = {{"state", name_of(status.state())},
+                     {"reason", name_of(status.reason())},
+                     {"message", message},
+                     {"goal_id", std::to_string(status.goal_id())},
+                     {"driven_m", rounded(status.driven_m())},
+                     {"rest_m", rounded(status.rest_m())},
+                     {"rest_s", rounded(status.rest_s())},
+                     {"linear_mps", rounded(status.linear_mps())},
+                     {"angular_radps", rounded(status.angular_radps())},
+                     {"free_ahead_m", rounded(status.free_ahead_m())},
+                     {"detours", status.detours()},
+                     {"routes", status.routes()},
+                     {"guard_stops", status.guard_stops()}};
+  board_.set(Channel::kNavigator, text_of(json));
+}
+
+void RobotView::on_route(const msg::Route& route) {
+  const bool found = route.status() == msg::kRouteFound;
+  Json json = {{"goal_id", std::to_string(route.goal_id())},
+               {"found", found},
+               {"message", text_of_message(route.message())}};
+  Json points = Json::array();
+  for (const msg::BranchPoint& point : route.points()) {
+    points.push_back(rounded(point.x_m()));
+    points.push_back(rounded(point.y_m()));
+  }
+  json["length_m"] = rounded(route.length_m());
+  json["min_clearance_m"] = rounded(route.min_clearance_m());
+  json["points_m"] = std::move(points);
+  if (route.has_nearest_reachable()) {
+    json["nearest_reachable"] = {{"x_m", rounded(route.nearest_reachable().x_m())},
+                                 {"y_m", rounded(route.nearest_reachable().y_m())}};
+  }
+  if (!found) {
+    events_.add(Level::kWarning, "planner", "no route: " + text_of_message(route.message()));
+  }
+  board_.set(Channel::kRoute, text_of(json));
+}
+
+void RobotView::on_base(const msg::BaseStatus& status) {
+  const std::string reason = text_of_message(status.reason());
+  const bool moves = status.state() == msg::kBaseReady || status.state() == msg::kBaseMoving;
+  const bool moved =
+      base_state_ && (*base_state_ == msg::kBaseReady || *base_state_ == msg::kBaseMoving);
+  if (base_state_ != status.state() && !(moves && moved)) {
+    events_.add(moves ? Level::kInfo : Level::kWarning, "base",
+                std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason));
+  }
+  base_state_ = status.state();
+  board_.set(Channel::kBase, text_of(Json{{"state", name_of(status.state())},
+                                          {"reason", reason},
+                                          {"commands_taken", status.commands_taken()},
+                                          {"battery_v", rounded(status.battery_v())},
+                                          {"battery_low", status.battery_low()}}));
+}
+
+void RobotView::on_laser(const msg::LaserStatus& status) {
+  if (hooks_.on_laser) hooks_.on_laser(status);
+  const std::string reason = text_of_message(status.reason());
+  if (laser_state_ != status.state()) {
+    const bool runs = status.state() == msg::kLaserRunning;
+    events_.add(runs ? Level::kInfo : Level::kWarning, "laser",
+                std::string(name_of(status.state())) + (reason.empty() ? "" : ": " + reason));
+  }
+  laser_state_ = status.state();
+  board_.set(Channel::kLaser, text_of(Json{{"state", name_of(status.state())},
+                                           {"reason", reason},
+                                           {"scans_per_s", rounded(status.scans_per_s())}}));
+}
+
+void RobotView::on_truth(const msg::GroundTruth& truth) {
+  Json json = Json::object();
+  set_pose(json, service::from_msg(truth.T_world_robot()));
+  json["collisions"] = truth.collisions();
+  board_.set(Channel::kTruth, text_of(json));
+}
+
+}  // namespace topogeo::web

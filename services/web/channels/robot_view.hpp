@@ -1,0 +1,61 @@
+// The robot on the board: pose, scan, what it does, its route, its devices.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "topogeo/msg/planning.h"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/simulation.h"
+#include "topogeo/msg/trajectory.h"
+#include "topogeo/navigation/navigator_inputs.hpp"
+#include "topogeo/service/service.hpp"
+
+#include "server/board.hpp"
+
+namespace topogeo::web {
+
+class EventLog;
+
+/// Who else needs what the view gets; each may be empty.
+struct RobotHooks {
+  std::function<void(const navigation::ScanPoints&)> on_scan;
+  std::function<void(const msg::LivePose&)> on_pose;
+  std::function<void(const msg::LaserStatus&)> on_laser;
+  std::function<void(const msg::NavigatorStatus&)> on_navigator;
+};
+
+/// Lives in the loop of its service.
+class RobotView {
+ public:
+  RobotView(service::Service& service, Board& board, EventLog& events, RobotHooks hooks = {});
+
+  /// The newest; its pose means something in TRACKING and AMBIGUOUS.
+  [[nodiscard]] const std::optional<msg::LivePose>& pose() const { return pose_; }
+
+ private:
+  void on_pose(const msg::LivePose& pose);
+  void on_scan(const msg::Scan& message);
+  /// Shows the scan with the pose of the same number, or without one when none has come in time.
+  void show_scan();
+  void on_navigator(const msg::NavigatorStatus& status);
+  void on_route(const msg::Route& route);
+  void on_base(const msg::BaseStatus& status);
+  void on_laser(const msg::LaserStatus& status);
+  void on_truth(const msg::GroundTruth& truth);
+
+  Board& board_;
+  EventLog& events_;
+  RobotHooks hooks_;
+  service::Service& service_;
+  std::optional<msg::LivePose> pose_;
+  double pose_came_s_ = 0.0;                    // by the steady clock
+  std::optional<navigation::ScanPoints> scan_;  // not shown yet
+  std::uint64_t scan_sequence_ = 0;
+  std::optional<msg::NavigatorState> navigator_state_;
+  std::optional<msg::BaseState> base_state_;
+  std::optional<msg::LaserState> laser_state_;
+};
+
+}  // namespace topogeo::web

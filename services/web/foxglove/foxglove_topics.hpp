@@ -1,0 +1,40 @@
+// Topics that Foxglove and Lichtblick see, and the shapes of their messages: Foxglove's well-known
+// types in JSON, each described by a JSON schema.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/board.hpp"
+
+namespace topogeo::web {
+
+/// Those that the service makes as they come; the newest counts.
+enum class LiveTopic : std::uint8_t { kTransforms, kPose, kScan, kMap, kRoomMap };
+inline constexpr std::size_t kLiveTopics = static_cast<std::size_t>(LiveTopic::kRoomMap) + 1;
+
+struct FoxgloveTopic {
+  std::uint32_t channel_id = 0;
+  std::string_view name;
+  std::string_view schema;         ///< "foxglove.Grid"
+  std::optional<LiveTopic> live;   ///< where it comes from: of the service ...
+  std::optional<Channel> channel;  ///< ... or out of a channel of the board
+  double shortest_period_s = 0.0;  ///< between two messages for one client
+};
+
+inline constexpr std::size_t kFoxgloveTopics = 11;
+const std::array<FoxgloveTopic, kFoxgloveTopics>& foxglove_topics();
+/// Null: there is none.
+const FoxgloveTopic* foxglove_topic(std::uint64_t channel_id);
+
+/// JSON schema of a type, as text. Throws std::out_of_range for one that no topic has.
+std::string foxglove_schema(std::string_view type);
+
+/// The message that advertises all topics.
+std::string advertisement();
+
+}  // namespace topogeo::web

@@ -1,0 +1,264 @@
+#include "history/history.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "topogeo/exchange/map_export.hpp"
+#include "topogeo/planning/grid_sources.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "channels/local_map_json.hpp"
+#include "history/map_difference.hpp"
+#include "orders/order_text.hpp"
+#include "resources.hpp"
+#include "server/json_values.hpp"
+
+namespace topogeo::web {
+namespace {
+
+constexpr std::string_view kExportPath = "/api/export/";
+/// What the files of an export are called.
+constexpr const char* kExportStem = "map";
+
+Answer json_answer(const Json& json) {
+  Answer answer;
+  answer.body = text_of(json);
+  return answer;
+}
+
+/// Of the drawing, where no scan was taken.
+planning::OccupancyGrid grid_of_map(const storage::MapDocument& map,
+                                    const planning::ScanGridConfig& config) {
+  if (map.local_maps.empty() && map.drawing.grid) return *map.drawing.grid;
+  return planning::grid_from_scans(map.local_maps, map.trajectory.stops, config);
+}
+
+Json stored_version(const storage::MapDocument& map, const std::string& name) {
+  return {{"name", name},
+          {"stops", map.trajectory.stops.size()},
+          {"version", std::to_string(map.trajectory.version)}};
+}
+
+Answer formats_answer() {
+  Json formats = Json::array();
+  for (const exchange::ExportFormat& format : exchange::export_formats()) {
+    Json files = Json::array();
+    for (const std::string_view ending : format.endings) {
+      files.push_back(kExportStem + std::string(ending));
+    }
+    formats.push_back({{"format", format.name}, {"files", std::move(files)}});
+  }
+  return json_answer({{"formats", std::move(formats)}});
+}
+
+/// The path of an export: the stem where there are several files, else the file.
+std::string export_path(const exchange::ExportFormat& format) {
+  return format.endings.size() > 1 ? kExportStem
+                                   : kExportStem + std::string(format.endings.front());
+}
+
+Answer exported_file(const storage::MapDocument& map, const exchange::ExportFormat& format,
+                     const std::string& file, const exchange::ExportSettings& settings) {
+  const std::string path = export_path(format);
+  for (exchange::OutputFile& made : exchange::export_map(map, format.name, path, settings).files) {
+    if (made.path.filename() != file) continue;
+    Answer answer;
+    answer.body = std::move(made.bytes);
+    answer.content_type = "application/octet-stream";
+    return answer;
+  }
+  return error_answer(404, "this form has no such file");
+}
+
+std::string checked_name(const std::string& query, const char* key) {
+  std::string name = query_value(query, key);
+  if (!name.empty()) storage::check_snapshot_name(name);
+  return name;
+}
+
+}  // namespace
+
+History::History(service::Service& service, DriveView& drive)
+    : service_(service), drive_(drive), archive_(service), background_(service.loop()) {
+  copies_ = std::make_unique<MapCopies>(service, background_, [this] {
+    if (drive_.trajectory_version() != 0) return;
+    copies_->get(
+        {}, [](const storage::MapDocument&) { return false; },
+        [this](const MapCopies::Document& map, const std::string&) {
+          if (map) drive_.show_stored(*map);
+        });
+  });
+}
+
+bool History::has(std::string_view path) {
+  return path == "/api/local_map" || path == "/api/drive" || path == "/api/snapshots" ||
+         path == "/api/compare" || path == "/api/compare.png" || path == "/api/export" ||
+         path.starts_with(kExportPath);
+}
+
+void History::get(const Request& request, const Respond& respond) {
+  if (request.path == "/api/local_map") return local_map(request.query, respond);
+  if (request.path == "/api/drive") return drive(request.query, respond);
+  if (request.path == "/api/snapshots") return archive_.list(respond);
+  if (request.path == "/api/compare") return compare(request.query, respond);
+  if (request.path == "/api/compare.png") return picture(request.query, respond);
+  if (request.path == "/api/export") return respond(formats_answer());
+  export_file(request.path.substr(kExportPath.size()), respond);
+}
+
+void History::answer_later(Make make, const Respond& respond) {
+  const bool taken =
+      background_.run([make = std::move(make), respond]() mutable -> Background::Rest {
+        try {
+          respond(make());
+        } catch (const std::exception& error) {
+          respond(error_answer(409, error.what()));
+        }
+        return [] {};
+      });
+  if (!taken) respond(error_answer(503, "too much is worked on, try again later"));
+}
+
+bool History::is_of_now(const storage::MapDocument& map) const {
+  return map.trajectory.version >= drive_.trajectory_version();
+}
+
+void History::local_map(const std::string& query, const Respond& respond) {
+  std::optional<topomap::StopId> stop;
+  if (const std::string number = query_value(query, "stop"); !number.empty()) {
+    stop = drive_.stop_at(parse_number(number, "stop"));
+  } else {
+    stop = topomap::StopId{
+        parse_number(query_value(query, "session"), "session"),
+        static_cast<std::uint32_t>(parse_number(query_value(query, "number"), "number"))};
+  }
+  if (!stop) return respond(error_answer(404, "there is no such stop"));
+  if (const topomap::LocalMap* heard = drive_.heard(*stop)) {
+    return respond(json_answer(local_map_json(*heard, drive_.pose_of(*stop))));
+  }
+  const auto find = [id = *stop](const storage::MapDocument& map) {
+    return std::ranges::find(map.local_maps, id, &topomap::LocalMap::stop);
+  };
+  copies_->get(
+      {}, [find](const storage::MapDocument& map) { return find(map) != map.local_maps.end(); },
+      [this, find, id = *stop, respond](const MapCopies::Document& map, const std::string& why) {
+        if (!map) return respond(error_answer(503, why));
+        const auto found = find(*map);
+        if (found == map->local_maps.end()) {
+          return respond(error_answer(404, "the map store has no such stop"));
+        }
+        respond(json_answer(local_map_json(*found, drive_.pose_of(id))));
+      });
+}
+
+void History::drive(const std::string& query, const Respond& respond) {
+  const std::string text = query_value(query, "first");
+  const std::size_t first = text.empty() ? 0 : parse_number(text, "first");
+  // Parts that follow are of the drive whose first part was asked for, as far as it is kept.
+  const auto good = [this, first](const storage::MapDocument& map) {
+    return first > 0 || is_of_now(map);
+  };
+  copies_->get(
+      {}, good, [this, first, respond](const MapCopies::Document& map, const std::string& why) {
+        if (!map) return respond(error_answer(503, why));
+        answer_later([map, first] { return json_answer(drive_json(*map, first)); }, respond);
+      });
+}
+
+void History::compare(const std::string& query, const Respond& respond) {
+  const std::string before = checked_name(query, "before");
+  const std::string after = checked_name(query, "after");
+  if (before == after) throw std::invalid_argument("expected two versions, before and after");
+  const auto good = [this](const storage::MapDocument& map) { return is_of_now(map); };
+  const auto with_both = [this, before, after, respond](const MapCopies::Document& a,
+                                                        const MapCopies::Document& b) {
+    const planning::ScanGridConfig& grid = service_.setup().config.config.hybrid_map.grid;
+    const bool taken =
+        background_.run([this, a, b, before, after, grid, respond]() -> Background::Rest {
+          try {
+            MapDifference made = difference(grid_of_map(*a, grid), grid_of_map(*b, grid));
+            Json json = {{"before", stored_version(*a, before)},
+                         {"after", stored_version(*b, after)},
+                         {"columns", made.frame.columns},
+                         {"rows", made.frame.rows},
+                         {"resolution_m", made.frame.resolution_m}};
+            set_pose(json, made.frame.T_map_grid);
+            const auto area = [&](CellChange change) {
+              return rounded(made.areas_m2.at(static_cast<std::size_t>(change)));
+            };
+            json["gone_m2"] = area(CellChange::kGone);
+            json["new_m2"] = area(CellChange::kNew);
+            json["seen_m2"] = area(CellChange::kSeen);
+            json["lost_m2"] = area(CellChange::kLost);
+            return [this, json = std::move(json), png = difference_png(made), respond]() mutable {
+              difference_png_ = std::move(png);
+              json["picture"] = "/api/compare.png?v=" + std::to_string(++compared_);
+              respond(json_answer(json));
+            };
+          } catch (const std::exception& error) {
+            return [respond, answer = error_answer(409, error.what())] { respond(answer); };
+          }
+        });
+    if (!taken) respond(error_answer(503, "too much is worked on, try again later"));
+  };
+  copies_->get(before, good,
+               [this, after, good, with_both, respond](const MapCopies::Document& a,
+                                                       const std::string& why) {
+                 if (!a) return respond(error_answer(409, why));
+                 copies_->get(after, good,
+                              [a, with_both, respond](const MapCopies::Document& b,
+                                                      const std::string& why_not) {
+                                if (!b) return respond(error_answer(409, why_not));
+                                with_both(a, b);
+                              });
+               });
+}
+
+void History::picture(const std::string& query, const Respond& respond) const {
+  if (compared_ == 0 || query_value(query, "v") != std::to_string(compared_)) {
+    return respond(error_answer(404, "another comparison was made since"));
+  }
+  Answer answer;
+  answer.body = difference_png_;
+  answer.content_type = "image/png";
+  respond(answer);
+}
+
+void History::export_file(const std::string& path, const Respond& respond) {
+  const std::size_t slash = path.find('/');
+  const std::string name = path.substr(0, slash);
+  const std::string file = slash == std::string::npos ? "" : path.substr(slash + 1);
+  const auto formats = exchange::export_formats();
+  const auto format = std::ranges::find(formats, name, &exchange::ExportFormat::name);
+  const bool known =
+      format != formats.end() && std::ranges::any_of(format->endings, [&](std::string_view ending) {
+        return file == kExportStem + std::string(ending);
+      });
+  if (!known) return respond(error_answer(404, "see /api/export for the files that there are"));
+  exchange::ExportSettings settings;
+  settings.hybrid_map = service_.setup().config.config.hybrid_map;
+  settings.title = service_.robot_id();
+  settings.header.stamp_ns = support::wall_clock_ns();
+  copies_->get(
+      {}, [this](const storage::MapDocument& map) { return is_of_now(map); },
+      [this, format = *format, file, settings, respond](const MapCopies::Document& map,
+                                                        const std::string& why) {
+        if (!map) return respond(error_answer(503, why));
+        answer_later(
+            [map, format, file, settings] { return exported_file(*map, format, file, settings); },
+            respond);
+      });
+}
+
+void History::take_snapshot(const std::string& body, const Respond& respond) {
+  archive_.take(parse_name(body), respond);
+}
+
+void History::restore(const std::string& body, const Respond& respond) {
+  copies_->forget();
+  archive_.restore(parse_name(body), respond);
+}
+
+}  // namespace topogeo::web

@@ -1,0 +1,155 @@
+#include "orders/goal_sender.hpp"
+
+#include <deque>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/service/conversions.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "channels/event_log.hpp"
+#include "server/json_values.hpp"
+
+namespace topogeo::web {
+namespace {
+
+/// That no other client has, and never 0.
+std::uint64_t random_goal_id() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 16U) + (random() & 0xFFFFU) + 1;
+}
+
+Json goal_json(const Goal& goal) {
+  Json json = {{"goal_id", std::to_string(goal.id)}, {"text", goal.text}};
+  if (goal.message.kind() == msg::kGoalPosition) {
+    json["x_m"] = rounded(goal.message.target().x_m());
+    json["y_m"] = rounded(goal.message.target().y_m());
+  }
+  return json;
+}
+
+}  // namespace
+
+GoalSender::GoalSender(service::Service& service, Board& board, const MapView& map,
+                       EventLog& events)
+    : service_(service),
+      board_(board),
+      map_(map),
+      events_(events),
+      client_id_(support::process_name()),
+      goals_(service.advertise<msg::Goal>()) {
+  show();
+}
+
+Eigen::Vector2d GoalSender::position_of(const WantedGoal& goal) const {
+  if (goal.point_m) return *goal.point_m;
+  const auto found = map_.find(goal.name);
+  if (!found) throw std::invalid_argument("the map has no place or room '" + goal.name + "'");
+  return found->position_m;
+}
+
+Goal GoalSender::make(const WantedGoal& wanted) {
+  service::Goal order;
+  order.goal_id = random_goal_id();
+  order.client_id = client_id_;
+  order.heading_rad = wanted.heading_rad;
+  const Eigen::Vector2d position_m = position_of(wanted);
+  order.kind = msg::kGoalPosition;
+  order.target = position_m;
+  const auto named = wanted.name.empty() ? std::nullopt : map_.find(wanted.name);
+  if (named && named->place) {
+    order.kind = msg::kGoalPlace;
+    order.target = named->name;
+  }
+  Goal goal;
+  goal.id = order.goal_id;
+  goal.text = named ? named->name : describe(wanted);
+  goal.message = service::to_msg(order, service_.robot_id(), 0, 0);
+  return goal;
+}
+
+std::uint64_t GoalSender::add(const GoalOrders& orders) {
+  std::deque<Goal> goals;
+  for (const WantedGoal& wanted : orders.goals) goals.push_back(make(wanted));
+  const std::uint64_t first = goals.front().id;
+  if (list_.add(std::move(goals), orders.append)) send_current();
+  show();
+  return first;
+}
+
+std::uint64_t GoalSender::send_to(const geometry::Pose2& T_map_goal, const std::string& text) {
+  WantedGoal wanted;
+  wanted.point_m = T_map_goal.position_m();
+  wanted.heading_rad = T_map_goal.theta_rad;
+  Goal goal = make(wanted);
+  goal.text = text;
+  const std::uint64_t id = goal.id;
+  std::deque<Goal> goals;
+  goals.push_back(std::move(goal));
+  if (list_.add(std::move(goals), false)) send_current();
+  show();
+  return id;
+}
+
+void GoalSender::set_exploring(bool exploring) {
+  if (std::exchange(exploring_, exploring) != exploring) show();
+}
+
+void GoalSender::send_current() {
+  const Goal& goal = *list_.current();
+  events_.add(EventLog::Level::kInfo, "web", "goal: " + goal.text);
+  send(goal.message);
+}
+
+void GoalSender::order(msg::GoalKind kind) {
+  service::Goal order;
+  order.client_id = client_id_;
+  order.kind = kind;
+  send(service::to_msg(order, service_.robot_id(), 0, 0));
+}
+
+void GoalSender::send(msg::Goal message) {
+  messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), sent_++);
+  service_.send(goals_, message, "goal");
+}
+
+void GoalSender::pause() {
+  order(msg::kGoalPause);
+}
+
+void GoalSender::resume() {
+  order(msg::kGoalResume);
+}
+
+void GoalSender::cancel() {
+  list_.clear();
+  order(msg::kGoalCancel);
+  show();
+}
+
+std::optional<GoalList::End> GoalSender::take(const msg::NavigatorStatus& status) {
+  const std::string text = list_.current() ? list_.current()->text : std::string();
+  const auto end = list_.take(status);
+  if (!end) return std::nullopt;
+  if (*end == GoalList::End::kArrived) {
+    events_.add(EventLog::Level::kInfo, "web", "arrived: " + text);
+    if (list_.current()) send_current();
+  } else {
+    events_.add(EventLog::Level::kWarning, "web",
+                "another client has taken the goal " + text + " away");
+  }
+  show();
+  return end;
+}
+
+void GoalSender::show() {
+  Json waiting = Json::array();
+  for (const Goal& goal : list_.waiting()) waiting.push_back(goal_json(goal));
+  Json json = {{"current", nullptr}, {"waiting", std::move(waiting)}, {"exploring", exploring_}};
+  if (list_.current()) json["current"] = goal_json(*list_.current());
+  board_.set(Channel::kGoals, text_of(json));
+}
+
+}  // namespace topogeo::web

@@ -1,0 +1,61 @@
+// Gives the robot its goals, one after the other: channel `goals`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/planning.h"
+#include "topogeo/service/service.hpp"
+
+#include "channels/map_view.hpp"
+#include "orders/goal_list.hpp"
+#include "orders/order_text.hpp"
+#include "server/board.hpp"
+
+namespace topogeo::web {
+
+class EventLog;
+
+/// Lives in the loop of its service.
+class GoalSender {
+ public:
+  GoalSender(service::Service& service, Board& board, const MapView& map, EventLog& events);
+
+  /// Throws std::invalid_argument naming a place that the map does not have; then nothing has
+  /// changed. The id of the first of these goals.
+  std::uint64_t add(const GoalOrders& orders);
+  /// One goal of an exploration, in place of all others; its id.
+  std::uint64_t send_to(const geometry::Pose2& T_map_goal, const std::string& text);
+  void pause();
+  void resume();
+  void cancel();
+  /// How the current goal has ended, if it has; then the next one is on its way.
+  std::optional<GoalList::End> take(const msg::NavigatorStatus& status);
+  /// Whether goals come from an exploration.
+  void set_exploring(bool exploring);
+
+  [[nodiscard]] std::size_t waiting() const { return list_.waiting().size(); }
+  /// Where a goal is on the map of now.
+  [[nodiscard]] Eigen::Vector2d position_of(const WantedGoal& goal) const;
+
+ private:
+  [[nodiscard]] Goal make(const WantedGoal& wanted);
+  void send_current();
+  void order(msg::GoalKind kind);
+  void send(msg::Goal message);
+  void show();
+
+  service::Service& service_;
+  Board& board_;
+  const MapView& map_;
+  EventLog& events_;
+  std::string client_id_;
+  GoalList list_;
+  bool exploring_ = false;
+  std::uint64_t sent_ = 0;
+  messaging::Writer<msg::Goal> goals_;
+};
+
+}  // namespace topogeo::web

@@ -1,0 +1,111 @@
+#include "orders/order_text.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+
+#include "topogeo/support/format.hpp"
+
+#include "orders/json_reading.hpp"
+
+namespace topogeo::web {
+namespace {
+
+constexpr std::size_t kMostGoals = 50;
+constexpr std::size_t kLongestName = 64;  // as messages have it
+constexpr double kFarthest_m = 1e5;
+
+bool flag(const Json& json, const char* key, bool otherwise) {
+  const auto found = json.find(key);
+  if (found == json.end()) return otherwise;
+  if (!found->is_boolean())
+    throw std::invalid_argument(fmt::format("{}: expected true or false", key));
+  return found->get<bool>();
+}
+
+WantedGoal goal_of(const Json& json) {
+  if (!json.is_object()) throw std::invalid_argument("goals: expected objects");
+  WantedGoal goal;
+  if (const auto place = json.find("place"); place != json.end()) {
+    if (!place->is_string() || place->get<std::string>().empty() ||
+        place->get<std::string>().size() > kLongestName) {
+      throw std::invalid_argument("place: expected a name of 1 to 64 bytes");
+    }
+    goal.name = place->get<std::string>();
+  } else {
+    goal.point_m = Eigen::Vector2d(needed(json, "x_m", -kFarthest_m, kFarthest_m),
+                                   needed(json, "y_m", -kFarthest_m, kFarthest_m));
+  }
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  goal.heading_rad = number(json, "heading_rad", -kTurn_rad, kTurn_rad);
+  return goal;
+}
+
+}  // namespace
+
+GoalOrders parse_goals(const std::string& body) {
+  const Json json = object_of(body);
+  GoalOrders orders;
+  orders.append = flag(json, "append", false);
+  const auto list = json.find("goals");
+  if (list == json.end()) {
+    orders.goals.push_back(goal_of(json));
+    return orders;
+  }
+  if (!list->is_array() || list->empty() || list->size() > kMostGoals) {
+    throw std::invalid_argument("goals: expected a list of 1 to 50");
+  }
+  for (const Json& goal : *list) orders.goals.push_back(goal_of(goal));
+  return orders;
+}
+
+PoseOrder parse_pose_order(const std::string& body) {
+  const Json json = object_of(body);
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  PoseOrder order;
+  order.T_map_robot.x_m = needed(json, "x_m", -kFarthest_m, kFarthest_m);
+  order.T_map_robot.y_m = needed(json, "y_m", -kFarthest_m, kFarthest_m);
+  order.T_map_robot.theta_rad =
+      geometry::wrap_angle(needed(json, "theta_rad", -kTurn_rad, kTurn_rad));
+  order.sigma_m = number(json, "sigma_m", 0.01, 100.0);
+  order.sigma_rad = number(json, "sigma_rad", 0.001, std::numbers::pi);
+  return order;
+}
+
+MergeOrder parse_merge_order(const std::string& body) {
+  const Json json = object_of(body);
+  const auto answer = json.find("accept");
+  if (answer == json.end()) throw std::invalid_argument("accept: expected true or false");
+  constexpr double kMost = 4294967295.0;
+  return {static_cast<std::uint32_t>(needed(json, "number", 0.0, kMost)),
+          flag(json, "accept", false)};
+}
+
+bool parse_mapping_mode(const std::string& body) {
+  const Json json = object_of(body);
+  const auto mode = json.find("mode");
+  if (mode != json.end() && *mode == "mapping") return true;
+  if (mode != json.end() && *mode == "localization") return false;
+  throw std::invalid_argument("mode: expected mapping or localization");
+}
+
+std::string parse_name(const std::string& body) {
+  const Json json = object_of(body);
+  const auto name = json.find("name");
+  if (name == json.end() || !name->is_string()) {
+    throw std::invalid_argument("name: expected a text");
+  }
+  return name->get<std::string>();
+}
+
+void check_plain(const std::string& body) {
+  if (!body.empty()) static_cast<void>(object_of(body));
+}
+
+std::string describe(const WantedGoal& goal) {
+  if (!goal.name.empty()) return goal.name;
+  return fmt::format("{:.2f}, {:.2f}", goal.point_m->x(), goal.point_m->y());
+}
+
+}  // namespace topogeo::web

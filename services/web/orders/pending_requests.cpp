@@ -1,0 +1,61 @@
+#include "orders/pending_requests.hpp"
+
+#include <chrono>
+#include <random>
+#include <utility>
+
+#include "topogeo/support/cpu_time.hpp"
+
+namespace topogeo::web {
+namespace {
+
+constexpr std::chrono::milliseconds kRequestTick{100};
+constexpr double kSendAgain_s = 1.0;
+
+}  // namespace
+
+PendingRequests::PendingRequests(service::Service& service, std::string none, double patience_s)
+    : service_(service),
+      none_(std::move(none)),
+      patience_s_(patience_s),
+      last_id_(std::uint64_t{std::random_device{}()} << 16U) {
+  timer_ = service_.loop().add_timer(kRequestTick, [this] { tick(); });
+}
+
+PendingRequests::~PendingRequests() {
+  service_.loop().cancel_timer(timer_);
+}
+
+void PendingRequests::begin(Respond respond, std::function<void(std::uint64_t id)> send) {
+  const std::uint64_t id = ++last_id_;
+  Pending& pending = pending_[id];
+  pending = {std::move(respond), std::move(send), support::monotonic_s(), support::monotonic_s()};
+  pending.send(id);
+}
+
+std::optional<Respond> PendingRequests::take(std::uint64_t id) {
+  const auto found = pending_.find(id);
+  if (found == pending_.end()) return std::nullopt;
+  Respond respond = std::move(found->second.respond);
+  pending_.erase(found);
+  return respond;
+}
+
+void PendingRequests::tick() {
+  const double now_s = support::monotonic_s();
+  for (auto pending = pending_.begin(); pending != pending_.end();) {
+    auto& [id, request] = *pending;
+    if (now_s - request.since_s > patience_s_) {
+      request.respond(error_answer(503, none_));
+      pending = pending_.erase(pending);
+      continue;
+    }
+    if (now_s - request.sent_s > kSendAgain_s) {
+      request.sent_s = now_s;
+      request.send(id);
+    }
+    ++pending;
+  }
+}
+
+}  // namespace topogeo::web

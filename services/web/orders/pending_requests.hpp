@@ -1,0 +1,48 @@
+// Requests of pages to another service: sent again until its reply comes, given up in time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "topogeo/service/service.hpp"
+
+#include "server/web_types.hpp"
+
+namespace topogeo::web {
+
+/// Lives in the loop of its service.
+class PendingRequests {
+ public:
+  /// `none`: the error, with status 503, where no reply has come after `patience_s`. The other
+  /// service carries out a request once and repeats its reply.
+  PendingRequests(service::Service& service, std::string none, double patience_s);
+  PendingRequests(const PendingRequests&) = delete;
+  PendingRequests& operator=(const PendingRequests&) = delete;
+  ~PendingRequests();
+
+  /// Sends a request under a number of its own: `send` is called with it, perhaps several times.
+  void begin(Respond respond, std::function<void(std::uint64_t id)> send);
+  /// Who gets the reply to a request; nothing where it was answered.
+  std::optional<Respond> take(std::uint64_t id);
+
+ private:
+  struct Pending {
+    Respond respond;
+    std::function<void(std::uint64_t id)> send;
+    double since_s = 0.0;  // by the steady clock
+    double sent_s = 0.0;
+  };
+  void tick();
+
+  service::Service& service_;
+  std::string none_;
+  double patience_s_;
+  std::uint64_t last_id_;
+  std::uint64_t timer_ = 0;
+  std::map<std::uint64_t, Pending> pending_;
+};
+
+}  // namespace topogeo::web

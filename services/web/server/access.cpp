@@ -1,0 +1,78 @@
+#include "server/access.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <random>
+
+#include "topogeo/support/format.hpp"
+
+namespace topogeo::web {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::ranges::transform(out, out.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+bool is_address(std::string_view host) {
+  const auto all = [&](std::string_view allowed) {
+    return host.find_first_not_of(allowed) == std::string_view::npos;
+  };
+  if (host.find(':') != std::string_view::npos) return all("0123456789abcdefABCDEF:.");
+  return host.find('.') != std::string_view::npos && all("0123456789.");
+}
+
+}  // namespace
+
+std::string new_token() {
+  std::random_device random;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", random());
+  return token;
+}
+
+bool equal_in_constant_time(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  }
+  return difference == 0;
+}
+
+bool is_authorized(std::string_view authorization, std::string_view token) {
+  constexpr std::string_view kScheme = "Bearer ";
+  if (token.empty() || !authorization.starts_with(kScheme)) return false;
+  return equal_in_constant_time(authorization.substr(kScheme.size()), token);
+}
+
+std::string_view host_of(std::string_view authority) {
+  if (authority.starts_with('[')) {
+    const std::size_t end = authority.find(']');
+    return end == std::string_view::npos ? std::string_view{} : authority.substr(1, end - 1);
+  }
+  return authority.substr(0, authority.find(':'));
+}
+
+bool is_own_host(std::string_view authority, const std::vector<std::string>& names) {
+  const std::string host = lower(host_of(authority));
+  if (host.empty()) return false;
+  if (is_address(host) || host == "localhost") return true;
+  return std::ranges::any_of(names, [&](const std::string& name) { return lower(name) == host; });
+}
+
+bool is_own_origin(std::string_view origin, std::string_view host,
+                   const std::vector<std::string>& allowed) {
+  if (origin.empty()) return true;
+  if (std::ranges::find(allowed, origin) != allowed.end()) return true;
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (origin.starts_with(scheme) && lower(origin.substr(scheme.size())) == lower(host)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace topogeo::web

@@ -1,0 +1,167 @@
+#include "server/board.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <set>
+
+#include "server/json_values.hpp"
+
+namespace topogeo::web {
+namespace {
+
+struct ChannelInfo {
+  std::string_view name;
+  bool table;
+};
+
+constexpr std::array<ChannelInfo, kChannels> kInfo = {{
+    {"pose", false},      {"drive", false},   {"navigator", false}, {"base", false},
+    {"goals", false},     {"map", false},     {"tiles", true},      {"rooms", true},
+    {"places", true},     {"rules", true},    {"drawing", false},   {"scan", false},
+    {"route", false},     {"truth", false},   {"laser", false},     {"trail", true},
+    {"graph", true},      {"services", true}, {"workers", true},    {"merges", true},
+    {"local_map", false}, {"search", false},  {"loops", true},      {"events", true},
+    {"viewers", false},   {"time", false},
+}};
+
+/// A text in quotes.
+std::string quoted(const std::string& text) {
+  return text_of(Json(text));
+}
+
+std::string head(Channel channel) {
+  return R"({"channel":")" + std::string(name_of(channel)) + '"';
+}
+
+}  // namespace
+
+std::string_view name_of(Channel channel) {
+  return kInfo.at(static_cast<std::size_t>(channel)).name;
+}
+
+std::optional<Channel> channel_of(std::string_view name) {
+  const auto found = std::ranges::find(kInfo, name, &ChannelInfo::name);
+  if (found == kInfo.end()) return std::nullopt;
+  return static_cast<Channel>(std::distance(kInfo.begin(), found));
+}
+
+bool is_table(Channel channel) {
+  return kInfo.at(static_cast<std::size_t>(channel)).table;
+}
+
+void Board::on_change(std::function<void(Channel)> handler) {
+  const std::scoped_lock lock(mutex_);
+  on_change_ = std::move(handler);
+}
+
+void Board::report(Channel channel) {
+  std::function<void(Channel)> handler;
+  {
+    const std::scoped_lock lock(mutex_);
+    handler = on_change_;
+  }
+  if (handler) handler(channel);
+}
+
+void Board::set(Channel channel, std::string json) {
+  {
+    const std::scoped_lock lock(mutex_);
+    State& now = state(channel);
+    if (now.version > 0 && now.value == json) return;
+    now.value = std::move(json);
+    ++now.version;
+    now.texts.clear();
+  }
+  report(channel);
+}
+
+void Board::edit(Channel channel, std::vector<Edit> edits, bool anew) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!apply(state(channel), edits, anew)) return;
+  }
+  report(channel);
+}
+
+bool Board::apply(State& state, std::vector<Edit>& edits, bool anew) {
+  if (anew) {
+    std::set<std::string_view> kept;
+    for (const Edit& edit : edits) kept.insert(edit.key);
+    std::vector<Edit> removals;
+    for (const auto& [key, object] : state.objects) {
+      if (!kept.contains(key)) removals.push_back({key, {}});
+    }
+    std::ranges::move(removals, std::back_inserter(edits));
+  }
+  bool changed = state.version == 0;  // an empty table is something else than none yet
+  const std::uint64_t version = state.version + 1;
+  for (Edit& edit : edits) {
+    const auto held = state.objects.find(edit.key);
+    if (edit.json.empty()) {
+      if (held == state.objects.end()) continue;
+      state.objects.erase(held);
+      state.gone.emplace_back(version, std::move(edit.key));
+    } else {
+      if (held != state.objects.end() && held->second.json == edit.json) continue;
+      state.objects.insert_or_assign(std::move(edit.key), Object{std::move(edit.json), version});
+    }
+    changed = true;
+  }
+  if (!changed) return false;
+  state.version = version;
+  state.texts.clear();
+  while (state.gone.size() > kRemembered) {
+    state.forgotten = state.gone.front().first;
+    state.gone.pop_front();
+  }
+  return true;
+}
+
+std::uint64_t Board::version(Channel channel) const {
+  const std::scoped_lock lock(mutex_);
+  return state(channel).version;
+}
+
+Update Board::update(Channel channel, std::uint64_t held) const {
+  constexpr std::size_t kKept = 8;
+  const std::scoped_lock lock(mutex_);
+  const State& now = state(channel);
+  const bool known = is_table(channel) && held <= now.version && held >= now.forgotten;
+  const std::uint64_t from = known ? held : 0;
+  auto made = now.texts.find(from);
+  if (made == now.texts.end()) {
+    if (now.texts.size() >= kKept) now.texts.clear();
+    made = now.texts.emplace(from, std::make_shared<const std::string>(text(channel, now, from)))
+               .first;
+  }
+  return {made->second, now.version};
+}
+
+std::string Board::text(Channel channel, const State& state, std::uint64_t from) {
+  std::string out = head(channel);
+  if (!is_table(channel)) {
+    return out + R"(,"version":)" + std::to_string(state.version) + R"(,"value":)" + state.value +
+           '}';
+  }
+  out += R"(,"from":)" + std::to_string(from) + R"(,"version":)" + std::to_string(state.version) +
+         R"(,"set":{)";
+  const char* comma = "";
+  for (const auto& [key, object] : state.objects) {
+    if (object.version <= from) continue;
+    out += comma + quoted(key) + ':' + object.json;
+    comma = ",";
+  }
+  out += R"(},"gone":[)";
+  comma = "";
+  std::set<std::string_view> named;
+  for (auto gone = state.gone.rbegin(); from > 0 && gone != state.gone.rend(); ++gone) {
+    if (gone->first <= from) break;
+    if (state.objects.contains(gone->second) || !named.insert(gone->second).second) continue;
+    out += comma + quoted(gone->second);
+    comma = ",";
+  }
+  return out + "]}";
+}
+
+}  // namespace topogeo::web

@@ -1,0 +1,148 @@
+#include "server/viewer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "topogeo/support/cpu_time.hpp"
+#include "topogeo/support/host.hpp"
+
+#include "server/access.hpp"
+#include "server/json_values.hpp"
+
+namespace topogeo::web {
+
+namespace {
+
+constexpr std::chrono::milliseconds kHelloPatience{250};
+constexpr int kProtocol = 1;
+
+}  // namespace
+
+Viewer::Viewer(Connection connection, ServerState& state, std::shared_ptr<void> place)
+    : Watcher(std::move(connection), state, std::move(place)),
+      number_(++state.last_viewer),
+      hello_timer_(socket().get_executor()) {}
+
+Viewer::~Viewer() {
+  state().backend.release(number_);
+}
+
+void Viewer::on_open() {
+  hello_timer_.expires_after(kHelloPatience);
+  hello_timer_.async_wait([weak = weak_from_this(), this](beast::error_code error) {
+    const auto self = weak.lock();
+    if (self && !error && !ready_) hello(ViewerMessage{});
+  });
+}
+
+void Viewer::on_end() {
+  hello_timer_.cancel();
+  state().backend.release(number_);
+}
+
+void Viewer::on_text(const std::string& text) {
+  try {
+    on_message(parse_viewer_message(text));
+  } catch (const std::invalid_argument& error) {
+    refuse("no message", error.what());
+  }
+}
+
+void Viewer::on_message(const ViewerMessage& message) {
+  using Op = ViewerMessage::Op;
+  if (message.op != Op::kHello && !ready_) hello(ViewerMessage{});
+  switch (message.op) {
+    case Op::kHello:
+      hello(message);
+      break;
+    case Op::kWant:
+      want(message);
+      break;
+    case Op::kResync:
+      anew_.at(static_cast<std::size_t>(message.channel)) = true;
+      break;
+    case Op::kPing:
+      control(Json{{"op", "pong"}, {"time_s", static_cast<double>(support::wall_clock_ns()) / 1e9}}
+                  .dump());
+      break;
+    case Op::kDrive:
+      drive(message);
+      break;
+    case Op::kRelease:
+      state().backend.release(number_);
+      break;
+  }
+  pump();
+}
+
+void Viewer::hello(const ViewerMessage& message) {
+  hello_timer_.cancel();
+  const std::string& token = state().config.token;
+  operator_ = !token.empty() && equal_in_constant_time(message.token, token);
+  Json welcome = {{"op", "welcome"},
+                  {"protocol", kProtocol},
+                  {"life", state().config.life},
+                  {"may_write", operator_},
+                  {"robot_id", state().config.robot_id}};
+  if (!operator_ && !message.token.empty()) {
+    state().refuse("no token");
+    welcome["error"] = "wrong token";
+  }
+  control(welcome.dump());
+  if (message.life == state().config.life) {
+    for (const auto& [channel, version] : message.have) {
+      if (version <= state().board.version(channel)) {
+        held_.at(static_cast<std::size_t>(channel)) = version;
+      }
+    }
+  }
+  want(message);
+  ready_ = true;
+  state().show_viewers();
+  pump();
+}
+
+void Viewer::want(const ViewerMessage& message) {
+  wanted_.fill(message.all_channels);
+  for (const Channel channel : message.channels) {
+    wanted_.at(static_cast<std::size_t>(channel)) = true;
+  }
+}
+
+void Viewer::drive(const ViewerMessage& message) {
+  if (operator_) {
+    state().backend.drive(number_, message.linear_mps, message.angular_radps);
+  } else {
+    refuse("no token", "this needs the operator's token", "drive");
+  }
+}
+
+std::string Viewer::refusal(const std::string& sentence, std::string_view what) const {
+  Json out = {{"op", "refused"}, {"error", sentence}};
+  if (!what.empty()) out["what"] = what;
+  return text_of(out);
+}
+
+std::size_t Viewer::next_channel() const {
+  std::size_t next = kChannels;
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    if (!wanted_.at(i)) continue;
+    if (!anew_.at(i) && state().board.version(static_cast<Channel>(i)) == held_.at(i)) continue;
+    if (next == kChannels || sent_.at(i) < sent_.at(next)) next = i;
+  }
+  return next;
+}
+
+std::optional<Watcher::Frame> Viewer::next_frame() {
+  const std::size_t next = next_channel();
+  if (!ready_ || next == kChannels) return std::nullopt;
+  const Update update =
+      state().board.update(static_cast<Channel>(next), anew_.at(next) ? 0 : held_.at(next));
+  anew_.at(next) = false;
+  held_.at(next) = update.version;
+  sent_.at(next) = ++messages_sent_;
+  return Frame{update.text, false};
+}
+
+}  // namespace topogeo::web

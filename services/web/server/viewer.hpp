@@ -1,0 +1,55 @@
+// A page that watches: a WebSocket that is brought up to date whenever it can take more.
+//
+// Of the channels that have changed since they were last sent the one goes next that was sent
+// longest ago, so that a slow link gets some of everything.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/viewer_message.hpp"
+#include "server/watcher.hpp"
+
+namespace topogeo::web {
+
+class Viewer : public Watcher {
+ public:
+  /// Like Watcher.
+  Viewer(Connection connection, ServerState& state, std::shared_ptr<void> place);
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+  ~Viewer() override;
+
+  [[nodiscard]] bool is_operator() const override { return operator_; }
+
+ private:
+  void on_open() override;
+  void on_text(const std::string& text) override;
+  void on_end() override;
+  std::optional<Frame> next_frame() override;
+  [[nodiscard]] std::string refusal(const std::string& sentence,
+                                    std::string_view what) const override;
+  void on_message(const ViewerMessage& message);
+  void hello(const ViewerMessage& message);
+  void want(const ViewerMessage& message);
+  void drive(const ViewerMessage& message);
+  [[nodiscard]] std::size_t next_channel() const;
+
+  std::uint64_t number_;
+  asio::steady_timer hello_timer_;
+  bool operator_ = false;
+  bool ready_ = false;  // the first message has come, or will not
+  std::array<bool, kChannels> wanted_{};
+  std::array<std::uint64_t, kChannels> held_{};
+  std::array<bool, kChannels> anew_{};           // to be sent whole although nothing has changed
+  std::array<std::uint64_t, kChannels> sent_{};  // number of the message that was sent last
+  std::uint64_t messages_sent_ = 0;
+};
+
+}  // namespace topogeo::web

@@ -1,0 +1,32 @@
+// What a page sends through its WebSocket.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/board.hpp"
+
+namespace topogeo::web {
+
+struct ViewerMessage {
+  enum class Op : std::uint8_t { kHello, kWant, kResync, kPing, kDrive, kRelease };
+
+  Op op = Op::kPing;
+  std::string token;                      ///< kHello
+  std::string life;                       ///< kHello: of the service that `have` is of
+  std::map<Channel, std::uint64_t> have;  ///< kHello: versions that the page holds
+  bool all_channels = true;               ///< kHello: it has named none
+  std::vector<Channel> channels;          ///< kHello, kWant: what it wants
+  Channel channel{};                      ///< kResync
+  double linear_mps = 0.0;                ///< kDrive
+  double angular_radps = 0.0;             ///< kDrive
+};
+
+/// Throws std::invalid_argument with what was expected. Channels that do not exist are passed over,
+/// so that a page of another version works.
+ViewerMessage parse_viewer_message(std::string_view text);
+
+}  // namespace topogeo::web
