@@ -55,14 +55,6 @@ test("the robot explores its room by itself", async () => {
   await text(page, ".events .text", /explored: .*nothing is left/);
 });
 
-/** Whether the service keeps drawings; else the test is skipped. */
-async function offered(context_of_test) {
-  const { offers } = await (await fetch(`${robot.address}/api/info`)).json();
-  const there = offers.includes("drawing") && offers.includes("floor");
-  if (!there) context_of_test.skip("this service keeps no drawings");
-  return there;
-}
-
 /** Where points of the map frame are on the screen, in the view Draw: two points of the cursor say it. */
 async function screen_of_map() {
   await page.locator(".tool[data-tool=place]").click();
@@ -116,8 +108,7 @@ async function is_at(what, x_m, y_m, seconds = 120) {
 }
 
 // The table of the room leaves a passage below, where the robot stands, and one above.
-test("a no-go zone across the way is gone round, and driven through when it is gone", async (context_of_test) => {
-  if (!(await offered(context_of_test))) return;
+test("a no-go zone across the way is gone round, and driven through when it is gone", async () => {
   assert.equal(await robot.post("goal", kBegin), 202);
   await is_at("the robot is back", 0, 0);
   const direct_m = await eventually("a route to the point ahead", () => route_length(kAhead));
@@ -157,8 +148,7 @@ test("a no-go zone across the way is gone round, and driven through when it is g
   await eventually("the route leads through again", async () => ((await route_length(kBegin)) ?? 9) < direct_m + 0.5);
 });
 
-test("a floor of two rooms is drawn, loaded into the simulator, and driven in", async (context_of_test) => {
-  if (!(await offered(context_of_test))) return;
+test("a floor of two rooms is drawn, loaded into the simulator, and driven in", async () => {
   await page.getByText("New floor", { exact: true }).click();
   await page.getByRole("button", { name: "Draw a new floor" }).click();
   await page.locator("#map.plane").waitFor();
