@@ -155,7 +155,8 @@ SweepOrder sweep_order(std::string_view name) {
   if (name == "none") return SweepOrder::kNone;
   if (name == "forward") return SweepOrder::kForward;
   if (name == "backward") return SweepOrder::kBackward;
-  throw std::invalid_argument("sweep: expected none, forward or backward, got " + std::string(name));
+  throw std::invalid_argument("sweep: expected none, forward or backward, got " +
+                              std::string(name));
 }
 
 double Sweep::farthest_s() const {

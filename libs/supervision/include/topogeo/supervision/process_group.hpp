@@ -70,7 +70,8 @@ class ProcessGroup {
   /// Asks the process of that name to finish (SIGTERM), which is in order from then on.
   void finish(const std::string& name);
 
-  /// Asks all processes to end (SIGTERM), which is in order, but the one of that name, which goes on.
+  /// Asks all processes to end (SIGTERM), which is in order, but the one of that name, which goes
+  /// on.
   void retire(const std::string& all_but);
   /// True when those that were asked to retire have ended. `kill`: those that have not are killed.
   bool retired(bool kill);
