@@ -29,7 +29,7 @@ HttpReply draw(std::uint32_t port, const json& drawing) {
 
 /// Asks again until the drawing has this version; it comes on a topic of its own.
 bool has_version(std::uint32_t port, const std::string& version) {
-  const auto end = steady_clock::now() + kPatience * kTimeFactor;
+  const auto end = steady_clock::now() + kPagePatience * kTimeFactor;
   while (steady_clock::now() < end) {
     const json drawing = drawing_at(port);
     if (drawing.is_object() && drawing["version"] == version) return true;
@@ -76,7 +76,7 @@ TEST(DrawingStore, KeepsWhatItHasAnsweredThroughAKill) {
   json changed = drawn;
   changed["version"] = "1";
   changed["walls"] = json::array();
-  const auto end = steady_clock::now() + kPatience * kTimeFactor;
+  const auto end = steady_clock::now() + kPagePatience * kTimeFactor;
   do {  // until the new one is found
     reply = draw(port, changed);
   } while (reply.status == 503 && steady_clock::now() < end);

@@ -17,7 +17,7 @@
 
 namespace topogeo::test {
 
-inline constexpr std::chrono::milliseconds kPatience{60'000};
+inline constexpr std::chrono::milliseconds kPagePatience{60'000};
 inline const std::string kToken = "token-of-this-test";
 
 /// Of the first link that a program prints.
@@ -28,7 +28,7 @@ inline std::uint32_t port_in(const std::string& out) {
 }
 
 inline std::uint32_t wait_for_port(const Program& program,
-                                   std::chrono::milliseconds patience = kPatience) {
+                                   std::chrono::milliseconds patience = kPagePatience) {
   const auto end = std::chrono::steady_clock::now() + patience * kTimeFactor;
   while (std::chrono::steady_clock::now() < end) {
     if (program.out().find("spectators: ") != std::string::npos) return port_in(program.out());
@@ -51,7 +51,7 @@ class WebOnRobot : public testing::Test {
     socket_->send({{"op", "hello"}, {"token", kToken}});
   }
   template <class Condition>
-  bool wait_for(const Condition& condition, std::chrono::milliseconds patience = kPatience) {
+  bool wait_for(const Condition& condition, std::chrono::milliseconds patience = kPagePatience) {
     return page_.wait_for(*socket_, condition, patience * kTimeFactor);
   }
   /// In the world.

@@ -69,7 +69,7 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   auto socket = std::make_unique<WebSocketClient>(port_);
   socket->send({{"op", "hello"}});
   ASSERT_TRUE(page.wait_for(
-      *socket, [&] { return is_whole(page); }, kPatience));
+      *socket, [&] { return is_whole(page); }, kPagePatience));
   const auto graph = page.tables["graph"];
   const json summary = graph.at("map");
   EXPECT_EQ(graph.size() - 1,
@@ -84,11 +84,11 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   ASSERT_TRUE(page.wait_for(
       *socket,
       [&] { return page.values["map"]["frame"].dump() != R"("")" && page.versions["tiles"] > 1; },
-      kPatience));
+      kPagePatience));
   PageModel late;
   WebSocketClient late_socket(port_);
   ASSERT_TRUE(late.wait_for(
-      late_socket, [&] { return is_whole(late); }, kPatience));
+      late_socket, [&] { return is_whole(late); }, kPagePatience));
   EXPECT_EQ(late.tables["graph"], page.tables["graph"]);
   EXPECT_EQ(late.tables["rooms"], page.tables["rooms"]);
 
@@ -100,7 +100,7 @@ TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   socket->send({{"op", "hello"}, {"life", life}, {"have", page.versions}});
   PageModel again;
   ASSERT_TRUE(again.wait_for(
-      *socket, [&] { return is_whole(again); }, kPatience));
+      *socket, [&] { return is_whole(again); }, kPagePatience));
   EXPECT_EQ(again.tables["graph"].size(), graph.size());
   EXPECT_NE(again.others.at(0)["life"], life);
 }
@@ -109,7 +109,7 @@ TEST_F(WebOnMap, TilesAreThoseOfTheMap) {
   PageModel page;
   WebSocketClient socket(port_);
   ASSERT_TRUE(page.wait_for(
-      socket, [&] { return is_whole(page); }, kPatience));
+      socket, [&] { return is_whole(page); }, kPagePatience));
   const std::string frame = page.values["map"]["frame"];
   const HttpReply tile = http_get(port_, "/tiles/grid/" + frame + "/0/0/0.png?v=1");
   EXPECT_EQ(tile.status, 200);
@@ -128,7 +128,7 @@ TEST_F(WebOnMap, OrdersThatCannotBeHaveAReason) {
   PageModel page;
   WebSocketClient socket(port_);
   ASSERT_TRUE(page.wait_for(
-      socket, [&] { return is_whole(page); }, kPatience));
+      socket, [&] { return is_whole(page); }, kPagePatience));
   EXPECT_EQ(http_post(port_, "/api/goal", "", R"({"place":"room A"})").status, 401);
   EXPECT_EQ(http_post(port_, "/api/goal", kToken, R"({"place":"nowhere"})").status, 409);
   EXPECT_EQ(http_post(port_, "/api/goal", kToken, "nonsense").status, 400);
@@ -156,7 +156,7 @@ TEST(WebCommand, ViewsAStoredMap) {
   WebSocketClient socket(wait_for_port(view));
   EXPECT_TRUE(page.wait_for(
       socket, [&] { return page.has("tiles") && page.tables["graph"].contains("map"); },
-      kPatience));
+      kPagePatience));
   view.send_signal(SIGINT);
   EXPECT_EQ(view.wait(), 0) << view.err();
 }
@@ -213,7 +213,7 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
       return std::fabs(std::remainder(page_.values["truth"]["theta_rad"].get<double>() - before_rad,
                                       2.0 * std::numbers::pi)) > 0.3;
     };
-    const auto end = steady_clock::now() + kPatience;
+    const auto end = steady_clock::now() + kPagePatience;
     while (!turned() && steady_clock::now() < end) {
       hand.send({{"op", "drive"}, {"linear_mps", 0.0}, {"angular_radps", 0.5}});
       wait_for([] { return false; }, milliseconds(50));

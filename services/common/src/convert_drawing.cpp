@@ -21,8 +21,8 @@ using detail::to_point;
 namespace {
 
 // As in files of zones.
-constexpr double kSlowest_mps = 0.01;
-constexpr double kFastest_mps = 10.0;
+constexpr double kSlowestMps = 0.01;
+constexpr double kFastestMps = 10.0;
 
 std::vector<msg::Point2> to_points(const std::vector<Eigen::Vector2d>& points_m) {
   check_bound("points of a zone or line", points_m.size(), msg::kMaxDrawnPoints);
@@ -48,9 +48,9 @@ void check_live_zone(const planning::DrawnZone& zone, std::size_t index) {
           fmt::format("zone '{}': {} corners, allowed are {}", zone.name, zone.polygon_m.size(),
                       msg::kMaxDrawnPoints));
   if (zone.kind == planning::ZoneKind::kSlow) {
-    require(zone.value >= kSlowest_mps && zone.value <= kFastest_mps, "zones", index,
+    require(zone.value >= kSlowestMps && zone.value <= kFastestMps, "zones", index,
             fmt::format("zone '{}': {} m/s, allowed are {} to {}", zone.name, zone.value,
-                        kSlowest_mps, kFastest_mps));
+                        kSlowestMps, kFastestMps));
   }
   if (zone.kind == planning::ZoneKind::kOneWay) {
     require(std::fabs(zone.value) <= std::numbers::pi, "zones", index,

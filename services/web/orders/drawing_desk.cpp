@@ -56,47 +56,47 @@ void DrawingDesk::on_state(const msg::DrawingState& state) {
 }
 
 template <class Order>
-void DrawingDesk::send(Order order, messaging::Writer<Order>& writer, std::string robot_id,
-                       Respond respond) {
+void DrawingDesk::send(Order order, messaging::Writer<Order>& writer, const std::string& robot_id,
+                       const Respond& respond) {
   messaging::set_header(order, robot_id, support::wall_clock_ns(), sent_++);
   messaging::set_client_id(order, client_id_);
-  pending_->begin(std::move(respond), [&writer, order](std::uint64_t id) mutable {
+  pending_->begin(respond, [&writer, order](std::uint64_t id) mutable {
     order.request_id(id);
     static_cast<void>(writer.write(order));
   });
 }
 
-void DrawingDesk::replace(const std::string& body, Respond respond) {
+void DrawingDesk::replace(const std::string& body, const Respond& respond) {
   const storage::MapDrawing drawing = parse_drawing(body);
   msg::DrawingOrder order;
   order.kind(msg::kDrawingReplace);
   order.version(drawing.version);
   order.content(service::to_msg(drawing));
-  send(std::move(order), orders_, map_robot(), std::move(respond));
+  send(std::move(order), orders_, map_robot(), respond);
 }
 
-void DrawingDesk::load_floor(const std::string& body, Respond respond) {
+void DrawingDesk::load_floor(const std::string& body, const Respond& respond) {
   const FloorText floor = parse_floor(body);
   if (floor.simulator) {
-    load_into_simulator(floor, std::move(respond));
+    load_into_simulator(floor, respond);
   } else {
-    load_into_map(floor, std::move(respond));
+    load_into_map(floor, respond);
   }
 }
 
-void DrawingDesk::load_into_map(const FloorText& floor, Respond respond) {
+void DrawingDesk::load_into_map(const FloorText& floor, const Respond& respond) {
   msg::DrawingOrder order;
   order.kind(msg::kDrawingFloor);
   order.version(version_);
   order.inside().x_m(floor.T_floor_start.x_m);
   order.inside().y_m(floor.T_floor_start.y_m);
   order.content(service::to_msg(floor.drawing));
-  send(std::move(order), orders_, map_robot(), [respond = std::move(respond)](Answer answer) {
+  send(std::move(order), orders_, map_robot(), [respond](Answer answer) {
     respond(answer.status == 200 ? Answer{202, "{}"} : std::move(answer));
   });
 }
 
-void DrawingDesk::load_into_simulator(const FloorText& floor, Respond respond) {
+void DrawingDesk::load_into_simulator(const FloorText& floor, const Respond& respond) {
   if (!takes_floors()) {
     respond(error_answer(409, "the robot is not simulated, or its simulator takes no floors"));
     return;
@@ -105,10 +105,9 @@ void DrawingDesk::load_into_simulator(const FloorText& floor, Respond respond) {
   messaging::set_text(order.name(), floor.name, "name");
   order.T_floor_start(service::to_msg(floor.T_floor_start));
   order.content(service::to_msg(floor.drawing));
-  send(std::move(order), floors_, service_.robot_id(),
-       [respond = std::move(respond)](Answer answer) {
-         respond(answer.status == 200 ? Answer{202, "{}"} : std::move(answer));
-       });
+  send(std::move(order), floors_, service_.robot_id(), [respond](Answer answer) {
+    respond(answer.status == 200 ? Answer{202, "{}"} : std::move(answer));
+  });
 }
 
 void DrawingDesk::on_answer(const msg::DrawingAnswer& answer) {

@@ -32,8 +32,8 @@ class DrawingDesk {
   [[nodiscard]] bool takes_floors() const { return floors_.matched() > 0; }
 
   // POST; throw std::invalid_argument like the parsers of drawing_text.hpp.
-  void replace(const std::string& body, Respond respond);
-  void load_floor(const std::string& body, Respond respond);
+  void replace(const std::string& body, const Respond& respond);
+  void load_floor(const std::string& body, const Respond& respond);
   /// Nobody gets an answer any more: each holds on to a connection. Before the server goes.
   void abandon() { pending_.reset(); }
 
@@ -41,9 +41,10 @@ class DrawingDesk {
   void on_state(const msg::DrawingState& state);
   void on_answer(const msg::DrawingAnswer& answer);
   template <class Order>
-  void send(Order order, messaging::Writer<Order>& writer, std::string robot_id, Respond respond);
-  void load_into_map(const FloorText& floor, Respond respond);
-  void load_into_simulator(const FloorText& floor, Respond respond);
+  void send(Order order, messaging::Writer<Order>& writer, const std::string& robot_id,
+            const Respond& respond);
+  void load_into_map(const FloorText& floor, const Respond& respond);
+  void load_into_simulator(const FloorText& floor, const Respond& respond);
   [[nodiscard]] const std::string& map_robot() const;
 
   service::Service& service_;

@@ -55,7 +55,7 @@ void expect_fits(const json& message, const json& schema, const std::string& whe
     ASSERT_TRUE(message.is_object()) << where;
     for (const auto& [key, value] : message.items()) {
       ASSERT_TRUE(schema["properties"].contains(key)) << where << "." << key;
-      expect_fits(value, schema["properties"][key], where + "." + key);
+      expect_fits(value, schema["properties"][key], std::string(where).append(".").append(key));
     }
     EXPECT_EQ(message.size(), schema["properties"].size()) << where;
   } else if (type == "array") {
