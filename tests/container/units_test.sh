@@ -51,7 +51,8 @@ here systemctl restart topogeo.target
 # All seven, as root and as the user of the services.
 all_run() { here topogeo status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 7 ]; }
 eventually 90 all_run || { cat "$work/status"; fail "not all services are well"; }
-here sudo -u topogeo --preserve-env=TOPOGEO_DOMAIN topogeo status > /dev/null || fail "not all services are well for their user"
+all_run_for_their_user() { here sudo -u topogeo --preserve-env=TOPOGEO_DOMAIN topogeo status > /dev/null; }
+eventually 30 all_run_for_their_user || fail "not all services are well for their user"
 eventually 30 here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
 
 step "what dies or hangs"

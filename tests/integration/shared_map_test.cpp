@@ -253,9 +253,10 @@ TEST_F(SharedMapServices, AskBeforeTheyMakeOneMap) {
   EXPECT_LE(stops_in_map(), a_.stops.size());
   EXPECT_THAT(merge_command({"accept", "7"}, 1), HasSubstr("no merge 7 was proposed"));
   EXPECT_THAT(merge_command({"merges"}), HasSubstr("1  open: stop "));
-  Program status(scratch_, "topogeo", {"status", "--domain", own_domain(), "--json"});
-  EXPECT_EQ(status.wait(), 0);
-  EXPECT_THAT(status.out(), HasSubstr("topogeo store accept 1"));
+  EXPECT_TRUE(eventually([&] {
+    Program status(scratch_, "topogeo", {"status", "--domain", own_domain(), "--json"});
+    return status.wait() == 0 && status.out().find("topogeo store accept 1") != std::string::npos;
+  }));
   // What nobody has answered is proposed again by a localizer that starts again.
   localizer->send_signal(SIGKILL);
   EXPECT_EQ(localizer->wait(), 128 + SIGKILL);
