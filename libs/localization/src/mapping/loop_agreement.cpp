@@ -43,6 +43,11 @@ constexpr std::size_t kRivalSeeds = 8;
 // Older ones have had their chance: bounds the work of a step.
 constexpr double kForgotten_m = 60.0;
 
+/// Over a longer path than odometry says much of.
+bool far_apart(std::span<const double> path_m, std::uint32_t a, std::uint32_t b) {
+  return std::fabs(path_m[a] - path_m[b]) > kFarthest_m;
+}
+
 /// How far the way round two loops leads from where it began, metres.
 double off_by_way_of(const PoseGraph& graph, const PoseGraphEdge& a, const PoseGraphEdge& b) {
   const std::vector<Pose2>& poses = graph.poses();
@@ -95,17 +100,14 @@ void LoopAgreement::keep(Hypothesis hypothesis, std::span<const double> path_m) 
 double LoopAgreement::disagreement(std::size_t a, std::size_t b, const Ways& ways) const {
   const PoseGraphEdge& first = edge_of(a);
   const PoseGraphEdge& second = edge_of(b);
-  const auto far_apart = [&](std::uint32_t i, std::uint32_t k) {
-    return std::fabs(ways.path_m[i] - ways.path_m[k]) > kFarthest_m;
-  };
-  if (!far_apart(first.from, second.from)) {
+  if (!far_apart(ways.path_m, first.from, second.from)) {
     return localization::disagreement(ways.graph, first, second, ways.path_m, kFarthest_m);
   }
   const UncertainPose* const T_seed_first = ways.T_seed_stop.find(first.from);
   const UncertainPose* const T_seed_second = ways.T_seed_stop.find(second.from);
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (T_seed_first == nullptr || T_seed_second == nullptr) return kNone;
-  if (far_apart(first.to, second.to)) return kNone;
+  if (far_apart(ways.path_m, first.to, second.to)) return kNone;
   const UncertainPose T_second_first = compose(inverse(*T_seed_second), *T_seed_first);
   if (!well_known(T_second_first.covariance)) return kNone;
   return localization::disagreement(ways.graph, first, second, T_second_first);
@@ -119,12 +121,12 @@ std::vector<std::uint32_t> LoopAgreement::other_visits(std::size_t seed, const W
   bool others = false;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const PoseGraphEdge& edge = edge_of(i);
-    if (std::fabs(ways.path_m[edge.to] - ways.path_m[seed_edge.to]) > kFarthest_m ||
+    if (far_apart(ways.path_m, edge.to, seed_edge.to) ||
         off_by_way_of(ways.graph, edge, seed_edge) > kFarOff_m) {
       continue;
     }
     near.push_back(i);
-    others |= std::fabs(ways.path_m[edge.from] - ways.path_m[seed_edge.from]) > kFarthest_m;
+    others |= far_apart(ways.path_m, edge.from, seed_edge.from);
   }
   std::vector<std::uint32_t> stops;
   if (!others || weight_of(near, ways.path_m) < kWanted) return stops;
@@ -231,13 +233,13 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
   const std::span<const double> path_m = ways.path_m;
   const PoseGraphEdge& seed_edge = edge_of(seed);
   const auto of_one_visit = [&](std::size_t i) {
-    return std::fabs(path_m[edge_of(i).from] - path_m[seed_edge.from]) <= kFarthest_m;
+    return !far_apart(path_m, edge_of(i).from, seed_edge.from);
   };
   Set others;
   std::set<std::uint32_t> of_other_visits;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     if (std::binary_search(set.begin(), set.end(), i) ||
-        std::fabs(path_m[edge_of(i).to] - path_m[seed_edge.to]) > kFarthest_m) {
+        far_apart(path_m, edge_of(i).to, seed_edge.to)) {
       continue;
     }
     const bool agrees = std::any_of(set.begin(), set.end(), [&](std::size_t other) {
@@ -262,10 +264,9 @@ LoopAgreement::Set LoopAgreement::rivals_of(std::size_t seed, const Set& set,
         edge_of(*std::min_element(set.begin(), set.end(), [&](std::size_t a, std::size_t b) {
           return later_apart_m(a) < later_apart_m(b);
         }));
-    const UncertainPose T_seed_nearest =
-        std::fabs(path_m[nearest.from] - path_m[seed_edge.from]) <= kFarthest_m
-            ? ways.graph.along_path(seed_edge.from, nearest.from)
-            : T_seed_stop.at(nearest.from);
+    const UncertainPose T_seed_nearest = far_apart(path_m, nearest.from, seed_edge.from)
+                                             ? T_seed_stop.at(nearest.from)
+                                             : ways.graph.along_path(seed_edge.from, nearest.from);
     const UncertainPose T_from_nearest =
         compose(inverse(T_seed_stop.at(edge_of(i).from)), T_seed_nearest);
     return localization::disagreement(ways.graph, nearest, edge_of(i), T_from_nearest) >
