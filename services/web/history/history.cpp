@@ -41,6 +41,36 @@ Json stored_version(const storage::MapDocument& map, const std::string& name) {
           {"version", std::to_string(map.trajectory.version)}};
 }
 
+struct NamedVersion {
+  std::string name;
+  MapCopies::Document map;
+};
+
+struct Comparison {
+  Json json;
+  std::string png;
+};
+
+Comparison compared(const NamedVersion& before, const NamedVersion& after,
+                    const planning::ScanGridConfig& config) {
+  const MapDifference made =
+      difference(grid_of_map(*before.map, config), grid_of_map(*after.map, config));
+  Json json = {{"before", stored_version(*before.map, before.name)},
+               {"after", stored_version(*after.map, after.name)},
+               {"columns", made.frame.columns},
+               {"rows", made.frame.rows},
+               {"resolution_m", made.frame.resolution_m}};
+  set_pose(json, made.frame.T_map_grid);
+  const auto area = [&](CellChange change) {
+    return rounded(made.areas_m2.at(static_cast<std::size_t>(change)));
+  };
+  json["gone_m2"] = area(CellChange::kGone);
+  json["new_m2"] = area(CellChange::kNew);
+  json["seen_m2"] = area(CellChange::kSeen);
+  json["lost_m2"] = area(CellChange::kLost);
+  return {std::move(json), difference_png(made)};
+}
+
 Answer formats_answer() {
   Json formats = Json::array();
   for (const exchange::ExportFormat& format : exchange::export_formats()) {
@@ -174,28 +204,14 @@ void History::compare(const std::string& query, const Respond& respond) {
   const auto good = [this](const storage::MapDocument& map) { return is_of_now(map); };
   const auto with_both = [this, before, after, respond](const MapCopies::Document& a,
                                                         const MapCopies::Document& b) {
-    const planning::ScanGridConfig& grid = service_.setup().config.config.hybrid_map.grid;
+    const auto& grid = service_.setup().config.config.hybrid_map.grid;
     const bool taken =
         background_.run([this, a, b, before, after, grid, respond]() -> Background::Rest {
           try {
-            MapDifference made = difference(grid_of_map(*a, grid), grid_of_map(*b, grid));
-            Json json = {{"before", stored_version(*a, before)},
-                         {"after", stored_version(*b, after)},
-                         {"columns", made.frame.columns},
-                         {"rows", made.frame.rows},
-                         {"resolution_m", made.frame.resolution_m}};
-            set_pose(json, made.frame.T_map_grid);
-            const auto area = [&](CellChange change) {
-              return rounded(made.areas_m2.at(static_cast<std::size_t>(change)));
-            };
-            json["gone_m2"] = area(CellChange::kGone);
-            json["new_m2"] = area(CellChange::kNew);
-            json["seen_m2"] = area(CellChange::kSeen);
-            json["lost_m2"] = area(CellChange::kLost);
-            return [this, json = std::move(json), png = difference_png(made), respond]() mutable {
-              difference_png_ = std::move(png);
-              json["picture"] = "/api/compare.png?v=" + std::to_string(++compared_);
-              respond(json_answer(json));
+            return [this, made = compared({before, a}, {after, b}, grid), respond]() mutable {
+              difference_png_ = std::move(made.png);
+              made.json["picture"] = "/api/compare.png?v=" + std::to_string(++compared_);
+              respond(json_answer(made.json));
             };
           } catch (const std::exception& error) {
             return [respond, answer = error_answer(409, error.what())] { respond(answer); };
