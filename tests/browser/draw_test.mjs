@@ -3,9 +3,8 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { kPictures, kSizes, launch, open_page, text } from "./page.mjs";
-import { eventually, in_map, SimulatedRun } from "./robot.mjs";
-import { watch } from "./watcher.mjs";
+import { kPictures, open_page, text, WatchedRobot } from "./page.mjs";
+import { eventually, SimulatedRun } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
@@ -13,38 +12,25 @@ const kBegin = { x_m: 0, y_m: 0 }; // where the robot begins
 const kAhead = { x_m: 3, y_m: 0 };
 
 const robot = new SimulatedRun(join(build, "bin"), source, process.env.TOPOGEO_WORK);
-let browser;
-let context;
-let truth;
+const run = new WatchedRobot(robot);
 let page;
 
 before(async () => {
-  await robot.start();
-  browser = await launch();
-  context = await browser.newContext({ viewport: kSizes.desk, colorScheme: "light" });
-  truth = await watch(context, robot.address);
-  await eventually("the robot has a pose", async () => (await truth.newest("pose"))?.state === "TRACKING", 120);
-  page = await open_page(context, `${robot.address}/#token=${robot.token}`);
+  await run.start();
+  page = await open_page(run.context, `${robot.address}/#token=${robot.token}`);
 });
 
-after(async () => {
-  await browser?.close();
-  await robot.stop();
-});
-
-async function true_place() {
-  return in_map(await truth.newest("truth"));
-}
+after(() => run.stop());
 
 test("the robot explores its room by itself", async () => {
   await page.click("#tab-send");
   await page.getByRole("button", { name: "Explore", exact: true }).click();
   await page.getByText("The robot explores by itself.").waitFor();
-  const from = await true_place();
+  const from = await run.true_place();
   await eventually(
     "it drives",
     async () => {
-      const at = await true_place();
+      const at = await run.true_place();
       return Math.hypot(at.x_m - from.x_m, at.y_m - from.y_m) > 0.3;
     },
     60,
@@ -100,7 +86,7 @@ async function is_at(what, x_m, y_m, seconds = 120) {
   await eventually(
     what,
     async () => {
-      const at = await true_place();
+      const at = await run.true_place();
       return Math.hypot(at.x_m - x_m, at.y_m - y_m) < 0.35;
     },
     seconds,
@@ -133,7 +119,7 @@ test("a no-go zone across the way is gone round, and driven through when it is g
   assert.equal(await robot.post("goal", kAhead), 202);
   let entered = false;
   const watched = setInterval(async () => {
-    const { x_m, y_m } = await true_place();
+    const { x_m, y_m } = await run.true_place();
     entered ||= x_m > 1.5 && x_m < 2.1 && y_m < 0.6;
   }, 50);
   await is_at("the robot arrives", 3, 0, 180);
@@ -170,19 +156,19 @@ test("a floor of two rooms is drawn, loaded into the simulator, and driven in", 
   await eventually(
     "the robot stands in the new floor",
     async () => {
-      const at_now = await truth.newest("truth");
+      const at_now = await run.newest("truth");
       return Math.hypot(at_now.x_m - 2.5, at_now.y_m - 3) < 0.2;
     },
     60,
   );
-  await eventually("it has a pose", async () => (await truth.newest("pose"))?.state === "TRACKING", 120);
+  await eventually("it has a pose", async () => (await run.newest("pose"))?.state === "TRACKING", 120);
   await eventually("it is sent through the door", async () => (await robot.ask("preview", { x_m: 4, y_m: 0 })).found, 60);
   assert.equal(await robot.post("goal", { x_m: 4, y_m: 0 }), 202);
   await eventually(
     "it is in the other room",
-    async () => (await truth.newest("truth")).x_m > 6.1,
+    async () => (await run.newest("truth")).x_m > 6.1,
     120,
   );
-  assert.equal((await truth.newest("truth")).collisions, 0);
+  assert.equal((await run.newest("truth")).collisions, 0);
   assert.deepEqual(page.faults, []);
 });

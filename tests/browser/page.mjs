@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { eventually } from "./robot.mjs";
+import { eventually, in_map } from "./robot.mjs";
+import { watch } from "./watcher.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium } = process.env;
 const packages = createRequire(join(build, "tests/browser/"));
@@ -25,6 +26,36 @@ export function launch() {
     executablePath: chromium,
     args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
   });
+}
+
+/** A browser beside a simulated robot, which both run from start() to stop(). */
+export class WatchedRobot {
+  constructor(robot) {
+    this.robot = robot;
+  }
+
+  /** Until the robot has a pose. */
+  async start() {
+    await this.robot.start();
+    this.browser = await launch();
+    this.context = await this.browser.newContext({ viewport: kSizes.desk, colorScheme: "light" });
+    this.channels = await watch(this.context, this.robot.address);
+    await eventually("the robot has a pose", async () => (await this.newest("pose"))?.state === "TRACKING", 120);
+  }
+
+  async stop() {
+    await this.browser?.close();
+    await this.robot.stop();
+  }
+
+  newest(channel) {
+    return this.channels.newest(channel);
+  }
+
+  /** Where it really is, in the map. */
+  async true_place() {
+    return in_map(await this.newest("truth"));
+  }
 }
 
 /** A page with the errors that it had. */

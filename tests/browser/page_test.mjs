@@ -3,35 +3,23 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { assert_accessible, kPictures, kSizes, launch, open_page, text } from "./page.mjs";
-import { eventually, in_map, Robot } from "./robot.mjs";
-import { watch } from "./watcher.mjs";
+import { assert_accessible, kPictures, kSizes, open_page, text, WatchedRobot } from "./page.mjs";
+import { eventually, Robot } from "./robot.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source } = process.env;
 
 const kViews = ["now", "send", "correct", "understand", "draw", "time"];
 
 const robot = new Robot(join(build, "bin"), source, process.env.TOPOGEO_WORK);
-let browser;
-let context;
-let truth;
+const run = new WatchedRobot(robot);
 
-before(async () => {
-  await robot.start();
-  browser = await launch();
-  context = await browser.newContext({ viewport: kSizes.desk, colorScheme: "light" });
-  truth = await watch(context, robot.address);
-  await eventually("the robot has a pose", async () => (await truth.newest("pose"))?.state === "TRACKING", 120);
-});
+before(() => run.start());
 
-after(async () => {
-  await browser?.close();
-  await robot.stop();
-});
+after(() => run.stop());
 
 /** A page of the operator (or of a spectator), with the errors that it had. */
 async function open(view, { token = robot.token, path = "/", options = undefined } = {}) {
-  const own = options ? await browser.newContext(options) : context;
+  const own = options ? await run.browser.newContext(options) : run.context;
   const page = await open_page(own, `${robot.address}${path}${token ? `#token=${token}` : ""}`);
   if (view) await page.click(`#tab-${view}`);
   page.close_all = () => (options ? own.close() : page.close());
@@ -43,14 +31,10 @@ async function end(page) {
   await page.close_all();
 }
 
-async function true_place() {
-  return in_map(await truth.newest("truth"));
-}
-
 async function stands() {
-  const from = await true_place();
+  const from = await run.true_place();
   await new Promise((resolve) => setTimeout(resolve, 300));
-  const to = await true_place();
+  const to = await run.true_place();
   return Math.hypot(to.x_m - from.x_m, to.y_m - from.y_m) < 0.002;
 }
 
@@ -87,7 +71,7 @@ test("a click on room A brings the robot there", async () => {
   await page.click("#go");
   await text(page, ".section h3", /To room A/);
   await text(page, ".section [role=status]", /Arrived/, 120);
-  const at = await true_place();
+  const at = await run.true_place();
   assert.ok(Math.hypot(at.x_m - 3, at.y_m) < 0.3, JSON.stringify(at));
   await end(page);
 });
@@ -106,19 +90,19 @@ test("a held key drives, letting go stops", async () => {
   const page = await open("send");
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();
-  const from = await true_place();
+  const from = await run.true_place();
   await page.keyboard.down("s");
   await eventually(
     "the robot moves",
     async () => {
-      const at = await true_place();
+      const at = await run.true_place();
       return Math.hypot(at.x_m - from.x_m, at.y_m - from.y_m) > 0.1;
     },
     20,
   );
   await page.keyboard.up("s");
   await eventually("the robot stands", stands, 10);
-  assert.equal(await truth.newest("drive"), null);
+  assert.equal(await run.newest("drive"), null);
   await end(page);
 });
 
@@ -126,16 +110,16 @@ test("a page that goes away while it drives stops the robot", async () => {
   const page = await open("send", { options: { viewport: kSizes.desk } });
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();
-  const from = (await truth.newest("truth")).theta_rad;
+  const from = (await run.newest("truth")).theta_rad;
   await page.keyboard.down("a");
-  await eventually("the robot turns", async () => Math.abs((await truth.newest("truth")).theta_rad - from) > 0.1, 20);
+  await eventually("the robot turns", async () => Math.abs((await run.newest("truth")).theta_rad - from) > 0.1, 20);
   await page.close_all();
   await eventually(
     "the robot stands",
     async () => {
-      const before = (await truth.newest("truth")).theta_rad;
+      const before = (await run.newest("truth")).theta_rad;
       await new Promise((resolve) => setTimeout(resolve, 300));
-      return Math.abs((await truth.newest("truth")).theta_rad - before) < 0.002;
+      return Math.abs((await run.newest("truth")).theta_rad - before) < 0.002;
     },
     10,
   );
@@ -220,7 +204,7 @@ test("the pose is set by dragging, in a map that stays as it is", async () => {
   await page.getByRole("button", { name: "Leave the map as it is" }).click();
   await text(page, "button", /Map from now on/, 120);
   await page.getByRole("button", { name: "Set on the map" }).click();
-  const at = await truth.newest("pose");
+  const at = await run.newest("pose");
   // A drag on the map fills the fields; then the pose is typed, for the robot is to stay where it is.
   const shown = await page.inputValue("#pose-x");
   const box = await page.locator("#map").boundingBox();
