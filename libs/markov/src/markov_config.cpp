@@ -1,6 +1,8 @@
 #include "topogeo/markov/markov_config.hpp"
 
-#include <stdexcept>
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 
 #include "topogeo/markov/belief_grid.hpp"
 #include "topogeo/markov/transition.hpp"
@@ -13,14 +15,77 @@ void require_odd(std::string_view key, int value) {
   if (value % 2 == 0) support::refuse_value(key, value, "an odd number");
 }
 
+constexpr std::string_view kBandsKey = "markov.reliability_bands";
+
 void check_bands(const SonarModelConfig& config) {
-  if (config.bands.empty()) throw std::invalid_argument("sonar bands: expected one at least");
   double from_m = 0.0;
   for (const ReliabilityBand& band : config.bands) {
-    support::require_between("bands.up_to_m", band.up_to_m, from_m, config.max_range_m, "m");
-    support::require_between("bands.reliability", band.reliability, 0.0, 1.0, "");
+    support::require_between(kBandsKey, band.up_to_m, from_m, config.max_range_m, "m");
+    support::require_between(kBandsKey, band.reliability, 0.0, 1.0, "");
     from_m = band.up_to_m;
   }
+}
+
+support::NumberRows rows_of_bands(const std::vector<ReliabilityBand>& bands) {
+  support::NumberRows rows;
+  for (const ReliabilityBand& band : bands) rows.push_back({band.up_to_m, band.reliability});
+  return rows;
+}
+
+std::optional<std::vector<ReliabilityBand>> bands_of(const support::NumberRows& rows) {
+  std::vector<ReliabilityBand> bands;
+  for (const std::vector<double>& row : rows) {
+    if (row.size() != 2) return std::nullopt;
+    bands.push_back({row[0], row[1]});
+  }
+  return bands;
+}
+
+/// A matrix in memory whose values are fewer or more than its cells has rows that are refused.
+support::NumberRows rows_of_matrix(const TransitionMatrix& matrix) {
+  support::NumberRows rows;
+  const auto columns = static_cast<std::size_t>(std::max(1, matrix.columns));
+  for (std::size_t i = 0; i < matrix.values.size(); ++i) {
+    if (i % columns == 0) rows.emplace_back();
+    rows.back().push_back(matrix.values[i]);
+  }
+  return rows;
+}
+
+std::optional<TransitionMatrix> matrix_of(const support::NumberRows& rows) {
+  TransitionMatrix matrix;
+  matrix.rows = static_cast<int>(rows.size());
+  matrix.columns = static_cast<int>(rows.front().size());
+  for (const std::vector<double>& row : rows) {
+    if (row.size() != rows.front().size()) return std::nullopt;
+    matrix.values.insert(matrix.values.end(), row.begin(), row.end());
+  }
+  return matrix;
+}
+
+void describe_transition(TransitionModel& model, support::ConfigSchema& schema) {
+  const auto add_matrix = [&](const char* key, TransitionMatrix* matrix, const char* why) {
+    schema.add_rows(key, matrix, rows_of_matrix, matrix_of,
+                    "rows of as many probabilities, odd numbers of rows and columns, 21 at the "
+                    "most, sum from 0.1 to 1.01",
+                    why);
+  };
+  add_matrix("markov.advance_matrix", &model.advance,
+             "grid: positions: where an advance ends, around where it should; rows across the "
+             "motion, the upper one to the left, columns along it (arrow_sense); MACONDO, fig. 6");
+  add_matrix("markov.left_matrix", &model.left,
+             "the same of a turn to the left, which MACONDO does not print; axes of the robot "
+             "before the turn");
+  add_matrix("markov.right_matrix", &model.right, "the same of a turn to the right");
+  schema.add(
+      "markov.arrow_sense", &model.sense,
+      {{"right", ArrowSense::kRight}, {"left", ArrowSense::kLeft}},
+      "of the arrow beside MACONDO's matrix of an advance, which the print does not show: the "
+      "right column is ahead of the robot, which rather goes too far, or left, behind it");
+  schema.add("markov.advance_step_m", &model.advance_step_m, 0.0, 100.0, "m",
+             "length that the matrix of an advance stands for, from 0.01 on; 0: a whole primitive");
+  schema.add("markov.turn_step_rad", &model.turn_step_rad, 0.0, 6.3, "rad",
+             "angle that the matrix of a turn stands for, from 0.01 on; 0: a whole primitive");
 }
 
 }  // namespace
@@ -41,6 +106,11 @@ void describe(SonarModelConfig& config, support::ConfigSchema& schema) {
        {"linear", PerceptualFormula::kLinear}},
       "probability from the mean difference d and scale_m s: exp(-d / s), 1 / (1 + d / s) or "
       "1 - d / s; MACONDO says only that it falls");
+  schema.add_rows("markov.reliability_bands", &config.bands, rows_of_bands, bands_of,
+                  "pairs of a distance in m and a reliability of 0 to 1, distances ascending up "
+                  "to max_range_m",
+                  "grid: positions: how reliable readings are whose expected distance is up to "
+                  "that of the pair; 0 beyond the last; as MACONDO measured its sonars");
   schema.add("markov.weigh_by_reliability", &config.weigh_by_reliability,
              "each difference by the reliability of its reading; MACONDO: all alike");
 }
@@ -51,15 +121,7 @@ void describe(MarkovConfig& config, support::ConfigSchema& schema) {
              "side of the window of probabilities, odd; MACONDO: 21");
   schema.add("markov.perceptual_weight", &config.perceptual_weight, 0.0, 1.0, "",
              "of readings that are wholly reliable, against the movement; MACONDO: 0.6");
-  schema.add(
-      "markov.arrow_sense", &config.transition.sense,
-      {{"right", ArrowSense::kRight}, {"left", ArrowSense::kLeft}},
-      "of the arrow beside MACONDO's matrix of an advance, which the print does not show: the "
-      "right column is ahead of the robot, which rather goes too far, or left, behind it");
-  schema.add("markov.advance_step_m", &config.transition.advance_step_m, 0.0, 100.0, "m",
-             "length that the matrix of an advance stands for, from 0.01 on; 0: a whole primitive");
-  schema.add("markov.turn_step_rad", &config.transition.turn_step_rad, 0.0, 6.3, "rad",
-             "angle that the matrix of a turn stands for, from 0.01 on; 0: a whole primitive");
+  describe_transition(config.transition, schema);
   describe(config.sonar, schema);
 }
 

@@ -3,40 +3,35 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 
 #include "topogeo/geometry/portable_math.hpp"
-#include "topogeo/support/check_range.hpp"
+#include "topogeo/support/config_schema.hpp"
 
 namespace topogeo::markov {
 namespace {
 
-void check_side(const std::string& field, int side) {
-  support::check_range("TransitionModel." + field, side, 1, 21);
-  if (side % 2 == 0) {
-    throw std::invalid_argument("TransitionModel." + field + " is " + std::to_string(side) +
-                                ", must be odd");
+void check_side(const std::string& key, const char* side, int cells) {
+  if (cells < 1 || cells > 21 || cells % 2 == 0) {
+    support::refuse_value(key, cells, std::string("an odd number of ") + side + " from 1 to 21");
   }
 }
 
-void check_matrix(const std::string& name, const TransitionMatrix& matrix) {
-  check_side(name + ".rows", matrix.rows);
-  check_side(name + ".columns", matrix.columns);
+void check_matrix(const std::string& key, const TransitionMatrix& matrix) {
+  check_side(key, "rows", matrix.rows);
+  check_side(key, "columns", matrix.columns);
   const auto cells =
       static_cast<std::size_t>(matrix.rows) * static_cast<std::size_t>(matrix.columns);
   if (matrix.values.size() != cells) {
-    throw std::invalid_argument("TransitionModel." + name + " has " +
-                                std::to_string(matrix.values.size()) + " values, must have " +
-                                std::to_string(cells));
+    support::refuse_value(key, static_cast<double>(matrix.values.size()),
+                          std::to_string(cells) + " values");
   }
   double sum = 0.0;
-  for (std::size_t i = 0; i < cells; ++i) {
-    support::check_range("TransitionModel." + name + ".values[" + std::to_string(i) + "]",
-                         matrix.values[i], 0.0, 1.01);
-    sum += matrix.values[i];
+  for (const double value : matrix.values) {
+    support::require_between(key, value, 0.0, 1.01, "");
+    sum += value;
   }
-  support::check_range("TransitionModel." + name + ": sum of values", sum, 0.1, 1.01);
+  if (!(sum >= 0.1 && sum <= 1.01)) support::refuse_value(key, sum, "a sum between 0.1 and 1.01");
 }
 
 /// Values on a square of cells around the expected place, from which the taps are read off.
@@ -96,13 +91,13 @@ TransitionMatrix quarter_turn() {
 }
 
 void check(const TransitionModel& model) {
-  check_matrix("advance", model.advance);
-  check_matrix("left", model.left);
-  check_matrix("right", model.right);
+  check_matrix("markov.advance_matrix", model.advance);
+  check_matrix("markov.left_matrix", model.left);
+  check_matrix("markov.right_matrix", model.right);
   if (model.advance_step_m != 0.0)
-    support::check_range("TransitionModel.advance_step_m", model.advance_step_m, 0.01, 100.0);
+    support::require_between("markov.advance_step_m", model.advance_step_m, 0.01, 100.0, "m");
   if (model.turn_step_rad != 0.0)
-    support::check_range("TransitionModel.turn_step_rad", model.turn_step_rad, 0.01, 6.3);
+    support::require_between("markov.turn_step_rad", model.turn_step_rad, 0.01, 6.3, "rad");
 }
 
 std::vector<Tap> turned(const TransitionMatrix& matrix, ArrowSense sense, double heading_rad) {

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <type_traits>
@@ -27,6 +29,44 @@ std::optional<Number> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+std::string rows_text(const NumberRows& rows) {
+  std::ostringstream text;
+  const char* before_row = "";
+  for (const std::vector<double>& row : rows) {
+    const char* before = before_row;
+    for (const double number : row) {
+      text << before << number_text(number);
+      before = " ";
+    }
+    before_row = "; ";
+  }
+  return text.str();
+}
+
+std::optional<std::vector<double>> parse_row(const std::string& text) {
+  std::vector<double> row;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const auto number = parse_number<double>(word);
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    row.push_back(*number);
+  }
+  if (row.empty()) return std::nullopt;
+  return row;
+}
+
+std::optional<NumberRows> parse_rows(const std::string& text) {
+  NumberRows rows;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(';', begin);
+    auto row = parse_row(text.substr(begin, end - begin));
+    if (!row) return std::nullopt;
+    rows.push_back(std::move(*row));
+  }
+  return rows;
 }
 
 bool is_well_formed(std::string_view key) {
@@ -165,6 +205,22 @@ void ConfigSchema::add(std::string key, std::string* value, std::string why) {
   p.text = [value] { return *value; };
   p.parse = [value](const std::string& text) -> std::optional<std::function<void()>> {
     return [value, text] { *value = text; };
+  };
+  insert(std::move(p));
+}
+
+void ConfigSchema::add_number_rows(std::string key, std::function<NumberRows()> get,
+                                   std::function<std::optional<Assignment>(const NumberRows&)> set,
+                                   std::string expected, std::string why) {
+  ConfigParameter p;
+  p.key = std::move(key);
+  p.why = std::move(why);
+  p.expected = std::move(expected);
+  p.is_text = true;
+  p.text = [get = std::move(get)] { return rows_text(get()); };
+  p.parse = [set = std::move(set)](const std::string& text) -> std::optional<Assignment> {
+    const auto rows = parse_rows(text);
+    return rows ? set(*rows) : std::nullopt;
   };
   insert(std::move(p));
 }

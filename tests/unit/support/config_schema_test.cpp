@@ -177,6 +177,62 @@ TEST(ConfigSchema, ListsWhatIsInForceAndTellsConfigurationsApart) {
   EXPECT_EQ(effective(schema).fingerprint, before.fingerprint);
 }
 
+/// A point of the plane, which is one row of two numbers.
+struct PlanePoint {
+  double x = 0.5;
+  double y = -1.0;
+};
+
+ConfigSchema declare_point(PlanePoint& point) {
+  ConfigSchema schema;
+  schema.add_rows<PlanePoint>(
+      "scene.point", &point,
+      [](const PlanePoint& p) -> NumberRows {
+        return {{p.x, p.y}};
+      },
+      [](const NumberRows& rows) -> std::optional<PlanePoint> {
+        if (rows.size() != 1 || rows[0].size() != 2) return std::nullopt;
+        return PlanePoint{rows[0][0], rows[0][1]};
+      },
+      "two numbers", "Where it is.");
+  return schema;
+}
+
+TEST(ConfigSchema, TakesRowsOfNumbersOfTheExpectedForm) {
+  PlanePoint point;
+  const ConfigSchema schema = declare_point(point);
+  EXPECT_EQ(schema.find("scene.point")->default_text, "0.5 -1");
+  for (const char* good : {"\"2 .25\"", "2 .25", "' 2  +0.25 '", ">-\n    2\n    0.25"}) {
+    point = {};
+    load_yaml_text("scene:\n  point: " + std::string(good) + "\n", "robot.yaml", schema);
+    EXPECT_EQ(point.x, 2.0) << good;
+    EXPECT_EQ(point.y, 0.25) << good;
+  }
+  std::ostringstream out;
+  write_yaml(schema, out);
+  EXPECT_THAT(out.str(), HasSubstr("# two numbers; default \"0.5 -1\"\n  point: \"2 0.25\"\n"));
+  for (const char* bad : {"2", "2 3 4", "2 3; 4 5", "2 3;", ";2 3", "\"\"", "2 nan", "2 inf",
+                          "2, 3", "2 x", "[2, 3]"}) {
+    EXPECT_THAT([&] { load_yaml_text("scene:\n  point: " + std::string(bad), "r.yaml", schema); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("expected two numbers")))
+        << bad;
+    EXPECT_EQ(point.x, 2.0) << "a refused file changed the value: " << bad;
+  }
+}
+
+TEST(ConfigSchema, WritesRowsThatItReadsBack) {
+  NumberRows rows{{0.1, 1.0 / 3.0, 1e-9}, {-2.0}};
+  const NumberRows written = rows;
+  ConfigSchema schema;
+  schema.add_rows<NumberRows>(
+      "rows", &rows, [](const NumberRows& r) { return r; },
+      [](const NumberRows& r) { return std::optional(r); }, "rows", "Any rows.");
+  const std::string text = schema.find("rows")->text();
+  rows.clear();
+  (*schema.find("rows")->parse(text))();
+  EXPECT_EQ(rows, written);
+}
+
 void describe(Values& values, ConfigSchema& schema) {
   schema.add("mapping.stop_distance_m", &values.distance_m, 0.1, 5.0, "m", "Between two stops.");
   schema.add("match.form", &values.form, {{"simple", Form::kSimple}, {"combined", Form::kCombined}},

@@ -20,9 +20,9 @@
 
 namespace topogeo::markov {
 
-/// Throws std::invalid_argument naming the field: sides of a matrix not odd or not in [1, 21],
-/// values of another number, negative or not finite, a sum not in [0.1, 1.01], a step that is
-/// neither 0 nor in [0.01, 100] m or [0.01, 6.3] rad.
+/// Throws std::invalid_argument naming key, value and what was expected: sides of a matrix not odd
+/// or not in [1, 21], values of another number, negative or not finite, a sum not in [0.1, 1.01], a
+/// step that is neither 0 nor in [0.01, 100] m or [0.01, 6.3] rad.
 void check(const TransitionModel& model);
 
 /// One cell of a matrix turned into the axes of the map.

@@ -19,6 +19,9 @@
 
 namespace topogeo::support {
 
+/// Numbers by rows, as of a matrix; rows may differ in length.
+using NumberRows = std::vector<std::vector<double>>;
+
 /// One declared parameter.
 struct ConfigParameter {
   std::string key;       ///< "section.name", any depth
@@ -58,6 +61,13 @@ class ConfigSchema {
   void add(const std::string& key, Enum* value,
            const std::vector<std::pair<std::string, Enum>>& names, const std::string& why);
 
+  /// A matrix or a list of tuples, written by its rows: "0.9 0.1; 0.1 0.9". `value_of` returns
+  /// nothing for rows that have not its form; `expected` says which that is.
+  template <typename Value>
+  void add_rows(std::string key, Value* value, NumberRows (*rows_of)(const Value&),
+                std::optional<Value> (*value_of)(const NumberRows&), std::string expected,
+                std::string why);
+
   /// The keys of a section that no result depends on: configurations that differ in them alone have
   /// one fingerprint.
   void leave_out_of_fingerprint(std::string_view section);
@@ -75,6 +85,10 @@ class ConfigSchema {
   void add_enumeration(std::string key, const std::vector<std::string>& names,
                        std::function<std::size_t()> get, std::function<void(std::size_t)> set,
                        std::string why);
+  using Assignment = std::function<void()>;
+  void add_number_rows(std::string key, std::function<NumberRows()> get,
+                       std::function<std::optional<Assignment>(const NumberRows&)> set,
+                       std::string expected, std::string why);
   template <typename Number>
   void add_number(std::string key, Number* value, Number min, Number max, std::string unit,
                   std::string why, std::string_view kind);
@@ -143,6 +157,20 @@ void ConfigSchema::add(const std::string& key, Enum* value,
   };
   auto set = [value, values](std::size_t i) { *value = values[i]; };
   add_enumeration(key, texts, std::move(get), std::move(set), why);
+}
+
+template <typename Value>
+void ConfigSchema::add_rows(std::string key, Value* value, NumberRows (*rows_of)(const Value&),
+                            std::optional<Value> (*value_of)(const NumberRows&),
+                            std::string expected, std::string why) {
+  auto set = [value, value_of](const NumberRows& rows) -> std::optional<Assignment> {
+    auto parsed = value_of(rows);
+    if (!parsed) return std::nullopt;
+    return [value, parsed = std::move(*parsed)] { *value = parsed; };
+  };
+  add_number_rows(
+      std::move(key), [value, rows_of] { return rows_of(*value); }, std::move(set),
+      std::move(expected), std::move(why));
 }
 
 }  // namespace topogeo::support
