@@ -251,6 +251,7 @@ void LocalizerService::carry_out_commands() {
       [this](const service::LocalizationCommand& command) {
         CommandAnswer answer = carry_out(command);
         send_pose();
+        count();
         return answer;
       },
       live_.stop_pose().stamp_ns);
@@ -286,6 +287,15 @@ void LocalizerService::count() {
     for (const auto& [name, value] : pipeline::localization_counts(*in_map)) set(name, value);
   }
   set_pool_counters(pool_, status);
+  report_need();
+}
+
+void LocalizerService::report_need() {
+  // One stop does not distinguish places that look alike: a robot that stands may wait for ever.
+  if (queue_.taken() == 0) return;
+  const bool lost = !finished_ && slam_->follower() != nullptr &&
+                    !localization::located((*slam_)->status().state);
+  service_.status().set_waits_for(lost ? "the robot to drive on, or its pose to be set" : "");
 }
 
 }  // namespace topogeo::localizer

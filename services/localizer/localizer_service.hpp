@@ -61,6 +61,8 @@ class LocalizerService {
   void finish();
   void publish(bool whole);
   void count();
+  /// In a stored map: what a robot without a pose needs to be found.
+  void report_need();
 
   service::Service& service_;
   LocalizerOptions options_;

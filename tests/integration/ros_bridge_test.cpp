@@ -182,6 +182,64 @@ TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   EXPECT_THAT(user.out(), HasSubstr("plan "));
 }
 
+// In a finished map, as docs/ros2.md has it: rooms of this floor look alike, so a robot that stands
+// has no pose until it is told or drives on.
+class FollowsInAFinishedMap : public RosBridge {
+ protected:
+  void SetUp() override {
+    write_log("floor", scratch_ / "floor.clf");
+    Program map(scratch_, "topogeo",
+                {"map", "--log", scratch_ / "floor.clf", "--out", scratch_ / "map"});
+    ASSERT_EQ(map.wait(100.0 * kTimeFactor), 0) << map.err();
+    const std::string stored = scratch_ / "map/map.pb";
+    start("map_store", {"--map", stored});
+    start("localizer", {"--map", stored, "--wait-workers", "0"});
+    start("local_mapper");
+    start_bridge();
+    robot_ = &start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml"});
+    user_ = &start_peer({"watch"});
+    ASSERT_TRUE(comes_true([&] { return status().find(kNeeds) != std::string::npos; })) << status();
+    ASSERT_EQ(last_line(user_->out(), "pose map "), "");
+  }
+
+  std::string status() {
+    Program shown(scratch_, "topogeo", {"status", "--domain", domain_, "--partition", "ros-test"});
+    (void)shown.wait();
+    return shown.out();
+  }
+  /// The robot is where its user sees it.
+  [[nodiscard]] bool agrees() const {
+    const geometry::Pose2 apart = geometry::between(pose_in(last_line(robot_->out(), "truth ")),
+                                                    pose_in(last_line(user_->out(), "pose map ")));
+    return apart.position_m().norm() < 0.15 && std::fabs(apart.theta_rad) < 0.05;
+  }
+
+  static constexpr const char* kNeeds = "the robot to drive on, or its pose to be set";
+  const Program* robot_ = nullptr;
+  const Program* user_ = nullptr;
+};
+
+// Rough as a click is; what the laser sees corrects it with the next stop.
+TEST_F(FollowsInAFinishedMap, ARobotThatStandsTakesThePoseOfAUser) {
+  Program& told = start_peer({"initialpose", "0.3", "-0.2", "0.15"});
+  EXPECT_EQ(told.wait(100.0 * kTimeFactor), 0) << told.err();
+  ASSERT_TRUE(says(*user_, "pose map "));
+  const geometry::Pose2 seen = pose_in(last_line(user_->out(), "pose map "));
+  EXPECT_NEAR(seen.x_m, 0.3, 0.05);
+  EXPECT_NEAR(seen.y_m, -0.2, 0.05);
+  EXPECT_NEAR(seen.theta_rad, 0.15, 0.02);
+  EXPECT_TRUE(comes_true([&] { return !last_line(user_->out(), "tf map odom ").empty(); }));
+  EXPECT_TRUE(comes_true([&] { return status().find(kNeeds) == std::string::npos; })) << status();
+  start_peer({"steer", "0.3", "0"});
+  EXPECT_TRUE(comes_true([&] { return agrees(); })) << last_line(user_->out(), "pose map ");
+}
+
+TEST_F(FollowsInAFinishedMap, ARobotThatDrivesOnIsFound) {
+  start_peer({"steer", "0.3", "0"});
+  EXPECT_TRUE(says(*user_, "pose map "));
+  EXPECT_TRUE(comes_true([&] { return agrees(); })) << last_line(user_->out(), "pose map ");
+}
+
 // `topogeo run --ros` alone: the robot is one of ROS, the laser where its transforms have it.
 TEST_F(RosBridge, ARunMapsARobotOfRos) {
   write_log("room", scratch_ / "room.clf");
