@@ -2,7 +2,9 @@
 // rate is in bytes of messages per second.
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -16,10 +18,11 @@ namespace {
 
 using namespace topogeo;
 
-/// 3,000 scans of 1,080 beams with odometry, 15 MB, removed at the end.
+/// 3,000 scans of 1,080 beams with odometry, 15 MB, removed at the end; `maps`: with four of 1.2 MB
+/// after every 60 scans, 240 MB in all, of which three are in chunks of their own.
 class RecordedFile {
  public:
-  RecordedFile(const std::string& ending, const std::string& compression)
+  RecordedFile(const std::string& ending, const std::string& compression, bool maps = false)
       : path_(std::filesystem::temp_directory_path() /
               ("topogeo_bench_" + std::to_string(getpid()) + ending)) {
     support::Random random(1);
@@ -34,6 +37,13 @@ class RecordedFile {
         range_m = 1.0F + 0.001F * static_cast<float>(random.below(10'000));
       }
       writer.write(scan);
+      constexpr int kScansPerMap = 60;
+      if (!maps || i % kScansPerMap != 0) continue;
+      constexpr std::uint32_t kSide = 1100;
+      const std::vector<std::int8_t> cells(std::size_t{kSide} * kSide, -1);
+      for (int map = 0; map < 4; ++map) {
+        writer.write_grid(scan.stamp_ns, {kSide, kSide, 0.05, {}}, cells);
+      }
     }
     writer.close();
   }
@@ -61,16 +71,34 @@ void messages(benchmark::State& state, const std::string& ending, const std::str
   state.SetBytesProcessed(bytes);
 }
 
-void scans(benchmark::State& state, const std::string& ending) {
-  const RecordedFile file(ending, "none");
-  const std::int64_t bytes = read_messages(file.path());
+void read_scans(benchmark::State& state, const std::filesystem::path& path) {
   for (auto _ : state) {
-    recording::LogReader reader(file.path());
+    recording::LogReader reader(path);
     std::uint64_t count = 0;
     while (const auto scan = reader.next()) ++count;
     if (count != 3000) state.SkipWithError("scans are missing");
   }
+}
+
+void scans(benchmark::State& state, const std::string& ending) {
+  const RecordedFile file(ending, "none");
+  const std::int64_t bytes = read_messages(file.path());
+  read_scans(state, file.path());
   state.SetBytesProcessed(state.iterations() * bytes);
+}
+
+/// `indexed` or without the checksum of the index, which is not used then: bytes of the file.
+void scans_among_maps(benchmark::State& state, bool indexed) {
+  const RecordedFile file(".mcap", "none", true);
+  if (!indexed) {
+    std::fstream bytes(file.path(), std::ios::binary | std::ios::in | std::ios::out);
+    constexpr int kChecksumToEnd = 12;
+    bytes.seekp(-kChecksumToEnd, std::ios::end);
+    bytes.write("\0\0\0\0", 4);
+  }
+  read_scans(state, file.path());
+  state.SetBytesProcessed(state.iterations() *
+                          static_cast<std::int64_t>(std::filesystem::file_size(file.path())));
 }
 
 BENCHMARK_CAPTURE(messages, mcap, ".mcap", "none")->Name("recording/messages/mcap");
@@ -80,5 +108,7 @@ BENCHMARK_CAPTURE(messages, db3, ".db3", "none")->Name("recording/messages/db3")
 BENCHMARK_CAPTURE(messages, bag, ".bag", "none")->Name("recording/messages/bag");
 BENCHMARK_CAPTURE(scans, mcap, ".mcap")->Name("recording/scans/mcap");
 BENCHMARK_CAPTURE(scans, db3, ".db3")->Name("recording/scans/db3");
+BENCHMARK_CAPTURE(scans_among_maps, mcap, true)->Name("recording/scans/mcap_maps_indexed");
+BENCHMARK_CAPTURE(scans_among_maps, mcap, false)->Name("recording/scans/mcap_maps_linear");
 
 }  // namespace

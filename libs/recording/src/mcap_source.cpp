@@ -1,5 +1,6 @@
 #include "mcap_source.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -23,9 +24,34 @@ Encoding encoding_of_channel(std::string_view message_encoding) {
 
 McapSource::McapSource(const std::filesystem::path& path, TopicFilter wanted)
     : ChunkedSource(path, std::move(wanted), std::as_bytes(std::span(mcap::kMagic)),
-                    "the first bytes of an MCAP file") {}
+                    "the first bytes of an MCAP file") {
+  take_summary(read_summary(file()));
+}
+
+void McapSource::take_summary(const McapSummary& summary) {
+  try {
+    for (const std::vector<std::byte>& schema : summary.schemas) take_schema(schema);
+    for (const std::vector<std::byte>& channel : summary.channels) take_channel(channel);
+  } catch (const FormatError&) {
+    return;  // the data section has them as well
+  }
+  // A channel that is not in the summary would be known from a chunk that is passed over.
+  const auto is_known = [this](std::uint16_t id) { return channels_.contains(id); };
+  const auto is_unwanted = [this](std::uint16_t id) { return !channels_.at(id).wanted; };
+  const auto states_channels = [&](const auto& entry) {
+    return !entry.second.channels.empty() && std::ranges::all_of(entry.second.channels, is_known);
+  };
+  if (!std::ranges::all_of(summary.chunks, states_channels)) return;
+  for (const auto& [start, chunk] : summary.chunks) {
+    if (std::ranges::all_of(chunk.channels, is_unwanted)) unwanted_chunks_[start] = chunk.end;
+  }
+}
 
 bool McapSource::read_record(RawMessage& message) {
+  if (const auto unwanted = unwanted_chunks_.find(at()); unwanted != unwanted_chunks_.end()) {
+    move_to(unwanted->second);
+    return false;
+  }
   const std::span<const std::byte> head = file().view(at(), mcap::kRecordHead);
   if (head.empty()) throw FormatError("expected the end of the data, got the end of the file");
   Cursor cursor(head);

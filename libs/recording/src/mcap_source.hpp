@@ -1,4 +1,5 @@
-// Reads MCAP (https://mcap.dev/spec) from front to back.
+// Reads MCAP (https://mcap.dev/spec) from front to back, past the chunks that
+// by the index at its end have nothing that is wanted.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "chunked_source.hpp"
+#include "mcap_index.hpp"
 
 namespace topogeo::recording {
 
@@ -17,6 +19,7 @@ class McapSource final : public ChunkedSource {
   McapSource(const std::filesystem::path& path, TopicFilter wanted);
 
  private:
+  void take_summary(const McapSummary& summary);
   bool read_record(RawMessage& message) override;
   bool read_record_of_chunk(Cursor& cursor, RawMessage& message) override;
   bool take_message(std::span<const std::byte> content, RawMessage& message);
@@ -26,6 +29,7 @@ class McapSource final : public ChunkedSource {
 
   std::map<std::uint16_t, std::string> schemas_;  // names
   std::map<std::uint16_t, Channel> channels_;
+  std::map<std::uint64_t, std::uint64_t> unwanted_chunks_;  // where each starts and the next record
 };
 
 }  // namespace topogeo::recording

@@ -1,11 +1,11 @@
 // Our encoding of messages beside that of fastddsgen and Fast CDR, and by hand for ROS 1.
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
 #include <gtest/gtest.h>
 
 #include "topogeo/recording/ros_codec.hpp"
 #include "topogeo/recording/ros_definitions.hpp"
 #include "topogeo/ros_conversions/messages.hpp"
+
+#include "fast_cdr.hpp"
 
 namespace topogeo::recording {
 namespace {
@@ -15,18 +15,6 @@ std::vector<std::byte> encoded(const Message& message, Encoding encoding) {
   std::vector<std::byte> bytes;
   encode(message, encoding, bytes);
   return bytes;
-}
-
-template <typename Message>
-std::vector<std::byte> by_fast_cdr(const Message& message,
-                                   eprosima::fastcdr::Cdr::Endianness order) {
-  std::vector<char> zeros(4096);  // it leaves in the padding what stands there
-  eprosima::fastcdr::FastBuffer buffer(zeros.data(), zeros.size());
-  eprosima::fastcdr::Cdr cdr(buffer, order, eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.serialize_encapsulation();
-  message.serialize(cdr);
-  const auto* first = reinterpret_cast<const std::byte*>(buffer.getBuffer());
-  return {first, first + cdr.getSerializedDataLength()};
 }
 
 ros::LaserScan some_scan() {

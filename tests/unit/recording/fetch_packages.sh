@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
-# fetch_packages.sh FOLDER: the npm packages that mcap_check.mjs needs, once, into FOLDER. Exit code 77 where npm or the
+# fetch_packages.sh FOLDER: the npm packages that the scripts beside this one need, once, into FOLDER. Exit code 77 where npm or the
 # network is missing.
 set -euo pipefail
 folder=$1
-[ -e "$folder/done" ] && exit 0
+done=$folder/done-2  # another number when the list changes
+[ -e "$done" ] && exit 0
 if ! command -v npm > /dev/null || ! command -v node > /dev/null; then
   echo "no node or npm"
   exit 77
 fi
 mkdir -p "$folder"
 timeout 90 npm install --prefix "$folder" --no-audit --no-fund --ignore-scripts --fetch-retries 1 \
-  @mcap/core@2.2.2 @foxglove/rosmsg@5.0.5 @foxglove/rosmsg2-serialization@3.1.0 fzstd@0.1.1 \
+  @mcap/core@2.2.2 @foxglove/rosmsg@5.0.5 @foxglove/rosmsg2-serialization@3.1.0 \
+  @foxglove/rosmsg-msgs-common@3.2.3 fzstd@0.1.1 \
   || { echo "npm cannot fetch the packages"; exit 77; }
-touch "$folder/done"
+touch "$done"

@@ -1,7 +1,7 @@
 // The messages of a recording, one after the other, whatever file they are in: rosbag2's SQLite
 // (.db3), MCAP, the bag of ROS 1 (version 2.0), or a folder of rosbag2 with several of them. Files
-// are read from front to back, a part at a time; indexes are not needed, so that a recording that
-// was cut off gives what it holds.
+// are read from front to back, a part at a time. An index (of MCAP) is used to pass over what is
+// not wanted, but not needed, so that a recording that was cut off gives what it holds.
 #pragma once
 
 #include <cstddef>

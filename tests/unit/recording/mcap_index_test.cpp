@@ -1,0 +1,101 @@
+// The index of an MCAP file: what is not wanted is passed over unread, and without it, or with one
+// that is damaged, the same scans come.
+#include <functional>
+
+#include <gmock/gmock.h>
+
+#include "recorded_drive.hpp"
+
+namespace topogeo::recording {
+namespace {
+
+constexpr int kScans = 60;
+constexpr std::int64_t kPeriod_ns = 100'000'000;
+constexpr std::int8_t kSecondMap = 77;
+
+/// A drive with two maps after every tenth scan, each larger than a chunk: the second of them, of
+/// cells that are all alike, is alone in its chunk.
+std::string drive_with_maps(const std::filesystem::path& file) {
+  constexpr std::size_t kSide = 1100;
+  LogWriter writer(file, kMounting, "none");
+  for (int i = 0; i < kScans; ++i) {
+    scan::Scan scan = short_drive()[static_cast<std::size_t>(i) % short_drive().size()];
+    scan.stamp_ns = 1'600'000'000'000'000'000 + i * kPeriod_ns;
+    writer.write(scan);
+    if (i % 10 != 9) continue;
+    const ros::GridPlace place{kSide, kSide, 0.05, {}};
+    for (const std::int8_t cell : {std::int8_t{0}, kSecondMap}) {
+      writer.write_grid(scan.stamp_ns, place, std::vector<std::int8_t>(kSide * kSide, cell));
+    }
+  }
+  writer.close();
+  return bytes_of(file);
+}
+
+class McapIndex : public RecordingFiles {
+ protected:
+  McapIndex() : whole_(drive_with_maps(path("whole.mcap"))) {}
+
+  /// The file after a change of its bytes.
+  std::filesystem::path changed(const std::function<void(std::string&)>& change) {
+    std::string bytes = whole_;
+    change(bytes);
+    put_bytes(path("changed.mcap"), bytes);
+    return path("changed.mcap");
+  }
+  /// The checksum of the summary stands before the last 8 bytes, 0: there is none.
+  static void forget_checksum(std::string& bytes) { bytes.replace(bytes.size() - 12, 4, 4, '\0'); }
+  /// A byte of each second map.
+  static void damage_maps(std::string& bytes) {
+    const std::string cells(1000, static_cast<char>(kSecondMap));
+    const std::size_t map = bytes.find(cells);
+    ASSERT_NE(map, std::string::npos);
+    bytes[map + 10] = 0;
+  }
+
+  std::string whole_;
+};
+
+TEST_F(McapIndex, LeadsPastChunksOfOtherTopics) {
+  const std::vector<scan::Scan> all = read_scans(path("whole.mcap"));
+  ASSERT_EQ(all.size(), std::size_t{kScans});
+  // What is not read is not checked.
+  expect_same_scans(read_scans(changed(damage_maps)), all);
+  const auto without = read_scans(changed([](std::string& bytes) {
+    damage_maps(bytes);
+    forget_checksum(bytes);
+  }));
+  EXPECT_EQ(without.size(), std::size_t{10}) << "what follows a damaged chunk is not trusted";
+}
+
+TEST_F(McapIndex, IsNotNeeded) {
+  const std::vector<scan::Scan> all = read_scans(path("whole.mcap"));
+  expect_same_scans(read_scans(changed(forget_checksum)), all);
+  // The footer: opcode, length, start of the summary, of its offsets, checksum, the magic.
+  constexpr std::size_t kSummaryStart = 8 + 4 + 8 + 8;
+  expect_same_scans(read_scans(changed([](std::string& bytes) {
+                      bytes.replace(bytes.size() - kSummaryStart, 20, 20, '\0');
+                    })),
+                    all);
+  constexpr std::size_t kFooter = kSummaryStart + 9;
+  expect_same_scans(
+      read_scans(changed([](std::string& bytes) { bytes.resize(bytes.size() - kFooter - 100); })),
+      all);
+}
+
+// Any byte of the summary changed: its checksum says so.
+TEST_F(McapIndex, ThatIsDamagedIsNotUsed) {
+  const std::vector<scan::Scan> all = read_scans(path("whole.mcap"));
+  constexpr std::size_t kWithin = 900;  // the indexes of the last chunks, offsets, footer
+  for (std::size_t back = 9; back < kWithin; back += 53) {
+    SCOPED_TRACE(back);
+    expect_same_scans(read_scans(changed([&](std::string& bytes) {
+                        char& byte = bytes[bytes.size() - back];
+                        byte = static_cast<char>(~byte);
+                      })),
+                      all);
+  }
+}
+
+}  // namespace
+}  // namespace topogeo::recording
