@@ -231,9 +231,7 @@ class FieldFiller {
 /// What a message holds, as JSON.
 template <typename Field>
 nlohmann::json json_of(Field& field) {
-  if constexpr (requires { nlohmann::json(field); } && !std::is_class_v<Field>) {
-    return field;
-  } else if constexpr (std::same_as<Field, std::string>) {
+  if constexpr (!std::is_class_v<Field> || std::same_as<Field, std::string>) {
     return field;
   } else if constexpr (requires { field.begin(); }) {
     nlohmann::json array = nlohmann::json::array();
