@@ -57,6 +57,7 @@ bool McapSource::read_record(RawMessage& message) {
   Cursor cursor(head);
   const auto opcode = static_cast<mcap::Opcode>(cursor.number<std::uint8_t>());
   const auto length = cursor.number<std::uint64_t>();
+  if (opcode == mcap::Opcode::kNone) throw FormatError("expected a record, got zeros");
   const std::uint64_t start = at() + mcap::kRecordHead;
   if (length > file().size() - start) {
     throw FormatError("expected a record of " + std::to_string(length) +

@@ -43,6 +43,7 @@ class Surveyor {
     RawMessage message;
     while (source->next(message)) take(source->topics()[message.topic], message);
     for (const Topic& topic : source->topics()) all_topics_.push_back(topic);
+    damage_ = source->damage();
   }
 
   Survey result() {
@@ -67,6 +68,7 @@ class Surveyor {
   const TopicChoice& choice_;
   std::map<std::string, TopicFacts> facts_;  // by name
   std::vector<Topic> all_topics_;
+  std::string damage_;
   ros::FrameTree transforms_;
   Survey survey_;
 };
@@ -126,7 +128,8 @@ std::string Surveyor::topics_text() const {
     text += (i == 0 ? "" : ", ") + all_topics_[i].name + " (" + all_topics_[i].type + ")";
   }
   if (all_topics_.size() > kMost) text += ", ...";
-  return text.empty() ? "no topics" : text;
+  if (text.empty()) text = "no topics";
+  return damage_.empty() ? text : text + "; " + damage_;
 }
 
 const TopicFacts* chosen(const std::vector<const TopicFacts*>& found,

@@ -85,6 +85,21 @@ TEST_F(DamagedRecording, FailsItsChecksum) {
   EXPECT_THAT(open_error(path("b.mcap")), HasSubstr("expected laser scans"));
 }
 
+// Nothing is whole: the error says where the file ends to make sense.
+TEST_P(DamagedRecording, WithoutAnythingWholeIsRefusedWithThePosition) {
+  const std::string whole = bytes_of(write_drive(path(GetParam().first), GetParam().second));
+  put_bytes(path("cut"), whole.substr(0, whole.size() / 8));
+  EXPECT_THAT(open_error(path("cut")),
+              AllOf(HasSubstr("expected laser scans"), HasSubstr("cut: byte ")));
+}
+
+// As a disk leaves it that was full, or a crash.
+TEST_F(DamagedRecording, OfZerosIsRefusedWithThePosition) {
+  const std::string head = bytes_of(write_drive(path("a.mcap"), "none")).substr(0, 8);
+  put_bytes(path("zeros.mcap"), head + std::string(1000, '\0'));
+  EXPECT_THAT(open_error(path("zeros.mcap")), HasSubstr("byte 8: expected a record, got zeros"));
+}
+
 TEST_F(DamagedRecording, OfSqliteIsRefusedOrReadInPart) {
   const std::string whole = bytes_of(write_drive(path("a.db3")));
   for (std::size_t part = 1; part < 8; ++part) {
