@@ -153,6 +153,19 @@ TEST_F(RosBridge, MapsARobotOfRosAndShowsItsMapAndPose) {
   EXPECT_TRUE(comes_true([&] { return !last_line(late.out(), "graph ").empty(); }));
 }
 
+// What changes within a map that is there comes by itself.
+TEST_F(RosBridge, SendsTheChangesOfAMap) {
+  start("map_store", {"--out", scratch_ / "out", "--new"});
+  start("localizer", {"--wait-workers", "0"});
+  start("local_mapper");
+  start_bridge();
+  const Program& user = start_peer({"watch"});
+  start_peer({"drive", std::string(TOPOGEO_TEST_DATA) + "/floor.world.yaml"});
+  ASSERT_TRUE(says(user, "map map ")) << programs_[3]->err();
+  start_peer({"steer", "0", "0.6"});
+  EXPECT_TRUE(says(user, "map_update ")) << user.out();
+}
+
 TEST_F(RosBridge, DrivesARobotOfRosToAGoal) {
   write_log("room", scratch_ / "room.clf");
   Program map(scratch_, "topogeo",
