@@ -1,6 +1,7 @@
 // Makes a local topo-geometric map at each stop of the robot.
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/service/map_replacement.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 
@@ -19,8 +20,12 @@ int main(int argc, char** argv) {
                      "the last one");
       },
       [&](const service::Setup& setup) {
-        service::Service service(setup);
-        const local_mapper::LocalMapperService mapper(service, replay, standalone);
-        service.run();
+        const auto work = [&] {
+          service::Service service(setup);
+          const local_mapper::LocalMapperService mapper(service, replay, standalone);
+          return service::run_with_one_map(service);
+        };
+        while (work()) {
+        }
       });
 }

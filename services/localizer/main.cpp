@@ -5,6 +5,7 @@
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
+#include "topogeo/service/map_replacement.hpp"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
 #include "topogeo/service/sole_service.hpp"
@@ -63,15 +64,17 @@ int main(int argc, char** argv) {
                 "--with-robots goes on with the map of the map store: --map, --continue, --replay "
                 "and --wait-workers do not go with it");
           }
+        }
+        const auto work = [&] {
           service::Service service(service::with_robots(setup, robots));
           const service::SoleService sole(service);
-          const localizer::SharedLocalizerService localizer(service, options.standalone);
-          service.run();
-          return;
-        }
-        service::Service service(setup);
-        const service::SoleService sole(service);
-        const localizer::LocalizerService localizer(service, options);
-        service.run();
+          if (!robots.empty()) {
+            const localizer::SharedLocalizerService localizer(service, options.standalone);
+            return service::run_with_one_map(service);
+          }
+          const localizer::LocalizerService localizer(service, options);
+          return service::run_with_one_map(service);
+        };
+        while (work()) options.continued.reset();  // the map store has it
       });
 }

@@ -63,6 +63,7 @@ MapStoreService::MapStoreService(service::Service& service, MapStoreOptions opti
           },
           [this](const std::string& name) {
             wanted_snapshot_ = name;
+            acknowledged_.withdraw();
             service_.loop().stop();
           }),
       drawing_(service, options_.drawing, true,

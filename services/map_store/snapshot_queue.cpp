@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/service/snapshot_pieces.hpp"
 
 namespace topogeo::map_store {
 
@@ -12,11 +13,6 @@ namespace {
 
 bool same_request(const msg::SnapshotRequest& a, const msg::SnapshotRequest& b) {
   return a.request_id() == b.request_id() && a.client_id() == b.client_id();
-}
-
-std::uint32_t pieces_of(std::size_t bytes) {
-  const std::size_t pieces = (bytes + msg::kMaxPieceBytes - 1) / msg::kMaxPieceBytes;
-  return static_cast<std::uint32_t>(std::max<std::size_t>(pieces, 1));  // none stands for no answer
 }
 
 }  // namespace
@@ -47,7 +43,7 @@ void SnapshotQueue::make_next(Clock::time_point now) {
   waiting_.pop_front();
   try {
     source_(answer_->request, [&](std::string_view bytes) { answer_->bytes += bytes; });
-    answer_->pieces = pieces_of(answer_->bytes.size());
+    answer_->pieces = service::piece_count(answer_->bytes.size());
   } catch (const std::exception& error) {
     answer_->bytes.clear();
     answer_->message = error.what();
@@ -59,14 +55,8 @@ msg::SnapshotPiece SnapshotQueue::piece(const Answer& answer) const {
   messaging::set_header(out, robot_id_, answer.request.stamp_ns(), sent_);
   messaging::set_client_id(out, answer.request.client_id().to_string());
   out.request_id(answer.request.request_id());
-  out.piece(answer.next);
-  out.pieces(answer.pieces);
   messaging::set_text_cut(out.message(), answer.message);
-  const std::size_t begin = std::size_t{answer.next} * msg::kMaxPieceBytes;
-  const std::string_view bytes =
-      std::string_view(answer.bytes)
-          .substr(std::min(begin, answer.bytes.size()), msg::kMaxPieceBytes);
-  out.bytes().assign(bytes.begin(), bytes.end());
+  if (answer.pieces > 0) service::cut_piece(out, answer.bytes, answer.next);
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "stored_channel.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,12 @@ StoredChannel::StoredChannel(service::Service& service)
 
 void StoredChannel::publish(const storage::MapDatabase& database) {
   for (auto& [robot, sent] : sent_) publish(database, robot, sent);
+}
+
+void StoredChannel::withdraw() {
+  constexpr std::chrono::milliseconds kPatience{500};
+  for (const auto& [robot, sent] : sent_) writer_.dispose(sent.message);
+  static_cast<void>(writer_.wait_for_acknowledgments(kPatience));
 }
 
 void StoredChannel::publish(const storage::MapDatabase& database, const std::string& robot,

@@ -25,6 +25,8 @@ class StoredChannel {
   }
   /// What the database has now, as far as it was not sent.
   void publish(const storage::MapDatabase& database);
+  /// Another map takes the place of this one: who has made something of it begins anew.
+  void withdraw();
 
  private:
   /// What was sent last, and how many messages were.

@@ -143,6 +143,39 @@ test("Stop holds the robot until it is released", async () => {
   await end(page);
 });
 
+test("a restored map stays without what the drive under way has mapped since", async () => {
+  const stops_stored = async () => {
+    const answer = await fetch(`${robot.address}/api/drive`);
+    return answer.ok ? (await answer.json()).total : -1;
+  };
+  const go_to = async (place) => {
+    assert.equal(await robot.post("goal", { place }), 202);
+    await eventually(`the robot is at ${place}`, async () => (await run.newest("navigator"))?.state === "arrived", 120);
+  };
+  await go_to("base");
+  const before = await eventually("the map is stored", stops_stored);
+  assert.equal(await robot.post("snapshot", { name: "before-the-tour" }), 200);
+  await robot.post("goal", { place: "room A" });
+  await eventually("it has left the base", async () => (await run.newest("navigator"))?.state === "driving", 30);
+  await go_to("room A");
+  await eventually("stops of the tour", async () => (await stops_stored()) > before + 1, 30);
+  assert.equal(await robot.post("restore", { name: "before-the-tour" }), 200);
+  // The robot goes on in it, from where it stands: one more stop. Those of the tour do not come back.
+  const is_restored = (stops) => stops >= before && stops <= before + 1;
+  await eventually("the map of before", async () => is_restored(await stops_stored()), 30);
+  await eventually("the robot knows where it is", async () => {
+    const { state, x_m, y_m } = await run.newest("pose");
+    const at = await run.true_place();
+    return state === "TRACKING" && Math.hypot(at.x_m - x_m, at.y_m - y_m) < 0.3;
+  });
+  const stops = await stops_stored();
+  assert.ok(is_restored(stops), `${stops} stops, ${before} in the snapshot`);
+  await robot.post("goal", { place: "base" });
+  await eventually("it drives on", async () => (await run.newest("navigator"))?.state === "driving", 60);
+  await go_to("base");
+  await eventually("the map grows again", async () => (await stops_stored()) > stops, 30);
+});
+
 test("the page goes on after the web service was replaced", async () => {
   const page = await open("now");
   await text(page, ".state-word", /TRACKING/i);

@@ -1,8 +1,6 @@
 #include "topogeo/service/store_client.hpp"
 
-#include <algorithm>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -16,8 +14,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kAskPeriod{100};
 constexpr std::chrono::milliseconds kSilence{1000};
-/// Of an answer: 1.8 GB. The first piece makes room for all.
-constexpr std::uint32_t kMostPieces = 32'768;
 /// Without another piece of an answer: the store has gone, or a piece with it.
 constexpr std::chrono::seconds kPatience{2};
 
@@ -61,23 +57,12 @@ void StoreClient::send(bool anew) {
 
 void StoreClient::on_piece(const msg::SnapshotPiece& piece) {
   if (!request_ || piece.request_id() != request_->request_id()) return;
-  const bool other_answer = !pieces_.empty() && piece.pieces() != pieces_.size();
-  if (piece.pieces() > kMostPieces || other_answer) {
-    throw std::invalid_argument(
-        "it is one of " + std::to_string(piece.pieces()) + ", expected " +
-        (other_answer ? std::to_string(pieces_.size()) : "at most " + std::to_string(kMostPieces)));
-  }
-  last_heard_ = Clock::now();
-  if (piece.pieces() > 0 && piece.piece() < piece.pieces()) {
-    pieces_.resize(piece.pieces());
-    pieces_[piece.piece()] = std::string(piece.bytes().begin(), piece.bytes().end());
-    const auto here = [](const std::optional<std::string>& part) { return part.has_value(); };
-    if (!std::all_of(pieces_.begin(), pieces_.end(), here)) return;
-  }
   Answer answer;
   if (piece.pieces() > 0) {
-    answer.bytes.emplace();
-    for (const std::optional<std::string>& part : pieces_) *answer.bytes += *part;
+    pieces_.add(piece);
+    last_heard_ = Clock::now();
+    if (!pieces_.complete()) return;
+    answer.bytes = pieces_.take();
   } else {
     answer.why = piece.message().to_string();
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "topogeo/service/conversions.hpp"
+#include "topogeo/service/map_replacement.hpp"
 #include "topogeo/support/format.hpp"
 
 #include "channels/event_log.hpp"
@@ -55,6 +56,14 @@ DriveView::DriveView(service::Service& service, Board& board, EventLog& events)
   service.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); });
   service.subscribe<msg::MergeProposal>(
       [this](const msg::MergeProposal& proposal) { on_proposal(proposal); }, {.of_map = true});
+  service::when_map_is_replaced(service, [this] {
+    trajectory_ = {};
+    heard_.clear();
+    order_heard_.clear();
+    loops_numbered_since_ = 0;
+    loops_ = 0;
+    board_.edit(Channel::kLoops, {}, true);
+  });
   service.loop().add_timer(kTrailPeriod, [this] {
     if (std::exchange(trail_changed_, false)) show_trail();
   });

@@ -6,11 +6,11 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/store.h"
 #include "topogeo/service/service.hpp"
+#include "topogeo/service/snapshot_pieces.hpp"
 
 namespace topogeo::service {
 
@@ -41,6 +41,7 @@ class StoreClient {
   void tick();
 
   using Clock = std::chrono::steady_clock;
+  static constexpr std::uint32_t kMostPieces = 32'768;  // 1.8 GB
 
   Service& service_;
   std::string client_id_;
@@ -48,7 +49,7 @@ class StoreClient {
   std::uint64_t requests_sent_ = 0;
   std::optional<msg::SnapshotRequest> request_;
   Handler handler_;
-  std::vector<std::optional<std::string>> pieces_;  // of the answer
+  PieceAssembly pieces_{kMostPieces};  // of the answer
   Clock::time_point last_heard_;
   bool heard_by_nobody_ = false;  // the store was not known when the request was sent
   std::uint64_t timer_ = 0;
