@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/storage/map_file.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
 #include "topogeo/support/log.hpp"
@@ -56,6 +57,15 @@ ArchiveChannel::ArchiveChannel(service::Service& service, std::filesystem::path 
       replies_(service.advertise<msg::ArchiveReply>()) {
   service.subscribe<msg::ArchiveRequest>(
       [this](const msg::ArchiveRequest& request) { on_request(request); }, {.team = true});
+  service.subscribe<msg::SnapshotPiece>(
+      [this](const msg::SnapshotPiece& piece) { on_piece(piece); },
+      {.addressee = service::kArchiveAddressee, .team = true});
+}
+
+void ArchiveChannel::on_piece(const msg::SnapshotPiece& piece) {
+  if (piece.request_id() != import_request_) imported_.clear();
+  import_request_ = piece.request_id();
+  imported_.add(piece);
 }
 
 std::filesystem::path ArchiveChannel::path_of(std::uint64_t name_key) const {
@@ -71,6 +81,8 @@ void ArchiveChannel::on_request(const msg::ArchiveRequest& request) {
     static_cast<void>(replies_.write(*last_));
     return;
   }
+  const bool here = import_request_ == request.request_id() && imported_.complete();
+  if (request.action() == msg::kArchiveImport && !here) return;  // it comes again
   msg::ArchiveReply& reply = last_.emplace();
   messaging::set_header(reply, service_.robot_id(), support::wall_clock_ns(), sent_++);
   messaging::set_text(reply.client_id(), request.client_id().to_string(), "client_id");
@@ -104,6 +116,12 @@ std::string ArchiveChannel::carry_out(const msg::ArchiveRequest& request) {
       const storage::MapSnapshot taken = storage::take_snapshot(database_, name);
       spdlog::info("made snapshot {}", taken.path.string());
       return fmt::format("snapshot {} has {} stops", name, taken.stops);
+    }
+    case msg::kArchiveImport: {
+      const storage::MapSnapshot made = storage::import_snapshot(
+          database_, name, storage::parse_map_file(imported_.take(), "the map that was sent"));
+      spdlog::info("took a map in as snapshot {}", made.path.string());
+      return fmt::format("snapshot {} has {} stops", name, made.stops);
     }
     case msg::kArchiveRestore: {
       storage::check_snapshot_name(name);

@@ -1,5 +1,5 @@
-// Snapshots of the map for those who ask over DDS: listed and made here, restored by the program,
-// which has to let go of the database first.
+// Snapshots of the map for those who ask over DDS: listed, made and imported here, restored by the
+// program, which has to let go of the database first.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,9 @@
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/archive.h"
+#include "topogeo/msg/store.h"
 #include "topogeo/service/service.hpp"
+#include "topogeo/service/snapshot_pieces.hpp"
 #include "topogeo/storage/map_snapshots.hpp"
 
 namespace topogeo::map_store {
@@ -38,6 +40,7 @@ class ArchiveChannel {
   void on_request(const msg::ArchiveRequest& request);
   /// What was done, as a sentence. Throws std::exception saying why not.
   std::string carry_out(const msg::ArchiveRequest& request);
+  void on_piece(const msg::SnapshotPiece& piece);
 
   service::Service& service_;
   std::filesystem::path database_;
@@ -45,6 +48,8 @@ class ArchiveChannel {
   Restore restore_;
   messaging::Writer<msg::ArchiveReply> replies_;
   std::optional<msg::ArchiveReply> last_;  // who gets none sends the request again
+  service::PieceAssembly imported_{msg::kMaxImportedPieces};
+  std::uint64_t import_request_ = 0;  // that the pieces are of
   std::uint64_t sent_ = 0;
 };
 

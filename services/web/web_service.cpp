@@ -23,9 +23,10 @@ namespace {
 constexpr std::chrono::milliseconds kCountsPeriod{500};
 constexpr int kProtocolVersion = 1;
 /// What POST takes, below /api/.
-constexpr std::array<std::string_view, 17> kOffers = {
-    "goal",   "preview", "pause", "resume",  "cancel",   "stop",    "release", "return",     "pose",
-    "search", "mode",    "merge", "explore", "snapshot", "restore", "drawing", "room_shapes"};
+constexpr std::array<std::string_view, 18> kOffers = {
+    "goal",    "preview",  "pause",   "resume",  "cancel",      "stop",
+    "release", "return",   "pose",    "search",  "mode",        "merge",
+    "explore", "snapshot", "restore", "drawing", "room_shapes", "merge_map"};
 
 Answer accepted() {
   return {202, "{}"};
@@ -194,6 +195,9 @@ void WebService::obey(const Request& request, const Respond& respond) {
        [&](const std::string& body) { localizer_.answer_merge(parse_merge_order(body), respond); }},
       {"/api/snapshot", [&](const std::string& body) { history_.take_snapshot(body, respond); }},
       {"/api/restore", [&](const std::string& body) { history_.restore(body, respond); }},
+      {kMapUploadPath, [&](const std::string& body) { history_.offer_map(body, respond); }},
+      {"/api/merge_map_answer",
+       [&](const std::string& body) { history_.answer_merge(body, respond); }},
       {"/api/drawing", [&](const std::string& body) { drawing_.replace(body, respond); }},
       {"/api/floor", [&](const std::string& body) { load_floor(body, respond); }},
       {"/api/room_shapes", [&](const std::string& body) { respond(room_shapes(body)); }},

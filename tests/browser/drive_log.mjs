@@ -7,8 +7,12 @@ const kRange_m = 20;
 const kStep_m = 0.1;
 const kDrift = 0.01; // of the odometry, radians a metre
 
-function walls() {
-  return [kOuter, ...kBoxes].flatMap(([x0, y0, x1, y1]) => [
+// Without them the corridor looks much the same from its other end.
+const kFurniture = [[4, 0, 5, 0.5], [9.2, 0, 10.3, 0.3], [11.5, 2, 12, 2.5], [5, 8.5, 6.5, 9], [0, 6, 0.3, 7.6], [2, 7, 4.5, 7.4]];
+
+function walls({ scale, furnished }) {
+  const boxes = [kOuter, ...kBoxes, ...(furnished ? kFurniture : [])].map((box) => box.map((value) => scale * value));
+  return boxes.flatMap(([x0, y0, x1, y1]) => [
     [x0, y0, x1, y0],
     [x1, y0, x1, y1],
     [x1, y1, x0, y1],
@@ -32,11 +36,11 @@ function cast(x, y, angle, lines) {
 }
 
 /** True poses: along the middle of the corridor, turning on the spot at its corners. */
-function path(corners) {
-  const track = [[1, 1], [11, 1], [11, 8], [1, 8]];
+function path(corners, { first, scale }) {
+  const track = [[1, 1], [11, 1], [11, 8], [1, 8]].map((corner) => corner.map((value) => scale * value));
   const poses = [];
-  let heading = 0;
-  for (let i = 0; i < corners; ++i) {
+  let heading = (first * Math.PI) / 2;
+  for (let i = first; i < first + corners; ++i) {
     const [from, to] = [track[i % 4], track[(i + 1) % 4]];
     const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
     for (let s = 0; s < length; s += kStep_m) {
@@ -49,13 +53,16 @@ function path(corners) {
   return poses;
 }
 
-/** corners: how many sides of the corridor are driven; four are one round. */
-export function drive_log(corners) {
-  const lines = walls();
+/**
+ * corners: how many sides of the corridor are driven; four are one round. first: the side where it begins. scale: of the
+ * whole building.
+ */
+export function drive_log(corners, { first = 0, scale = 1, furnished = false } = {}) {
+  const lines = walls({ scale, furnished });
   const number = (value) => value.toFixed(4);
   let [odom_x, odom_y, odom_theta] = [0, 0, 0];
   let before = null;
-  return path(corners)
+  return path(corners, { first, scale })
     .map(([x, y, theta], i) => {
       if (before) {
         const [dx, dy] = [x - before[0], y - before[1]];

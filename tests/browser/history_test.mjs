@@ -31,11 +31,14 @@ function facts(folder) {
 }
 
 before(async () => {
-  for (const [name, corners] of [
+  for (const [name, ...drive] of [
     ["round", 6],
     ["half", 2],
+    ["morning", 2, { furnished: true }],
+    ["evening", 4, { furnished: true, first: 1 }], // in the same building
+    ["elsewhere", 3, { furnished: true, scale: 0.7 }],
   ]) {
-    writeFileSync(file(`${name}.clf`), drive_log(corners));
+    writeFileSync(file(`${name}.clf`), drive_log(...drive));
     topogeo("map", "--log", file(`${name}.clf`), "--out", file(name));
   }
   await robot.start_store("--map", file("round/map.pb"));
@@ -226,6 +229,59 @@ test("snapshots are made, compared and restored", async () => {
   });
   const { snapshots } = JSON.parse((await get("/api/snapshots")).bytes);
   assert.ok(snapshots.some((snapshot) => snapshot.name === "before-half" && snapshot.stops === facts("round").stops));
+  assert.deepEqual(page.faults, []);
+});
+
+/** Offers a map file on the page; what it says of it. */
+async function offer(name, pattern) {
+  await page.setInputFiles("#merge-file", name);
+  return text(".merge-result", pattern);
+}
+
+test("what is no map, or of another place, is not merged and says why", async () => {
+  await robot.end("web");
+  await robot.end("map_store");
+  await robot.start_store("--continue", file("morning/map.pb"), "--out", file("store_merged"), "--new");
+  await page.reload();
+  await page.click("#tab-time");
+  writeFileSync(file("none.pb"), "this is no map");
+  assert.match(await offer(file("none.pb"), /was not merged/), /none\.pb was not merged\. The file: /);
+  const bytes = readFileSync(file("evening/map.pb"));
+  writeFileSync(file("cut.pb"), bytes.subarray(0, bytes.length / 2));
+  assert.match(await offer(file("cut.pb"), /was not merged/), /The file: /);
+  assert.match(await offer(file("elsewhere/map.pb"), /was not merged/), /The maps do not join/);
+  assert.match(await offer(file("morning/map.pb"), /was not merged/), /one of them is the other at another time/);
+  assert.equal(await robot.post("merge_map", {}, "wrong"), 401);
+  assert.equal(await robot.post("merge_map_answer", { number: 1, accept: true }), 409);
+  await page.setInputFiles("#merge-file", {
+    name: "huge.pb",
+    mimeType: "application/octet-stream",
+    buffer: Buffer.alloc(2 ** 20),
+  });
+  await text(".merge-result", /huge\.pb was not merged/);
+});
+
+test("another map of the place is merged once the operator has seen and accepted it", async () => {
+  const { total } = JSON.parse((await get("/api/drive")).bytes);
+  assert.equal(total, facts("morning").stops);
+  await offer(file("evening/map.pb"), /map\.pb joins the map/);
+  await text(".merge-result dt", /Seen since/);
+  await picture("time-merge");
+  await page.getByRole("button", { name: "Discard it" }).click();
+  await text(".notice", /The map stays as it is/);
+  assert.equal(JSON.parse((await get("/api/drive")).bytes).total, total);
+
+  const shown = await offer(file("evening/map.pb"), /map\.pb joins the map/);
+  const joined = Number(/(\d+) stops of the smaller map/.exec(shown)[1]);
+  assert.ok(joined > total / 2, shown); // the morning is the smaller one
+  await page.getByRole("button", { name: "Make it the map" }).click();
+  await text(".notice", /becomes that of snapshot merged-/);
+  await eventually("the merged map", async () => {
+    const { status, bytes } = await get("/api/drive");
+    return status === 200 && JSON.parse(bytes).total === facts("evening").stops + joined;
+  });
+  const names = JSON.parse((await get("/api/snapshots")).bytes).snapshots.map(({ name }) => name);
+  assert.ok(names.some((name) => name.startsWith("before-merged-")), names.join());
   assert.deepEqual(page.faults, []);
 });
 

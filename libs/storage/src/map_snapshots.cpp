@@ -247,6 +247,33 @@ MapSnapshot take_snapshot(const fs::path& database, const std::string& name) try
   throw std::runtime_error(error.what());
 }
 
+MapSnapshot import_snapshot(const fs::path& database, const std::string& name,
+                            const MapDocument& map) try {
+  const fs::path path = snapshot_path(database, name);
+  const MapDatabase own = MapDatabase::open_read_only(database);
+  if (map.robot_id != own.robot_id() || map.seed != own.seed()) {
+    throw std::runtime_error(
+        fmt::format("it is the map of robot '{}' with seed {}, expected '{}' with seed {}",
+                    map.robot_id, map.seed, own.robot_id(), own.seed()));
+  }
+  const fs::path made = path.parent_path() / ".imported.sqlite";
+  fs::create_directories(made.parent_path());
+  remove_with_logs(made);  // of a program that was killed
+  try {
+    MapDatabase::open_or_create(made, map.robot_id, map.seed).put_document(map);
+    MapSnapshot snapshot = write_snapshot(*open_map_database(made, Access::kReadOnly), path);
+    remove_with_logs(made);
+    return snapshot;
+  } catch (...) {
+    remove_with_logs(made);
+    throw;
+  }
+} catch (const SQLite::Exception& error) {
+  throw_named(database.string(), error);
+} catch (const fs::filesystem_error& error) {
+  throw std::runtime_error(error.what());
+}
+
 std::optional<MapSnapshot> restore_snapshot(
     const fs::path& database, const std::string& name,
     const std::function<void(std::string_view)>& after) try {

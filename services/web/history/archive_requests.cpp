@@ -1,9 +1,11 @@
 #include "history/archive_requests.hpp"
 
+#include <chrono>
 #include <optional>
 #include <utility>
 
 #include "topogeo/messaging/message.hpp"
+#include "topogeo/service/snapshot_pieces.hpp"
 #include "topogeo/storage/map_snapshots.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
@@ -15,6 +17,9 @@ namespace {
 
 /// A large map takes its time to copy.
 constexpr double kArchivePatience_s = 20.0;
+// Of a map file: at most 180 MB/s, and no more under way than fits into the history of the writer.
+constexpr std::chrono::milliseconds kPiecePeriod{20};
+constexpr std::uint32_t kPiecesAtOnce = 64;
 
 Json snapshot_json(const msg::StoredSnapshot& snapshot) {
   Json json = {{"name", text_of_message(snapshot.name())},
@@ -36,9 +41,15 @@ ArchiveRequests::ArchiveRequests(service::Service& service)
     : service_(service),
       client_id_(support::process_name()),
       pending_(service, "no map store has answered", kArchivePatience_s),
-      requests_(service.advertise<msg::ArchiveRequest>()) {
+      requests_(service.advertise<msg::ArchiveRequest>()),
+      pieces_(service.advertise<msg::SnapshotPiece>()) {
+  timer_ = service.loop().add_timer(kPiecePeriod, [this] { send_pieces(); });
   service.subscribe<msg::ArchiveReply>([this](const msg::ArchiveReply& reply) { on_reply(reply); },
                                        {.any_robot = true});
+}
+
+ArchiveRequests::~ArchiveRequests() {
+  service_.loop().cancel_timer(timer_);
 }
 
 void ArchiveRequests::list(Respond respond) {
@@ -55,15 +66,49 @@ void ArchiveRequests::restore(const std::string& name, Respond respond) {
   send(msg::kArchiveRestore, name, std::move(respond));
 }
 
-void ArchiveRequests::send(msg::ArchiveAction action, const std::string& name, Respond respond) {
+void ArchiveRequests::import(const std::string& name, std::string map_file, Respond respond) {
+  if (!map_file_.empty()) {
+    respond(error_answer(503, "another map is sent to the map store, try again later"));
+    return;
+  }
+  storage::check_snapshot_name(name);
+  map_file_ = std::move(map_file);
+  next_piece_ = 0;
+  send(msg::kArchiveImport, name, [this, respond = std::move(respond)](Answer answer) {
+    map_file_.clear();
+    respond(std::move(answer));
+  });
+}
+
+void ArchiveRequests::send_pieces() {
+  if (map_file_.empty() || pieces_.matched() == 0) return;
+  if (!pieces_.wait_for_acknowledgments({})) return;
+  const std::uint32_t count = service::piece_count(map_file_.size());
+  for (std::uint32_t i = 0; i < kPiecesAtOnce && next_piece_ < count; ++i) {
+    msg::SnapshotPiece piece;
+    messaging::set_header(piece, map_robot(), support::wall_clock_ns(), pieces_sent_);
+    messaging::set_client_id(piece, service::kArchiveAddressee);
+    piece.request_id(import_request_);
+    service::cut_piece(piece, map_file_, next_piece_);
+    if (!pieces_.write(piece)) return;
+    ++pieces_sent_;
+    ++next_piece_;
+  }
+}
+
+const std::string& ArchiveRequests::map_robot() const {
   const std::string& other = service_.setup().options.map_robot;
+  return other.empty() ? service_.robot_id() : other;
+}
+
+void ArchiveRequests::send(msg::ArchiveAction action, const std::string& name, Respond respond) {
   msg::ArchiveRequest request;
-  messaging::set_header(request, other.empty() ? service_.robot_id() : other,
-                        support::wall_clock_ns(), sent_++);
+  messaging::set_header(request, map_robot(), support::wall_clock_ns(), sent_++);
   messaging::set_client_id(request, client_id_);
   request.action(action);
   messaging::set_text(request.name(), name, "name");
   pending_.begin(std::move(respond), [this, request](std::uint64_t id) mutable {
+    if (request.action() == msg::kArchiveImport) import_request_ = id;
     request.request_id(id);
     static_cast<void>(requests_.write(request));
   });

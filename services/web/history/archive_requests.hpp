@@ -1,4 +1,4 @@
-// Requests to the map store for its snapshots, and its replies.
+// Requests to the map store for its snapshots, maps that become some, and its replies.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/archive.h"
+#include "topogeo/msg/store.h"
 #include "topogeo/service/service.hpp"
 
 #include "orders/pending_requests.hpp"
@@ -18,21 +19,34 @@ namespace topogeo::web {
 class ArchiveRequests {
  public:
   explicit ArchiveRequests(service::Service& service);
+  ArchiveRequests(const ArchiveRequests&) = delete;
+  ArchiveRequests& operator=(const ArchiveRequests&) = delete;
+  ~ArchiveRequests();
 
   void list(Respond respond);
   /// Both throw std::invalid_argument for a name that no snapshot can have.
   void take(const std::string& name, Respond respond);
   void restore(const std::string& name, Respond respond);
+  /// A map file becomes a snapshot. One at a time: 503 while another is sent.
+  void import(const std::string& name, std::string map_file, Respond respond);
 
  private:
   void send(msg::ArchiveAction action, const std::string& name, Respond respond);
   void on_reply(const msg::ArchiveReply& reply);
+  [[nodiscard]] const std::string& map_robot() const;
+  void send_pieces();
 
   service::Service& service_;
   std::string client_id_;
   std::uint64_t sent_ = 0;
   PendingRequests pending_;
   messaging::Writer<msg::ArchiveRequest> requests_;
+  messaging::Writer<msg::SnapshotPiece> pieces_;
+  std::string map_file_;  // that is sent; empty: none
+  std::uint64_t import_request_ = 0;
+  std::uint32_t next_piece_ = 0;
+  std::uint64_t pieces_sent_ = 0;
+  std::uint64_t timer_ = 0;
 };
 
 }  // namespace topogeo::web

@@ -6,11 +6,9 @@
 #include <utility>
 
 #include "topogeo/exchange/map_export.hpp"
-#include "topogeo/planning/grid_sources.hpp"
 #include "topogeo/support/host.hpp"
 
 #include "channels/local_map_json.hpp"
-#include "history/map_difference.hpp"
 #include "orders/order_text.hpp"
 #include "resources.hpp"
 #include "server/json_values.hpp"
@@ -26,49 +24,6 @@ Answer json_answer(const Json& json) {
   Answer answer;
   answer.body = text_of(json);
   return answer;
-}
-
-/// Of the drawing, where no scan was taken.
-planning::OccupancyGrid grid_of_map(const storage::MapDocument& map,
-                                    const planning::ScanGridConfig& config) {
-  if (map.local_maps.empty() && map.drawing.grid) return *map.drawing.grid;
-  return planning::grid_from_scans(map.local_maps, map.trajectory.stops, config);
-}
-
-Json stored_version(const storage::MapDocument& map, const std::string& name) {
-  return {{"name", name},
-          {"stops", map.trajectory.stops.size()},
-          {"version", std::to_string(map.trajectory.version)}};
-}
-
-struct NamedVersion {
-  std::string name;
-  MapCopies::Document map;
-};
-
-struct Comparison {
-  Json json;
-  std::string png;
-};
-
-Comparison compared(const NamedVersion& before, const NamedVersion& after,
-                    const planning::ScanGridConfig& config) {
-  const MapDifference made =
-      difference(grid_of_map(*before.map, config), grid_of_map(*after.map, config));
-  Json json = {{"before", stored_version(*before.map, before.name)},
-               {"after", stored_version(*after.map, after.name)},
-               {"columns", made.frame.columns},
-               {"rows", made.frame.rows},
-               {"resolution_m", made.frame.resolution_m}};
-  set_pose(json, made.frame.T_map_grid);
-  const auto area = [&](CellChange change) {
-    return rounded(made.areas_m2.at(static_cast<std::size_t>(change)));
-  };
-  json["gone_m2"] = area(CellChange::kGone);
-  json["new_m2"] = area(CellChange::kNew);
-  json["seen_m2"] = area(CellChange::kSeen);
-  json["lost_m2"] = area(CellChange::kLost);
-  return {std::move(json), difference_png(made)};
 }
 
 Answer formats_answer() {
@@ -120,6 +75,15 @@ History::History(service::Service& service, DriveView& drive)
           if (map) drive_.show_stored(*map);
         });
   });
+  merge_ = std::make_unique<MapMerge>(
+      service, drive, *copies_, archive_, background_,
+      [this](Comparison comparison) { return shown(std::move(comparison)); });
+}
+
+Json History::shown(Comparison comparison) {
+  difference_png_ = std::move(comparison.png);
+  comparison.json["picture"] = "/api/compare.png?v=" + std::to_string(++compared_);
+  return std::move(comparison.json);
 }
 
 bool History::has(std::string_view path) {
@@ -209,9 +173,7 @@ void History::compare(const std::string& query, const Respond& respond) {
         background_.run([this, a, b, before, after, grid, respond]() -> Background::Rest {
           try {
             return [this, made = compared({before, a}, {after, b}, grid), respond]() mutable {
-              difference_png_ = std::move(made.png);
-              made.json["picture"] = "/api/compare.png?v=" + std::to_string(++compared_);
-              respond(json_answer(made.json));
+              respond(json_answer(shown(std::move(made))));
             };
           } catch (const std::exception& error) {
             return [respond, answer = error_answer(409, error.what())] { respond(answer); };

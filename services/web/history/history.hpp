@@ -13,6 +13,7 @@
 #include "channels/drive_view.hpp"
 #include "history/archive_requests.hpp"
 #include "history/map_copies.hpp"
+#include "history/map_merge.hpp"
 #include "orders/background.hpp"
 #include "server/web_types.hpp"
 
@@ -33,6 +34,13 @@ class History {
   /// {"name": "monday"}. Both throw std::invalid_argument as get() does.
   void take_snapshot(const std::string& body, const Respond& respond);
   void restore(const std::string& body, const Respond& respond);
+  /// See MapMerge.
+  void offer_map(const std::string& map_file, const Respond& respond) {
+    merge_->offer(map_file, respond);
+  }
+  void answer_merge(const std::string& body, const Respond& respond) {
+    merge_->answer(body, respond);
+  }
 
  private:
   /// Makes an answer of maps, in a thread.
@@ -43,6 +51,8 @@ class History {
   void compare(const std::string& query, const Respond& respond);
   void picture(const std::string& query, const Respond& respond) const;
   void export_file(const std::string& path, const Respond& respond);
+  /// What the page gets of a comparison; its picture replaces the one before.
+  [[nodiscard]] Json shown(Comparison comparison);
   [[nodiscard]] bool is_of_now(const storage::MapDocument& map) const;
   /// Answers with what `make` returns; 409 where it throws std::exception.
   void answer_later(Make make, const Respond& respond);
@@ -53,7 +63,9 @@ class History {
   // The picture of the comparison that was made last, by its number.
   std::uint64_t compared_ = 0;
   std::string difference_png_;
-  std::unique_ptr<MapCopies> copies_;  // goes after the thread that works for it has ended
+  // Both go after the thread that works for them has ended.
+  std::unique_ptr<MapCopies> copies_;
+  std::unique_ptr<MapMerge> merge_;
   Background background_;
 };
 

@@ -25,6 +25,16 @@ constexpr std::size_t kDrained_bytes = 65536;  // at a time ...
 constexpr int kMostDrained = 64;               // ... and so often
 constexpr std::uint32_t kMostRequestHeader_bytes = 8192;
 constexpr std::uint64_t kMostBody_bytes = 65536;
+/// A drawing with all that it may have, each number with all of its digits.
+constexpr std::uint64_t kMostDrawing_bytes = 8 * 1024 * 1024;
+constexpr std::chrono::seconds kUpload{120};  // for a body that is larger than usual
+
+/// Of what comes to a path.
+std::uint64_t most_bytes(std::string_view path) {
+  if (path == kMapUploadPath) return kMostMapFile_bytes;
+  if (path == "/api/drawing" || path == "/api/floor") return kMostDrawing_bytes;
+  return kMostBody_bytes;
+}
 
 /// What browsers are told of each answer: the page takes nothing from elsewhere, and is framed by
 /// nobody.
@@ -66,11 +76,40 @@ void HttpSession::start() {
 void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(kMostRequestHeader_bytes);
-  parser_->body_limit(kMostBody_bytes);
+  parser_->body_limit(kMostMapFile_bytes);
   connection_.expires_after(kIdle);
-  http::async_read(
-      connection_, buffer_, *parser_,
-      [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
+  http::async_read_header(connection_, buffer_, *parser_,
+                          [self = shared_from_this()](beast::error_code error, std::size_t) {
+                            self->on_header(error);
+                          });
+}
+
+// What is larger than orders are is only read for those who may send it.
+void HttpSession::on_header(beast::error_code error) {
+  if (error) {
+    answer_read_error(error);
+    return;
+  }
+  const std::string target(parser_->get().target());
+  const bool large = parser_->content_length().value_or(0) > kMostBody_bytes;
+  const std::uint64_t most = most_bytes(std::string_view(target).substr(0, target.find('?')));
+  if (large && most > kMostBody_bytes) {
+    if (const auto refused = refusal()) {
+      send(*refused);
+      return;
+    }
+    admitted_ = true;
+  }
+  if (parser_->content_length().value_or(0) > most) {
+    answer_read_error(http::error::body_limit);
+    return;
+  }
+  parser_->body_limit(admitted_ ? most : kMostBody_bytes);
+  connection_.expires_after(admitted_ ? kUpload : kIdle);
+  http::async_read(connection_, buffer_, *parser_,
+                   [self = shared_from_this()](beast::error_code failed, std::size_t) {
+                     self->on_read(failed);
+                   });
 }
 
 void HttpSession::on_read(beast::error_code error) {
@@ -79,7 +118,8 @@ void HttpSession::on_read(beast::error_code error) {
     return;
   }
   state_.tally.add("requests");
-  if (const auto refused = refusal()) {
+  const bool admitted = std::exchange(admitted_, false);
+  if (const auto refused = admitted ? std::optional<Answer>() : refusal()) {
     send(*refused);
   } else if (beast::websocket::is_upgrade(parser_->get())) {
     upgrade();

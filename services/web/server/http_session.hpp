@@ -28,6 +28,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using Response = beast::http::response<beast::http::string_body>;
 
   void read();
+  void on_header(beast::error_code error);
   void on_read(beast::error_code error);
   void answer_read_error(beast::error_code error);
   /// Nothing when the request may go on.
@@ -47,6 +48,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   std::string peer_;
   beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
+  bool admitted_ = false;  // refusal() has let the request pass already
   int drained_ = 0;
 };
 

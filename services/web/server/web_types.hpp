@@ -4,9 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace topogeo::web {
+
+/// A map file may be sent to it, in the form of `map.pb`.
+inline constexpr std::string_view kMapUploadPath = "/api/merge_map";
+inline constexpr std::uint64_t kMostMapFile_bytes = 64 * 1024 * 1024;
 
 struct Request {
   bool post = false;        ///< else GET

@@ -81,6 +81,30 @@ TEST_F(MapSnapshots, GiveBackTheMapOfTheirTime) {
   EXPECT_EQ(bytes(path()), bytes(5));
 }
 
+TEST_F(MapSnapshots, AMapFromElsewhereBecomesOne) {
+  begin(7);
+  const MapSnapshot made = import_snapshot(path(), "merged", sample_document(5));
+  EXPECT_EQ(made.stops, 5U);
+  EXPECT_EQ(bytes(made.path), bytes(5));
+  EXPECT_EQ(bytes(path()), bytes(7)) << "nothing else has changed";
+  restore_snapshot(path(), "merged");
+  EXPECT_EQ(bytes(path()), bytes(5));
+  EXPECT_EQ(bytes(folder() / "before-merged.sqlite"), bytes(7));
+  EXPECT_EQ(open().local_map_count(), 5U) << "the map store goes on with it";
+
+  EXPECT_THAT(error_of([&] { import_snapshot(path(), "merged", sample_document(5)); }),
+              HasSubstr("there is such a snapshot"));
+  MapDocument foreign = sample_document(5);
+  foreign.robot_id = "robot-2";
+  EXPECT_THAT(error_of([&] { import_snapshot(path(), "foreign", foreign); }),
+              HasSubstr("map of robot 'robot-2'"));
+  MapDocument torn = sample_document(5);
+  torn.loop_closures.push_back({99, 100, {}});
+  EXPECT_THAT(error_of([&] { import_snapshot(path(), "torn", torn); }), HasSubstr("to be stored"));
+  EXPECT_EQ(snapshots_of(path()).size(), 2U);
+  EXPECT_FALSE(fs::exists(folder() / ".imported.sqlite"));
+}
+
 TEST_F(MapSnapshots, RefuseNamesThatAreWrongOrTaken) {
   begin(2);
   take_snapshot(path(), "a");

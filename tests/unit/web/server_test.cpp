@@ -135,6 +135,33 @@ TEST_F(WebServer, ForeignPagesAndNamesAreRefused) {
   EXPECT_EQ(http_request(port(), "GET", "/", {{"Host", "desk:1"}}).status, 200);
 }
 
+// The proxy hands on its own name as Host, the browser sends the site's.
+TEST_F(WebServer, PagesOfAProxyThatIsNamedMayUseIt) {
+  const Headers headers = {{"Authorization", "Bearer " + kToken},
+                           {"Host", "127.0.0.1:9"},
+                           {"Origin", "https://robot.example"}};
+  EXPECT_EQ(http_request(port(), "POST", "/api/goal", headers, "{}").status, 403);
+  config_.origins = {"https://robot.example"};
+  server_.reset();
+  start();
+  EXPECT_EQ(http_request(port(), "POST", "/api/goal", headers, "{}").status, 200);
+  EXPECT_NO_THROW(WebSocketClient(port(), {{"Origin", "https://robot.example"}}));
+  EXPECT_THROW(WebSocketClient(port(), {{"Origin", "http://robot.example"}}), std::runtime_error);
+}
+
+TEST_F(WebServer, DrawingsAndMapFilesMayBeLargeForWhoHasTheToken) {
+  const std::string drawing(5'000'000, 'x');
+  EXPECT_EQ(http_post(port(), "/api/drawing", kToken, drawing).status, 200);
+  EXPECT_EQ(http_post(port(), "/api/floor", kToken, drawing).status, 200);
+  EXPECT_EQ(http_post(port(), "/api/drawing", "", std::string(100'000, 'x')).status, 401);
+  EXPECT_EQ(http_post(port(), "/api/goal", kToken, std::string(70'000, 'x')).status, 413);
+  EXPECT_EQ(http_post(port(), "/api/drawing", kToken, std::string(9'000'000, 'x')).status, 413);
+  const std::string map(12'000'000, '\0');
+  EXPECT_GT(http_post(port(), "/api/merge_map?x=1", kToken, map).body.size(), map.size());
+  EXPECT_EQ(refused("no token"), 1U);
+  EXPECT_EQ(refused("too large"), 2U);
+}
+
 TEST_F(WebServer, WhatIsTooMuchOrNoHttpIsRefused) {
   EXPECT_EQ(http_post(port(), "/api/goal", kToken, std::string(100'000, 'x')).status, 413);
   EXPECT_EQ(http_request(port(), "GET", "/", {{"X", std::string(20'000, 'x')}}).status, 413);

@@ -42,22 +42,32 @@ export class Api {
   }
 
   /** POST of an order, its answer. Throws an ApiError. */
-  async post<Answer = unknown>(what: string, body: unknown = {}): Promise<Answer> {
+  async post<Answer = unknown>(
+    what: string,
+    body: unknown = {},
+    timeout_ms = kTimeoutMs,
+  ): Promise<Answer> {
     const text = JSON.stringify(body);
-    return read_json<Answer>(await this.request("POST", `/api/${what}`, text, kTimeoutMs));
+    return read_json<Answer>(await this.request("POST", `/api/${what}`, text, timeout_ms));
+  }
+
+  /** POST of a file, its answer. Throws an ApiError. */
+  async send_file<Answer>(what: string, file: Blob, timeout_ms: number): Promise<Answer> {
+    return read_json<Answer>(await this.request("POST", `/api/${what}`, file, timeout_ms));
   }
 
   private async request(
     method: string,
     path: string,
-    body: string | undefined,
+    body: string | Blob | undefined,
     timeout_ms: number,
   ): Promise<Response> {
     const abort = new AbortController();
     const timer = window.setTimeout(() => abort.abort(), timeout_ms);
     const headers: Record<string, string> = {};
     if (this.token) headers.Authorization = `Bearer ${this.token}`;
-    if (body !== undefined) headers["Content-Type"] = "application/json";
+    if (typeof body === "string") headers["Content-Type"] = "application/json";
+    else if (body) headers["Content-Type"] = "application/octet-stream";
     try {
       const response = await fetch(path, { method, headers, body, signal: abort.signal });
       if (response.ok) return response;

@@ -238,6 +238,17 @@ export interface Comparison extends Pose2 {
   picture: string;
 }
 
+/** What a merge with a map file would make of the map. */
+export interface MergedMap extends Comparison {
+  number: number;
+  joined: number;
+  left_out: number;
+  confidence: number;
+  sigma_m: number;
+  agreeing: number;
+  searched: number;
+}
+
 export interface ExportFormats {
   formats: { format: string; files: string[] }[];
 }

@@ -1,5 +1,6 @@
 // The texts of the view Time; texts.ts has all others.
 import { count, duration } from "./format";
+import { MergedMap } from "./protocol";
 
 export const time_texts = {
   film: "Play the drive",
@@ -28,10 +29,31 @@ export const time_texts = {
     `${when}, ${count(stops)} stops, ${(bytes / 1e6).toFixed(1)} MB`,
   restore: "Restore",
   restore_warning:
-    "The map becomes what it was; that of now is kept as a snapshot. A drive that is under way " +
-    "adds again what its services still have: end it before, or start them again.",
+    "The map becomes what it was, without what was mapped since; that of now is kept as a " +
+    "snapshot. A robot that is under way goes on from there: cancel its goal first.",
   restore_sure: "Restore it",
   restored: "The map is restored.",
+  merge: "Merge with another map",
+  merge_hint:
+    "A map file (map.pb) of the same place, of this robot or another one. You see what would " +
+    "change before anything does.",
+  merge_file: "Map file",
+  merge_too_large: (name: string) => `${name} is larger than 64 MB, which is the limit here.`,
+  merging: (name: string) => `Looking for the place of ${name} in the map …`,
+  not_merged: (name: string) => `${name} was not merged.`,
+  merged: (name: string) => `${name} joins the map`,
+  merged_facts: (made: MergedMap) =>
+    `${count(made.joined)} stops of the smaller map find their place in the larger one` +
+    (made.left_out > 0 ? `, ${count(made.left_out)} do not and are left out` : "") +
+    `. Confidence ${(100 * made.confidence).toFixed(0)} %: ${count(made.agreeing)} of ` +
+    `${count(made.searched)} places agree, within ${(100 * made.sigma_m).toFixed(0)} cm.`,
+  merge_warning:
+    "Accepted, this becomes the map; that of now is kept as a snapshot. A robot that is under way " +
+    "looks for its place in it.",
+  merge_accept: "Make it the map",
+  merge_refuse: "Discard it",
+  merge_accepted: "The maps are one.",
+  merge_refused: "The map stays as it is.",
   comparison: "Compare",
   compare_hint: "What differs between two versions of the map, on the map in colours.",
   before: "Before",

@@ -14,6 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "topogeo/storage/map_document.hpp"
+
 namespace topogeo::storage {
 
 struct MapSnapshot {
@@ -38,6 +40,12 @@ void check_snapshot_name(std::string_view name);
 /// the file when there is a snapshot of this name, the database is none or damaged, or the disk is
 /// full; nothing is left behind then.
 MapSnapshot take_snapshot(const std::filesystem::path& database, const std::string& name);
+
+/// Makes a snapshot of a map that came from elsewhere. Throws as take_snapshot() does, and
+/// std::runtime_error for a map of another robot or seed than the database, which could not go on
+/// with it; std::invalid_argument for one that contradicts itself.
+MapSnapshot import_snapshot(const std::filesystem::path& database, const std::string& name,
+                            const MapDocument& map);
 
 /// Makes the database what the snapshot is. The former content becomes the snapshot that is
 /// returned (before-NAME, with a number if that is taken); a file that is damaged is moved there as

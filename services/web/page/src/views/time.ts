@@ -6,6 +6,7 @@ import { button, h } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { section } from "../ui/section";
 import { FilmPlayer } from "./film_player";
+import { MapMerge } from "./map_merge";
 import { Versions } from "./versions";
 
 const words = texts.time;
@@ -20,11 +21,13 @@ export class TimeView implements ViewPart {
   readonly element: HTMLElement;
   private readonly film: FilmPlayer;
   private readonly versions: Versions;
+  private readonly merge: MapMerge;
   private readonly files: KeyedList<ExportFile>;
 
   constructor(private readonly app: App) {
     this.film = new FilmPlayer(app);
-    this.versions = new Versions(app);
+    this.versions = new Versions(app, (available) => this.merge.update(available));
+    this.merge = new MapMerge(app, () => this.versions.update_soon());
     this.files = new KeyedList<ExportFile>(
       "rows exports",
       (key) => this.entry(key),
@@ -36,6 +39,7 @@ export class TimeView implements ViewPart {
       { class: "view" },
       this.film.element,
       this.versions.element,
+      this.merge.element,
       section(words.export, hint, this.files.element),
     );
   }
@@ -47,6 +51,7 @@ export class TimeView implements ViewPart {
     } else {
       this.film.close();
       this.versions.close();
+      this.merge.close();
     }
   }
 

@@ -4,13 +4,12 @@ import * as format from "../format";
 import { Comparison, Snapshot, Snapshots } from "../protocol";
 import { sentence } from "../robot_state";
 import { texts } from "../texts";
-import { Facts } from "../ui/bar";
 import { button, fill, h, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
 import { section } from "../ui/section";
+import { hide_difference, show_difference } from "./difference";
 
 const words = texts.time;
-const kAbove = "difference";
 const kPatienceMs = 60000; // of large maps
 
 export class Versions {
@@ -26,7 +25,11 @@ export class Versions {
   private snapshots: Snapshot[] = [];
   private available = false; // the map store keeps some
 
-  constructor(private readonly app: App) {
+  /** on_update: whether the map store keeps snapshots. */
+  constructor(
+    private readonly app: App,
+    private readonly on_update: (available: boolean) => void,
+  ) {
     this.name = h("input", {
       class: "field",
       id: "snapshot-name",
@@ -87,12 +90,17 @@ export class Versions {
 
   /** Takes the difference off the map. */
   close(): void {
-    this.app.map.scene.above.delete(kAbove);
-    this.app.map.scene.refresh();
+    hide_difference(this.app.map.scene);
     show(this.result, false);
   }
 
+  /** Once the map store has started with another map. */
+  update_soon(): void {
+    window.setTimeout(() => void this.update(), 3000);
+  }
+
   private show_all(): void {
+    this.on_update(this.available);
     show(this.none, this.snapshots.length === 0);
     show(this.form, this.available && this.app.rights.can("snapshot"));
     this.list.show([...this.snapshots].reverse().map((snapshot) => [snapshot.name, snapshot]));
@@ -150,7 +158,7 @@ export class Versions {
 
   private async restore(name: string): Promise<void> {
     await this.app.notices.report(this.app.api.post("restore", { name }), words.restored);
-    window.setTimeout(() => void this.update(), 3000); // the map store starts with it
+    this.update_soon();
   }
 
   private async compare_now(): Promise<void> {
@@ -159,49 +167,15 @@ export class Versions {
     fill(this.result, h("p", { class: "quiet", role: "status" }, words.comparing));
     try {
       const made = await this.app.api.get<Comparison>(`/api/compare?${query}`, kPatienceMs);
-      const picture = new Image();
-      picture.src = made.picture;
-      await picture.decode();
-      this.show_difference(made, picture);
+      fill(
+        this.result,
+        await show_difference(this.app.map.scene, made),
+        button(words.hide, () => this.close()),
+      );
     } catch (error) {
       const text = error instanceof Error ? error.message : String(error);
       fill(this.result, h("p", { class: "quiet", role: "status" }, text));
     }
-  }
-
-  private show_difference(made: Comparison, picture: HTMLImageElement): void {
-    const { scene } = this.app.map;
-    const [width, height] = [made.columns * made.resolution_m, made.rows * made.resolution_m];
-    scene.above.set(kAbove, (context, view) => {
-      context.imageSmoothingEnabled = false;
-      context.drawImage(
-        picture,
-        view.scale * made.x_m + view.offset_x,
-        view.offset_y - view.scale * (made.y_m + height),
-        view.scale * width,
-        view.scale * height,
-      );
-      context.imageSmoothingEnabled = true;
-    });
-    scene.refresh();
-    const facts = new Facts();
-    facts.set(words.stops, words.stops_value(made.before.stops, made.after.stops));
-    for (const change of ["gone", "new", "seen", "lost"] as const) {
-      facts.set(words.changes[change], format.area(made[`${change}_m2`]));
-    }
-    const sign = (change: "gone" | "new" | "seen" | "lost") =>
-      h(
-        "span",
-        { class: "sign" },
-        h("span", { class: `sign-color change-${change}` }),
-        words.changes[change],
-      );
-    fill(
-      this.result,
-      h("p", { class: "signs" }, sign("gone"), sign("new"), sign("seen"), sign("lost")),
-      facts.element,
-      button(words.hide, () => this.close()),
-    );
   }
 }
 

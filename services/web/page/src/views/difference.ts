@@ -1,0 +1,51 @@
+// What differs between two versions of the map, on the map in colours.
+import * as format from "../format";
+import { MapScene } from "../map/map_scene";
+import { Comparison } from "../protocol";
+import { texts } from "../texts";
+import { Facts } from "../ui/bar";
+import { h } from "../ui/dom";
+
+const words = texts.time;
+const kAbove = "difference";
+const kChanges = ["gone", "new", "seen", "lost"] as const;
+
+/** Takes the difference off the map. */
+export function hide_difference(scene: MapScene): void {
+  scene.above.delete(kAbove);
+  scene.refresh();
+}
+
+/** Lays a difference over the map; its legend and figures. Throws where the picture is gone. */
+export async function show_difference(scene: MapScene, made: Comparison): Promise<HTMLElement> {
+  const picture = new Image();
+  picture.src = made.picture;
+  await picture.decode();
+  const [width, height] = [made.columns * made.resolution_m, made.rows * made.resolution_m];
+  scene.above.set(kAbove, (context, view) => {
+    context.imageSmoothingEnabled = false;
+    context.drawImage(
+      picture,
+      view.scale * made.x_m + view.offset_x,
+      view.offset_y - view.scale * (made.y_m + height),
+      view.scale * width,
+      view.scale * height,
+    );
+    context.imageSmoothingEnabled = true;
+  });
+  scene.refresh();
+  const facts = new Facts();
+  facts.set(words.stops, words.stops_value(made.before.stops, made.after.stops));
+  for (const change of kChanges) {
+    facts.set(words.changes[change], format.area(made[`${change}_m2`]));
+  }
+  const signs = kChanges.map((change) =>
+    h(
+      "span",
+      { class: "sign" },
+      h("span", { class: `sign-color change-${change}` }),
+      words.changes[change],
+    ),
+  );
+  return h("div", {}, h("p", { class: "signs" }, ...signs), facts.element);
+}
