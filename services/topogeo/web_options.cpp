@@ -26,7 +26,17 @@ void add_web_options(command_line::Command& app, WebOptions& options,
           ->type_name("FILE"),
       app.add_option("--key", options.key, "its key (PEM)")->type_name("FILE"),
       app.add_flag("--without-tls", options.without_tls,
-                   "listen at --bind although everybody on the network can read the token")};
+                   "listen at --bind although everybody on the network can read the token"),
+      app.add_option("--host", options.hosts,
+                     "name under which pages reach this machine or the proxy before it; may be "
+                     "repeated")
+          ->type_name("NAME")
+          ->allow_extra_args(false),
+      app.add_option("--origin", options.origins,
+                     "site whose pages may use the service, as https://desk.example: that of a "
+                     "reverse proxy; may be repeated")
+          ->type_name("ORIGIN")
+          ->allow_extra_args(false)};
   if (needed == nullptr) return;
   for (command_line::Option* option : added) option->needs(needed);
 }
@@ -54,6 +64,8 @@ std::vector<std::string> web_arguments(const WebOptions& options) {
   if (options.bind) add("--bind", *options.bind);
   if (options.certificate) add("--certificate", options.certificate->string());
   if (options.key) add("--key", options.key->string());
+  for (const std::string& host : options.hosts) add("--host", host);
+  for (const std::string& origin : options.origins) add("--origin", origin);
   if (options.without_tls) arguments.emplace_back("--without-tls");
   return arguments;
 }

@@ -18,10 +18,12 @@ struct WebOptions {
   std::optional<std::filesystem::path> certificate;
   std::optional<std::filesystem::path> key;
   bool without_tls = false;
+  std::vector<std::string> hosts;
+  std::vector<std::string> origins;
 };
 
-/// Adds --port, --bind, --token, --certificate, --key and --without-tls; with `needed` they go with
-/// that option alone. What they mean is in `topogeo-web --help`.
+/// Adds --port, --bind, --token, --certificate, --key, --without-tls, --host and --origin; with
+/// `needed` they go with that option alone. What they mean is in `topogeo-web --help`.
 void add_web_options(command_line::Command& app, WebOptions& options,
                      command_line::Option* needed = nullptr);
 

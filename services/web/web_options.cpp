@@ -39,6 +39,19 @@ std::string checked(std::string token) {
   return token;
 }
 
+/// As browsers send them; "file://" is that of programs whose page is a file.
+void check_origins(const std::vector<std::string>& origins) {
+  for (const std::string& origin : origins) {
+    const std::size_t host = origin.find("://");
+    const bool site = host != std::string::npos && host > 0 &&
+                      origin.find_first_of("/?# ", host + 3) == std::string::npos;
+    if (site && (origin == "file://" || origin.size() > host + 3)) continue;
+    throw service::UsageError("--origin " + origin +
+                              ": expected scheme and host alone, as https://desk.example or "
+                              "https://desk.example:8443");
+  }
+}
+
 bool is_loopback(const std::string& address) {
   return address == "::1" || address.starts_with("127.");
 }
@@ -105,6 +118,7 @@ ServerConfig server_config(const WebOptions& options, const std::string& robot_i
   config.robot_id = robot_id;
   config.hosts = options.hosts;
   config.hosts.push_back(support::host_name());
+  check_origins(options.origins);
   config.origins = options.origins;
   config.certificate_file = options.certificate.string();
   config.key_file = options.key.string();
