@@ -1,9 +1,11 @@
-// How old a pose is when the page has drawn it, and what viewers cost the localizer. Prints a table; asserts nothing.
+// How long a pose takes from its message to the screen, in parts, and what viewers cost the localizer. Prints a table;
+// asserts nothing.
 //
 //   TOPOGEO_BUILD=$PWD/build TOPOGEO_SOURCE=$PWD node tests/browser/latency.mjs [SECONDS=20] [VIEWERS=20]
 //
-// A simulated robot turns on the spot. The stamp of a pose is the clock of this machine when the base sent its odometry,
-// so gateway and localizer are in the figure, too.
+// A simulated robot turns on the spot; all clocks are that of this machine. The stamp of a pose is when the base sent its
+// odometry, its message leaves the localizer, is heard by the web service, comes to the page, and is on the screen when
+// the frame after the one that draws it begins.
 import { mkdtempSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
@@ -22,21 +24,30 @@ const browser = await browsers.launch({
   args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
 });
 
-/** Counts, in a page, how old each pose is when its frame has been drawn. */
+/** Notes, in a page, the ages of each pose in ms: since its odometry, its message, the web service, the page. */
 function watch_poses() {
-  window.ages_ms = [];
-  window.arrived_ms = [];
+  window.drawn = [];
   const Plain = window.WebSocket;
   window.WebSocket = class extends Plain {
     set onmessage(handler) {
       super.onmessage = (event) => {
+        const came = performance.timeOrigin + performance.now();
         handler(event);
         const message = JSON.parse(event.data);
         if (message.channel !== "pose" || !message.value) return;
-        window.arrived_ms.push(Date.now() - 1000 * message.value.stamp_s);
+        const { stamp_s, sent_s, heard_s } = message.value;
         // The page draws with the next frame; the one after that begins when it is on the screen.
         requestAnimationFrame(() =>
-          requestAnimationFrame(() => window.ages_ms.push(Date.now() - 1000 * message.value.stamp_s)),
+          requestAnimationFrame(() => {
+            const now = performance.timeOrigin + performance.now();
+            window.drawn.push({
+              odometry: 1000 * (sent_s - stamp_s),
+              service: 1000 * (heard_s - sent_s),
+              page: came - 1000 * heard_s,
+              screen: now - came,
+              all: now - 1000 * sent_s,
+            });
+          }),
         );
       };
     }
@@ -57,28 +68,29 @@ try {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   await page.addInitScript(watch_poses);
   await page.goto(`${robot.address}/#token=${robot.token}`);
-  await eventually("the robot has a pose", () => page.evaluate(() => window.ages_ms.length > 10), 120);
+  await eventually("the robot has a pose", () => page.evaluate(() => window.drawn.length > 10), 120);
   await page.click("#tab-send");
   await page.getByText("Drive by hand", { exact: true }).click();
   await page.getByRole("button", { name: "Take the controls" }).click();
   await page.keyboard.down("a");
-  console.log("| viewers | poses | age on the screen: median, 95 %, ms | age when the page has it | CPU of localizer, ms a second | of web |\n|---|---|---|---|---|---|");
+  console.log(`median, 95 % in ms; CPU in ms a second
+| viewers | poses | message to screen | odometry to message | message to web service | to page | to screen | CPU of localizer | of web |
+|---|---|---|---|---|---|---|---|---|`);
   const crowd = await browser.newPage();
   await crowd.goto(`${robot.address}/icon.svg`);
   for (const others of [0, viewers]) {
     await crowd.evaluate(open_viewers, others);
-    await page.evaluate(() => (window.ages_ms.length = window.arrived_ms.length = 0));
+    await page.evaluate(() => (window.drawn.length = 0));
     const before = { localizer: robot.cpu_s("localizer"), web: robot.cpu_s("web") };
     await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
     const cpu = (name) => ((1000 * (robot.cpu_s(name) - before[name])) / seconds).toFixed(1);
-    const ages = await page.evaluate(() => window.ages_ms);
-    const arrived = await page.evaluate(() => window.arrived_ms);
-    const quantiles = (values) => {
-      values.sort((a, b) => a - b);
+    const drawn = await page.evaluate(() => window.drawn);
+    const quantiles = (part) => {
+      const values = drawn.map((pose) => pose[part]).sort((a, b) => a - b);
       return [0.5, 0.95].map((share) => values[Math.floor(share * (values.length - 1))]?.toFixed(0)).join(", ");
     };
-    const costs = `${cpu("localizer")} | ${cpu("web")}`;
-    console.log(`| ${others + 1} | ${ages.length} | ${quantiles(ages)} | ${quantiles(arrived)} | ${costs} |`);
+    const parts = ["all", "odometry", "service", "page", "screen"].map(quantiles).join(" | ");
+    console.log(`| ${others + 1} | ${drawn.length} | ${parts} | ${cpu("localizer")} | ${cpu("web")} |`);
     await crowd.evaluate(() => window.sockets.forEach((socket) => socket.close()));
   }
   await page.keyboard.up("a");

@@ -31,8 +31,11 @@ Level level_of(msg::LocalizationState state) {
 
 RobotView::RobotView(service::Service& service, Board& board, EventLog& events, RobotHooks hooks)
     : board_(board), events_(events), hooks_(std::move(hooks)), service_(service) {
-  service.subscribe<msg::LivePose>([this](const msg::LivePose& pose) { on_pose(pose); },
-                                   {.main_input = true});
+  service.subscribe<msg::LivePose>(
+      [this](const msg::LivePose& pose, const messaging::SampleInfo& info) {
+        on_pose(pose, info.stamp_ns);
+      },
+      {.main_input = true});
   service.subscribe<msg::Scan>([this](const msg::Scan& scan) { on_scan(scan); });
   service.subscribe<msg::NavigatorStatus>(
       [this](const msg::NavigatorStatus& status) { on_navigator(status); });
@@ -42,7 +45,7 @@ RobotView::RobotView(service::Service& service, Board& board, EventLog& events, 
   service.subscribe<msg::GroundTruth>([this](const msg::GroundTruth& truth) { on_truth(truth); });
 }
 
-void RobotView::on_pose(const msg::LivePose& pose) {
+void RobotView::on_pose(const msg::LivePose& pose, std::int64_t sent_ns) {
   if (hooks_.on_pose) hooks_.on_pose(pose);
   if (!pose_ || pose_->state() != pose.state()) {
     events_.add(level_of(pose.state()), "localizer",
@@ -60,6 +63,8 @@ void RobotView::on_pose(const msg::LivePose& pose) {
   for (const double value : pose.covariance()) covariance.push_back(exact(value));
   json["covariance"] = std::move(covariance);
   json["reason"] = reason_of(pose.state());
+  json["sent_s"] = seconds(sent_ns);
+  json["heard_s"] = seconds(support::wall_clock_ns());
   board_.set(Channel::kPose, text_of(json));
   show_scan();
 }

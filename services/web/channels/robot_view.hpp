@@ -35,7 +35,8 @@ class RobotView {
   [[nodiscard]] const std::optional<msg::LivePose>& pose() const { return pose_; }
 
  private:
-  void on_pose(const msg::LivePose& pose);
+  /// `sent_ns`: wall clock of its sender.
+  void on_pose(const msg::LivePose& pose, std::int64_t sent_ns);
   void on_scan(const msg::Scan& message);
   /// Shows the scan with the pose of the same number, or without one when none has come in time.
   void show_scan();
