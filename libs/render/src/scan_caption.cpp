@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "topogeo/support/format.hpp"
+#include "topogeo/topomap/node_kind_name.hpp"
 
 namespace topogeo::render {
 namespace {
@@ -17,17 +17,13 @@ std::string plural(std::size_t count, const char* one, const char* many) {
 
 /// "9 nodes (3 real, 1 door, 5 fictitious)".
 std::string node_counts(const topomap::LocalMap& map) {
-  constexpr std::array<std::pair<NodeKind, const char*>, 6> kKinds{
-      {{NodeKind::kReal, "real"},
-       {NodeKind::kDoor, "door"},
-       {NodeKind::kNarrowing, "narrowing"},
-       {NodeKind::kHallCorridor, "hall/corridor"},
-       {NodeKind::kFictitious, "fictitious"},
-       {NodeKind::kVirtual, "virtual"}}};
+  constexpr std::array kKinds{NodeKind::kReal,         NodeKind::kDoor,       NodeKind::kNarrowing,
+                              NodeKind::kHallCorridor, NodeKind::kFictitious, NodeKind::kVirtual};
   std::string kinds;
-  for (const auto& [kind, name] : kKinds) {
+  for (const NodeKind kind : kKinds) {
     const auto count = std::ranges::count(map.nodes, kind, &topomap::LocalNode::kind);
-    if (count > 0) kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, name);
+    if (count == 0) continue;
+    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, topomap::name_of(kind));
   }
   return plural(map.nodes.size(), "node", "nodes") + (kinds.empty() ? "" : " (" + kinds + ")");
 }

@@ -35,9 +35,13 @@ struct PairFusion::View {
   Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
   Sighting sighting;
   std::set<std::uint32_t> joined;  // nodes of the map that this view was joined with
+  std::uint32_t first_branch;      // branches from this id on are of this view
 
-  View(const LocalMap& map, const Pose2& pose, const Sighting& of)
-      : T_map_robot(pose), T_robot_map(geometry::inverse(pose)), sighting(of) {
+  View(const LocalMap& map, const Pose2& pose, const Sighting& of, std::uint32_t next_branch)
+      : T_map_robot(pose),
+        T_robot_map(geometry::inverse(pose)),
+        sighting(of),
+        first_branch(next_branch) {
     const auto include = [this](const Eigen::Vector2d& p) {
       low_m = low_m.cwiseMin(p);
       high_m = high_m.cwiseMax(p);
@@ -55,7 +59,7 @@ struct PairFusion::View {
 };
 
 void PairFusion::add(const LocalMap& map, const Pose2& T_map_robot, const Sighting& sighting) {
-  View view(map, T_map_robot, sighting);
+  View view(map, T_map_robot, sighting, next_branch_);
   std::vector<std::uint32_t> ids(map.nodes.size(), 0);
   for (const LocalNode& node : map.nodes) {
     if (!node.in_main_graph || node.kind == NodeKind::kVirtual) continue;
@@ -133,7 +137,10 @@ std::uint32_t PairFusion::join_node(const LocalNode& node, View& view) {
   return seen.id;
 }
 
+// Branches of one view are not joined with each other: a short one that goes on where a long one
+// ends would take its place.
 bool PairFusion::equivalent(const MapBranch& known, const MapBranch& seen, const View& view) const {
+  if (known.id >= view.first_branch) return false;
   std::size_t in_view = 0;
   for (const BranchPoint& point : known.points) {
     if (view.contains(point.position_m)) ++in_view;

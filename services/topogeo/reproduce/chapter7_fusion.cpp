@@ -96,7 +96,7 @@ std::vector<Experiment> chapter7_fusion() {
   const std::string kThesis = "Thesis";
   return {
       {"figure-7.32", kThesis, "Figure 7.32", "The first local map is the first global map",
-       figure_7_32, "Nodes nearer than node_merge_m become one, also those of one view", true},
+       figure_7_32, "", true},
       {"figure-7.33", kThesis, "Figure 7.33", "The second local map is fused with the first",
        fuse_position<2>, "", true},
       {"figure-7.34", kThesis, "Figure 7.34", "The third local map is fused", fuse_position<3>, "",

@@ -194,8 +194,11 @@ PoseErrors pose_errors(const std::vector<Pose2>& poses, const std::vector<Pose2>
   return errors;
 }
 
-topomap::GlobalMap fused(const Drive& drive, const std::vector<Pose2>& poses, std::size_t count) {
-  topomap::GlobalMapBuilder builder;
+topomap::GlobalMap fused(const Drive& drive, const std::vector<Pose2>& poses, std::size_t count,
+                         topomap::FusionRule rule) {
+  topomap::GlobalMapConfig config;
+  config.fusion = rule;
+  topomap::GlobalMapBuilder builder(config);
   for (std::size_t i = 0; i < std::min(count, poses.size()); ++i) {
     builder.integrate(*drive.stops[i], poses[i]);
   }

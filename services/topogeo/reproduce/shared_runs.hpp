@@ -13,6 +13,7 @@
 #include "topogeo/localization/mapping/slam.hpp"
 #include "topogeo/localization/thesis/thesis_localizer.hpp"
 #include "topogeo/topomap/global_map.hpp"
+#include "topogeo/topomap/global_map_config.hpp"
 #include "topogeo/topomap/local_map.hpp"
 #include "topogeo/world/world.hpp"
 
@@ -89,8 +90,9 @@ struct PoseErrors {
 PoseErrors pose_errors(const std::vector<geometry::Pose2>& poses,
                        const std::vector<geometry::Pose2>& truth);
 
-/// The global map of the first `count` stops at these poses.
+/// The global map of the first `count` stops at these poses; as the Thesis fuses (7.25 to 7.27)
+/// unless told otherwise.
 topomap::GlobalMap fused(const Drive& drive, const std::vector<geometry::Pose2>& poses,
-                         std::size_t count);
+                         std::size_t count, topomap::FusionRule rule = topomap::FusionRule::kPairs);
 
 }  // namespace topogeo::reproduce

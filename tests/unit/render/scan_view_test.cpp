@@ -72,7 +72,7 @@ TEST(ScanCaption, CountsNodesByKindAndBranches) {
   view.map.branches.resize(2);
   view.map.branches[1].in_main_graph = false;
   EXPECT_THAT(scan_counts(view),
-              HasSubstr("5 nodes (2 real, 1 door, 1 hall/corridor, 1 fictitious), 2 branches (1 "
+              HasSubstr("5 nodes (2 real, 1 door, 1 hall_corridor, 1 fictitious), 2 branches (1 "
                         "off the main graph)"));
   view.map.nodes.resize(1);
   view.map.branches.resize(1);

@@ -85,5 +85,37 @@ TEST(PairFusion, WhatIsNotEquivalentIsAdded) {
   }
 }
 
+// The corridor and 0.3 m beyond its door, as long as what is near the end of the corridor.
+LocalMap view_beyond_door() {
+  LocalMap map = corridor_view(0, 4.0, 0.5);
+  map.nodes.push_back(map.nodes[0]);
+  map.nodes[4].id = 4;
+  map.nodes[4].position_m = {4.3, 0.0};
+  LocalBranch beyond = map.branches.front();
+  beyond.id = 1;
+  beyond.node_a = 1;
+  beyond.node_b = 4;
+  beyond.points.clear();
+  for (int i = 0; i <= 3; ++i) beyond.points.push_back({{4.0 + 0.1 * i, 0.0}, 0.5});
+  map.branches.push_back(beyond);
+  return map;
+}
+
+TEST(PairFusion, AShortBranchOfAViewDoesNotTakeThePlaceOfTheLongOneThatItGoesOnFrom) {
+  GlobalMapBuilder builder = pairs();
+  LocalMap view = view_beyond_door();
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    view.id = k;
+    builder.integrate(view, Pose2{0, 0, 0});
+    double length_m = 0.0;
+    for (const MapBranch& branch : builder.snapshot(1).branches) {
+      for (std::size_t i = 1; i < branch.points.size(); ++i) {
+        length_m += (branch.points[i].position_m - branch.points[i - 1].position_m).norm();
+      }
+    }
+    EXPECT_NEAR(length_m, 4.3, 1e-9) << k + 1 << " views";
+  }
+}
+
 }  // namespace
 }  // namespace topogeo::topomap
