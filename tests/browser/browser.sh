@@ -19,15 +19,6 @@ need_robot() {
   done
 }
 
-# Skips where services of the simulated robot are not built.
-need_robot() {
-  local program
-  need_programs
-  for program in web sensor_gateway local_mapper localizer map_store planner; do
-    [ -x "$bin/$program" ] || skip "the program $program is not built"
-  done
-}
-
 # Fetched once; npm takes nothing else than what the lock file names by its hash.
 need_node_packages() {
   need node

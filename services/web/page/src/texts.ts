@@ -27,7 +27,7 @@ export const texts = {
     correct: "Correct",
     understand: "Understand",
     draw: "Draw",
-    time: "Time",
+    time: "Time, files",
   },
   map_label: "Map of the floor. Arrow keys move it, plus and minus zoom.",
   views_label: "Views",
@@ -213,8 +213,8 @@ export const texts = {
     apply: "Apply",
     cancel: "Cancel",
     while_mapping:
-      "While the robot maps, its pose is not to be chosen or searched. Leave the map as it is " +
-      "first, below.",
+      "While the robot maps, its pose can neither be set nor searched. First press “Leave the map " +
+      "as it is”, below.",
     search: "Search the whole map",
     search_hint:
       "Forgets the pose and compares what the robot sees with every place. Let it move a few " +
@@ -222,6 +222,7 @@ export const texts = {
     search_start: "Search",
     mode: "Map",
     mode_hint: "While mapping, new stops change the map. Localization leaves it as it is.",
+    mode_now: { mapping: "The robot maps now.", localization: "The map stays as it is now." },
     to_mapping: "Map from now on",
     to_localization: "Leave the map as it is",
     merges: "Merge of maps",
@@ -268,6 +269,18 @@ export const texts = {
       prediction: "Compared because the poses predict it.",
       place: "Compared because it looks like that place.",
       window: "Compared because it looks like that place, as a whole.",
+    } as Record<string, string>,
+    // By what the localizer says of a loop.
+    meanings: {
+      "nothing in common": "The two stops hardly see the same part of the floor.",
+      "little overlap": "The two stops see too little of the same floor.",
+      "few inliers": "Too few points of the later stop lie on walls of the earlier one.",
+      doubtful: "No measure of the match fails alone; together they leave too much doubt.",
+      "far from the prediction": "The match lies farther from where the poses put it than they allow.",
+      "second solution": "It fits in another way nearly as well.",
+      unconfirmed: "It would move the robot far, and nothing agrees with it so far.",
+      "no consistent closing": "No poses along the way round fit what was seen on it.",
+      outvoted: "It was accepted at first; the rest of the map contradicted it.",
     } as Record<string, string>,
     loop_facts: (fitness: Maybe, probability: Maybe, moved: Maybe, turned: Maybe) =>
       `Fitness ${percent(fitness)}, probability ${percent(probability)}; moves the stop by ` +

@@ -14,6 +14,7 @@ const kFewestGridPx = 9;
 const kMostGridLines = 400;
 const kHandlePx = 6;
 const kShortestLabelledPx = 56;
+const kBesidePx = 32;
 
 /** Lines of the grid; where they would be too dense every 5th or 10th. */
 export function draw_grid(
@@ -150,13 +151,20 @@ function draw_lengths(
   closed: boolean,
   palette: Palette,
 ): void {
+  const middle = middle_of(points);
   for (const [a, b] of segments_of(points, closed)) {
     const meters = distance(a, b);
     if (meters * view.scale < kShortestLabelledPx) continue;
-    draw_text(context, view, { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 }, format.length(meters), palette);
+    const at = { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
+    if (closed) {
+      // Beside upright sides, so that the inside stays free for the name.
+      const upright = Math.abs(b.y - a.y) / meters;
+      at.x += (Math.sign(at.x - middle.x) * upright * kBesidePx) / view.scale;
+    }
+    draw_text(context, view, at, format.length(meters), palette);
   }
   if (closed && points.length >= 6 && Math.sqrt(area_of(points)) * view.scale > 90) {
-    draw_text(context, view, middle_of(points), format.area(area_of(points)), palette);
+    draw_text(context, view, middle, format.area(area_of(points)), palette);
   }
 }
 

@@ -29,6 +29,7 @@ export class CorrectView implements ViewPart {
   private readonly theta: HTMLInputElement;
   private readonly sure: HTMLSelectElement;
   private readonly mode: HTMLButtonElement;
+  private readonly mode_now = h("p", { role: "status" });
   private readonly no_merges = h("p", { class: "quiet" }, words.no_merges);
   private readonly merges: KeyedList<Merge>;
 
@@ -57,7 +58,7 @@ export class CorrectView implements ViewPart {
     const parts: [string, HTMLElement][] = [
       ["pose", section(words.pose, quiet(words.pose_hint), this.start, this.form)],
       ["search", section(words.search, quiet(words.search_hint), this.search)],
-      ["mode", section(words.mode, quiet(words.mode_hint), this.mode)],
+      ["mode", section(words.mode, quiet(words.mode_hint), this.mode_now, this.mode)],
       ["merge", section(words.merges, this.no_merges, this.merges.element)],
     ];
     this.parts = h("div", {}, ...parts.map(([, part]) => part));
@@ -177,6 +178,7 @@ export class CorrectView implements ViewPart {
     this.search.disabled = mapping;
     if (mapping && !this.form.hidden) this.close_pose();
     show(this.mode, mode !== undefined);
+    set_text(this.mode_now, mode ? words.mode_now[mode] : "");
     set_text(this.mode, mapping ? words.to_localization : words.to_mapping);
   }
 

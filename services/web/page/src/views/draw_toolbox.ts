@@ -38,7 +38,7 @@ export class DrawToolbox {
     this.cancel = button(words.cancel, () => editor.escape());
     this.element = section(
       words.tools,
-      ...groups,
+      h("div", { class: "tools" }, ...groups),
       this.how,
       this.cursor,
       h("div", { class: "buttons" }, this.finish, this.cancel),

@@ -14,6 +14,7 @@ export class LoopDetail {
   readonly element: HTMLElement;
   private readonly title = h("h3");
   private readonly why = h("p");
+  private readonly meaning = h("p", { class: "quiet" });
   private readonly facts = new Facts();
   private readonly legend: HTMLElement;
   private readonly status = h("p", { class: "quiet", role: "status" });
@@ -34,6 +35,7 @@ export class LoopDetail {
       { class: "card loop-detail", hidden: true },
       this.title,
       this.why,
+      this.meaning,
       this.status,
       this.legend,
       this.facts.element,
@@ -50,6 +52,9 @@ export class LoopDetail {
     if (!loop) return;
     set_text(this.title, words.loop(loop.later, loop.earlier));
     set_text(this.why, sentence(loop.explanation || words.outcomes[loop.outcome]));
+    const meaning = meaning_of(loop.explanation);
+    show(this.meaning, meaning !== "");
+    set_text(this.meaning, meaning);
     show(this.legend, false);
     show(this.facts.element, false);
     show(this.status, true);
@@ -109,4 +114,9 @@ export class LoopDetail {
     }
     if (box.min_x <= box.max_x) this.app.map.show_box(box);
   }
+}
+
+/** What the last part of "match not accepted: few inliers" means; nothing of an accepted loop. */
+function meaning_of(explanation: string): string {
+  return words.meanings[explanation.replace(/^.*: /, "")] ?? "";
 }

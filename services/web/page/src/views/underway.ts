@@ -64,7 +64,7 @@ export class Underway {
     const to = goal ? words.to(goal.text) : words.idle;
     set_text(this.goal, exploring ? words.exploring : to);
     set_text(this.state, navigator_text(channels));
-    show(this.state, navigator?.state !== "idle" || navigator.message !== "");
+    show(this.state, navigator?.state !== "idle"); // the goal says it
 
     const moving = navigator !== null && (goal !== null || exploring);
     const arrived = navigator?.state === "arrived";
