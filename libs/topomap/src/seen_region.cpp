@@ -8,6 +8,10 @@
 namespace topogeo::topomap {
 namespace {
 
+constexpr std::size_t kGroup = 8;
+/// Of squared lengths: what rounding makes of a distance to a box is no reason to leave it out.
+constexpr double kRounding = 1.0 + 1e-9;
+
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -45,11 +49,24 @@ SeenRegion::SeenRegion(const LocalMap& map, double gap_m)
       add_opening(points_m_[i - 1], points_m_[i]);
     }
   }
+  group_openings();
 }
 
 void SeenRegion::add_opening(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
   const Eigen::Vector2d along = to_m - from_m;
   openings_.push_back({from_m, along, std::max(along.squaredNorm(), 1e-12)});
+}
+
+void SeenRegion::group_openings() {
+  for (std::size_t begin = 0; begin < openings_.size(); begin += kGroup) {
+    Openings& group = groups_.emplace_back();
+    group.begin = begin;
+    group.end = std::min(begin + kGroup, openings_.size());
+    for (std::size_t i = begin; i < group.end; ++i) {
+      group.box_m.extend(openings_[i].from_m);
+      group.box_m.extend(openings_[i].from_m + openings_[i].along_m);
+    }
+  }
 }
 
 bool SeenRegion::seen(const Eigen::Vector2d& point_m) const {
@@ -65,10 +82,14 @@ bool SeenRegion::seen(const Eigen::Vector2d& point_m) const {
 
 bool SeenRegion::certain(const Eigen::Vector2d& point_m, double radius_m) const {
   const double radius2 = radius_m * radius_m;
-  for (const Segment& s : openings_) {
-    const Eigen::Vector2d offset = point_m - s.from_m;
-    const double t = std::clamp(offset.dot(s.along_m) / s.length2_m2, 0.0, 1.0);
-    if ((offset - t * s.along_m).squaredNorm() < radius2) return false;
+  for (const Openings& group : groups_) {
+    if (group.box_m.squaredExteriorDistance(point_m) > radius2 * kRounding) continue;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const Segment& s = openings_[i];
+      const Eigen::Vector2d offset = point_m - s.from_m;
+      const double t = std::clamp(offset.dot(s.along_m) / s.length2_m2, 0.0, 1.0);
+      if ((offset - t * s.along_m).squaredNorm() < radius2) return false;
+    }
   }
   return seen(point_m);
 }

@@ -1,9 +1,11 @@
 // What one scan saw: the polygon of its points, and where that polygon is open.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "topogeo/topomap/local_map.hpp"
 
@@ -26,13 +28,22 @@ class SeenRegion {
     double length2_m2 = 0.0;
   };
 
+  /// Neighbouring openings: most of them are too far from a point to be looked at one by one.
+  struct Openings {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    Eigen::AlignedBox2d box_m;
+  };
+
   void add_opening(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
+  void group_openings();
   [[nodiscard]] bool seen(const Eigen::Vector2d& point_m) const;
 
   Eigen::Vector2d origin_m_;
   std::vector<Eigen::Vector2d> points_m_;
   std::vector<double> angles_rad_;  // of the points seen from the laser, ascending
-  std::vector<Segment> openings_;
+  std::vector<Segment> openings_;   // along the polygon
+  std::vector<Openings> groups_;
 };
 
 }  // namespace topogeo::topomap
