@@ -32,6 +32,32 @@ planning::ZoneMap make_zones(const planning::FreeSpace& space, const HybridMapPa
   return planning::zones_of_rooms(space, passages, config);
 }
 
+/// What a hybrid map is made of: all but the searches for the ways through its zones.
+struct Rooms {
+  planning::FreeSpace space;
+  planning::ZoneMap zones;
+  std::vector<planning::Place> places;
+};
+
+Rooms find_rooms(const HybridMapParts& parts, const HybridMapConfig& config,
+                 planning::RoomNumbers& numbers) {
+  check(config);
+  const storage::MapDrawing nothing;
+  const storage::MapDrawing& drawing = parts.drawing != nullptr ? *parts.drawing : nothing;
+  planning::FreeSpace space(make_grid(parts, config), config.inflation, drawing.zones,
+                            drawing.lines);
+  planning::ZoneMap zones = make_zones(space, parts, config.zones);
+  std::vector<planning::Place> places = drawing.places;
+  const bool drawn_grid = drawing.grid.has_value();
+  numbers.assign(space.frame(), drawn_grid ? std::span<const topomap::StopPose>{} : parts.stops,
+                 zones, places);
+  return {std::move(space), std::move(zones), std::move(places)};
+}
+
+planning::RoomNumbers numbers_of(const HybridMapParts& parts) {
+  return planning::RoomNumbers(parts.rooms != nullptr ? *parts.rooms : planning::RoomMemory{});
+}
+
 /// The same cells in another place.
 planning::OccupancyGrid moved(const planning::OccupancyGrid& grid, const geometry::Pose2& T) {
   planning::GridFrame frame = grid.frame();
@@ -106,27 +132,17 @@ bool has_grid(const HybridMapParts& parts) {
 
 planning::HybridMap make_hybrid_map(const HybridMapParts& parts, const HybridMapConfig& config,
                                     planning::RoomNumbers* rooms) {
-  check(config);
-  const storage::MapDrawing nothing;
-  const storage::MapDrawing& drawing = parts.drawing != nullptr ? *parts.drawing : nothing;
-  planning::FreeSpace space(make_grid(parts, config), config.inflation, drawing.zones,
-                            drawing.lines);
-  planning::ZoneMap zones = make_zones(space, parts, config.zones);
-  std::vector<planning::Place> places = drawing.places;
-  planning::RoomNumbers numbers(parts.rooms != nullptr ? *parts.rooms : planning::RoomMemory{});
-  const bool drawn_grid = drawing.grid.has_value();
-  (rooms != nullptr ? *rooms : numbers)
-      .assign(space.frame(), drawn_grid ? std::span<const topomap::StopPose>{} : parts.stops, zones,
-              places);
-  return {std::move(space), std::move(zones), std::move(places)};
+  planning::RoomNumbers numbers = numbers_of(parts);
+  Rooms found = find_rooms(parts, config, rooms != nullptr ? *rooms : numbers);
+  return {std::move(found.space), std::move(found.zones), std::move(found.places)};
 }
 
 void remember_rooms(storage::MapDocument& document, const HybridMapConfig& config) {
   const HybridMapParts parts = parts_of(document);
   if (!has_grid(parts)) return;
-  planning::RoomNumbers rooms(document.rooms);
+  planning::RoomNumbers rooms = numbers_of(parts);
   try {
-    static_cast<void>(make_hybrid_map(parts, config, &rooms));
+    static_cast<void>(find_rooms(parts, config, rooms));
   } catch (const std::invalid_argument&) {  // too large a floor, for instance
     return;
   }
