@@ -50,6 +50,13 @@ print(services[-1]["state"], services[-1]["message"]) if services else print("-"
 is_in_state() { state "$1" | grep -q "$2"; }
 lives() { [ "$(state "$1")" != - ] && ! is_in_state "$1" 'lost\|silent\|failed'; }
 show() { docker logs "$(container_of "$1")" 2>&1 | tail -n 15; }
+# Why the robot stands: what those say that make the map.
+show_all() {
+  local service
+  on robot topogeo status
+  cat "$work/tour.log"
+  for service in local_mapper localizer map_store planner; do printf -- '-- %s\n' $service; show $service; done
+}
 
 step "the services of a robot on three hosts"
 cp "$source_dir/tests/data/room.world.yaml" "$work"
@@ -95,7 +102,7 @@ tour=$!
 cleanups+=("kill $tour")
 drives() { is_in_state navigator driving; }
 for service in $services; do
-  eventually 90 drives || { on robot topogeo status; cat "$work/tour.log"; fail "the robot stands before $service"; }
+  eventually 90 drives || { show_all; fail "the robot stands before another $service"; }
   old=$(container_of "$service")
   docker stop "$old" > /dev/null
   docker rm "$old" > /dev/null
@@ -103,7 +110,7 @@ for service in $services; do
   eventually 60 lives "$service" || { show "$service"; fail "the newer $service does not come up"; }
   step "$service"
 done
-eventually 90 drives || { on robot topogeo status; cat "$work/tour.log"; fail "the robot stands with newer services"; }
+eventually 90 drives || { show_all; fail "the robot stands with newer services"; }
 touch "$work/replaced"
 wait $tour || { tail -n 5 "$work/tour.log"; on robot topogeo status; fail "a drive failed"; }
 drive "room A"
