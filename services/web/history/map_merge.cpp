@@ -1,11 +1,10 @@
 #include "history/map_merge.hpp"
 
+#include <array>
 #include <ctime>
 #include <exception>
 #include <stdexcept>
 #include <utility>
-
-#include <fmt/chrono.h>
 
 #include "topogeo/exchange/merge.hpp"
 #include "topogeo/storage/map_file.hpp"
@@ -18,7 +17,11 @@ namespace {
 
 /// Of the map that a merge has made.
 std::string merged_name() {
-  return fmt::format("merged-{:%Y%m%d-%H%M%S}", fmt::gmtime(std::time(nullptr)));
+  const std::time_t now = std::time(nullptr);
+  std::tm fields{};
+  ::gmtime_r(&now, &fields);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "merged-%Y%m%d-%H%M%S", &fields)};
 }
 
 /// Why nothing was merged, as one sentence.
