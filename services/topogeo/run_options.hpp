@@ -11,7 +11,7 @@
 #include "goal_session.hpp"
 #include "job.hpp"
 #include "ros_run.hpp"
-#include "web_options.hpp"
+#include "web_command_options.hpp"
 
 namespace topogeo::cli {
 

@@ -17,7 +17,7 @@
 
 #include "commands.hpp"
 #include "run_log.hpp"
-#include "web_options.hpp"
+#include "web_command_options.hpp"
 #include "web_run.hpp"
 
 namespace topogeo::cli {

@@ -26,7 +26,7 @@ constexpr int kMostDrained = 64;               // ... and so often
 constexpr std::uint32_t kMostRequestHeader_bytes = 8192;
 constexpr std::uint64_t kMostBody_bytes = 65536;
 /// A drawing with all that it may have, each number with all of its digits.
-constexpr std::uint64_t kMostDrawing_bytes = 8 * 1024 * 1024;
+constexpr std::uint64_t kMostDrawing_bytes = std::uint64_t{8} << 20U;
 constexpr std::chrono::seconds kUpload{120};  // for a body that is larger than usual
 
 /// Of what comes to a path.

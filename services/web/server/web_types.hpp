@@ -11,7 +11,7 @@ namespace topogeo::web {
 
 /// A map file may be sent to it, in the form of `map.pb`.
 inline constexpr std::string_view kMapUploadPath = "/api/merge_map";
-inline constexpr std::uint64_t kMostMapFile_bytes = 64 * 1024 * 1024;
+inline constexpr std::uint64_t kMostMapFile_bytes = std::uint64_t{64} << 20U;
 
 struct Request {
   bool post = false;        ///< else GET

@@ -228,7 +228,10 @@ TEST_F(MarkovSettings, EachKeyOfTheSectionReachesThePoseOfTheNavigator) {
     const auto& [value, besides] = found->second;
     if (!plain.contains(besides)) plain[besides] = trace_of(besides);
     EXPECT_GT(plain[besides].size(), 300U) << besides;
-    const std::string settings = (besides.empty() ? "" : besides + ", ") + key + ": " + value;
+    std::string settings = besides.empty() ? "" : besides + ", ";
+    settings += key;
+    settings += ": ";
+    settings += value;
     EXPECT_NE(trace_of(settings), plain[besides]) << settings;
   }
 }

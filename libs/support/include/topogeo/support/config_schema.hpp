@@ -64,9 +64,9 @@ class ConfigSchema {
   /// A matrix or a list of tuples, written by its rows: "0.9 0.1; 0.1 0.9". `value_of` returns
   /// nothing for rows that have not its form; `expected` says which that is.
   template <typename Value>
-  void add_rows(std::string key, Value* value, NumberRows (*rows_of)(const Value&),
-                std::optional<Value> (*value_of)(const NumberRows&), std::string expected,
-                std::string why);
+  void add_rows(const std::string& key, Value* value, NumberRows (*rows_of)(const Value&),
+                std::optional<Value> (*value_of)(const NumberRows&), const std::string& expected,
+                const std::string& why);
 
   /// The keys of a section that no result depends on: configurations that differ in them alone have
   /// one fingerprint.
@@ -160,17 +160,17 @@ void ConfigSchema::add(const std::string& key, Enum* value,
 }
 
 template <typename Value>
-void ConfigSchema::add_rows(std::string key, Value* value, NumberRows (*rows_of)(const Value&),
+void ConfigSchema::add_rows(const std::string& key, Value* value,
+                            NumberRows (*rows_of)(const Value&),
                             std::optional<Value> (*value_of)(const NumberRows&),
-                            std::string expected, std::string why) {
+                            const std::string& expected, const std::string& why) {
   auto set = [value, value_of](const NumberRows& rows) -> std::optional<Assignment> {
     auto parsed = value_of(rows);
     if (!parsed) return std::nullopt;
     return [value, parsed = std::move(*parsed)] { *value = parsed; };
   };
   add_number_rows(
-      std::move(key), [value, rows_of] { return rows_of(*value); }, std::move(set),
-      std::move(expected), std::move(why));
+      key, [value, rows_of] { return rows_of(*value); }, std::move(set), expected, why);
 }
 
 }  // namespace topogeo::support

@@ -1,4 +1,4 @@
-#include "web_options.hpp"
+#include "web_command_options.hpp"
 
 #include <cstdlib>
 #include <fstream>
