@@ -43,13 +43,12 @@ ArchiveRequests::ArchiveRequests(service::Service& service)
       pending_(service, "no map store has answered", kArchivePatience_s),
       requests_(service.advertise<msg::ArchiveRequest>()),
       pieces_(service.advertise<msg::SnapshotPiece>()) {
-  timer_ = service.loop().add_timer(kPiecePeriod, [this] { send_pieces(); });
   service.subscribe<msg::ArchiveReply>([this](const msg::ArchiveReply& reply) { on_reply(reply); },
                                        {.any_robot = true});
 }
 
 ArchiveRequests::~ArchiveRequests() {
-  service_.loop().cancel_timer(timer_);
+  if (timer_) service_.loop().cancel_timer(*timer_);
 }
 
 void ArchiveRequests::list(Respond respond) {
@@ -67,21 +66,24 @@ void ArchiveRequests::restore(const std::string& name, Respond respond) {
 }
 
 void ArchiveRequests::import(const std::string& name, std::string map_file, Respond respond) {
-  if (!map_file_.empty()) {
+  if (timer_) {
     respond(error_answer(503, "another map is sent to the map store, try again later"));
     return;
   }
   storage::check_snapshot_name(name);
   map_file_ = std::move(map_file);
   next_piece_ = 0;
+  timer_ = service_.loop().add_timer(kPiecePeriod, [this] { send_pieces(); });
   send(msg::kArchiveImport, name, [this, respond = std::move(respond)](Answer answer) {
     map_file_.clear();
+    service_.loop().cancel_timer(*timer_);
+    timer_.reset();
     respond(std::move(answer));
   });
 }
 
 void ArchiveRequests::send_pieces() {
-  if (map_file_.empty() || pieces_.matched() == 0) return;
+  if (pieces_.matched() == 0) return;
   if (!pieces_.wait_for_acknowledgments({})) return;
   const std::uint32_t count = service::piece_count(map_file_.size());
   for (std::uint32_t i = 0; i < kPiecesAtOnce && next_piece_ < count; ++i) {

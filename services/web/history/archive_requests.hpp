@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "topogeo/messaging/writer.hpp"
@@ -42,11 +43,11 @@ class ArchiveRequests {
   PendingRequests pending_;
   messaging::Writer<msg::ArchiveRequest> requests_;
   messaging::Writer<msg::SnapshotPiece> pieces_;
-  std::string map_file_;  // that is sent; empty: none
+  std::string map_file_;  // that is sent
   std::uint64_t import_request_ = 0;
   std::uint32_t next_piece_ = 0;
   std::uint64_t pieces_sent_ = 0;
-  std::uint64_t timer_ = 0;
+  std::optional<std::uint64_t> timer_;  // while one is sent
 };
 
 }  // namespace topogeo::web
