@@ -22,6 +22,13 @@ namespace {
 constexpr double kMovedAtEnd_m = 0.1;
 constexpr double kMovedAtEnd_rad = 0.02;
 
+// Squared Mahalanobis distance from odometry as it is configured. Doubtful matches that are right
+// are within two deviations of it, look-alikes mostly are not (tests/bench/RESULTS.md, "Steps in
+// doubt").
+constexpr double kNear2 = 4.0;
+// Of one by which half of what is seen contradicts the other view nothing is known.
+constexpr double kContradicted = 0.5;
+
 // Only these can have come near to others.
 std::vector<std::uint32_t> moved_stops(std::span<const Pose2> before,
                                        std::span<const Pose2> after) {
@@ -110,7 +117,8 @@ std::vector<StepMatch> Localizer::place_last() {
 }
 
 std::vector<StepMatch> Localizer::match_recent() {
-  const std::vector<StopMatch> matches = matching_.match_recent(graph_);
+  std::vector<StopMatch> matches = matching_.match_recent(graph_);
+  refuse_look_alikes(matches);
   // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
   // uncertain ones, with their wide covariance, still know more than it does.
   const bool any = std::any_of(matches.begin(), matches.end(),
@@ -122,7 +130,8 @@ std::vector<StepMatch> Localizer::match_recent() {
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) {
     evidence.push_back(match.evidence);
-    if (match.accepted() || (!any && match.uncertain() && as_odometry_says(match.edge))) {
+    if (match.accepted() || (!any && match.uncertain() && match.violations < kContradicted &&
+                             as_odometry_says(match.edge, kNear2))) {
       graph_.add_edge(match.edge);
     }
     if (match.accepted() && match.edge.from + 1 == last()) {
@@ -135,17 +144,37 @@ std::vector<StepMatch> Localizer::match_recent() {
   return evidence;
 }
 
-// Whether a match lies where odometry, as good as it was over the last steps, may have brought the
-// robot: a doubtful one elsewhere is a look-alike.
-bool Localizer::as_odometry_says(const PoseGraphEdge& match) const {
-  UncertainPose odometry;
+// Of those that were found in a widened search only, one at least has to be where odometry may have
+// brought the robot.
+void Localizer::refuse_look_alikes(std::vector<StopMatch>& matches) const {
+  const auto found_far = [](const StopMatch& match) { return match.widened && match.accepted(); };
+  if (std::any_of(matches.begin(), matches.end(), [&](const StopMatch& match) {
+        return found_far(match) && as_odometry_says(match.edge, geometry::kMahalanobis2Of99Percent);
+      })) {
+    return;
+  }
+  for (StopMatch& match : matches) {
+    if (!found_far(match)) continue;
+    match.verdict = match.evidence.verdict = Verdict::kRejected;
+    match.reason = match.evidence.reason = Reason::kNothingInCommon;
+  }
+}
+
+// Whether a match lies where odometry may have brought the robot, as good as it was over the last
+// steps and, to a squared Mahalanobis distance, as good as it is configured: one elsewhere is a
+// look-alike.
+bool Localizer::as_odometry_says(const PoseGraphEdge& match, double largest2) const {
+  UncertainPose expected;
+  UncertainPose configured;
   for (std::uint32_t stop = match.from + 1; stop <= match.to; ++stop) {
     const UncertainPose& step = odometry_steps_[stop];
-    odometry = compose(odometry, {step.T_a_b, invertible(odometry_.expected(step.covariance))});
+    expected = compose(expected, {step.T_a_b, invertible(odometry_.expected(step.covariance))});
+    configured = compose(configured, {step.T_a_b, invertible(step.covariance)});
   }
-  return geometry::squared_mahalanobis(geometry::difference(match.T_from_to, odometry.T_a_b),
-                                       odometry.covariance + match.covariance) <=
-         geometry::kMahalanobis2Of99Percent;
+  const Eigen::Vector3d error = geometry::difference(match.T_from_to, expected.T_a_b);
+  return geometry::squared_mahalanobis(error, expected.covariance + match.covariance) <=
+             geometry::kMahalanobis2Of99Percent &&
+         geometry::squared_mahalanobis(error, configured.covariance + match.covariance) <= largest2;
 }
 
 // Where no match is beyond doubt odometry counts as much as it was right over the last steps.

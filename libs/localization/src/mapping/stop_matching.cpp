@@ -136,7 +136,10 @@ std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
   std::vector<StopMatch> matches = matches_within(1.0);
   if (!any_accepted(matches)) {
     std::vector<StopMatch> wider = matches_within(kWidening);
-    if (any_accepted(wider)) matches = std::move(wider);
+    if (any_accepted(wider)) {
+      matches = std::move(wider);
+      for (StopMatch& match : matches) match.widened = true;
+    }
   }
   last_solutions_ = std::move(solutions);
   calibrate(matches);

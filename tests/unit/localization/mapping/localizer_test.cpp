@@ -82,6 +82,28 @@ void expect_same(const Outcome& a, const Outcome& b) {
   EXPECT_EQ(a.counts.reasons, b.counts.reasons);
 }
 
+// A robot turns where it arrived and drives back while nobody maps: its next view shows little that
+// the last ones have shown, and a quarter turn away a corner of the room looks alike.
+TEST(LocalizerTest, ALookAlikeFarFromGoodOdometryDoesNotCount) {
+  const world::World room = test::world("room");
+  for (double back_m = 0.6; back_m <= 1.81; back_m += 0.1) {
+    std::vector<Pose2> truth = {{1.0, 1.0, 0.0},  {2.0, 1.0, -0.1},          {3.0, 0.95, 0.0},
+                                {4.0, 1.0, 0.15}, {4.0, 1.0, 0.5},           {4.0, 1.0, 0.85},
+                                {4.0, 1.0, 1.15}, {4.0 - back_m, 1.02, 3.13}};
+    InProcessPool pool;
+    Localizer localizer({}, pool);
+    for (std::uint32_t id = 0; id < truth.size(); ++id) {
+      auto map = std::make_shared<topomap::LocalMap>(test::map_at(room, truth[id], id));
+      if (id > 0) map->T_previous_robot = geometry::between(truth[id - 1], truth[id]);
+      localizer.add(std::move(map));
+    }
+    const Pose2 T_map_robot = localizer.trajectory().stops.back().T_map_robot;
+    EXPECT_LT(geometry::difference(T_map_robot, geometry::between(truth[0], truth.back())).norm(),
+              0.3)
+        << back_m;
+  }
+}
+
 TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
   const DrivenMaps& driven = round_trip();
   ASSERT_GT(driven.maps.size(), 80U);

@@ -101,7 +101,8 @@ class Localizer : public Slam {
   std::vector<StepMatch> place_last();
   std::vector<StepMatch> match_recent();
   std::vector<StepMatch> match_revisited(std::span<const std::uint32_t> stops);
-  [[nodiscard]] bool as_odometry_says(const PoseGraphEdge& match) const;
+  void refuse_look_alikes(std::vector<StopMatch>& matches) const;
+  [[nodiscard]] bool as_odometry_says(const PoseGraphEdge& match, double largest2) const;
   void rely_on_odometry();
   void judge_state(std::vector<StepMatch> evidence);
 

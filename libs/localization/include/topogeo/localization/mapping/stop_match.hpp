@@ -33,7 +33,8 @@ struct StopMatch {
   /// (LoopAgreement); 0: it was not accepted with others.
   double agreement = 0.0;
   double rival_agreement = 0.0;
-  StepMatch evidence;  ///< of the pose of the later stop
+  bool widened = false;  ///< of a search wider than odometry asks for: nothing was found there
+  StepMatch evidence;    ///< of the pose of the later stop
   std::vector<MatchSolution> solutions;
 
   [[nodiscard]] bool accepted() const { return verdict == Verdict::kAccepted; }
