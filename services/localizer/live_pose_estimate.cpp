@@ -7,7 +7,8 @@
 namespace topogeo::localizer {
 
 void LivePoseEstimate::set_odometry(std::int64_t stamp_ns, std::uint64_t sequence,
-                                    const geometry::Pose2& T_odom_robot) {
+                                    const geometry::Pose2& T_odom_robot, std::uint64_t epoch) {
+  epoch_ = epoch;
   stamp_ns_ = stamp_ns;
   sequence_ = sequence;
   T_odom_robot_ = T_odom_robot;
@@ -19,7 +20,9 @@ void LivePoseEstimate::set_tracked(const topomap::StopId& stop, const topomap::T
 
 void LivePoseEstimate::set_stop(std::shared_ptr<const topomap::LocalMap> map) {
   map_ = std::move(map);
-  if (map_->stamp_ns >= stamp_ns_) set_odometry(map_->stamp_ns, map_->sequence, map_->T_odom_robot);
+  if (map_->stamp_ns >= stamp_ns_) {
+    set_odometry(map_->stamp_ns, map_->sequence, map_->T_odom_robot, map_->odometry_epoch);
+  }
 }
 
 void LivePoseEstimate::correct(const geometry::Pose2& T_map_stop,
@@ -29,11 +32,11 @@ void LivePoseEstimate::correct(const geometry::Pose2& T_map_stop,
 }
 
 geometry::Pose2 LivePoseEstimate::T_stop_robot() const {
-  return map_ ? geometry::between(map_->T_odom_robot, T_odom_robot_) : geometry::Pose2{};
+  return comparable() ? geometry::between(map_->T_odom_robot, T_odom_robot_) : geometry::Pose2{};
 }
 
 std::optional<PoseOfNow> LivePoseEstimate::now() const {
-  if (!map_) return std::nullopt;
+  if (!comparable()) return std::nullopt;
   const bool tracked = tracked_ && tracked_->stop == map_->stop;
   return PoseOfNow{
       stamp_ns_, sequence_,

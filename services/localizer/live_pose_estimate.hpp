@@ -26,9 +26,9 @@ class LivePoseEstimate {
  public:
   explicit LivePoseEstimate(const localization::OdometryNoise& noise) : noise_(noise) {}
 
-  /// The newest reading of the odometry.
+  /// The newest reading of the odometry, with its epoch as in scan::Scan.
   void set_odometry(std::int64_t stamp_ns, std::uint64_t sequence,
-                    const geometry::Pose2& T_odom_robot);
+                    const geometry::Pose2& T_odom_robot, std::uint64_t epoch);
   /// The newest scan after that stop; counts while it is the last one.
   void set_tracked(const topomap::StopId& stop, const topomap::TrackedScan& scan);
   /// The robot has made a stop. Its odometry counts unless a newer one has come.
@@ -41,9 +41,11 @@ class LivePoseEstimate {
   [[nodiscard]] const topomap::StopPose& stop_pose() const { return stop_pose_; }
   /// A stop has been made.
   [[nodiscard]] bool has_stop() const { return map_ != nullptr; }
-  /// The robot now, seen from its last stop by odometry; the identity before the first stop.
+  /// The robot now, seen from its last stop by odometry; the identity where that is not known:
+  /// before the first stop, and when the odometry has begun anew since.
   [[nodiscard]] geometry::Pose2 T_stop_robot() const;
-  /// Nothing before the first stop.
+  /// Nothing before the first stop, nor from the beginning of another epoch of the odometry to the
+  /// first stop in it.
   [[nodiscard]] std::optional<PoseOfNow> now() const;
 
  private:
@@ -52,12 +54,16 @@ class LivePoseEstimate {
     topomap::TrackedScan scan;
   };
 
+  /// The last stop and the newest odometry have one origin.
+  [[nodiscard]] bool comparable() const { return map_ && map_->odometry_epoch == epoch_; }
+
   localization::OdometryNoise noise_;
   std::shared_ptr<const topomap::LocalMap> map_;  // of the last stop
   topomap::StopPose stop_pose_;
   std::int64_t stamp_ns_ = 0;  // of the newest odometry
   std::uint64_t sequence_ = 0;
   geometry::Pose2 T_odom_robot_;
+  std::uint64_t epoch_ = 0;
   std::optional<Tracked> tracked_;
 };
 

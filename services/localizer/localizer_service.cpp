@@ -121,7 +121,7 @@ void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
 
 void LocalizerService::on_odometry(const msg::Odometry& message) {
   live_.set_odometry(message.stamp_ns(), message.sequence_number(),
-                     service::from_msg(message.T_odom_robot()));
+                     service::from_msg(message.T_odom_robot()), message.odometry_epoch());
   send_pose();
 }
 

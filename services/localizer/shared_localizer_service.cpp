@@ -49,7 +49,8 @@ SharedLocalizerService::SharedLocalizerService(service::Service& service, bool s
       [this](const msg::Odometry& odometry) {
         const std::string robot = odometry.robot_id().to_string();
         robots_.at(robot).live.set_odometry(odometry.stamp_ns(), odometry.sequence_number(),
-                                            service::from_msg(odometry.T_odom_robot()));
+                                            service::from_msg(odometry.T_odom_robot()),
+                                            odometry.odometry_epoch());
         send_pose(robot);
       },
       {.team = true});

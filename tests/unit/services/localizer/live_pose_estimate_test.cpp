@@ -10,6 +10,7 @@ namespace {
 using geometry::Pose2;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::uint64_t kEpoch = 5;
 
 /// A stop at a second with 10 m of odometry behind it.
 std::shared_ptr<const topomap::LocalMap> stop_at_10_m(std::uint32_t id) {
@@ -19,6 +20,7 @@ std::shared_ptr<const topomap::LocalMap> stop_at_10_m(std::uint32_t id) {
   map->sequence = 7;
   map->stamp_ns = kSecond_ns;
   map->T_odom_robot = {10.0, 0.0, 0.0};
+  map->odometry_epoch = kEpoch;
   return map;
 }
 
@@ -43,7 +45,7 @@ class LivePose : public ::testing::Test {
 };
 
 TEST_F(LivePose, IsUnknownBeforeTheFirstStop) {
-  live_.set_odometry(kSecond_ns, 1, {1.0, 0.0, 0.0});
+  live_.set_odometry(kSecond_ns, 1, {1.0, 0.0, 0.0}, kEpoch);
   EXPECT_FALSE(live_.has_stop());
   EXPECT_FALSE(live_.now());
   EXPECT_EQ(live_.T_stop_robot(), Pose2{});
@@ -55,14 +57,28 @@ TEST_F(LivePose, IsThatOfTheStopAndTheOdometrySince) {
   expect_at(2.0, 3.0);
   EXPECT_EQ(live_.now()->stamp_ns, kSecond_ns);
   EXPECT_EQ(live_.now()->sequence, 7U);
-  live_.set_odometry(2 * kSecond_ns, 9, {10.5, 0.0, 0.0});
+  live_.set_odometry(2 * kSecond_ns, 9, {10.5, 0.0, 0.0}, kEpoch);
   expect_at(2.0, 3.5);
   EXPECT_EQ(live_.now()->sequence, 9U);
   EXPECT_NEAR(live_.T_stop_robot().x_m, 0.5, 1e-12);
 }
 
+TEST_F(LivePose, IsUnknownFromANewEpochOfTheOdometryToTheNextStop) {
+  live_.set_stop(stop_at_10_m(0));
+  live_.correct(corrected());
+  live_.set_odometry(2 * kSecond_ns, 9, {0.0, 0.0, 0.0}, kEpoch + 1);  // the base was restarted
+  EXPECT_FALSE(live_.now());
+  EXPECT_EQ(live_.T_stop_robot(), Pose2{});
+  auto next = std::make_shared<topomap::LocalMap>(*stop_at_10_m(1));
+  next->odometry_epoch = kEpoch + 1;
+  next->T_odom_robot = {};
+  live_.set_stop(next);
+  live_.set_odometry(3 * kSecond_ns, 10, {0.25, 0.0, 0.0}, kEpoch + 1);
+  expect_at(2.0, 3.25);
+}
+
 TEST_F(LivePose, NewerOdometryThanThatOfTheStopStays) {
-  live_.set_odometry(2 * kSecond_ns, 9, {10.5, 0.0, 0.0});
+  live_.set_odometry(2 * kSecond_ns, 9, {10.5, 0.0, 0.0}, kEpoch);
   live_.set_stop(stop_at_10_m(0));  // took a second to be matched
   live_.correct(corrected());
   expect_at(2.0, 3.5);
@@ -75,7 +91,7 @@ TEST_F(LivePose, AScanMatchedWithTheLastStopReplacesItsOdometry) {
   scan.T_odom_robot = {10.5, 0.0, 0.0};
   scan.T_stop_robot = {0.4, 0.0, 0.0};  // the odometry was 0.1 m off
   scan.matched = true;
-  live_.set_odometry(2 * kSecond_ns, 9, {10.6, 0.0, 0.0});
+  live_.set_odometry(2 * kSecond_ns, 9, {10.6, 0.0, 0.0}, kEpoch);
   live_.set_tracked({1, 3}, scan);  // of the stop before
   expect_at(2.0, 3.6);
   live_.set_tracked({1, 4}, scan);
@@ -85,7 +101,7 @@ TEST_F(LivePose, AScanMatchedWithTheLastStopReplacesItsOdometry) {
 TEST_F(LivePose, MovesWithACorrection) {
   live_.set_stop(stop_at_10_m(0));
   live_.correct(corrected());
-  live_.set_odometry(2 * kSecond_ns, 9, {10.5, 0.0, 0.0});
+  live_.set_odometry(2 * kSecond_ns, 9, {10.5, 0.0, 0.0}, kEpoch);
   live_.correct(Pose2{5.0, 0.0, 0.0}, Eigen::Matrix3d::Identity());
   expect_at(5.5, 0.0);
   EXPECT_GT(live_.now()->T_map_robot.covariance(0, 0), 0.9);
