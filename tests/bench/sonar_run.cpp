@@ -65,6 +65,8 @@ class SonarLoop {
   [[nodiscard]] const simulation::SimulatedRobot& robot() const { return robot_; }
   [[nodiscard]] const navigation::NavigatorStatus& status() const { return navigator_.status(); }
   [[nodiscard]] std::size_t plans() const { return plans_; }
+  /// Metres, the last round; scan::Scan::kNoReturn for none.
+  [[nodiscard]] const std::vector<float>& ranges_m() const { return ranges_m_; }
 
  private:
   static simulation::RobotOptions robot_options(const SonarDriveConfig& config,
@@ -79,10 +81,10 @@ class SonarLoop {
   void hear() {
     navigation::SonarRound round;
     round.stamp_ns = now_ns_;
-    const std::vector<float> ranges_m = robot_.sonar();
-    for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+    ranges_m_ = robot_.sonar();
+    for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
       const devices::SonarMount& mount = robot_.options().sonars[i];
-      round.readings.push_back({mount.T_robot_sonar, mount.half_cone_rad, ranges_m[i]});
+      round.readings.push_back({mount.T_robot_sonar, mount.half_cone_rad, ranges_m_[i]});
     }
     navigator_.add(round);
     if (!stands_at_station_) return;
@@ -138,6 +140,7 @@ class SonarLoop {
   std::optional<std::uint64_t> planned_for_;
   std::optional<Eigen::Vector2d> refused_at_m_;
   std::size_t plans_ = 0;
+  std::vector<float> ranges_m_;
 };
 
 Pose2 draw_standing_pose(const DrawnFloor& floor, const SonarDriveConfig& config,
@@ -182,14 +185,24 @@ bool put_box(const DrawnFloor& floor, const planning::HybridRoute& route, suppor
   return true;
 }
 
-std::string trace_line(const SonarLoop& loop) {
+constexpr std::string_view kTraceHeader =
+    "time_s,true_x_m,true_y_m,true_theta_rad,x_m,y_m,theta_rad,collisions,room_m,linear_m_per_s,"
+    "angular_rad_per_s,ranges_m,state,reason,message\n";
+
+/// `room_m`: from the body to the nearest thing; `ranges_m`: as the sonars are mounted, 0 for none.
+std::string trace_line(const SonarLoop& loop, const world::World& world) {
   const Pose2& truth = loop.robot().T_world_robot();
   const navigation::NavigatorStatus& status = loop.status();
   const Pose2 pose = status.T_map_robot.value_or(Pose2{});
-  return fmt::format("{:.2f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.4f},{},{},{},\"{}\"\n",
-                     loop.time_s(), truth.x_m, truth.y_m, truth.theta_rad, pose.x_m, pose.y_m,
-                     pose.theta_rad, loop.robot().collisions(), navigation::describe(status.state),
-                     navigation::describe(status.reason), status.message);
+  std::string ranges;
+  for (const float range_m : loop.ranges_m()) ranges += fmt::format(" {:.2f}", range_m);
+  return fmt::format(
+      "{:.2f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.4f},{},{:.3f},{:.3f},{:.3f},{},{},{},\"{}\"\n",
+      loop.time_s(), truth.x_m, truth.y_m, truth.theta_rad, pose.x_m, pose.y_m, pose.theta_rad,
+      loop.robot().collisions(),
+      world::clearance_m(world, truth.position_m()) - devices::kB21Radius_m,
+      status.command.linear_m_per_s, status.command.angular_rad_per_s, ranges,
+      navigation::describe(status.state), navigation::describe(status.reason), status.message);
 }
 
 SonarResult score_drive(const SonarLoop& loop, const SonarTask& task) {
@@ -293,8 +306,7 @@ SonarResult run_sonar_drive(const DrawnFloor& floor, const SonarDriveConfig& con
   double largest_m = 0.0;
   double moved_s = start_s;
   double path_m = 0.0;
-  std::string text =
-      "time_s,true_x_m,true_y_m,true_theta_rad,x_m,y_m,theta_rad,collisions,state,reason,message\n";
+  std::string text(kTraceHeader);
   for (std::uint64_t ticks = 0; loop.time_s() - start_s < config.longest_s; ++ticks) {
     loop.tick();
     const navigation::NavigatorStatus& status = loop.status();
@@ -303,7 +315,7 @@ SonarResult run_sonar_drive(const DrawnFloor& floor, const SonarDriveConfig& con
           largest_m,
           (status.T_map_robot->position_m() - loop.robot().T_world_robot().position_m()).norm());
     }
-    if (!trace.empty() && ticks % kTraceTicks == 0) text += trace_line(loop);
+    if (!trace.empty() && ticks % kTraceTicks == 0) text += trace_line(loop, task.world);
     if (loop.robot().path_m() > path_m + 0.05) {
       path_m = loop.robot().path_m();
       moved_s = loop.time_s();

@@ -85,7 +85,8 @@ struct SonarResult {
   [[nodiscard]] bool good() const;
 };
 
-/// `trace` may be empty; otherwise a CSV file of true and reported poses, five times a second.
+/// `trace` may be empty; otherwise a CSV file of true and reported poses, room, commands and sonar
+/// readings, five times a second.
 SonarResult run_sonar_drive(const DrawnFloor& floor, const SonarDriveConfig& config,
                             const SonarTask& task, const std::filesystem::path& trace = {});
 

@@ -7,7 +7,17 @@
 namespace topogeo::navigation {
 
 GuardedBase::GuardedBase(const GuardConfig& guard, double stuck_s)
-    : stuck_s_(stuck_s), guard_(guard), watch_(stuck_s) {}
+    : stuck_s_(stuck_s), guard_(guard), near_(guard), watch_(stuck_s) {}
+
+void GuardedBase::add(const OdometrySample& odometry) {
+  guard_.add(odometry);
+  near_.add(odometry);
+}
+
+void GuardedBase::add(const SonarRound& sonar) {
+  guard_.add(sonar);
+  near_.add(sonar);
+}
 
 HaltReason GuardedBase::halted(std::int64_t now_ns, std::string& message) const {
   if (base_ && !base_->commands_taken) {
@@ -26,7 +36,10 @@ GuardedBase::Command GuardedBase::command(const geometry::Velocity& wanted,
                                           const std::optional<geometry::Pose2>& T_odom_robot,
                                           std::int64_t now_ns) {
   Command command;
-  command.verdict = guard_.judge(wanted, now_ns);
+  command.verdict = guard_.judge(near_.make_room(wanted, now_ns), now_ns);
+  // It turns where there is no room to move off, too.
+  if (command.verdict.allowed == geometry::Velocity{})
+    command.verdict = guard_.judge(wanted, now_ns);
   const geometry::Velocity& allowed = command.verdict.allowed;
   command.stopped = wanted.linear_m_per_s > 0.0 && allowed == geometry::Velocity{};
   if (command.stopped && !stopped_ns_) {

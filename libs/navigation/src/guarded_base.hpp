@@ -16,6 +16,7 @@
 #include "topogeo/navigation/navigator_inputs.hpp"
 
 #include "base_watch.hpp"
+#include "near_echoes.hpp"
 
 namespace topogeo::navigation {
 
@@ -23,9 +24,9 @@ class GuardedBase {
  public:
   GuardedBase(const GuardConfig& guard, double stuck_s);
 
-  void add(const OdometrySample& odometry) { guard_.add(odometry); }
+  void add(const OdometrySample& odometry);
   void add(const ScanPoints& scan) { guard_.add(scan); }
-  void add(const SonarRound& sonar) { guard_.add(sonar); }
+  void add(const SonarRound& sonar);
   void add(const LaserFields& fields) { guard_.add(fields); }
   void add(const BaseCondition& base) { base_ = base; }
   void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m) {
@@ -59,6 +60,7 @@ class GuardedBase {
  private:
   double stuck_s_;
   CollisionGuard guard_;
+  NearEchoes near_;
   BaseWatch watch_;
   std::optional<BaseCondition> base_;
   bool stuck_ = false;

@@ -203,6 +203,7 @@ geometry::Velocity NavigationStep::follow(const geometry::Pose2& T_map_robot) {
     wait.drive_on(status.driven_m);
   }
   if (driven.follower.done) {
+    near_since_ns.reset();  // it gets there: how often it corrects is counted
     arrival.begin(now_ns);
     return settle(T_map_robot);
   }

@@ -1,0 +1,46 @@
+// Room to what sonars hear at their least range. They cannot measure how near it is, so a robot
+// that is not quite where it believes to be comes to touch it unheard: driving along it, or turning
+// on the spot on wheels that shift it. It moves off by itself, as far as nothing is on the other
+// side.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "topogeo/geometry/velocity.hpp"
+#include "topogeo/navigation/guard_config.hpp"
+#include "topogeo/navigation/navigator_inputs.hpp"
+
+namespace topogeo::navigation {
+
+class NearEchoes {
+ public:
+  explicit NearEchoes(const GuardConfig& config) : config_(config) {}
+
+  // Each in time order.
+  void add(const OdometrySample& odometry) { odometry_ = odometry; }
+  void add(const SonarRound& sonar);
+
+  /// The wanted velocity with what leads off near echoes of the last seconds: curved away from
+  /// what is on one side alone, and ahead or back while the robot turns on the spot. Unchanged
+  /// where a laser sees what is near, or nothing is.
+  [[nodiscard]] geometry::Velocity make_room(const geometry::Velocity& wanted,
+                                             std::int64_t now_ns) const;
+
+ private:
+  struct Near {
+    Eigen::Vector2d point_m;  ///< odometry frame
+    std::int64_t heard_ns;
+  };
+  void forget_before(const SonarReading& reading);
+  void note(const SonarReading& reading, std::int64_t heard_ns);
+
+  GuardConfig config_;
+  std::optional<OdometrySample> odometry_;
+  std::vector<Near> near_;
+};
+
+}  // namespace topogeo::navigation
