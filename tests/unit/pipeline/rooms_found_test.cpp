@@ -1,5 +1,7 @@
-// Whether the rooms that are found are those that people draw.
+// Whether the rooms that are found are those that people draw. Prints a table of their overlap.
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -48,17 +50,47 @@ std::map<std::string, double> overlaps(const FreeSpace& space, const ZoneMap& fo
   return best;
 }
 
-void expect_rooms(const FreeSpace& space, const std::vector<DrawnZone>& drawn) {
-  const ZoneMap found = planning::zones_of_rooms(space);
-  for (const auto& [name, overlap] : overlaps(space, found, drawn)) {
-    EXPECT_GE(overlap, kGoodOverlap) << "'" << name << "'";
+/// A row of the table for one or several floors.
+class OverlapRow {
+ public:
+  explicit OverlapRow(std::string name) : name_(std::move(name)) {}
+  OverlapRow(const OverlapRow&) = delete;
+  OverlapRow& operator=(const OverlapRow&) = delete;
+  ~OverlapRow() {
+    std::printf("| %s | %zu | %zu | %.1f %% | %.1f %% (%s) |\n", name_.c_str(), drawn_, found_,
+                100.0 * sum_ / static_cast<double>(std::max<std::size_t>(1, drawn_)),
+                100.0 * worst_, worst_room_.c_str());
   }
-  EXPECT_EQ(found.zones.size(), drawn.size());
-}
+
+  /// A floor: every room that is drawn is found, and no other.
+  void expect_rooms(const FreeSpace& space, const std::vector<DrawnZone>& drawn) {
+    const ZoneMap found = planning::zones_of_rooms(space);
+    for (const auto& [name, overlap] : overlaps(space, found, drawn)) {
+      EXPECT_GE(overlap, kGoodOverlap) << "'" << name << "'";
+      sum_ += overlap;
+      if (overlap >= worst_) continue;
+      worst_ = overlap;
+      worst_room_ = name;
+    }
+    EXPECT_EQ(found.zones.size(), drawn.size());
+    drawn_ += drawn.size();
+    found_ += found.zones.size();
+  }
+
+ private:
+  std::string name_;
+  std::size_t drawn_ = 0;
+  std::size_t found_ = 0;
+  double sum_ = 0.0;
+  double worst_ = 1.0;
+  std::string worst_room_ = "all alike";
+};
 
 /// A world file, turned, as a floor with its rooms.
 void expect_rooms_of_world(const std::string& name, double turned_rad) {
-  SCOPED_TRACE(name + " turned by " + std::to_string(turned_rad));
+  char title[80];
+  std::snprintf(title, sizeof title, "%s, turned by %.1f rad", name.c_str(), turned_rad);
+  SCOPED_TRACE(title);
   const world::World world =
       world::load_world(std::filesystem::path(TOPOGEO_TEST_DATA) / (name + ".world.yaml"));
   const geometry::Pose2 turn{0.0, 0.0, turned_rad};
@@ -73,7 +105,8 @@ void expect_rooms_of_world(const std::string& name, double turned_rad) {
   }
   ASSERT_FALSE(rooms.empty());
   const HybridMapConfig config;
-  expect_rooms(FreeSpace(planning::grid_of(drawing, 0.1), config.inflation), rooms);
+  OverlapRow(title).expect_rooms(FreeSpace(planning::grid_of(drawing, 0.1), config.inflation),
+                                 rooms);
 }
 
 TEST(RoomsFound, AreThoseOfTheOfficeFloor) {
@@ -89,10 +122,11 @@ TEST(RoomsFound, AreThoseOfTheWarehouse) {
 
 // Rooms with furniture whose doors are known.
 TEST(RoomsFound, AreThoseOfRandomFloors) {
+  OverlapRow row("20 random floors, rooms of 5 x 4 m");
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
     const planning::BlockFloor floor = planning::block_floor({}, seed);
-    expect_rooms(FreeSpace(floor.grid, HybridMapConfig{}.inflation), floor.rooms);
+    row.expect_rooms(FreeSpace(floor.grid, HybridMapConfig{}.inflation), floor.rooms);
   }
 }
 
@@ -100,10 +134,14 @@ TEST(RoomsFound, AreThoseOfRandomFloorsOfOtherSizes) {
   for (const planning::BlockPlan& plan :
        {planning::BlockPlan{3, 4, 70, 60, 12, 4}, planning::BlockPlan{6, 2, 36, 44, 9, 1},
         planning::BlockPlan{2, 2, 120, 90, 16, 8}}) {
+    char title[80];
+    std::snprintf(title, sizeof title, "10 random floors, rooms of %.1f x %.1f m",
+                  0.1 * plan.room_width, 0.1 * plan.room_height);
+    OverlapRow row(title);
     for (std::uint64_t seed = 100; seed < 110; ++seed) {
       SCOPED_TRACE(std::to_string(plan.room_width) + ", seed " + std::to_string(seed));
       const planning::BlockFloor floor = planning::block_floor(plan, seed);
-      expect_rooms(FreeSpace(floor.grid, HybridMapConfig{}.inflation), floor.rooms);
+      row.expect_rooms(FreeSpace(floor.grid, HybridMapConfig{}.inflation), floor.rooms);
     }
   }
 }
