@@ -12,15 +12,13 @@ namespace topogeo::map_store {
 
 namespace {
 
-/// Walls, openings and doors become the grid; doors stay, because rooms meet there.
+/// Walls, openings and doors become the grid.
 void make_floor(storage::MapDrawing& drawing, const msg::Point2& inside, double resolution_m) {
   if (!std::isfinite(inside.x_m()) || !std::isfinite(inside.y_m())) {
     throw std::invalid_argument("inside: expected finite coordinates");
   }
   drawing.grid = planning::grid_of_floor(drawing.lines, {inside.x_m(), inside.y_m()}, resolution_m);
-  std::erase_if(drawing.lines, [](const planning::DrawnLine& line) {
-    return line.kind != planning::LineKind::kDoor;
-  });
+  service::drop_grid_lines(drawing);
 }
 
 }  // namespace
@@ -38,6 +36,7 @@ DrawingOutcome carry_out(const msg::DrawingOrder& order, const storage::MapDrawi
     drawing.grid = now.grid;
     drawing.version = now.version + 1;
     if (order.kind() == msg::kDrawingFloor) make_floor(drawing, order.inside(), resolution_m);
+    service::check_rules(drawing);
     return {msg::kDrawingDone, "", std::move(drawing)};
   } catch (const std::invalid_argument& error) {
     return {msg::kDrawingInvalid, error.what(), {}};

@@ -66,6 +66,7 @@ storage::MapDrawing drawing_of(const std::filesystem::path& file) {
   try {
     storage::MapDrawing drawing = pipeline::read_zones_and_places(file);
     service::check_drawing(drawing);
+    service::check_rules(drawing);
     return drawing;
   } catch (const std::exception& error) {
     throw service::BadInputError(error.what());

@@ -19,12 +19,11 @@ namespace topogeo::cli {
 namespace {
 
 /// What the map of the floor has besides its walls, which are its grid.
-std::string zones_text(const storage::MapDrawing& drawing) {
-  planning::ZoneDrawing drawn{drawing.zones, drawing.places, {}};
-  for (const planning::DrawnLine& line : drawing.lines) {
-    if (line.kind == planning::LineKind::kDoor) drawn.lines.push_back(line);
-  }
-  return planning::zone_drawing_text(drawn);
+std::string zones_text(storage::MapDrawing drawing) {
+  service::drop_grid_lines(drawing);
+  service::check_rules(drawing);
+  return planning::zone_drawing_text(
+      {std::move(drawing.zones), std::move(drawing.places), std::move(drawing.lines)});
 }
 
 }  // namespace

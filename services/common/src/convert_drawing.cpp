@@ -1,4 +1,5 @@
 // What people draw on a live map.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -14,6 +15,10 @@
 #include "convert.hpp"
 
 namespace topogeo::service {
+
+// storage::check has the number of zones and lines.
+static_assert(msg::kMaxDrawnZones >= storage::kMaxDrawnZones);
+static_assert(msg::kMaxDrawnLines >= storage::kMaxDrawnLines);
 
 using detail::check_bound;
 using detail::to_point;
@@ -60,19 +65,6 @@ void check_live_zone(const planning::DrawnZone& zone, std::size_t index) {
 
 void check_live(const storage::MapDrawing& drawing) {
   for (std::size_t i = 0; i < drawing.zones.size(); ++i) check_live_zone(drawing.zones[i], i);
-  std::size_t rules = drawing.lines.size();
-  for (const planning::DrawnZone& zone : drawing.zones) {
-    if (zone.kind != planning::ZoneKind::kRoom) ++rules;
-  }
-  if (drawing.zones.size() > msg::kMaxDrawnZones) {
-    throw std::runtime_error(
-        fmt::format("{} zones, allowed are {}", drawing.zones.size(), msg::kMaxDrawnZones));
-  }
-  if (rules > msg::kMaxRules) {
-    throw std::runtime_error(
-        fmt::format("{} no-go, slow and one-way zones, walls, openings and doors, allowed are {}",
-                    rules, msg::kMaxRules));
-  }
   std::array<std::size_t, planning::kLineKinds> counts{};
   for (const planning::DrawnLine& line : drawing.lines) {
     const std::size_t index = counts.at(static_cast<std::size_t>(line.kind))++;
@@ -142,6 +134,23 @@ void check_drawing(const storage::MapDrawing& drawing) {
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(error.what());
   }
+}
+
+void drop_grid_lines(storage::MapDrawing& drawing) {
+  std::erase_if(drawing.lines, [](const planning::DrawnLine& line) {
+    return line.kind != planning::LineKind::kDoor;
+  });
+}
+
+void check_rules(const storage::MapDrawing& drawing) {
+  const auto zones = std::ranges::count_if(drawing.zones, [](const planning::DrawnZone& zone) {
+    return zone.kind != planning::ZoneKind::kRoom;
+  });
+  const std::size_t rules = drawing.lines.size() + static_cast<std::size_t>(zones);
+  if (rules <= msg::kMaxRules) return;
+  throw std::invalid_argument(fmt::format(
+      "{} no-go, slow and one-way zones, walls, openings and doors over a map, allowed are {}",
+      rules, msg::kMaxRules));
 }
 
 }  // namespace topogeo::service

@@ -163,6 +163,7 @@ Json json_of(const storage::MapDrawing& drawing) {
 storage::MapDrawing parse_drawing(const std::string& body) {
   const Json json = object_of(body);
   storage::MapDrawing drawing = content_of(json);
+  service::check_rules(drawing);
   drawing.version = version_of(json);
   return drawing;
 }

@@ -87,6 +87,14 @@ TEST(DrawingText, HasNoMoreThanMapsHaveRoomFor) {
         parse_drawing(text_of(Json{{"version", "0"}, {"walls", walls}}));
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("257 no-go")));
+  const auto floor_of = [&walls] {
+    return parse_floor(text_of(
+        Json{{"target", "robot"}, {"start", {{"x_m", 0.5}, {"y_m", 0.5}}}, {"walls", walls}}));
+  };
+  while (walls.size() < 4096) walls.push_back({{"points_m", {0, 0, 1, walls.size()}}});
+  EXPECT_EQ(floor_of().drawing.lines.size(), 4096U);
+  walls.push_back({{"points_m", {0, 0, 1, 1}}});
+  EXPECT_THAT(floor_of, ThrowsMessage<std::invalid_argument>(HasSubstr("4097 walls")));
   Json points = Json::array();
   for (int i = 0; i < 514; ++i) points.push_back(i);
   EXPECT_THAT(

@@ -123,5 +123,49 @@ TEST(DrawingOrder, AFloorBecomesTheGrid) {
   EXPECT_EQ(carry_out(order, with_grid(7), 0.1).result, msg::kDrawingInvalid);
 }
 
+/// 40 x `rows` cubicles of 4 m with two walls each, the first of them with a door to the left.
+storage::MapDrawing office(int rows, int doors) {
+  storage::MapDrawing drawing;
+  for (int i = 0; i < 40 * rows; ++i) {
+    const double x_m = 4.0 * (i % 40);
+    const double y_m = 4.0 * (i / 40);
+    drawing.lines.push_back({planning::LineKind::kWall, {{x_m, y_m}, {x_m + 4.0, y_m}}});
+    drawing.lines.push_back({planning::LineKind::kWall, {{x_m, y_m}, {x_m, y_m + 4.0}}});
+    if (i >= doors) continue;
+    drawing.lines.push_back({planning::LineKind::kDoor,
+                             {{x_m, y_m + 1.0}, {x_m, y_m + 2.0}},
+                             "door " + std::to_string(i)});
+  }
+  return drawing;
+}
+
+TEST(DrawingOrder, AFloorOfThousandsOfWallsBecomesTheGrid) {
+  msg::DrawingOrder order = order_of(office(50, 96), 7);
+  const DrawingOutcome over = carry_out(order, with_grid(7), 0.2);
+  EXPECT_EQ(over.result, msg::kDrawingInvalid) << "as walls over a map they are rules of it";
+  EXPECT_THAT(over.message, HasSubstr("4096 no-go"));
+  order.kind(msg::kDrawingFloor);
+  order.inside().x_m(2.0);
+  order.inside().y_m(2.0);
+  const DrawingOutcome outcome = carry_out(order, with_grid(7), 0.2);
+  ASSERT_TRUE(outcome.drawing) << outcome.message;
+  EXPECT_EQ(outcome.drawing->lines.size(), 96U) << "its doors";
+  const planning::OccupancyGrid& grid = *outcome.drawing->grid;
+  EXPECT_EQ(grid.at(grid.frame().cell_of({42.0, 2.0}).value()), planning::CellState::kFree);
+  EXPECT_EQ(grid.at(grid.frame().cell_of({82.0, 82.0}).value()), planning::CellState::kUnknown)
+      << "no door leads there";
+  EXPECT_EQ(grid.at(grid.frame().cell_of({82.0, 80.1}).value()), planning::CellState::kOccupied);
+}
+
+TEST(DrawingOrder, AFloorHasNoMoreDoorsThanAMapHasRules) {
+  msg::DrawingOrder order = order_of(office(7, 257), 7);
+  order.kind(msg::kDrawingFloor);
+  order.inside().x_m(2.0);
+  order.inside().y_m(2.0);
+  const DrawingOutcome outcome = carry_out(order, with_grid(7), 0.2);
+  EXPECT_EQ(outcome.result, msg::kDrawingInvalid);
+  EXPECT_THAT(outcome.message, HasSubstr("257 no-go"));
+}
+
 }  // namespace
 }  // namespace topogeo::map_store

@@ -19,4 +19,12 @@ storage::MapDrawing from_msg(const msg::DrawingContent& content);
 /// std::invalid_argument naming list, index and name of the entry.
 void check_drawing(const storage::MapDrawing& drawing);
 
+/// Of a floor whose walls, openings and doors have become a grid: doors stay, because rooms meet
+/// there.
+void drop_grid_lines(storage::MapDrawing& drawing);
+
+/// Whether all that lies over a map fits into the rules of its hybrid map: zones that are no rooms,
+/// and all lines. Throws std::invalid_argument with their number and what is allowed.
+void check_rules(const storage::MapDrawing& drawing);
+
 }  // namespace topogeo::service

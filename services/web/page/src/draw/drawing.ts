@@ -52,7 +52,7 @@ export const kLists: readonly ListName[] = ["places", "doors", "openings", "wall
 const kZoneKinds: readonly ZoneKind[] = ["room", "no_go", "slow", "one_way"];
 
 /** Limits of the service, for each list and for the corners of an item. */
-export const kMostItems = 256;
+export const kMostItems = 4096;
 export const kMostCorners = 256;
 
 export function empty_drawing(): Drawing {
