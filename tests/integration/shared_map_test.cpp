@@ -20,6 +20,7 @@
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/archive.h"
 #include "topogeo/msg/local_map.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/store.h"
@@ -63,9 +64,16 @@ struct FloorDrive {
 class SharedMapServices : public testing::Test {
  protected:
   SharedMapServices() {
-    loop_.add<msg::StoredMap>(stored_, [this](const msg::StoredMap& stored, const auto&) {
-      newest_[stored.robot_id().to_string()] = stored;
-    });
+    loop_.add<msg::ArchiveReply>(
+        replies_, [this](const msg::ArchiveReply& reply, const auto&) { reply_ = reply; });
+    loop_.add<msg::StoredMap>(
+        stored_,
+        [this](const msg::StoredMap& stored, const auto&) {
+          newest_[stored.robot_id().to_string()] = stored;
+        },
+        [this](const messaging::SampleInfo& info) {
+          if (info.state == messaging::InstanceState::kDisposed) ++withdrawn_;
+        });
     loop_.add<msg::WorkerStatus>(
         messaging::Reader<msg::WorkerStatus>(participant_),
         [this](const msg::WorkerStatus& worker, const messaging::SampleInfo& info) {
@@ -136,6 +144,18 @@ class SharedMapServices : public testing::Test {
       EXPECT_TRUE(ends_.write(end));
     }
   }
+  /// What the map store answers to a request, which is sent once.
+  msg::ArchiveReply ask(msg::ArchiveAction action, const std::string& name) {
+    msg::ArchiveRequest request;
+    messaging::set_header(request, "a", 0, requests_sent_);
+    messaging::set_client_id(request, "operator");
+    request.request_id(++requests_sent_);
+    request.action(action);
+    messaging::set_text(request.name(), name, "name");
+    EXPECT_TRUE(requests_.write(request));
+    EXPECT_TRUE(eventually([&] { return reply_.request_id() == requests_sent_; })) << name;
+    return reply_;
+  }
   [[nodiscard]] double error_m(const storage::MapDocument& map) const {
     return largest_error_m(map, [&](const topomap::LocalMap& stop) {
       const FloorDrive& drive = stop.robot_id == "a" ? a_ : b_;
@@ -157,10 +177,15 @@ class SharedMapServices : public testing::Test {
   }()};
   messaging::Writer<msg::LocalMap> maps_{participant_};
   messaging::Writer<msg::StreamEnd> ends_{participant_};
+  messaging::Writer<msg::ArchiveRequest> requests_{participant_};
+  messaging::Reader<msg::ArchiveReply> replies_{participant_};
   messaging::Reader<msg::StoredMap> stored_{participant_};
   messaging::EventLoop loop_;
   std::map<std::string, msg::StoredMap> newest_;  // by robot
   std::uint64_t tasks_done_ = 0;                  // most of a worker
+  std::size_t withdrawn_ = 0;                     // maps of robots
+  std::uint64_t requests_sent_ = 0;
+  msg::ArchiveReply reply_;  // the newest
   std::size_t sent_ = 0;
 };
 
@@ -293,6 +318,38 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   send_all();  // it comes to places further away
   EXPECT_TRUE(
       eventually([&] { return proposals().find("\"state\": \"open\"") != std::string::npos; }));
+}
+
+TEST_F(SharedMapServices, BeginAnewWithASnapshotThatIsRestored) {
+  const auto store = start_store();
+  const auto localizer = start_localizer();
+  const std::size_t part = 2 * b_.stops.size() / 3;
+  send(part);
+  ASSERT_TRUE(eventually([&] { return stops_in_map() >= part + part / 2; }))
+      << stops_in_map() << " of " << 2 * part << "; " << localizer->err();
+  ASSERT_TRUE(eventually([&] { return requests_.matched() > 0 && replies_.matched() > 0; }));
+  const msg::ArchiveReply taken = ask(msg::kArchiveTake, "one");
+  ASSERT_TRUE(taken.accepted()) << taken.message().c_str();
+  const std::uint32_t stops = taken.snapshots().front().stops();
+  ASSERT_GE(stops, part + part / 2) << "of both robots";
+  send(part + 6);
+  ASSERT_TRUE(eventually([&] { return stops_in_map() > stops; }));
+
+  ASSERT_TRUE(ask(msg::kArchiveRestore, "one").accepted());
+  ASSERT_TRUE(eventually([&] { return withdrawn_ == 2; }))
+      << withdrawn_ << ": what makes the mappers of both robots begin anew";
+  store->wait_for_error_text("the map is that of snapshot one");
+  localizer->wait_for_error_text("begins anew with it");
+  localizer->wait_for_error_text(fmt::format("goes on with a map of {} stops", stops));
+  const std::string database = (scratch_ / "out" / "map.sqlite").string();
+  EXPECT_THAT(store_command({"snapshots", database}), HasSubstr("before-one"));
+
+  // Both robots go on in it.
+  send_all();
+  store->wait_for_error_text("local maps, ");  // the final line
+  const storage::MapDocument map = storage::read_map_file(scratch_ / "out" / "map.pb");
+  EXPECT_EQ(map.trajectory.stops.size(), a_.stops.size() + b_.stops.size()) << localizer->err();
+  EXPECT_LT(error_m(map), 0.3);
 }
 
 TEST_F(SharedMapServices, ASecondLocalizerOfOneOfTheRobotsIsReported) {

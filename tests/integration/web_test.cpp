@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <future>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -139,6 +140,38 @@ TEST_F(WebOnMap, OrdersThatCannotBeHaveAReason) {
   const json info = json::parse(http_get(port_, "/api/info").body);
   EXPECT_EQ(info["protocol"], 1);
   EXPECT_THAT(info["offers"], testing::Contains("goal"));
+}
+
+TEST_F(WebOnMap, OneMapIsMergedAtATime) {
+  PageModel page;
+  WebSocketClient socket(port_);
+  ASSERT_TRUE(page.wait_for(
+      socket, [&] { return is_whole(page); }, kPagePatience));
+  const std::string file = read_file(scratch_ / "room/map.pb");
+  const auto offer = [&] {
+    return http_request(
+        port_, "POST", "/api/merge_map",
+        {{"Authorization", "Bearer " + kToken}, {"Content-Type", "application/octet-stream"}},
+        file);
+  };
+  constexpr std::size_t kAtOnce = 6;
+  std::size_t worked_on = 0;
+  std::size_t busy = 0;
+  // Until two of them meet.
+  const auto end = steady_clock::now() + kPagePatience;
+  while (busy == 0 && steady_clock::now() < end) {
+    std::vector<std::future<HttpReply>> offers;
+    while (offers.size() < kAtOnce) offers.push_back(std::async(std::launch::async, offer));
+    for (std::future<HttpReply>& one : offers) {
+      const HttpReply reply = one.get();
+      EXPECT_EQ(reply.status, 409) << reply.body;
+      if (reply.body.find("another merge is worked on") != std::string::npos) ++busy;
+      if (reply.body.find("one of them is the other") != std::string::npos) ++worked_on;
+    }
+  }
+  EXPECT_GE(busy, 1U);
+  EXPECT_GE(worked_on, 1U);
+  EXPECT_THAT(offer().body, HasSubstr("one of them is the other")) << "it is free again";
 }
 
 TEST(WebCommand, ViewsAStoredMap) {

@@ -52,7 +52,8 @@ MapMerge::MapMerge(service::Service& service, const DriveView& drive, MapCopies&
       show_(std::move(show)) {}
 
 void MapMerge::offer(std::string map_file, const Respond& respond) {
-  if (busy_) return respond(error_answer(503, "another merge is worked on, try again later"));
+  if (busy_)
+    return respond(error_answer(409, "another merge is worked on: try again when it is done"));
   busy_ = true;
   proposal_.reset();
   const auto file = std::make_shared<const std::string>(std::move(map_file));

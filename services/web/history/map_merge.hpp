@@ -30,7 +30,7 @@ class MapMerge {
            ArchiveRequests& archive, Background& background, Show show);
 
   /// The bytes of a map.pb. 200 with what the merge would change (docs/web_protocol.md); 400 where
-  /// it is no map file; 409 where the maps do not join; 503 while another one is worked on. Nothing
+  /// it is no map file; 409 where the maps do not join, or while another one is worked on. Nothing
   /// has changed yet.
   void offer(std::string map_file, const Respond& respond);
   /// {"number", "accept"}. Accepted the merged map takes the place of the map of now, of which a
