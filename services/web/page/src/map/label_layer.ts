@@ -2,10 +2,14 @@
 import { PointM, Room, Rule } from "../protocol";
 import { Palette } from "../ui/theme";
 import { View } from "./map_canvas";
+import { to_pixels } from "./to_pixels";
 
 const kFont = "13px system-ui, sans-serif";
+const kLinePx = 17; // from one name to the next below
+const kGoalPx = 14; // from the middle of a goal's ring to where names may begin
+const kBesideGoalPx = 24; // from there to the middle of a name above or below
 
-interface Label {
+export interface Label {
   text: string;
   x: number; // pixels, of its middle
   y: number;
@@ -39,7 +43,10 @@ export function draw_rules(
   }
 }
 
-/** Places first, then zones, then large rooms; a name that would cover another is left out. */
+/**
+ * Places first, then zones, then large rooms; a name that would cover another is left out, one
+ * that a goal would cover stands above or below it.
+ */
 export function draw_labels(
   context: CanvasRenderingContext2D,
   view: View,
@@ -47,32 +54,36 @@ export function draw_labels(
     rooms: Iterable<Room>;
     places: ReadonlyMap<string, PointM>;
     rules: ReadonlyMap<string, Rule>;
+    goals: readonly PointM[];
   },
   palette: Palette,
 ): void {
   const { rooms, places, rules } = names;
+  const goals = names.goals.map((goal) => to_pixels(view, goal.x_m, goal.y_m));
   context.font = kFont;
   context.textAlign = "center";
   context.textBaseline = "middle";
   const drawn: Label[] = [];
+  const draw_name = (label: Label) => {
+    label.width = context.measureText(label.text).width;
+    keep_off(label, goals);
+    draw_label(context, label, drawn, palette);
+  };
   for (const [name, place] of places) {
-    const x = view.scale * place.x_m + view.offset_x;
-    const y = view.offset_y - view.scale * place.y_m;
+    const [x, y] = to_pixels(view, place.x_m, place.y_m);
     draw_pin(context, x, y, palette);
-    draw_label(context, { text: name, x, y: y - 15, width: 0 }, drawn, palette);
+    draw_name({ text: name, x, y: y - 15, width: 0 });
   }
   for (const [name, rule] of rules) {
-    const [x, y] = middle(rule.corners_m);
-    const at = { x: view.scale * x + view.offset_x, y: view.offset_y - view.scale * y };
-    draw_label(context, { text: name, ...at, width: 0 }, drawn, palette);
+    const [x, y] = to_pixels(view, ...middle(rule.corners_m));
+    draw_name({ text: name, x, y, width: 0 });
   }
   const by_area = [...rooms].sort((a, b) => b.area_m2 - a.area_m2);
   for (const room of by_area) {
     if (room.name === "" || places.has(room.name)) continue;
     if (Math.sqrt(room.area_m2) * view.scale < 34) continue;
-    const x = view.scale * room.x_m + view.offset_x;
-    const y = view.offset_y - view.scale * room.y_m;
-    draw_label(context, { text: room.name, x, y, width: 0 }, drawn, palette);
+    const [x, y] = to_pixels(view, room.x_m, room.y_m);
+    draw_name({ text: room.name, x, y, width: 0 });
   }
 }
 
@@ -96,16 +107,28 @@ function draw_pin(context: CanvasRenderingContext2D, x: number, y: number, palet
   context.stroke();
 }
 
-function draw_label(
+// Goals are drawn above the names, where the robot is: what stands there could not be read.
+function keep_off(label: Label, goals: readonly (readonly [number, number])[]): void {
+  const covering = goals.find(
+    ([x, y]) =>
+      Math.abs(label.x - x) < label.width / 2 + kGoalPx &&
+      Math.abs(label.y - y) < kLinePx / 2 + kGoalPx,
+  );
+  if (!covering) return;
+  const [, y] = covering;
+  label.y = label.y < y - 1 ? y - kBesideGoalPx : y + kBesideGoalPx;
+}
+
+/** Text with its width, in the context's font; not where it would cover one that is `drawn`. */
+export function draw_label(
   context: CanvasRenderingContext2D,
   label: Label,
   drawn: Label[],
   palette: Palette,
 ): void {
-  label.width = context.measureText(label.text).width;
   const covers = (other: Label) =>
     Math.abs(label.x - other.x) < (label.width + other.width) / 2 + 6 &&
-    Math.abs(label.y - other.y) < 17;
+    Math.abs(label.y - other.y) < kLinePx;
   if (drawn.some(covers)) return;
   drawn.push(label);
   context.lineJoin = "round";

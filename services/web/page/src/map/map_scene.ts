@@ -101,6 +101,12 @@ export class MapScene {
     channels.on_table("rules", still);
     channels.on_table("loops", still);
     channels.on_value(["pose", "scan", "route", "goals", "local_map"], moving_changed);
+    let named_for = ""; // the goals that the names keep off
+    channels.on_value(["route", "goals"], () => {
+      const goals = JSON.stringify(this.goals());
+      if (goals !== named_for) still_changed();
+      named_for = goals;
+    });
   }
 
   /** The box around what is known of the floor; null without a map. */
@@ -149,7 +155,7 @@ export class MapScene {
       const rooms = this.channels.table("rooms").values();
       // While the drawing is edited its places and zones are named by the editor.
       const places = this.overlay ? new Map<string, PointM>() : this.channels.table("places");
-      draw_labels(context, view, { rooms, places, rules }, palette);
+      draw_labels(context, view, { rooms, places, rules, goals: this.goals() }, palette);
     }
   }
 
@@ -163,11 +169,13 @@ export class MapScene {
     const pose = this.channels.value("pose");
     const located = pose !== null && pose.state !== "SEARCHING" && pose.state !== "LOST";
     const route = this.channels.value("route");
-    const goal = this.channels.value("goals")?.current;
     const local = this.channels.value("local_map");
     if (local && this.visible.local_map) draw_local_map(context, view, local, palette.local);
-    if (route?.found && goal) draw_route(context, view, route.points_m, palette, false);
-    if (goal && route?.found) this.draw_route_end(context, view, route.points_m);
+    const end = this.route_end();
+    if (route && end) {
+      draw_route(context, view, route.points_m, palette, false);
+      draw_goal(context, view, end.x_m, end.y_m, palette);
+    }
     if (this.preview.length > 0) draw_route(context, view, this.preview, palette, true);
     this.marks.forEach((mark, i) => {
       const number = this.marks.length > 1 ? String(i + 1) : "";
@@ -189,10 +197,17 @@ export class MapScene {
     this.moving_changed();
   }
 
-  private draw_route_end(context: CanvasRenderingContext2D, view: View, points: number[]): void {
-    const last = points.length - 2;
-    if (last < 0) return;
-    draw_goal(context, view, points[last], points[last + 1], this.theme.palette);
+  /** Where the robot is on its way to; null where it has no goal or no route. */
+  private route_end(): PointM | null {
+    const route = this.channels.value("route");
+    if (!route?.found || !this.channels.value("goals")?.current) return null;
+    const last = route.points_m.length - 2;
+    return last < 0 ? null : { x_m: route.points_m[last], y_m: route.points_m[last + 1] };
+  }
+
+  private goals(): PointM[] {
+    const end = this.route_end();
+    return end ? [end, ...this.marks] : this.marks;
   }
 
   private forget_pictures(): void {

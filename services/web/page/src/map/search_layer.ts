@@ -1,9 +1,11 @@
 // The search of the localizer: where it looks (rectangle), where the poses expect the robot (ellipse),
 // and what it has found (hypotheses, the darker the fitter).
-import { Search, SearchedMatch } from "../protocol";
+import { Hypothesis, Search, SearchedMatch } from "../protocol";
 import { Palette } from "../ui/theme";
+import { draw_label, Label } from "./label_layer";
 import { View } from "./map_canvas";
 import { ellipse_of } from "./robot_layer";
+import { to_pixels } from "./to_pixels";
 
 const kSigmas = 2;
 const kArrowPx = 16;
@@ -17,6 +19,7 @@ export function draw_search(
 ): void {
   for (const match of search.matches) draw_match(context, view, match, palette);
   draw_hypotheses(context, view, search.hypotheses, palette);
+  draw_figures(context, view, search, palette);
 }
 
 function draw_match(
@@ -25,7 +28,7 @@ function draw_match(
   match: SearchedMatch,
   palette: Palette,
 ): void {
-  const [x, y] = [view.scale * match.x_m + view.offset_x, view.offset_y - view.scale * match.y_m];
+  const [x, y] = to_pixels(view, match.x_m, match.y_m);
   context.save();
   context.translate(x, y);
   context.rotate(-match.base_theta_rad);
@@ -57,11 +60,8 @@ function draw_hypotheses(
   palette: Palette,
 ): void {
   context.lineWidth = 2.5;
-  context.font = "bold 12px system-ui, sans-serif";
-  context.textAlign = "left";
-  context.textBaseline = "middle";
-  hypotheses.forEach(([x_m, y_m, theta, fitness], i) => {
-    const [x, y] = [view.scale * x_m + view.offset_x, view.offset_y - view.scale * y_m];
+  for (const [x_m, y_m, theta, fitness] of hypotheses) {
+    const [x, y] = to_pixels(view, x_m, y_m);
     context.globalAlpha = 0.25 + 0.75 * Math.max(0, Math.min(1, fitness ?? 0));
     context.strokeStyle = palette.search;
     context.fillStyle = palette.search;
@@ -72,12 +72,31 @@ function draw_hypotheses(
     context.moveTo(x, y);
     context.lineTo(x + kArrowPx * Math.cos(theta), y - kArrowPx * Math.sin(theta));
     context.stroke();
-    context.globalAlpha = 1;
-    if (i >= kLabelled || fitness === null) return;
-    const text = fitness.toFixed(2);
-    context.strokeStyle = palette.halo;
-    context.strokeText(text, x + 8, y + 12);
-    context.fillStyle = palette.label;
-    context.fillText(text, x + 8, y + 12);
-  });
+  }
+  context.globalAlpha = 1;
+}
+
+// Fitness in numbers, of the fittest of each search; a number that would cover a better one is left
+// out.
+function draw_figures(
+  context: CanvasRenderingContext2D,
+  view: View,
+  search: Search,
+  palette: Palette,
+): void {
+  context.font = "bold 12px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  const fitness_of = ([, , , fitness]: Hypothesis) => fitness ?? -1;
+  const labelled = [search.hypotheses, ...search.matches.map((match) => match.hypotheses)]
+    .flatMap((hypotheses) => hypotheses.slice(0, kLabelled))
+    .filter((hypothesis) => fitness_of(hypothesis) >= 0)
+    .sort((a, b) => fitness_of(b) - fitness_of(a));
+  const drawn: Label[] = [];
+  for (const hypothesis of labelled) {
+    const [x, y] = to_pixels(view, hypothesis[0], hypothesis[1]);
+    const text = fitness_of(hypothesis).toFixed(2);
+    const width = context.measureText(text).width;
+    draw_label(context, { text, x: x + 8 + width / 2, y: y + 12, width }, drawn, palette);
+  }
 }
