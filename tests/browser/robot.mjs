@@ -145,9 +145,18 @@ export class Robot extends Orders {
     await Promise.all(names.map((name) => this.end(name)));
   }
 
+  /** Whether a service has said so since the test began. */
+  has_logged(name, text) {
+    return this.output(name).includes(text);
+  }
+
+  output(name) {
+    return readFileSync(join(this.work, `${name}.log`), "utf8");
+  }
+
   /** The last lines of a service. */
   log(name) {
-    return readFileSync(join(this.work, `${name}.log`), "utf8")
+    return this.output(name)
       .split("\n")
       .slice(-15)
       .join("\n");
