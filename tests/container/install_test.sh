@@ -4,6 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_programs
+need curl
 step "installing"
 lock_build
 make_manuals
@@ -69,6 +70,28 @@ partition=install-test-$$
 cleanups+=("kill $!")
 heard=$(timeout 60 "$work/subscriber/subscriber" "$TOPOGEO_DOMAIN" "$partition") || fail "the subscriber heard nothing"
 [ "$heard" = planner ] || fail "the subscriber heard '$heard'"
+
+step "the operator's page"
+make_log 60 "$work/log.clf"
+"$prefix/bin/topogeo" map --log "$work/log.clf" --out "$work/map" > "$work/map.log" 2>&1 || { cat "$work/map.log"; fail "map"; }
+# page_is_whole COMMAND...: what the pages that it serves name is there.
+page_is_whole() {
+  local log=$work/$1.page file address
+  "$prefix/bin/topogeo" "$@" --port 0 --domain "$TOPOGEO_DOMAIN" > "$log" 2>&1 &
+  cleanups+=("kill $!")
+  eventually 60 grep -q 'spectators: ' "$log" || { cat "$log"; fail "topogeo $1 prints no link"; }
+  address=$(sed -n 's/^spectators: *//p' "$log")
+  for file in "" panel; do
+    curl -sf "$address$file" > "$work/page.html" || fail "topogeo $1: /$file"
+    grep -oE '(src|href)="[^"#]+"' "$work/page.html" | cut -d'"' -f2 > "$work/assets"
+    { grep -q '\.js$' "$work/assets" && grep -q '\.css$' "$work/assets"; } || fail "topogeo $1: /$file names no script or style"
+    while read -r asset; do
+      { curl -sf "$address${asset#/}" -o "$work/asset" && [ -s "$work/asset" ]; } || fail "topogeo $1: /$file has no $asset"
+    done < "$work/assets"
+  done
+}
+page_is_whole view "$work/map/map.pb" --no-browser
+page_is_whole web
 
 step "signs of life for systemd"
 # The socket of the service manager, as systemd makes it.
