@@ -156,6 +156,7 @@ test("numbers have units, and what is not known is a dash", () => {
   assert.equal(format.duration(125), "2 min 5 s");
   assert.equal(format.duration(59.7), "1 min 0 s");
   assert.equal(format.degrees(Math.PI / 2), "90.0°");
+  assert.equal(format.point(-0.001, -0.006), "0.00, -0.01 m");
   assert.equal(format.length(null), "–");
   assert.equal(format.speed(undefined), "–");
 });

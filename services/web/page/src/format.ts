@@ -30,7 +30,7 @@ export function speed(meters_per_second: Maybe): string {
 }
 
 export function degrees(radians: Maybe): string {
-  return known(radians) ? `${((radians * 180) / Math.PI).toFixed(1)}°` : kDash;
+  return known(radians) ? `${fixed((radians * 180) / Math.PI, 1)}°` : kDash;
 }
 
 export function area(square_meters: Maybe): string {
@@ -70,5 +70,10 @@ export function moment(time_s: number): string {
 
 /** "3.20, -1.05 m". */
 export function point(x_m: number, y_m: number): string {
-  return `${x_m.toFixed(2)}, ${y_m.toFixed(2)} m`;
+  return `${fixed(x_m, 2)}, ${fixed(y_m, 2)} m`;
+}
+
+// As toFixed, but a small negative number is "0.00" and not "-0.00".
+function fixed(value: number, digits: number): string {
+  return value.toFixed(digits).replace(/^-(?=[0.]+$)/, "");
 }

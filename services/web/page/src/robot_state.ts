@@ -31,7 +31,9 @@ export function navigator_text(channels: Channels): string {
   const navigator = channels.value("navigator");
   if (!navigator) return texts.send.no_navigator;
   const state = texts.navigator[navigator.state] ?? navigator.state;
-  if (navigator.state === "idle" && navigator.message) return sentence(navigator.message);
+  // These messages say the state themselves.
+  const says_state = navigator.state === "idle" || navigator.state === "arrived";
+  if (says_state && navigator.message) return sentence(navigator.message);
   // How far it is stands beside it.
   if (navigator.state === "driving" && navigator.message.startsWith("drives")) return `${state}.`;
   const halted = navigator.state === "stopped" || navigator.state === "blocked";

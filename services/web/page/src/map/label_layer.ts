@@ -80,7 +80,7 @@ export function draw_labels(
   }
   const by_area = [...rooms].sort((a, b) => b.area_m2 - a.area_m2);
   for (const room of by_area) {
-    if (room.name === "" || places.has(room.name)) continue;
+    if (room.name === "") continue;
     if (Math.sqrt(room.area_m2) * view.scale < 34) continue;
     const [x, y] = to_pixels(view, room.x_m, room.y_m);
     draw_name({ text: room.name, x, y, width: 0 });

@@ -152,9 +152,12 @@ export class MapScene {
     const loops = this.visible.loops ? this.channels.table("loops").values() : [];
     this.trail.draw_loops(context, view, loops, this.chosen_loop, palette);
     if (this.visible.names) {
-      const rooms = this.channels.table("rooms").values();
+      const named = this.channels.table("places");
+      const rooms = [...this.channels.table("rooms").values()].filter(
+        (room) => !named.has(room.name),
+      );
       // While the drawing is edited its places and zones are named by the editor.
-      const places = this.overlay ? new Map<string, PointM>() : this.channels.table("places");
+      const places = this.overlay ? new Map<string, PointM>() : named;
       draw_labels(context, view, { rooms, places, rules, goals: this.goals() }, palette);
     }
   }

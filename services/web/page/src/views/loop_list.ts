@@ -103,7 +103,12 @@ export class LoopList {
     const outcome = loop.explanation || words.outcomes[loop.outcome] || loop.outcome;
     set_text(why, `${sentence(outcome)} ${words.sources[loop.source] ?? ""}`);
     const { fitness, probability, correction_m, correction_rad } = loop;
-    set_text(facts, words.loop_facts(fitness, probability, correction_m, correction_rad));
+    // A map file keeps the closed loops alone.
+    const measured = [fitness, probability, correction_m].some((value) => value !== null);
+    set_text(
+      facts,
+      measured ? words.loop_facts(fitness, probability, correction_m, correction_rad) : "",
+    );
     set_attribute(element, "data-level", loop.accepted ? "good" : "bad");
   }
 }
