@@ -222,7 +222,7 @@ test("rooms are split, joined and renamed", async () => {
   const { page, service } = opened;
   const rooms = () => service.drawing.zones.map(({ name, kind, corners_m }) => [name, kind, corners_m[0], corners_m[2]]);
   await choose(page, "split");
-  await drag(page, [-3, 2], [-3, -2]);
+  await drag(page, [-3, 2], [-3, -2]); // over the table in the middle
   await page.getByText("The room is parted.").waitFor();
   await saved(opened);
   assert.deepEqual(rooms(), [
@@ -246,7 +246,7 @@ test("rooms are split, joined and renamed", async () => {
   assert.deepEqual(rooms(), [["library", "room", 0, 4]]);
   await choose(page, "split");
   await drag(page, [7, 2], [7, -2]);
-  await page.getByText("There is no room here.").waitFor();
+  await page.getByText("The line crosses no room.").waitFor();
   await end(opened);
 });
 

@@ -6,6 +6,7 @@ import { extname, join } from "node:path";
 const kTypes = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 export const kAddress = "http://stand-in.test";
 const kRobot = "stand-in";
+const kTable = { x_m: -3, y_m: 0 }; // in the left room
 // The map keeps its size, so that tests know where a point of it is on the screen.
 const kSteady = ".banners { display: none } .header { height: 72px; overflow: hidden }";
 
@@ -88,7 +89,9 @@ export class StandIn {
         });
       case "/api/at": {
         const x = Number(searchParams.get("x_m"));
-        const inside = Math.abs(x) < 4 && Math.abs(Number(searchParams.get("y_m"))) < 2;
+        const y = Number(searchParams.get("y_m"));
+        const on_table = Math.hypot(x - kTable.x_m, y - kTable.y_m) < 0.3;
+        const inside = Math.abs(x) < 4 && Math.abs(y) < 2 && !on_table;
         return json(200, inside ? { inside, zone: x < 0 ? 0 : 1 } : { inside });
       }
       case "/api/drawing":

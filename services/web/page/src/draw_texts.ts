@@ -111,6 +111,7 @@ export const draw_texts = {
 
   rooms: {
     none_here: "There is no room here. Tap inside of one.",
+    none_along: "The line crosses no room. Drag it across one, from wall to wall.",
     save_first: "This room is not saved yet. Save the drawing first.",
     not_parted: "The line does not part the room: drag it from wall to wall.",
     same_room: "Both points are in the same room.",

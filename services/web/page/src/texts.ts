@@ -313,7 +313,8 @@ export const texts = {
         ? `${tasks} ${tasks === 1 ? "match is" : "matches are"} worked on …`
         : `${tasks} ${tasks === 1 ? "match" : "matches"}, ${accepted} accepted.`,
     search_best: (fitness: number, old: boolean) =>
-      `Best fitness ${fitness.toFixed(2)}.${old ? " Nothing is searched at the moment." : ""}`,
+      `Best fitness ${fitness.toFixed(2)}.` +
+      (old ? " Nothing is searched until the robot has moved on a little." : ""),
     more: (n: number) => `${count(n)} earlier ones are not listed.`,
     workers: "Search workers",
     no_workers: "No worker is heard: the localizer searches in its own process.",

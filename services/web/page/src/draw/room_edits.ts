@@ -8,20 +8,47 @@ import { contains, Point } from "./geometry";
 
 type Rooms = ReadonlyMap<string, Room>;
 
+const kShares = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]; // of a line, where a room is looked for
+
 /** A reason for people why a room cannot be edited. */
 export class RoomError extends Error {}
 
-/** Number of the room at a point. Throws a RoomError where there is none. */
-async function room_at(api: Api, rooms: Rooms, drawing: Drawing, at: Point): Promise<number> {
+/** Number of the room at a point; undefined where there is none. */
+async function zone_at(
+  api: Api,
+  rooms: Rooms,
+  drawing: Drawing,
+  at: Point,
+): Promise<number | undefined> {
   const drawn = drawing.zones.find(
     (zone) => zone.kind === "room" && contains(zone.corners_m, at),
   );
   const known = [...rooms.values()].map((room) => room.name);
   if (drawn && !known.includes(drawn.name)) throw new RoomError(texts.draw.rooms.save_first);
   const path = `/api/at?x_m=${at.x.toFixed(3)}&y_m=${at.y.toFixed(3)}`;
-  const { zone } = await api.get<{ zone?: number }>(path);
+  return (await api.get<{ zone?: number }>(path)).zone;
+}
+
+/** The same. Throws a RoomError where there is none. */
+async function room_at(api: Api, rooms: Rooms, drawing: Drawing, at: Point): Promise<number> {
+  const zone = await zone_at(api, rooms, drawing, at);
   if (zone === undefined) throw new RoomError(texts.draw.rooms.none_here);
   return zone;
+}
+
+/** The room at the middle of a line, or next to it: a table may stand in the middle. */
+async function room_along(
+  api: Api,
+  rooms: Rooms,
+  drawing: Drawing,
+  [from, to]: [Point, Point],
+): Promise<number> {
+  for (const share of kShares) {
+    const at = { x: from.x + share * (to.x - from.x), y: from.y + share * (to.y - from.y) };
+    const zone = await zone_at(api, rooms, drawing, at);
+    if (zone !== undefined) return zone;
+  }
+  throw new RoomError(texts.draw.rooms.none_along);
 }
 
 async function shapes_of(api: Api, zones: number[], cut?: [Point, Point]): Promise<number[][]> {
@@ -52,16 +79,15 @@ function replace(drawing: Drawing, names: string[], zones: { name: string; corne
   return edited;
 }
 
-/** The room at the middle of a line, parted by it. */
+/** The room that a line crosses, parted by it. */
 export async function split_room(
   api: Api,
   rooms: Rooms,
   drawing: Drawing,
-  [from, to]: [Point, Point],
+  line: [Point, Point],
 ): Promise<Drawing> {
-  const middle = { x: (from.x + to.x) / 2, y: (from.y + to.y) / 2 };
-  const zone = await room_at(api, rooms, drawing, middle);
-  const shapes = await shapes_of(api, [zone], [from, to]);
+  const zone = await room_along(api, rooms, drawing, line);
+  const shapes = await shapes_of(api, [zone], line);
   if (shapes.length < 2) throw new RoomError(texts.draw.rooms.not_parted);
   const name = name_of(rooms, zone);
   return replace(
