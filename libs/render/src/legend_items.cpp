@@ -13,9 +13,9 @@ constexpr double kRowHeight_px = 21.0;
 const char* text_of(topomap::NodeKind kind) {
   switch (kind) {
     case topomap::NodeKind::kReal:
-      return "real node";
+      return "junction";
     case topomap::NodeKind::kFictitious:
-      return "fictitious node (end of what is known)";
+      return "fictitious node: where the view ends";
     case topomap::NodeKind::kVirtual:
       return "virtual node";
     case topomap::NodeKind::kDoor:
@@ -23,7 +23,7 @@ const char* text_of(topomap::NodeKind kind) {
     case topomap::NodeKind::kNarrowing:
       return "narrowing";
     case topomap::NodeKind::kHallCorridor:
-      return "hall/corridor";
+      return "hall-corridor passage";
   }
   return "unknown kind";
 }
