@@ -283,8 +283,38 @@ void macondo_planner(Report& report) {
   }
 }
 
+constexpr int kDrives = 200;
+
+/// What the errors of the wheels do, and what a way back that is blocked does.
+Table arrival_by_cause(const DrawnFloor& floor) {
+  Table table{"The same drives with a share of the wheels' errors.",
+              {"errors of the wheels", "drives", "arrived", "way back blocked once or more",
+               "of these arrived", "of the others arrived", "lost", "touched something"},
+              {}};
+  for (const double errors : {1.0, 0.0}) {
+    int arrived = 0;
+    int kept_off = 0;
+    int kept_off_arrived = 0;
+    int lost = 0;
+    int hits = 0;
+    for (int i = 0; i < kDrives; ++i) {
+      const MacondoDrive drive =
+          drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, {.wheel_errors = errors});
+      arrived += drive.arrived() ? 1 : 0;
+      kept_off += drive.kept_off ? 1 : 0;
+      kept_off_arrived += drive.kept_off && drive.arrived() ? 1 : 0;
+      lost += drive.localized ? 0 : 1;
+      hits += drive.hit ? 1 : 0;
+    }
+    table.rows.push_back(
+        {fmt::format("{:g} %", 100.0 * errors), std::to_string(kDrives), std::to_string(arrived),
+         std::to_string(kept_off), std::to_string(kept_off_arrived),
+         std::to_string(arrived - kept_off_arrived), std::to_string(lost), std::to_string(hits)});
+  }
+  return table;
+}
+
 void macondo_arrival(Report& report) {
-  constexpr int kDrives = 200;
   const DrawnFloor floor = draw_floor(world_named(kFloor));
   FigurePanel panel;
   panel.title = "where drives end, from their goals";
@@ -296,12 +326,14 @@ void macondo_arrival(Report& report) {
   int by_wheels = 0;
   int hits = 0;
   for (int i = 0; i < kDrives; ++i) {
-    const MacondoDrive drive = drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, true);
+    const MacondoDrive drive = drive_macondo(floor, static_cast<std::uint64_t>(i) + 1);
     arrived += drive.arrived() ? 1 : 0;
     hits += drive.hit ? 1 : 0;
     const Eigen::Vector2d off(drive.error_x_m, drive.error_y_m);
     (drive.arrived() ? good : bad).points.push_back(off.cwiseMax(-1.0).cwiseMin(1.0));
-    by_wheels += drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, false).arrived() ? 1 : 0;
+    const MacondoDrive blind =
+        drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, {.sonars = false});
+    by_wheels += blind.arrived() ? 1 : 0;
   }
   panel.dots = {bad, good};
   panel.extent = {{-1.1, -1.1}, {1.1, 1.1}};
@@ -312,6 +344,7 @@ void macondo_arrival(Report& report) {
                   "%", 1.0);
   report.show("the same by the wheels alone", 100.0 * by_wheels / kDrives, "%");
   report.show("drives that touched something", hits);
+  report.add(arrival_by_cause(floor));
 }
 
 }  // namespace
@@ -336,8 +369,9 @@ std::vector<Experiment> macondo() {
        "Routes within a zone, to the next one and to distant ones", macondo_planner, "", true},
       {"macondo-arrival", kMacondo, "Part IV, arrival",
        "Share of drives that end within one cell of their goal", macondo_arrival,
-       "Wheels err here by about 4 cm a cell, as the printed matrix says; where the way back to "
-       "the route is blocked no other one is planned",
+       "Wheels err here by about 4 cm a cell, as the printed matrix says, and where the way back "
+       "to the route is blocked no other one is planned: the table shows that both cost drives, "
+       "and that wheels without errors do not bring 90 % either",
        true},
   };
 }

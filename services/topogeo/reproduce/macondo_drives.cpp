@@ -58,8 +58,9 @@ Eigen::Vector2d draw_place(const planning::HybridMap& map, support::Random& rand
 /// advance, and each turn, displaces the robot as they say. As there, the heading is right.
 class Wheels {
  public:
-  Wheels(const world::World& scene, const Pose2& T_start, support::Random& random)
-      : scene_(scene), T_(T_start), random_(random) {}
+  /// `errors`: share of them that happens, [0, 1].
+  Wheels(const world::World& scene, const Pose2& T_start, double errors, support::Random& random)
+      : scene_(scene), T_(T_start), errors_(errors), random_(random) {}
 
   /// What was executed: an advance ends before an obstacle.
   markov::Move execute(markov::Move move) {
@@ -88,6 +89,7 @@ class Wheels {
 
  private:
   void displace(const markov::TransitionMatrix& matrix) {
+    if (errors_ < 1.0 && random_.uniform() >= errors_) return;
     double left =
         random_.uniform() * std::accumulate(matrix.values.begin(), matrix.values.end(), 0.0);
     std::size_t i = 0;
@@ -99,6 +101,7 @@ class Wheels {
 
   const world::World& scene_;
   Pose2 T_;
+  double errors_;
   support::Random& random_;
   markov::TransitionModel transition_;
   bool hit_ = false;
@@ -162,12 +165,14 @@ Task draw_drive(const planning::HybridMap& map, support::Random& random) {
 }
 
 /// Compares what the sonars read with what they should, and goes back to the route when the robot
-/// is not where it should be. False when it is lost.
+/// is not where it should be. False when it is lost; `kept_off` becomes true when the way is
+/// blocked.
 bool relocalize(const world::World& scene, const Pose2& T_route, Wheels& wheels,
-                markov::MarkovLocalizer& localizer, support::Random& random) {
+                markov::MarkovLocalizer& localizer, support::Random& random, bool& kept_off) {
   if (!localizer.perceive(published_readings(scene, wheels.pose(), random)).possible) return false;
   const auto back = localizer.relocalization_moves(T_route);
   if (!back) return false;
+  kept_off |= back->blocked;
   if (back->blocked || back->moves.empty()) return true;
   localizer.accept_estimate();
   for (const markov::Move& move : back->moves) {
@@ -216,16 +221,16 @@ std::vector<float> published_readings(const world::World& scene, const Pose2& T_
   return readings;
 }
 
-MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, bool sonars) {
+MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, const MacondoKind& kind) {
   support::Random random(seed);
   const Task task = draw_drive(*floor.map, random);
   MacondoDrive drive;
   drive.route_m = task.route.points_m;
   drive.goal = {task.goal_m.x(), task.goal_m.y(), 0.0};
-  Wheels wheels(floor.world, task.T_start, random);
+  Wheels wheels(floor.world, task.T_start, kind.wheel_errors, random);
   markov::MarkovLocalizer localizer({}, obstacles_of(*floor.map), six_sonars());
   drive.localized =
-      !sonars ||
+      !kind.sonars ||
       localizer.initialize(task.T_start, published_readings(floor.world, wheels.pose(), random))
           .possible;
   drive.truth.push_back(wheels.pose());
@@ -235,14 +240,14 @@ MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, bool son
     if (!drive.localized) break;
     const markov::Move done = wheels.execute(move);
     T_route = after(T_route, move);
-    if (sonars) {
+    if (kind.sonars) {
       drive.localized = localizer.move(done).possible &&
-                        relocalize(floor.world, T_route, wheels, localizer, random);
+                        relocalize(floor.world, T_route, wheels, localizer, random, drive.kept_off);
     }
     drive.truth.push_back(wheels.pose());
   }
-  for (int i = 0; sonars && drive.localized && i < kLastLooks; ++i) {
-    drive.localized = relocalize(floor.world, T_route, wheels, localizer, random);
+  for (int i = 0; kind.sonars && drive.localized && i < kLastLooks; ++i) {
+    drive.localized = relocalize(floor.world, T_route, wheels, localizer, random, drive.kept_off);
   }
   drive.hit = wheels.hit();
   drive.error_x_m = wheels.pose().x_m - task.goal_m.x();

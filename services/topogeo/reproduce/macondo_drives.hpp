@@ -35,14 +35,20 @@ struct MacondoDrive {
   geometry::Pose2 goal;
   bool localized = true;   ///< Markov localization never lost all cells
   bool hit = false;        ///< the middle of the robot came into an obstacle
+  bool kept_off = false;   ///< the way back to the route was blocked once or more
   double error_x_m = 0.0;  ///< at the end, along the axes of the grid
   double error_y_m = 0.0;
   /// Within the cell of the goal or one beside it.
   [[nodiscard]] bool arrived() const;
 };
 
-/// From and to places that `seed` draws, 3 m apart at least. Wheels err as the printed transition
-/// matrices say. `sonars`: without them the robot trusts its wheels.
-MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed, bool sonars);
+struct MacondoKind {
+  bool sonars = true;         ///< without them the robot trusts its wheels
+  double wheel_errors = 1.0;  ///< share of the errors of the printed transition matrices, [0, 1]
+};
+
+/// From and to places that `seed` draws, 3 m apart at least.
+MacondoDrive drive_macondo(const DrawnFloor& floor, std::uint64_t seed,
+                           const MacondoKind& kind = {});
 
 }  // namespace topogeo::reproduce

@@ -123,6 +123,7 @@ localization::LocalizerConfig thesis_config(const CorrectionKind& kind, const Dr
   config.genetic.individuals = 100;
   config.genetic.generations = 50;
   config.fitness_form = kind.form;
+  config.evidence = kind.evidence;
   if (!kind.backward) config.revisit_matches = 0;
   config.recent_way_m = setup.recent_m;
   if (!setup.loop) {  // a straight drive, of which odometry errs by degrees, not by tens of them

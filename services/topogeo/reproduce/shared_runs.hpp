@@ -61,6 +61,8 @@ struct Correction {
 struct CorrectionKind {
   localization::FitnessForm form = localization::FitnessForm::kCombined;
   bool backward = true;
+  /// What lets a match pass: by kFitness every one that has a fitness, as printed.
+  localization::MatchEvidence evidence = localization::MatchEvidence::kScan;
   friend auto operator<=>(const CorrectionKind&, const CorrectionKind&) = default;
 };
 
