@@ -117,9 +117,11 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
   messaging::StatusPublisher& status = service_.status();
   const std::uint64_t sequence = message.sequence_number();
   const std::string name = "scan " + std::to_string(sequence);
+  // A gateway with devices may be running already; a log begins with its first scan.
+  const bool joins = !odometry_epoch_ && !replay_;
   const bool other_source = odometry_epoch_ && odometry_epoch_ != message.odometry_epoch();
   odometry_epoch_ = message.odometry_epoch();
-  if (other_source) {  // or it has started anew
+  if (joins || other_source) {  // or it has started anew
     next_sequence_ = sequence;
     geometry_.reset();
     last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
