@@ -10,11 +10,11 @@
 namespace topogeo::navigation {
 namespace {
 
-constexpr double kNearRoom_m = 0.10;        // to keep
-constexpr double kOneEcho_m = 0.15;         // echoes so near to each other are of one thing
-constexpr double kNearKept_s = 4.0;         // until a turning robot hears it by another sonar
-constexpr double kNearCurve_per_m = 0.8;    // moves a followed path by a decimetre
-constexpr double kNearStep_m_per_s = 0.05;  // while it turns on the spot
+constexpr double kNearRoom_m = 0.10;           // to keep
+constexpr double kOneEcho_m = 0.15;            // echoes so near to each other are of one thing
+constexpr double kNearKept_s = 4.0;            // until a turning robot hears it by another sonar
+constexpr double kNearCurvePerMetre = 0.8;     // moves a followed path by a decimetre
+constexpr double kNearStepPerSecond_m = 0.05;  // while it turns on the spot
 
 bool lies_along(const Eigen::Vector2d& point_m) {
   constexpr double kAlong = 0.35;  // within 70 degrees of ahead or back
@@ -27,8 +27,8 @@ bool lies_beside(const Eigen::Vector2d& point_m) {
 }
 
 bool turns_on_spot(const geometry::Velocity& wanted) {
-  constexpr double kCreeps_m_per_s = 0.03;
-  return std::fabs(wanted.linear_m_per_s) < kCreeps_m_per_s && wanted.angular_rad_per_s != 0.0;
+  constexpr double kCreeping = 0.03;
+  return std::fabs(wanted.linear_m_per_s) < kCreeping && wanted.angular_rad_per_s != 0.0;
 }
 
 }  // namespace
@@ -87,9 +87,10 @@ geometry::Velocity NearEchoes::make_room(const geometry::Velocity& wanted,
   }
   geometry::Velocity velocity = wanted;
   if (turns_on_spot(wanted)) {
-    if (ahead != behind) velocity.linear_m_per_s = ahead ? -kNearStep_m_per_s : kNearStep_m_per_s;
+    if (ahead != behind)
+      velocity.linear_m_per_s = ahead ? -kNearStepPerSecond_m : kNearStepPerSecond_m;
   } else if (left != right && wanted.linear_m_per_s > 0.0) {
-    velocity.angular_rad_per_s += (left ? -1.0 : 1.0) * kNearCurve_per_m * wanted.linear_m_per_s;
+    velocity.angular_rad_per_s += (left ? -1.0 : 1.0) * kNearCurvePerMetre * wanted.linear_m_per_s;
   }
   return velocity;
 }

@@ -27,7 +27,7 @@ constexpr double kMovedAtEnd_rad = 0.02;
 // doubt").
 constexpr double kNear2 = 4.0;
 // Of one by which half of what is seen contradicts the other view nothing is known.
-constexpr double kContradicted = 0.5;
+constexpr double kLeastContradicted = 0.5;
 
 // Only these can have come near to others.
 std::vector<std::uint32_t> moved_stops(std::span<const Pose2> before,
@@ -130,7 +130,7 @@ std::vector<StepMatch> Localizer::match_recent() {
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) {
     evidence.push_back(match.evidence);
-    if (match.accepted() || (!any && match.uncertain() && match.violations < kContradicted &&
+    if (match.accepted() || (!any && match.uncertain() && match.violations < kLeastContradicted &&
                              as_odometry_says(match.edge, kNear2))) {
       graph_.add_edge(match.edge);
     }

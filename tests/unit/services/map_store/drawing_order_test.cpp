@@ -127,8 +127,9 @@ TEST(DrawingOrder, AFloorBecomesTheGrid) {
 storage::MapDrawing office(int rows, int doors) {
   storage::MapDrawing drawing;
   for (int i = 0; i < 40 * rows; ++i) {
+    const int row = i / 40;
     const double x_m = 4.0 * (i % 40);
-    const double y_m = 4.0 * (i / 40);
+    const double y_m = 4.0 * row;
     drawing.lines.push_back({planning::LineKind::kWall, {{x_m, y_m}, {x_m + 4.0, y_m}}});
     drawing.lines.push_back({planning::LineKind::kWall, {{x_m, y_m}, {x_m, y_m + 4.0}}});
     if (i >= doors) continue;
