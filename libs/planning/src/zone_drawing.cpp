@@ -165,7 +165,7 @@ std::string zone_drawing_text(const ZoneDrawing& drawing) {
   add("zones", zones);
   add("places", places);
   for (std::size_t kind = 0; kind < kLineKinds; ++kind) add(kLineLists.at(kind), lines.at(kind));
-  return text;
+  return text.empty() ? "zones: []\n" : text;
 }
 
 }  // namespace topogeo::planning

@@ -121,7 +121,7 @@ ZoneDrawing read_zone_drawing(const std::filesystem::path& path);
 /// The same from text; `source` stands for the file in messages.
 ZoneDrawing parse_zone_drawing(const std::string& text, const std::string& source);
 
-/// Such a file, to the last digit; lists that are empty are left out.
+/// Such a file, to the last digit; lists that are empty are left out, unless all are.
 std::string zone_drawing_text(const ZoneDrawing& drawing);
 
 }  // namespace topogeo::planning
