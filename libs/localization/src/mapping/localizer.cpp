@@ -85,25 +85,22 @@ void Localizer::append(MapPointer map) {
   check_next(*map, matching_.size(), first ? nullptr : first_of_session(*map));
   if (first) {
     graph_.add_pose(Pose2{});
-    odometry_steps_.emplace_back();
-    recorded_steps_.emplace_back();
+    steps_.add_none();
     matching_.add(std::move(map), 0.0);
   } else {
     const std::optional<UncertainPose> gap = std::exchange(gap_, std::nullopt);
-    UncertainPose step =
-        gap ? *gap
-            : odometry_between_stops(matching_.map(last()).T_odom_robot, *map, config_.odometry);
-    recorded_steps_.push_back({gap ? std::nullopt : std::optional(step.T_a_b), scale_.factor()});
-    if (!gap) step.T_a_b = scaled(step.T_a_b, scale_.factor());
-    odometry_steps_.push_back(step);
-    const std::uint32_t stop = graph_.add_pose(graph_.poses().back() * step.T_a_b);
-    // A standing robot has no odometry error, but an edge needs a covariance that can be inverted.
-    graph_.add_edge({stop - 1, stop, EdgeKind::kOdometry, step.T_a_b,
-                     invertible(gap ? step.covariance : odometry_.widened(step.covariance)),
-                     invertible(gap ? step.covariance : odometry_.expected(step.covariance))});
+    if (gap) {
+      steps_.add_gap(*gap);
+    } else {
+      steps_.add(
+          odometry_between_stops(matching_.map(last()).T_odom_robot, *map, config_.odometry));
+    }
+    const Pose2& T_before_stop = steps_.last().T_a_b;
+    graph_.add_pose(graph_.poses().back() * T_before_stop);
+    graph_.add_edge(steps_.edge());
     // No stop from before a gap is a recent one.
     matching_.add(std::move(map), gap ? 2.0 * config_.recent_way_m
-                                      : std::sqrt(step.T_a_b.position_m().squaredNorm()));
+                                      : std::sqrt(T_before_stop.position_m().squaredNorm()));
   }
   covariances_.emplace_back(Eigen::Matrix3d::Zero());
 }
@@ -125,20 +122,17 @@ std::vector<StepMatch> Localizer::match_recent() {
                                [](const StopMatch& match) { return match.accepted(); });
   if (!any) {
     ++steps_in_doubt_;
-    rely_on_odometry();
+    graph_.add_edge(steps_.edge_without_match());
   }
   std::vector<StepMatch> evidence;
   for (const StopMatch& match : matches) {
     evidence.push_back(match.evidence);
     if (match.accepted() || (!any && match.uncertain() && match.violations < kLeastContradicted &&
-                             as_odometry_says(match.edge, kNear2))) {
+                             steps_.allow(match.edge, kNear2))) {
       graph_.add_edge(match.edge);
     }
     if (match.accepted() && match.edge.from + 1 == last()) {
-      const UncertainPose matched{match.edge.T_from_to, match.edge.covariance};
-      odometry_.add(odometry_steps_.back(), matched);
-      const std::optional<Pose2>& recorded = recorded_steps_.back().T_before_stop;
-      if (recorded) scale_.add(*recorded, matched);
+      steps_.learn({match.edge.T_from_to, match.edge.covariance});
     }
   }
   return evidence;
@@ -149,7 +143,7 @@ std::vector<StepMatch> Localizer::match_recent() {
 void Localizer::refuse_look_alikes(std::vector<StopMatch>& matches) const {
   const auto found_far = [](const StopMatch& match) { return match.widened && match.accepted(); };
   if (std::any_of(matches.begin(), matches.end(), [&](const StopMatch& match) {
-        return found_far(match) && as_odometry_says(match.edge, geometry::kMahalanobis2Of99Percent);
+        return found_far(match) && steps_.allow(match.edge, geometry::kMahalanobis2Of99Percent);
       })) {
     return;
   }
@@ -158,32 +152,6 @@ void Localizer::refuse_look_alikes(std::vector<StopMatch>& matches) const {
     match.verdict = match.evidence.verdict = Verdict::kRejected;
     match.reason = match.evidence.reason = Reason::kNothingInCommon;
   }
-}
-
-// Whether a match lies where odometry may have brought the robot, as good as it was over the last
-// steps and, to a squared Mahalanobis distance, as good as it is configured: one elsewhere is a
-// look-alike.
-bool Localizer::as_odometry_says(const PoseGraphEdge& match, double largest2) const {
-  UncertainPose expected;
-  UncertainPose configured;
-  for (std::uint32_t stop = match.from + 1; stop <= match.to; ++stop) {
-    const UncertainPose& step = odometry_steps_[stop];
-    expected = compose(expected, {step.T_a_b, invertible(odometry_.expected(step.covariance))});
-    configured = compose(configured, {step.T_a_b, invertible(step.covariance)});
-  }
-  const Eigen::Vector3d error = geometry::difference(match.T_from_to, expected.T_a_b);
-  return geometry::squared_mahalanobis(error, expected.covariance + match.covariance) <=
-             geometry::kMahalanobis2Of99Percent &&
-         geometry::squared_mahalanobis(error, configured.covariance + match.covariance) <= largest2;
-}
-
-// Where no match is beyond doubt odometry counts as much as it was right over the last steps.
-void Localizer::rely_on_odometry() {
-  const UncertainPose& step = odometry_steps_.back();
-  // Of systematic errors the last steps show little.
-  constexpr double kLessWeight = 3.0;
-  const Eigen::Matrix3d expected = kLessWeight * invertible(odometry_.expected(step.covariance));
-  graph_.add_edge({last() - 1, last(), EdgeKind::kOdometry, step.T_a_b, expected, expected});
 }
 
 // Closes the loops of stops with earlier places.
@@ -264,13 +232,9 @@ void Localizer::update_covariances(const GraphSolution& solution) {
   }
 }
 
-// By what was learned of the scale of odometry while they and the steps after them were driven:
-// when they were, the first ones had none of it.
 void Localizer::rescale_steps() {
   for (std::uint32_t stop = 1; stop <= last(); ++stop) {
-    const std::optional<Pose2>& recorded = recorded_steps_[stop].T_before_stop;
-    const std::size_t learned = std::min<std::size_t>(stop + OdometryScale::kMemory, last());
-    if (recorded) graph_.correct_step(stop, scaled(*recorded, recorded_steps_[learned].scale));
+    if (const std::optional<Pose2> step = steps_.rescaled(stop)) graph_.correct_step(stop, *step);
   }
 }
 
@@ -345,8 +309,7 @@ void Localizer::restore(MapPointer map, const topomap::StopPose& pose) {
     if (map->starts_drive) distance_m += 2.0 * config_.recent_way_m;  // as in append()
   }
   matching_.add(std::move(map), distance_m);
-  odometry_steps_.emplace_back();
-  recorded_steps_.emplace_back();
+  steps_.add_none();
   graph_.add_pose(pose.T_map_robot);
   covariances_.push_back(pose.covariance);
   monitor_.restart(1.0);

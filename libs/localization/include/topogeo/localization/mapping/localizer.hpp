@@ -20,8 +20,7 @@
 #include "topogeo/localization/mapping/graph_optimization.hpp"
 #include "topogeo/localization/mapping/localizer_config.hpp"
 #include "topogeo/localization/mapping/loop_closing.hpp"
-#include "topogeo/localization/mapping/odometry_monitor.hpp"
-#include "topogeo/localization/mapping/odometry_scale.hpp"
+#include "topogeo/localization/mapping/odometry_steps.hpp"
 #include "topogeo/localization/mapping/optimization_schedule.hpp"
 #include "topogeo/localization/mapping/pose_graph.hpp"
 #include "topogeo/localization/mapping/slam.hpp"
@@ -102,8 +101,6 @@ class Localizer : public Slam {
   std::vector<StepMatch> match_recent();
   std::vector<StepMatch> match_revisited(std::span<const std::uint32_t> stops);
   void refuse_look_alikes(std::vector<StopMatch>& matches) const;
-  [[nodiscard]] bool as_odometry_says(const PoseGraphEdge& match, double largest2) const;
-  void rely_on_odometry();
   void judge_state(std::vector<StepMatch> evidence);
 
   bool apply(const std::optional<OptimizationSchedule::Finished>& finished);
@@ -119,18 +116,8 @@ class Localizer : public Slam {
   std::vector<Eigen::Matrix3d> covariances_;  // of the poses in the map frame
   LoopClosing loops_;
   OptimizationSchedule schedule_;
-  OdometryMonitor odometry_;
-  OdometryScale scale_;
+  OdometrySteps steps_;
   StateMonitor monitor_;
-  struct RecordedStep {
-    std::optional<geometry::Pose2>
-        T_before_stop;   // none at the begin of a drive, nor in a stored map
-    double scale = 1.0;  // as known then
-  };
-  std::vector<RecordedStep> recorded_steps_;  // to each stop
-  /// To each stop from the one before, with the configured covariance; nothing for the first and
-  /// for stored ones.
-  std::vector<UncertainPose> odometry_steps_;
   std::size_t stored_stops_ = 0;      // that were there before the first own one
   std::optional<UncertainPose> gap_;  // to the next stop, where no odometry leads to it
   bool edges_known_ = true;
