@@ -104,7 +104,7 @@ std::string reason_of(msg::LocalizationState state) {
       return "What the laser sees does not settle the place: the pose rests on odometry or on "
              "uncertain matches.";
     case msg::kStateSearching:
-      return "The robot looks for its place in the map.";
+      return "The robot looks for its place in the map: drive it on, or set its pose.";
     case msg::kStateLost:
       return "What the laser sees contradicts the place where the robot should be.";
   }
