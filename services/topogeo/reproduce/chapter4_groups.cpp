@@ -200,18 +200,23 @@ VoronoiConfig without_hidden_zones() {
   return config;
 }
 
-/// Draws what lies behind the jumps of range between neighbouring groups.
+/// Draws what a corner hides: seen from the robot, the walls turn away from the path at the near
+/// point of a jump of range, and what follows begins at the far one. These scenes have their walls
+/// along the axes of the robot.
 void add_hidden(FigurePanel& panel, const SeenScene& seen) {
   const auto& groups = seen.diagram.groups;
   for (std::size_t g = 1; g < groups.groups.size(); ++g) {
     const voronoi::GroupPoint& last = groups.points[groups.groups[g - 1].end - 1];
     const voronoi::GroupPoint& first = groups.points[groups.groups[g].begin];
-    const voronoi::GroupPoint& near = last.range_m < first.range_m ? last : first;
-    const voronoi::GroupPoint& far = last.range_m < first.range_m ? first : last;
-    const double stretch = 4.0 / near.range_m;
-    render::FigureLine area{
-        {on_page(near.position_m), on_page(stretch * near.position_m), on_page(far.position_m)},
-        FigureColour::kPaleGrey};
+    const bool on_one_side = last.position_m.y() * first.position_m.y() > 0.0F;
+    const bool right = last.position_m.y() < 0.0F;
+    if (!on_one_side || right != (last.range_m < first.range_m)) continue;
+    const voronoi::GroupPoint& near = right ? last : first;
+    const voronoi::GroupPoint& far = right ? first : last;
+    auto corner_m = near.position_m;
+    corner_m.y() = far.position_m.y();
+    render::FigureLine area{{on_page(near.position_m), on_page(far.position_m), on_page(corner_m)},
+                            FigureColour::kSky};
     area.filled = true;
     panel.lines.push_back(std::move(area));
   }
@@ -221,7 +226,7 @@ void figure_4_13(Report& report) {
   const SeenScene seen = scene4("4_15", without_hidden_zones());
   FigurePanel panel = groups_panel(seen, "behind the corner");
   add_hidden(panel, seen);
-  report.draw({.title = "What a corner hides", .panels = {panel}}, "Hidden areas are pale.");
+  report.draw({.title = "What a corner hides", .panels = {panel}}, "The hidden area is sky blue.");
   const auto& groups = seen.diagram.groups;
   double jump_m = 0.0;
   for (std::size_t g = 1; g < groups.groups.size(); ++g) {
@@ -250,7 +255,7 @@ void figure_4_14(Report& report) {
     report.show(side + ": groups without", count(without.diagram.groups.groups.size()));
     report.show(side + ": groups with", count(with.diagram.groups.groups.size()));
   }
-  report.draw(figure, "Groups without the rule, hidden areas pale.");
+  report.draw(figure, "Groups without the rule, hidden areas sky blue.");
 }
 
 void figure_4_15(Report& report) {
