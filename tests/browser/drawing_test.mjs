@@ -108,7 +108,10 @@ test("a drawing goes to JSON and back, and a wrong one is refused by the item's 
   refused({ zones: [zone("", ...kSquare)] }, /Entry 1 of .zones/);
   refused({ openings: [wall(0, 0, 1, 1, 2, 2)] }, /Entry 1 of .openings/);
   refused({ places: 3 }, /places/);
-  refused({ walls: Array(257).fill(wall(0, 0, 1, 1)) }, /more than 256/);
+  const many = { ...good, walls: Array(4096).fill(wall(0, 0, 1, 1)) };
+  assert.deepEqual(drawing.parse_drawing(many), many);
+  refused({ walls: [...many.walls, wall(0, 0, 1, 1)] }, /more than 4096/);
+  refused({ walls: [wall(...Array(2 * 257).fill(0))] }, /Entry 1 of .walls/);
   for (const nothing of [null, [], "x"]) assert.throws(() => drawing.parse_drawing(nothing));
 });
 
