@@ -285,66 +285,79 @@ void macondo_planner(Report& report) {
 
 constexpr int kDrives = 200;
 
-/// What the errors of the wheels do, and what a way back that is blocked does.
-Table arrival_by_cause(const DrawnFloor& floor) {
-  Table table{"The same drives with a share of the wheels' errors.",
-              {"errors of the wheels", "drives", "arrived", "way back blocked once or more",
-               "of these arrived", "of the others arrived", "lost", "touched something"},
-              {}};
-  for (const double errors : {1.0, 0.0}) {
-    int arrived = 0;
-    int kept_off = 0;
-    int kept_off_arrived = 0;
-    int lost = 0;
-    int hits = 0;
-    for (int i = 0; i < kDrives; ++i) {
-      const MacondoDrive drive =
-          drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, {.wheel_errors = errors});
-      arrived += drive.arrived() ? 1 : 0;
-      kept_off += drive.kept_off ? 1 : 0;
-      kept_off_arrived += drive.kept_off && drive.arrived() ? 1 : 0;
-      lost += drive.localized ? 0 : 1;
-      hits += drive.hit ? 1 : 0;
-    }
-    table.rows.push_back(
-        {fmt::format("{:g} %", 100.0 * errors), std::to_string(kDrives), std::to_string(arrived),
-         std::to_string(kept_off), std::to_string(kept_off_arrived),
-         std::to_string(arrived - kept_off_arrived), std::to_string(lost), std::to_string(hits)});
+std::vector<MacondoDrive> drive_all(const DrawnFloor& floor, const MacondoKind& kind) {
+  std::vector<MacondoDrive> drives;
+  for (int i = 0; i < kDrives; ++i) {
+    drives.push_back(drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, kind));
   }
-  return table;
+  return drives;
 }
 
-void macondo_arrival(Report& report) {
-  const DrawnFloor floor = draw_floor(world_named(kFloor));
+struct DriveCounts {
+  int arrived = 0;
+  int kept_off = 0;
+  int kept_off_arrived = 0;
+  int lost = 0;
+  int hits = 0;
+};
+
+DriveCounts counts_of(const std::vector<MacondoDrive>& drives) {
+  DriveCounts counts;
+  for (const MacondoDrive& drive : drives) {
+    counts.arrived += drive.arrived() ? 1 : 0;
+    counts.kept_off += drive.kept_off ? 1 : 0;
+    counts.kept_off_arrived += drive.kept_off && drive.arrived() ? 1 : 0;
+    counts.lost += drive.localized ? 0 : 1;
+    counts.hits += drive.hit ? 1 : 0;
+  }
+  return counts;
+}
+
+std::vector<std::string> row_of(const char* wheel_errors, const DriveCounts& counts) {
+  return {wheel_errors,
+          std::to_string(kDrives),
+          std::to_string(counts.arrived),
+          std::to_string(counts.kept_off),
+          std::to_string(counts.kept_off_arrived),
+          std::to_string(counts.arrived - counts.kept_off_arrived),
+          std::to_string(counts.lost),
+          std::to_string(counts.hits)};
+}
+
+void draw_ends(Report& report, const std::vector<MacondoDrive>& drives) {
   FigurePanel panel;
   panel.title = "where drives end, from their goals";
   panel.across = "x (m)";
   panel.up = "y (m)";
   render::FigureDots good{{}, FigureColour::kBlue, 2.5};
   render::FigureDots bad{{}, FigureColour::kRed, 2.5};
-  int arrived = 0;
-  int by_wheels = 0;
-  int hits = 0;
-  for (int i = 0; i < kDrives; ++i) {
-    const MacondoDrive drive = drive_macondo(floor, static_cast<std::uint64_t>(i) + 1);
-    arrived += drive.arrived() ? 1 : 0;
-    hits += drive.hit ? 1 : 0;
+  for (const MacondoDrive& drive : drives) {
     const Eigen::Vector2d off(drive.error_x_m, drive.error_y_m);
     (drive.arrived() ? good : bad).points.push_back(off.cwiseMax(-1.0).cwiseMin(1.0));
-    const MacondoDrive blind =
-        drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, {.sonars = false});
-    by_wheels += blind.arrived() ? 1 : 0;
   }
   panel.dots = {bad, good};
   panel.extent = {{-1.1, -1.1}, {1.1, 1.1}};
   add_rectangle(panel, {{-0.15, -0.15}, {0.15, 0.15}}, FigureColour::kGrey, true);
   report.draw({.title = "200 drives with six sonars", .panels = {panel}},
               "Dashed: the cell of the goal and those beside it. Farther than 1 m: at the border.");
-  report.at_least("drives that end within one cell of the goal", 100.0 * arrived / kDrives, 90.0,
-                  "%", 1.0);
-  report.show("the same by the wheels alone", 100.0 * by_wheels / kDrives, "%");
-  report.show("drives that touched something", hits);
-  report.add(arrival_by_cause(floor));
+}
+
+void macondo_arrival(Report& report) {
+  const DrawnFloor floor = draw_floor(world_named(kFloor));
+  const std::vector<MacondoDrive> drives = drive_all(floor, {});
+  draw_ends(report, drives);
+  const DriveCounts counts = counts_of(drives);
+  const DriveCounts by_wheels = counts_of(drive_all(floor, {.sonars = false}));
+  const DriveCounts without_errors = counts_of(drive_all(floor, {.wheel_errors = 0.0}));
+  report.at_least("drives that end within one cell of the goal", 100.0 * counts.arrived / kDrives,
+                  90.0, "%", 1.0);
+  report.show("the same by the wheels alone", 100.0 * by_wheels.arrived / kDrives, "%");
+  report.show("drives that touched something", counts.hits);
+  // What the errors of the wheels do, and what a way back that is blocked does.
+  report.add({"The same drives with a share of the wheels' errors.",
+              {"errors of the wheels", "drives", "arrived", "way back blocked once or more",
+               "of these arrived", "of the others arrived", "lost", "touched something"},
+              {row_of("100 %", counts), row_of("0 %", without_errors)}});
 }
 
 }  // namespace

@@ -43,6 +43,8 @@ TEST(OdometryStepsTest, AGapHasNothingOfWhatWasLearned) {
   steps.add_gap(kMetre);
   EXPECT_EQ(steps.last().T_a_b.x_m, 1.0);
   EXPECT_TRUE(steps.edge().covariance.isApprox(kConfiguredStep, 0.02));  // invertible
+  EXPECT_TRUE(steps.edge().calibrated.isApprox(kConfiguredStep, 0.02));
+  EXPECT_LT(drive_metres(400, 1.02).edge().calibrated(0, 0), 0.9 * kConfiguredStep(0, 0));
   EXPECT_FALSE(steps.rescaled(401).has_value());
 }
 

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/mapping/odometry_monitor.hpp"
 #include "topogeo/localization/mapping/odometry_scale.hpp"
@@ -28,7 +30,7 @@ class OdometrySteps {
   void add_gap(const UncertainPose& placed);
 
   /// The last step in its learned scale; its covariance is the configured one.
-  [[nodiscard]] const UncertainPose& last() const { return steps_.back(); }
+  [[nodiscard]] const UncertainPose& last() const { return steps_.back().T_before_stop; }
 
   /// The last step for the pose graph, no more certain than configured.
   [[nodiscard]] PoseGraphEdge edge() const;
@@ -50,16 +52,18 @@ class OdometrySteps {
   [[nodiscard]] std::optional<geometry::Pose2> rescaled(std::uint32_t stop) const;
 
  private:
-  struct Recorded {
-    std::optional<geometry::Pose2> T_before_stop;
+  struct Step {
+    UncertainPose T_before_stop{};  // in the scale that was known then
+    std::optional<geometry::Pose2> T_recorded{};
     double scale = 1.0;  // as known then
   };
   [[nodiscard]] std::uint32_t last_stop() const {
     return static_cast<std::uint32_t>(steps_.size() - 1);
   }
+  [[nodiscard]] PoseGraphEdge edge_with(const Eigen::Matrix3d& covariance,
+                                        const Eigen::Matrix3d& calibrated) const;
 
-  std::vector<UncertainPose> steps_;
-  std::vector<Recorded> recorded_;
+  std::vector<Step> steps_;
   OdometryMonitor monitor_;
   OdometryScale scale_;
 };
