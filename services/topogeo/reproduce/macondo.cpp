@@ -287,6 +287,7 @@ constexpr int kDrives = 200;
 
 std::vector<MacondoDrive> drive_all(const DrawnFloor& floor, const MacondoKind& kind) {
   std::vector<MacondoDrive> drives;
+  drives.reserve(kDrives);
   for (int i = 0; i < kDrives; ++i) {
     drives.push_back(drive_macondo(floor, static_cast<std::uint64_t>(i) + 1, kind));
   }
