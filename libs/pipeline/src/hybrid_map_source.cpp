@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "topogeo/pipeline/world_grid.hpp"
+#include "topogeo/planning/drawn_and_found_rooms.hpp"
 #include "topogeo/planning/grid_file.hpp"
 #include "topogeo/storage/read_map.hpp"
 
@@ -26,10 +27,9 @@ planning::ZoneMap make_zones(const planning::FreeSpace& space, const HybridMapPa
   std::vector<planning::DrawnZone> rooms;
   if (parts.drawing != nullptr) rooms = parts.drawing->zones;
   std::erase_if(rooms, [](const auto& zone) { return zone.kind != planning::ZoneKind::kRoom; });
-  if (!rooms.empty()) return planning::drawn_zones(space, rooms, config);
   std::vector<planning::Passage> passages;
   if (parts.global_map != nullptr) passages = planning::passages_of(*parts.global_map);
-  return planning::zones_of_rooms(space, passages, config);
+  return planning::zones_of_drawn_and_found_rooms(space, rooms, passages, config);
 }
 
 /// What a hybrid map is made of: all but the searches for the ways through its zones.

@@ -5,6 +5,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "topogeo/planning/drawn_and_found_rooms.hpp"
+
 #include "clearance_basins.hpp"
 #include "furniture.hpp"
 #include "line_cells.hpp"
@@ -75,6 +77,45 @@ ZoneLabels no_labels(const FreeSpace& space) {
   return {std::vector<std::uint32_t>(space.frame().size(), kNoLabel), {}, {}};
 }
 
+// The cells of drawn zones, whose names come to `names`; kNoLabel for the others.
+std::vector<std::uint32_t> owner_of_drawn(const FreeSpace& space, std::span<const DrawnZone> drawn,
+                                          std::vector<std::string>& names) {
+  std::vector<std::uint32_t> owner(space.frame().size(), kNoLabel);
+  for (const DrawnZone& zone : drawn) {
+    const auto index = static_cast<std::uint32_t>(names.size());
+    names.push_back(zone.name);
+    fill_polygon(space, zone.polygon_m, index, owner);
+  }
+  return owner;
+}
+
+// Gives the passable cells that belong to no zone yet to the rooms between the walls, which come
+// to `names` without one.
+void give_to_rooms(const FreeSpace& space, std::span<const Passage> passages,
+                   const ZoneConfig& config, std::vector<std::string>& names,
+                   std::vector<std::uint32_t>& owner) {
+  const FreeSpace walls(without_furniture(space.grid(), config.rooms), {.forbidden_cells = 0.0});
+  const Basins basins = clearance_basins(walls);
+  const std::vector<std::uint32_t> room_of =
+      rooms_of(basins, saddles_at_doors(space.frame(), basins, passages), config.rooms,
+               space.frame().resolution_m);
+  const auto first = static_cast<std::uint32_t>(names.size());
+  names.resize(names.size() + basins.peak_m.size());
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    const std::uint32_t basin = basins.of_cell[i];
+    const bool free = space.passable(i) && owner[i] == kNoLabel;
+    if (free && basin != kNoBasin) owner[i] = first + room_of[basin];
+  }
+}
+
+ZoneMap zones_of_owners(const FreeSpace& space, const std::vector<std::string>& names,
+                        std::vector<std::uint32_t> owner, const ZoneConfig& config) {
+  part_at_doors(space, names, owner);
+  ZoneLabels labels = no_labels(space);
+  label_parts(space, owner, names, labels);
+  return complete(space, std::move(labels), config);
+}
+
 }  // namespace
 
 Place moved(const Place& place, const geometry::Pose2& T) {
@@ -111,21 +152,10 @@ std::vector<Passage> passages_of(const GlobalMap& map) {
 ZoneMap zones_of_rooms(const FreeSpace& space, std::span<const Passage> passages,
                        const ZoneConfig& config) {
   check(config);
-  const FreeSpace walls(without_furniture(space.grid(), config.rooms), {.forbidden_cells = 0.0});
-  const Basins basins = clearance_basins(walls);
-  const std::vector<std::uint32_t> room_of =
-      rooms_of(basins, saddles_at_doors(space.frame(), basins, passages), config.rooms,
-               space.frame().resolution_m);
+  std::vector<std::string> names;
   std::vector<std::uint32_t> owner(space.frame().size(), kNoLabel);
-  for (std::size_t i = 0; i < owner.size(); ++i) {
-    const std::uint32_t basin = basins.of_cell[i];
-    if (space.passable(i) && basin != kNoBasin) owner[i] = room_of[basin];
-  }
-  const std::vector<std::string> names(basins.peak_m.size());
-  part_at_doors(space, names, owner);
-  ZoneLabels labels = no_labels(space);
-  label_parts(space, owner, names, labels);
-  return complete(space, std::move(labels), config);
+  give_to_rooms(space, passages, config, names, owner);
+  return zones_of_owners(space, names, std::move(owner), config);
 }
 
 ZoneMap zones_by_width(const FreeSpace& space, const ZoneConfig& config) {
@@ -143,23 +173,25 @@ ZoneMap zones_by_width(const FreeSpace& space, const ZoneConfig& config) {
 ZoneMap drawn_zones(const FreeSpace& space, std::span<const DrawnZone> drawn,
                     const ZoneConfig& config) {
   check(config);
-  std::vector<std::uint32_t> owner(space.frame().size(), kNoLabel);
   std::vector<std::string> names;
-  for (const DrawnZone& zone : drawn) {
-    const auto index = static_cast<std::uint32_t>(names.size());
-    names.push_back(zone.name);
-    fill_polygon(space, zone.polygon_m, index, owner);
-  }
+  std::vector<std::uint32_t> owner = owner_of_drawn(space, drawn, names);
   // What no polygon covers.
   const auto outside = static_cast<std::uint32_t>(names.size());
   names.emplace_back();
   for (std::size_t i = 0; i < owner.size(); ++i) {
     if (space.passable(i) && owner[i] == kNoLabel) owner[i] = outside;
   }
-  part_at_doors(space, names, owner);
-  ZoneLabels labels = no_labels(space);
-  label_parts(space, owner, names, labels);
-  return complete(space, std::move(labels), config);
+  return zones_of_owners(space, names, std::move(owner), config);
+}
+
+ZoneMap zones_of_drawn_and_found_rooms(const FreeSpace& space, std::span<const DrawnZone> drawn,
+                                       std::span<const Passage> passages,
+                                       const ZoneConfig& config) {
+  check(config);
+  std::vector<std::string> names;
+  std::vector<std::uint32_t> owner = owner_of_drawn(space, drawn, names);
+  give_to_rooms(space, passages, config, names, owner);
+  return zones_of_owners(space, names, std::move(owner), config);
 }
 
 }  // namespace topogeo::planning

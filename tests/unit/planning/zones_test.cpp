@@ -1,9 +1,14 @@
 #include "topogeo/planning/zones.hpp"
 
+#include <algorithm>
+#include <set>
 #include <stdexcept>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "topogeo/planning/drawn_and_found_rooms.hpp"
 
 #include "floors.hpp"
 
@@ -148,6 +153,39 @@ TEST(Zones, PartsOfADrawnOneThatWallsSeparateAreZonesOfTheirOwn) {
   EXPECT_EQ(map.zones[zone_at(space, map, {12, 0})].name, "south");
   EXPECT_EQ(map.zones[zone_at(space, map, {2, 0})].name, "south 2");
   expect_sound(space, map);
+}
+
+TEST(Zones, ThatAreDrawnLeaveTheRoomsBesideThemAsTheyWereFound) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const BlockFloor floor = block_floor({}, seed);
+    const FreeSpace space(floor.grid);
+    const ZoneMap found = zones_of_rooms(space);
+    const std::vector<DrawnZone> one{floor.rooms.front()};
+    const ZoneMap map = zones_of_drawn_and_found_rooms(space, one);
+    expect_sound(space, map);
+    const auto same_name = [&](const Zone& zone) { return zone.name == one.front().name; };
+    const auto drawn = std::find_if(map.zones.begin(), map.zones.end(), same_name);
+    ASSERT_NE(drawn, map.zones.end());
+    // Of each zone that was found, by the cells that were not drawn: still one zone.
+    std::vector<std::vector<std::size_t>> cells(found.zones.size(),
+                                                std::vector<std::size_t>(map.zones.size()));
+    for (std::size_t i = 0; i < found.zone_of_cell.size(); ++i) {
+      if (space.passable(i)) ++cells[found.zone_of_cell[i]][map.zone_of_cell[i]];
+    }
+    std::set<std::size_t> largest;
+    std::size_t taken = 0;
+    for (const std::vector<std::size_t>& into : cells) {
+      const auto most = std::max_element(into.begin(), into.end()) - into.begin();
+      if (static_cast<ZoneId>(most) == drawn->id) {
+        ++taken;
+      } else {
+        EXPECT_TRUE(largest.insert(static_cast<std::size_t>(most)).second) << "seed " << seed;
+      }
+    }
+    EXPECT_LE(taken, 1U);
+    EXPECT_GT(largest.size(), 3U);
+    EXPECT_EQ(zones_of_drawn_and_found_rooms(space, {}).zone_of_cell, found.zone_of_cell);
+  }
 }
 
 TEST(Zones, HangTogetherOnRandomFloors) {

@@ -2,7 +2,7 @@
 // (MACONDO, III.2; docs/algorithms.md, "Hybrid map and planner").
 //
 // The grid is the drawn one, the one that scans saw, or the two as planning::grid_of_both lays them
-// together. Zones are the drawn ones; without any they are the rooms between the walls and the
+// together. Zones are the drawn rooms and, outside of them, the rooms between the walls and the
 // doors of the map that the robot has made.
 #pragma once
 
