@@ -169,6 +169,7 @@ void add_demo_command(command_line::Command& app, int& exit_code) {
   add_web_options(*command, *web, page);
   command->callback([options, web, with_web, &exit_code] {
     if (*with_web) {
+      check_web_options(*web);
       options->run.web = *web;
       exit_code = show_web(*options);
     } else if (!options->goal.target.empty()) {

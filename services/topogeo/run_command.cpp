@@ -215,7 +215,10 @@ void add_run_command(command_line::Command& app, int& exit_code) {
     }
     if (*joins_ros) options->ros = *ros;
     if (sim->count() > 0) options->simulation = *simulation;
-    if (*with_web) options->web = *web;
+    if (*with_web) {
+      check_web_options(*web);
+      options->web = *web;
+    }
     if (*with_web && options->simulation && goal->target.empty() && !options->explore) {
       exit_code = run_web(with_start(*options, *unknown_start));
       return;

@@ -60,6 +60,7 @@ struct ViewCommand {
 }
 
 int view(const ViewCommand& command) {
+  check_web_options(command.web);
   try {
     static_cast<void>(storage::read_map(command.map));
   } catch (const std::exception& error) {

@@ -5,9 +5,22 @@
 #include <random>
 #include <string_view>
 
+#include "topogeo/service/web_access.hpp"
 #include "topogeo/support/format.hpp"
 
 namespace topogeo::cli {
+namespace {
+
+constexpr const char* kTokenVariable = "TOPOGEO_WEB_TOKEN";
+
+/// Empty: none.
+std::string token_of_environment() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread uses the environment yet
+  const char* const given = std::getenv(kTokenVariable);
+  return given != nullptr ? given : "";
+}
+
+}  // namespace
 
 void add_web_options(command_line::Command& app, WebOptions& options,
                      command_line::Option* needed) {
@@ -41,17 +54,21 @@ void add_web_options(command_line::Command& app, WebOptions& options,
   for (command_line::Option* option : added) option->needs(needed);
 }
 
+void check_web_options(const WebOptions& options) {
+  const std::string token = options.token.value_or(token_of_environment());
+  if (options.token || !token.empty()) service::check_web_token(token);
+  service::check_web_address(options.bind.value_or("127.0.0.1"), options.certificate.has_value(),
+                             options.key.has_value(), options.without_tls);
+}
+
 void export_token(const WebOptions& options) {
-  constexpr const char* kVariable = "TOPOGEO_WEB_TOKEN";
   std::string token = options.token.value_or("");
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread uses the environment yet
-  const char* const given = std::getenv(kVariable);
-  const bool set = given != nullptr && *given != '\0';
-  if (set && (!options.token || *options.token == given)) return;
+  const std::string given = token_of_environment();
+  if (!given.empty() && (!options.token || *options.token == given)) return;
   std::random_device random;
   for (int i = 0; i < 4 && !options.token; ++i) token += fmt::format("{:08x}", random());
   // NOLINTNEXTLINE(concurrency-mt-unsafe): the same
-  ::setenv(kVariable, token.c_str(), 1);
+  ::setenv(kTokenVariable, token.c_str(), 1);
 }
 
 std::vector<std::string> web_arguments(const WebOptions& options) {

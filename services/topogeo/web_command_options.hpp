@@ -27,6 +27,10 @@ struct WebOptions {
 void add_web_options(command_line::Command& app, WebOptions& options,
                      command_line::Option* needed = nullptr);
 
+/// Throws service::UsageError for what the service refuses: a token that is too short, of the
+/// command line or of the environment, or an address that asks for a certificate.
+void check_web_options(const WebOptions& options);
+
 /// Hands the token, or one that is made here, to the programs that are started from here on: by the
 /// environment, which `ps` does not show. A service that is started again has the same.
 void export_token(const WebOptions& options);

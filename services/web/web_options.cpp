@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "topogeo/service/service_options.hpp"
+#include "topogeo/service/web_access.hpp"
 #include "topogeo/support/file_content.hpp"
 #include "topogeo/support/format.hpp"
 #include "topogeo/support/host.hpp"
@@ -13,8 +14,6 @@
 
 namespace topogeo::web {
 namespace {
-
-constexpr std::size_t kShortestToken = 16;
 
 std::string read_token(const std::filesystem::path& file) {
   try {
@@ -28,17 +27,6 @@ std::string read_token(const std::filesystem::path& file) {
   }
 }
 
-std::string checked(std::string token) {
-  const bool plain = std::ranges::all_of(token, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-  });
-  if (token.size() < kShortestToken || !plain) {
-    throw service::UsageError(
-        "--token: expected 16 letters, digits, '-', '_' or '.' or more; see --help");
-  }
-  return token;
-}
-
 /// As browsers send them; "file://" is that of programs whose page is a file.
 void check_origins(const std::vector<std::string>& origins) {
   for (const std::string& origin : origins) {
@@ -50,10 +38,6 @@ void check_origins(const std::vector<std::string>& origins) {
                               ": expected scheme and host alone, as https://desk.example or "
                               "https://desk.example:8443");
   }
-}
-
-bool is_loopback(const std::string& address) {
-  return address == "::1" || address.starts_with("127.");
 }
 
 }  // namespace
@@ -108,12 +92,11 @@ ServerConfig server_config(const WebOptions& options, const std::string& robot_i
     throw service::UsageError("expected --token or --token-file, not both");
   }
   if (options.token) {
-    config.token = checked(*options.token);
-  } else if (options.token_file) {
-    config.token = checked(read_token(*options.token_file));
+    config.token = *options.token;
   } else {
-    config.token = new_token();
+    config.token = options.token_file ? read_token(*options.token_file) : new_token();
   }
+  service::check_web_token(config.token);
   config.life = new_token().substr(0, 16);
   config.robot_id = robot_id;
   config.hosts = options.hosts;
@@ -123,13 +106,8 @@ ServerConfig server_config(const WebOptions& options, const std::string& robot_i
   config.certificate_file = options.certificate.string();
   config.key_file = options.key.string();
   config.most_viewers = options.most_viewers;
-  if (config.certificate_file.empty() != config.key_file.empty()) {
-    throw service::UsageError("--certificate and --key go together");
-  }
-  if (!is_loopback(options.bind) && config.certificate_file.empty() && !options.without_tls) {
-    throw service::UsageError("--bind " + options.bind +
-                              ": expected --certificate and --key, or --without-tls; see --help");
-  }
+  service::check_web_address(options.bind, !config.certificate_file.empty(),
+                             !config.key_file.empty(), options.without_tls);
   return config;
 }
 

@@ -75,6 +75,10 @@ TEST_F(CommandsTest, WrongCommandLinesAreToldInOneLine) {
       {"run", "--log", "l", "--out", "o", "--robot", std::string(33, 'x')},
       {"map", "--log", "l", "--out", "o", "--nonsense"},
       {"plan", "m", "--from", "1", "--to", "2,3"},
+      // Before a file is read or a service starts.
+      {"run", "--log", "l", "--out", "o", "--web", "--token", "short"},
+      {"demo", "--out", "o", "--web", "--bind", "0.0.0.0"},
+      {"view", "m", "--key", "k"},
   };
   for (const auto& line : lines) {
     Program program(scratch_, "topogeo", line);

@@ -1,0 +1,17 @@
+// Who may reach a web service: checked by it and by the commands that start it, before they start
+// anything.
+#pragma once
+
+#include <string>
+
+namespace topogeo::service {
+
+/// Throws command_line::UsageError unless it has 16 letters, digits, '-', '_' or '.' or more.
+void check_web_token(const std::string& token);
+
+/// Throws command_line::UsageError for a certificate without its key or the reverse, and for an
+/// address that others reach than this machine alone with neither certificate nor `without_tls`.
+void check_web_address(const std::string& address, bool has_certificate, bool has_key,
+                       bool without_tls);
+
+}  // namespace topogeo::service
