@@ -54,7 +54,10 @@ void DrawingChannel::on_order(const msg::DrawingOrder& order) {
   if (outcome.drawing) {
     try {
       take_(std::move(*outcome.drawing));
-      if (!is_stored_) outcome.message = "the map is only shown: the drawing is not stored";
+      if (!is_stored_)
+        outcome.message =
+            "in effect until the services end; this map was given to stay as it is, so its "
+            "file does not keep the drawing";
     } catch (const std::exception& error) {
       outcome.result = msg::kDrawingNotDone;
       outcome.message = error.what();

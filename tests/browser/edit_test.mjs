@@ -381,6 +381,32 @@ test("a tap sends the robot, a finger that is held drives it", async () => {
   await end(opened);
 });
 
+test("the route that is shown is planned again when somebody has drawn", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  await page.getByRole("button", { name: "right room" }).click();
+  await page.locator("#go:enabled").waitFor();
+  const before = service.previews;
+  service.save_elsewhere({});
+  await eventually("it is planned again", () => service.previews === before + 1, 20);
+  await end(opened);
+});
+
+test("the first name that is found is chosen by the keyboard", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  const names = ["alpha", "beta", "gamma", "delta", "epsilon", "zeta"];
+  const places = Object.fromEntries(names.map((name, i) => [name, { x_m: i, y_m: 0 }]));
+  await page.click("#tab-send");
+  service.tell({ channel: "places", from: 0, version: 2, set: places, gone: [] });
+  await page.getByRole("searchbox").fill("delt");
+  await page.keyboard.press("Enter");
+  await page.locator("#go:enabled").click();
+  await eventually("the robot is sent", () => service.goal?.place === "delta", 20);
+  await end(opened);
+});
+
 test("exploring is started, shown and ended", async () => {
   const opened = await open();
   const { page, service } = opened;

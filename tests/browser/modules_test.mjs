@@ -8,6 +8,7 @@ const { Channels } = await load("channels");
 const grid = await load("map/grid_frame");
 const { destinations, numbered } = await load("destinations");
 const format = await load("format");
+const { navigator_text } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
 
@@ -215,4 +216,33 @@ test("a drive plays by its stamps, without long pauses, and shows what was seen 
     assert.ok(Math.abs(known / rooms - 1640) < 60, `${known} cells of ${rooms} rooms`);
     assert.ok(Math.abs(walls / rooms - 160) < 12, `${walls} wall cells of ${rooms} rooms`);
   }
+});
+
+test("what the navigator does is said once", () => {
+  const said = (state, reason, message) => {
+    const channels = new Channels();
+    channels.value = () => ({ state, reason, message });
+    return navigator_text(channels);
+  };
+  assert.equal(
+    said("stopped", "paused", "paused; drives on after a resume"),
+    "Paused. It drives on after “Resume”.",
+  );
+  assert.equal(
+    said("stopped", "base_not_ready", "the base takes no commands: halted on demand"),
+    "Stopped. The base takes no commands: halted on demand.",
+  );
+  assert.equal(
+    said("stopped", "waits_for_route", "waits for the planner"),
+    "It waits for a route.",
+  );
+  assert.equal(
+    said("relocalizing", "pose_lost", "the localizer does not track the pose: AMBIGUOUS"),
+    "It is not sure where it is, and finds that out before it drives.",
+  );
+  assert.equal(
+    said("blocked", "obstacle", "0.4 m ahead"),
+    "Blocked. Something that is not on the map is in its way. 0.4 m ahead.",
+  );
+  assert.equal(said("driving", "none", "drives, 3.0 m to go"), "Driving.");
 });

@@ -17,6 +17,7 @@ export class StandIn {
   version = 1;
   floors = [];
   exploring = false;
+  previews = 0; // asked for
   ops = []; // of messages that pages sent
   offers = ["goal", "preview", "drawing", "room_shapes", "floor", "explore", "cancel", "stop"];
   /** Two rooms of 4 x 4 m that meet at x = 0; zone 0 lies left. */
@@ -105,6 +106,7 @@ export class StandIn {
       case "/api/room_shapes":
         return json(200, { shapes: room_shapes(body) });
       case "/api/preview":
+        ++this.previews;
         return json(200, { found: true, length_m: 3, time_s: 9, min_clearance_m: 1, points_m: [0, 0, 3, 0] });
       case "/api/goal":
         this.goal = body;

@@ -30,7 +30,10 @@ ExplorationSender::~ExplorationSender() {
 Answer ExplorationSender::start() {
   const auto& pose = robot_.pose();
   if (!pose || pose->mode() == msg::kModeLocalization) {
-    return error_answer(409, "the robot does not map, so there is nothing to explore");
+    return error_answer(
+        409,
+        "the robot only follows its pose in a map that stays as it is; to explore, let it "
+        "map (“Map from now on”, in the view Correct)");
   }
   exploration_.start(service_.setup().config.config.exploration);
   goal_id_ = 0;

@@ -38,7 +38,14 @@ export function navigator_text(channels: Channels): string {
   if (navigator.state === "driving" && navigator.message.startsWith("drives")) return `${state}.`;
   const halted = navigator.state === "stopped" || navigator.state === "blocked";
   const halt = halted ? texts.halts[navigator.reason] : undefined;
-  const parts = [halt ? `${state}. ${halt}` : `${state}.`];
+  const whole = halted ? texts.whole_halts[navigator.reason] : undefined;
+  if (whole) return whole;
+  if (navigator.state === "relocalizing" && /does not track/.test(navigator.message)) {
+    return texts.unsure;
+  }
+  // A base that takes no commands says so itself, and why.
+  const repeated = halt && sentence(navigator.message).startsWith(halt.slice(0, -1));
+  const parts = [halt && !repeated ? `${state}. ${halt}` : `${state}.`];
   if (navigator.message) parts.push(sentence(navigator.message));
   return parts.join(" ");
 }

@@ -101,7 +101,7 @@ export const texts = {
     laser: "Laser",
     base: "Base",
     not_heard: "not heard",
-    simulated: "True pose of the simulated robot",
+    simulated: "True pose of the simulated robot, in the frame of its world",
     collisions: (n: number) => `${n} collisions`,
     legend: "Legend and keys",
     viewers: (viewers: number, operators: number) =>
@@ -183,20 +183,24 @@ export const texts = {
     stopped: "Stopped",
   } as Record<string, string>,
   halts: {
-    waits_for_route: "It waits for a route.",
     no_route: "There is no route to the goal.",
     cancelled: "The goal was cancelled.",
-    paused: "It is paused.",
     pose_lost: "It is not sure where it is.",
     no_map: "There is no map.",
     outside_map: "It is not on the map.",
     obstacle: "Something that is not on the map is in its way.",
     no_scan: "The laser sends nothing.",
     sonar_silent: "The sonars hear nothing, though something is near.",
-    no_odometry: "The base sends no odometry.",
     base_not_ready: "The base takes no commands.",
     base_stuck: "The base does not move.",
   } as Record<string, string>,
+  // To these the navigator's own message adds nothing.
+  whole_halts: {
+    waits_for_route: "It waits for a route.",
+    paused: "Paused. It drives on after “Resume”.",
+    no_odometry: "Stopped. The base sends no odometry.",
+  } as Record<string, string>,
+  unsure: "It is not sure where it is, and finds that out before it drives.",
 
   correct: {
     pose: "Set the pose",
@@ -218,7 +222,7 @@ export const texts = {
     search: "Search the whole map",
     search_hint:
       "Forgets the pose and compares what the robot sees with every place. Let it move a few " +
-      "metres meanwhile.",
+      "metres meanwhile: “Drive by hand” is in the view Send.",
     search_start: "Search",
     mode: "Map",
     mode_hint: "While mapping, new stops change the map. Localization leaves it as it is.",

@@ -117,6 +117,6 @@ export class LoopDetail {
 }
 
 /** What the last part of "match not accepted: few inliers" means; nothing of an accepted loop. */
-function meaning_of(explanation: string): string {
+export function meaning_of(explanation: string): string {
   return words.meanings[explanation.replace(/^.*: /, "")] ?? "";
 }

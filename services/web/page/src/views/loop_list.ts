@@ -5,7 +5,7 @@ import { sentence } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "../ui/dom";
 import { KeyedList } from "../ui/list";
-import { LoopDetail } from "./loop_detail";
+import { LoopDetail, meaning_of } from "./loop_detail";
 
 const words = texts.understand;
 const kShownLoops = 100;
@@ -100,8 +100,7 @@ export class LoopList {
     const [title, why, facts] = element.children as unknown as HTMLElement[];
     set_text(title, words.loop(loop.later, loop.earlier));
     set_attribute(title, "aria-pressed", String(key === this.chosen));
-    const outcome = loop.explanation || words.outcomes[loop.outcome] || loop.outcome;
-    set_text(why, `${sentence(outcome)} ${words.sources[loop.source] ?? ""}`);
+    set_text(why, `${reason_of(loop)} ${words.sources[loop.source] ?? ""}`);
     const { fitness, probability, correction_m, correction_rad } = loop;
     // A map file keeps the closed loops alone.
     const measured = [fitness, probability, correction_m].some((value) => value !== null);
@@ -111,4 +110,10 @@ export class LoopList {
     );
     set_attribute(element, "data-level", loop.accepted ? "good" : "bad");
   }
+}
+
+/** Why it was rejected, as a sentence; what was decided where there is no more to say. */
+function reason_of(loop: Loop): string {
+  const outcome = loop.explanation || words.outcomes[loop.outcome] || loop.outcome;
+  return meaning_of(loop.explanation) || sentence(outcome);
 }

@@ -11,6 +11,7 @@ import { DrivePad } from "./drive_pad";
 import { Underway } from "./underway";
 
 const words = texts.send;
+const kPlannerTime_ms = 1000; // the planner has a new drawing by then
 const kNamedPx = 18; // a tap so near to a place means the place
 
 interface Choice {
@@ -31,6 +32,8 @@ export class SendView implements ViewPart {
   private readonly note = h("p", { class: "note" });
   private choices: Choice[] = [];
   private adding = false;
+  private visible = false;
+  private replan = 0; // timer
   private last: Preview | null = null; // null while it is planned
   private asked = 0; // counts previews: an answer to an earlier one is old
 
@@ -42,6 +45,9 @@ export class SendView implements ViewPart {
       placeholder: words.search,
       "aria-label": words.search,
       oninput: () => this.show_names(),
+      onkeydown: (event: KeyboardEvent) => {
+        if (event.key === "Enter") this.choose_first();
+      },
     });
     this.names = new KeyedList<Destination>(
       "names",
@@ -74,6 +80,10 @@ export class SendView implements ViewPart {
     app.channels.on_table("places", names);
     app.channels.on_table("rooms", names);
     const rights = once_a_frame(() => this.show_rights());
+    app.channels.on_value(["drawing"], () => {
+      window.clearTimeout(this.replan);
+      this.replan = window.setTimeout(() => this.plan_again(), kPlannerTime_ms);
+    });
     app.rights.on_change(rights);
     app.channels.on_value(["navigator", "goals"], rights);
     this.show_names();
@@ -81,6 +91,7 @@ export class SendView implements ViewPart {
   }
 
   shown(visible: boolean): void {
+    this.visible = visible;
     if (!visible) this.drive.set_active(false);
     this.show_on_map(visible);
   }
@@ -113,6 +124,16 @@ export class SendView implements ViewPart {
     return kept;
   }
 
+  private choose_first(): void {
+    const found = this.found_names();
+    if (this.filter.value.trim() !== "" && found.length > 0) this.choose(found[0]);
+  }
+
+  // What is drawn may open or close the route that is shown.
+  private plan_again(): void {
+    if (this.choices.length > 0) void this.preview();
+  }
+
   private async name_point(choice: Choice): Promise<void> {
     const { x_m, y_m } = choice;
     const path = `/api/at?x_m=${x_m.toFixed(3)}&y_m=${y_m.toFixed(3)}`;
@@ -125,7 +146,7 @@ export class SendView implements ViewPart {
   private async preview(): Promise<void> {
     const asked = ++this.asked;
     this.last = null;
-    this.show_on_map(true);
+    this.show_on_map(this.visible);
     this.show_card(null);
     if (this.choices.length === 0) return;
     const goals = this.choices.map((choice) => choice.goal);
@@ -138,7 +159,7 @@ export class SendView implements ViewPart {
     }
     if (asked !== this.asked) return;
     this.last = answer;
-    this.show_on_map(this.element.isConnected);
+    this.show_on_map(this.visible);
     this.show_card(answer);
   }
 
@@ -246,10 +267,15 @@ export class SendView implements ViewPart {
     });
   }
 
+  private found_names(): Destination[] {
+    const wanted = this.filter.value.trim().toLowerCase();
+    const all = destinations(this.app.channels);
+    return all.filter((entry) => entry.name.toLowerCase().includes(wanted));
+  }
+
   private show_names(): void {
     const all = destinations(this.app.channels);
-    const wanted = this.filter.value.trim().toLowerCase();
-    const found = all.filter((entry) => entry.name.toLowerCase().includes(wanted));
+    const found = this.found_names();
     this.names.show(found.map((entry) => [entry.name, entry] as const));
     show(this.filter, all.length > 6);
     show(this.no_names, found.length === 0);
