@@ -1,7 +1,6 @@
 #include "ga_worker_service.hpp"
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 
 #include <unistd.h>
@@ -47,8 +46,8 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
     : service_(service),
       options_(options),
       statuses_(service.advertise<msg::WorkerStatus>()),
-      results_(service.advertise<msg::MatchResult>()),
       requests_(service.advertise<msg::MapRequest>()),
+      results_(service, options.worker_id, clients_),
       intake_(intake_options(options)) {
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
@@ -93,9 +92,9 @@ void GaWorkerService::listen() {
         if (intake_.lacks(copy.local_map().content_hash())) keep(copy.local_map());
       },
       {.addressee = options_.worker_id, .any_robot = true});
-  service_.subscribe<msg::MatchTask>(
-      [this](const msg::MatchTask& task, const messaging::SampleInfo& info) {
-        on_task(task, info);
+  service_.subscribe<msg::MatchTasks>(
+      [this](const msg::MatchTasks& tasks, const messaging::SampleInfo& info) {
+        on_tasks(tasks, info);
       },
       {.addressee = options_.worker_id, .any_robot = true, .main_input = true});
 }
@@ -143,7 +142,7 @@ void GaWorkerService::request(const search_pool::TaskIntake::Request& request) {
 // --- tasks
 
 std::optional<std::pair<msg::MatchStatus, std::string>> GaWorkerService::objection(
-    const msg::MatchTask& message) const {
+    const msg::MatchTasks& message) const {
   const std::string version = message.version().to_string();
   if (version != support::kVersion ||
       message.matcher_fingerprint() != status_.matcher_fingerprint()) {
@@ -163,37 +162,42 @@ std::optional<std::pair<msg::MatchStatus, std::string>> GaWorkerService::objecti
   return {};
 }
 
-void GaWorkerService::on_task(const msg::MatchTask& message, const messaging::SampleInfo& info) {
+void GaWorkerService::on_tasks(const msg::MatchTasks& message, const messaging::SampleInfo& info) {
   if (message.worker_id().to_string() != options_.worker_id) return;
-  Asked asked;
-  asked.address.robot_id = message.robot_id().to_string();
-  asked.address.stamp_ns = message.stamp_ns();
-  asked.address.worker_id = options_.worker_id;
-  asked.address.client_id = message.client_id().to_string();
-  asked.task_id = message.task_id();
-  asked.participant = service::participant_of(info.writer);
-  const Clock::time_point now = Clock::now();
-  const std::string& client_id = asked.address.client_id;
-  if (clients_.task_came(client_id, asked.address.robot_id, asked.participant, now)) {
-    spdlog::info("first task of client {}, robot {}", client_id, asked.address.robot_id);
+  const std::string robot_id = message.robot_id().to_string();
+  const std::string client_id = message.client_id().to_string();
+  const service::ParticipantId participant = service::participant_of(info.writer);
+  if (clients_.task_came(client_id, robot_id, participant, Clock::now())) {
+    spdlog::info("first task of client {}, robot {}", client_id, robot_id);
   }
-  if (const auto refusal = objection(message)) {
-    refuse(asked, refusal->first, refusal->second);
-    return;
+  // All before the first answer, so that those to refusals travel together, too.
+  for (std::size_t i = 0; i < message.tasks().size(); ++i) {
+    results_.expect(client_id, robot_id, participant);
   }
-  search_pool::MatchJob job{
-      next_ticket_, client_id, asked.address.robot_id, message.stamp_ns(), {}};
+  const auto refusal = objection(message);
+  for (const msg::MatchTask& task : message.tasks()) {
+    const Asked asked{client_id, task.stamp_ns(), task.task_id()};
+    if (refusal) {
+      refuse(asked, refusal->first, refusal->second);
+    } else {
+      take(task, asked, robot_id);
+    }
+  }
+  if (intake_.waiting() > 0) request_missing_maps();
+}
+
+void GaWorkerService::take(const msg::MatchTask& message, const Asked& asked,
+                           const std::string& robot_id) {
+  search_pool::MatchJob job{next_ticket_, asked.client_id, robot_id, asked.stamp_ns, {}};
   try {
     job.task = service::from_msg(message);
   } catch (const std::invalid_argument& error) {
     refuse(asked, msg::kMatchFailed, error.what());
     return;
   }
-  asked_.emplace(next_ticket_++, std::move(asked));
-  if (std::optional<search_pool::ReadyJob> ready = intake_.add(std::move(job), now)) {
+  asked_.emplace(next_ticket_++, asked);
+  if (std::optional<search_pool::ReadyJob> ready = intake_.add(std::move(job), Clock::now())) {
     runner_->add(std::move(*ready));
-  } else {
-    request_missing_maps();
   }
 }
 
@@ -205,59 +209,34 @@ void GaWorkerService::on_outcome(const search_pool::TaskRunner::Outcome& outcome
     return;
   }
   ++done_;
-  answer(service::to_msg(outcome.result, asked.mapped().address), asked.mapped().participant);
+  answer(asked.mapped(), service::to_msg(outcome.result));
 }
 
 void GaWorkerService::refuse(const Asked& asked, msg::MatchStatus status, const std::string& why) {
   ++failures_;
   service_.status().fault("task refused", "task " + std::to_string(asked.task_id) + " of client " +
-                                              asked.address.client_id + ": " + why);
+                                              asked.client_id + ": " + why);
   localization::MatchResult nothing;
   nothing.task_id = asked.task_id;
-  msg::MatchResult result = service::to_msg(nothing, asked.address);
+  msg::MatchResult result = service::to_msg(nothing);
   result.status(status);
   messaging::set_text_cut(result.message(), why);
-  answer(std::move(result), asked.participant);
+  answer(asked, std::move(result));
 }
 
-// --- answers
-
-void GaWorkerService::answer(msg::MatchResult result, const service::ParticipantId& participant) {
-  clients_.answered(result.client_id().to_string());
-  // A result to a client whose reader is not connected yet would be lost: it waits.
-  if (clients_.is_connected(participant) && send(result)) return;
-  unsent_.push_back({std::move(result), participant, Clock::now()});
-}
-
-bool GaWorkerService::send(msg::MatchResult& result) {
-  result.sequence_number(results_sent_);
-  if (!results_.write(result)) return false;
-  ++results_sent_;
-  return true;
-}
-
-// A client that takes nothing costs one attempt, however much waits for it.
-void GaWorkerService::send_unsent() {
-  std::set<service::ParticipantId> blocked;
-  std::erase_if(unsent_, [&](Unsent& unsent) {
-    if (!clients_.is_connected(unsent.participant) || blocked.contains(unsent.participant)) {
-      return false;
-    }
-    if (send(unsent.result)) return true;
-    blocked.insert(unsent.participant);
-    service_.status().fault("send blocked", "client " + unsent.result.client_id().to_string());
-    return false;
-  });
+void GaWorkerService::answer(const Asked& asked, msg::MatchResult result) {
+  clients_.answered(asked.client_id);
+  results_.add(asked.client_id, std::move(result), asked.stamp_ns);
 }
 
 // --- clients
 
 void GaWorkerService::on_event(const messaging::Event& event) {
-  if (event.topic != messaging::kMatchResult) return;
+  if (event.topic != messaging::kMatchResults) return;
   const service::ParticipantId participant = service::participant_of(event.peer);
   if (event.kind == messaging::EventKind::kMatched) {
     clients_.reader_came(participant);
-    send_unsent();
+    results_.send_all();
   } else if (event.kind == messaging::EventKind::kUnmatched) {
     forget(clients_.reader_gone(participant));
   }
@@ -272,13 +251,8 @@ void GaWorkerService::forget(const std::vector<search_pool::ClientRegistry::Entr
                  client.answered);
     for (const std::uint64_t ticket : runner_->remove(client_id)) asked_.erase(ticket);
     for (const std::uint64_t ticket : intake_.remove(client_id)) asked_.erase(ticket);
-    std::erase_if(unsent_, [&](const Unsent& unsent) {
-      return unsent.result.client_id().to_string() == client_id;
-    });
-    // The writers have room for a limited number of instances, and a client is one.
-    msg::MatchResult result;
-    messaging::set_client_id(result, client_id);
-    results_.dispose(result);
+    results_.forget(client_id);
+    // The writer has room for a limited number of instances, and a client is one.
     msg::MapRequest request;
     messaging::set_client_id(request, client_id);
     requests_.dispose(request);
@@ -304,8 +278,8 @@ void GaWorkerService::measure_load(Clock::time_point time) {
 
 void GaWorkerService::publish_status() {
   const Clock::time_point time = Clock::now();
-  send_unsent();
-  std::erase_if(unsent_, [&](const Unsent& u) { return time - u.since > kClientPatience; });
+  results_.send_all();
+  results_.drop_older(time - kClientPatience);
   forget(clients_.take_silent(time - kClientPatience));
   measure_load(time);
   status_.stamp_ns(support::wall_clock_ns());
@@ -323,7 +297,7 @@ void GaWorkerService::publish_status() {
   };
   service_status.set_queue("tasks in hand", asked_.size());
   service_status.set_queue("tasks without maps", intake_.waiting());
-  service_status.set_queue("answers to send", unsent_.size());
+  service_status.set_queue("answers to send", results_.waiting());
   service_status.set_counter("busy_slots", status_.load() * status_.slots());
   set("slots", status_.slots());
   set("tasks_done", done_);
@@ -346,12 +320,12 @@ void GaWorkerService::drain() {
   while (!stopped_again) {
     stopped_again = service_.loop().run_for(kLook);
     const Clock::time_point now = Clock::now();
-    if (!asked_.empty() || !unsent_.empty()) busy_until = now;
+    if (!asked_.empty() || results_.waiting() > 0) busy_until = now;
     if (now - busy_until > kDrainQuiet || now - start > kDrainPatience) break;
   }
-  static_cast<void>(results_.wait_for_acknowledgments(kFarewell));
+  results_.wait_for_acknowledgments(kFarewell);
   statuses_.dispose(status_);
-  const std::size_t left = asked_.size() + unsent_.size();
+  const std::size_t left = asked_.size() + results_.waiting();
   spdlog::info("worker {} left after {:.1f} s: {} tasks done for {} clients, {} failures{}",
                options_.worker_id, std::chrono::duration<double>(Clock::now() - start_).count(),
                done_, clients_.ever(), failures_,

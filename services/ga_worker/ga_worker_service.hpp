@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <list>
 #include <map>
 #include <optional>
 #include <string>
@@ -23,6 +22,8 @@
 #include "topogeo/service/conversions.hpp"
 #include "topogeo/service/participant_id.hpp"
 #include "topogeo/service/service.hpp"
+
+#include "result_sender.hpp"
 
 namespace topogeo::ga_worker {
 
@@ -47,26 +48,23 @@ class GaWorkerService {
   using Clock = std::chrono::steady_clock;
   /// A task in hand: where the answer goes.
   struct Asked {
-    service::MatchAddress address;
+    std::string client_id;
+    std::int64_t stamp_ns = 0;
     std::uint64_t task_id = 0;
-    service::ParticipantId participant{};
-  };
-  struct Unsent {
-    msg::MatchResult result;
-    service::ParticipantId participant{};
-    Clock::time_point since;
   };
 
   void fill_status();
   void listen();
 
-  void on_task(const msg::MatchTask& message, const messaging::SampleInfo& info);
+  void on_tasks(const msg::MatchTasks& message, const messaging::SampleInfo& info);
+  /// Gives the task to the runner, or to those that wait for maps.
+  void take(const msg::MatchTask& message, const Asked& asked, const std::string& robot_id);
   void on_outcome(const search_pool::TaskRunner::Outcome& outcome);
   void on_event(const messaging::Event& event);
 
-  /// Why a task is not for this worker; nothing when it is.
+  /// Why tasks are not for this worker; nothing when they are.
   [[nodiscard]] std::optional<std::pair<msg::MatchStatus, std::string>> objection(
-      const msg::MatchTask& message) const;
+      const msg::MatchTasks& message) const;
   /// Throws std::invalid_argument for a map that is not what its hash is of.
   void keep(const msg::LocalMap& message);
   /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
@@ -74,10 +72,7 @@ class GaWorkerService {
   void request_missing_maps();
   void request(const search_pool::TaskIntake::Request& request);
   void refuse(const Asked& asked, msg::MatchStatus status, const std::string& why);
-  void answer(msg::MatchResult result, const service::ParticipantId& participant);
-  /// False: the client does not take it now.
-  bool send(msg::MatchResult& result);
-  void send_unsent();
+  void answer(const Asked& asked, msg::MatchResult result);
   void forget(const std::vector<search_pool::ClientRegistry::Entry>& gone);
   void publish_status();
   void measure_load(Clock::time_point time);
@@ -85,15 +80,13 @@ class GaWorkerService {
   service::Service& service_;
   WorkerOptions options_;
   messaging::Writer<msg::WorkerStatus> statuses_;
-  messaging::Writer<msg::MatchResult> results_;
   messaging::Writer<msg::MapRequest> requests_;
   search_pool::ClientRegistry clients_;
+  ResultSender results_;
   search_pool::TaskIntake intake_;
   std::optional<std::uint64_t> request_timer_;
   std::map<std::uint64_t, Asked> asked_;  // by ticket
-  std::list<Unsent> unsent_;              // to clients who do not take them yet
   std::uint64_t next_ticket_ = 0;
-  std::uint64_t results_sent_ = 0;
   std::uint64_t maps_requested_ = 0;
   msg::WorkerStatus status_;
   std::uint64_t done_ = 0;

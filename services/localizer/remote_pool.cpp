@@ -1,6 +1,7 @@
 #include "remote_pool.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "topogeo/localization/places/place_field.hpp"
@@ -68,9 +69,9 @@ RemotePool::RemotePool(const messaging::Participant& participant, messaging::Eve
                 registry_.gone(info.instance.bytes, service::participant_of(info.writer)))
           drop(*worker_id);
       });
-  loop_.add<msg::MatchResult>(
-      results_, [this](const msg::MatchResult& message, const messaging::SampleInfo& info) {
-        on_result(message, info);
+  loop_.add<msg::MatchResults>(
+      results_, [this](const msg::MatchResults& message, const messaging::SampleInfo& info) {
+        on_results(message, info);
       });
   loop_.add(tasks_out_.writer());
   timer_ = loop_.add_timer(kTick, [this] { on_tick(); });
@@ -165,30 +166,46 @@ void RemotePool::log_recoveries() {
 // --- tasks out
 
 void RemotePool::send_waiting() {
-  while (const std::optional<TaskBoard::Assignment> next = board_.next_remote(now())) {
-    if (send(*next)) continue;
-    board_.not_sent(*next, now());
-    on_fault_("task not sent", "the history of worker " + next->worker_id + " is full");
+  while (true) {
+    std::map<std::string, std::vector<TaskBoard::Assignment>> by_worker;
+    while (std::optional<TaskBoard::Assignment> next = board_.next_remote(now())) {
+      by_worker[next->worker_id].push_back(std::move(*next));
+    }
+    if (by_worker.empty()) return;
+    for (const auto& [worker_id, all] : by_worker) {
+      for (std::span rest(all); !rest.empty();) {
+        const std::span<const TaskBoard::Assignment> part =
+            rest.first(std::min<std::size_t>(rest.size(), msg::kMaxTasksInMessage));
+        rest = rest.subspan(part.size());
+        if (send(part)) continue;
+        for (const TaskBoard::Assignment& assignment : part) board_.not_sent(assignment, now());
+        on_fault_("task not sent", "the history of worker " + worker_id + " is full");
+      }
+    }
   }
 }
 
-bool RemotePool::send(const TaskBoard::Assignment& assignment) {
-  const MatchTask& task = board_.task(assignment.task);
-  const topomap::LocalMap* query = maps_.find(task.query_map_id);
-  if (query == nullptr) {
-    throw std::out_of_range("match task " + std::to_string(task.task_id) + ": local map " +
-                            std::to_string(task.query_map_id) + " is not known");
-  }
+bool RemotePool::send(std::span<const TaskBoard::Assignment> of_one_worker) {
   service::MatchAddress address;
   address.robot_id = options_.robot_id;
-  address.stamp_ns = query->stamp_ns;
   address.sequence_number = sequence_++;
-  address.worker_id = assignment.worker_id;
+  address.worker_id = of_one_worker.front().worker_id;
   address.client_id = options_.client_id;
   address.version = options_.version;
   address.config_fingerprint = options_.config_fingerprint;
   address.matcher_fingerprint = matcher_fingerprint_;
-  return tasks_out_.write(service::to_msg(task, address), registry_.owner(assignment.worker_id));
+  msg::MatchTasks message = service::tasks_for(address);
+  for (const TaskBoard::Assignment& assignment : of_one_worker) {
+    const MatchTask& task = board_.task(assignment.task);
+    const topomap::LocalMap* query = maps_.find(task.query_map_id);
+    if (query == nullptr) {
+      throw std::out_of_range("match task " + std::to_string(task.task_id) + ": local map " +
+                              std::to_string(task.query_map_id) + " is not known");
+    }
+    message.tasks().push_back(service::to_msg(task, query->stamp_ns));
+  }
+  message.stamp_ns(message.tasks().front().stamp_ns());
+  return tasks_out_.write(message, registry_.owner(address.worker_id));
 }
 
 // --- the same work here
@@ -246,14 +263,22 @@ void RemotePool::blame(const MatchTask& task, const TaskBoard::Difference& diffe
 
 // --- answers in
 
-void RemotePool::on_result(const msg::MatchResult& message, const messaging::SampleInfo& info) {
+void RemotePool::on_results(const msg::MatchResults& message, const messaging::SampleInfo& info) {
   const std::string worker_id = message.worker_id().to_string();
-  const std::uint64_t task_id = message.task_id();
   // An answer counts only from the process that the task was sent to.
-  if (!registry_.is_owner(service::participant_of(info.writer), worker_id)) {
-    board_.ignore_answer();
-    return;
+  const bool counts = registry_.is_owner(service::participant_of(info.writer), worker_id);
+  for (const msg::MatchResult& result : message.results()) {
+    if (counts) {
+      on_result(worker_id, result);
+    } else {
+      board_.ignore_answer();
+    }
   }
+  if (counts) go_on();
+}
+
+void RemotePool::on_result(const std::string& worker_id, const msg::MatchResult& message) {
+  const std::uint64_t task_id = message.task_id();
   switch (message.status()) {
     case msg::kMatchSolved:
     case msg::kMatchNothingInCommon:
@@ -277,7 +302,6 @@ void RemotePool::on_result(const msg::MatchResult& message, const messaging::Sam
     default:
       on_wrong(worker_id, task_id, "unknown status " + std::to_string(message.status()));
   }
-  go_on();
 }
 
 void RemotePool::on_answer(const std::string& worker_id, const msg::MatchResult& message) {
@@ -353,7 +377,7 @@ void RemotePool::on_tick() {
 
 void RemotePool::on_event(const messaging::Event& event) {
   if (const auto participant = tasks_out_.follow(event)) on_task_reader(*participant);
-  if (event.topic != messaging::kMatchResult || event.kind != messaging::EventKind::kInvalidSample)
+  if (event.topic != messaging::kMatchResults || event.kind != messaging::EventKind::kInvalidSample)
     return;
   // An answer that breaks the wire contract has no task id that could be relied on.
   for (const std::string& worker_id : registry_.workers_of(service::participant_of(event.peer))) {

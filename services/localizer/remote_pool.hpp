@@ -93,7 +93,8 @@ class RemotePool : public localization::MatchPool {
   void on_event(const messaging::Event& event);
   /// Readers of tasks came to or went from a process.
   void on_task_reader(const service::ParticipantId& participant);
-  void on_result(const msg::MatchResult& message, const messaging::SampleInfo& info);
+  void on_results(const msg::MatchResults& message, const messaging::SampleInfo& info);
+  void on_result(const std::string& worker_id, const msg::MatchResult& message);
   void on_answer(const std::string& worker_id, const msg::MatchResult& message);
   void on_wrong(const std::string& worker_id, std::uint64_t task_id, const std::string& what);
   /// Works until the batch is done.
@@ -101,7 +102,8 @@ class RemotePool : public localization::MatchPool {
   /// Gives workers what they have room for, then ends the wait if it has come true.
   void go_on();
   void send_waiting();
-  bool send(const search_pool::TaskBoard::Assignment& assignment);
+  /// One message; false when the worker's history is full.
+  bool send(std::span<const search_pool::TaskBoard::Assignment> of_one_worker);
   /// Solves an answered task here and blames the workers whose answers are others.
   void settle(const localization::MatchTask& task);
   void blame(const localization::MatchTask& task,
@@ -125,8 +127,8 @@ class RemotePool : public localization::MatchPool {
   search_pool::WorkerRegistry registry_;
   search_pool::PoolLog log_;
   messaging::Reader<msg::WorkerStatus> statuses_;
-  messaging::Reader<msg::MatchResult> results_;
-  WorkerWriter<msg::MatchTask> tasks_out_;
+  messaging::Reader<msg::MatchResults> results_;
+  WorkerWriter<msg::MatchTasks> tasks_out_;
   MapSender maps_;
   localization::Matcher matcher_;  // holds the maps that it was needed for
   std::uint64_t sequence_ = 0;

@@ -28,13 +28,6 @@ std::uint64_t open_tasks(const msg::ServiceStatus& localizer) {
   return 0;
 }
 
-double sent_per_s(const msg::ServiceStatus& localizer) {
-  for (const msg::TopicTraffic& one : localizer.traffic()) {
-    if (one.sent() && one.topic() == "match_task") return one.rate_per_s();
-  }
-  return 0.0;
-}
-
 std::string whole(double value) {
   return fmt::format("{:.0f}", value);
 }
@@ -65,7 +58,14 @@ void PoolTable::update(const msg::ServiceStatus& status, const messaging::Sample
       robots_.erase(key);
       return;
     }
-    robots_[key] = {status, now};
+    RobotRow row{status, now, 0.0};
+    if (const auto before = robots_.find(key); before != robots_.end()) {
+      const double sent =
+          counter(&status, "tasks_sent") - counter(&before->second.status, "tasks_sent");
+      const std::chrono::duration<double> time = now - before->second.received;
+      if (sent > 0.0 && time.count() > 0.0) row.sent_per_s = sent / time.count();
+    }
+    robots_[key] = std::move(row);
     service_ids_[info.instance] = key;
   }
 }
@@ -163,7 +163,7 @@ std::string PoolTable::robot_lines(Clock::time_point now, std::size_t columns) c
   for (const auto& [key, row] : robots_) {
     const msg::ServiceStatus& s = row.status;
     grid.add({shortened(s.robot_id().to_string(), kLongestName), std::to_string(open_tasks(s)),
-              fmt::format("{:.1f}", sent_per_s(s)), whole(counter(&s, "workers")),
+              fmt::format("{:.1f}", row.sent_per_s), whole(counter(&s, "workers")),
               whole(counter(&s, "workers_lost")), whole(counter(&s, "tasks_resent")),
               whole(counter(&s, "tasks_in_process"))});
     states.push_back(now - row.received > kWorkerSilent ? "silent"
@@ -212,7 +212,7 @@ std::string PoolTable::json(Clock::time_point now, int indent) const {
                               {"host", s.host().c_str()},
                               {"state", to_string(s.state())},
                               {"open_tasks", open_tasks(s)},
-                              {"tasks_sent_per_s", sent_per_s(s)},
+                              {"tasks_sent_per_s", row.sent_per_s},
                               {"workers", counter(&s, "workers")},
                               {"workers_lost", counter(&s, "workers_lost")},
                               {"tasks_resent", counter(&s, "tasks_resent")},

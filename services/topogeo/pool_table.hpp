@@ -57,6 +57,9 @@ class PoolTable {
     Status status;
     Clock::time_point received;
   };
+  struct RobotRow : Row<msg::ServiceStatus> {
+    double sent_per_s = 0.0;  ///< tasks, between the last two statuses
+  };
   struct Total {
     std::size_t workers = 0;
     std::uint64_t slots = 0;
@@ -77,7 +80,7 @@ class PoolTable {
   std::uint64_t matcher_fingerprint_;
   std::map<std::string, Row<msg::WorkerStatus>> workers_;  // by worker id
   std::map<std::string, std::uint64_t> faults_;            // by worker id
-  std::map<std::string, Row<msg::ServiceStatus>> robots_;  // localizers, by robot and instance
+  std::map<std::string, RobotRow> robots_;                 // localizers, by robot and instance
   std::map<messaging::Handle, std::string> worker_ids_;
   std::map<messaging::Handle, std::string> service_ids_;  // keys of faults_ or robots_
 };

@@ -130,24 +130,32 @@ void speed_up(benchmark::State& state, std::uint32_t individuals, std::uint32_t 
   std::vector<double> by_one_s;
   std::vector<double> by_two_s;
   double cpu_s = 0.0;
+  double alone_cpu_s = 0.0;   // of the one worker
+  double worker_cpu_s = 0.0;  // of both
   for (auto _ : state) {
     workers.start_real(client);
     if (!have_workers(state, client, 1)) return;
     batch();  // the worker makes the features of the maps
+    alone_cpu_s -= workers.cpu_s(0);
     for (int i = 0; i < kRounds; ++i) by_one_s.push_back(batch().wall_s);
+    alone_cpu_s += workers.cpu_s(0);
     workers.start_real(client);
     if (!have_workers(state, client, 2)) return;
     batch();
+    worker_cpu_s -= workers.cpu_s(0) + workers.cpu_s(1);
     for (int i = 0; i < kRounds; ++i) {
       const Cost cost = batch();
       by_two_s.push_back(cost.wall_s);
       cpu_s += cost.cpu_s;
     }
+    worker_cpu_s += workers.cpu_s(0) + workers.cpu_s(1);
     state.SetIterationTime(median(by_two_s));
   }
   state.counters["speed_up"] = median(by_one_s) / median(by_two_s);
   state.counters["tasks_per_s"] = kBatch / median(by_two_s);
   state.counters["client_cpu_us"] = 1e6 * cpu_s / (kBatch * kRounds);
+  state.counters["worker_cpu_us"] = 1e6 * worker_cpu_s / (kBatch * kRounds);
+  state.counters["worker_alone_cpu_us"] = 1e6 * alone_cpu_s / (kBatch * kRounds);
   check(state, client);
 }
 

@@ -50,7 +50,7 @@ class Clients {
  public:
   Clients(messaging::EventLoop& loop, std::size_t workers) : workers_(workers) {
     loop.on_event([this](const messaging::Event& event) {
-      if (event.topic != messaging::kMatchResult) return;
+      if (event.topic != messaging::kMatchResults) return;
       std::size_t& readers = readers_[service::participant_of(event.peer)];
       if (event.kind == messaging::EventKind::kMatched) ++readers;
       if (event.kind == messaging::EventKind::kUnmatched && readers > 0) --readers;
@@ -79,10 +79,10 @@ class StubWorker {
         results_(participant),
         tasks_(participant, {.role = {}, .addressee = worker_id}) {
     loop.add(results_);
-    loop.add<msg::MatchTask>(tasks_,
-                             [this](const msg::MatchTask& task, const messaging::SampleInfo& info) {
-                               take({task, service::participant_of(info.writer)});
-                             });
+    loop.add<msg::MatchTasks>(
+        tasks_, [this](const msg::MatchTasks& tasks, const messaging::SampleInfo& info) {
+          take({tasks, service::participant_of(info.writer)});
+        });
     loop.on_event([this](const messaging::Event&) {
       std::erase_if(unsent_, [this](const Asked& asked) { return answered(asked); });
     });
@@ -102,22 +102,27 @@ class StubWorker {
 
  private:
   void announce() {
-    status_.tasks_done(sent_);
+    status_.tasks_done(done_);
     if (!statuses_.write(status_)) std::cerr << "status not sent\n";
   }
 
   struct Asked {
-    msg::MatchTask task;
+    msg::MatchTasks tasks;
     service::ParticipantId client;
   };
 
-  // One task after the other, clients in turn, as in a ga_worker of one slot.
+  // One task after the other, clients in turn, as in a ga_worker of one slot. Without a cost all
+  // tasks of a message are answered in one.
   void take(const Asked& asked) {
     if (cost_.count() == 0) {
       answer(asked);
       return;
     }
-    queue_.push(asked.task.client_id().to_string(), asked);
+    for (const msg::MatchTask& task : asked.tasks.tasks()) {
+      Asked one = asked;
+      one.tasks.tasks().assign(1, task);
+      queue_.push(asked.tasks.client_id().to_string(), one);
+    }
     if (!busy_) begin();
   }
 
@@ -137,17 +142,21 @@ class StubWorker {
 
   bool answered(const Asked& asked) {
     if (!clients_.connected(asked.client)) return false;
-    const msg::MatchTask& message = asked.task;
-    const localization::MatchTask task = service::from_msg(message);
-    localization::MatchResult result = answers_.at(task.seed);
-    result.task_id = task.task_id;
     service::MatchAddress address;
-    address.robot_id = message.robot_id().to_string();
-    address.stamp_ns = message.stamp_ns();
-    address.sequence_number = sent_++;
-    address.worker_id = message.worker_id().to_string();
-    address.client_id = message.client_id().to_string();
-    if (!results_.write(service::to_msg(result, address))) std::cerr << "result not sent\n";
+    address.robot_id = asked.tasks.robot_id().to_string();
+    address.stamp_ns = asked.tasks.stamp_ns();
+    address.sequence_number = sequence_++;
+    address.worker_id = asked.tasks.worker_id().to_string();
+    address.client_id = asked.tasks.client_id().to_string();
+    msg::MatchResults message = service::results_for(address);
+    for (const msg::MatchTask& wanted : asked.tasks.tasks()) {
+      const localization::MatchTask task = service::from_msg(wanted);
+      localization::MatchResult result = answers_.at(task.seed);
+      result.task_id = task.task_id;
+      message.results().push_back(service::to_msg(result));
+      ++done_;
+    }
+    if (!results_.write(message)) std::cerr << "results not sent\n";
     return true;
   }
 
@@ -158,10 +167,11 @@ class StubWorker {
   search_pool::FairQueue<Asked> queue_;
   std::vector<Asked> unsent_;
   bool busy_ = false;
-  std::uint64_t sent_ = 0;
+  std::uint64_t done_ = 0;
+  std::uint64_t sequence_ = 0;
   messaging::Writer<msg::WorkerStatus> statuses_;
-  messaging::Writer<msg::MatchResult> results_;
-  messaging::Reader<msg::MatchTask> tasks_;
+  messaging::Writer<msg::MatchResults> results_;
+  messaging::Reader<msg::MatchTasks> tasks_;
   msg::WorkerStatus status_;
 };
 

@@ -201,7 +201,7 @@ TEST_F(StrangersTest, SamplesOfAbsurdContentAreRefusedAndCounted) {
   start();
   // They keep the bounds of the types and mean nothing.
   messaging::Writer<msg::Goal> goals(participant_);
-  messaging::Writer<msg::MatchResult> results(participant_);
+  messaging::Writer<msg::MatchResults> results(participant_);
   messaging::Writer<msg::TrajectorySegment> segments(participant_);
   messaging::Writer<msg::LivePose> poses(participant_);
   constexpr std::int64_t kYear2250_ns = 8'830'000'000'000'000'000;

@@ -216,7 +216,7 @@ void receive(const msg::MapCopy& message) {
   receive(message.local_map());
 }
 
-void receive(const msg::MatchTask& message) {
+void receive_task(const msg::MatchTask& message) {
   localization::MatchTask task = service::from_msg(message);
   const topomap::LocalMap query = second_room();
   if (task.places) {
@@ -235,13 +235,22 @@ void receive(const msg::MatchTask& message) {
   match(task, query);
 }
 
-void receive(const msg::MatchResult& message) {
+void receive(const msg::MatchTasks& message) {
+  // One is as good as many, and takes less time.
+  if (!message.tasks().empty()) receive_task(message.tasks().front());
+}
+
+void receive_result(const msg::MatchResult& message) {
   if (message.status() > msg::kMatchNothingInCommon) return;
   const topomap::LocalMap query = second_room();
   localization::Matcher matcher;
   matcher.add_map(room());
   matcher.add_map(query);
   static_cast<void>(matcher.verify(task_with(query), service::from_msg(message)));
+}
+
+void receive(const msg::MatchResults& message) {
+  if (!message.results().empty()) receive_result(message.results().front());
 }
 
 template <class Message>
@@ -428,16 +437,18 @@ void fill(msg::MapCopy& message) {
   message.local_map(service::to_msg(room()));
 }
 
-void fill(msg::MatchTask& message) {
-  message = service::to_msg(task_with(second_room()), sender());
+void fill(msg::MatchTasks& message) {
+  message = service::tasks_for(sender());
+  message.tasks().push_back(service::to_msg(task_with(second_room()), kNow_ns));
 }
 
-void fill(msg::MatchResult& message) {
+void fill(msg::MatchResults& message) {
   const topomap::LocalMap query = second_room();
   localization::Matcher matcher;
   matcher.add_map(room());
   matcher.add_map(query);
-  message = service::to_msg(matcher.solve(task_with(query)), sender());
+  message = service::results_for(sender());
+  message.results().push_back(service::to_msg(matcher.solve(task_with(query))));
 }
 
 void fill(msg::TrajectorySegment& message) {

@@ -55,11 +55,11 @@ Fault fault_of(std::string_view name) {
 }
 
 /// Sends the address of a result, so that it gets to its client, and nonsense after it.
-class GarbageType final : public msg::MatchResultPubSubType {
+class GarbageType final : public msg::MatchResultsPubSubType {
  public:
   GarbageType() { m_typeSize = 1024; }
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
-    if (!msg::MatchResultPubSubType::serialize(data, payload)) return false;
+    if (!msg::MatchResultsPubSubType::serialize(data, payload)) return false;
     constexpr std::uint32_t kAddress = 160;  // more than it takes
     payload->length = kAddress + 40;
     for (std::uint32_t i = kAddress; i < payload->length; ++i) payload->data[i] = 0xFF;
@@ -70,7 +70,7 @@ class GarbageType final : public msg::MatchResultPubSubType {
 };
 
 messaging::TopicInfo garbage_topic() {
-  messaging::TopicInfo info = messaging::TopicTraits<msg::MatchResult>::info();
+  messaging::TopicInfo info = messaging::TopicTraits<msg::MatchResults>::info();
   info.make_type = []() -> eprosima::fastdds::dds::TopicDataType* {
     return new GarbageType;  // NOLINT: the caller hands it to a dds::TypeSupport
   };
@@ -107,8 +107,11 @@ class FaultyWorker {
  private:
   void join(const std::string& worker_id) {
     tasks_.emplace(participant_, messaging::ReaderOptions{{}, worker_id});
-    loop_.add<msg::MatchTask>(*tasks_, [this](const msg::MatchTask& task, const auto&) {
-      waiting_.push_back(task);
+    loop_.add<msg::MatchTasks>(*tasks_, [this](const msg::MatchTasks& message, const auto&) {
+      robot_id_ = message.robot_id().to_string();
+      client_id_ = message.client_id().to_string();
+      for (const msg::MatchTask& task : message.tasks())
+        waiting_.push_back(service::from_msg(task));
       answer_waiting();
     });
     messaging::set_header(status_, "", 0, 0);
@@ -141,10 +144,9 @@ class FaultyWorker {
   /// Tasks wait for their maps.
   void answer_waiting() {
     for (auto it = waiting_.begin(); it != waiting_.end();) {
-      const localization::MatchTask task = service::from_msg(*it);
-      if (matcher_.has_map(task.reference_map_id, task.reference_hash) &&
-          matcher_.has_map(task.query_map_id, task.query_hash)) {
-        answer(*it, task);
+      if (matcher_.has_map(it->reference_map_id, it->reference_hash) &&
+          matcher_.has_map(it->query_map_id, it->query_hash)) {
+        answer(*it);
         it = waiting_.erase(it);
       } else {
         ++it;
@@ -152,7 +154,7 @@ class FaultyWorker {
     }
   }
 
-  void answer(const msg::MatchTask& message, localization::MatchTask task) {
+  void answer(localization::MatchTask task) {
     constexpr std::uint32_t kFewGenerations = 2;
     constexpr std::uint64_t kFarAway = 1'000'000;
     constexpr double kShift_m = 0.1;
@@ -171,13 +173,13 @@ class FaultyWorker {
       result.solutions.resize(task.solutions_wanted + 1, result.solutions.front());
     }
     service::MatchAddress address;
-    address.robot_id = message.robot_id().to_string();
-    address.stamp_ns = message.stamp_ns();
-    address.worker_id = message.worker_id().to_string();
-    address.client_id = message.client_id().to_string();
-    msg::MatchResult out = service::to_msg(result, address);
+    address.robot_id = robot_id_;
+    address.worker_id = status_.worker_id().to_string();
+    address.client_id = client_id_;
+    msg::MatchResults out = service::results_for(address);
+    out.results().push_back(service::to_msg(result));
     if (fault_ == Fault::kNotANumber) {
-      out.T_reference_query().x_m(std::numeric_limits<double>::quiet_NaN());
+      out.results().front().T_reference_query().x_m(std::numeric_limits<double>::quiet_NaN());
     }
     const bool sent = garbage_ ? garbage_->write(&out) : results_->write(out);
     if (!sent) std::cerr << "result not sent\n";
@@ -190,10 +192,12 @@ class FaultyWorker {
   messaging::Reader<msg::LocalMap> maps_;
   messaging::TopicInfo garbage_info_;
   std::optional<messaging::detail::WriterCore> garbage_;
-  std::optional<messaging::Writer<msg::MatchResult>> results_;
-  std::optional<messaging::Reader<msg::MatchTask>> tasks_;
+  std::optional<messaging::Writer<msg::MatchResults>> results_;
+  std::optional<messaging::Reader<msg::MatchTasks>> tasks_;
   msg::WorkerStatus status_;
-  std::list<msg::MatchTask> waiting_;
+  std::string robot_id_;
+  std::string client_id_;  // of the last task
+  std::list<localization::MatchTask> waiting_;
   localization::Matcher matcher_;
   messaging::EventLoop loop_;  // last: it goes before the readers
 };

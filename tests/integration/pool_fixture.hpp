@@ -107,9 +107,12 @@ class FakeWorker {
         results_(participant_),
         requests_(participant_),
         tasks_(participant_, {{}, worker_id}) {
-    loop_.add<msg::MatchTask>(tasks_, [this, on_task](const msg::MatchTask& task, const auto&) {
-      ++received;
-      on_task(*this, task);
+    loop_.add<msg::MatchTasks>(tasks_, [this, on_task](const msg::MatchTasks& tasks, const auto&) {
+      client_id_ = tasks.client_id().to_string();
+      for (const msg::MatchTask& task : tasks.tasks()) {
+        ++received;
+        on_task(*this, task);
+      }
     });
     messaging::set_header(status_, "", 0, 0);
     messaging::set_worker_id(status_, worker_id);
@@ -139,18 +142,19 @@ class FakeWorker {
     result.task_id = task.task_id();
     service::MatchAddress address;
     address.robot_id = "robot";
-    address.worker_id = task.worker_id().to_string();
-    address.client_id = task.client_id().to_string();
-    msg::MatchResult message = service::to_msg(result, address);
-    message.status(status);
+    address.worker_id = status_.worker_id().to_string();
+    address.client_id = client_id_;
+    msg::MatchResults message = service::results_for(address);
+    message.results().push_back(service::to_msg(result));
+    message.results().front().status(status);
     EXPECT_TRUE(results_.wait_for_matched(1, kPatience));
     EXPECT_TRUE(results_.write(message));
   }
-  void request_map(const msg::MatchTask& task, std::uint32_t map_id, std::uint64_t hash) {
+  void request_map(std::uint32_t map_id, std::uint64_t hash) {
     msg::MapRequest request;
     messaging::set_header(request, "robot", 0, 0);
-    messaging::set_client_id(request, task.client_id().c_str());
-    messaging::set_worker_id(request, task.worker_id().c_str());
+    messaging::set_client_id(request, client_id_);
+    messaging::set_worker_id(request, status_.worker_id().c_str());
     request.map_id(map_id);
     request.content_hash(hash);
     EXPECT_TRUE(requests_.wait_for_matched(1, kPatience));
@@ -158,6 +162,8 @@ class FakeWorker {
   }
 
   [[nodiscard]] const messaging::Participant& participant() const { return participant_; }
+  /// Who sent the last task.
+  [[nodiscard]] const std::string& client_id() const { return client_id_; }
 
   int received = 0;
 
@@ -168,10 +174,11 @@ class FakeWorker {
   std::uint64_t timer_ = 0;
   messaging::Participant participant_;
   messaging::Writer<msg::WorkerStatus> statuses_;
-  messaging::Writer<msg::MatchResult> results_;
+  messaging::Writer<msg::MatchResults> results_;
   messaging::Writer<msg::MapRequest> requests_;
-  messaging::Reader<msg::MatchTask> tasks_;
+  messaging::Reader<msg::MatchTasks> tasks_;
   msg::WorkerStatus status_;
+  std::string client_id_;
 };
 
 /// Solves tasks as a worker does, or with other parameters of the search.

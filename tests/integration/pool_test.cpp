@@ -180,8 +180,8 @@ TEST_F(PoolTest, AWorkerWithoutMapsAsksForThem) {
 
 TEST_F(PoolTest, AMapThatNobodyKnowsIsNotSent) {
   FakeWorker asking(partition_, loop_, "asking", [&](FakeWorker& self, const msg::MatchTask& task) {
-    self.request_map(task, 9999, 1);
-    self.request_map(task, maps_[0]->id, 1);  // of another content
+    self.request_map(9999, 1);
+    self.request_map(maps_[0]->id, 1);  // of another content
     self.answer(task, {}, msg::kMatchMapMissing);
   });
   ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);

@@ -148,17 +148,18 @@ TEST_F(PoolTrustTest, AMalformedAnswerIsRefused) {
 
 TEST_F(PoolTrustTest, AnAnswerOfAnotherSchemaIsRefused) {
   // A writer that sends what the library does not.
-  messaging::TopicInfo unchecked = messaging::TopicTraits<msg::MatchResult>::info();
+  messaging::TopicInfo unchecked = messaging::TopicTraits<msg::MatchResults>::info();
   unchecked.find_defect = [](const void*) { return std::optional<std::string>(); };
   std::optional<messaging::detail::WriterCore> writer;
   FakeWorker::OnTask on_task = [&](FakeWorker& self, const msg::MatchTask& task) {
     if (!writer) writer.emplace(self.participant(), unchecked, "");
     ASSERT_TRUE(writer->wait_for_matched(1, kPatience));
-    msg::MatchResult result;
+    msg::MatchResults result;
     result.schema_version(1);
-    messaging::set_client_id(result, task.client_id().c_str());
-    messaging::set_worker_id(result, task.worker_id().c_str());
-    result.task_id(task.task_id());
+    messaging::set_client_id(result, self.client_id());
+    messaging::set_worker_id(result, "old");
+    result.results().resize(1);
+    result.results().front().task_id(task.task_id());
     ASSERT_TRUE(writer->write(&result));
   };
   FakeWorker old(partition_, loop_, "old", on_task);

@@ -43,8 +43,12 @@ class WorkerClient {
         results_(participant_, for_me()),
         requests_(participant_, for_me()),
         statuses_(participant_) {
-    loop_.add<msg::MatchResult>(results_, [this](const msg::MatchResult& result, const auto&) {
-      results[result.task_id()] = result;
+    loop_.add<msg::MatchResults>(results_, [this](const msg::MatchResults& message, const auto&) {
+      together.push_back(message.results().size());
+      for (const msg::MatchResult& result : message.results()) {
+        results[result.task_id()] = result;
+        answered_by[result.task_id()] = message.worker_id().to_string();
+      }
       loop_.stop();
     });
     loop_.add<msg::MapRequest>(requests_, [this](const msg::MapRequest& request, const auto&) {
@@ -101,8 +105,15 @@ class WorkerClient {
 
   void publish(const MapPointer& map) { EXPECT_TRUE(maps_.write(service::to_msg(*map))); }
   void send(const std::string& worker_id, const localization::MatchTask& task) {
+    send_together(worker_id, {task});
+  }
+  /// In one message.
+  void send_together(const std::string& worker_id,
+                     const std::vector<localization::MatchTask>& tasks) {
     address.worker_id = worker_id;
-    EXPECT_TRUE(tasks_.write(service::to_msg(task, address)));
+    msg::MatchTasks message = service::tasks_for(address);
+    for (const auto& task : tasks) message.tasks().push_back(service::to_msg(task, 0));
+    EXPECT_TRUE(tasks_.write(message));
     ++address.sequence_number;
   }
   void send_copy(const std::string& worker_id, msg::LocalMap map) {
@@ -124,6 +135,8 @@ class WorkerClient {
 
   service::MatchAddress address;  ///< of the next task
   std::map<std::uint64_t, msg::MatchResult> results;
+  std::map<std::uint64_t, std::string> answered_by;  ///< worker id
+  std::vector<std::size_t> together;                 ///< results in each message
   std::vector<msg::MapRequest> requests;
   std::map<std::string, msg::WorkerStatus> workers;
   std::function<void(const msg::MapRequest&)> on_request;
@@ -144,8 +157,8 @@ class WorkerClient {
   messaging::Participant participant_;
   messaging::Writer<msg::LocalMap> maps_;
   messaging::Writer<msg::MapCopy> copies_;
-  messaging::Writer<msg::MatchTask> tasks_;
-  messaging::Reader<msg::MatchResult> results_;
+  messaging::Writer<msg::MatchTasks> tasks_;
+  messaging::Reader<msg::MatchResults> results_;
   messaging::Reader<msg::MapRequest> requests_;
   messaging::Reader<msg::WorkerStatus> statuses_;
   std::map<messaging::Handle, std::string> instances_;

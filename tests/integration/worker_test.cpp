@@ -81,7 +81,7 @@ TEST_F(WorkerTest, TwoOfOneNameAreTwo) {
     const MatchTask one_task = task(*zero_, *one_, id++);
     peer->send(worker, one_task);
     expect_right(*peer, one_task, zero_, one_);
-    EXPECT_EQ(peer->results.at(one_task.task_id).worker_id().to_string(), worker);
+    EXPECT_EQ(peer->answered_by.at(one_task.task_id), worker);
   }
 }
 
@@ -285,6 +285,32 @@ TEST_F(WorkerTest, WithoutAConfigurationAnyWillDo) {
   const MatchTask wanted = task(*zero_, *one_, 1);
   peer->send(worker, wanted);
   expect_right(*peer, wanted, zero_, one_);
+}
+
+TEST_F(WorkerTest, AnswersTasksOfOneMessage) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  publish_both(*peer);
+  std::vector<MatchTask> tasks;
+  for (std::uint64_t id = 0; id < msg::kMaxTasksInMessage; ++id) {
+    tasks.push_back(task(*zero_, *one_, id));
+  }
+  peer->send_together(worker, tasks);
+  for (const MatchTask& one : tasks) expect_right(*peer, one, zero_, one_);
+}
+
+// Refusals need no time, so that no answer is older than the others.
+TEST_F(WorkerTest, AnswersLeaveWhenTheyAreAsManyAsTheTasksStillInHand) {
+  const auto process = start();
+  const auto peer = client();
+  const std::string worker = peer->find(name_);
+  peer->address.version = "0.0.1";
+  std::vector<MatchTask> tasks;
+  for (std::uint64_t id = 0; id < 16; ++id) tasks.push_back(task(*zero_, *one_, id));
+  peer->send_together(worker, tasks);
+  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 16; }));
+  EXPECT_THAT(peer->together, ::testing::ElementsAre(8, 4, 2, 1, 1));
 }
 
 TEST_F(WorkerTest, TellsWhatItIsAndDoes) {

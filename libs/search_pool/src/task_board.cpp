@@ -153,6 +153,7 @@ TaskBoard::Assignment TaskBoard::assign(std::size_t index, WorkerLoads::Workers:
 
 std::optional<TaskBoard::Assignment> TaskBoard::next_remote(BoardTime now) {
   forget_lost(now);
+  workers_.set_open_tasks(batch_.open());
   if (auto waiting = place_waiting(now)) return waiting;
   for (const auto& [sent, index] : batch_.out()) {
     if (now - sent < workers_.straggler_time()) break;  // the others are younger

@@ -41,9 +41,22 @@ bool WorkerLoads::in_service(const Worker& worker, BoardTime now) const {
          (worker.in_hand.empty() || now - worker.in_hand.front().sent < straggler_time_);
 }
 
+void WorkerLoads::set_open_tasks(std::size_t open) {
+  std::size_t slots = 0;
+  for (const auto& [id, worker] : workers_) {
+    if (takes_tasks(worker)) slots += worker.slots;
+  }
+  constexpr std::size_t kPartOfShare = 2;
+  share_per_slot_ = std::clamp<std::size_t>(
+      open / std::max<std::size_t>(1, kPartOfShare * slots), options_.tasks_per_slot,
+      std::max(options_.tasks_per_slot, options_.most_tasks_per_slot));
+}
+
 bool WorkerLoads::has_room(const Worker& worker) const {
-  return worker.in_hand.size() < std::min(std::size_t{worker.slots} * options_.tasks_per_slot,
-                                          std::size_t{options_.tasks_per_worker});
+  const bool is_new = worker.answers < options_.probation;
+  const std::size_t per_slot = is_new ? options_.tasks_per_slot : share_per_slot_;
+  return worker.in_hand.size() <
+         std::min(worker.slots * per_slot, std::size_t{options_.tasks_per_worker});
 }
 
 WorkerLoads::Workers::value_type* WorkerLoads::choose(const std::set<std::string>& tried,

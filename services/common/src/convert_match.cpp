@@ -120,16 +120,30 @@ std::shared_ptr<const localization::PlaceQuestion> from_question(
 
 }  // namespace
 
-msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& address) {
-  check_bound("initial_individuals", task.initial_individuals.size(), msg::kMaxInitialIndividuals);
-  msg::MatchTask out;
+msg::MatchTasks tasks_for(const MatchAddress& address) {
+  msg::MatchTasks out;
   messaging::set_header(out, address.robot_id, address.stamp_ns, address.sequence_number);
   messaging::set_worker_id(out, address.worker_id);
   messaging::set_client_id(out, address.client_id);
   messaging::set_text(out.version(), address.version, "version");
   out.config_fingerprint(address.config_fingerprint);
   out.matcher_fingerprint(address.matcher_fingerprint);
+  return out;
+}
+
+msg::MatchResults results_for(const MatchAddress& address) {
+  msg::MatchResults out;
+  messaging::set_header(out, address.robot_id, address.stamp_ns, address.sequence_number);
+  messaging::set_client_id(out, address.client_id);
+  messaging::set_worker_id(out, address.worker_id);
+  return out;
+}
+
+msg::MatchTask to_msg(const localization::MatchTask& task, std::int64_t stamp_ns) {
+  check_bound("initial_individuals", task.initial_individuals.size(), msg::kMaxInitialIndividuals);
+  msg::MatchTask out;
   out.task_id(task.task_id);
+  out.stamp_ns(stamp_ns);
   out.reference_map_id(task.reference_map_id);
   out.query_map_id(task.query_map_id);
   out.reference_hash(task.reference_hash);
@@ -181,12 +195,9 @@ localization::MatchTask from_msg(const msg::MatchTask& message) {
   return out;
 }
 
-msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddress& address) {
+msg::MatchResult to_msg(const localization::MatchResult& result) {
   check_bound("solutions", result.solutions.size(), msg::kMaxSolutions);
   msg::MatchResult out;
-  messaging::set_header(out, address.robot_id, address.stamp_ns, address.sequence_number);
-  messaging::set_client_id(out, address.client_id);
-  messaging::set_worker_id(out, address.worker_id);
   out.task_id(result.task_id);
   out.status(static_cast<msg::MatchStatus>(result.status));
   for (const localization::MatchSolution& solution : result.solutions) {

@@ -190,21 +190,24 @@ TEST_F(Delivery, EverNewInstancesDoNotUseUpTheLimit) {
 }
 
 TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
-  Writer<msg::MatchTask> writer(sender_);
-  Reader<msg::MatchTask> one(receiver_, {.addressee = "one"});
-  Reader<msg::MatchTask> two(receiver_, {.addressee = "two"});
+  Writer<msg::MatchTasks> writer(sender_);
+  Reader<msg::MatchTasks> one(receiver_, {.addressee = "one"});
+  Reader<msg::MatchTasks> two(receiver_, {.addressee = "two"});
   ASSERT_TRUE(writer.wait_for_matched(2, kPatience));
   for (std::uint64_t i = 0; i < 30; ++i) {
-    auto task = message<msg::MatchTask>(i);
-    task.task_id(i);
+    auto task = message<msg::MatchTasks>(i);
     set_worker_id(task, i % 3 == 0 ? "one" : "two");
     ASSERT_TRUE(writer.write(task));
   }
   std::vector<std::uint64_t> ids_one;
   std::vector<std::uint64_t> ids_two;
   EXPECT_TRUE(eventually([&] {
-    one.take([&](const msg::MatchTask& t, const SampleInfo&) { ids_one.push_back(t.task_id()); });
-    two.take([&](const msg::MatchTask& t, const SampleInfo&) { ids_two.push_back(t.task_id()); });
+    one.take([&](const msg::MatchTasks& t, const SampleInfo&) {
+      ids_one.push_back(t.sequence_number());
+    });
+    two.take([&](const msg::MatchTasks& t, const SampleInfo&) {
+      ids_two.push_back(t.sequence_number());
+    });
     return ids_one.size() >= 10 && ids_two.size() >= 20;
   }));
   EXPECT_EQ(ids_one, (std::vector<std::uint64_t>{0, 3, 6, 9, 12, 15, 18, 21, 24, 27}));
@@ -216,22 +219,22 @@ TEST_F(Delivery, TasksReachOnlyTheWorkerTheyAreAddressedTo) {
 // packet.
 TEST_F(Delivery, ATaskReachesOneOfVeryManyWorkers) {
   constexpr std::size_t kWorkers = 64;
-  Writer<msg::MatchTask> writer(sender_);
-  std::vector<std::unique_ptr<Reader<msg::MatchTask>>> workers;
+  Writer<msg::MatchTasks> writer(sender_);
+  std::vector<std::unique_ptr<Reader<msg::MatchTasks>>> workers;
   for (std::size_t i = 0; i < kWorkers; ++i) {
-    workers.push_back(std::make_unique<Reader<msg::MatchTask>>(
+    workers.push_back(std::make_unique<Reader<msg::MatchTasks>>(
         receiver_, ReaderOptions{.addressee = "worker " + std::to_string(i)}));
   }
   ASSERT_TRUE(writer.wait_for_matched(static_cast<int>(kWorkers), kPatience));
-  auto task = message<msg::MatchTask>();
+  auto task = message<msg::MatchTasks>();
   set_worker_id(task, "worker 63");
   ASSERT_TRUE(writer.write(task));
   std::size_t taken = 0;
   EXPECT_TRUE(eventually([&] {
-    workers.back()->take([&](const msg::MatchTask&, const SampleInfo&) { ++taken; });
+    workers.back()->take([&](const msg::MatchTasks&, const SampleInfo&) { ++taken; });
     return taken == 1;
   }));
-  workers.front()->take([&](const msg::MatchTask&, const SampleInfo&) { ++taken; });
+  workers.front()->take([&](const msg::MatchTasks&, const SampleInfo&) { ++taken; });
   EXPECT_EQ(taken, 1U);
 }
 
@@ -270,21 +273,21 @@ void expect_addressed(const Participant& sender, const Participant& receiver,
 TEST_F(Delivery, EveryAddressedTopicReachesTheAddresseeAlone) {
   const auto set_worker = [](auto& message, const char* who) { set_worker_id(message, who); };
   const auto set_client = [](auto& message, const char* who) { set_client_id(message, who); };
-  expect_addressed<msg::MatchTask>(sender_, receiver_, set_worker);
+  expect_addressed<msg::MatchTasks>(sender_, receiver_, set_worker);
   expect_addressed<msg::MapCopy>(sender_, receiver_, [&](auto& message, auto who) {
     set_worker(message, who);
     message.local_map().schema_version(msg::kSchemaVersion);
   });
-  expect_addressed<msg::MatchResult>(sender_, receiver_, set_client);
+  expect_addressed<msg::MatchResults>(sender_, receiver_, set_client);
   expect_addressed<msg::MapRequest>(sender_, receiver_, set_client);
 }
 
 TEST_F(Delivery, AddresseeMayHaveQuotes) {
   const std::string name = "it's \"me\"";
-  Writer<msg::MatchTask> writer(sender_);
-  Reader<msg::MatchTask> reader(receiver_, {.addressee = name});
+  Writer<msg::MatchTasks> writer(sender_);
+  Reader<msg::MatchTasks> reader(receiver_, {.addressee = name});
   ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
-  auto task = message<msg::MatchTask>();
+  auto task = message<msg::MatchTasks>();
   set_worker_id(task, name);
   ASSERT_TRUE(writer.write(task));
   EXPECT_TRUE(reader.wait_for_data(kPatience));

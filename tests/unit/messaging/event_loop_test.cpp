@@ -124,13 +124,13 @@ TEST_F(LoopDelivery, HandlersGetSamplesAndDisposalsOfSeveralReaders) {
 
 TEST_F(LoopDelivery, NothingIsLostBetweenBatches) {
   constexpr std::uint64_t kTasks = 100;  // several batches
-  Writer<msg::MatchTask> writer(sender_);
-  const Reader<msg::MatchTask> reader(receiver_);
+  Writer<msg::MatchTasks> writer(sender_);
+  const Reader<msg::MatchTasks> reader(receiver_);
   ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
-  for (std::uint64_t i = 0; i < kTasks; ++i) ASSERT_TRUE(writer.write(message<msg::MatchTask>(i)));
+  for (std::uint64_t i = 0; i < kTasks; ++i) ASSERT_TRUE(writer.write(message<msg::MatchTasks>(i)));
   EventLoop loop;
   std::uint64_t expected = 0;
-  loop.add<msg::MatchTask>(reader, [&](const msg::MatchTask& task, const SampleInfo&) {
+  loop.add<msg::MatchTasks>(reader, [&](const msg::MatchTasks& task, const SampleInfo&) {
     EXPECT_EQ(task.sequence_number(), expected);
     if (++expected == kTasks) loop.stop();
   });
@@ -139,14 +139,14 @@ TEST_F(LoopDelivery, NothingIsLostBetweenBatches) {
 }
 
 TEST_F(LoopDelivery, StopInAHandlerLeavesTheRestForTheNextRun) {
-  Writer<msg::MatchTask> writer(sender_);
-  const Reader<msg::MatchTask> reader(receiver_);
+  Writer<msg::MatchTasks> writer(sender_);
+  const Reader<msg::MatchTasks> reader(receiver_);
   ASSERT_TRUE(writer.wait_for_matched(1, kPatience));
-  for (std::uint64_t i = 0; i < 3; ++i) ASSERT_TRUE(writer.write(message<msg::MatchTask>(i)));
+  for (std::uint64_t i = 0; i < 3; ++i) ASSERT_TRUE(writer.write(message<msg::MatchTasks>(i)));
   ASSERT_TRUE(writer.wait_for_acknowledgments(kPatience));
   EventLoop loop;
   int handled = 0;
-  loop.add<msg::MatchTask>(reader, [&](const msg::MatchTask&, const SampleInfo&) {
+  loop.add<msg::MatchTasks>(reader, [&](const msg::MatchTasks&, const SampleInfo&) {
     ++handled;
     loop.stop();
   });

@@ -139,9 +139,10 @@ void fill(msg::LocalMap& map) {
   map.points().back().y_m(-4.25F);
 }
 
-void fill(msg::MatchTask& task) {
-  set_worker_id(task, "pc1-42");
-  set_client_id(task, "localizer-1");
+void fill(msg::MatchTasks& tasks) {
+  set_worker_id(tasks, "pc1-42");
+  set_client_id(tasks, "localizer-1");
+  msg::MatchTask task;
   task.task_id(99);
   task.reference_map_id(3);
   task.query_hash(~0ULL);
@@ -150,10 +151,12 @@ void fill(msg::MatchTask& task) {
   task.fitness_form(msg::kFitnessCombined);
   task.initial_individuals().assign(3, pose(4.0));
   task.seed(0x8000000000000001ULL);
+  tasks.tasks().assign(msg::kMaxTasksInMessage, task);
 }
 
-void fill(msg::MatchResult& result) {
-  set_client_id(result, "localizer-1");
+void fill(msg::MatchResults& results) {
+  set_client_id(results, "localizer-1");
+  msg::MatchResult result;
   result.task_id(99);
   result.status(msg::kMatchMapMissing);
   msg::MatchSolution solution;
@@ -162,6 +165,7 @@ void fill(msg::MatchResult& result) {
   result.solutions().assign(msg::kMaxSolutions, solution);
   result.covariance(matrix());
   result.evaluations(1500);
+  results.results().assign(msg::kMaxTasksInMessage, result);
 }
 
 void fill(msg::WorkerStatus& status) {

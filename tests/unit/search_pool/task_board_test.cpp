@@ -35,6 +35,41 @@ TEST_F(TaskBoardTest, SlotsAreRespectedAndTasksSpreadEvenly) {
   EXPECT_THAT(send_all(milliseconds(2)), ElementsAre(std::pair{6U, "b"}));
 }
 
+/// So many tasks go out at once.
+int sent_at_once(TaskBoard& board) {
+  int count = 0;
+  while (board.next_remote(seconds(0))) ++count;
+  return count;
+}
+
+TEST(TaskBoard, WorkersHoldHalfOfTheirShareOfABatch) {
+  BoardConfig config;
+  config.probation = 0;
+  for (const auto& [batch, sent] : {std::pair{4, 4}, std::pair{8, 4}, std::pair{12, 6},
+                                    std::pair{100, 50}, std::pair{1000, 64}}) {
+    TaskBoard board(config);
+    for (const char* worker : {"a", "b"}) {
+      board.worker_up(worker, 1, seconds(0));
+      board.set_reachable(worker, true);
+    }
+    board.begin(tasks(static_cast<std::size_t>(batch)));
+    EXPECT_EQ(sent_at_once(board), sent) << "of " << batch;
+  }
+}
+
+TEST(TaskBoard, ANewWorkerHoldsTwoTasksBeforeItsProbationIsOver) {
+  TaskBoard board;
+  board.worker_up("a", 1, seconds(0));
+  board.set_reachable("a", true);
+  board.begin(tasks(100, 100));
+  EXPECT_EQ(sent_at_once(board), 2);
+  for (const auto& [task_id, next] :
+       {std::pair{100U, 1}, std::pair{101U, 1}, std::pair{102U, 31}}) {
+    board.answer("a", answer_to(task_id), seconds(0));
+    EXPECT_EQ(sent_at_once(board), next) << task_id;
+  }
+}
+
 TEST_F(TaskBoardTest, ResultsComeInTheOrderOfTheTasks) {
   up("a");
   up("b");

@@ -62,8 +62,7 @@ TEST_P(Conversions, MatchTaskIsExact) {
   for (int i = 0; i < 7; ++i) task.initial_individuals.push_back(any_pose(random_));
   task.solutions_wanted = 1 + static_cast<std::uint32_t>(random_.below(40));
   task.seed = random_.next_u64();
-  const localization::MatchTask back =
-      from_msg(to_msg(task, {"robot", 1, 2, "worker", "client", "0.1", 3}));
+  const localization::MatchTask back = from_msg(to_msg(task, 1));
   EXPECT_EQ(back.task_id, task.task_id);
   EXPECT_EQ(back.reference_map_id, task.reference_map_id);
   EXPECT_EQ(back.query_map_id, task.query_map_id);
@@ -93,7 +92,7 @@ TEST_P(Conversions, PlaceQuestionIsExact) {
   question.headings = 6;
   localization::MatchTask task;
   task.places = std::make_shared<const localization::PlaceQuestion>(question);
-  const auto back = from_msg(to_msg(task, {"robot", 1, 2, "worker", "client", "0.1", 3})).places;
+  const auto back = from_msg(to_msg(task, 1)).places;
   ASSERT_NE(back, nullptr);
   EXPECT_EQ(back->field_hash, question.field_hash);
   ASSERT_EQ(back->pieces.size(), question.pieces.size());
@@ -128,7 +127,7 @@ TEST_P(Conversions, MatchResultIsExact) {
   result.seed = random_.next_u64();
   result.verdict = static_cast<localization::Verdict>(random_.below(3));
   result.reason = static_cast<localization::Reason>(random_.below(localization::kReasons));
-  const localization::MatchResult back = from_msg(to_msg(result, {"robot", 1, 2, "w", "c", "", 0}));
+  const localization::MatchResult back = from_msg(to_msg(result));
   EXPECT_EQ(back.task_id, result.task_id);
   EXPECT_EQ(back.status, result.status);
   EXPECT_EQ(back.seeds, result.seeds);
@@ -343,14 +342,14 @@ TEST(ConversionBounds, WhatDoesNotFitIsRefusedByName) {
   EXPECT_THAT(refusal([&] { to_msg(map); }), HasSubstr("track has 257"));
   localization::MatchTask task;
   task.initial_individuals.resize(257);
-  EXPECT_THAT(refusal([&] { to_msg(task, {}); }), HasSubstr("initial_individuals has 257"));
+  EXPECT_THAT(refusal([&] { to_msg(task, 0); }), HasSubstr("initial_individuals has 257"));
   localization::PlaceQuestion question;
   question.pieces.resize(1025);
   localization::MatchTask search;
   search.places = std::make_shared<const localization::PlaceQuestion>(question);
-  EXPECT_THAT(refusal([&] { to_msg(search, {}); }), HasSubstr("places.pieces has 1025"));
+  EXPECT_THAT(refusal([&] { to_msg(search, 0); }), HasSubstr("places.pieces has 1025"));
   EXPECT_THAT(refusal([&] {
-                to_msg(localization::MatchTask{}, {"r", 0, 0, std::string(65, 'w'), "", "", 0});
+                tasks_for({"r", 0, 0, std::string(65, 'w'), "", "", 0});
               }),
               HasSubstr("worker_id"));
   const std::vector<topomap::LoopClosure> closures(msg::kMaxLoopClosures + 1);
@@ -387,7 +386,7 @@ TEST(ConversionChecks, LocalMapThatContradictsItselfIsRefused) {
 }
 
 TEST(ConversionChecks, RefusalOfATaskIsNoResult) {
-  msg::MatchResult message = to_msg(localization::MatchResult{}, {"r", 0, 0, "w", "c", "", 0});
+  msg::MatchResult message = to_msg(localization::MatchResult{});
   message.status(msg::kMatchMapMissing);
   EXPECT_THAT(refusal([&] { from_msg(message); }), HasSubstr("status"));
 }

@@ -130,20 +130,20 @@ TEST_F(ServiceTest, DisposedInstancesAreReported) {
 
 TEST_F(ServiceTest, AddresseeAndRoleAreThoseOfTheSubscription) {
   std::vector<std::uint64_t> tasks;
-  service_.subscribe<msg::MatchTask>(
-      [&](const msg::MatchTask& task) { tasks.push_back(task.task_id()); },
+  service_.subscribe<msg::MatchTasks>(
+      [&](const msg::MatchTasks& task) { tasks.push_back(task.sequence_number()); },
       {.addressee = "me", .any_robot = true});
   int scans = 0;
   service_.subscribe<msg::Scan>([&](const msg::Scan&) { ++scans; },
                                 {.role = std::string(messaging::kReplayRole)});
-  messaging::Writer<msg::MatchTask> task_writer(peer_);
+  messaging::Writer<msg::MatchTasks> task_writer(peer_);
   messaging::Writer<msg::Scan> scan_writer(peer_, messaging::kReplayRole);
   ASSERT_TRUE(task_writer.wait_for_matched(1, kPatience));
   ASSERT_TRUE(scan_writer.wait_for_matched(1, kPatience));
   for (const auto& [who, id] : {std::pair{"you", 1U}, std::pair{"me", 2U}}) {
-    auto task = message_of<msg::MatchTask>("any");
+    auto task = message_of<msg::MatchTasks>("any");
     messaging::set_worker_id(task, who);
-    task.task_id(id);
+    task.sequence_number(id);
     ASSERT_TRUE(task_writer.write(task));
   }
   ASSERT_TRUE(scan_writer.write(message_of<msg::Scan>("robot")));

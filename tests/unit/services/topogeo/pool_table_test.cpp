@@ -49,7 +49,8 @@ msg::ServiceStatus worker_service(const std::string& worker_id, std::uint64_t fa
   return status;
 }
 
-msg::ServiceStatus localizer_of(const std::string& robot, std::uint64_t open) {
+msg::ServiceStatus localizer_of(const std::string& robot, std::uint64_t open,
+                                double tasks_sent = 0.0) {
   msg::ServiceStatus status;
   messaging::set_robot_id(status, robot);
   messaging::set_service(status, "localizer", robot + "-1");
@@ -58,14 +59,10 @@ msg::ServiceStatus localizer_of(const std::string& robot, std::uint64_t open) {
   messaging::set_text(queue.name(), "match tasks", "name");
   queue.depth(open);
   status.queues().push_back(queue);
-  msg::TopicTraffic traffic;
-  messaging::set_text(traffic.topic(), "match_task", "topic");
-  traffic.sent(true);
-  traffic.rate_per_s(12.5);
-  status.traffic().push_back(traffic);
   msg::Counter counter;
-  for (const auto& [name, value] : {std::pair("workers", 2.0), std::pair("workers_lost", 1.0),
-                                    std::pair("tasks_in_process", 33.0)}) {
+  for (const auto& [name, value] :
+       {std::pair("workers", 2.0), std::pair("workers_lost", 1.0),
+        std::pair("tasks_in_process", 33.0), std::pair("tasks_sent", tasks_sent)}) {
     messaging::set_text(counter.name(), name, "name");
     counter.value(value);
     status.counters().push_back(counter);
@@ -82,7 +79,8 @@ TEST_F(PoolTableTest, ShowsWorkersWithTheirFaultsAndRobotsWithTheirTasks) {
   table_.update(pool_worker("a", "pc1", 0.75), number(1), kMoment);
   table_.update(pool_worker("b", "pc2", 0.0), number(2), kMoment);
   table_.update(worker_service("a#1", 3), number(3), kMoment);
-  table_.update(localizer_of("r1", 17), number(4), kMoment);
+  table_.update(localizer_of("r1", 4, 100.0), number(4), kMoment - std::chrono::seconds(2));
+  table_.update(localizer_of("r1", 17, 125.0), number(4), kMoment);
   EXPECT_EQ(table_.text(kMoment),
             "2 workers, 8 slots 38 % busy, 75.0 tasks/s, 8 in hand, 17 open\n"
             "\n"

@@ -10,10 +10,13 @@ namespace topogeo::search_pool {
 using BoardTime = std::chrono::nanoseconds;
 
 struct BoardConfig {
-  /// Tasks given to a worker for each of its slots, at most: one to work on, the rest so that it
-  /// does not stand still while an answer travels. Few, so that one client does not fill the queue
-  /// of a worker that others use, too.
+  /// Tasks given to a worker for each of its slots, at least: one to work on, the rest so that it
+  /// does not stand still while an answer travels. A new worker gets no more before its probation
+  /// is over.
   std::uint32_t tasks_per_slot = 2;
+  /// At most: a large batch travels in messages of several tasks. Of a small one each worker gets a
+  /// half of its share, so that all end together.
+  std::uint32_t most_tasks_per_slot = 32;
   /// Tasks given to one worker at most; the task history of a worker on the wire holds 128.
   std::uint32_t tasks_per_worker = 100;
   /// A task without an answer for so long is also given to another worker ...

@@ -46,6 +46,9 @@ class WorkerLoads {
   [[nodiscard]] std::vector<std::string> usable() const;
   [[nodiscard]] std::size_t count_usable() const;
 
+  /// So many tasks have no answer yet: workers get their share of them (BoardConfig).
+  void set_open_tasks(std::size_t open);
+
   /// The worker with room that has the smallest load for its slots, first by id among equals, but
   /// none of those that have `tried`; null for none.
   [[nodiscard]] Workers::value_type* choose(const std::set<std::string>& tried, BoardTime now);
@@ -71,6 +74,7 @@ class WorkerLoads {
 
   BoardConfig options_;
   Workers workers_;
+  std::size_t share_per_slot_ = 0;      // of the open tasks
   std::deque<BoardTime> answer_times_;  // of recent answers
   std::uint64_t answers_noted_ = 0;
   BoardTime straggler_time_;

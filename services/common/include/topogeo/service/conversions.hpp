@@ -60,22 +60,27 @@ topomap::LocalMap content_from_msg(const msg::LocalMap& message);
 /// Checks content_hash, too.
 topomap::LocalMap from_msg(const msg::LocalMap& message);
 
-/// Who asks whom for a match, and what both must agree on.
+/// Who asks whom for matches, and what both must agree on.
 struct MatchAddress {
   std::string robot_id;
-  std::int64_t stamp_ns = 0;  ///< of the query map's scan
+  std::int64_t stamp_ns = 0;  ///< of the first task's query map
   std::uint64_t sequence_number = 0;
   std::string worker_id;
   std::string client_id;
-  std::string version;                    ///< of a task
-  std::uint64_t config_fingerprint = 0;   ///< of a task
-  std::uint64_t matcher_fingerprint = 0;  ///< of a task
+  std::string version;                    ///< of tasks
+  std::uint64_t config_fingerprint = 0;   ///< of tasks
+  std::uint64_t matcher_fingerprint = 0;  ///< of tasks
 };
 
-msg::MatchTask to_msg(const localization::MatchTask& task, const MatchAddress& address);
+/// Messages without a task, and without a result.
+msg::MatchTasks tasks_for(const MatchAddress& address);
+msg::MatchResults results_for(const MatchAddress& address);
+
+/// `stamp_ns` is that of the query map's scan.
+msg::MatchTask to_msg(const localization::MatchTask& task, std::int64_t stamp_ns);
 localization::MatchTask from_msg(const msg::MatchTask& message);
 
-msg::MatchResult to_msg(const localization::MatchResult& result, const MatchAddress& address);
+msg::MatchResult to_msg(const localization::MatchResult& result);
 /// Throws for a refusal, too: check status() first.
 localization::MatchResult from_msg(const msg::MatchResult& message);
 

@@ -1,0 +1,75 @@
+// Sends the answers to tasks to their clients, several in a message where more are about to come.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/match.h"
+#include "topogeo/search_pool/client_registry.hpp"
+#include "topogeo/service/participant_id.hpp"
+#include "topogeo/service/service.hpp"
+
+namespace topogeo::ga_worker {
+
+/// The answers of a client leave when they are as many as its tasks that are still in hand: it
+/// sends new ones while the worker is busy with the rest. None waits longer than 25 ms for others.
+class ResultSender {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// All three must outlive it. `clients` tells which of them are connected.
+  ResultSender(service::Service& service, std::string worker_id,
+               const search_pool::ClientRegistry& clients);
+
+  /// A task of the client has come: an answer to it will be added.
+  void expect(const std::string& client_id, const std::string& robot_id,
+              const service::ParticipantId& participant);
+  /// The answer to one of those tasks, whose query map has this stamp.
+  void add(const std::string& client_id, msg::MatchResult result, std::int64_t stamp_ns);
+
+  /// Sends to all clients that can be reached what waits for them.
+  void send_all();
+  /// Drops what a client has not taken since `before`.
+  void drop_older(Clock::time_point before);
+  /// The client is gone, and what was for it.
+  void forget(const std::string& client_id);
+
+  /// Answers that wait.
+  [[nodiscard]] std::size_t waiting() const;
+  void wait_for_acknowledgments(std::chrono::nanoseconds patience);
+
+ private:
+  struct Answer {
+    msg::MatchResult result;
+    std::int64_t stamp_ns = 0;
+    Clock::time_point since;
+  };
+  struct Outbox {
+    std::string robot_id;
+    service::ParticipantId participant{};
+    std::size_t tasks_in_hand = 0;
+    std::deque<Answer> answers;
+  };
+
+  void send(const std::string& client_id, Outbox& outbox);
+  /// Sets the timer for the oldest answer.
+  void wait_for_more();
+  /// The oldest answers, as many as go into a message; false when they are not sent.
+  [[nodiscard]] bool send_message(const std::string& client_id, Outbox& outbox);
+
+  service::Service& service_;
+  std::string worker_id_;
+  const search_pool::ClientRegistry& clients_;
+  messaging::Writer<msg::MatchResults> results_;
+  std::map<std::string, Outbox> outboxes_;  // by client id
+  std::optional<std::uint64_t> timer_;
+  std::uint64_t messages_sent_ = 0;
+};
+
+}  // namespace topogeo::ga_worker
