@@ -218,6 +218,13 @@ void compare_displaced(Report& report, const DisplacedPair& pair,
     add_robot(panel, {}, FigureColour::kRed);
     add_robot(panel, pair.T_true * off, FigureColour::kBlue);
     panel.extent = {{-3.5, -1.5}, {3.5, 4.5}};
+    // Where the query is outside of that, around its whole map.
+    constexpr double kReach_m = 4.5;
+    const Eigen::Vector2d at_m = on_page((pair.T_true * off).position_m());
+    if ((at_m.array() < panel.extent->low.array()).any()) {
+      panel.extent->low = panel.extent->low.cwiseMin((at_m.array() - kReach_m).matrix());
+      panel.extent->high = panel.extent->high.cwiseMax((at_m.array() + kReach_m).matrix());
+    }
     figure.panels.push_back(std::move(panel));
     table.rows.push_back(
         {std::string(1, static_cast<char>('a' + i)), fmt::format("{:.2f}", -off.y_m),
