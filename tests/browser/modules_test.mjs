@@ -8,7 +8,7 @@ const { Channels } = await load("channels");
 const grid = await load("map/grid_frame");
 const { destinations, numbered } = await load("destinations");
 const format = await load("format");
-const { navigator_text } = await load("robot_state");
+const { navigator_text, robot_state } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
 
@@ -245,4 +245,22 @@ test("what the navigator does is said once", () => {
     "Blocked. Something that is not on the map is in its way. 0.4 m ahead.",
   );
   assert.equal(said("driving", "none", "drives, 3.0 m to go"), "Driving.");
+});
+
+test("a pose that is old is not said to be known", (t) => {
+  const channels = new Channels();
+  const rights = { connected: true };
+  let now_ms = 5000;
+  t.mock.method(performance, "now", () => now_ms);
+  assert.equal(robot_state(channels, rights).name, "none");
+  const pose = { state: "TRACKING", reason: "What the laser sees fits the map." };
+  channels.apply({ channel: "pose", version: 1, value: pose });
+  now_ms += 9000;
+  assert.equal(robot_state(channels, rights).name, "TRACKING");
+  now_ms += 2000;
+  assert.equal(robot_state(channels, rights).name, "silent");
+  channels.apply({ channel: "pose", version: 2, value: pose });
+  assert.equal(robot_state(channels, rights).name, "TRACKING");
+  rights.connected = false;
+  assert.equal(robot_state(channels, rights).name, "offline");
 });

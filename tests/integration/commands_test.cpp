@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -87,6 +89,18 @@ TEST_F(CommandsTest, WrongCommandLinesAreToldInOneLine) {
     EXPECT_THAT(err, StartsWith("topogeo: ")) << testing::PrintToString(line);
     EXPECT_EQ(err.find('\n'), err.size() - 1) << err;
   }
+}
+
+TEST_F(CommandsTest, APageIsRefusedAPortThatIsInUseBeforeAnythingStarts) {
+  boost::asio::io_context context;
+  const boost::asio::ip::tcp::endpoint any(boost::asio::ip::address_v4::loopback(), 0);
+  const boost::asio::ip::tcp::acceptor other(context, any);
+  const std::string port = std::to_string(other.local_endpoint().port());
+  Program program(scratch_, "topogeo",
+                  {"run", "--log", "l", "--out", scratch_ / "out", "--web", "--port", port});
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_THAT(program.err(), HasSubstr("another program listens at 127.0.0.1 port " + port));
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "out"));
 }
 
 // Services come one after the other, and on a busy machine one may be silent for a moment: asked

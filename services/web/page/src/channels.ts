@@ -20,6 +20,7 @@ type TableListener = (change: Change) => void;
 
 export class Channels {
   private readonly values: { [Name in ValueName]?: Values[Name] | null } = {};
+  private readonly came_ms = new Map<ValueName, number>();
   private readonly tables = new Map<TableName, Map<string, unknown>>();
   private readonly versions = new Map<TableName, number>();
   private readonly value_listeners = new Map<ValueName, (() => void)[]>();
@@ -33,6 +34,12 @@ export class Channels {
   /** The newest value; null where there is none. */
   value<Name extends ValueName>(name: Name): Values[Name] | null {
     return (this.values[name] as Values[Name] | undefined) ?? null;
+  }
+
+  /** How long ago a value came last, in milliseconds; null where none has come. */
+  age_ms(name: ValueName): number | null {
+    const came_ms = this.came_ms.get(name);
+    return came_ms === undefined ? null : performance.now() - came_ms;
   }
 
   table<Name extends TableName>(name: Name): ReadonlyMap<string, Tables[Name]> {
@@ -59,6 +66,7 @@ export class Channels {
     this.unconfirmed.delete(message.channel);
     if ("from" in message) return this.apply_table(message);
     (this.values as Record<string, unknown>)[message.channel] = message.value;
+    this.came_ms.set(message.channel, performance.now());
     for (const listener of this.value_listeners.get(message.channel) ?? []) listener();
     return true;
   }

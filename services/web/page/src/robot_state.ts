@@ -5,6 +5,9 @@ import { texts } from "./texts";
 
 export type StateName = keyof typeof texts.states;
 
+/** Poses come with each scan; without one for so long nobody knows where the robot is now. */
+const kSilence_ms = 10_000;
+
 export interface RobotState {
   name: StateName;
   word: string;
@@ -15,7 +18,9 @@ export function robot_state(channels: Channels, rights: Rights): RobotState {
   const named = (name: StateName, reason: string) => ({ name, word: texts.states[name], reason });
   if (!rights.connected) return named("offline", texts.reasons.offline);
   const pose = channels.value("pose");
-  return pose ? named(pose.state, pose.reason) : named("none", texts.reasons.none);
+  if (!pose) return named("none", texts.reasons.none);
+  if ((channels.age_ms("pose") ?? 0) > kSilence_ms) return named("silent", texts.reasons.silent);
+  return named(pose.state, pose.reason);
 }
 
 /** Why the base does not move until somebody releases it; null when it may. */

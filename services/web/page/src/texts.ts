@@ -14,10 +14,12 @@ export const texts = {
     SEARCHING: "Searching",
     LOST: "Lost",
     none: "No pose",
+    silent: "No pose",
     offline: "Offline",
   },
   reasons: {
     none: "No localizer has reported a pose yet.",
+    silent: "No pose has come for over ten seconds; the robot is shown where it was then.",
     offline: "The page does not hear the robot; what it shows is old.",
   },
 

@@ -8,6 +8,9 @@ import { button, h, set_attribute, set_text, show } from "./dom";
 import { Notices } from "./notices";
 import { once_a_frame } from "./schedule";
 
+/** How often it is seen whether poses still come, which no message says. */
+const kSilenceTick_ms = 1000;
+
 export class Header {
   readonly element: HTMLElement;
   readonly banners: HTMLElement;
@@ -52,6 +55,7 @@ export class Header {
     const update = once_a_frame(() => this.update(release));
     channels.on_value(["pose", "base"], update);
     rights.on_change(update);
+    setInterval(update, kSilenceTick_ms);
     this.listen_for_space();
     this.update(release);
   }
