@@ -3,12 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <random>
-#include <stdexcept>
 #include <string_view>
-#include <utility>
-
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 
 #include "topogeo/service/web_access.hpp"
 #include "topogeo/support/format.hpp"
@@ -23,24 +18,6 @@ std::string token_of_environment() {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread uses the environment yet
   const char* const given = std::getenv(kTokenVariable);
   return given != nullptr ? given : "";
-}
-
-/// Throws std::runtime_error when another program listens there. What else may be wrong with the
-/// address the service says itself.
-void check_port(const std::string& address, std::uint32_t port) {
-  namespace asio = boost::asio;
-  boost::system::error_code error;
-  const auto host = asio::ip::make_address(address, error);
-  if (error || port == 0) return;
-  asio::io_context context;
-  asio::ip::tcp::acceptor acceptor(context);
-  const asio::ip::tcp::endpoint endpoint(host, static_cast<std::uint16_t>(port));
-  acceptor.open(endpoint.protocol(), error);
-  acceptor.set_option(asio::ip::tcp::acceptor::reuse_address(true), error);
-  acceptor.bind(endpoint, error);
-  if (error != asio::error::address_in_use) return;
-  throw std::runtime_error(fmt::format(
-      "another program listens at {} port {}: give --port, 0 for any that is free", address, port));
 }
 
 }  // namespace
@@ -84,7 +61,7 @@ void check_web_options(const WebOptions& options) {
   service::check_web_address(address, options.certificate.has_value(), options.key.has_value(),
                              options.without_tls);
   constexpr std::uint32_t kUsualPort = 8080;
-  check_port(address, options.port.value_or(kUsualPort));
+  service::check_web_port(address, options.port.value_or(kUsualPort));
 }
 
 void export_token(const WebOptions& options) {

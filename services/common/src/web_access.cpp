@@ -2,8 +2,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <stdexcept>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 
 #include "topogeo/command_line/command_line.hpp"
+#include "topogeo/support/format.hpp"
 
 namespace topogeo::service {
 namespace {
@@ -35,6 +41,22 @@ void check_web_address(const std::string& address, bool has_certificate, bool ha
     throw command_line::UsageError(
         "--bind " + address + ": expected --certificate and --key, or --without-tls; see --help");
   }
+}
+
+void check_web_port(const std::string& address, std::uint32_t port) {
+  namespace asio = boost::asio;
+  boost::system::error_code error;
+  const auto host = asio::ip::make_address(address, error);
+  if (error || port == 0) return;
+  asio::io_context context;
+  asio::ip::tcp::acceptor acceptor(context);
+  const asio::ip::tcp::endpoint endpoint(host, static_cast<std::uint16_t>(port));
+  acceptor.open(endpoint.protocol(), error);
+  acceptor.set_option(asio::ip::tcp::acceptor::reuse_address(true), error);
+  acceptor.bind(endpoint, error);
+  if (error != asio::error::address_in_use) return;
+  throw std::runtime_error(fmt::format(
+      "another program listens at {} port {}: give --port, 0 for any that is free", address, port));
 }
 
 }  // namespace topogeo::service

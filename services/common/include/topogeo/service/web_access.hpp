@@ -2,6 +2,7 @@
 // anything.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace topogeo::service {
@@ -13,5 +14,9 @@ void check_web_token(const std::string& token);
 /// address that others reach than this machine alone with neither certificate nor `without_tls`.
 void check_web_address(const std::string& address, bool has_certificate, bool has_key,
                        bool without_tls);
+
+/// Throws std::runtime_error when another program listens there. What else may be wrong with the
+/// address the service says itself.
+void check_web_port(const std::string& address, std::uint32_t port);
 
 }  // namespace topogeo::service
