@@ -28,8 +28,8 @@ void add_web_options(command_line::Command& app, WebOptions& options,
                      command_line::Option* needed = nullptr);
 
 /// Throws service::UsageError for what the service refuses: a token that is too short, of the
-/// command line or of the environment, or an address that asks for a certificate; std::runtime_error
-/// when another program listens at the port.
+/// command line or of the environment, or an address that asks for a certificate;
+/// std::runtime_error when another program listens at the port.
 void check_web_options(const WebOptions& options);
 
 /// Hands the token, or one that is made here, to the programs that are started from here on: by the
