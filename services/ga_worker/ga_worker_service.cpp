@@ -171,9 +171,7 @@ void GaWorkerService::on_tasks(const msg::MatchTasks& message, const messaging::
     spdlog::info("first task of client {}, robot {}", client_id, robot_id);
   }
   // All before the first answer, so that those to refusals travel together, too.
-  for (std::size_t i = 0; i < message.tasks().size(); ++i) {
-    results_.expect(client_id, robot_id, participant);
-  }
+  results_.expect(client_id, message.tasks().size());
   const auto refusal = objection(message);
   for (const msg::MatchTask& task : message.tasks()) {
     const Asked asked{client_id, task.stamp_ns(), task.task_id()};

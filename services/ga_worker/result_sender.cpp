@@ -22,12 +22,8 @@ ResultSender::ResultSender(service::Service& service, std::string worker_id,
       clients_(clients),
       results_(service.advertise<msg::MatchResults>()) {}
 
-void ResultSender::expect(const std::string& client_id, const std::string& robot_id,
-                          const service::ParticipantId& participant) {
-  Outbox& outbox = outboxes_[client_id];
-  outbox.robot_id = robot_id;
-  outbox.participant = participant;
-  ++outbox.tasks_in_hand;
+void ResultSender::expect(const std::string& client_id, std::size_t tasks) {
+  outboxes_[client_id].tasks_in_hand += tasks;
 }
 
 void ResultSender::add(const std::string& client_id, msg::MatchResult result,
@@ -49,7 +45,7 @@ void ResultSender::wait_for_more() {
   if (timer_) return;
   std::optional<Clock::time_point> oldest;
   for (const auto& [client_id, outbox] : outboxes_) {
-    if (outbox.answers.empty() || !clients_.is_connected(outbox.participant)) continue;
+    if (outbox.answers.empty() || !is_reachable(client_id)) continue;
     const Clock::time_point since = outbox.answers.front().since;
     if (!oldest || since < *oldest) oldest = since;
   }
@@ -70,9 +66,13 @@ void ResultSender::send_all() {
   for (auto& [client_id, outbox] : outboxes_) send(client_id, outbox);
 }
 
+bool ResultSender::is_reachable(const std::string& client_id) const {
+  const search_pool::ClientRegistry::Client* client = clients_.find(client_id);
+  return client != nullptr && clients_.is_connected(client->participant);
+}
+
 void ResultSender::send(const std::string& client_id, Outbox& outbox) {
-  // A result to a client whose reader is not connected yet would be lost: it waits.
-  if (!clients_.is_connected(outbox.participant)) return;
+  if (!is_reachable(client_id)) return;
   while (!outbox.answers.empty()) {
     if (send_message(client_id, outbox)) continue;
     service_.status().fault("send blocked", "client " + client_id);
@@ -82,7 +82,7 @@ void ResultSender::send(const std::string& client_id, Outbox& outbox) {
 
 bool ResultSender::send_message(const std::string& client_id, Outbox& outbox) {
   service::MatchAddress address;
-  address.robot_id = outbox.robot_id;
+  address.robot_id = clients_.find(client_id)->robot_id;  // which is reachable
   address.stamp_ns = outbox.answers.front().stamp_ns;
   address.sequence_number = messages_sent_;
   address.worker_id = worker_id_;

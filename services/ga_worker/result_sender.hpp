@@ -12,7 +12,6 @@
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/match.h"
 #include "topogeo/search_pool/client_registry.hpp"
-#include "topogeo/service/participant_id.hpp"
 #include "topogeo/service/service.hpp"
 
 namespace topogeo::ga_worker {
@@ -23,13 +22,12 @@ class ResultSender {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// All three must outlive it. `clients` tells which of them are connected.
+  /// `service` and `clients`, which knows whom answers go to, must outlive it.
   ResultSender(service::Service& service, std::string worker_id,
                const search_pool::ClientRegistry& clients);
 
-  /// A task of the client has come: an answer to it will be added.
-  void expect(const std::string& client_id, const std::string& robot_id,
-              const service::ParticipantId& participant);
+  /// So many tasks of the client have come: an answer to each will be added.
+  void expect(const std::string& client_id, std::size_t tasks);
   /// The answer to one of those tasks, whose query map has this stamp.
   void add(const std::string& client_id, msg::MatchResult result, std::int64_t stamp_ns);
 
@@ -51,12 +49,12 @@ class ResultSender {
     Clock::time_point since;
   };
   struct Outbox {
-    std::string robot_id;
-    service::ParticipantId participant{};
     std::size_t tasks_in_hand = 0;
     std::deque<Answer> answers;
   };
 
+  /// A result to a client whose reader is not connected yet would be lost: it waits.
+  [[nodiscard]] bool is_reachable(const std::string& client_id) const;
   void send(const std::string& client_id, Outbox& outbox);
   /// Sets the timer for the oldest answer.
   void wait_for_more();

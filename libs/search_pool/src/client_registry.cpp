@@ -29,6 +29,11 @@ bool ClientRegistry::task_came(const std::string& client_id, const std::string& 
   return is_new;
 }
 
+const ClientRegistry::Client* ClientRegistry::find(const std::string& client_id) const {
+  const auto found = clients_.find(client_id);
+  return found == clients_.end() ? nullptr : &found->second;
+}
+
 void ClientRegistry::answered(const std::string& client_id) {
   const auto found = clients_.find(client_id);
   if (found != clients_.end()) ++found->second.answered;

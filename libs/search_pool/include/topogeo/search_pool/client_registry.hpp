@@ -43,6 +43,8 @@ class ClientRegistry {
   [[nodiscard]] bool is_connected(const ProcessId& participant) const {
     return readers_.contains(participant);
   }
+  /// Null when it is not known, or gone.
+  [[nodiscard]] const Client* find(const std::string& client_id) const;
   /// Clients that have sent a task since `since`.
   [[nodiscard]] std::size_t active(Time since) const;
   /// Clients that ever sent a task.

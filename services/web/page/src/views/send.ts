@@ -125,7 +125,7 @@ export class SendView implements ViewPart {
   }
 
   private choose_first(): void {
-    const found = this.found_names();
+    const found = this.matching(destinations(this.app.channels));
     if (this.filter.value.trim() !== "" && found.length > 0) this.choose(found[0]);
   }
 
@@ -267,15 +267,14 @@ export class SendView implements ViewPart {
     });
   }
 
-  private found_names(): Destination[] {
+  private matching(all: Destination[]): Destination[] {
     const wanted = this.filter.value.trim().toLowerCase();
-    const all = destinations(this.app.channels);
     return all.filter((entry) => entry.name.toLowerCase().includes(wanted));
   }
 
   private show_names(): void {
     const all = destinations(this.app.channels);
-    const found = this.found_names();
+    const found = this.matching(all);
     this.names.show(found.map((entry) => [entry.name, entry] as const));
     show(this.filter, all.length > 6);
     show(this.no_names, found.length === 0);
