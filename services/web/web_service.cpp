@@ -32,6 +32,10 @@ Answer accepted() {
   return {202, "{}"};
 }
 
+Answer no_base(const char* effect) {
+  return error_answer(503, std::string("no base is heard: nothing ") + effect);
+}
+
 }  // namespace
 
 WebService::WebService(service::Service& service, const ServerConfig& config, PageFiles files)
@@ -172,11 +176,18 @@ void WebService::obey(const Request& request, const Respond& respond) {
          check_plain(body);
          respond(exploration_.start());
        }},
-      {"/api/stop", plain([this] {
-         hand_.stop();
+      {"/api/stop",
+       [&](const std::string& body) {
+         check_plain(body);
+         const bool heard = hand_.stop();
          cancel();
-       })},
-      {"/api/release", plain([this] { hand_.release_stop(); })},
+         respond(heard ? accepted() : no_base("stops"));
+       }},
+      {"/api/release",
+       [&](const std::string& body) {
+         check_plain(body);
+         respond(hand_.release_stop() ? accepted() : no_base("is released"));
+       }},
       {"/api/return",
        [&](const std::string& body) {
          check_plain(body);

@@ -181,6 +181,16 @@ test("a map that is only shown has no snapshots, and says so", async () => {
   await text(".section p", /A map that is only shown has no snapshots/);
 });
 
+test("without a robot nothing says that one was stopped or explores", async () => {
+  await text(".state", /NO ROBOT\s+No service of a robot is heard/i);
+  assert.equal(await robot.post("stop", {}), 503);
+  assert.equal(await robot.post("release", {}), 503);
+  assert.equal(await robot.post("explore", {}), 409);
+  await page.click("#stop");
+  await text(".notice", /No base is heard: nothing stops/);
+  assert.equal(await page.getByText("is stopped and held").count(), 0);
+});
+
 test("snapshots are made, compared and restored", async () => {
   // Half of the drive as a snapshot of the whole one: a snapshot is a database that may be copied elsewhere.
   await robot.end("web");
@@ -198,6 +208,10 @@ test("snapshots are made, compared and restored", async () => {
   await page.fill("#snapshot-name", "whole");
   await page.getByRole("button", { name: "Make a snapshot" }).click();
   await text(".snapshots h3", /^whole$/);
+  // Names are read whole.
+  for (const [field, width] of [["#snapshot-name", 200], ["#compare-before", 300], ["#compare-after", 300]]) {
+    assert.ok((await page.locator(field).boundingBox()).width >= width, field);
+  }
   assert.equal(await robot.post("snapshot", { name: "whole" }), 409); // there is one
   assert.equal(await robot.post("snapshot", { name: "more" }, "wrong"), 401);
   assert.equal(await robot.post("restore", { name: "none" }), 409);
@@ -223,6 +237,9 @@ test("snapshots are made, compared and restored", async () => {
   await row.getByRole("button", { name: "Restore" }).click();
   await row.getByRole("button", { name: "Restore it" }).click();
   await text(".notice", /becomes that of snapshot half/);
+  // It is not asked again, and what differed from the map of before is off the map.
+  assert.equal(await page.getByRole("button", { name: "Restore it" }).isVisible(), false);
+  assert.equal(await page.getByText("Seen since").first().isVisible(), false);
   await eventually("the map of half", async () => {
     const { status, bytes } = await get("/api/drive");
     return status === 200 && JSON.parse(bytes).total === half;

@@ -8,7 +8,7 @@ const { Channels } = await load("channels");
 const grid = await load("map/grid_frame");
 const { destinations, numbered } = await load("destinations");
 const format = await load("format");
-const { navigator_text, robot_state } = await load("robot_state");
+const { navigator_text, pose_of_now, robot_state } = await load("robot_state");
 const { agreement, apart, compose } = await load("map/match_layer");
 const { Film } = await load("map/film");
 
@@ -160,6 +160,10 @@ test("numbers have units, and what is not known is a dash", () => {
   assert.equal(format.point(-0.001, -0.006), "0.00, -0.01 m");
   assert.equal(format.length(null), "–");
   assert.equal(format.speed(undefined), "–");
+  assert.deepEqual(
+    [0, 1, 2, 1200, null].map((number) => format.counted(number, "branch", "branches")),
+    ["0 branches", "1 branch", "2 branches", "1,200 branches", "– branches"],
+  );
 });
 
 /** A square room of 4 x 4 m as a stop in its middle sees it: points every 5 cm. */
@@ -257,10 +261,26 @@ test("a pose that is old is not said to be known", (t) => {
   channels.apply({ channel: "pose", version: 1, value: pose });
   now_ms += 9000;
   assert.equal(robot_state(channels, rights).name, "TRACKING");
+  assert.equal(pose_of_now(channels, rights).state, "TRACKING");
   now_ms += 2000;
   assert.equal(robot_state(channels, rights).name, "silent");
+  assert.equal(pose_of_now(channels, rights), null);
   channels.apply({ channel: "pose", version: 2, value: pose });
   assert.equal(robot_state(channels, rights).name, "TRACKING");
   rights.connected = false;
   assert.equal(robot_state(channels, rights).name, "offline");
+});
+
+test("a map that is shown alone has no robot, one whose localizer has not spoken yet has", () => {
+  const channels = new Channels();
+  const named = (...services) => {
+    const set = Object.fromEntries(services.map(([service, state], i) => [`${i}`, { service, state }]));
+    channels.apply({ channel: "services", from: 0, version: 1, set, gone: [] });
+    return robot_state(channels, { connected: true }).name;
+  };
+  assert.equal(named(), "none"); // nothing is known of services yet
+  assert.equal(named(["web", "running"], ["map_store", "running"]), "absent");
+  assert.equal(named(["web", "running"], ["map_store", "running"], ["localizer", "waiting"]), "none");
+  assert.equal(named(["web", "running"], ["sensor_gateway", "running"]), "none");
+  assert.equal(named(["web", "running"], ["sensor_gateway", "lost"]), "absent");
 });

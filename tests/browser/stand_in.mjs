@@ -125,7 +125,7 @@ export class StandIn {
   }
 
   answer_file(route, pathname) {
-    const name = pathname === "/" ? "/index.html" : pathname;
+    const name = { "/": "/index.html", "/panel": "/panel.html" }[pathname] ?? pathname;
     try {
       const file = readFileSync(join(this.page_files, name));
       const body = name === "/style.css" ? `${file}${kSteady}` : file;

@@ -29,7 +29,8 @@ ExplorationSender::~ExplorationSender() {
 
 Answer ExplorationSender::start() {
   const auto& pose = robot_.pose();
-  if (!pose || pose->mode() == msg::kModeLocalization) {
+  if (!pose) return error_answer(409, "the robot does not know where it is");
+  if (pose->mode() == msg::kModeLocalization) {
     return error_answer(
         409,
         "the robot only follows its pose in a map that stays as it is; to explore, let it "

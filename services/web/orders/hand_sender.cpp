@@ -136,23 +136,27 @@ void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_
   service_.status().add_to_counter("commands");
 }
 
-void HandSender::stop() {
+bool HandSender::stop() {
   drive_ = ManualDrive(service_.setup().config.config.navigator.follower);
-  order(msg::kBaseHalt);
-  events_.add(EventLog::Level::kWarning, "web", "stopped by the operator");
+  const bool heard = order(msg::kBaseHalt);
+  events_.add(EventLog::Level::kWarning, "web",
+              heard ? "stopped by the operator" : "the operator's stop is heard by no base");
+  return heard;
 }
 
-void HandSender::release_stop() {
-  order(msg::kBaseReset);
-  events_.add(EventLog::Level::kInfo, "web", "the operator lets it move again");
+bool HandSender::release_stop() {
+  const bool heard = order(msg::kBaseReset);
+  if (heard) events_.add(EventLog::Level::kInfo, "web", "the operator lets it move again");
+  return heard;
 }
 
-void HandSender::order(msg::BaseCommandKind kind) {
+bool HandSender::order(msg::BaseCommandKind kind) {
   msg::BaseCommand message;
   messaging::set_header(message, service_.robot_id(), support::wall_clock_ns(), orders_sent_++);
   messaging::set_client_id(message, client_id_);
   message.kind(kind);
   service_.send(orders_, message, "base command");
+  return orders_.matched() > 0;
 }
 
 void HandSender::show(const navigation::GuardVerdict& verdict) {

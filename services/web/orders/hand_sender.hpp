@@ -42,9 +42,10 @@ class HandSender {
   void drive(std::uint64_t viewer, const geometry::Velocity& wanted,
              const std::function<void()>& on_first);
   void release(std::uint64_t viewer);
-  /// The base stops at once and holds until release_stop().
-  void stop();
-  void release_stop();
+  /// The base stops at once and holds until release_stop(). False: no base hears it.
+  [[nodiscard]] bool stop();
+  /// False: no base hears it.
+  [[nodiscard]] bool release_stop();
 
   // Sensors of the guard, and where drawn walls and no-go zones are.
   void take(const msg::LivePose& pose);
@@ -55,7 +56,7 @@ class HandSender {
   void tick();
   void keep_off_drawn();
   void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
-  void order(msg::BaseCommandKind kind);
+  bool order(msg::BaseCommandKind kind);
   void show(const navigation::GuardVerdict& verdict);
 
   service::Service& service_;

@@ -47,6 +47,11 @@ export function count(number: Maybe): string {
   return known(number) ? Math.round(number).toLocaleString("en") : kDash;
 }
 
+/** "1 node", "2 nodes". */
+export function counted(number: Maybe, one: string, several: string): string {
+  return `${count(number)} ${number === 1 ? one : several}`;
+}
+
 export function rate(per_second: Maybe): string {
   if (!known(per_second)) return kDash;
   return `${per_second >= 100 ? per_second.toFixed(0) : per_second.toFixed(1)} /s`;

@@ -54,9 +54,13 @@ class Tabs {
     );
     this.element = h("aside", { class: "side" }, bar, this.panel);
     bar.addEventListener("keydown", (event) => {
-      const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-      if (!step || !this.current) return;
-      const next = names[(names.indexOf(this.current) + step + names.length) % names.length];
+      const at = this.current ? names.indexOf(this.current) : 0;
+      const to = {
+        ...{ ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1 },
+        ...{ Home: 0, End: names.length - 1 },
+      }[event.key];
+      if (to === undefined) return;
+      const next = names[(to + names.length) % names.length];
       this.open(next);
       this.tabs.get(next)?.focus();
       event.preventDefault();

@@ -145,13 +145,18 @@ class Panel {
     const missing = this.entered ? words.unknown(this.entered) : words.prompt;
     set_text(this.name, chosen?.name ?? missing);
     set_attribute(this.name, "data-level", this.entered && !chosen ? "bad" : "plain");
-    const current = this.channels.value("goals")?.current;
-    const to = current ? `${texts.send.to(current.text)}. ` : "";
+    const goals_now = this.channels.value("goals");
+    const current = goals_now?.current;
+    const to = goals_now?.exploring
+      ? `${texts.send.exploring} `
+      : current
+        ? `${texts.send.to(current.text)}. `
+        : "";
     set_text(this.line, to + navigator_text(this.channels));
     this.go.disabled = !chosen || !this.rights.can("goal");
     set_text(this.pause, this.is_paused() ? words.resume : words.pause);
     this.pause.disabled = !current || !this.rights.can("pause");
-    this.cancel.disabled = !current || !this.rights.can("cancel");
+    this.cancel.disabled = !(current || goals_now?.exploring) || !this.rights.can("cancel");
     this.home.disabled = !this.rights.can("return");
     const list = [...goals];
     this.names.show(list.map((entry) => [String(entry[0]), entry] as const));

@@ -1,12 +1,19 @@
 // The robot's state in a word and a sentence.
 import { Channels } from "./channels";
 import { Rights } from "./app";
+import { Pose } from "./protocol";
 import { texts } from "./texts";
 
 export type StateName = keyof typeof texts.states;
 
 /** Poses come with each scan; without one for so long nobody knows where the robot is now. */
 const kSilence_ms = 10_000;
+
+/** How often it is seen whether poses still come, which no message says. */
+export const kSilenceTick_ms = 1000;
+
+/** What runs without a robot, too: beside a stored map, or on the machine of the operator. */
+const kWithoutRobot = new Set(["web", "map_store", "planner", "ga_worker"]);
 
 export interface RobotState {
   name: StateName;
@@ -18,9 +25,23 @@ export function robot_state(channels: Channels, rights: Rights): RobotState {
   const named = (name: StateName, reason: string) => ({ name, word: texts.states[name], reason });
   if (!rights.connected) return named("offline", texts.reasons.offline);
   const pose = channels.value("pose");
-  if (!pose) return named("none", texts.reasons.none);
+  if (!pose) {
+    const name = robot_is_absent(channels) ? "absent" : "none";
+    return named(name, texts.reasons[name]);
+  }
   if ((channels.age_ms("pose") ?? 0) > kSilence_ms) return named("silent", texts.reasons.silent);
   return named(pose.state, pose.reason);
+}
+
+/** The pose where it is the robot's of now; null where that is not known. */
+export function pose_of_now(channels: Channels, rights: Rights): Pose | null {
+  const { name } = robot_state(channels, rights);
+  return name === "offline" || name === "silent" ? null : channels.value("pose");
+}
+
+function robot_is_absent(channels: Channels): boolean {
+  const live = [...channels.table("services").values()].filter(({ state }) => state !== "lost");
+  return live.length > 0 && live.every(({ service }) => kWithoutRobot.has(service));
 }
 
 /** Why the base does not move until somebody releases it; null when it may. */

@@ -1,7 +1,8 @@
 // All texts of the page, in English. Another language is another object of this type.
 import { draw_texts } from "./draw_texts";
-import { area, count, degrees, duration, length, Maybe, percent, point, speed } from "./format";
+import { area, count, counted, degrees, duration, length, Maybe, percent, point, speed } from "./format";
 import { time_texts } from "./time_texts";
+import { understand_texts } from "./understand_texts";
 
 export const texts = {
   title: "topogeo",
@@ -14,11 +15,13 @@ export const texts = {
     SEARCHING: "Searching",
     LOST: "Lost",
     none: "No pose",
+    absent: "No robot",
     silent: "No pose",
     offline: "Offline",
   },
   reasons: {
     none: "No localizer has reported a pose yet.",
+    absent: "No service of a robot is heard: only a map is shown.",
     silent: "No pose has come for over ten seconds; the robot is shown where it was then.",
     offline: "The page does not hear the robot; what it shows is old.",
   },
@@ -89,7 +92,8 @@ export const texts = {
     map: "Map",
     no_map: "none yet",
     map_value: (nodes: Maybe, branches: Maybe, floor: Maybe) =>
-      `${area(floor)}, ${count(nodes)} nodes, ${count(branches)} branches`,
+      `${area(floor)}, ${counted(nodes, "node", "nodes")}, ` +
+      counted(branches, "branch", "branches"),
     loop: "Last closed loop",
     loop_value: (stops_ago: number) =>
       stops_ago === 0
@@ -103,8 +107,12 @@ export const texts = {
     laser: "Laser",
     base: "Base",
     not_heard: "not heard",
-    simulated: "True pose of the simulated robot, in the frame of its world",
-    collisions: (n: number) => `${n} collisions`,
+    simulated: "True pose of the simulated robot",
+    simulated_hint:
+      "In the frame of its world file. Position and heading above are in the frame of the map, " +
+      "which begins where the robot was at the first stop: the numbers differ also where the pose is right.",
+    in_world: "In its world",
+    collisions: (n: number) => counted(n, "collision", "collisions"),
     legend: "Legend and keys",
     viewers: (viewers: number, operators: number) =>
       `${viewers} ${viewers === 1 ? "page is" : "pages are"} open, ${operators} may command.`,
@@ -154,6 +162,8 @@ export const texts = {
     exploring: "The robot explores by itself.",
     to: (goal: string) => `To ${goal}`,
     rest: (meters: Maybe, seconds: Maybe) => `${length(meters)} left, about ${duration(seconds)}`,
+    rest_exploring: (meters: Maybe, seconds: Maybe) =>
+      `${length(meters)} to the next point, about ${duration(seconds)}`,
     waiting: (names: string) => `Then: ${names}`,
     progress: "Share of the route that is driven",
     pause: "Pause",
@@ -254,101 +264,7 @@ export const texts = {
     spectator: "You are watching. Corrections need the operator's link.",
   },
 
-  understand: {
-    why: "Why this state",
-    loops: "Loops",
-    loops_hint: "Places to which the robot may have come back. Choose one to see both stops.",
-    loops_count: (accepted: number, rejected: number) =>
-      `${count(accepted)} accepted, ${count(rejected)} rejected`,
-    no_loops: "No loop has been decided yet: the robot has not come back to an earlier place.",
-    filters: { all: "All", accepted: "Accepted", rejected: "Rejected" },
-    filter_label: "Which loops",
-    loop: (later: number, earlier: number) => `Stop ${later} at stop ${earlier}`,
-    outcomes: {
-      accepted: "Accepted",
-      gate: "Match not accepted",
-      unconfirmed: "Not confirmed",
-      no_closing: "Does not fit the way round",
-      outvoted: "Outvoted later",
-    },
-    sources: {
-      prediction: "Compared because the poses predict it.",
-      place: "Compared because it looks like that place.",
-      window: "Compared because it looks like that place, as a whole.",
-    } as Record<string, string>,
-    // By what the localizer says of a loop.
-    meanings: {
-      "nothing in common": "The two stops hardly see the same part of the floor.",
-      "little overlap": "The two stops see too little of the same floor.",
-      "few inliers": "Too few points of the later stop lie on walls of the earlier one.",
-      doubtful: "No measure of the match fails alone; together they leave too much doubt.",
-      "far from the prediction": "The match lies farther from where the poses put it than they allow.",
-      "second solution": "It fits in another way nearly as well.",
-      unconfirmed: "It would move the robot far, and nothing agrees with it so far.",
-      "no consistent closing": "No poses along the way round fit what was seen on it.",
-      outvoted: "It was accepted at first; the rest of the map contradicted it.",
-    } as Record<string, string>,
-    loop_facts: (fitness: Maybe, probability: Maybe, moved: Maybe, turned: Maybe) =>
-      `Fitness ${percent(fitness)}, probability ${percent(probability)}; moves the stop by ` +
-      `${length(moved)}, ${degrees(turned)}.`,
-    loading_maps: "Fetching both local maps …",
-    key_earlier: "earlier stop",
-    key_later: "later stop, as matched",
-    key_predicted: "later stop, as the poses had put it",
-    fitness: "Fitness",
-    probability: "Probability",
-    share: (value: Maybe) => (typeof value === "number" ? percent(value) : "not kept"),
-    overlap: "Of what the later stop saw, in the earlier one's view",
-    near: "Of that within 10 cm of its walls",
-    moved: "Match and poses differ by",
-    none: "nothing",
-    moved_value: (meters: Maybe, turn: Maybe) =>
-      typeof meters === "number" ? `${length(meters)}, ${degrees(turn)}` : "not kept",
-    corrected: "Moves the stop by",
-    search: "Search",
-    search_hint:
-      "What the localizer compares at the moment: the rectangle that it searches, the ellipse where " +
-      "the poses expect the robot (2 sigma), and what it found.",
-    no_search: "No search was heard yet.",
-    search_map: (places: number, running: boolean) =>
-      running && places === 0
-        ? "The whole map is searched …"
-        : `Search of the whole map: ${places} ${places === 1 ? "place fits" : "places fit"} best.`,
-    search_matches: (tasks: number, accepted: number, running: boolean) =>
-      running
-        ? `${tasks} ${tasks === 1 ? "match is" : "matches are"} worked on …`
-        : `${tasks} ${tasks === 1 ? "match" : "matches"}, ${accepted} accepted.`,
-    search_best: (fitness: number, old: boolean) =>
-      `Best fitness ${fitness.toFixed(2)}.` +
-      (old ? " Nothing is searched until the robot has moved on a little." : ""),
-    more: (n: number) => `${count(n)} earlier ones are not listed.`,
-    workers: "Search workers",
-    no_workers: "No worker is heard: the localizer searches in its own process.",
-    load: "Load",
-    worker_facts: (slots: number, done: number, rate: string, failures: number) =>
-      `${slots} ${slots === 1 ? "slot" : "slots"}, ${count(done)} tasks done, ${rate}, ` +
-      `${count(failures)} failed`,
-    draining: "finishes and goes",
-    services: "Services",
-    no_services: "No service is heard.",
-    service_states: {
-      starting: "starting",
-      waiting: "waiting",
-      running: "running",
-      finished: "finished",
-      failed: "failed",
-      stopped: "stopped",
-      lost: "lost: no sign of life",
-    } as Record<string, string>,
-    waits_for: (what: string) => `Waits for ${what}.`,
-    input: (topic: string, rate: string) => `${topic} ${rate}`,
-    faults: (n: number) => `${count(n)} ${n === 1 ? "fault" : "faults"}`,
-    last_error: (text: string) => `Last: ${text}`,
-    events: "Events",
-    no_events: "Nothing has happened yet.",
-    levels: { info: "Info", warning: "Warning", error: "Error" },
-  },
-
+  understand: understand_texts,
   draw: draw_texts,
   time: time_texts,
 
@@ -387,6 +303,10 @@ export const texts = {
     mode: "The mode changes.",
     merge_accept: "The maps become one.",
     merge_refuse: "The maps stay apart.",
+  },
+  waiting: {
+    sent: "Sent, waiting for the answer …",
+    slow: "Nothing has answered yet. Still waiting …",
   },
   close: "Close",
 };

@@ -22,7 +22,7 @@ export const time_texts = {
   snapshots: "Snapshots",
   no_snapshots: "There is no snapshot yet.",
   name: "Name",
-  name_rule: "Letters, digits, '.', '-' and '_'; no '.' first",
+  name_rule: "Letters, digits, '.', '-' and '_', without spaces; no '.' first.",
   make: "Make a snapshot",
   made: "The snapshot is made.",
   snapshot_facts: (when: string, stops: number, bytes: number) =>

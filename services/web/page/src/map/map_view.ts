@@ -63,6 +63,14 @@ export class MapView {
       this.moved = true;
       this.follow(false);
     });
+    // Leaflet takes the key 6 as "minus", which opens a view here.
+    const { keyboard } = this.map as unknown as { keyboard: { _zoomKeys: Record<number, number> } };
+    delete keyboard._zoomKeys[54];
+    container.addEventListener("keydown", (event) => {
+      if (this.tools.active || !/^(Arrow.*|[-+=])$/.test(event.key)) return;
+      this.moved = true;
+      if (event.key.startsWith("Arrow")) this.follow(false);
+    });
     container.addEventListener("wheel", () => (this.moved = true), { passive: true });
     container.addEventListener("touchmove", () => (this.moved = true), { passive: true });
     this.map.on("resize", () => {

@@ -2,14 +2,11 @@
 import { Api } from "../api";
 import { Rights } from "../app";
 import { Channels } from "../channels";
-import { held_text, robot_state } from "../robot_state";
+import { held_text, kSilenceTick_ms, robot_state } from "../robot_state";
 import { texts } from "../texts";
 import { button, h, set_attribute, set_text, show } from "./dom";
 import { Notices } from "./notices";
 import { once_a_frame } from "./schedule";
-
-/** How often it is seen whether poses still come, which no message says. */
-const kSilenceTick_ms = 1000;
 
 export class Header {
   readonly element: HTMLElement;
@@ -54,6 +51,7 @@ export class Header {
     this.banners = h("div", { class: "banners" }, this.offline, this.held, this.token);
     const update = once_a_frame(() => this.update(release));
     channels.on_value(["pose", "base"], update);
+    channels.on_table("services", update);
     rights.on_change(update);
     setInterval(update, kSilenceTick_ms);
     this.listen_for_space();

@@ -29,7 +29,7 @@ export function map_controls(map: MapView): HTMLElement {
   });
   layers.setAttribute("aria-expanded", "false");
   listen(map);
-  return h(
+  const element = h(
     "div",
     { class: "controls" },
     h(
@@ -47,6 +47,12 @@ export function map_controls(map: MapView): HTMLElement {
     ),
     menu,
   );
+  element.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || menu.hidden) return;
+    layers.click();
+    layers.focus();
+  });
+  return element;
 }
 
 function layer_menu(map: MapView): HTMLElement {

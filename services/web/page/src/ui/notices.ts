@@ -4,6 +4,8 @@ import { sentence } from "../robot_state";
 import { texts } from "../texts";
 
 const kShownMs = { info: 4000, error: 10000 };
+const kSignMs = 200; // an answer that comes sooner needs no sign before it
+const kSlowMs = 3000;
 
 export class Notices {
   readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
@@ -12,17 +14,13 @@ export class Notices {
     for (const shown of this.element.children) {
       if (shown.firstElementChild?.textContent === text) return; // repeated many times a second
     }
-    const notice = h("div", { class: `notice ${kind}` }, h("span", {}, text));
-    notice.append(
-      button("×", () => notice.remove(), { class: "notice-close", "aria-label": texts.close }),
-    );
-    this.element.append(notice);
-    while (this.element.childElementCount > 3) this.element.firstElementChild?.remove();
+    const notice = this.add(text, kind);
     window.setTimeout(() => notice.remove(), kShownMs[kind]);
   }
 
-  /** Reports what becomes of an order. True when it was taken. */
+  /** Reports that an order was sent, and what becomes of it. True when it was taken. */
   async report(order: Promise<unknown>, done: string): Promise<boolean> {
+    const end_waiting = this.show_waiting();
     try {
       const answer = (await order) as { message?: string } | null;
       this.show(answer?.message ? sentence(answer.message) : done);
@@ -30,11 +28,38 @@ export class Notices {
     } catch (error) {
       this.fail(error);
       return false;
+    } finally {
+      end_waiting();
     }
   }
 
   /** Says why something was not done. */
   fail(error: unknown): void {
     this.show(sentence(error instanceof Error ? error.message : String(error)), "error");
+  }
+
+  private add(text: string, kind: string): HTMLElement {
+    const notice = h("div", { class: `notice ${kind}` }, h("span", {}, text));
+    notice.append(
+      button("×", () => notice.remove(), { class: "notice-close", "aria-label": texts.close }),
+    );
+    this.element.append(notice);
+    while (this.element.childElementCount > 3) this.element.firstElementChild?.remove();
+    return notice;
+  }
+
+  // That an answer is waited for; the function returned takes it away.
+  private show_waiting(): () => void {
+    let notice: HTMLElement | null = null;
+    const sign = window.setTimeout(() => (notice = this.add(texts.waiting.sent, "info")), kSignMs);
+    const slow = window.setTimeout(() => {
+      const words = notice?.firstElementChild;
+      if (words) words.textContent = texts.waiting.slow;
+    }, kSlowMs);
+    return () => {
+      window.clearTimeout(sign);
+      window.clearTimeout(slow);
+      notice?.remove();
+    };
   }
 }

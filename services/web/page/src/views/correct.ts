@@ -21,7 +21,9 @@ export class CorrectView implements ViewPart {
   private readonly note = h("p", { class: "note" }, words.spectator);
   private readonly parts: HTMLElement;
   private readonly start: HTMLButtonElement;
+  private readonly apply = h("button", { type: "submit", class: "button primary" }, words.apply);
   private readonly search: HTMLButtonElement;
+  private searching = false; // the order is on its way
   private readonly while_mapping = h("p", { class: "note" }, words.while_mapping);
   private readonly form: HTMLFormElement;
   private readonly x: HTMLInputElement;
@@ -52,9 +54,7 @@ export class CorrectView implements ViewPart {
       (number) => this.merge_entry(Number(number)),
       show_merge,
     );
-    this.search = button(words.search_start, () => {
-      void app.notices.report(app.api.post("search"), texts.done.search);
-    });
+    this.search = button(words.search_start, () => void this.start_search());
     const parts: [string, HTMLElement][] = [
       ["pose", section(words.pose, quiet(words.pose_hint), this.start, this.form)],
       ["search", section(words.search, quiet(words.search_hint), this.search)],
@@ -107,7 +107,7 @@ export class CorrectView implements ViewPart {
       h(
         "div",
         { class: "buttons" },
-        h("button", { type: "submit", class: "button primary" }, words.apply),
+        this.apply,
         button(words.cancel, () => this.close_pose()),
       ),
     );
@@ -161,8 +161,19 @@ export class CorrectView implements ViewPart {
     if (!mark) return;
     const [sigma_m, sigma_rad] = kSure[this.sure.value];
     const pose = { x_m: mark.x, y_m: mark.y, theta_rad: mark.theta, sigma_m, sigma_rad };
+    this.apply.disabled = true;
     const order = this.app.api.post("pose", pose);
-    if (await this.app.notices.report(order, texts.done.pose)) this.close_pose();
+    const taken = await this.app.notices.report(order, texts.done.pose);
+    this.apply.disabled = false;
+    if (taken) this.close_pose();
+  }
+
+  private async start_search(): Promise<void> {
+    this.searching = true;
+    this.show_mode();
+    await this.app.notices.report(this.app.api.post("search"), texts.done.search);
+    this.searching = false;
+    this.show_mode();
   }
 
   private async switch_mode(): Promise<void> {
@@ -175,7 +186,7 @@ export class CorrectView implements ViewPart {
     const mapping = mode === "mapping";
     show(this.while_mapping, mapping && this.app.rights.may_write);
     this.start.disabled = mapping;
-    this.search.disabled = mapping;
+    this.search.disabled = mapping || this.searching;
     if (mapping && !this.form.hidden) this.close_pose();
     show(this.mode, mode !== undefined);
     set_text(this.mode_now, mode ? words.mode_now[mode] : "");

@@ -52,9 +52,10 @@ export class LoopDetail {
     if (!loop) return;
     set_text(this.title, words.loop(loop.later, loop.earlier));
     set_text(this.why, sentence(loop.explanation || words.outcomes[loop.outcome]));
-    const meaning = meaning_of(loop.explanation);
-    show(this.meaning, meaning !== "");
-    set_text(this.meaning, meaning);
+    const probable = !loop.accepted && (loop.probability ?? 0) > 0.5;
+    const meaning = [meaning_of(loop.explanation), probable ? words.probable_but_rejected : ""];
+    set_text(this.meaning, meaning.join(" ").trim());
+    show(this.meaning, this.meaning.textContent !== "");
     show(this.legend, false);
     show(this.facts.element, false);
     show(this.status, true);

@@ -106,7 +106,9 @@ export class LoopList {
     const measured = [fitness, probability, correction_m].some((value) => value !== null);
     set_text(
       facts,
-      measured ? words.loop_facts(fitness, probability, correction_m, correction_rad) : "",
+      measured
+        ? words.loop_facts(fitness, probability, correction_m, correction_rad, loop.accepted)
+        : "",
     );
     set_attribute(element, "data-level", loop.accepted ? "good" : "bad");
   }

@@ -3,7 +3,7 @@ import { App, ViewPart } from "../app";
 import * as format from "../format";
 import { ellipse_of } from "../map/robot_layer";
 import { Pose } from "../protocol";
-import { sentence } from "../robot_state";
+import { kSilenceTick_ms, pose_of_now, sentence } from "../robot_state";
 import { texts } from "../texts";
 import { Bar, Facts, Level } from "../ui/bar";
 import { h, set_text, show } from "../ui/dom";
@@ -31,7 +31,11 @@ export class NowView implements ViewPart {
   private visible = false;
 
   constructor(private readonly app: App) {
-    this.truth_section = section(words.simulated, this.truth.element);
+    this.truth_section = section(
+      words.simulated,
+      this.truth.element,
+      h("p", { class: "quiet" }, words.simulated_hint),
+    );
     const bars = [this.confidence, this.workers, this.map, this.loop, this.battery];
     const picture = legend(() => app.theme.palette);
     app.theme.on_change(() => picture.redraw());
@@ -53,6 +57,8 @@ export class NowView implements ViewPart {
     channels.on_table("trail", update);
     channels.on_table("graph", update);
     channels.on_table("rooms", update);
+    app.rights.on_change(update);
+    setInterval(update, kSilenceTick_ms);
   }
 
   shown(visible: boolean): void {
@@ -65,7 +71,7 @@ export class NowView implements ViewPart {
     const { channels } = this.app;
     const pose = channels.value("pose");
     this.show_pose(pose);
-    this.show_bars(pose);
+    this.show_bars(pose_of_now(channels, this.app.rights));
     const laser = channels.value("laser");
     const because = (reason: string) => (reason ? `. ${sentence(reason)}` : "");
     this.devices.set(
@@ -83,7 +89,7 @@ export class NowView implements ViewPart {
     show(this.truth_section, truth !== null);
     if (truth) {
       const at = format.point(truth.x_m, truth.y_m);
-      this.truth.set(words.position, `${at}, ${format.degrees(truth.theta_rad)}`);
+      this.truth.set(words.in_world, `${at}, ${format.degrees(truth.theta_rad)}`);
       this.truth.set("", words.collisions(truth.collisions));
     }
     const viewers = channels.value("viewers");

@@ -288,10 +288,11 @@ export class SendView implements ViewPart {
     show(this.note, note !== "");
     set_text(this.note, note);
     show(this.orders, rights.may_write);
-    for (const element of this.orders.querySelectorAll<HTMLElement>("[data-order]")) {
+    for (const element of this.orders.querySelectorAll<HTMLButtonElement>("[data-order]")) {
       const order = element.dataset.order ?? "";
       const running = order === "explore" && channels.value("goals")?.exploring === true;
       show(element, rights.offers(order) && !running);
+      element.disabled = !navigator;
     }
   }
 }

@@ -2,7 +2,7 @@
 import { App, ViewPart } from "../app";
 import * as format from "../format";
 import { LogEvent, Worker } from "../protocol";
-import { robot_state } from "../robot_state";
+import { kSilenceTick_ms, pose_of_now, robot_state } from "../robot_state";
 import { texts } from "../texts";
 import { Bar } from "../ui/bar";
 import { h, set_attribute, set_text, show } from "../ui/dom";
@@ -68,6 +68,7 @@ export class UnderstandView implements ViewPart {
       app.channels.on_table(table, update);
     }
     app.rights.on_change(update);
+    setInterval(update, kSilenceTick_ms);
   }
 
   shown(visible: boolean): void {
@@ -82,7 +83,7 @@ export class UnderstandView implements ViewPart {
     const { channels, rights } = this.app;
     const state = robot_state(channels, rights);
     set_text(this.reason, `${state.word}. ${state.reason}`);
-    const confidence = channels.value("pose")?.confidence;
+    const confidence = pose_of_now(channels, rights)?.confidence;
     this.confidence.set(
       confidence ?? 0,
       format.percent(confidence),

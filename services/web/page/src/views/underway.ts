@@ -64,7 +64,8 @@ export class Underway {
     const to = goal ? words.to(goal.text) : words.idle;
     set_text(this.goal, exploring ? words.exploring : to);
     set_text(this.state, navigator_text(channels));
-    show(this.state, navigator?.state !== "idle"); // the goal says it
+    // The goal says it; that there is no navigator, a note to who may command.
+    show(this.state, navigator ? navigator.state !== "idle" : !rights.may_write);
 
     const moving = navigator !== null && (goal !== null || exploring);
     const arrived = navigator?.state === "arrived";
@@ -77,7 +78,8 @@ export class Underway {
       const percent = Math.round((100 * driven) / (driven + rest));
       this.fill.style.width = `${percent}%`;
       set_attribute(this.progress, "aria-valuenow", String(percent));
-      set_text(this.rest, words.rest(rest, navigator?.rest_s));
+      const text = exploring ? words.rest_exploring : words.rest;
+      set_text(this.rest, text(rest, navigator?.rest_s));
     }
     const waiting = (goals?.waiting ?? []).map((entry) => entry.text);
     show(this.waiting, waiting.length > 0);

@@ -37,13 +37,15 @@ export class Versions {
       maxlength: 64,
       pattern: "[A-Za-z0-9_\\-][A-Za-z0-9._\\-]*",
       title: words.name_rule,
+      "aria-describedby": "snapshot-rule",
     });
     this.form = h(
       "form",
-      { class: "field-row" },
+      { class: "field-row snapshot-form" },
       h("label", { for: "snapshot-name" }, words.name),
       this.name,
       h("button", { type: "submit", class: "button" }, words.make),
+      h("p", { class: "quiet", id: "snapshot-rule" }, words.name_rule),
     );
     this.form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -117,17 +119,18 @@ export class Versions {
   }
 
   private async make(): Promise<void> {
-    const order = this.app.api.post("snapshot", { name: this.name.value });
+    const order = this.app.api.post("snapshot", { name: this.name.value }, kPatienceMs);
     if (!(await this.app.notices.report(order, words.made))) return;
     this.name.value = "";
     await this.update();
   }
 
   private entry(name: string): HTMLElement {
-    const restore = button(words.restore, () => {
-      show(restore, false);
-      show(sure, true);
-    });
+    const ask = (asked: boolean) => {
+      show(restore, !asked);
+      show(sure, asked);
+    };
+    const restore = button(words.restore, () => ask(true));
     const sure = h(
       "div",
       { hidden: true },
@@ -135,11 +138,10 @@ export class Versions {
       h(
         "div",
         { class: "buttons" },
-        button(words.restore_sure, () => void this.restore(name), { class: "button primary" }),
-        button(texts.correct.cancel, () => {
-          show(restore, true);
-          show(sure, false);
+        button(words.restore_sure, () => void this.restore(name, () => ask(false)), {
+          class: "button primary",
         }),
+        button(texts.correct.cancel, () => ask(false)),
       ),
     );
     return h("li", {}, h("h3", {}, name), h("p", { class: "quiet" }), restore, sure);
@@ -156,8 +158,11 @@ export class Versions {
     show(restore, this.app.rights.can("restore") && !snapshot.damage && sure.hidden);
   }
 
-  private async restore(name: string): Promise<void> {
-    await this.app.notices.report(this.app.api.post("restore", { name }), words.restored);
+  private async restore(name: string, on_done: () => void): Promise<void> {
+    const order = this.app.api.post("restore", { name }, kPatienceMs);
+    if (!(await this.app.notices.report(order, words.restored))) return;
+    on_done();
+    this.close(); // a difference from the map of before
     this.update_soon();
   }
 

@@ -1,0 +1,106 @@
+// The texts of the view Understand; texts.ts has all others.
+import { count, degrees, length, Maybe, percent } from "./format";
+
+export const understand_texts = {
+  why: "Why this state",
+  loops: "Loops",
+  loops_hint: "Places to which the robot may have come back. Choose one to see both stops.",
+  loops_count: (accepted: number, rejected: number) =>
+    `${count(accepted)} accepted, ${count(rejected)} rejected`,
+  no_loops: "No loop has been decided yet: the robot has not come back to an earlier place.",
+  filters: { all: "All", accepted: "Accepted", rejected: "Rejected" },
+  filter_label: "Which loops",
+  loop: (later: number, earlier: number) => `Stop ${later} at stop ${earlier}`,
+  outcomes: {
+    accepted: "Accepted",
+    gate: "Match not accepted",
+    unconfirmed: "Not confirmed",
+    no_closing: "Does not fit the way round",
+    outvoted: "Outvoted later",
+  },
+  sources: {
+    prediction: "Compared because the poses predict it.",
+    place: "Compared because it looks like that place.",
+    window: "Compared because it looks like that place, as a whole.",
+  } as Record<string, string>,
+  // By what the localizer says of a loop.
+  meanings: {
+    "nothing in common": "The two stops hardly see the same part of the floor.",
+    "little overlap": "The two stops see too little of the same floor.",
+    "few inliers": "Too few points of the later stop lie on walls of the earlier one.",
+    doubtful: "No measure of the match fails alone; together they leave too much doubt.",
+    "far from the prediction": "The match lies farther from where the poses put it than they allow.",
+    "second solution": "It fits in another way nearly as well.",
+    unconfirmed: "It would move the robot far, and nothing agrees with it so far.",
+    "no consistent closing": "No poses along the way round fit what was seen on it.",
+    outvoted: "It was accepted at first; the rest of the map contradicted it.",
+  } as Record<string, string>,
+  loop_facts: (
+    fitness: Maybe,
+    probability: Maybe,
+    moved: Maybe,
+    turned: Maybe,
+    accepted: boolean,
+  ) =>
+    `Fitness ${percent(fitness)}, estimated ${percent(probability)} probable; ` +
+    `${accepted ? "moves" : "would move"} the stop by ${length(moved)}, ${degrees(turned)}.`,
+  loading_maps: "Fetching both local maps …",
+  key_earlier: "earlier stop",
+  key_later: "later stop, as matched",
+  key_predicted: "later stop, as the poses had put it",
+  fitness: "Fitness",
+  probability: "Estimated probability that it is right",
+  probable_but_rejected:
+    "By its measures the match is probably right. A loop needs more, because a wrong one bends the " +
+    "map: the reason above decides.",
+  share: (value: Maybe) => (typeof value === "number" ? percent(value) : "not kept"),
+  overlap: "Of what the later stop saw, in the earlier one's view",
+  near: "Of that within 10 cm of its walls",
+  moved: "Match and poses differ by",
+  none: "nothing",
+  moved_value: (meters: Maybe, turn: Maybe) =>
+    typeof meters === "number" ? `${length(meters)}, ${degrees(turn)}` : "not kept",
+  corrected: "Shift of the stop by the loop",
+  search: "Search",
+  search_hint:
+    "What the localizer compares at the moment: the rectangle that it searches, the ellipse where " +
+    "the poses expect the robot (2 sigma), and what it found.",
+  no_search: "No search was heard yet.",
+  search_map: (places: number, running: boolean) =>
+    running && places === 0
+      ? "The whole map is searched …"
+      : `Search of the whole map: ${places} ${places === 1 ? "place fits" : "places fit"} best.`,
+  search_matches: (tasks: number, accepted: number, running: boolean) =>
+    running
+      ? `${tasks} ${tasks === 1 ? "match is" : "matches are"} worked on …`
+      : `${tasks} ${tasks === 1 ? "match" : "matches"}, ${accepted} accepted.`,
+  search_best: (fitness: number, old: boolean) =>
+    `Best fitness ${fitness.toFixed(2)}.` +
+    (old ? " Nothing is searched until the robot has moved on a little." : ""),
+  more: (n: number) => `${count(n)} earlier ones are not listed.`,
+  workers: "Search workers",
+  no_workers: "No worker is heard: the localizer searches in its own process.",
+  load: "Load",
+  worker_facts: (slots: number, done: number, rate: string, failures: number) =>
+    `${slots} ${slots === 1 ? "slot" : "slots"}, ${count(done)} tasks done, ${rate}, ` +
+    `${count(failures)} failed`,
+  draining: "finishes and goes",
+  services: "Services",
+  no_services: "No service is heard.",
+  service_states: {
+    starting: "starting",
+    waiting: "waiting",
+    running: "running",
+    finished: "finished",
+    failed: "failed",
+    stopped: "stopped",
+    lost: "lost: no sign of life",
+  } as Record<string, string>,
+  waits_for: (what: string) => `Waits for ${what}.`,
+  input: (topic: string, rate: string) => `${topic} ${rate}`,
+  faults: (n: number) => `${count(n)} ${n === 1 ? "fault" : "faults"}`,
+  last_error: (text: string) => `Last: ${text}`,
+  events: "Events",
+  no_events: "Nothing has happened yet.",
+  levels: { info: "Info", warning: "Warning", error: "Error" },
+};

@@ -1,0 +1,257 @@
+// The page with a service that stands in: signs while an answer is waited for, words that contradict nothing, the
+// keyboard alone, the panel on small screens.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { assert_accessible, kPictures, kSizes, launch, open_page, text } from "./page.mjs";
+import { eventually } from "./robot.mjs";
+import { kAddress, StandIn } from "./stand_in.mjs";
+
+const { TOPOGEO_BUILD: build } = process.env;
+const kPose = {
+  state: "TRACKING",
+  reason: "What the laser sees fits the map.",
+  mode: "localization",
+  x_m: 1,
+  y_m: 0,
+  theta_rad: 0,
+  covariance: [0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01],
+  confidence: 1,
+};
+
+let browser;
+
+before(async () => {
+  browser = await launch();
+});
+
+after(() => browser?.close());
+
+/** A robot whose localizer answers when the test lets it. */
+class SlowLocalizer extends StandIn {
+  answers = []; // to give
+
+  constructor() {
+    super(join(build, "share/topogeo/web"));
+    this.offers = [...this.offers, "pose", "search", "mode"];
+  }
+
+  answer(route) {
+    const { pathname } = new URL(route.request().url());
+    if (pathname !== "/api/pose" && pathname !== "/api/search") return super.answer(route);
+    this.answers.push((status, json) => route.fulfill({ status, json }));
+  }
+
+  show(channel, value) {
+    this.tell({ channel, version: 1, value });
+  }
+
+  table(channel, set) {
+    this.tell({ channel, from: 0, version: 1, set, gone: [] });
+  }
+}
+
+async function open({ path = "/", ...options } = {}) {
+  const service = new SlowLocalizer();
+  const context = await browser.newContext({ viewport: kSizes.desk, colorScheme: "light", bypassCSP: true, ...options });
+  await service.serve(context);
+  const page = await open_page(context, `${kAddress}${path}#token=${"t".repeat(16)}`);
+  await text(page, ".state", /No pose/i);
+  service.show("pose", kPose);
+  await text(page, ".state-word", /Tracking/i);
+  return { page, service, context };
+}
+
+async function end({ page, context }) {
+  assert.deepEqual(page.faults, []);
+  await context.close();
+}
+
+test("an order that is not answered shows that it waits, and at the end that nobody answers", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-correct");
+  await page.getByRole("button", { name: "Set on the map" }).click();
+  const apply = page.getByRole("button", { name: "Apply" });
+  await apply.click();
+  await text(page, ".notice", /Sent, waiting for the answer/, 2);
+  assert.equal(await apply.isDisabled(), true);
+  await text(page, ".notice", /Nothing has answered yet/, 6);
+  await service.answers.shift()(503, { error: "no localizer has answered" });
+  await text(page, ".notice", /No localizer has answered/);
+  assert.equal(await page.getByText("Nothing has answered yet").count(), 0);
+  assert.equal(await apply.isEnabled(), true); // with the numbers as they were
+  await apply.click();
+  await text(page, ".notice", /Sent, waiting/);
+  await service.answers.shift()(200, { accepted: true });
+  await text(page, ".notice", /The pose is set/);
+  assert.equal(await page.getByText("Sent, waiting").count(), 0);
+
+  const search = page.getByRole("button", { name: "Search", exact: true });
+  await search.click();
+  await text(page, ".notice", /Sent, waiting/, 2);
+  assert.equal(await search.isDisabled(), true);
+  await service.answers.shift()(200, { accepted: true });
+  await text(page, ".notice", /The whole map is searched/);
+  assert.equal(await search.isEnabled(), true);
+  await end(opened);
+});
+
+test("why the state is what it is follows the header when poses stop", async () => {
+  const opened = await open();
+  const { page } = opened;
+  await page.click("#tab-understand");
+  await text(page, ".section p", /^Tracking\. What the laser sees/);
+  await text(page, ".bar", /100 %/);
+  await page.evaluate(() => {
+    const now = performance.now.bind(performance);
+    performance.now = () => now() + 20_000;
+  });
+  await text(page, ".state-word", /No pose/i, 5);
+  await text(page, ".section p", /^No pose\. No pose has come/, 5);
+  assert.equal(await page.getByText("100 %").count(), 0);
+  await end(opened);
+});
+
+test("a rejected loop that is probable says what decided", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-understand");
+  const loop = { x_m: 0, y_m: 0, theta_rad: 0, source: "place", fitness: 0.8, probability: 0.98 };
+  Object.assign(loop, { correction_m: 0.5, correction_rad: 0.1, step: 9, earlier: 1 });
+  service.table("loops", {
+    0: { ...loop, later: 8, accepted: false, outcome: "unconfirmed", explanation: "unconfirmed" },
+    1: { ...loop, later: 9, accepted: true, outcome: "accepted", explanation: "" },
+  });
+  await text(page, ".loops li", /Stop 8 at stop 1[^]*estimated 98 % probable; would move the stop by 0\.50 m/);
+  await text(page, ".loops li", /Stop 9 at stop 1[^]*estimated 98 % probable; moves the stop by 0\.50 m/);
+  await page.getByRole("button", { name: "Stop 8 at stop 1" }).click();
+  await text(page, ".loop-detail p", /probably right\. A loop needs more.*the reason above decides/);
+  await page.getByRole("button", { name: "Stop 9 at stop 1" }).click();
+  assert.equal(await page.getByText("the reason above decides").count(), 0);
+  await end(opened);
+});
+
+test("while it explores, what is left is that to the next point", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  service.show("goals", { current: { text: "what is not mapped yet (a gap)" }, waiting: [], exploring: true });
+  const navigator = { state: "driving", reason: "none", message: "drives", rest_m: 0.24, rest_s: 2, driven_m: 3 };
+  service.show("navigator", navigator);
+  await text(page, ".section p", /^0\.24 m to the next point, about 2 s$/);
+  service.show("goals", { current: { text: "room A" }, waiting: [], exploring: false });
+  await text(page, ".section p", /^0\.24 m left, about 2 s$/);
+  await end(opened);
+});
+
+test("without a navigator the robot cannot be sent, which is said once", async () => {
+  const opened = await open();
+  const { page, service } = opened;
+  await page.click("#tab-send");
+  service.show("navigator", null);
+  await text(page, ".note", /No navigator is running/);
+  assert.equal(await page.locator(".view").getByText("No navigator is running").filter({ visible: true }).count(), 1);
+  assert.equal(await page.getByRole("button", { name: "Explore" }).isDisabled(), true);
+  await end(opened);
+});
+
+/** A map of so many squares of 3.2 m, in rows of 32. */
+function show_squares(service, count) {
+  const info = { columns: 2048, rows: 2048, resolution_m: 0.05, x_m: 0, y_m: 0, theta_rad: 0 };
+  service.show("map", info);
+  service.table("tiles", Object.fromEntries(Array.from({ length: count }, (_, i) => [i, 1])));
+}
+
+test("the keyboard alone finds its way, and sees where it is", async () => {
+  const opened = await open();
+  const { page } = opened;
+  const focused = () => page.evaluate(() => document.activeElement.id);
+  await page.locator("#tab-now").focus();
+  await page.keyboard.press("End");
+  assert.equal(await focused(), "tab-time");
+  await page.keyboard.press("Home");
+  assert.equal(await focused(), "tab-now");
+  await page.keyboard.press("ArrowUp");
+  assert.equal(await focused(), "tab-time");
+
+  // The map shows its focus also after it was touched, where Leaflet takes the outline away.
+  await page.locator("#map").click({ position: { x: 200, y: 300 } });
+  await page.locator("#stop").focus();
+  await page.keyboard.press("Tab");
+  assert.equal(await focused(), "map");
+  const ring = () => page.locator("#map").evaluate((map) => getComputedStyle(map).outlineStyle);
+  assert.equal(await ring(), "solid");
+
+  // The number of a view opens it and leaves the map alone, which plus zooms and arrows move.
+  const scale = () => page.locator(".scale").innerText();
+  const empty = await scale();
+  show_squares(opened.service, 256);
+  await eventually("the map that grows is kept in view", async () => (await scale()) !== empty, 5);
+  const shown = await scale();
+  for (const key of "123456") await page.keyboard.press(key);
+  assert.equal(await page.getAttribute("#tab-time", "aria-selected"), "true");
+  await new Promise((resolve) => setTimeout(resolve, 500)); // a zoom takes its time
+  assert.equal(await scale(), shown);
+  await page.keyboard.press("+");
+  await eventually("the map is zoomed", async () => (await scale()) !== shown, 5);
+  const zoomed = await scale();
+  await page.keyboard.press("ArrowLeft");
+  // It stays so when the map grows, as after a drag.
+  show_squares(opened.service, 1024);
+  await new Promise((resolve) => setTimeout(resolve, 700));
+  assert.equal(await scale(), zoomed);
+
+  const layers = page.getByRole("button", { name: "What the map shows" });
+  await layers.focus();
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.type), "checkbox");
+  await page.keyboard.press("Escape");
+  assert.equal(await page.locator(".layer-menu").isVisible(), false);
+  assert.equal(await layers.evaluate((button) => button === document.activeElement), true);
+  assert.equal(await layers.getAttribute("aria-expanded"), "false");
+  await end(opened);
+});
+
+for (const [width, height] of [
+  [480, 320],
+  [320, 480],
+  [800, 480],
+  [390, 844],
+]) {
+  test(`the panel fits on a screen of ${width} x ${height}`, async () => {
+    const opened = await open({ path: "/panel", viewport: { width, height } });
+    const { page, service } = opened;
+    const rooms = Array.from({ length: 9 }, (_, i) => [i, { name: `room ${i + 1}`, area_m2: 9, x_m: i, y_m: 0, color: 0 }]);
+    service.table("rooms", Object.fromEntries(rooms));
+    service.show("goals", { current: { text: "what is not mapped yet (a gap)" }, waiting: [], exploring: true });
+    service.show("navigator", { state: "driving", reason: "none", message: "drives" });
+    await text(page, ".panel-line", /^The robot explores by itself\. Driving\.$/);
+    await text(page, ".panel-names", /room 9/);
+    const boxes = [];
+    for (const part of await page.locator(".header, .panel-line, .panel-display, .key, .panel-goals").all()) {
+      boxes.push(await part.boundingBox());
+    }
+    boxes.forEach((box, i) => {
+      assert.ok(box.x >= 0 && box.y >= 0, `part ${i}`);
+      assert.ok(box.x + box.width <= width && box.y + box.height <= height, `part ${i} ends outside`);
+      assert.ok(box.height >= 16, `part ${i} is ${box.height} high`);
+      for (const other of boxes.slice(0, i)) {
+        const apart =
+          other.x + other.width <= box.x + 1 ||
+          box.x + box.width <= other.x + 1 ||
+          other.y + other.height <= box.y + 1 ||
+          box.y + box.height <= other.y + 1;
+        assert.ok(apart, `part ${i} lies on another`);
+      }
+    });
+    for (const key of await page.locator(".key").all()) {
+      assert.ok((await key.boundingBox()).height >= 36, "a key is too small for a finger");
+    }
+    assert.equal(await page.getByRole("button", { name: "Cancel" }).isEnabled(), true);
+    await page.screenshot({ path: join(kPictures, `panel-${width}x${height}.png`) });
+    await assert_accessible(page, `panel ${width} x ${height}`);
+    await end(opened);
+  });
+}
