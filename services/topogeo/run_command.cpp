@@ -153,7 +153,7 @@ int run_log(const RunOptions& options) {
   while (job.reader.next()) {  // to learn what the gateway skipped
   }
   results::add_log(report, job.reader.statistics());
-  report.wall_s = support::monotonic_s() - start_s;
+  report.wall_s = support::monotonic_s() - start_s - result.stayed_s;
   storage::write_report(options.job.out / "report.json", report);
   report_skipped(job.reader.statistics());
   print_pool(std::cout, result);
@@ -195,7 +195,7 @@ void add_run_command(command_line::Command& app, int& exit_code) {
   auto with_web = std::make_shared<bool>(false);
   command_line::Option* page = command->add_flag(
       "--web", *with_web,
-      "a page in the browser; with --sim the robot stands until the page sends it, up to Ctrl-C");
+      "a page in the browser, up to Ctrl-C; with --sim the robot stands until the page sends it");
   add_web_options(*command, *web, page);
   auto ros = std::make_shared<RosOptions>();
   auto joins_ros = std::make_shared<bool>(false);

@@ -160,7 +160,7 @@ int run_devices(RunOptions options) {
 
   storage::Report report = make_report(options, inputs.config.effective, result);
   add_overlaps(report, options.job, inputs.config.config);
-  report.wall_s = support::monotonic_s() - start_s;
+  report.wall_s = support::monotonic_s() - start_s - result.stayed_s;
   storage::write_report(options.job.out / "report.json", report);
   print_pool(std::cout, result);
   print_summary(std::cout, report, options.job.out);

@@ -94,10 +94,12 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
       source.insert(source.end(), {"--memory", memory.string()});
     }
   }
-  // All of them have the first scan.
+  // All of them have the first scan. The page shows the scans of a log; were it not counted, it
+  // could be taken for the mapper, which would miss what is read before it is there.
   const bool maps = !options.simulation || !options.simulation->no_laser;
-  const int readers =
-      (maps ? 1 : 0) + (options.record.empty() || !maps ? 0 : 1) + (options.ros ? 1 : 0);
+  const bool page_of_log = options.web && !options.job.log.empty();
+  const int readers = (maps ? 1 : 0) + (options.record.empty() || !maps ? 0 : 1) +
+                      (options.ros ? 1 : 0) + (page_of_log ? 1 : 0);
   // A log cannot be taken up in its middle.
   processes.start(
       kGateway, kGateway, common + source + Arguments{"--readers", std::to_string(readers)},
@@ -185,14 +187,15 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   if (options.ros && !from_ros(options)) start_bridge(processes, options, common);
   if (options.job.log.empty() && options.devices.empty() && !options.ros) return;  // a map alone
   start("planner", common);
-  if (options.goal || options.explore || options.web) start("navigator", common);
+  // The robot of a log cannot be sent.
+  const bool replay = !options.job.log.empty();
+  if (options.goal || options.explore || (options.web && !replay)) start("navigator", common);
   // Without a laser there is nothing to match, and the navigator finds the robot.
   if (options.simulation && options.simulation->no_laser) {
     start_source(processes, options, partition, common);
     return;
   }
   const std::uint32_t wait_workers = options.wait_workers.value_or(options.workers);
-  const bool replay = !options.job.log.empty();
   const Arguments source = replay ? Arguments{"--replay"} : Arguments{};
   start("localizer", common + source + Arguments{"--wait-workers", std::to_string(wait_workers)} +
                          map_arguments(options));

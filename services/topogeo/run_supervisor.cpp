@@ -87,6 +87,7 @@ RunResult RunSupervisor::run() {
   finish_bar();
   if (result_.finished) wait_for_summary();
   if (result_.finished && !options_.record.empty()) wait_for_recorder();
+  if (result_.finished && options_.web) stay_for_page();
   // Without the end of the stream samples are still on their way.
   result_.times = run_.stop(!result_.finished);
   result_.failure = run_.failure();
@@ -206,6 +207,16 @@ void RunSupervisor::wait_for_summary() {
                 ? fmt::format("{} of {} loop decisions came from the localizer",
                               result_.loop_decisions.size(), result_.summary.loop_decisions())
                 : "no summary came from the localizer: there is a map, but no report");
+}
+
+// Who asked for a page wants to see in it what was mapped.
+void RunSupervisor::stay_for_page() {
+  if (run_.signal_number() != 0) return;
+  print("the map is finished and in " + options_.job.out.string() +
+        "; the page stays until Ctrl-C, the report comes then");
+  const double since_s = support::monotonic_s();
+  run_.stay();
+  result_.stayed_s = support::monotonic_s() - since_s;
 }
 
 // What the last services have published is still to be written.

@@ -26,6 +26,7 @@ namespace topogeo::cli {
 struct RunResult {
   bool finished = false;                  ///< the map is written
   int signal_number = 0;                  ///< that has stopped the run, else 0
+  double stayed_s = 0.0;                  ///< how long its page stayed after that
   std::string failure;                    ///< why it did not finish, when no signal did that
   std::vector<support::StageTime> times;  ///< of each service
   ServiceTable services;                  ///< their last statuses
@@ -41,7 +42,8 @@ class RunSupervisor {
   /// Starts the services, in a partition of their own. `laser_lines` is how many scans there are to
   /// come, at most. Throws like ServiceRun.
   /// For a simulation: its world has a tour. A run on devices ends with the tour, or with the first
-  /// signal; the map of what was seen by then is finished.
+  /// signal; the map of what was seen by then is finished. With a page the services of a finished
+  /// run stay until a signal comes.
   RunSupervisor(const RunOptions& options, std::uint64_t laser_lines);
 
   /// Comes back when no service runs any more. Call it once.
@@ -59,6 +61,7 @@ class RunSupervisor {
   void print(const std::string& text);
   void wait_for_summary();
   void wait_for_recorder();
+  void stay_for_page();
 
   RunOptions options_;
   std::uint64_t laser_lines_;

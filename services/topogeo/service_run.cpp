@@ -169,6 +169,10 @@ void ServiceRun::fail(const std::string& why) {
   loop_.stop();
 }
 
+void ServiceRun::stay() {
+  while (signal_.load() == 0) static_cast<void>(loop_.run_for(kRunTick));
+}
+
 bool ServiceRun::wait_for_end(const std::string& name, double patience_s) {
   const double end_s = support::monotonic_s() + patience_s;
   while (!processes_.has_ended(name) && support::monotonic_s() < end_s) {

@@ -70,6 +70,10 @@ class ServiceRun {
   /// Number of the last signal that came, 0 if none has.
   [[nodiscard]] int signal_number() const { return signal_.load(); }
 
+  /// Runs the loop until a signal comes, at once if one has come; services that end are not started
+  /// again.
+  void stay();
+
   /// Runs the loop until the process of that name has ended; false: it still runs after so long.
   bool wait_for_end(const std::string& name, double patience_s);
 

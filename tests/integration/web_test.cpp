@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <numbers>
@@ -64,6 +65,28 @@ class WebOnMap : public testing::Test {
   std::unique_ptr<Program> web_;
   std::uint32_t port_ = 0;
 };
+
+TEST(WebOnLog, ThePageStaysWithTheMapUntilCtrlC) {
+  use_udp_only();
+  const Scratch scratch;
+  write_log("room", scratch / "room.clf");
+  const std::string out = (scratch / "out").string();
+  Program run(scratch, "topogeo",
+              {"run", "--log", (scratch / "room.clf").string(), "--out", out, "--workers", "1",
+               "--domain", own_domain(), "--web", "--port", "0", "--token", kToken});
+  run.wait_for_error_text("the page stays until Ctrl-C");
+  ASSERT_TRUE(std::filesystem::exists(scratch / "out/map.pb"));
+  const std::uint32_t port = port_in(run.err());
+  WebSocketClient socket(port);
+  socket.send({{"op", "hello"}});
+  PageModel page;
+  EXPECT_TRUE(page.wait_for(
+      socket, [&] { return page.tables["graph"].contains("map"); }, kPagePatience));
+  run.send_signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0) << run.err();
+  EXPECT_THAT(run.out(), HasSubstr("results in " + out));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "out/report.json"));
+}
 
 TEST_F(WebOnMap, APageHasTheMapThroughRestartsOfBothSides) {
   PageModel page;
