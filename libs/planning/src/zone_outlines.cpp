@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numbers>
+#include <optional>
 
+#include <Eigen/Geometry>
 #include <boost/geometry/algorithms/simplify.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/ring.hpp>
@@ -19,6 +23,7 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 using Corner = std::pair<std::int32_t, std::int32_t>;  // of cells: column, row of its lower left
 
+constexpr double kBeyond_m = 0.5;      // that a line parts beyond its ends
 constexpr std::uint32_t kOutside = 0;  // of the parts: others count from 1
 
 /// Whether a cell belongs to the zones, or to none and lies beside one of theirs.
@@ -78,6 +83,70 @@ void give_back(const GridFrame& frame, const std::vector<std::size_t>& taken,
     for (const auto& [i, part] : given) part_of[i] = part;
     changed = !given.empty();
   }
+}
+
+/// Where the next zone begins on the way from a point, which may be through a gap, but no wall.
+std::optional<Eigen::Vector2d> next_zone(const GridFrame& frame, const ZoneMap& zones,
+                                         std::span<const ZoneId> ids, const Eigen::Vector2d& from_m,
+                                         const Eigen::Vector2d& along) {
+  constexpr double kDeepest_m = 1.5;
+  constexpr double kThickest_m = 0.3;  // of what is in no zone; walls have their clearance as well
+  const double step_m = 0.5 * frame.resolution_m;
+  double outside_m = 0.0;
+  for (double ahead_m = 0.0; ahead_m <= kDeepest_m; ahead_m += step_m) {
+    const Eigen::Vector2d at_m = from_m + ahead_m * along;
+    const std::optional<Cell> cell = frame.cell_of(at_m);
+    if (!cell) return std::nullopt;
+    const ZoneId zone = zones.zone_of_cell[frame.index(*cell)];
+    if (zone != kNoZone && std::ranges::find(ids, zone) == ids.end()) return at_m;
+    outside_m = zone == kNoZone ? outside_m + step_m : 0.0;
+    if (outside_m > kThickest_m) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// The cells of a line to gaps. The zones reach through a gap to some line between its walls: an
+/// end before it goes on to the next zone, straight ahead or turned as little as it takes.
+std::vector<Cell> cells_to_gaps(const GridFrame& frame, const ZoneMap& zones,
+                                std::span<const ZoneId> ids, const Eigen::Vector2d& from_m,
+                                const Eigen::Vector2d& to_m) {
+  constexpr std::array kTurns_deg = {0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75};
+  std::vector<Cell> cut = cells_across(frame, from_m, to_m, kBeyond_m);
+  const Eigen::Vector2d along = (to_m - from_m).normalized();
+  for (const auto& [end_m, ahead] : {std::pair(from_m, (-along).eval()), std::pair(to_m, along)}) {
+    for (const int turn_deg : kTurns_deg) {
+      const Eigen::Rotation2Dd turn(turn_deg * std::numbers::pi / 180.0);
+      const auto zone_m = next_zone(frame, zones, ids, end_m, turn * ahead);
+      if (!zone_m || *zone_m == end_m) continue;
+      std::ranges::copy(cells_across(frame, end_m, *zone_m, kBeyond_m), std::back_inserter(cut));
+      break;
+    }
+  }
+  return cut;
+}
+
+struct Parts {
+  std::vector<std::uint32_t> part_of;  // number of each cell's part
+  std::vector<std::uint32_t> large;    // numbers of those that are not left out
+};
+
+/// What hangs together when a line is cut out, whose cells are given back at the end.
+Parts parts_of(const GridFrame& frame, std::vector<bool> in, const std::vector<Cell>& cut) {
+  constexpr std::size_t kLeastCells = 4;
+  std::vector<std::size_t> taken;
+  for (const Cell& cell : cut) {
+    const std::size_t i = frame.index(cell);
+    if (in[i]) taken.push_back(i);
+    in[i] = false;
+  }
+  Parts parts{std::vector<std::uint32_t>(frame.size(), kOutside), {}};
+  std::uint32_t number = kOutside;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    if (!in[i] || parts.part_of[i] != kOutside) continue;
+    if (flood(frame, i, ++number, in, parts.part_of) >= kLeastCells) parts.large.push_back(number);
+  }
+  give_back(frame, taken, parts.part_of);
+  return parts;
 }
 
 /// Twice the area inside of a closed line; positive where it goes counter-clockwise.
@@ -162,29 +231,20 @@ Points straightened(const GridFrame& frame, const std::vector<Corner>& loop) {
 std::vector<Points> outlines_of(
     const GridFrame& frame, const ZoneMap& zones, std::span<const ZoneId> ids,
     const std::optional<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& cut_m) {
-  constexpr std::size_t kLeastCells = 4;
-  constexpr double kBeyond_m = 0.5;
-  std::vector<bool> in = cells_of(frame, zones, ids);
-  std::vector<std::size_t> taken;
+  const std::vector<bool> in = cells_of(frame, zones, ids);
+  Parts parts = parts_of(frame, in, {});
   if (cut_m && cut_m->first != cut_m->second) {
-    for (const Cell& cell : cells_across(frame, cut_m->first, cut_m->second, kBeyond_m)) {
-      const std::size_t i = frame.index(cell);
-      if (in[i]) taken.push_back(i);
-      in[i] = false;
+    const auto& [from_m, to_m] = *cut_m;
+    const std::size_t whole = parts.large.size();
+    parts = parts_of(frame, in, cells_across(frame, from_m, to_m, kBeyond_m));
+    if (parts.large.size() <= whole) {
+      parts = parts_of(frame, in, cells_to_gaps(frame, zones, ids, from_m, to_m));
     }
   }
-  std::vector<std::uint32_t> part_of(frame.size(), kOutside);
-  std::uint32_t parts = kOutside;
-  std::vector<std::uint32_t> large;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    if (!in[i] || part_of[i] != kOutside) continue;
-    if (flood(frame, i, ++parts, in, part_of) >= kLeastCells) large.push_back(parts);
-  }
-  give_back(frame, taken, part_of);
   std::vector<Points> outlines;
-  outlines.reserve(large.size());
-  for (const std::uint32_t part : large) {
-    outlines.push_back(straightened(frame, outer_loop(frame, part, part_of)));
+  outlines.reserve(parts.large.size());
+  for (const std::uint32_t part : parts.large) {
+    outlines.push_back(straightened(frame, outer_loop(frame, part, parts.part_of)));
   }
   return outlines;
 }

@@ -300,5 +300,35 @@ TEST(ZoneOutlines, JoinAndPartRooms) {
   EXPECT_TRUE(outlines(std::vector<ZoneId>{7}).empty());
 }
 
+// The zones meet on a line in a wide gap, which who draws does not see: a line to the gap ends
+// before it.
+TEST(ZoneOutlines, ALineThatEndsInAGapParts) {
+  constexpr double kThick_m = 1.4;
+  GridFrame frame;  // two rooms of 4 x 4 m, cells of 0.1 m, and a gap of 2.4 m through a thick wall
+  frame.columns = 98;
+  frame.rows = 42;
+  OccupancyGrid grid(frame, CellState::kOccupied);
+  fill_box(grid, {1, 1}, {40, 40}, CellState::kFree);
+  fill_box(grid, {55, 1}, {96, 40}, CellState::kFree);
+  fill_box(grid, {41, 9}, {54, 32}, CellState::kFree);
+  const FreeSpace space(grid, {0.0, false, 0.0});
+  const double border_m = 4.1 + 0.9 * kThick_m;
+  const std::vector<DrawnZone> rooms{
+      {"left", {{0, 0}, {border_m, 0}, {border_m, 4.2}, {0, 4.2}}},
+      {"right", {{border_m, 0}, {9.8, 0}, {9.8, 4.2}, {border_m, 4.2}}}};
+  const ZoneMap zones = drawn_zones(space, rooms);
+  const std::vector<ZoneId> left{0};
+  const auto parts = [&](const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+    return outlines_of(space.frame(), zones, left, std::pair(from_m, to_m)).size();
+  };
+  EXPECT_EQ(parts({0.1, 2.1}, {4.2, 2.1}), 2U);  // straight, to where the wall begins
+  EXPECT_EQ(parts({0.1, 1.0}, {4.2, 2.3}), 2U);  // askew
+  EXPECT_EQ(parts({4.2, 2.3}, {0.1, 1.0}), 2U);  // the other way round
+  EXPECT_EQ(parts({3.0, 0.1}, {4.3, 2.9}), 2U);  // past the gap, against its far side
+  EXPECT_EQ(parts({3.7, 0.1}, {3.7, 4.1}), 2U);  // from wall to wall beside the gap: no third part
+  EXPECT_EQ(parts({0.1, 2.1}, {3.0, 2.1}), 1U);  // ends too far before the gap
+  EXPECT_EQ(parts({0.1, 0.6}, {3.2, 0.6}), 1U);  // ends before a wall, with the other room behind
+}
+
 }  // namespace
 }  // namespace topogeo::planning

@@ -113,7 +113,9 @@ export const draw_texts = {
     none_here: "There is no room here. Tap inside of one.",
     none_along: "The line crosses no room. Drag it across one, from wall to wall.",
     save_first: "This room is not saved yet. Save the drawing first.",
-    not_parted: "The line does not part the room: drag it from wall to wall.",
+    not_parted:
+      "The line does not part the room: drag it from wall to wall. A room that goes round in a " +
+      "ring stays whole.",
     same_room: "Both points are in the same room.",
     not_joined: "These rooms do not meet.",
     split: "The room is parted.",
