@@ -129,6 +129,7 @@ test("the drive plays: the floor grows with it", async () => {
   await page.getByRole("button", { name: "Load the drive" }).click();
   const { stops } = facts("round");
   await text(".film-moment", new RegExp(`^Stop ${stops} of ${stops}`));
+  await text(".stage .map-note", /as it was, not the robot of now/);
   await page.locator("#film-slider").fill("0");
   await text(".film-moment", new RegExp(`^Stop 1 of ${stops}`));
   await page.locator("#film-slider").fill("400");
@@ -146,6 +147,7 @@ test("the drive plays: the floor grows with it", async () => {
   );
   await page.getByRole("button", { name: "Back to now" }).click();
   assert.equal(await page.locator(".film-controls").isVisible(), false);
+  assert.equal(await page.locator(".map-note").count(), 0);
 });
 
 test("every format of the store is a download, with the bytes that the command writes", async () => {

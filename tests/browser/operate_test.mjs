@@ -202,6 +202,12 @@ test("the keyboard alone finds its way, and sees where it is", async () => {
   await new Promise((resolve) => setTimeout(resolve, 700));
   assert.equal(await scale(), zoomed);
 
+  // The ring around a name is not cut off by the list, which scrolls.
+  await page.click("#tab-send");
+  const name = await page.locator(".names .button").first().boundingBox();
+  const names = await page.locator(".names").boundingBox();
+  assert.ok(name.x - names.x >= 5 && name.y - names.y >= 5, JSON.stringify([name, names]));
+
   const layers = page.getByRole("button", { name: "What the map shows" });
   await layers.focus();
   await page.keyboard.press("Enter");

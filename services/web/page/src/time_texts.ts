@@ -5,6 +5,7 @@ import { MergedMap } from "./protocol";
 export const time_texts = {
   film: "Play the drive",
   film_hint: "How the map came to be: the robot, what it saw, and the floor known until then.",
+  film_note: "The drive as it was, not the robot of now",
   load: "Load the drive",
   fetching: (stops: number, total: number) => `Fetched ${count(stops)} of ${count(total)} stops …`,
   loading: (stops: number, total: number) => `Laid out ${count(stops)} of ${count(total)} stops …`,

@@ -14,6 +14,7 @@ const kLargestFitZoom = 6;
 
 export class MapView {
   readonly scene: MapScene;
+  readonly stage: HTMLElement; // around the map, for notes on it
   private readonly map: L.Map;
   private readonly still: MapCanvas;
   private readonly moving: MapCanvas;
@@ -34,6 +35,7 @@ export class MapView {
     theme: Theme,
   ) {
     this.scale_bar = scale_bar;
+    this.stage = scale_bar.parentElement ?? container;
     this.map = L.map(container, {
       crs: L.CRS.Simple,
       center: [0, 0],

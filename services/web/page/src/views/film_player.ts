@@ -22,6 +22,7 @@ export class FilmPlayer {
   private readonly slider: HTMLInputElement;
   private readonly speed: HTMLSelectElement;
   private readonly moment = h("p", { class: "film-moment" });
+  private readonly note = h("p", { class: "map-note" }, words.film_note); // on the map, over the film
   private film: Film | null = null;
   private time_s = 0;
   private frame = 0;
@@ -69,6 +70,7 @@ export class FilmPlayer {
     this.film = null;
     this.app.map.scene.overlay = null;
     this.app.map.scene.refresh();
+    this.note.remove();
     show(this.start, true);
     show(this.controls, false);
     set_text(this.status, "");
@@ -129,6 +131,7 @@ export class FilmPlayer {
       },
     };
     this.app.map.show_box(film.box());
+    this.app.map.stage.append(this.note);
     this.show_moment();
   }
 
