@@ -128,6 +128,10 @@ int main(int argc, char** argv) {
     config.system.navigator.markov.grid = arguments.grid == "poses"
                                               ? navigation::MarkovGrid::kPoses
                                               : navigation::MarkovGrid::kPositions;
+    if (arguments.grid == "positions") {
+      config.system.navigator.markov.cell_m =
+          navigation::MarkovTrackerConfig{}.cell_m;  // published
+    }
     config.wheels = arguments.wheels == "b21" ? bench::Wheels::kB21 : bench::Wheels::kMild;
     const std::vector<SonarJob> jobs = sonar_jobs(arguments);
     const double begin_s = support::monotonic_s();

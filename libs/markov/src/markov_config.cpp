@@ -153,8 +153,11 @@ void describe(PoseGridConfig& config, support::ConfigSchema& schema) {
              "of a reading of what is expected, cells of the map included");
   schema.add("markov.far_from_m", &config.far_from_m, 0.5, 20.0, "m",
              "beyond it readings are worse; MACONDO: 2.5");
-  schema.add("markov.far_sigma_m", &config.far_sigma_m, 0.01, 2.0, "m",
-             "of a reading there; MACONDO: three of four are off by up to 0.3");
+  schema.add("markov.far_off_share", &config.far_off_share, 0.0, 1.0, "",
+             "of the readings there, those that are off; the others are exact; MACONDO: three of "
+             "four");
+  schema.add("markov.far_off_m", &config.far_off_m, 0.01, 2.0, "m",
+             "how much they are off at the most; MACONDO: 0.3");
   schema.add("markov.hit_share", &config.hit_share, 0.05, 0.95, "",
              "of the readings, those of what is expected");
   schema.add("markov.short_share", &config.short_share, 0.0, 0.5, "",

@@ -28,6 +28,12 @@ double normal_density(double off_m, double sigma_m) {
   return geometry::exp(-0.5 * ratio * ratio) / (sigma_m * std::sqrt(2.0 * std::numbers::pi));
 }
 
+/// Any error up to far_off_m alike; its ends are as blurred as an exact reading is.
+double far_density(double off_m, const PoseGridConfig& config) {
+  const double inside = 0.5 + 0.5 * (config.far_off_m - off_m) / config.hit_sigma_m;
+  return std::clamp(inside, 0.0, 1.0) / (2.0 * config.far_off_m);
+}
+
 }  // namespace
 
 PoseLocalizer::PoseLocalizer(const PoseGridConfig& config, ObstacleCells map,
@@ -96,12 +102,14 @@ void PoseLocalizer::make_log_table(double reading_m, std::vector<float>& table) 
   const double any = (1.0 - config_.hit_share - config_.short_share) / max_range_m_;
   for (std::size_t i = 0; i < bins; ++i) {
     const double expected_m = static_cast<double>(i) * kBin_m;
-    const bool far = expected_m > config_.far_from_m;
     double density = any;
     if (expected_m < max_range_m_ - kBin_m) {
+      const double off_m = std::fabs(reading_m - expected_m);
+      const double near = normal_density(off_m, config_.hit_sigma_m);
+      const bool far = expected_m > config_.far_from_m;
+      const double off_share = far ? config_.far_off_share : 0.0;
       density +=
-          config_.hit_share *
-          normal_density(reading_m - expected_m, far ? config_.far_sigma_m : config_.hit_sigma_m);
+          config_.hit_share * ((1.0 - off_share) * near + off_share * far_density(off_m, config_));
     }
     if (reading_m < expected_m) density += config_.short_share / expected_m;
     table[i] = static_cast<float>(geometry::log(density));

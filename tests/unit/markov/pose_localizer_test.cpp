@@ -133,6 +133,40 @@ TEST_F(PoseLocalizerTest, ReadingsWithoutEchoTellNothing) {
   EXPECT_THROW(localizer.perceive(std::vector<float>(6, -1.0F)), std::invalid_argument);
 }
 
+/// Error along x, rms of several robots with a wall 4 m ahead as their only clue: of four readings
+/// one is exact and three are off by anything up to 0.3 m.
+double off_by_far_readings_m(double far_off_share) {
+  constexpr int kRobots = 6;
+  const Room hall{60, 60};
+  const geometry::Pose2 truth{2.05, 3.05, 0.0};
+  const std::vector<RangeSensor> ahead{{{}, 15.0 * std::numbers::pi / 180.0}};
+  // The map has the wall in the middle of its cell.
+  const float exact_m = hall.measured(truth, ahead).front() + 0.05F;
+  PoseGridConfig config;
+  config.station_sigma_m = 0.2;
+  config.window_m = 1.1;
+  config.heading_window_rad = 0.2;
+  config.far_off_share = far_off_share;
+  support::Random random(1);
+  double squares_m2 = 0.0;
+  for (int robot = 0; robot < kRobots; ++robot) {
+    PoseLocalizer localizer(config, hall.cells(), ahead, 5.0, truth);
+    for (int i = 0; i < 12; ++i) {
+      const auto off_m = static_cast<float>(i % 4 == 0 ? 0.0 : random.uniform(-0.3, 0.3));
+      localizer.perceive(std::vector<float>{exact_m + off_m});
+    }
+    const double error_m = localizer.estimate().T_map_robot.x_m - truth.x_m;
+    squares_m2 += error_m * error_m;
+  }
+  return std::sqrt(squares_m2 / kRobots);
+}
+
+TEST(PoseLocalizerFar, TheExactOnesOfFarReadingsTellMoreThanTheirMean) {
+  const double mixed_m = off_by_far_readings_m(0.75);
+  EXPECT_LT(mixed_m, 0.05);
+  EXPECT_LT(mixed_m, 0.75 * off_by_far_readings_m(1.0));
+}
+
 TEST(PoseLocalizerStart, AStationInAWallIsNamed) {
   const PoseLocalizer localizer(PoseGridConfig{}, Room{40, 30}.cells(), macondo_ring(), 5.0,
                                 {0.02, 1.0, 0.0});

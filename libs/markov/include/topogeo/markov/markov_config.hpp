@@ -93,9 +93,11 @@ struct PoseGridConfig {
   double perceive_every_m = 0.10;    ///< driven between two perceptual updates
   double perceive_every_rad = 0.10;  ///< turned between two
   // One reading, given what is expected.
-  double hit_sigma_m = 0.06;  ///< up to far_from_m
+  double hit_sigma_m = 0.06;
+  // Beyond far_from_m three of four readings are off by up to 0.3 m, one is exact (MACONDO, III.1).
   double far_from_m = 2.5;
-  double far_sigma_m = 0.20;  ///< beyond it
+  double far_off_share = 0.75;
+  double far_off_m = 0.30;
   double hit_share = 0.75;    ///< of readings that are of what is expected
   double short_share = 0.10;  ///< of something nearer that is not on the map
   double evidence = 0.4;      ///< exponent: readings taken close together err alike
