@@ -232,16 +232,16 @@ TEST_F(LocalizerTest, AStopWhileItWaitsForWorkersOrMapsEndsItCleanly) {
   const auto waiting = start("localizer", {"--wait-workers", "1", "--wait-seconds", "600"});
   ASSERT_TRUE(wait_until([&] { return last_status_.has_value(); }));
   waiting->send_signal(SIGINT);
-  EXPECT_EQ(waiting->wait(10.0), 0) << waiting->err();
+  EXPECT_EQ(waiting->wait(), 0) << waiting->err();
 }
 
 TEST_F(LocalizerTest, AStopWhileAWorkerHangsEndsItCleanly) {
   FakeWorker hanging(partition_, loop_, "hanging", [](FakeWorker&, const msg::MatchTask&) {});
-  const auto localizer = start("localizer", {"--wait-workers", "1", "--wait-seconds", "30"});
+  const auto localizer = start("localizer", {"--wait-workers", "1", "--wait-seconds", "600"});
   for (const auto& map : maps_) publish(*map);
   ASSERT_TRUE(wait_until([&] { return hanging.received > 0; }));
   localizer->send_signal(SIGTERM);
-  EXPECT_EQ(localizer->wait(10.0), 0) << localizer->err();
+  EXPECT_EQ(localizer->wait(), 0) << localizer->err();
   EXPECT_FALSE(end_);
 }
 

@@ -109,7 +109,7 @@ ServiceRun::~ServiceRun() {
   const auto end = [](auto& programs) {
     for (const auto& program : programs) program->send_signal(SIGTERM);
     for (const auto& program : programs) {
-      EXPECT_NO_THROW(program->wait(10.0)) << "a program does not end";
+      EXPECT_NO_THROW(program->wait()) << "a program does not end";
     }
   };
   end(own_workers_);
