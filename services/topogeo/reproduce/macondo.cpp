@@ -236,7 +236,10 @@ void macondo_reliability(Report& report) {
   report.printed("reliability beyond 5 m", 100.0 * markov::reliability_of(config, 6.0), 0.0, "%");
   report.note(
       "The simulated sonars are made to err as published; what is compared is that they "
-      "do, and the reliability that the model gives each reading.");
+      "do, and the reliability that the model gives each reading. Off are those by more than "
+      "0.03 m: of three in four that err by anything up to 0.3 m a tenth errs by less, which "
+      "leaves "
+      "67.5 %.");
 }
 
 void macondo_planner(Report& report) {
