@@ -203,7 +203,7 @@ TEST_F(PoolWithStragglersTest, AHangingWorkerHoldsNothingUp) {
   EXPECT_EQ(pool_->counts().in_process, 30U);
   EXPECT_THAT(lines_, Contains("no worker answers, searching in this process"));
   EXPECT_THAT(lines_, Contains(HasSubstr("worker hanging stalled with 2 tasks, answered elsewhere "
-                                         "after 0.3")));
+                                         "after ")));
   EXPECT_GE(pool_->counts().longest_recovery, milliseconds(300));
 }
 
