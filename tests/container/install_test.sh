@@ -33,9 +33,20 @@ fi
 
 step "compose file and manifests"
 if command -v docker-compose > /dev/null; then
-  for profile in robot offboard demo; do
-    docker-compose -f "$source_dir/deploy/compose.yaml" --profile $profile config -q || fail "compose.yaml, $profile"
+  for profile in robot ros web offboard demo; do
+    DOMAIN=7 docker-compose -f "$source_dir/deploy/compose.yaml" --profile $profile config > "$work/$profile.yaml" ||
+      fail "compose.yaml, $profile"
   done
+  # What asks for the health of a container asks in the domain that is set.
+  python3 - "$work"/{robot,ros,web,offboard,demo}.yaml <<'PY' || fail "compose.yaml"
+import sys, yaml
+
+for path in sys.argv[1:]:
+    with open(path) as file:
+        services = yaml.safe_load(file)["services"]
+    for name, service in services.items():
+        assert service["environment"]["TOPOGEO_DOMAIN"] == "7", (name, service["environment"])
+PY
 fi
 python3 - "$source_dir"/deploy/kubernetes/*.yaml <<'PY' || fail "manifests"
 import sys, yaml
