@@ -45,9 +45,11 @@ no_multicast_on() {  # HOST
   nsenter -t "$pid" -n iptables -A OUTPUT -d 224.0.0.0/4 -j DROP
 }
 
+# count_workers LEAST: of the lines of `topogeo workers`, those of workers that have done so many tasks.
+count_workers() { awk -v least="$1" '$4 == "%" && $5 ~ /^[0-9]+$/ && $5 >= least' | wc -l; }
 # Number of workers that have done something, and of those that are there.
-workers_done() { on robot topogeo workers 2> /dev/null | awk '$4 == "%" && $5 ~ /^[0-9]+$/ && $5 > 0' | wc -l; }
-workers_there() { on robot topogeo workers 2> /dev/null | awk '$4 == "%" && $5 ~ /^[0-9]+$/' | wc -l; }
+workers_done() { on robot topogeo workers 2> /dev/null | count_workers 1; }
+workers_there() { on robot topogeo workers 2> /dev/null | count_workers 0; }
 
 start_worker() { start_on "$1" ga_worker ga_worker --slots 1 --name "$1"; }
 

@@ -43,14 +43,21 @@ stop_mapping
 step "a host that joins late"
 kill_on pc1 ga_worker TERM
 kill_on pc2 ga_worker TERM
+# It listens before the host joins: a `topogeo workers` listens for more than a second before it lists any.
+start_on robot watch topogeo workers --watch
 workers=0 rate=5 start_mapping late
 eventually 30 test -e "$work/late/map.sqlite"
-start_worker pc2
+eventually 30 test -s "$work/log/robot.watch" || fail "topogeo workers --watch lists nothing"
 joined=$(date +%s%N)
-until [ "$(workers_done)" -ge 1 ]; do
+start_worker pc2
+late_worked() { [ "$(count_workers 1 < "$work/log/robot.watch")" -ge 1 ]; }
+until late_worked; do
   [ $(($(date +%s%N) - joined)) -lt 30000000000 ] || fail "the late host got no work"
+  sleep 0.02
 done
-step "the late host had done work $((($(date +%s%N) - joined) / 1000000)) ms after its start"
+# A worker reports twice a second, and is listed twice a second.
+step "the late host is listed with a task done $((($(date +%s%N) - joined) / 1000000)) ms after its start, up to 1000 ms late"
+kill_on robot watch TERM
 [ ! -e "$work/late/map.pb" ] || fail "the log ended before the late host had work"
 wait_for_map 120
 same_results "$work/late" "$work/alone"
