@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <unistd.h>
 
@@ -21,6 +22,7 @@ struct StatusOptions {
   DomainView view;
   std::string service;  ///< only those of this name; empty: all
   std::string host;     ///< only those of this host; empty: all
+  std::vector<std::string> expected;
   bool verbose = false;
   bool json = false;
 };
@@ -40,6 +42,7 @@ int show_status(const StatusOptions& options) {
   const messaging::Participant participant = join(options.view, "topogeo status", "status");
   messaging::EventLoop loop;
   StatusTable table;
+  table.expect(options.expected);
   loop.add<msg::ServiceStatus>(
       messaging::Reader<msg::ServiceStatus>(participant),
       [&](const msg::ServiceStatus& status, const messaging::SampleInfo& info) {
@@ -51,7 +54,9 @@ int show_status(const StatusOptions& options) {
 
   const bool redraw = options.view.watch && !options.json && ::isatty(STDOUT_FILENO) != 0;
   const bool found = collect_and_show(
-      options.view, loop, [&] { return table.size(); },
+      options.view, loop,
+      // One that is expected is waited for as long as the first one is.
+      [&] { return table.missing().empty() ? table.size() : 0; },
       [&] {
         const StatusTable::Clock::time_point now = StatusTable::Clock::now();
         table.forget(now);
@@ -60,6 +65,10 @@ int show_status(const StatusOptions& options) {
         if (options.view.watch && !redraw) std::cout << '\n';
       });
   if (found) return table.healthy(StatusTable::Clock::now()) ? service::kOk : service::kFailure;
+  if (!options.expected.empty()) {
+    if (!options.view.watch) print(options, table, StatusTable::Clock::now());
+    return service::kFailure;
+  }
   if (options.json && !options.view.watch) std::cout << "[]\n";
   const std::string what = options.service.empty() ? "service" : "'" + options.service + "'";
   std::cerr << "topogeo: " << nothing_alive(options.view, what) << '\n';
@@ -78,14 +87,28 @@ void add_status_command(command_line::Command& app, int& exit_code) {
   command
       ->add_option("--host", options->host, "only services of this host, for example $(hostname)")
       ->type_name("HOST");
+  command
+      ->add_option("--expect", options->expected,
+                   "services that must be there, separated by commas; one that is not there is "
+                   "listed as missing")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check([](const std::string& name) {
+        return name.empty() ? std::string("expected names of services, got an empty one")
+                            : std::string();
+      })
+      ->type_name("SERVICE,...")
+      ->excludes(command->get_option("service"));
   command->add_flag("--verbose", options->verbose, "details of all services: counters, versions");
   command->add_flag("--json", options->json, "for programs: fields as in idl/status.idl");
   command->footer(
       "INPUT/s is the rate of what a service works on (scans, local maps, tasks, poses) over the\n"
       "last 5 s, AGE the time since the last one. A service without status for 1.5 s is silent, "
       "one\n"
-      "that ended without an order is lost.\n"
-      "Exit code: 0 all services are well, 1 some are failed, lost or silent, or there are none.");
+      "that ended without an order is lost. What was dead before is not known, unless it is "
+      "expected.\n"
+      "Exit code: 0 all services are well, 1 some are failed, lost, silent or missing, or there "
+      "are none.");
   command->callback([options, &exit_code] { exit_code = show_status(*options); });
 }
 

@@ -16,6 +16,8 @@ namespace {
 
 /// Names of services matter more: they keep that much more.
 constexpr std::size_t kMoreOfServices = 6;
+constexpr std::string_view kMissing = "missing";
+constexpr std::string_view kWhyMissing = "expected, and not found";
 /// A fault this long ago is no reason for how a service is now.
 constexpr double kRecentError_s = 60.0;
 
@@ -73,12 +75,25 @@ void StatusTable::keep_only(std::string_view service) {
   std::erase_if(rows_, [&](const auto& entry) { return entry.first.first != service; });
 }
 
+void StatusTable::expect(const std::vector<std::string>& services) {
+  for (const std::string& service : services) {
+    if (std::ranges::find(expected_, service) == expected_.end()) expected_.push_back(service);
+  }
+}
+
+std::vector<std::string> StatusTable::missing() const {
+  std::vector<std::string> missing = expected_;
+  for (const auto& [name, row] : rows_) std::erase(missing, name.first);
+  return missing;
+}
+
 bool StatusTable::unwell(const Row& row, Clock::time_point now) {
   return row.lost || row.status.state() == msg::kServiceFailed || now - row.received > kSilent;
 }
 
 bool StatusTable::healthy(Clock::time_point now) const {
-  return std::ranges::none_of(rows_, [&](const auto& row) { return unwell(row.second, now); });
+  return missing().empty() &&
+         std::ranges::none_of(rows_, [&](const auto& row) { return unwell(row.second, now); });
 }
 
 std::string StatusTable::state(const Row& row, Clock::time_point now) {
@@ -162,6 +177,15 @@ std::vector<std::string> StatusTable::lines(Clock::time_point now, const Shown& 
     cells.push_back(std::to_string(s.fault_count()));
     grid.add(std::move(cells));
   }
+  for (const std::string& service : missing()) {
+    std::vector<std::string> cells = {shortened(service, longest_name + kMoreOfServices)};
+    for (const bool column : {shown.pid, shown.robot, shown.host}) {
+      if (column) cells.emplace_back("-");
+    }
+    cells.emplace_back(kMissing);
+    cells.insert(cells.end(), 3, "-");  // input, age, faults
+    grid.add(std::move(cells));
+  }
   return grid.lines({"PID", "INPUT/s", "AGE", "FAULTS"});
 }
 
@@ -174,6 +198,7 @@ std::string StatusTable::text(Clock::time_point now, std::size_t columns) const 
   }
   std::vector<std::string> reasons;
   for (const Row* row : ordered()) reasons.push_back(reason(*row, now));
+  reasons.insert(reasons.end(), missing().size(), std::string(kWhyMissing));
   return with_remarks(lines, "REASON", reasons, columns) + sums(now);
 }
 
@@ -184,9 +209,11 @@ std::string StatusTable::sums(Clock::time_point now) const {
     faults += row.status.fault_count();
     if (unwell(row, now)) ++ill;
   }
-  return fmt::format("{} service{}, {} failed, lost or silent, {} fault{}\n", rows_.size(),
-                     rows_.size() == 1 ? "" : "s", ill == 0 ? "none" : std::to_string(ill), faults,
-                     faults == 1 ? "" : "s");
+  const std::size_t missing = this->missing().size();
+  return fmt::format("{} service{}, {}{} failed, lost or silent, {} fault{}\n", rows_.size(),
+                     rows_.size() == 1 ? "" : "s",
+                     missing == 0 ? "" : fmt::format("{} {}, ", missing, kMissing),
+                     ill == 0 ? "none" : std::to_string(ill), faults, faults == 1 ? "" : "s");
 }
 
 std::string StatusTable::details(Clock::time_point now) const {
@@ -234,6 +261,10 @@ std::string StatusTable::details(Clock::time_point now) const {
     for (const msg::Counter& counter : s.counters()) {
       add("counter", fmt::format("{:<34} {:.10g}", counter.name().c_str(), counter.value()));
     }
+  }
+  for (const std::string& service : missing()) {
+    text += fmt::format("{}{}  {}\n  {:<10} {}\n", text.empty() ? "" : "\n", service, kMissing,
+                        "reason", kWhyMissing);
   }
   return text;
 }
@@ -291,6 +322,9 @@ std::string StatusTable::json(Clock::time_point now) const {
       service["counters"][counter.name().c_str()] = counter.value();
     }
     list.push_back(std::move(service));
+  }
+  for (const std::string& service : missing()) {
+    list.push_back({{"service", service}, {"state", kMissing}});
   }
   return list.dump(2) + "\n";
 }

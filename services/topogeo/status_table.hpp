@@ -33,10 +33,14 @@ class StatusTable {
   void forget(Clock::time_point now);
   /// Only services of this name from now on.
   void keep_only(std::string_view service);
+  /// Services that must be there: one that has no row is shown as "missing", after the others.
+  void expect(const std::vector<std::string>& services);
 
   [[nodiscard]] bool empty() const { return rows_.empty(); }
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  /// No service is failed, lost or silent.
+  /// Expected services that have no row.
+  [[nodiscard]] std::vector<std::string> missing() const;
+  /// No service is failed, lost, silent or missing.
   [[nodiscard]] bool healthy(Clock::time_point now) const;
 
   /// A line for each service by robot, name and instance, no wider than `columns`: state, rate and
@@ -45,7 +49,8 @@ class StatusTable {
   [[nodiscard]] std::string text(Clock::time_point now, std::size_t columns = kColumns) const;
   /// Everything, a block of lines for each service.
   [[nodiscard]] std::string details(Clock::time_point now) const;
-  /// An array of objects with the field names of the IDL; "state" as in the table.
+  /// An array of objects with the field names of the IDL; "state" as in the table. One that is
+  /// missing has its name and state alone.
   [[nodiscard]] std::string json(Clock::time_point now) const;
 
  private:
@@ -74,6 +79,7 @@ class StatusTable {
                                                std::size_t longest_name) const;
   [[nodiscard]] std::string sums(Clock::time_point now) const;
 
+  std::vector<std::string> expected_;
   std::map<Name, Row> rows_;
   std::map<messaging::Handle, Name> names_;
 };

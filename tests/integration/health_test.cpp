@@ -117,6 +117,23 @@ TEST_F(HealthTest, AKilledServiceIsLostToItsReaders) {
   RecordProperty("lost_after_ms", std::to_string(took_ms));
 }
 
+// A status asked for later has never heard of it.
+TEST_F(HealthTest, AServiceThatDiedBeforeIsMissingWhereItIsExpected) {
+  const auto planner = start("planner");
+  const auto mapper = start("local_mapper");
+  ASSERT_TRUE(eventually_in_state("planner", msg::kServiceRunning));
+  ASSERT_TRUE(eventually_in_state("local_mapper", msg::kServiceWaiting));
+  const std::string host = support::host_name();
+  std::string out;
+  EXPECT_EQ(run({"status", "--expect", "planner,local_mapper", "--host", host}, out), 0) << out;
+  EXPECT_THAT(out, testing::Not(HasSubstr("missing")));
+  planner->send_signal(SIGKILL);
+  ASSERT_EQ(planner->wait(), 128 + SIGKILL);
+  EXPECT_EQ(run({"status"}, out), 0) << out;
+  EXPECT_EQ(run({"status", "--expect", "planner,local_mapper"}, out), 1);
+  EXPECT_THAT(out, AllOf(HasSubstr("local_mapper  waiting"), HasSubstr("planner       missing")));
+}
+
 TEST_F(HealthTest, ServicesSayWhatTheyWaitForAndWhatConfigurationTheyHave) {
   const auto mapper = start("local_mapper");
   const auto planner = start("planner");

@@ -133,6 +133,61 @@ TEST(StatusTable, KilledServiceStaysAsLostForAWhile) {
   EXPECT_TRUE(table.empty());
 }
 
+TEST(StatusTable, ExpectedServiceThatIsNotThereIsMissing) {
+  StatusTable table;
+  table.expect({"planner", "map_store", "planner"});
+  EXPECT_FALSE(table.healthy(kNow));
+  EXPECT_THAT(table.missing(), testing::ElementsAre("planner", "map_store"));
+  table.update(status_of("planner", msg::kServiceRunning), info_of(1), kNow);
+  table.update(status_of("localizer", msg::kServiceRunning), info_of(2), kNow);
+  EXPECT_EQ(table.text(kNow),
+            "SERVICE    STATE    INPUT/s  AGE  FAULTS  REASON\n"
+            "localizer  running        -    -       0\n"
+            "planner    running        -    -       0\n"
+            "map_store  missing        -    -       -  expected, and not found\n"
+            "2 services, 1 missing, none failed, lost or silent, 0 faults\n");
+  EXPECT_THAT(table.details(kNow), HasSubstr("\n\nmap_store  missing\n  reason     expected"));
+  const auto json = nlohmann::json::parse(table.json(kNow));
+  ASSERT_EQ(json.size(), 3U);
+  EXPECT_EQ(json[2], nlohmann::json::parse(R"({"service": "map_store", "state": "missing"})"));
+  EXPECT_FALSE(table.healthy(kNow));
+  table.update(status_of("map_store", msg::kServiceWaiting), info_of(3), kNow);
+  EXPECT_TRUE(table.healthy(kNow));
+  EXPECT_THAT(table.text(kNow), Not(HasSubstr("missing")));
+}
+
+TEST(StatusTable, ExpectedServiceThatEndsIsMissingAndOneThatDiesIsLost) {
+  StatusTable table;
+  table.expect({"planner"});
+  table.update(status_of("planner", msg::kServiceRunning), info_of(1), kNow);
+  table.remove(info_of(1));
+  EXPECT_THAT(table.missing(), testing::IsEmpty());
+  EXPECT_THAT(table.text(kNow), HasSubstr("lost"));
+  table.forget(kNow + seconds(11));
+  EXPECT_THAT(table.missing(), testing::ElementsAre("planner"));
+  table.update(status_of("planner", msg::kServiceRunning), info_of(2), kNow);
+  table.update(status_of("planner", msg::kServiceStopped), info_of(2), kNow);
+  EXPECT_THAT(table.missing(), testing::ElementsAre("planner"));
+}
+
+TEST(StatusTable, MissingServicesHaveAllColumns) {
+  StatusTable table;
+  table.expect({"map_store"});
+  EXPECT_THAT(table.text(kNow), HasSubstr("0 services, 1 missing, "));
+  for (std::uint8_t number = 1; number <= 3; ++number) {
+    const std::string place = number == 1 ? "1" : "2";
+    msg::ServiceStatus status = status_of("planner", msg::kServiceRunning);
+    messaging::set_service(status, "planner", "instance-" + std::to_string(number));
+    messaging::set_robot_id(status, "r" + place);
+    messaging::set_text(status.host(), "pc" + place, "host");
+    table.update(status, info_of(number), kNow);
+  }
+  EXPECT_THAT(table.text(kNow),
+              HasSubstr("SERVICE     PID  ROBOT  HOST  STATE    INPUT/s  AGE  FAULTS  REASON\n"));
+  EXPECT_THAT(table.text(kNow),
+              HasSubstr("map_store     -  -      -     missing        -    -       -\n"));
+}
+
 TEST(StatusTable, ServiceThatEndsInOrderIsNoLoss) {
   StatusTable table;
   table.update(status_of("ga_worker", msg::kServiceRunning), info_of(1), kNow);
