@@ -1,12 +1,17 @@
 // A run of all services over DDS gives the bytes of a run in one process, whatever the number of
 // workers and whatever happens to them.
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "program.hpp"
 
@@ -112,6 +117,71 @@ TEST_F(EqualityTest, AllWorkersKilledHalfWay) {
   for (const pid_t worker : run.services("ga_worker")) ::kill(worker, SIGKILL);
   ASSERT_EQ(run.wait(), 0) << run.err();
   expect_same_bytes("run");
+}
+
+constexpr const char* kSharedMemory = "/dev/shm/";
+
+class SharedMemoryTest : public EqualityTest {
+ protected:
+  SharedMemoryTest() { ::setenv("TOPOGEO_DDS_PARTICIPANT", "local", 1); }
+  ~SharedMemoryTest() override { ::unsetenv("TOPOGEO_DDS_PARTICIPANT"); }
+
+  /// Segments and ports of Fast DDS that the programs have mapped, by name.
+  static std::set<std::string> mapped_by(const std::vector<pid_t>& programs) {
+    const std::string begin = std::string(kSharedMemory) + "fastrtps_";
+    std::set<std::string> names;
+    for (const pid_t program : programs) {
+      std::istringstream maps(read_file("/proc/" + std::to_string(program) + "/maps"));
+      for (std::string line; std::getline(maps, line);) {
+        const std::size_t at = line.find(begin);
+        if (at == std::string::npos) continue;
+        const std::string path = line.substr(at);
+        names.insert(std::filesystem::path(path.substr(0, path.find(' '))).filename());
+      }
+    }
+    return names;
+  }
+
+  static std::set<std::string> files() {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(kSharedMemory)) {
+      names.insert(entry.path().filename());
+    }
+    return names;
+  }
+
+  /// Files of these segments and ports that are there: they themselves, their locks and semaphores.
+  static std::set<std::string> files_of(const std::set<std::string>& mapped) {
+    std::set<std::string> names;
+    for (const std::string& file : files()) {
+      for (const std::string& name : mapped) {
+        if (file.find(name) != std::string::npos) names.insert(file);
+      }
+    }
+    return names;
+  }
+};
+
+// Other tests may use shared memory beside this one, and killed programs may have left ports: only
+// what these programs have mapped counts, and was not there before.
+TEST_F(SharedMemoryTest, SameBytesAndNothingIsLeft) {
+  if (::access(kSharedMemory, W_OK) != 0) GTEST_SKIP() << kSharedMemory << " cannot be written";
+  map("corridor");
+  const std::set<std::string> before = files();
+  std::vector<std::string> words = run_words("run", 1);
+  words.insert(words.end(), {"--rate", "10"});  // long enough to see what it has mapped
+  Program run(scratch_, "topogeo", words);
+  run.wait_for_progress(20);
+  std::vector<pid_t> programs = run.services();
+  programs.push_back(run.pid());
+  const std::set<std::string> mapped = mapped_by(programs);
+  EXPECT_GT(mapped.size(), programs.size()) << "a segment and a port of each";
+  EXPECT_GT(files_of(mapped).size(), mapped.size());
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  expect_same_bytes("run");
+  std::set<std::string> left = files_of(mapped);
+  std::erase_if(left, [&](const std::string& file) { return before.contains(file); });
+  EXPECT_THAT(left, testing::IsEmpty());
 }
 
 TEST_F(EqualityTest, TwoRunsAtOnceOnOneDomain) {
