@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The services of a robot from compose.yaml, with certificates, as the page of deployment has it: all are well and
-# healthy, the robot drives, who has no certificate sees nothing, and at the end the map is there.
+# healthy, the robot drives, who has no certificate sees nothing, and at the end the map is there. A service that hangs
+# makes its own container unhealthy. Workers off the robot and the demo map a log as one process does.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need docker-compose
@@ -29,10 +30,29 @@ done
 
 step "the services"
 export IMAGE=$image DOMAIN=$TOPOGEO_DOMAIN SECURITY=$work/keys/robot DEVICES=$work/devices.yaml MAP=$work/map
-export PARTICIPANT=udp_only
-compose() { docker-compose -p "topogeo-$$" -f "$source_dir/deploy/compose.yaml" --profile robot "$@"; }
+export PARTICIPANT=udp_only LOG=$work/log.clf OUT=$work/demo
+# Health checks more often than each 30 s.
+{ echo "services:"; printf '  %s: {healthcheck: {interval: 4s}}\n' \
+  sensor_gateway navigator local_mapper localizer map_store planner worker; } > "$work/often.yaml"
+compose() { docker-compose -p "topogeo-$$" -f "$source_dir/deploy/compose.yaml" -f "$work/often.yaml" --profile "$profile" "$@"; }
+profile=robot
 cleanups+=("compose down -t 5")
-compose up -d > "$work/up.log" 2>&1 || { tail -n 5 "$work/up.log"; fail "compose up"; }
+up() { compose up -d "$@" > "$work/up.log" 2>&1 || { tail -n 5 "$work/up.log"; fail "compose up, profile $profile"; }; }
+down() { compose down -t 60 > "$work/down.log" 2>&1 || { tail -n 5 "$work/down.log"; fail "compose down, profile $profile"; }; }
+health() { docker inspect -f '{{ .State.Health.Status }}' "$@"; }  # CONTAINER...
+is_health() { [ "$(health "$1")" = "$2" ]; }                        # CONTAINER STATUS
+all_healthy() { [ "$(health "$@" | sort | uniq -c | xargs)" = "$# healthy" ]; }
+# To what runs in a container, below its init.
+signal() { docker exec "$2" sh -c "kill -$1 \$(cat /proc/1/task/1/children)"; }
+# What hangs makes its own container unhealthy and no other one: one_is_unhealthy CONTAINER OTHERS...
+one_is_unhealthy() {
+  eventually 90 all_healthy "$@" || { compose ps; fail "not all containers are healthy"; }
+  signal STOP "$1"
+  eventually 90 is_health "$1" unhealthy || { compose ps; fail "a container whose service hangs is $(health "$1")"; }
+  all_healthy "${@:2}" || { compose ps; fail "a service that hangs makes the containers of others unhealthy"; }
+  signal CONT "$1"
+}
+up
 secured() { TOPOGEO_SECURITY=$SECURITY "$bin/topogeo" "$@"; }
 all_run() { secured status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 6 ]; }
 eventually 90 all_run || { cat "$work/status"; compose logs --tail 5; fail "not all services are well"; }
@@ -40,8 +60,35 @@ eventually 90 all_run || { cat "$work/status"; compose logs --tail 5; fail "not 
 step "a drive"
 secured goto 3,0 --wait-seconds 60 --patience 120 > "$work/goto.log" 2>&1 || { tail -n 5 "$work/goto.log"; fail "no drive"; }
 ! "$bin/topogeo" status > "$work/stranger" 2>&1 || { cat "$work/stranger"; fail "a stranger sees the services"; }
-are_healthy() { [ "$(compose ps -q | xargs docker inspect -f '{{ .State.Health.Status }}' | grep -c '^healthy')" = 6 ]; }
-eventually 90 are_healthy || { compose ps; fail "not all containers are healthy"; }
-compose down -t 60 > "$work/down.log" 2>&1 || { tail -n 5 "$work/down.log"; fail "compose down"; }
+
+step "a planner that hangs"
+mapfile -t containers < <(compose ps -q planner; for service in sensor_gateway navigator local_mapper localizer map_store; do
+  compose ps -q $service; done)
+one_is_unhealthy "${containers[@]}"
+down
 [ -s "$work/map/map.pb" ] || fail "no map at the end"
+
+step "a log with two workers of profile offboard"
+make_log 60 "$LOG"
+chmod 644 "$LOG"
+"$bin/topogeo" map --log "$LOG" --out "$work/alone" > "$work/alone.log" 2>&1 || { cat "$work/alone.log"; fail "topogeo map"; }
+profile=offboard
+up --scale worker=2
+secured run --log "$LOG" --out "$work/helped" --workers 0 --wait-workers 2 > "$work/run.log" 2>&1 ||
+  { tail -n 5 "$work/run.log"; fail "topogeo run"; }
+same_results "$work/helped" "$work/alone"
+both_worked() { secured workers --json > "$work/workers" && [ "$(grep -c '"tasks_done": [1-9]' "$work/workers")" = 2 ]; }
+eventually 20 both_worked || { cat "$work/workers"; fail "not both workers had work"; }
+step "a worker that hangs"
+mapfile -t containers < <(compose ps -q)
+one_is_unhealthy "${containers[@]}"
+down
+
+step "profile demo"
+mkdir "$OUT"
+profile=demo
+up
+eventually 120 test -e "$OUT/map.pb" || { compose logs --tail 5; fail "the demo makes no map"; }
+down
+same_results "$OUT" "$work/alone"
 step "the end"

@@ -37,7 +37,7 @@ if command -v docker-compose > /dev/null; then
     DOMAIN=7 docker-compose -f "$source_dir/deploy/compose.yaml" --profile $profile config > "$work/$profile.yaml" ||
       fail "compose.yaml, $profile"
   done
-  # What asks for the health of a container asks in the domain that is set.
+  # A health check is of the domain that is set, and on the network of the host of one service.
   python3 - "$work"/{robot,ros,web,offboard,demo}.yaml <<'PY' || fail "compose.yaml"
 import sys, yaml
 
@@ -46,6 +46,10 @@ for path in sys.argv[1:]:
         services = yaml.safe_load(file)["services"]
     for name, service in services.items():
         assert service["environment"]["TOPOGEO_DOMAIN"] == "7", (name, service["environment"])
+        program = {"worker": "ga_worker"}.get(name, name)
+        if service.get("network_mode") == "host":
+            test = " ".join(service["healthcheck"]["test"])
+            assert f"health {program}" in test, (name, test)
 PY
 fi
 python3 - "$source_dir"/deploy/kubernetes/*.yaml <<'PY' || fail "manifests"
