@@ -14,6 +14,9 @@ unlock_build
 prefix=$work/root$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$build/CMakeCache.txt")
 
 step "units"
+# Certificates have dates: no service starts before the clock is set where the machine waits for that.
+late=$(grep -L '^After=.*time-sync\.target' "$prefix"/lib/systemd/system/*.service) || true
+[ -z "$late" ] || fail "not after time-sync.target: $late"
 if command -v systemd-analyze > /dev/null; then
   cp -r "$prefix/lib/systemd/system" "$work/units"
   # Names of programs are looked up in the folders of the system; here they are somewhere else.
