@@ -19,8 +19,19 @@ trap clean_up EXIT
 
 step() { printf '%3d s: %s\n' $SECONDS "$*"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
-skip() { printf 'skipped: %s\n' "$*"; exit 77; }  # SKIP_RETURN_CODE
+skip() {
+  [ "${TOPOGEO_NO_SKIPS:-}" != 1 ] || fail "it would be skipped, and TOPOGEO_NO_SKIPS is 1: $*"
+  printf 'skipped: %s\n' "$*"
+  exit 77  # SKIP_RETURN_CODE
+}
 need() { command -v "$1" > /dev/null || skip "$1 is not installed"; }
+# there PROGRAM WITHOUT: for a part of a test; says what is WITHOUT it, and fails where CI is true, which installs all.
+there() {
+  ! command -v "$1" > /dev/null || return 0
+  [ "${CI:-}" != true ] || fail "$1 is not installed: $2"
+  echo "$1 is not installed: $2"
+  return 1
+}
 
 # eventually SECONDS COMMAND...: until the command succeeds.
 eventually() {

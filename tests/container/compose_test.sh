@@ -4,7 +4,8 @@
 # makes its own container unhealthy. Workers off the robot and the demo map a log as one process does.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-need docker-compose
+need_engine
+there docker-compose "nothing can be composed" || skip "no docker-compose"
 need openssl
 need_image
 claim_domain

@@ -17,7 +17,7 @@ step "units"
 # Certificates have dates: no service starts before the clock is set where the machine waits for that.
 late=$(grep -L '^After=.*time-sync\.target' "$prefix"/lib/systemd/system/*.service) || true
 [ -z "$late" ] || fail "not after time-sync.target: $late"
-if command -v systemd-analyze > /dev/null; then
+if there systemd-analyze "the units are not checked"; then
   cp -r "$prefix/lib/systemd/system" "$work/units"
   # Names of programs are looked up in the folders of the system; here they are somewhere else.
   sed -Ei "s#^ExecStart=([^ ]+)#ExecStart=$prefix/bin/\\1#" "$work"/units/*.service
@@ -30,12 +30,10 @@ if command -v systemd-analyze > /dev/null; then
   sed -i 's/^Restart=always/Restart=nonsense/' "$work/units/topogeo-worker@1.service"
   MANPATH=$prefix/share/man systemd-analyze verify "$work/units/topogeo-worker@1.service" 2>&1 | grep -q nonsense ||
     fail "systemd-analyze verify finds nothing wrong with a unit that is wrong"
-else
-  echo "systemd-analyze is not installed: the units are not checked"
 fi
 
 step "compose file and manifests"
-if command -v docker-compose > /dev/null; then
+if there docker-compose "the compose file is not checked"; then
   for profile in robot ros web offboard demo; do
     DOMAIN=7 docker-compose -f "$source_dir/deploy/compose.yaml" --profile $profile config > "$work/$profile.yaml" ||
       fail "compose.yaml, $profile"

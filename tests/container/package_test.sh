@@ -4,7 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_packages
-if command -v lintian > /dev/null; then
+if there lintian "the packages are not checked by it"; then
   step "lintian"
   lintian --fail-on error "$build"/packages/*.deb > "$work/lintian" 2>&1 ||
     { grep '^E' "$work/lintian"; fail "lintian finds errors"; }
