@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The packages: lintian finds no errors, they install in a clean container, the programs run there, and
-# nothing is left when they are removed.
+# nothing is left when they are removed. The workers do so alone, and a subscriber compiles against topogeo-dev.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_packages
@@ -49,3 +49,35 @@ all=$(docker image inspect -f '{{ .Size }}' $image)
 step "the image has $(((all - base) / 1000000)) MB beyond its base"
 [ $(((all - base) / 1000000)) -le 250 ] || fail "the image has more than 250 MB beyond its base"
 [ "$(docker image inspect -f '{{ .Config.User }}' $image)" = robot ] || fail "the image runs as root"
+
+step "topogeo-workers alone, and a subscriber that hears one"
+claim_domain
+# The network of the host: that of the engine need not reach a mirror or proxy.
+# shellcheck disable=SC2016
+docker run --rm --network host -v "$build/packages:/packages:ro" -v "$source_dir/tests/container/subscriber:/subscriber:ro" \
+  -e DEBIAN_FRONTEND=noninteractive -e TOPOGEO_DOMAIN "${BASE:-debian:bookworm}" bash -euo pipefail -c '
+  apt-get update -q
+  install() { apt-get install -q -y --no-install-recommends -o Dpkg::Options::=--force-unsafe-io "$@"; }
+  install /packages/topogeo-workers_*.deb
+  dpkg -L topogeo-workers > /tmp/files
+  ! command -v topogeo
+  [ -e /etc/topogeo/worker.env ]
+  ga_worker --help > /dev/null
+  ga_worker &
+  install /packages/topogeo-dev_*.deb g++ cmake make
+  cmake -S /subscriber -B /tmp/subscriber
+  cmake --build /tmp/subscriber
+  heard=$(timeout 60 /tmp/subscriber/subscriber "$TOPOGEO_DOMAIN" "*") || true
+  [ "$heard" = ga_worker ] || { echo "the subscriber heard \"$heard\""; exit 1; }
+  kill %1
+  wait %1
+  rm -r /tmp/subscriber
+  apt-get purge -q -y topogeo-workers topogeo-dev
+  while read -r file; do
+    [ ! -f "$file" ] && [ ! -L "$file" ] || { echo "left behind: $file"; exit 1; }
+  done < /tmp/files
+  left=$(find / -xdev -iname "*topogeo*" -not -path "/proc/*" -not -path "/var/log/*" -not -path "/var/lib/apt/*" \
+    -not -path "/var/cache/*")
+  [ -z "$left" ] || { echo "left behind: $left"; exit 1; }
+' > "$work/clean.log" 2>&1 || { tail -n 20 "$work/clean.log"; fail "in a clean container"; }
+step "the end"

@@ -14,7 +14,7 @@ int main(int, char** argv) {
   topogeo::messaging::Reader<topogeo::msg::ServiceStatus> reader(participant);
   bool heard = false;
   while (!heard) {
-    reader.wait_for_data(std::chrono::seconds(1));
+    static_cast<void>(reader.wait_for_data(std::chrono::seconds(1)));
     reader.take([&](const topogeo::msg::ServiceStatus& status, const auto& info) {
       if (info.valid && !heard) std::cout << status.service().c_str() << '\n';
       heard = heard || info.valid;
