@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# The Kubernetes manifests against the types of its API (those of its OpenAPI description, as TypeScript): a key that it
+# does not know, one that is missing or a value of a wrong type is an error.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+need npm
+need tsc
+need python3
+packages=$build/tests/kubernetes
+mkdir -p "$packages"
+exec 4> "$packages/install.lock"
+flock 4
+if ! cmp -s "$source_dir/tests/container/kubernetes/package-lock.json" "$packages/installed.json"; then
+  step "fetching the types"
+  cp "$source_dir"/tests/container/kubernetes/package*.json "$packages"
+  (cd "$packages" && npm ci --no-audit --no-fund --ignore-scripts > npm.log 2>&1) ||
+    skip "npm cannot fetch the types of the API, see $packages/npm.log"
+  cp "$packages/package-lock.json" "$packages/installed.json"
+fi
+exec 4>&-
+
+step "the manifests, and some with a fault each"
+ln -s "$packages/node_modules" "$work/node_modules"
+python3 - "$work" "$source_dir"/deploy/kubernetes/*.yaml <<'PY' || fail "the manifests cannot be read"
+import json, pathlib, sys, yaml
+
+work = pathlib.Path(sys.argv[1])
+
+def write(name, documents):
+    lines = []
+    for number, document in enumerate(documents):
+        version, kind = document["apiVersion"], document["kind"]
+        module = version if "/" in version else "core/" + version
+        lines.append(f'import {{ {kind} as Kind{number} }} from "kubernetes-types/{module}";')
+        lines.append(f"export const document{number}: Kind{number} = {json.dumps(document, indent=1)};")
+    (work / f"{name}.ts").write_text("\n".join(lines))
+
+faults = {
+    "misspelt": ("timeoutSeconds: ", "timeoutSecond: "),
+    "missing": ("serviceName: ", "# "),
+    "wrong_type": ("replicas: 4", "replicas: four"),
+    "wrong_place": ("            runAsNonRoot: true", "            hostNetwork: true"),
+    "wrong_version": ("apiVersion: apps/v1", "apiVersion: apps/v0"),
+}
+for path in map(pathlib.Path, sys.argv[2:]):
+    text = path.read_text()
+    write("good_" + path.stem, yaml.safe_load_all(text))
+    if path.stem == "pool":
+        for name, (right, wrong) in faults.items():
+            assert right in text, right
+            write("bad_" + name, yaml.safe_load_all(text.replace(right, wrong, 1)))
+PY
+cat > "$work/tsconfig.json" <<'JSON'
+{
+  "compilerOptions": {"noEmit": true, "strict": true, "module": "es2020", "moduleResolution": "node", "types": []},
+  "include": ["*.ts"]
+}
+JSON
+(cd "$work" && tsc --project .) > "$work/tsc.log" || true
+! grep '^good_' "$work/tsc.log" || fail "the manifests are not those of the API"
+for file in "$work"/bad_*.ts; do
+  grep -q "^$(basename "$file").*error" "$work/tsc.log" || fail "no fault is found in $(basename "$file")"
+done
+step "the end"
