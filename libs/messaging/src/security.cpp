@@ -1,13 +1,17 @@
 #include "security.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
+#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
+#include <fastdds/rtps/common/Token.h>
 
 #include "topogeo/support/log.hpp"
 
@@ -40,10 +44,14 @@ constexpr std::array<SecurityFile, 7> kFiles = {{
     {"dds.sec.access.builtin.Access-Permissions.permissions", "permissions.p7s", true},
 }};
 
-/// What the security plug-ins of this process logged. Never destroyed: the logging thread of the
+/// A peer's name and subject are as long as it likes.
+constexpr std::size_t kMaxNameLength = 128;
+
+/// What this process denied and its security plug-ins logged. Never destroyed: the threads of the
 /// middleware may outlive static objects.
 struct SecurityErrors {
   std::mutex mutex;
+  std::deque<Denial> denials;
   std::deque<std::string> lines;
   std::string last;
 };
@@ -53,13 +61,21 @@ SecurityErrors& security_errors() {
   return *errors;
 }
 
+/// Logged by the functions in which, and by those to which, a peer's endpoint is denied:
+/// security_denials.cpp notes that with the name of the peer.
+bool is_of_denial(const dds::Log::Entry& entry) {
+  const std::string_view function = entry.context.function == nullptr ? "" : entry.context.function;
+  return function == "check_remote_datawriter" || function == "check_remote_datareader" ||
+         entry.message.starts_with("Error checking create remote") ||
+         entry.message.starts_with("Security manager returns an error");
+}
+
 class LogForwarder final : public dds::LogConsumer {
  public:
   void Consume(const dds::Log::Entry& entry) override {
     const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
-    // What discovery logs when permissions deny a peer its endpoint.
-    const bool denied = entry.message.starts_with("Security manager returns an error");
-    if (!category.starts_with("SECURITY") && !denied) {
+    if (is_of_denial(entry)) return;
+    if (!category.starts_with("SECURITY")) {
       // Once a second: what a peer that is gone leaves behind is reported for each packet.
       const auto now = std::chrono::steady_clock::now();
       if (now - last_ < std::chrono::seconds(1)) return;
@@ -88,6 +104,20 @@ void forward_log() {
   static_cast<void>(done);
 }
 
+/// As a peer sent it, fit for a line of a log.
+std::string line_of(std::string text) {
+  if (text.size() > kMaxNameLength) text.resize(kMaxNameLength);
+  std::ranges::replace_if(
+      text, [](unsigned char letter) { return letter < 0x20 || letter == 0x7F; }, '?');
+  return text;
+}
+
+std::string subject_of(const rtps::ParticipantProxyData& peer) {
+  const std::string* const subject =
+      rtps::DataHolderHelper::find_property_value(peer.identity_token_, "dds.cert.sn");
+  return subject == nullptr ? std::string() : line_of(*subject);
+}
+
 std::string text_of(const rtps::GuidPrefix_t& prefix) {
   std::ostringstream text;
   text << prefix;
@@ -104,6 +134,7 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
                              "and name the hosts in TOPOGEO_PEERS where there is no multicast");
   }
   keep_security_races_away();
+  note_denials();
   forward_log();
   auto& properties = qos.properties().properties();
   properties.emplace_back("dds.sec.auth.plugin", "builtin.PKI-DH");
@@ -125,6 +156,13 @@ void use_long_sessions(rtps::PropertyPolicy& properties) {
   properties.properties().emplace_back("dds.sec.crypto.maxblockspersession", "1048576");
 }
 
+void note_denial(Denial denial) {
+  SecurityErrors& errors = security_errors();
+  const std::lock_guard lock(errors.mutex);
+  if (errors.denials.size() == kMaxRefusals) errors.denials.pop_front();
+  errors.denials.push_back(std::move(denial));
+}
+
 std::string last_security_error() {
   dds::Log::Flush();
   SecurityErrors& errors = security_errors();
@@ -140,10 +178,12 @@ void RefusalListener::on_participant_discovery(dds::DomainParticipant* /*partici
   if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
     if (known == peers_.end()) return;
+    report_denials();  // as long as the name is known
     if (!known->second.settled) report(prefix, "left before it had shown who it is");
     peers_.erase(known);
   } else if (known == peers_.end() && peers_.size() < kMaxPeers) {
-    peers_[prefix] = {info.info.m_participantName.to_string(), Clock::now()};
+    peers_[prefix] = {line_of(info.info.m_participantName.to_string()), subject_of(info.info),
+                      Clock::now()};
   }
 }
 
@@ -160,16 +200,33 @@ void RefusalListener::onParticipantAuthentication(dds::DomainParticipant* /*part
 void RefusalListener::report(const rtps::GuidPrefix_t& prefix, const std::string& what) {
   const auto known = peers_.find(prefix);
   if (refusals_.size() == kMaxRefusals) refusals_.pop_front();
-  std::string line = "'";
-  line.append(known == peers_.end() ? std::string("unnamed") : known->second.name);
-  line.append("' (").append(text_of(prefix)).append(") ").append(what);
+  const Peer peer = known == peers_.end() ? Peer{"unnamed", "", {}} : known->second;
+  std::string line = "'" + peer.name + "' (";
+  if (!peer.subject.empty()) line.append(peer.subject).append("; ");
+  line.append(text_of(prefix)).append(") ").append(what);
   refusals_.push_back(std::move(line));
+}
+
+void RefusalListener::report_denials() {
+  std::deque<Denial> denials;
+  {
+    SecurityErrors& errors = security_errors();
+    const std::lock_guard lock(errors.mutex);
+    denials.swap(errors.denials);
+  }
+  for (const Denial& denial : denials) {
+    std::string what = denial.writer ? "is denied to write " : "is denied to read ";
+    what.append(line_of(denial.topic));
+    if (denial.other_governance) what.append(": its governance is another one");
+    report(denial.peer, what);
+  }
 }
 
 std::vector<std::string> RefusalListener::take() {
   std::vector<std::string> lines;
   {
     const std::lock_guard lock(mutex_);
+    report_denials();
     for (auto& [prefix, peer] : peers_) {
       if (peer.settled || Clock::now() - peer.since < kHandshakeTime) continue;
       report(prefix, "does not finish authentication");

@@ -32,12 +32,28 @@ void use_long_sessions(eprosima::fastrtps::rtps::PropertyPolicy& properties);
 /// Does nothing; whoever calls it gets what security_races.cpp puts right linked in.
 void keep_security_races_away();
 
+/// A writer or reader of a peer that security keeps from ours.
+struct Denial {
+  eprosima::fastrtps::rtps::GuidPrefix_t peer;
+  std::string topic;
+  bool writer = false;
+  bool other_governance = false;  // its endpoint is protected otherwise than the topic is here
+};
+
+/// Adds one to what the RefusalListener of this process reports next. From any thread.
+void note_denial(Denial denial);
+
+/// Does nothing; whoever calls it gets what security_denials.cpp notes linked in.
+void note_denials();
+
 /// What the security plug-ins last logged, to explain a participant or endpoint that could not be
 /// made; empty when they logged nothing.
 std::string last_security_error();
 
 /// Remembers the peers that did not pass authentication: those that were refused, and those that
-/// have not finished it, because they do not accept us or have nothing to show.
+/// have not finished it, because they do not accept us or have nothing to show; and those that were
+/// denied a topic. Names each by its participant's name, which it chooses itself, and the subject
+/// of its certificate, which after authentication is right.
 class RefusalListener : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
@@ -46,19 +62,22 @@ class RefusalListener : public eprosima::fastdds::dds::DomainParticipantListener
       eprosima::fastdds::dds::DomainParticipant* participant,
       eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
 
-  /// A line for each refusal since the last call: those of this participant, and what the security
-  /// plug-ins of this process logged. Bounded: of a flood the newest remain.
+  /// A line for each refusal since the last call: those of this participant, and what this process
+  /// denied and its security plug-ins logged. Bounded: of a flood the newest remain.
   std::vector<std::string> take();
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Peer {
     std::string name;
+    std::string subject;  // of the certificate, empty without one
     Clock::time_point since;
     bool settled = false;  // accepted, or reported already
   };
 
+  // With the mutex locked.
   void report(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix, const std::string& what);
+  void report_denials();
 
   std::mutex mutex_;
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, Peer> peers_;

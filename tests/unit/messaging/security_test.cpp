@@ -1,0 +1,112 @@
+// How peers that security refuses are named.
+#include "security.hpp"
+
+#include <string>
+#include <utility>
+
+#include <fastdds/rtps/attributes/RTPSParticipantAllocationAttributes.hpp>
+#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <gmock/gmock.h>
+
+namespace topogeo::messaging {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Info = rtps::ParticipantDiscoveryInfo;
+
+constexpr const char* kGuid = "01.00.00.00.00.00.00.00.00.00.00.07";
+
+rtps::GuidPrefix_t prefix_of_peer() {
+  rtps::GuidPrefix_t prefix;
+  prefix.value[0] = 1;
+  prefix.value[11] = 7;
+  return prefix;
+}
+
+class Refusals : public testing::Test {
+ protected:
+  Refusals() { listener_.take(); }  // of other tests of this process
+
+  /// The peer is discovered, or leaves.
+  void peer(const std::string& name, const std::string& subject,
+            Info::DISCOVERY_STATUS status = Info::DISCOVERED_PARTICIPANT) {
+    rtps::ParticipantProxyData data{rtps::RTPSParticipantAllocationAttributes()};
+    data.m_guid.guidPrefix = prefix_of_peer();
+    data.m_participantName = name.c_str();
+    if (!subject.empty()) {
+      rtps::Property property;
+      property.name("dds.cert.sn");
+      property.value(subject);
+      data.identity_token_.properties().push_back(property);
+    }
+    Info info(data);
+    info.status = status;
+    listener_.on_participant_discovery(nullptr, std::move(info));
+  }
+
+  void authenticate(rtps::ParticipantAuthenticationInfo::AUTHENTICATION_STATUS status) {
+    rtps::ParticipantAuthenticationInfo info;
+    info.status = status;
+    info.guid.guidPrefix = prefix_of_peer();
+    listener_.onParticipantAuthentication(nullptr, std::move(info));
+  }
+
+  RefusalListener listener_;
+};
+
+TEST_F(Refusals, NameTheParticipantAndItsCertificate) {
+  peer("robot/ga_worker", "CN=ga_worker.pc1,O=topogeo");
+  authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
+  EXPECT_THAT(listener_.take(), ElementsAre("'robot/ga_worker' (CN=ga_worker.pc1,O=topogeo; " +
+                                            std::string(kGuid) + ") has not shown who it is"));
+  EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
+}
+
+TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
+  // A worker that takes the name of the map store; its certificate has that of the worker.
+  peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
+  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  note_denial({prefix_of_peer(), "topogeo/v15/map", true, false});
+  note_denial({prefix_of_peer(), "topogeo/v15/scan", false, true});
+  const std::string who =
+      "'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) + ") ";
+  EXPECT_THAT(listener_.take(),
+              ElementsAre(who + "is denied to write topogeo/v15/map",
+                          who + "is denied to read topogeo/v15/scan: its governance is another "
+                                "one"));
+  EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
+}
+
+TEST_F(Refusals, NameAPeerThatHasLeft) {
+  peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
+  authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  note_denial({prefix_of_peer(), "topogeo/v15/map", true, false});
+  peer("", "", Info::REMOVED_PARTICIPANT);
+  EXPECT_THAT(listener_.take(),
+              ElementsAre("'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) +
+                          ") is denied to write topogeo/v15/map"));
+}
+
+TEST_F(Refusals, AreOneShortLineEach) {
+  peer("line\nof a log\x1b[2J", std::string(10'000, 'x'));
+  authenticate(rtps::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT);
+  EXPECT_THAT(listener_.take(), ElementsAre("'line?of a log?[2J' (" + std::string(128, 'x') + "; " +
+                                            kGuid + ") has not shown who it is"));
+}
+
+TEST_F(Refusals, AreBounded) {
+  for (int i = 0; i < 1'000; ++i) {
+    note_denial({prefix_of_peer(), "topogeo/v15/topic" + std::to_string(i), true, false});
+  }
+  const std::vector<std::string> lines = listener_.take();
+  ASSERT_EQ(lines.size(), 256U);
+  EXPECT_EQ(lines.back(),
+            "'unnamed' (" + std::string(kGuid) + ") is denied to write topogeo/v15/topic999");
+}
+
+}  // namespace
+}  // namespace topogeo::messaging
