@@ -1,10 +1,14 @@
 // Prints how a simulated robot moves, a line for each ground truth: milliseconds since 1970, m/s,
-// rad/s, collisions so far. Has the flags of a service; ends with SIGTERM.
+// rad/s, collisions so far; or, with --commands, the first three for each motion command. Has the
+// flags of a service; ends with SIGTERM.
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <iostream>
 
+#include "topogeo/command_line/command_line.hpp"
+#include "topogeo/msg/motion.h"
 #include "topogeo/msg/simulation.h"
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/service_options.hpp"
@@ -12,11 +16,19 @@
 namespace topogeo::test {
 namespace {
 
-void print(const msg::GroundTruth& truth) {
+std::int64_t now_ms() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  std::cout << std::chrono::duration_cast<std::chrono::milliseconds>(now).count() << ' '
-            << std::abs(truth.linear_mps()) << ' ' << std::abs(truth.angular_radps()) << ' '
-            << truth.collisions() << std::endl;
+  return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+}
+
+void print(const msg::GroundTruth& truth) {
+  std::cout << now_ms() << ' ' << std::abs(truth.linear_mps()) << ' '
+            << std::abs(truth.angular_radps()) << ' ' << truth.collisions() << std::endl;
+}
+
+void print_command(const msg::MotionCommand& command) {
+  std::cout << now_ms() << ' ' << std::abs(command.linear_mps()) << ' '
+            << std::abs(command.angular_radps()) << std::endl;
 }
 
 }  // namespace
@@ -24,10 +36,19 @@ void print(const msg::GroundTruth& truth) {
 
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
-  return service::run_service(argc, argv, "drive_watch", "Prints how a simulated robot moves.", {},
-                              [](const service::Setup& setup) {
-                                service::Service service(setup);
-                                service.subscribe<msg::GroundTruth>(test::print);
-                                service.run();
-                              });
+  bool commands = false;
+  return service::run_service(
+      argc, argv, "drive_watch", "Prints how a simulated robot moves.",
+      [&](command_line::Command& app) {
+        app.add_flag("--commands", commands, "the motion commands that its base gets");
+      },
+      [&](const service::Setup& setup) {
+        service::Service service(setup);
+        if (commands) {
+          service.subscribe<msg::MotionCommand>(test::print_command);
+        } else {
+          service.subscribe<msg::GroundTruth>(test::print);
+        }
+        service.run();
+      });
 }

@@ -2,12 +2,10 @@
 // topics that do not exist, packets of garbage at the ports. The map must be that of one process,
 // the memory of all services stays small, and what was refused is in their statuses.
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
-#include <functional>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -17,12 +15,6 @@
 #include <vector>
 
 #include <arpa/inet.h>
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -32,18 +24,16 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
-#include "topogeo/messaging/topics.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/types.h"
-#include "topogeo/support/random.hpp"
 
 #include "garbage.hpp"
 #include "program.hpp"
+#include "stranger.hpp"
 
 namespace topogeo::test {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
 using std::chrono::milliseconds;
 
 /// What any service may take after a long log.
@@ -56,72 +46,6 @@ std::size_t memory_mb(pid_t pid) {
   file >> all_pages >> resident_pages;
   return resident_pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) >> 20U;
 }
-
-/// Sends whatever bytes it is given as samples of a type.
-class AnyBytes final : public dds::TopicDataType {
-  using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
-
- public:
-  explicit AnyBytes(const std::string& type_name) {
-    setName(type_name.c_str());
-    m_typeSize = 1 << 16;
-    m_isGetKeyDefined = true;
-  }
-  bool serialize(void* data, Payload* payload) override {
-    const auto& bytes = *static_cast<std::string*>(data);
-    std::ranges::copy(bytes, payload->data);
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    return true;
-  }
-  bool deserialize(Payload* /*payload*/, void* /*data*/) override { return false; }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<std::string*>(data)->size()); };
-  }
-  void* createData() override { return new std::string; }  // NOLINT: their interface
-  void deleteData(void* data) override { delete static_cast<std::string*>(data); }  // NOLINT
-  bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle, bool) override {
-    // Instances by the last byte, so that a writer has several.
-    const auto& bytes = *static_cast<std::string*>(data);
-    handle->value[0] = bytes.empty() ? 1 : static_cast<std::uint8_t>(bytes.back() | 1);
-    return true;
-  }
-};
-
-/// A participant of Fast DDS that keeps none of our rules.
-class Stranger {
- public:
-  explicit Stranger(std::uint32_t domain) {
-    dds::DomainParticipantQos qos;
-    qos.name("stranger");
-    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
-    dds::PublisherQos publisher_qos;
-    publisher_qos.partition().push_back("*");
-    publisher_ = participant_->create_publisher(publisher_qos);
-  }
-  Stranger(const Stranger&) = delete;
-  Stranger& operator=(const Stranger&) = delete;
-  ~Stranger() {
-    participant_->delete_contained_entities();
-    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
-  }
-
-  dds::DataWriter& writer(const std::string& topic, const std::string& type) {
-    const dds::TypeSupport support(new AnyBytes(type));  // NOLINT: it takes it over
-    support.register_type(participant_);
-    dds::DataWriterQos qos;
-    qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-    qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
-    qos.history().depth = 64;
-    qos.endpoint().history_memory_policy =
-        eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-    return *publisher_->create_datawriter(
-        participant_->create_topic(topic, type, dds::TOPIC_QOS_DEFAULT), qos);
-  }
-
- private:
-  dds::DomainParticipant* participant_ = nullptr;
-  dds::Publisher* publisher_ = nullptr;
-};
 
 class StrangersTest : public testing::Test {
  protected:
@@ -166,9 +90,11 @@ class StrangersTest : public testing::Test {
     });
   }
 
+  std::uint32_t domain() const { return static_cast<std::uint32_t>(std::stoul(domain_)); }
+
   messaging::ParticipantOptions anywhere(const std::string& name) const {
     messaging::ParticipantOptions options;
-    options.domain = static_cast<std::uint32_t>(std::stoul(domain_));
+    options.domain = domain();
     options.partition = "*";
     options.name = name;
     return options;
@@ -199,49 +125,17 @@ TEST_F(StrangersTest, AHundredParticipantsComeAndGo) {
 
 TEST_F(StrangersTest, SamplesOfAbsurdContentAreRefusedAndCounted) {
   start();
-  // They keep the bounds of the types and mean nothing.
-  messaging::Writer<msg::Goal> goals(participant_);
-  messaging::Writer<msg::MatchResults> results(participant_);
-  messaging::Writer<msg::TrajectorySegment> segments(participant_);
-  messaging::Writer<msg::LivePose> poses(participant_);
-  constexpr std::int64_t kYear2250_ns = 8'830'000'000'000'000'000;
-  ASSERT_TRUE(goals.wait_for_matched(1, std::chrono::seconds(20)));
-  ASSERT_TRUE(segments.wait_for_matched(1, std::chrono::seconds(20)));
-  for (int i = 0; i < 50; ++i) {
-    msg::Goal goal;
-    messaging::set_header(goal, "robot", kYear2250_ns, static_cast<std::uint64_t>(i));
-    messaging::set_client_id(goal, "stranger");
-    goal.target().x_m(std::nan(""));
-    static_cast<void>(goals.write(goal));
-    msg::TrajectorySegment segment;
-    messaging::set_header(segment, "robot", -kYear2250_ns, static_cast<std::uint64_t>(i));
-    segment.segment(0xFFFFFFF0U + static_cast<std::uint32_t>(i % 8));
-    segment.total_stops(0xFFFFFFFF);
-    segment.stops().resize(2);
-    static_cast<void>(segments.write(segment));
-    msg::LivePose pose;
-    messaging::set_header(pose, "robot", kYear2250_ns, static_cast<std::uint64_t>(i));
-    pose.confidence(-1e300);
-    static_cast<void>(poses.write(pose));
+  AbsurdSamples samples(participant_);
+  ASSERT_TRUE(samples.wait_for_readers(std::chrono::seconds(20)));
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    samples.write(i);
     std::this_thread::sleep_for(milliseconds(20));
     look();
   }
-  // They keep nothing: cut off, counts of four billion, truth values of 255, no text's end.
-  Stranger stranger(static_cast<std::uint32_t>(std::stoul(domain_)));
-  std::vector<dds::DataWriter*> writers;
-  for (const messaging::TopicInfo* topic : messaging::all_topics()) {
-    const dds::TypeSupport type(topic->make_type());
-    writers.push_back(&stranger.writer(std::string(topic->name), type.get_type_name()));
-  }
+  NoMessages no_messages(domain());
   std::this_thread::sleep_for(std::chrono::seconds(1));
-  support::Random random(1);
-  for (int i = 0; i < 40; ++i) {
-    std::string bytes(4 + random.below(400), i % 2 == 0 ? '\xff' : '\0');
-    bytes.replace(0, 4, std::string("\0\1\0\0", 4));
-    for (std::size_t at = 4; i % 4 > 1 && at < bytes.size(); ++at) {
-      bytes[at] = static_cast<char>(random.below(256));
-    }
-    for (dds::DataWriter* writer : writers) static_cast<void>(writer->write(&bytes));
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    no_messages.write(i);
     std::this_thread::sleep_for(milliseconds(20));
     look();
   }
@@ -259,11 +153,9 @@ TEST_F(StrangersTest, SamplesOfAbsurdContentAreRefusedAndCounted) {
 
 TEST_F(StrangersTest, TopicsThatDoNotExistAreCounted) {
   start();
-  Stranger stranger(static_cast<std::uint32_t>(std::stoul(domain_)));
-  std::string bytes(1000, '\xff');
-  for (int i = 0; i < 300; ++i) {
-    const std::string name = "topogeo/v10/nonsense" + std::to_string(i);
-    stranger.writer(name, "Nonsense" + std::to_string(i)).write(&bytes);
+  UnknownTopics topics(domain());
+  while (topics.size() < 300) {
+    topics.add();
     look();
   }
   finish();
