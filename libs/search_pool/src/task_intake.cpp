@@ -11,6 +11,8 @@ namespace {
 
 /// Whose newest maps are remembered. To forget one costs a wait.
 constexpr std::size_t kMostRobots = 256;
+/// Of one robot. Tasks name the newest, and the one or two before.
+constexpr std::size_t kNewestMaps = 4;
 
 bool is_complete(const ReadyJob& job) {
   if (!job.job.task.places) return job.reference && job.query;
@@ -61,8 +63,8 @@ std::optional<ReadyJob> TaskIntake::add(MatchJob job, Time now) {
       ready.pieces.push_back(maps_.find(piece.content_hash));
     }
   } else {
-    ready.reference = maps_.find(task.reference_hash);
-    ready.query = maps_.find(task.query_hash);
+    ready.reference = find(ready.job, task.reference_map_id, task.reference_hash);
+    ready.query = find(ready.job, task.query_map_id, task.query_hash);
   }
   if (is_complete(ready)) return ready;
   const std::uint32_t newest = std::max(task.reference_map_id, task.query_map_id);
@@ -76,18 +78,52 @@ std::optional<ReadyJob> TaskIntake::add(MatchJob job, Time now) {
   return {};
 }
 
-void TaskIntake::published(const std::string& robot_id, std::int64_t stamp_ns) {
-  if (published_ns_.size() >= kMostRobots && !published_ns_.contains(robot_id)) {
-    published_ns_.clear();
-  }
-  std::int64_t& newest_ns = published_ns_.try_emplace(robot_id, stamp_ns).first->second;
-  newest_ns = std::max(newest_ns, stamp_ns);
+MapPointer TaskIntake::find(const MatchJob& job, std::uint32_t map_id, std::uint64_t hash) {
+  MapPointer map = maps_.find(hash);
+  return map ? map : find_by_other_number(job.robot_id, map_id, hash);
 }
 
-// A localizer that follows a stored map numbers what was published anew, which changes its content.
+MapPointer TaskIntake::find_by_other_number(const std::string& robot_id, std::uint32_t map_id,
+                                            std::uint64_t hash) {
+  const auto published = published_.find(robot_id);
+  if (published == published_.end()) return nullptr;
+  for (const MapPointer& map : published->second) {
+    if (topomap::content_hash(*map, map_id) != hash) continue;
+    auto numbered =
+        std::make_shared<const topomap::LocalMap>(topomap::numbered(*map, map_id, false));
+    maps_.add(hash, numbered);
+    return numbered;
+  }
+  return nullptr;
+}
+
+std::vector<ReadyJob> TaskIntake::add_published(MapPointer map) {
+  const std::string robot_id = map->robot_id;
+  if (published_.size() >= kMostRobots && !published_.contains(robot_id)) published_.clear();
+  std::deque<MapPointer>& published = published_[robot_id];
+  published.push_front(map);
+  if (published.size() > kNewestMaps) published.pop_back();
+  std::vector<ReadyJob> ready = add_map(std::move(map));
+  std::set<std::pair<std::uint32_t, std::uint64_t>> lacking;  // number and content
+  for (const Waiting& waiting : waiting_) {
+    if (waiting.job.job.task.places || waiting.job.job.robot_id != robot_id) continue;
+    for_each_lack(waiting.job, [&](const Lack& lack, std::uint32_t map_id) {
+      lacking.emplace(map_id, lack.second);
+    });
+  }
+  for (const auto& [map_id, hash] : lacking) {
+    MapPointer numbered = find_by_other_number(robot_id, map_id, hash);
+    if (!numbered) continue;
+    for (ReadyJob& job : add_map(std::move(numbered))) ready.push_back(std::move(job));
+  }
+  return ready;
+}
+
+// It came, and is not the one that is meant. The last map says what time it is, not the newest: a
+// log may be driven again.
 bool TaskIntake::is_past(const MatchJob& job) const {
-  const auto newest = published_ns_.find(job.robot_id);
-  return newest != published_ns_.end() && newest->second >= job.stamp_ns;
+  const auto published = published_.find(job.robot_id);
+  return published != published_.end() && published->second.front()->stamp_ns >= job.stamp_ns;
 }
 
 std::vector<ReadyJob> TaskIntake::add_map(MapPointer map) {

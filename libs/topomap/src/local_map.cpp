@@ -30,8 +30,12 @@ class ContentHash {
 }  // namespace
 
 std::uint64_t content_hash(const LocalMap& map) {
+  return content_hash(map, map.id);
+}
+
+std::uint64_t content_hash(const LocalMap& map, std::uint32_t id) {
   ContentHash hash;
-  hash.add(map.id);
+  hash.add(id);
   hash.add(map.T_robot_laser.x_m);
   hash.add(map.T_robot_laser.y_m);
   hash.add(map.T_robot_laser.theta_rad);

@@ -18,6 +18,12 @@ class TaskIntakeTest : public ::testing::Test {
  protected:
   static TaskIntake::Time at(int ms) { return TaskIntake::Time{} + milliseconds(ms); }
 
+  static MapPointer stamped(std::int64_t stamp_ns, const MapPointer& map) {
+    topomap::LocalMap copy = *map;
+    copy.stamp_ns = stamp_ns;
+    return std::make_shared<const topomap::LocalMap>(std::move(copy));
+  }
+
   MapPointer zero_ = room(0, 0.0);
   MapPointer one_ = room(1, 0.2);
   MapPointer two_ = room(2, 0.4);
@@ -98,13 +104,49 @@ TEST_F(TaskIntakeTest, TheNewestMapIsAskedForAtOnceWhenItsTimeHasPassed) {
   intake_.add_map(zero_);
   MatchJob task = job(zero_, one_, 1);
   task.stamp_ns = 1000;
-  intake_.published("other robot", 2000);
-  intake_.published("robot", 999);
+  intake_.add_published(stamped(2000, room(3, 0.6, "other robot")));
+  intake_.add_published(stamped(999, room(3, 0.6)));
   intake_.add(task, at(0));
   EXPECT_EQ(intake_.next_check(), at(20)) << "it may be on its way";
-  intake_.published("robot", 1000);
+  intake_.add_published(stamped(1000, room(4, 0.7)));
   intake_.add(task, at(5));
   EXPECT_EQ(intake_.next_check(), at(5)) << "it came, and is not the one that is meant";
+}
+
+TEST_F(TaskIntakeTest, TimeMayBeginAnew) {
+  intake_.add_map(zero_);
+  intake_.add_published(stamped(2000, room(3, 0.6)));
+  intake_.add_published(stamped(500, room(4, 0.7)));
+  MatchJob task = job(zero_, one_, 1);
+  task.stamp_ns = 1000;
+  intake_.add(task, at(0));
+  EXPECT_EQ(intake_.next_check(), at(20)) << "it may be on its way";
+}
+
+// As a localizer does that follows a stored map.
+TEST_F(TaskIntakeTest, FindsWhatWasPublishedWithAnotherNumber) {
+  intake_.add_map(zero_);
+  EXPECT_FALSE(intake_.add(job(zero_, one_, 1), at(0)));
+  EXPECT_THAT(intake_.add_published(room(70, 0.2, "other robot")), IsEmpty());
+  EXPECT_THAT(intake_.add_published(room(71, 0.3)), IsEmpty());
+  const auto ready = intake_.add_published(room(72, 0.2));
+  ASSERT_THAT(ready, SizeIs(1));
+  EXPECT_EQ(ready[0].reference, zero_);
+  EXPECT_EQ(topomap::content_hash(*ready[0].query), topomap::content_hash(*one_));
+  EXPECT_FALSE(intake_.next_check());
+  // The task may come after the map, and name it by any number.
+  EXPECT_TRUE(intake_.add(job(zero_, one_, 2), at(1)));
+  EXPECT_TRUE(intake_.add(job(room(9, 0.3), one_, 3), at(1)));
+  EXPECT_EQ(intake_.waiting(), 0U);
+}
+
+TEST_F(TaskIntakeTest, RemembersOnlyTheNewestMapsThatWerePublished) {
+  intake_.add_map(zero_);
+  intake_.add_published(room(70, 0.2));
+  for (std::uint32_t i = 1; i < 4; ++i) intake_.add_published(room(70 + i, 0.2 + 0.01 * i));
+  EXPECT_TRUE(intake_.add(job(zero_, one_, 1), at(0)));
+  intake_.add_published(room(74, 0.5));
+  EXPECT_FALSE(intake_.add(job(zero_, room(8, 0.2), 2), at(0)));
 }
 
 TEST_F(TaskIntakeTest, EachClientIsAskedForWhatItsOwnTaskNames) {

@@ -78,6 +78,11 @@ TEST(ContentHash, DoesNotDependOnWhenOrByWhomTheMapWasMade) {
   EXPECT_EQ(content_hash(map), content_hash(sample()));
 }
 
+TEST(ContentHash, IsKnownOfTheMapWithAnotherNumber) {
+  EXPECT_EQ(content_hash(sample(), sample().id), content_hash(sample()));
+  EXPECT_EQ(content_hash(sample(), 77), content_hash(numbered(sample(), 77, false)));
+}
+
 TEST(ContentHash, TellsApartWhereOneListEndsAndTheNextBegins) {
   // Two branches of two points against one of four with the same numbers in the same order.
   LocalMap one;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <list>
 #include <map>
 #include <optional>
@@ -57,8 +58,9 @@ class TaskIntake {
   std::optional<ReadyJob> add(MatchJob job, Time now);
   /// Keeps the map and returns the jobs that have waited for it alone, oldest first.
   std::vector<ReadyJob> add_map(MapPointer map);
-  /// Tells of a map that a robot has published, whether a task names it or not.
-  void published(const std::string& robot_id, std::int64_t stamp_ns);
+  /// The same of a map that its robot has published. Tasks may name one of the newest by another
+  /// number than it was published with, as a localizer does that follows a stored map.
+  std::vector<ReadyJob> add_published(MapPointer map);
   /// True when a job waits for a map of this content.
   [[nodiscard]] bool lacks(std::uint64_t content_hash) const;
   /// What is to be done at `now`: each map that lacks is asked for once per period and client.
@@ -86,6 +88,11 @@ class TaskIntake {
 
   template <class Action>  // (Lack, map id)
   static void for_each_lack(const ReadyJob& job, Action action);
+  /// A map of this content among the newest of a robot, if they had this number; or nothing.
+  MapPointer find_by_other_number(const std::string& robot_id, std::uint32_t map_id,
+                                  std::uint64_t content_hash);
+  /// The map that a task names, if it is there.
+  MapPointer find(const MatchJob& job, std::uint32_t map_id, std::uint64_t content_hash);
   /// True when the map of a task will not come by itself any more.
   [[nodiscard]] bool is_past(const MatchJob& job) const;
   /// Forgets the requests for maps that no job waits for any more.
@@ -95,7 +102,7 @@ class TaskIntake {
   MapCache maps_;
   std::list<Waiting> waiting_;  // oldest first
   std::map<Lack, Asking> requested_;
-  std::map<std::string, std::int64_t> published_ns_;  // the newest of each robot
+  std::map<std::string, std::deque<MapPointer>> published_;  // by robot, the last one first
 };
 
 }  // namespace topogeo::search_pool

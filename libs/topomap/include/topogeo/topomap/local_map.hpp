@@ -99,6 +99,8 @@ struct LocalMap {
 /// 64-bit FNV-1a hash of everything that a match can depend on (id, points, nodes, branches,
 /// mounting), so that a worker can check that it holds the map that a task means.
 std::uint64_t content_hash(const LocalMap& map);
+/// The same of the map as it would be with this id.
+std::uint64_t content_hash(const LocalMap& map, std::uint32_t id);
 
 /// The map as the stop of this number of a map of several drives; `starts_drive`: the first of a
 /// later one.
