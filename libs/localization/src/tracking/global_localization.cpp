@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -112,6 +113,22 @@ std::vector<Eigen::Vector2d> map_points(std::span<const topomap::LocalMap> maps,
   return points_m;
 }
 
+/// How many of the points of a robot at that pose a stop sees; 0 when they are not more than
+/// `most`.
+std::size_t points_seen(const StoredStop& stop, std::span<const SurfacePoint> points,
+                        const Pose2& T_map_robot, std::size_t most) {
+  const Pose2 T = geometry::between(stop.T_map_robot, T_map_robot);
+  const geometry::SinCos r = geometry::sincos(T.theta_rad);
+  std::size_t seen = points.size();
+  for (const SurfacePoint& point : points) {
+    const SurfacePoint p = moved(point, T, r);
+    const auto view = stop.profile.view_of_face(p.position_m, p.normal, 0.4);
+    if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) continue;
+    if (--seen <= most) return 0;
+  }
+  return seen;
+}
+
 }  // namespace
 
 bool same_global_place(const Pose2& a, const Pose2& b) {
@@ -210,33 +227,28 @@ std::vector<Climbed> GlobalLocalizer::distinct(std::vector<MatchSolution> climbe
   return places;
 }
 
+// Nearer stops come first: of equal ones the nearest is meant, and it mostly leaves the others
+// nothing.
 std::size_t GlobalLocalizer::best_stop(const MatchFeatures& query, const Pose2& T_map_robot,
                                        double& share) const {
   const std::vector<SurfacePoint> outline = spread(query.coarse, 40);
-  std::size_t best = 0;
-  std::size_t most = 0;
-  double nearest_m2 = 1e300;
+  std::pair<double, std::size_t> nearest{std::numeric_limits<double>::infinity(), 0};
+  std::vector<std::pair<double, std::size_t>> near;  // distance squared, stop
   for (std::size_t i = 0; i < stops_.size(); ++i) {
     const double apart_m2 =
         (stops_[i].T_map_robot.position_m() - T_map_robot.position_m()).squaredNorm();
-    if (most == 0 && apart_m2 < nearest_m2) {
-      best = i;
-      nearest_m2 = apart_m2;
-    }
-    if (apart_m2 > kNearStop_m * kNearStop_m) continue;
-    const Pose2 T = geometry::between(stops_[i].T_map_robot, T_map_robot);
-    const geometry::SinCos r = geometry::sincos(T.theta_rad);
-    std::size_t seen = 0;
-    for (const SurfacePoint& point : outline) {
-      const SurfacePoint p = moved(point, T, r);
-      const auto view = stops_[i].profile.view_of_face(p.position_m, p.normal, 0.4);
-      if (view == RangeProfile::View::kFree || view == RangeProfile::View::kSurface) ++seen;
-    }
-    if (seen > most || (seen == most && seen > 0 && apart_m2 < nearest_m2)) {
-      best = i;
-      most = seen;
-      nearest_m2 = apart_m2;
-    }
+    nearest = std::min(nearest, {apart_m2, i});
+    if (apart_m2 <= kNearStop_m * kNearStop_m) near.emplace_back(apart_m2, i);
+  }
+  std::sort(near.begin(), near.end());
+  std::size_t best = nearest.second;
+  std::size_t most = 0;
+  for (const auto& [apart_m2, i] : near) {
+    if (most == outline.size()) break;
+    const std::size_t seen = points_seen(stops_[i], outline, T_map_robot, most);
+    if (seen <= most) continue;
+    best = i;
+    most = seen;
   }
   share = outline.empty() ? 0.0 : static_cast<double>(most) / static_cast<double>(outline.size());
   return best;
