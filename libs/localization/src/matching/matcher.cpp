@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include "topogeo/localization/matching/branch_walls.hpp"
 #include "topogeo/localization/matching/genetic_search.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 #include "topogeo/localization/places/place_field.hpp"
@@ -83,7 +84,10 @@ MatchTask finer_task(const MatchTask& task, const Pose2& T_solution) {
 }  // namespace
 
 void Matcher::add_map(const topomap::LocalMap& map) {
-  maps_[map.id] = {topomap::content_hash(map), extract_features(map), walls_of_branches(map), {}};
+  KnownMap& known = maps_[map.id];
+  known = {topomap::content_hash(map), extract_features(map), {}, {}};
+  known.branches.branches = map.branches;
+  known.branches.T_robot_laser = map.T_robot_laser;
 }
 
 bool Matcher::has_map(std::uint32_t id, std::uint64_t hash) const {
@@ -106,7 +110,9 @@ const MatchFeatures& Matcher::features(std::uint32_t id, std::uint64_t hash,
                                        MatchEvidence evidence) {
   KnownMap& map = known(id, hash);
   if (evidence == MatchEvidence::kScan) return map.features;
-  if (!map.by_branches) map.by_branches = with_walls(map.features, map.walls);
+  if (!map.by_branches) {
+    map.by_branches = with_walls(map.features, walls_of_branches(map.branches));
+  }
   return *map.by_branches;
 }
 

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "topogeo/localization/matching/branch_walls.hpp"
 #include "topogeo/localization/matching/fitness_forms.hpp"
 #include "topogeo/localization/matching/genetic_search.hpp"
 #include "topogeo/localization/matching/genetic_search_hypotheses.hpp"
@@ -49,7 +48,7 @@ class Matcher {
   struct KnownMap {
     std::uint64_t hash = 0;
     MatchFeatures features;
-    BranchWalls walls;
+    topomap::LocalMap branches;  // they and the laser's place alone, of which walls are made
     std::optional<MatchFeatures> by_branches;  // the walls in place of the scan, once asked for
   };
   struct CachedReference {
