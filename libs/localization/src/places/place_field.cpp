@@ -1,6 +1,7 @@
 #include "topogeo/localization/places/place_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -29,7 +30,18 @@ constexpr double kFineWidth_m = PlaceField::kFineWidth_m;
 constexpr double kFineMargin_m = 1.0;
 constexpr std::uint32_t kQuarter = PlaceField::kHeadings / 4;
 constexpr std::size_t kPiecePoints = 2048;  // as many as a local map has on the wire
-static_assert(kQuarter % PlaceField::kTaskHeadings == 0);
+// Of each task. The last ones are small, so that workers end together.
+constexpr std::array<std::uint32_t, 14> kTaskHeadings{6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 3, 3, 3, 3};
+
+constexpr bool tasks_stay_in_quarters() {
+  std::uint32_t first = 0;
+  for (const std::uint32_t headings : kTaskHeadings) {
+    if (headings > kQuarter - first % kQuarter) return false;
+    first += headings;
+  }
+  return first == PlaceField::kHeadings;
+}
+static_assert(tasks_stay_in_quarters());
 
 std::vector<Eigen::Vector2d> in_metres(const std::vector<topomap::ScanPoint>& points) {
   std::vector<Eigen::Vector2d> out;
@@ -186,10 +198,11 @@ std::vector<std::shared_ptr<const PlaceQuestion>> PlaceField::questions(
     std::span<const Eigen::Vector2d> points_m) const {
   if (points_m.empty()) return {};
   PlaceQuestion all = question_about(points_m);
-  all.headings = kTaskHeadings;
   std::vector<std::shared_ptr<const PlaceQuestion>> out;
-  for (all.first_heading = 0; all.first_heading < kHeadings; all.first_heading += kTaskHeadings) {
+  for (const std::uint32_t headings : kTaskHeadings) {
+    all.headings = headings;
     out.push_back(std::make_shared<const PlaceQuestion>(all));
+    all.first_heading += headings;
   }
   return out;
 }

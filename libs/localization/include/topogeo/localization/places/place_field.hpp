@@ -28,7 +28,6 @@ namespace topogeo::localization {
 class PlaceField {
  public:
   static constexpr std::uint32_t kHeadings = 72;             ///< 5 degrees apart
-  static constexpr std::uint32_t kTaskHeadings = 6;          ///< of one task
   static constexpr std::size_t kSeeds = 300;                 ///< of a search, and of a task at most
   static constexpr std::size_t kSearchedPoints = 64;         ///< at most
   static constexpr std::size_t kClimbingPoints = 120;        ///< at most
