@@ -34,6 +34,13 @@ std::size_t half_of_memory(const WorkerOptions& options) {
   return (std::size_t{options.memory_mb} << 20U) / 2;
 }
 
+/// Throws std::invalid_argument for a map that is not what its hash is of.
+search_pool::MapPointer map_of(const msg::LocalMap& message) {
+  topomap::LocalMap map = service::from_msg(message);
+  map.track = {};  // matching does not use it
+  return std::make_shared<const topomap::LocalMap>(std::move(map));
+}
+
 search_pool::IntakeOptions intake_options(const WorkerOptions& options) {
   search_pool::IntakeOptions intake;
   intake.map_bytes = half_of_memory(options);
@@ -51,7 +58,7 @@ GaWorkerService::GaWorkerService(service::Service& service, const WorkerOptions&
       intake_(intake_options(options)) {
   messaging::EventLoop& loop = service_.loop();
   const std::size_t per_slot = half_of_memory(options_) / std::max(1U, options_.slots);
-  runner_.emplace(options_.slots, std::max(per_slot, kLeastPerSlot_bytes),
+  runner_.emplace(options_.slots, std::max(per_slot, kLeastPerSlot_bytes), options_.scheduling,
                   [this, &loop](search_pool::TaskRunner::Outcome outcome) {
                     loop.post([this, outcome = std::move(outcome)] { on_outcome(outcome); });
                   });
@@ -82,14 +89,13 @@ void GaWorkerService::fill_status() {
 void GaWorkerService::listen() {
   service_.loop().on_event([this](const messaging::Event& event) { on_event(event); });
   service_.subscribe<msg::LocalMap>(
-      [this](const msg::LocalMap& map) {
-        intake_.published(map.robot_id().to_string(), map.stamp_ns());
-        keep(map);
-      },
+      [this](const msg::LocalMap& map) { run(intake_.add_published(map_of(map))); },
       {.any_robot = true});
   service_.subscribe<msg::MapCopy>(
       [this](const msg::MapCopy& copy) {
-        if (intake_.lacks(copy.local_map().content_hash())) keep(copy.local_map());
+        if (intake_.lacks(copy.local_map().content_hash())) {
+          run(intake_.add_map(map_of(copy.local_map())));
+        }
       },
       {.addressee = options_.worker_id, .any_robot = true});
   service_.subscribe<msg::MatchTasks>(
@@ -101,13 +107,8 @@ void GaWorkerService::listen() {
 
 // --- maps
 
-void GaWorkerService::keep(const msg::LocalMap& message) {
-  topomap::LocalMap map = service::from_msg(message);  // checks content_hash
-  map.track = {};                                      // matching does not use it
-  for (search_pool::ReadyJob& job :
-       intake_.add_map(std::make_shared<const topomap::LocalMap>(std::move(map)))) {
-    runner_->add(std::move(job));
-  }
+void GaWorkerService::run(std::vector<search_pool::ReadyJob> jobs) {
+  for (search_pool::ReadyJob& job : jobs) runner_->add(std::move(job));
 }
 
 void GaWorkerService::request_missing_maps() {

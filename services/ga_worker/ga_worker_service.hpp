@@ -30,8 +30,9 @@ namespace topogeo::ga_worker {
 struct WorkerOptions {
   std::uint32_t slots = 1;
   std::uint32_t memory_mb = 64;  ///< for local maps and what the slots make of them
-  std::string name;              ///< see check_name
-  std::string worker_id;         ///< see make_worker_id
+  search_pool::SlotScheduling scheduling = search_pool::SlotScheduling::kBatch;
+  std::string name;       ///< see check_name
+  std::string worker_id;  ///< see make_worker_id
 };
 
 /// Lives in the loop of its service.
@@ -65,8 +66,7 @@ class GaWorkerService {
   /// Why tasks are not for this worker; nothing when they are.
   [[nodiscard]] std::optional<std::pair<msg::MatchStatus, std::string>> objection(
       const msg::MatchTasks& message) const;
-  /// Throws std::invalid_argument for a map that is not what its hash is of.
-  void keep(const msg::LocalMap& message);
+  void run(std::vector<search_pool::ReadyJob> jobs);
   /// Asks for the maps that lack, gives up what has waited too long, and sets a timer for the next
   /// time.
   void request_missing_maps();

@@ -1,4 +1,7 @@
 // Works on the match tasks of any robot: genetic search for the relative pose of two local maps.
+#include <string>
+#include <string_view>
+
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/search_pool/worker_name.hpp"
 #include "topogeo/service/service.hpp"
@@ -6,10 +9,23 @@
 
 #include "ga_worker_service.hpp"
 
+namespace topogeo::ga_worker {
+namespace {
+
+search_pool::SlotScheduling scheduling_of(std::string_view name) {
+  if (name == "idle") return search_pool::SlotScheduling::kIdle;
+  if (name == "batch") return search_pool::SlotScheduling::kBatch;
+  return search_pool::SlotScheduling::kNormal;
+}
+
+}  // namespace
+}  // namespace topogeo::ga_worker
+
 int main(int argc, char** argv) {
   using namespace topogeo;  // NOLINT(google-build-using-namespace)
   ga_worker::WorkerOptions options;
   options.name = search_pool::default_name();
+  std::string scheduling = "batch";
   service::ServiceOptions defaults;
   defaults.partition = messaging::kAnyPartition;
   return service::run_service(
@@ -32,8 +48,15 @@ int main(int argc, char** argv) {
                        "for local maps and what is made of them, 4 MB for each slot at least")
             ->check(command_line::range(kLeastMemory_mb, kMostMemory_mb))
             ->capture_default_str();
+        app.add_option(
+               "--scheduling", scheduling,
+               "of its searches beside other programs: as any of them (normal); not interrupting "
+               "them (batch); only while none of them wants the CPU (idle)")
+            ->check(command_line::one_of({"normal", "batch", "idle"}))
+            ->capture_default_str();
       },
       [&](const service::Setup& setup) {
+        options.scheduling = ga_worker::scheduling_of(scheduling);
         options.worker_id = search_pool::make_worker_id(options.name);
         service::Setup of_worker = setup;
         of_worker.instance = options.worker_id;

@@ -1,6 +1,6 @@
 // How fast a lost robot searches the whole of a large map, by the number of search workers.
 //
-//   topogeo_lost_robot [--path M] [--starts N] [--stops K] [--workers W] [--map FILE]
+//   topogeo_lost_robot [--path M] [--starts N] [--stops K] [--workers W] [--rounds R] [--map FILE]
 //
 // A floor is mapped in one drive and driven again with other noise; the robot is lost at N stops of
 // the second drive, evenly spread, and adds K stops from each of them while it searches, without a
@@ -14,8 +14,11 @@
 #include <exception>
 #include <filesystem>
 #include <iterator>
+#include <list>
 #include <memory>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -44,6 +47,8 @@ struct LostOptions {
   std::size_t stops = 5;
   std::size_t least_workers = 0;
   std::size_t most_workers = 2;
+  std::size_t rounds = 5;
+  std::string scheduling;
   std::filesystem::path map;
 };
 
@@ -110,9 +115,9 @@ std::vector<double> cpu_of(const bench::Workers& workers) {
   return cpu_s;
 }
 
-Result search(const LostOptions& options, localization::MapLocalizer& localizer,
-              const std::vector<std::vector<MapPointer>>& drives, bench::PoolClient& client,
-              const bench::Workers& workers) {
+Result search_lost(const LostOptions& options, localization::MapLocalizer& localizer,
+                   const std::vector<std::vector<MapPointer>>& drives, bench::PoolClient& client,
+                   const bench::Workers& workers) {
   Result result;
   for (const std::vector<MapPointer>& drive : drives) {
     localizer.search();
@@ -154,48 +159,100 @@ bool same(const Result& a, const Result& b) {
                     });
 }
 
+/// A localizer and its workers.
+class Team {
+ public:
+  Team(const LostOptions& options, std::size_t workers, const pipeline::Config& config,
+       std::shared_ptr<const localization::StoredMap> map)
+      : client_({}) {
+    std::vector<std::string> flags;
+    if (!options.scheduling.empty()) flags = {"--scheduling", options.scheduling};
+    for (std::size_t i = 0; i < workers; ++i) workers_.start_real(client_, flags);
+    if (client_.pool().wait_for_workers(workers, bench::kPatience) < workers) {
+      throw std::runtime_error("the workers did not come; " + client_.fault());
+    }
+    localizer_.emplace(config.localizer, std::move(map), client_.pool());
+  }
+
+  /// Throws std::runtime_error when the pool reported a fault.
+  Result search(const LostOptions& options, const std::vector<std::vector<MapPointer>>& drives) {
+    Result result = search_lost(options, *localizer_, drives, client_, workers_);
+    if (!client_.fault().empty()) throw std::runtime_error(client_.fault());
+    return result;
+  }
+
+ private:
+  bench::PoolClient client_;
+  bench::Workers workers_;
+  std::optional<localization::MapLocalizer> localizer_;
+};
+
+void append(Result& all, const Result& one) {
+  all.wall_ms.insert(all.wall_ms.end(), one.wall_ms.begin(), one.wall_ms.end());
+  all.cpu_s += one.cpu_s;
+  all.workers_s += one.workers_s;
+  all.found += one.found;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// By CPU, for each stop.
+double cpu_ms(const Result& result, std::size_t workers) {
+  const double s =
+      result.cpu_s + result.workers_s / static_cast<double>(std::max<std::size_t>(1, workers));
+  return 1e3 * s / static_cast<double>(result.wall_ms.size());
+}
+
+void print(const std::vector<Result>& results, std::size_t least_workers, std::size_t starts) {
+  std::printf(
+      "| workers | found | stops searched | ms a stop, median | mean | most | CPU of the "
+      "localizer, ms a stop | of the workers | times as fast as one, median | mean | by CPU |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Result& result = results[i];
+    const std::size_t workers = least_workers + i;
+    const auto count = static_cast<double>(result.wall_ms.size());
+    std::printf("| %zu | %zu of %zu | %zu | %.1f | %.1f | %.1f | %.1f | %.1f |", workers,
+                result.found, starts, result.wall_ms.size(), median(result.wall_ms),
+                mean(result.wall_ms),
+                *std::max_element(result.wall_ms.begin(), result.wall_ms.end()),
+                1e3 * result.cpu_s / count, 1e3 * result.workers_s / count);
+    if (workers == 0 || least_workers > 1) {
+      std::printf(" - | - | - |\n");
+      continue;
+    }
+    const Result& one = results[1 - least_workers];
+    std::printf(" %.2f | %.2f | %.2f |\n", median(one.wall_ms) / median(result.wall_ms),
+                mean(one.wall_ms) / mean(result.wall_ms), cpu_ms(one, 1) / cpu_ms(result, workers));
+  }
+}
+
+// The teams take turns, so that what else the machine does meets them alike.
 void run(const LostOptions& options) {
   const pipeline::Config config;
   const auto map = make_map(options, config);
   const auto drives = drives_of(options, stops_of(options, config));
-  std::printf("map of %zu stops; %zu starts of %zu stops\n", map->maps.size(), options.starts,
-              options.stops);
-  std::printf(
-      "| workers | found | stops searched | ms a stop, median | mean | most | "
-      "CPU of the localizer, ms a stop | times as fast as one |\n"
-      "|---|---|---|---|---|---|---|---|\n");
-  Result first;
-  double one_ms = 0.0;
-  double one_cpu_s = 0.0;
+  std::printf("map of %zu stops; %zu starts of %zu stops, %zu rounds\n", map->maps.size(),
+              options.starts, options.stops, options.rounds);
+  std::list<Team> teams;
   for (std::size_t workers = options.least_workers; workers <= options.most_workers; ++workers) {
-    bench::PoolClient client({});
-    bench::Workers processes;
-    for (std::size_t i = 0; i < workers; ++i) processes.start_real(client);
-    if (client.pool().wait_for_workers(workers, bench::kPatience) < workers) {
-      throw std::runtime_error("the workers did not come; " + client.fault());
-    }
-    localization::MapLocalizer localizer(config.localizer, map, client.pool());
-    search(options, localizer, drives, client, processes);  // the workers ask for what they need
-    const Result result = search(options, localizer, drives, client, processes);
-    if (!client.fault().empty()) throw std::runtime_error(client.fault());
-    if (first.stops.empty()) first = result;
-    if (!same(first, result)) throw std::runtime_error("other poses with other workers");
-    double sum_ms = 0.0;
-    for (const double ms : result.wall_ms) sum_ms += ms;
-    const double cpu_s =
-        result.cpu_s + result.workers_s / static_cast<double>(std::max<std::size_t>(1, workers));
-    if (workers == 1) {
-      one_ms = sum_ms;
-      one_cpu_s = cpu_s;
-    }
-    const auto count = static_cast<double>(result.wall_ms.size());
-    std::printf(
-        "| %zu | %zu of %zu | %zu | %.1f | %.1f | %.1f | %.1f | %.1f | %.2f | %.2f |\n", workers,
-        result.found, options.starts, result.wall_ms.size(), median(result.wall_ms), sum_ms / count,
-        *std::max_element(result.wall_ms.begin(), result.wall_ms.end()), 1e3 * result.cpu_s / count,
-        1e3 * result.workers_s / count, one_ms / sum_ms, one_cpu_s / cpu_s);
-    std::fflush(stdout);
+    teams.emplace_back(options, workers, config, map);
   }
+  std::vector<Result> results(teams.size());
+  for (std::size_t round = 0; round <= options.rounds; ++round) {
+    std::optional<Result> first;  // seeds of matches go on from round to round
+    std::size_t i = 0;
+    for (Team& team : teams) {
+      const Result result = team.search(options, drives);
+      if (!first) first = result;
+      if (!same(*first, result)) throw std::runtime_error("other poses with other workers");
+      if (round > 0) append(results[i], result);  // in the first one workers ask for what they need
+      ++i;
+    }
+  }
+  print(results, options.least_workers, options.starts * options.rounds);
 }
 
 }  // namespace
@@ -221,6 +278,10 @@ int main(int argc, char** argv) {
   app.add_option("--workers", options.most_workers, "of the last row")
       ->capture_default_str()
       ->check(command_line::range(0, 64));
+  app.add_option("--rounds", options.rounds, "through all starts, after one to warm up")
+      ->capture_default_str()
+      ->check(command_line::range(1, 100));
+  app.add_option("--scheduling", options.scheduling, "of the workers' searches, as of ga_worker");
   app.add_option("--map", options.map, "map.pb of the floor: read, or written if it is not there");
   if (const auto exit_code = app.parse_or_report(argc, argv)) return *exit_code;
   try {

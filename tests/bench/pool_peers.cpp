@@ -123,8 +123,9 @@ Workers::~Workers() {
   }
 }
 
-void Workers::start_real(const PoolClient& client) {
-  children_.emplace_back("ga_worker", this_program().parent_path() / "ga_worker", client.flags(),
+void Workers::start_real(const PoolClient& client, std::vector<std::string> flags) {
+  for (std::string& flag : client.flags()) flags.push_back(std::move(flag));
+  children_.emplace_back("ga_worker", this_program().parent_path() / "ga_worker", flags,
                          "/dev/null");
 }
 

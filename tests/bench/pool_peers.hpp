@@ -95,7 +95,7 @@ class Workers {
   ~Workers();
 
   /// Starts a real worker of one slot.
-  void start_real(const PoolClient& client);
+  void start_real(const PoolClient& client, std::vector<std::string> flags = {});
   /// Starts a process with `count` workers that answer without searching (stub_workers.hpp), where
   /// `flags` say; each answer takes so long.
   void start_stubs(std::vector<std::string> flags, std::size_t count,

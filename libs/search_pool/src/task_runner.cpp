@@ -4,10 +4,27 @@
 #include <stdexcept>
 #include <utility>
 
+#include <sched.h>
+
 namespace topogeo::search_pool {
 
-TaskRunner::TaskRunner(std::size_t slots, std::size_t bytes_per_slot, OutcomeHandler on_outcome)
-    : bytes_per_slot_(bytes_per_slot), on_outcome_(std::move(on_outcome)), started_(slots) {
+namespace {
+
+void schedule_this_thread(SlotScheduling scheduling) {
+  if (scheduling == SlotScheduling::kNormal) return;
+  const int policy = scheduling == SlotScheduling::kIdle ? SCHED_IDLE : SCHED_BATCH;
+  const sched_param priority{};
+  static_cast<void>(sched_setscheduler(0, policy, &priority));  // 0: this thread
+}
+
+}  // namespace
+
+TaskRunner::TaskRunner(std::size_t slots, std::size_t bytes_per_slot, SlotScheduling scheduling,
+                       OutcomeHandler on_outcome)
+    : bytes_per_slot_(bytes_per_slot),
+      scheduling_(scheduling),
+      on_outcome_(std::move(on_outcome)),
+      started_(slots) {
   if (slots == 0) throw std::invalid_argument("slots: 0, allowed is 1 or more");
   threads_.reserve(slots);
   for (std::size_t i = 0; i < slots; ++i) threads_.emplace_back([this, i] { work(i); });
@@ -64,6 +81,7 @@ std::optional<ReadyJob> TaskRunner::next_job(std::size_t slot) {
 }
 
 void TaskRunner::work(std::size_t slot) {
+  schedule_this_thread(scheduling_);
   SlotMatchers matchers(bytes_per_slot_);
   while (const std::optional<ReadyJob> job = next_job(slot)) {
     Outcome outcome = solve(matchers, *job);

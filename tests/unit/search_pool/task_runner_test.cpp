@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include "worker_fixture.hpp"
 
@@ -29,14 +31,17 @@ constexpr std::size_t kMemory_bytes = std::size_t{32} << 20U;
 
 class TaskRunnerTest : public ::testing::Test {
  protected:
-  void start(std::size_t slots, std::size_t bytes_per_slot = kMemory_bytes) {
-    runner_ = std::make_unique<TaskRunner>(slots, bytes_per_slot, [this](TaskRunner::Outcome o) {
-      hold_.wait();
-      const std::lock_guard lock(mutex_);
-      order_.push_back(o.ticket);
-      outcomes_.emplace(o.ticket, std::move(o));
-      came_.notify_all();
-    });
+  void start(std::size_t slots, std::size_t bytes_per_slot = kMemory_bytes,
+             SlotScheduling scheduling = SlotScheduling::kNormal) {
+    runner_ = std::make_unique<TaskRunner>(slots, bytes_per_slot, scheduling,
+                                           [this](TaskRunner::Outcome o) {
+                                             hold_.wait();
+                                             const std::lock_guard lock(mutex_);
+                                             policies_.insert(sched_getscheduler(0));
+                                             order_.push_back(o.ticket);
+                                             outcomes_.emplace(o.ticket, std::move(o));
+                                             came_.notify_all();
+                                           });
   }
   bool wait_for(std::size_t count) {
     std::unique_lock lock(mutex_);
@@ -59,6 +64,7 @@ class TaskRunnerTest : public ::testing::Test {
   std::condition_variable came_;
   std::map<std::uint64_t, TaskRunner::Outcome> outcomes_;
   std::vector<std::uint64_t> order_;
+  std::set<int> policies_;  // of the threads that search
   std::vector<MapPointer> maps_{room(0, 0.0), room(1, 0.2), room(2, 0.4)};
   std::unique_ptr<TaskRunner> runner_;  // last: stops before what its threads use goes
 };
@@ -149,8 +155,24 @@ TEST_F(TaskRunnerTest, ItEndsWithTasksInHand) {
   EXPECT_LE(outcomes_.size(), 50U);
 }
 
+TEST_F(TaskRunnerTest, OnlyThreadsThatSearchAreScheduledOtherwise) {
+  const int here = sched_getscheduler(0);
+  for (const auto& [scheduling, policy] : {std::pair{SlotScheduling::kNormal, SCHED_OTHER},
+                                           {SlotScheduling::kBatch, SCHED_BATCH},
+                                           {SlotScheduling::kIdle, SCHED_IDLE}}) {
+    policies_.clear();
+    outcomes_.clear();
+    start(2, kMemory_bytes, scheduling);
+    for (std::uint64_t i = 0; i < 4; ++i) runner_->add(ready_job(maps_[0], maps_[1], i));
+    ASSERT_TRUE(wait_for(4));
+    EXPECT_EQ(policies_, std::set<int>{policy});
+    EXPECT_EQ(sched_getscheduler(0), here);
+  }
+}
+
 TEST(TaskRunner, NeedsASlot) {
-  EXPECT_THROW(TaskRunner(0, kMemory_bytes, [](const auto&) {}), std::invalid_argument);
+  EXPECT_THROW(TaskRunner(0, kMemory_bytes, SlotScheduling::kNormal, [](const auto&) {}),
+               std::invalid_argument);
 }
 
 }  // namespace

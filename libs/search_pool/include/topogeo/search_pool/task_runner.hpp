@@ -19,6 +19,14 @@
 
 namespace topogeo::search_pool {
 
+/// How the threads that search share processors with others (Linux, sched(7)).
+enum class SlotScheduling : std::uint8_t {
+  kNormal,
+  kBatch,  ///< the same share, but a search that begins does not interrupt what runs
+  kIdle,   ///< whatever else wants to run comes first, at once; on a machine that is busy without
+           ///< searches they hardly go on
+};
+
 /// Safe to call from any thread. Clients are served in turn; slots share a queue and nothing else.
 class TaskRunner {
  public:
@@ -32,8 +40,9 @@ class TaskRunner {
   using OutcomeHandler = std::function<void(Outcome outcome)>;
 
   /// Starts `slots` (>= 1) threads. Each keeps about `bytes_per_slot` of what it made of local
-  /// maps.
-  TaskRunner(std::size_t slots, std::size_t bytes_per_slot, OutcomeHandler on_outcome);
+  /// maps. Where the system refuses the `scheduling` it stays normal.
+  TaskRunner(std::size_t slots, std::size_t bytes_per_slot, SlotScheduling scheduling,
+             OutcomeHandler on_outcome);
   TaskRunner(const TaskRunner&) = delete;
   TaskRunner& operator=(const TaskRunner&) = delete;
   /// Ends the jobs that run and drops those that wait.
@@ -57,6 +66,7 @@ class TaskRunner {
   static Outcome solve(SlotMatchers& matchers, const ReadyJob& job);
 
   std::size_t bytes_per_slot_;
+  SlotScheduling scheduling_;
   OutcomeHandler on_outcome_;
   mutable std::mutex mutex_;  // guards all below but the threads
   std::condition_variable changed_;
