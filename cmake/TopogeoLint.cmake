@@ -14,7 +14,7 @@ set(TOPOGEO_LINT_UNITS
   services    "^services/"
   localizing  "^tests/unit/(geometry|scan|support|voronoi|topomap|localization|search_pool|pipeline)(/|$)"
   units       "^tests/unit/"
-  integration "^tests/(integration|faults|fuzz|sanitizers)"
+  integration "^tests/(container|integration|faults|fuzz|sanitizers)"
   bench       "^tests/bench")
 
 # Call it when all targets exist. Generated files and files of no unit are left out.

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # DDS security with the material of make_keys: a whole run is that of one process; strangers get nothing and are
-# counted and named: without certificate, of a foreign authority, expired, revoked; a worker that writes what is
-# not its own is denied, even if its own side lets it.
+# counted and named: without certificate, of a foreign authority, expired, revoked; a worker that writes the map or
+# motion commands is denied, even if its own side lets it.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need openssl
+need faketime
 need_programs
 export TOPOGEO_DDS_PARTICIPANT=udp_only
 make_keys=$source_dir/deploy/security/make_keys
@@ -21,17 +22,40 @@ start() {  # FOLDER SERVICE OPTIONS...
   cleanups+=("kill $pid")
 }
 stop() { kill "$pid"; wait "$pid" || fail "a service ended with $?"; }
-refused() {  # how often peers were refused, says the planner
-  status "$keys/robot" planner | awk '/^  fault .* peer refused/ { print $2; found = 1 } END { if (!found) print 0 }'
+
+before=0  # peers that the planner had refused
+# counts NAME: whether the planner has refused more peers than before, and the last one is NAME.
+counts() {
+  status "$keys/robot" planner > "$work/planner.status" || return 1
+  local refused
+  refused=$(awk '/^  fault .* peer refused/ { print $2 }' "$work/planner.status")
+  [ "${refused:-0}" -gt "$before" ] && grep -q "last error .* peer refused: $1" "$work/planner.status" || return 1
+  before=$refused
 }
-# A planner that is late with its status on a busy machine fails one look.
-count_refused() { before=$(refused); }
-more_refused_than() { [ "$(refused)" -gt "$1" ]; }
+
+# refuses WHO NAME ENVIRONMENT...: a program that asks for the status with this environment gets nothing, and the
+# planner counts and names it.
+refuses() {
+  env "${@:3}" "$bin/topogeo" status --partition $partition --watch > "$work/$1.log" 2>&1 &
+  pid=$!
+  cleanups+=("kill $pid")
+  eventually 20 counts "$2" ||
+    { cat "$work/$1.log" "$work/planner.status"; fail "the stranger is not counted and named: $1"; }
+  kill $pid || fail "the stranger ended by itself: $1"
+  grep -q '^planner' "$work/$1.log" && fail "a stranger gets a status: $1"
+  return 0
+}
+
+# 400 days ago, the steady clock apart. The command `faketime` would be a process of its own to end.
+past=(LD_PRELOAD="$(find /usr/lib -name libfaketimeMT.so.1 | head -n 1)" FAKETIME=-400d
+  FAKETIME_DONT_FAKE_MONOTONIC=1)
 
 step "keys"
-"$make_keys" "$keys" issue robot
+# What is valid today and was valid then, and what was valid for a month.
+env "${past[@]}" "$make_keys" "$keys" issue robot
+env "${past[@]}" DAYS=30 "$make_keys" "$keys" issue old status
 "$make_keys" "$keys" issue pc1 ga_worker status
-"$make_keys" "$work/foreign" issue pc1 ga_worker status
+"$make_keys" "$work/foreign" issue abroad status
 [ -z "$(find "$keys" -name '*.key' -not -path '*/ca/*')" ] || fail "a key of an authority leaves ca"
 [ -z "$(find "$keys" -type f -perm /077)" ] || fail "others can read keys"
 sed -nE 's/^TOPOGEO_TOPIC\(\w+, *"(\w+)".*/\1/p' "$source_dir/libs/messaging/include/topogeo/messaging/topics.def" |
@@ -76,21 +100,12 @@ for number in {0..9}; do
   printf '%b' "$heartbeat" > "/dev/udp/127.0.0.1/$((7411 + 250 * TOPOGEO_DOMAIN + 2 * number))" || true
 done
 eventually 10 drops_unprotected || fail "a plain message in the name of a peer is not refused"
-eventually 10 count_refused || fail "the planner does not say what it refused"
-status "" > "$work/plain" && fail "a stranger without certificate gets a status"
-eventually 10 more_refused_than "$before" || fail "the stranger without certificate is not counted"
-status "$keys/robot" > "$work/named"
-grep -q "peer refused: 'topogeo" "$work/named" || fail "the stranger is not named"
-eventually 10 count_refused || fail "the planner does not say what it refused"
-TOPOGEO_SECURITY=$work/foreign/pc1 "$bin/topogeo" status --partition $partition --watch \
-  > "$work/foreign.log" 2>&1 &
-pid=$!
-cleanups+=("kill $pid")
-eventually 20 more_refused_than "$before" || fail "the stranger of a foreign authority is not counted"
-kill $pid
-grep -q running "$work/foreign.log" && fail "a stranger of a foreign authority gets a status"
+refuses "no certificate" "'topogeo status' ([0-9a-f.]*)" TOPOGEO_SECURITY=
+refuses "foreign authority" "'topogeo status' (/O=topogeo/CN=status.abroad;" TOPOGEO_SECURITY="$work/foreign/abroad"
 
 step "expired, renewed, revoked"
+# In the past nothing is wrong with it, and its own side accepts the planner.
+refuses expired "'topogeo status' (/O=topogeo/CN=status.old;" TOPOGEO_SECURITY="$keys/old" "${past[@]}"
 STARTDATE=20240101000000Z ENDDATE=20250101000000Z "$make_keys" "$keys" renew pc1 status
 status "$keys/pc1" > "$work/expired" && fail "an expired certificate is accepted"
 grep -q "was refused" "$work/expired" || { cat "$work/expired"; fail "an expired certificate has no clear error"; }
@@ -106,42 +121,83 @@ pid=$planner
 stop
 start "$keys/robot" planner  # reads the list of revoked certificates at its start
 planner=$pid
+before=0
 eventually 20 status "$keys/robot" > /dev/null || fail "the owner gets no status"
-eventually 10 count_refused || fail "the planner does not say what it refused"
-status "$work/stolen" > /dev/null && fail "a revoked certificate is accepted"
-eventually 10 more_refused_than "$before" || fail "the revoked certificate is not counted"
+refuses revoked "'topogeo status' (/O=topogeo/CN=status.pc1;" TOPOGEO_SECURITY="$work/stolen"
 pid=$planner
 stop
 
-step "a worker that writes the map"
-mkdir "$work/thief"
-cp -r "$keys/pc1/ga_worker" "$work/thief/map_store"
-secured "$work/thief" "$bin/map_store" --out "$work/thief/out" --partition $partition \
-  > "$work/thief.log" 2>&1 && fail "a worker may write the map"
-grep -q "denied by security" "$work/thief.log" || { cat "$work/thief.log"; fail "no clear error"; }
-# Its own side no longer forbids it: a governance without access control, as if its program were changed.
-sed 's#\(enable_write_access_control>\)true#\1false#; s#\(enable_read_access_control>\)true#\1false#;
-  s#\(enable_join_access_control>\)true#\1false#' "$keys/ca/governance.xml" > "$work/governance.xml"
-openssl smime -sign -text -in "$work/governance.xml" -out "$work/thief/map_store/governance.p7s" \
-  -signer "$keys/ca/permissions_ca.pem" -inkey "$keys/ca/permissions_ca.key"
+step "a worker that writes the map and motion commands"
+write_commands() {  # FOLDER ENVIRONMENT...: as the navigator
+  env TOPOGEO_SECURITY="$1" "${@:2}" "$build/tests/command_writer" "$TOPOGEO_DOMAIN" $partition \
+    > "$work/commands" 2> "$work/command_writer.log" &
+  pid=$!
+  cleanups+=("kill $pid")
+}
+has_written() { [ "$(wc -l < "$work/commands")" -ge "$1" ]; }
+ask() { status "$keys/robot" "$1" > "$work/$1.status"; }  # SERVICE
+hears_commands() { ask sensor_gateway && grep -Eq '^  received +motion_command +[1-9]' "$work/sensor_gateway.status"; }
+believes() { grep -q 'waiting: for scans' "$work/local_mapper.log"; }
+# denies SERVICE NAME WHAT: whether the last one that the service refused is the worker under this name.
+denies() {
+  ask "$1" && grep -q '^  fault .* peer refused' "$work/$1.status" &&
+    grep -q "refused: 'robot/$2' (/O=topogeo/CN=ga_worker.pc1; [0-9a-f.]*) is denied to $3" "$work/$1.status"
+}
+
+"$bin/topogeo" config --devices > "$work/devices.yaml"
+start "$keys/robot" sensor_gateway --devices "$work/devices.yaml" \
+  --laser-port "$work/no_laser" --base-port "$work/no_base"
+gateway=$pid
 start "$keys/robot" local_mapper
 mapper=$pid
+eventually 20 status "$keys/robot" sensor_gateway > /dev/null || fail "the sensor gateway does not start"
 eventually 20 status "$keys/robot" local_mapper > /dev/null || fail "the local mapper does not start"
-start "$work/thief" map_store --out "$work/thief/out"
-thief=$pid
-sleep 5
-if grep -q 'waiting: for scans' "$work/local_mapper.log"; then
-  cat "$work/local_mapper.log"
-  fail "the local mapper believes a worker"
-fi
-grep "peer refused" "$work/local_mapper.log" > "$work/refusals" || fail "the worker that writes the map is not counted"
-pid=$thief
-kill "$pid" 2> /dev/null || { cat "$work/map_store.log"; fail "the changed map store did not even start"; }
-wait "$pid" 2> /dev/null || true
+mkdir "$work/thief"
+cp -r "$keys/pc1/ga_worker" "$work/thief/map_store"
+cp -r "$keys/pc1/ga_worker" "$work/thief/navigator"
+denied_by_itself() {  # PROGRAM OPTIONS...
+  secured "$work/thief" timeout 20 "$@" > "$work/thief.log" 2>&1 && fail "a worker may do the work of another"
+  grep -q "denied by security" "$work/thief.log" || { cat "$work/thief.log"; fail "no clear error of $1"; }
+}
+denied_by_itself "$bin/map_store" --out "$work/thief/out" --partition $partition
+denied_by_itself "$build/tests/command_writer" "$TOPOGEO_DOMAIN" $partition
+
+# steal HOW ENVIRONMENT...: its own side no longer forbids it.
+steal() {
+  write_commands "$work/thief" "${@:2}"
+  local commands=$pid
+  eventually 20 denies sensor_gateway navigator "write topogeo/v[0-9]*/motion_command" ||
+    { cat "$work/sensor_gateway.status"; fail "the worker that writes motion commands is not counted and named: $1"; }
+  env TOPOGEO_SECURITY="$work/thief" "${@:2}" "$bin/map_store" --out "$work/thief/out" --partition $partition \
+    > "$work/map_store.log" 2>&1 &
+  local store=$!
+  cleanups+=("kill $store")
+  eventually 20 denies local_mapper map_store "" ||
+    { cat "$work/local_mapper.status"; fail "the worker that writes the map is not counted and named: $1"; }
+  eventually 60 has_written $(($(wc -l < "$work/commands") + 40)) || fail "the worker ends its motion commands: $1"
+  eventually 20 ask sensor_gateway || fail "the sensor gateway gives no status"
+  grep -Eq '^  received +motion_command +0,' "$work/sensor_gateway.status" ||
+    { cat "$work/sensor_gateway.status"; fail "the gateway takes a worker's motion commands: $1"; }
+  believes && { cat "$work/local_mapper.log"; fail "the local mapper believes a worker: $1"; }
+  kill "$store" "$commands" || { cat "$work/map_store.log"; fail "the changed programs did not even start: $1"; }
+  wait "$store" "$commands" || true
+}
+steal "changed program" LD_PRELOAD="$build/tests/permissive.so"
+# A governance without access control.
+sed 's#\(enable_write_access_control>\)true#\1false#; s#\(enable_read_access_control>\)true#\1false#;
+  s#\(enable_join_access_control>\)true#\1false#' "$keys/ca/governance.xml" > "$work/governance.xml"
+for service in map_store navigator; do
+  openssl smime -sign -text -in "$work/governance.xml" -out "$work/thief/$service/governance.p7s" \
+    -signer "$keys/ca/permissions_ca.pem" -inkey "$keys/ca/permissions_ca.key"
+done
+steal "changed governance"
+
+write_commands "$keys/robot"
+navigator=$pid
+eventually 20 hears_commands || fail "the gateway does not hear the navigator"
 start "$keys/robot" map_store --out "$work/out"
-believes() { grep -q 'waiting: for scans' "$work/local_mapper.log"; }
-eventually 20 believes || { cat "$work/local_mapper.log"; fail "the local mapper does not hear the map store"; }
+eventually 20 believes ||
+  { cat "$work/local_mapper.log"; fail "the local mapper does not hear the map store"; }
 stop
-pid=$mapper
-stop
-cat "$work/refusals"; step "the end"
+for pid in $navigator $gateway $mapper; do stop; done
+step "the end"
