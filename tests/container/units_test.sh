@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The packages on a machine with systemd, as the page of deployment has it: the units come up and find each other,
-# root sees them, and what dies or hangs is started again.
+# root sees them, what dies or hangs is started again, and busy workers do not starve who drives the robot.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 need_image
@@ -55,17 +55,80 @@ all_run_for_their_user() { here sudo -u topogeo --preserve-env=TOPOGEO_DOMAIN to
 eventually 30 all_run_for_their_user || fail "not all services are well for their user"
 eventually 30 here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
 
+[ -x "$build/tests/drive_watch" ] || fail "drive_watch is not built"
+docker cp "$build/tests/drive_watch" $machine:/root/ > /dev/null
+docker exec -d $machine sh -c 'exec nice -n -20 /root/drive_watch --domain 101 --log-level off > /root/motion'
+docker exec -d $machine sh -c 'exec nice -n -20 /root/drive_watch --commands --log-level off > /root/commands'
+now_ms() { echo $(($(date +%s%N) / 1000000)); }
+drives() { here tail -n 1 /root/motion | awk '{ exit !($2 > 0.1) }'; }
+is_new() { ! is_state topogeo-navigator MainPID "$1" && ! is_state topogeo-navigator MainPID 0; }
+
+# Prints how the commands came meanwhile.
+drive_to() {  # X,Y
+  local from
+  from=$(now_ms)
+  here topogeo goto "$1" --wait-seconds 60 --patience 120 > "$work/goto.log" 2>&1 ||
+    { tail -n 5 "$work/goto.log"; here topogeo status || true; fail "the robot does not get to $1"; }
+  here cat /root/commands | awk -v from="$from" '$1 > from && ($2 > 0 || $3 > 0) {
+      if (n++) { sum += $1 - last; if ($1 - last > most) most = $1 - last }
+      last = $1
+    }
+    END { printf "       %d commands, every %.1f ms, at most %d ms apart\n", n, (n > 1 ? sum / (n - 1) : 0), most }'
+}
+
+# On the way to X,Y the navigator freezes: the gateway stops the robot before systemd starts another navigator.
+freeze_on_the_way_to() {  # X,Y
+  local navigator from until drive
+  navigator=$(state topogeo-navigator MainPID)
+  here topogeo goto "$1" --wait-seconds 60 > "$work/goto.log" 2>&1 &
+  drive=$!
+  eventually 60 drives || fail "the robot does not set out for $1"
+  from=$(now_ms)
+  here kill -STOP "$navigator"
+  eventually 60 is_new "$navigator" || fail "the navigator that hangs is not started again"
+  until=$(here systemctl show --timestamp=unix -P ExecMainStartTimestamp topogeo-navigator)
+  # It stands for the last ten lines before, half a second.
+  here cat /root/motion | awk -v from="$from" -v until="${until#@}000" '$1 > from && $1 < until {
+      if ($2 > 0.005 || $3 > 0.005) { last = $1; still = 0 } else { ++still }
+    }
+    END { printf "       stands after %d ms\n", (last ? last - from : 0); exit still < 10 }' ||
+    fail "the robot drives on without its navigator"
+  eventually 60 all_run || { cat "$work/status"; fail "not all services are well after the navigator hung"; }
+  wait $drive || true  # with the new navigator, if it came soon enough for who gave the goal
+}
+
 step "what dies or hangs"
 others=$(state topogeo-local-mapper MainPID)
-for signal in KILL STOP; do
-  before=$(state topogeo-navigator MainPID)
-  here kill -$signal "$before"
-  replaced() { ! is_state topogeo-navigator MainPID "$before" && ! is_state topogeo-navigator MainPID 0; }
-  eventually 60 replaced || fail "SIG$signal: the navigator is not started again"
-  eventually 60 all_run || { cat "$work/status"; fail "SIG$signal: not all services are well"; }
-  step "SIG$signal"
-done
+before=$(state topogeo-navigator MainPID)
+here kill -KILL "$before"
+eventually 60 is_new "$before" || fail "the navigator that died is not started again"
+eventually 60 all_run || { cat "$work/status"; fail "not all services are well after the navigator died"; }
+step "the navigator hangs on a drive"
+freeze_on_the_way_to 3,0
 is_state topogeo-local-mapper MainPID "$others" || fail "another service was started again, too"
+
+step "eight busy workers"
+# With all settings of the unit of workers, and as busy as none is.
+here sh -c 'sed "s/^Type=.*/Type=exec/; /^WatchdogSec=/d; s|^ExecStart=.*|ExecStart=/bin/sh -c \"while :; do :; done\"|" \
+    /lib/systemd/system/topogeo-worker@.service > /etc/systemd/system/busy-worker@.service
+  systemctl daemon-reload
+  systemctl start busy-worker@1 busy-worker@2 busy-worker@3 busy-worker@4 busy-worker@5 busy-worker@6 busy-worker@7 \
+    busy-worker@8'
+# As the kernel has it, in control groups of version 1 or 2. All workers together are one group beside the services.
+weight() {  # UNIT
+  local group
+  group=$(state "$1" ControlGroup)
+  here cat "/sys/fs/cgroup/cpu$group/cpu.shares" "/sys/fs/cgroup$group/cpu.weight" 2> /dev/null || true
+}
+worker_weight=$(weight "$(state busy-worker@1 Slice)")
+[ -n "$worker_weight" ] || fail "the group of workers has no weight"
+for unit in navigator sensor-gateway; do
+  [ "$(weight topogeo-$unit)" -ge $((worker_weight * 10)) ] || fail "the workers weigh more than a tenth of topogeo-$unit"
+done
+drive_to 0.4,0.2
+freeze_on_the_way_to 3,0
+is_state busy-worker@8 ActiveState active || fail "the workers were not busy"
+here systemctl stop 'busy-worker@*'
 
 step "a backup, and the end"
 here sudo -u topogeo topogeo store snapshot /var/lib/topogeo/map before-the-fair > /dev/null
