@@ -92,8 +92,9 @@ void NavigatorService::listen_to_sensors() {
   service_.subscribe<msg::LivePose>(
       [this](const msg::LivePose& pose) {
         if (pose.mode() == msg::kModeMarkov) return;  // its own
-        if (!is_newer(Source::kPose, pose.stamp_ns())) return;
-        navigator_.add(service::to_pose_fix(service::from_msg(pose)));
+        // The whole message first: the stamp of one that is refused must not count.
+        const navigation::PoseFix fix = service::to_pose_fix(service::from_msg(pose));
+        if (is_newer(Source::kPose, fix.stamp_ns)) navigator_.add(fix);
       },
       {.main_input = true});
   service_.subscribe<msg::Odometry>([this](const msg::Odometry& odometry) {

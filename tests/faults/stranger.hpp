@@ -122,7 +122,7 @@ class AbsurdSamples {
     segment.stops().resize(2);
     static_cast<void>(segments_.write(segment));
     msg::LivePose pose;
-    messaging::set_header(pose, "robot", -kYear2250_ns, number);
+    messaging::set_header(pose, "robot", kYear2250_ns, number);
     pose.confidence(-1e300);
     static_cast<void>(poses_.write(pose));
   }
