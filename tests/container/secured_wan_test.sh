@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# Two sites with security, joined by a WireGuard tunnel and nothing else: addresses of the tunnel are the peers, as
+# discovery servers carry no security. Sites are network namespaces. The map of a log is that of one process.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+need wireguard-go
+need wg
+need iptables
+need ip
+need openssl
+need_programs
+[ -c /dev/net/tun ] || skip "there is no /dev/net/tun"
+unshare --net true 2> /dev/null || skip "this machine allows no network namespaces"
+claim_domain
+make_log 100 "$work/log.clf"
+"$bin/topogeo" map --log "$work/log.clf" --out "$work/alone" > /dev/null 2>&1
+"$source_dir/deploy/security/make_keys" "$work/keys" issue robot
+"$source_dir/deploy/security/make_keys" "$work/keys" issue pc1 ga_worker
+
+name_of() { echo "topogeo-$$-$1"; }
+at() { ip netns exec "$(name_of "$1")" "${@:2}"; }  # SITE COMMAND...
+
+step "a tunnel"
+declare -A address=([robot]=10.77.0.1 [pc1]=10.77.0.2) tunnel_address=([robot]=10.99.0.1 [pc1]=10.99.0.2)
+for site in robot pc1; do
+  ip netns add "$(name_of $site)"
+  cleanups+=("ip netns del $(name_of $site)")
+  (umask 077; wg genkey > "$work/$site.key")
+  wg pubkey < "$work/$site.key" > "$work/$site.public"
+done
+at robot ip link add line type veth peer name line netns "$(name_of pc1)"
+for site in robot pc1; do
+  at $site ip address add "${address[$site]}/24" dev line
+  at $site ip link set line up
+  at $site ip link set lo up
+done
+
+# tunnel SITE PEER. The name of the interface is also that of a socket of this machine.
+tunnel() {
+  local interface=wg$$${1:0:2}
+  at "$1" wireguard-go -f "$interface" > "$work/$1.wireguard" 2>&1 &
+  cleanups+=("kill $!")
+  eventually 20 at "$1" wg show "$interface" > /dev/null 2>&1 || { cat "$work/$1.wireguard"; fail "no tunnel"; }
+  at "$1" wg set "$interface" listen-port 51820 private-key "$work/$1.key" \
+    peer "$(cat "$work/$2.public")" allowed-ips "${tunnel_address[$2]}/32" endpoint "${address[$2]}:51820"
+  at "$1" ip address add "${tunnel_address[$1]}/24" dev "$interface"
+  at "$1" ip link set "$interface" mtu 1420 up
+  at "$1" iptables -A OUTPUT -o lo -j ACCEPT
+  at "$1" iptables -A OUTPUT -o "$interface" -j ACCEPT
+  at "$1" iptables -A OUTPUT -p udp --dport 51820 -j ACCEPT
+  at "$1" iptables -A OUTPUT -j DROP
+}
+tunnel robot pc1
+tunnel pc1 robot
+
+export TOPOGEO_DDS_PARTICIPANT=wan TOPOGEO_PEERS='10.99.0.1;10.99.0.2'
+start_at() {  # SITE PROGRAM OPTIONS...
+  TOPOGEO_SECURITY=$work/keys/$1 ip netns exec "$(name_of "$1")" "$bin/$2" "${@:3}" > "$work/$2.log" 2>&1 &
+  cleanups+=("kill $!")
+}
+workers() { TOPOGEO_SECURITY=$work/keys/robot at robot "$bin/topogeo" workers 2>&1; }
+is_there() { workers | grep "^pc1 " > /dev/null; }
+has_worked() { workers | awk '$1 == "pc1" && $5 > 0 { found = 1 } END { exit !found }'; }
+
+step "a log with a worker at the other site"
+start_at pc1 ga_worker --slots 1 --name pc1
+eventually 60 is_there || { workers; fail "the worker at the other site is not found"; }
+start_at robot map_store --out "$work/tunnelled" --title log.clf
+start_at robot localizer --replay --wait-workers 1 --wait-seconds 30
+start_at robot local_mapper --replay
+start_at robot planner
+start_at robot sensor_gateway --log "$work/log.clf" --rate lossless
+eventually 180 test -e "$work/tunnelled/trajectory.tum" || { tail -n 3 "$work"/*.log; fail "no map in time"; }
+eventually 20 test -e "$work/tunnelled/map.pb" || fail "no map in time"
+eventually 20 has_worked || { workers; fail "the worker at the other site had no work"; }
+same_results "$work/tunnelled" "$work/alone"
+step "the end"
