@@ -38,7 +38,7 @@ done
 # tunnel SITE PEER. The name of the interface is also that of a socket of this machine.
 tunnel() {
   local interface=wg$$${1:0:2}
-  at "$1" wireguard-go -f "$interface" > "$work/$1.wireguard" 2>&1 &
+  ip netns exec "$(name_of "$1")" wireguard-go -f "$interface" > "$work/$1.wireguard" 2>&1 &
   cleanups+=("kill $!")
   eventually 20 at "$1" wg show "$interface" > /dev/null 2>&1 || { cat "$work/$1.wireguard"; fail "no tunnel"; }
   at "$1" wg set "$interface" listen-port 51820 private-key "$work/$1.key" \
