@@ -108,8 +108,8 @@ void NavigatorService::listen_to_sensors() {
     if (is_newer(Source::kSonar, round.stamp_ns)) navigator_.add(round);
   });
   service_.subscribe<msg::BaseStatus>([this](const msg::BaseStatus& base) {
-    if (!is_newer(Source::kBase, base.stamp_ns())) return;
-    navigator_.add(service::base_from_msg(base));
+    const auto status = service::base_from_msg(base);
+    if (is_newer(Source::kBase, status.stamp_ns)) navigator_.add(status);
   });
   service_.subscribe<msg::LaserStatus>([this](const msg::LaserStatus& laser) {
     if (!is_newer(Source::kLaser, laser.stamp_ns())) return;
@@ -119,6 +119,16 @@ void NavigatorService::listen_to_sensors() {
 }
 
 bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
+  // One that is from the future would make all that follow it old, and the robot stand for good.
+  constexpr std::int64_t kAhead_ns = 1'000'000'000;
+  const bool sets_clock = source == Source::kScan || source == Source::kOdometry;
+  if (!sets_clock) {
+    const std::int64_t now_ns = clock_.now_ns(steady_now_ns());
+    if (stamp_ns > now_ns && stamp_ns - now_ns > kAhead_ns) {
+      service_.status().add_drops("from the future");
+      return false;
+    }
+  }
   std::optional<std::int64_t>& last_ns = last_ns_.at(static_cast<std::size_t>(source));
   if (last_ns && stamp_ns <= *last_ns) {
     // Odometry that came with a scan may be newer than what comes by itself.

@@ -44,7 +44,8 @@ class NavigatorService {
   void on_route(const msg::Route& message);
   void on_scan(const msg::Scan& message);
   void take_map();
-  /// False, and counted, for a message that is not newer than the one before.
+  /// False, and counted, for a message that is not newer than the one before, or that is ahead of
+  /// scans and odometry, which set the clock.
   bool is_newer(Source source, std::int64_t stamp_ns);
   /// Sets the clock by a message that has just come.
   void note_stamp(std::int64_t stamp_ns);

@@ -3,6 +3,8 @@
 #include <csignal>
 #include <cstdint>
 
+#include "topogeo/service/conversions.hpp"
+
 #include "navigator_fixture.hpp"
 
 namespace topogeo::test {
@@ -73,6 +75,19 @@ TEST_F(NavigatorOnRobot, WhatIsOfAnotherRobotOrUnusableDrivesNothing) {
   send_goal(1, kGoal_m);
   ASSERT_TRUE(wait_for([&] { return status_->goal_id() == 1 && !is(msg::kNavigatorDriving); }));
   robot_id_ = "robot";
+  EXPECT_TRUE(wait_for([&] { return is(msg::kNavigatorArrived); })) << status_->message();
+}
+
+TEST_F(NavigatorOnRobot, APoseFromTheFutureDoesNotMakeAllOthersOld) {
+  start();
+  service::LivePose pose;
+  pose.stamp_ns = 8'000'000'000'000'000'000;  // in 2223
+  pose.status = {localization::LocalizationState::kTracking, 0.9};
+  pose.T_map_robot = robot_.T_world_robot();
+  pose.covariance = 1e-4 * Eigen::Matrix3d::Identity();
+  ASSERT_TRUE(poses_.write(service::to_msg(pose, "robot")));
+  ASSERT_TRUE(wait_for([&] { return drops("from the future") > 0; }));
+  send_goal(1, kGoal_m);
   EXPECT_TRUE(wait_for([&] { return is(msg::kNavigatorArrived); })) << status_->message();
 }
 
