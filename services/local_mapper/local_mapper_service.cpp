@@ -61,6 +61,7 @@ void LocalMapperService::on_last_stop(const service::StoreClient::Answer& answer
         storage::parse_local_maps(*answer.bytes, "snapshot");
     if (stops.empty()) throw std::invalid_argument("no stop came");
     mapper_.resume(stops.back());
+    resumed_ = {stops.back().odometry_epoch, stops.back().sequence};
     spdlog::info("goes on after stop {}", stops.back().stop.number);
   } catch (const std::exception& error) {
     service_.status().fault("no snapshot", error.what());
@@ -117,6 +118,10 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
   messaging::StatusPublisher& status = service_.status();
   const std::uint64_t sequence = message.sequence_number();
   const std::string name = "scan " + std::to_string(sequence);
+  // A log that is read again brings the scans up to the last stop once more.
+  if (replay_ && !odometry_epoch_ && resumed_ && resumed_->first == message.odometry_epoch()) {
+    next_sequence_ = resumed_->second + 1;
+  }
   // A gateway with devices may be running already; a log begins with its first scan.
   const bool joins = !odometry_epoch_ && !replay_;
   const bool other_source = odometry_epoch_ && odometry_epoch_ != message.odometry_epoch();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/local_map.h"
@@ -59,7 +60,9 @@ class LocalMapperService {
   std::optional<msg::StoredMap> stored_;
   std::optional<service::StoreClient> store_;
   std::optional<std::uint64_t> odometry_epoch_;  // of the last scan
-  std::uint64_t next_sequence_ = 0;              // of the scan that is expected
+  /// Epoch and scan of the stop that the session goes on after.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> resumed_;
+  std::uint64_t next_sequence_ = 0;  // of the scan that is expected
   std::uint64_t scans_used_ = 0;
   std::int64_t last_stamp_ns_ = std::numeric_limits<std::int64_t>::min();
   std::optional<Geometry> geometry_;

@@ -26,7 +26,13 @@ stop_mapping
 step "each service killed and started again"
 rate=5 start_mapping killed
 eventually 30 test -e "$work/killed/map.sqlite"
-# The gateway begins its log again, so that it comes first. The local mapper: below.
+# The gateway begins its log again, so that it comes first; with it the local mapper, which by itself loses scans (below).
+sleep 1
+kill_on robot local_mapper
+kill_on robot sensor_gateway
+start_service local_mapper
+rate=5 start_service sensor_gateway
+step "local_mapper and sensor_gateway"
 for victim in sensor_gateway localizer map_store planner; do
   sleep 1
   [ ! -e "$work/killed/map.pb" ] || fail "the log ended before $victim was killed"
