@@ -172,6 +172,9 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
     add_security(qos, security / options.identity);
     send_whole_certificates(qos);
     secured_ = true;
+    const auto& discovery = qos.wire_protocol().builtin.discovery_config;
+    freeze_watch_.emplace(std::chrono::nanoseconds(
+        discovery.leaseDuration.to_ns() - discovery.leaseDuration_announcementperiod.to_ns()));
   }
   if (options.observe) {
     auto observer = std::make_unique<DiscoveryListener>();
@@ -252,6 +255,10 @@ std::vector<std::string> ParticipantCore::take_refusals() {
   return secured_ ? listener_->take() : std::vector<std::string>{};
 }
 
+std::optional<std::chrono::nanoseconds> ParticipantCore::stood_still() const {
+  return freeze_watch_ ? freeze_watch_->stood_still() : std::nullopt;
+}
+
 bool ParticipantCore::take_new_revocations() {
   return revocations_.take_change();
 }
@@ -275,6 +282,10 @@ std::vector<RemoteEndpoint> Participant::discovered() const {
 
 std::vector<std::string> Participant::take_refusals() const {
   return core_->take_refusals();
+}
+
+std::optional<std::chrono::nanoseconds> Participant::stood_still() const {
+  return core_->stood_still();
 }
 
 bool take_new_revocations(const Participant& participant) {

@@ -1,10 +1,12 @@
 // The Fast DDS side of a Participant.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,7 @@
 #include "topogeo/messaging/participant.hpp"
 
 #include "discovery_listener.hpp"
+#include "freeze_watch.hpp"
 #include "revocation_list.hpp"
 
 namespace topogeo::messaging {
@@ -45,6 +48,7 @@ class ParticipantCore {
   [[nodiscard]] bool secured() const { return secured_; }
   std::vector<std::string> take_refusals();
   bool take_new_revocations();
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;
   [[nodiscard]] std::vector<RemoteEndpoint> discovered() const;
   /// Why an endpoint was not made: what the plug-ins of security logged, empty without security.
   [[nodiscard]] std::string reason_of_denial() const;
@@ -52,6 +56,7 @@ class ParticipantCore {
  private:
   bool secured_ = false;
   RevocationList revocations_;
+  std::optional<FreezeWatch> freeze_watch_;    // with security
   std::unique_ptr<RefusalListener> listener_;  // called while participant_ lives
   DiscoveryListener* observer_ = nullptr;      // the listener of one that observes
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;

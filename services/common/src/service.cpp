@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <stdexcept>
+#include <string>
 
 #include "topogeo/messaging/revocations.hpp"
 #include "topogeo/support/cpu_time.hpp"
@@ -71,6 +73,13 @@ void Service::tick() {
   status_->set_counter("resident_bytes", static_cast<double>(support::resident_bytes()));
   status_->set_counter("open_files", static_cast<double>(support::open_files()));
   manager_.show(status_->text());
+  if (const auto still = participant_.stood_still()) {
+    throw std::runtime_error(
+        "stood still for " +
+        std::to_string(std::chrono::floor<std::chrono::seconds>(*still).count()) +
+        " s: with security its peers do not take it back; it meets them again when it is started "
+        "again");
+  }
   for (const std::string& refusal : participant_.take_refusals()) {
     status_->fault("peer refused", refusal);
   }

@@ -1,9 +1,11 @@
 // Membership in a DDS domain; writers and readers are made with one.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +46,11 @@ class Participant {
   /// With security: a line for each peer that was refused since the last call and for each thing
   /// that a peer was denied.
   [[nodiscard]] std::vector<std::string> take_refusals() const;
+
+  /// With security: how long this process stood still, once that was so long that its peers have
+  /// forgotten it. It takes them for authenticated and does not answer when they authenticate it
+  /// anew (Fast DDS 2.9.1), so only another participant meets them again.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> stood_still() const;
 
   /// The readers and writers of other participants that discovery has announced and that are still
   /// there; none without `observe`. Endpoints of its own are not among them.
