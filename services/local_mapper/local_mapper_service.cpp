@@ -202,7 +202,8 @@ void LocalMapperService::finish_if_complete() {
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);
   end.stage(msg::kStageLocalMapper);
-  const std::uint64_t stops = scans_used_ == 0 ? 0 : mapper_.last_stop().number + 1;
+  // All scans of a log that is read again may have been mapped before.
+  const std::uint64_t stops = scans_used_ == 0 && !resumed_ ? 0 : mapper_.last_stop().number + 1;
   end.count(stops);
   end.last_id(stops == 0 ? 0 : stops - 1);
   if (!service_.send(ends_out_, end, "stream end")) return;
