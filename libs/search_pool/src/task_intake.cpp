@@ -10,7 +10,7 @@ namespace topogeo::search_pool {
 namespace {
 
 /// Whose newest maps are remembered. To forget one costs a wait.
-constexpr std::size_t kMostRobots = 256;
+constexpr std::size_t kMostRobots = 64;
 /// Of one robot. Tasks name the newest, and the one or two before.
 constexpr std::size_t kNewestMaps = 4;
 
@@ -88,13 +88,17 @@ MapPointer TaskIntake::find_by_other_number(const std::string& robot_id, std::ui
   const auto published = published_.find(robot_id);
   if (published == published_.end()) return nullptr;
   for (const MapPointer& map : published->second) {
-    if (topomap::content_hash(*map, map_id) != hash) continue;
-    auto numbered =
-        std::make_shared<const topomap::LocalMap>(topomap::numbered(*map, map_id, false));
-    maps_.add(hash, numbered);
-    return numbered;
+    if (MapPointer meant = numbered_as_meant(*map, map_id, hash)) return meant;
   }
   return nullptr;
+}
+
+MapPointer TaskIntake::numbered_as_meant(const topomap::LocalMap& map, std::uint32_t map_id,
+                                         std::uint64_t hash) {
+  if (topomap::content_hash(map, map_id) != hash) return nullptr;
+  auto numbered = std::make_shared<const topomap::LocalMap>(topomap::numbered(map, map_id, false));
+  maps_.add(hash, numbered);
+  return numbered;
 }
 
 std::vector<ReadyJob> TaskIntake::add_published(MapPointer map) {
@@ -112,7 +116,7 @@ std::vector<ReadyJob> TaskIntake::add_published(MapPointer map) {
     });
   }
   for (const auto& [map_id, hash] : lacking) {
-    MapPointer numbered = find_by_other_number(robot_id, map_id, hash);
+    MapPointer numbered = numbered_as_meant(*published.front(), map_id, hash);
     if (!numbered) continue;
     for (ReadyJob& job : add_map(std::move(numbered))) ready.push_back(std::move(job));
   }

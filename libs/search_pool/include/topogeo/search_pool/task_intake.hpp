@@ -91,6 +91,9 @@ class TaskIntake {
   /// A map of this content among the newest of a robot, if they had this number; or nothing.
   MapPointer find_by_other_number(const std::string& robot_id, std::uint32_t map_id,
                                   std::uint64_t content_hash);
+  /// The map with this number, kept, if that makes it the one that is meant; or nothing.
+  MapPointer numbered_as_meant(const topomap::LocalMap& map, std::uint32_t map_id,
+                               std::uint64_t content_hash);
   /// The map that a task names, if it is there.
   MapPointer find(const MatchJob& job, std::uint32_t map_id, std::uint64_t content_hash);
   /// True when the map of a task will not come by itself any more.
