@@ -124,7 +124,7 @@ bool NavigatorService::is_newer(Source source, std::int64_t stamp_ns) {
   const bool sets_clock = source == Source::kScan || source == Source::kOdometry;
   if (!sets_clock) {
     const std::int64_t now_ns = clock_.now_ns(steady_now_ns());
-    if (stamp_ns > now_ns && stamp_ns - now_ns > kAhead_ns) {
+    if (stamp_ns > kAhead_ns && stamp_ns - kAhead_ns > now_ns) {
       service_.status().add_drops("from the future");
       return false;
     }

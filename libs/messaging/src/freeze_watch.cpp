@@ -39,7 +39,8 @@ void FreezeWatch::watch() {
   std::unique_lock lock(mutex_);
   while (!ending_.wait_for(lock, kWakePeriod, [this] { return ends_; })) {
     const Duration now = since_boot();
-    const Duration still = now - last - kWakePeriod;
+    const Duration still =
+        now - last;  // half a second too long at most: rather too early than never
     if (still >= longest_) stood_still_ns_ = still.count();
     last = now;
   }
