@@ -52,6 +52,8 @@ one_is_unhealthy() {
   eventually 90 is_health "$1" unhealthy || { compose ps; fail "a container whose service hangs is $(health "$1")"; }
   all_healthy "${@:2}" || { compose ps; fail "a service that hangs makes the containers of others unhealthy"; }
   signal CONT "$1"
+  # One that its peers have forgotten meanwhile ends, and is started again.
+  eventually 90 all_healthy "$@" || { compose ps; fail "a container does not get well when its service goes on"; }
 }
 up
 secured() { TOPOGEO_SECURITY=$SECURITY "$bin/topogeo" "$@"; }
@@ -75,6 +77,8 @@ chmod 644 "$LOG"
 "$bin/topogeo" map --log "$LOG" --out "$work/alone" > "$work/alone.log" 2>&1 || { cat "$work/alone.log"; fail "topogeo map"; }
 profile=offboard
 up --scale worker=2
+both_there() { secured workers --json > "$work/workers" && [ "$(grep -c '"worker_id"' "$work/workers")" = 2 ]; }
+eventually 60 both_there || { cat "$work/workers"; fail "not both workers are there"; }
 secured run --log "$LOG" --out "$work/helped" --workers 0 --wait-workers 2 > "$work/run.log" 2>&1 ||
   { tail -n 5 "$work/run.log"; fail "topogeo run"; }
 same_results "$work/helped" "$work/alone"

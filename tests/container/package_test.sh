@@ -60,7 +60,7 @@ docker run --rm --network host -v "$build/packages:/packages:ro" -v "$source_dir
   install() { apt-get install -q -y --no-install-recommends -o Dpkg::Options::=--force-unsafe-io "$@"; }
   install /packages/topogeo-workers_*.deb
   dpkg -L topogeo-workers > /tmp/files
-  ! command -v topogeo
+  if command -v topogeo; then exit 1; fi
   [ -e /etc/topogeo/worker.env ]
   ga_worker --help > /dev/null
   ga_worker &

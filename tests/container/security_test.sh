@@ -166,22 +166,25 @@ denied_by_itself "$build/tests/command_writer" "$TOPOGEO_DOMAIN" $partition
 steal() {
   write_commands "$work/thief" "${@:2}"
   local commands=$pid
-  eventually 20 denies sensor_gateway navigator "write topogeo/v[0-9]*/motion_command" ||
+  eventually 20 denies sensor_gateway navigator "write topogeo/v[0-9]*/motion_command$why" ||
     { cat "$work/sensor_gateway.status"; fail "the worker that writes motion commands is not counted and named: $1"; }
   env TOPOGEO_SECURITY="$work/thief" "${@:2}" "$bin/map_store" --out "$work/thief/out" --partition $partition \
     > "$work/map_store.log" 2>&1 &
   local store=$!
   cleanups+=("kill $store")
-  eventually 20 denies local_mapper map_store "" ||
+  eventually 20 denies local_mapper map_store "$why" ||
     { cat "$work/local_mapper.status"; fail "the worker that writes the map is not counted and named: $1"; }
   eventually 60 has_written $(($(wc -l < "$work/commands") + 40)) || fail "the worker ends its motion commands: $1"
   eventually 20 ask sensor_gateway || fail "the sensor gateway gives no status"
   grep -Eq '^  received +motion_command +0,' "$work/sensor_gateway.status" ||
     { cat "$work/sensor_gateway.status"; fail "the gateway takes a worker's motion commands: $1"; }
   believes && { cat "$work/local_mapper.log"; fail "the local mapper believes a worker: $1"; }
-  kill "$store" "$commands" || { cat "$work/map_store.log"; fail "the changed programs did not even start: $1"; }
+  for pid in "$store" "$commands"; do
+    kill "$pid" || { cat "$work/map_store.log"; fail "a changed program did not even start: $1"; }
+  done
   wait "$store" "$commands" || true
 }
+why=""
 steal "changed program" LD_PRELOAD="$build/tests/permissive.so"
 # A governance without access control.
 sed 's#\(enable_write_access_control>\)true#\1false#; s#\(enable_read_access_control>\)true#\1false#;
@@ -190,6 +193,7 @@ for service in map_store navigator; do
   openssl smime -sign -text -in "$work/governance.xml" -out "$work/thief/$service/governance.p7s" \
     -signer "$keys/ca/permissions_ca.pem" -inkey "$keys/ca/permissions_ca.key"
 done
+why=".*: its governance is another one"
 steal "changed governance"
 
 write_commands "$keys/robot"

@@ -169,7 +169,7 @@ TEST_F(SharedMemoryTest, SameBytesAndNothingIsLeft) {
   map("corridor");
   const std::set<std::string> before = files();
   std::vector<std::string> words = run_words("run", 1);
-  words.insert(words.end(), {"--rate", "10"});  // long enough to see what it has mapped
+  words.insert(words.end(), {"--rate", "6"});  // long enough to see what it has mapped
   Program run(scratch_, "topogeo", words);
   run.wait_for_progress(20);
   std::vector<pid_t> programs = run.services();
