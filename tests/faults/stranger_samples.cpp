@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds kPeriod{20};
 /// Then it goes, with all of them, and comes again as another.
 constexpr std::size_t kTopicsAtOnce = 300;
 
-volatile std::sig_atomic_t g_stopped = 0;
+volatile std::sig_atomic_t g_samples_stopped = 0;
 
 void write_absurd_samples() {
   messaging::ParticipantOptions options;
@@ -31,7 +31,7 @@ void write_absurd_samples() {
   AbsurdSamples samples(participant);
   NoMessages no_messages(options.domain);
   std::uint64_t rounds = 0;
-  for (; g_stopped == 0; ++rounds) {
+  for (; g_samples_stopped == 0; ++rounds) {
     samples.write(rounds);
     no_messages.write(rounds);
     std::this_thread::sleep_for(kPeriod);
@@ -42,7 +42,7 @@ void write_absurd_samples() {
 void write_unknown_topics() {
   std::optional<UnknownTopics> topics;
   std::uint64_t written = 0;
-  for (; g_stopped == 0; ++written) {
+  for (; g_samples_stopped == 0; ++written) {
     if (!topics || topics->size() == kTopicsAtOnce) topics.emplace(0);
     topics->add();
     std::this_thread::sleep_for(kPeriod);
@@ -51,7 +51,7 @@ void write_unknown_topics() {
 }
 
 int run(const std::string& what) {
-  std::signal(SIGTERM, [](int) { g_stopped = 1; });
+  std::signal(SIGTERM, [](int) { g_samples_stopped = 1; });
   if (what == "absurd") {
     write_absurd_samples();
   } else if (what == "topics") {
