@@ -2,6 +2,7 @@
 // and maps of one id stay apart.
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <thread>
 
 #include "pool_fixture.hpp"
@@ -70,9 +71,18 @@ class FairnessTest : public ::testing::Test {
     }
   }
 
+  /// In any thread: Fast DDS makes the participants of one process one at a time.
+  std::unique_ptr<Robot> make_robot(const std::string& name, const Maps& maps) {
+    const std::lock_guard lock(making_);
+    return std::make_unique<Robot>(name, maps);
+  }
+
   const bool udp_only_ = (use_udp_only(), true);
   Scratch scratch_;
   std::vector<std::unique_ptr<Program>> workers_;
+
+ private:
+  std::mutex making_;
 };
 
 // The flood is work for seconds, a small batch for milliseconds: served in turn, the modest robots
@@ -87,15 +97,15 @@ TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
   std::atomic<bool> flood_is_right{false};
   std::atomic<std::uint64_t> flood_searched_here{1};
   std::thread flood([&] {
-    Robot robot("greedy", maps);
-    if (robot.pool().wait_for_workers(2, kPatience) < 2) return;
-    std::vector<MatchTask> tasks = tasks_on(robot.maps(), kFlood);
+    const auto robot = make_robot("greedy", maps);
+    if (robot->pool().wait_for_workers(2, kPatience) < 2) return;
+    std::vector<MatchTask> tasks = tasks_on(robot->maps(), kFlood);
     for (MatchTask& task : tasks) task.genetic.generations = 400;  // of 10 ms and more
     floods = true;
-    const auto results = robot.pool().match(tasks);
+    const auto results = robot->pool().match(tasks);
     ebbed_away = true;
-    flood_searched_here = robot.pool().counts().in_process;
-    flood_is_right = results.size() == kFlood && robot.faults.empty();
+    flood_searched_here = robot->pool().counts().in_process;
+    flood_is_right = results.size() == kFlood && robot->faults.empty();
   });
   struct Modest {
     std::uint64_t right = 0;
@@ -106,15 +116,16 @@ TEST_F(FairnessTest, ARobotThatFloodsThePoolStarvesNoOther) {
   std::vector<std::thread> others;
   for (std::size_t i = 0; i < modest.size(); ++i) {
     others.emplace_back([&, i] {
-      Robot robot("modest" + std::to_string(i), i == 0 ? maps : seen_by_another(maps));
-      if (robot.pool().wait_for_workers(2, kPatience) < 2) return;
+      const auto robot =
+          make_robot("modest" + std::to_string(i), i == 0 ? maps : seen_by_another(maps));
+      if (robot->pool().wait_for_workers(2, kPatience) < 2) return;
       while (!floods) std::this_thread::yield();
       for (std::uint64_t batch = 0; batch < kBatches; ++batch) {
-        const bool right = robot.match(tasks_on(robot.maps(), kSmall, kSmall * batch));
+        const bool right = robot->match(tasks_on(robot->maps(), kSmall, kSmall * batch));
         modest[i].right += right ? 1 : 0;
         modest[i].while_it_flooded += ebbed_away ? 0 : 1;
       }
-      modest[i].faults = robot.faults;
+      modest[i].faults = robot->faults;
     });
   }
   for (std::thread& other : others) other.join();
