@@ -202,10 +202,8 @@ bool RemotePool::send(std::span<const TaskBoard::Assignment> of_one_worker) {
       throw std::out_of_range("match task " + std::to_string(task.task_id) + ": local map " +
                               std::to_string(task.query_map_id) + " is not known");
     }
-    // A field is older than any stop.
-    const topomap::LocalMap* reference = task.places ? nullptr : maps_.find(task.reference_map_id);
-    const std::int64_t newer_ns =
-        reference == nullptr ? query->stamp_ns : std::max(query->stamp_ns, reference->stamp_ns);
+    const topomap::LocalMap* other = task.places ? query : maps_.find(task.reference_map_id);
+    const std::int64_t newer_ns = std::max(query->stamp_ns, (other ? other : query)->stamp_ns);
     message.tasks().push_back(service::to_msg(task, newer_ns));
   }
   message.stamp_ns(message.tasks().front().stamp_ns());

@@ -189,6 +189,8 @@ TEST_F(WorkerTest, AsksAgainForAMapThatMadeRoomForOthers) {
   large.points.resize(2000, {1.0F, 1.0F});
   std::vector<MapPointer> maps;
   for (large.id = 1000; large.id < 1300; ++large.id) {
+    // No two alike: one that was published last is found by the number of the other.
+    large.points.back().x_m = 1.0F + 1e-3F * static_cast<float>(large.id);
     maps.push_back(std::make_shared<const topomap::LocalMap>(large));
     peer->publish(maps.back());
   }
