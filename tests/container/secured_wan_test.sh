@@ -2,14 +2,12 @@
 # Two sites with security, joined by a WireGuard tunnel and nothing else: addresses of the tunnel are the peers, as
 # discovery servers carry no security. Sites are network namespaces. The map of a log is that of one process.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/tunnel.sh"
 
-need wireguard-go
-need wg
-need iptables
+need_tunnel
 need ip
 need openssl
 need_programs
-[ -c /dev/net/tun ] || skip "there is no /dev/net/tun"
 unshare --net true 2> /dev/null || skip "this machine allows no network namespaces"
 claim_domain
 make_log 100 "$work/log.clf"
@@ -25,8 +23,7 @@ declare -A address=([robot]=10.77.0.1 [pc1]=10.77.0.2) tunnel_address=([robot]=1
 for site in robot pc1; do
   ip netns add "$(name_of $site)"
   cleanups+=("ip netns del $(name_of $site)")
-  (umask 077; wg genkey > "$work/$site.key")
-  wg pubkey < "$work/$site.key" > "$work/$site.public"
+  make_tunnel_key $site
 done
 at robot ip link add line type veth peer name line netns "$(name_of pc1)"
 for site in robot pc1; do
@@ -35,23 +32,10 @@ for site in robot pc1; do
   at $site ip link set lo up
 done
 
-# tunnel SITE PEER. The name of the interface is also that of a socket of this machine.
-tunnel() {
-  local interface=wg$$${1:0:2}
-  ip netns exec "$(name_of "$1")" wireguard-go -f "$interface" > "$work/$1.wireguard" 2>&1 &
-  cleanups+=("kill $!")
-  eventually 20 at "$1" wg show "$interface" > /dev/null 2>&1 || { cat "$work/$1.wireguard"; fail "no tunnel"; }
-  at "$1" wg set "$interface" listen-port 51820 private-key "$work/$1.key" \
-    peer "$(cat "$work/$2.public")" allowed-ips "${tunnel_address[$2]}/32" endpoint "${address[$2]}:51820"
-  at "$1" ip address add "${tunnel_address[$1]}/24" dev "$interface"
-  at "$1" ip link set "$interface" mtu 1420 up
-  at "$1" iptables -A OUTPUT -o lo -j ACCEPT
-  at "$1" iptables -A OUTPUT -o "$interface" -j ACCEPT
-  at "$1" iptables -A OUTPUT -p udp --dport 51820 -j ACCEPT
-  at "$1" iptables -A OUTPUT -j DROP
-}
-tunnel robot pc1
-tunnel pc1 robot
+# shellcheck disable=SC2034  # tunnel() uses it
+enter() { inside=(ip netns exec "$(name_of "$1")"); }
+tunnel robot "${tunnel_address[robot]}" pc1 "${tunnel_address[pc1]}" "${address[pc1]}"
+tunnel pc1 "${tunnel_address[pc1]}" robot "${tunnel_address[robot]}" "${address[robot]}"
 
 export TOPOGEO_DDS_PARTICIPANT=wan TOPOGEO_PEERS='10.99.0.1;10.99.0.2'
 start_at() {  # SITE PROGRAM OPTIONS...

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# shellcheck disable=SC2154  # common.sh sets work
+# A WireGuard tunnel between two sites. Who sources this has `enter SITE`, which sets `inside` to the words that run a
+# command in the network of a site.
+
+# need_tunnel: skips the test where a tunnel cannot be made.
+need_tunnel() {
+  need wireguard-go
+  need wg
+  need iptables
+  [ -c /dev/net/tun ] || skip "there is no /dev/net/tun"
+}
+
+make_tunnel_key() {  # SITE
+  (umask 077; wg genkey > "$work/$1.key")
+  wg pubkey < "$work/$1.key" > "$work/$1.public"
+}
+
+# tunnel SITE ADDRESS PEER ADDRESS_OF_PEER ENDPOINT: afterwards nothing else leaves the site. The name of the interface
+# is also that of a socket of this machine.
+tunnel() {
+  local interface=wg$$${1:0:2} inside
+  enter "$1"
+  "${inside[@]}" wireguard-go -f "$interface" > "$work/$1.wireguard" 2>&1 &
+  cleanups+=("kill $!")
+  eventually 20 "${inside[@]}" wg show "$interface" > /dev/null 2>&1 ||
+    { cat "$work/$1.wireguard"; fail "no tunnel"; }
+  "${inside[@]}" wg set "$interface" listen-port 51820 private-key "$work/$1.key" \
+    peer "$(cat "$work/$3.public")" allowed-ips "$4/32" endpoint "$5:51820"
+  "${inside[@]}" ip address add "$2/24" dev "$interface"
+  "${inside[@]}" ip link set "$interface" mtu 1420 up
+  "${inside[@]}" iptables -A OUTPUT -o lo -j ACCEPT
+  "${inside[@]}" iptables -A OUTPUT -o "$interface" -j ACCEPT
+  "${inside[@]}" iptables -A OUTPUT -p udp --dport 51820 -j ACCEPT
+  "${inside[@]}" iptables -A OUTPUT -j DROP
+}
