@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "topogeo/localization/mapping/drive_join.hpp"
+#include "topogeo/localization/mapping/look_alikes.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 
 #include "link_covariances.hpp"
@@ -115,11 +116,11 @@ std::vector<StepMatch> Localizer::place_last() {
 
 std::vector<StepMatch> Localizer::match_recent() {
   std::vector<StopMatch> matches = matching_.match_recent(graph_);
-  refuse_look_alikes(matches);
+  refuse_look_alikes(matches, steps_);
+  const std::vector<StopMatch> further = match_further(matches);
   // Odometry alone can be tens of degrees off in one step. Where no match is beyond doubt,
   // uncertain ones, with their wide covariance, still know more than it does.
-  const bool any = std::any_of(matches.begin(), matches.end(),
-                               [](const StopMatch& match) { return match.accepted(); });
+  const bool any = any_accepted(matches);
   if (!any) {
     ++steps_in_doubt_;
     graph_.add_edge(steps_.edge_without_match());
@@ -135,23 +136,27 @@ std::vector<StepMatch> Localizer::match_recent() {
       steps_.learn({match.edge.T_from_to, match.edge.covariance});
     }
   }
+  for (const StopMatch& match : further) {
+    evidence.push_back(match.evidence);
+    graph_.add_edge(match.edge);
+  }
   return evidence;
 }
 
-// Of those that were found in a widened search only, one at least has to be where odometry may have
-// brought the robot.
-void Localizer::refuse_look_alikes(std::vector<StopMatch>& matches) const {
-  const auto found_far = [](const StopMatch& match) { return match.widened && match.accepted(); };
-  if (std::any_of(matches.begin(), matches.end(), [&](const StopMatch& match) {
-        return found_far(match) && steps_.allow(match.edge, geometry::kMahalanobis2Of99Percent);
-      })) {
-    return;
+// Where odometry says too little of recent stops. What a widened search found instead does not
+// count beside them.
+std::vector<StopMatch> Localizer::match_further(std::vector<StopMatch>& matches) {
+  if (std::any_of(matches.begin(), matches.end(),
+                  [](const StopMatch& match) { return match.accepted() && !match.widened; })) {
+    return {};
   }
-  for (StopMatch& match : matches) {
-    if (!found_far(match)) continue;
-    match.verdict = match.evidence.verdict = Verdict::kRejected;
-    match.reason = match.evidence.reason = Reason::kNothingInCommon;
+  std::vector<StopMatch> further = matching_.match_unsearchable(graph_);
+  refuse_look_alikes(further, steps_);
+  std::erase_if(further, [](const StopMatch& match) { return !match.accepted(); });
+  if (!further.empty()) {
+    std::erase_if(matches, [](const StopMatch& match) { return match.widened; });
   }
+  return further;
 }
 
 // Closes the loops of stops with earlier places.

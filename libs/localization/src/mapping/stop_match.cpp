@@ -1,5 +1,7 @@
 #include "topogeo/localization/mapping/stop_match.hpp"
 
+#include <algorithm>
+
 #include "topogeo/geometry/pose2.hpp"
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/places/place_recognition.hpp"
@@ -48,6 +50,11 @@ LoopEvidence StopMatch::loop_evidence() const {
   known.agreement = agreement;
   known.rival_agreement = rival_agreement;
   return known;
+}
+
+bool any_accepted(std::span<const StopMatch> matches) {
+  return std::any_of(matches.begin(), matches.end(),
+                     [](const StopMatch& match) { return match.accepted(); });
 }
 
 }  // namespace topogeo::localization

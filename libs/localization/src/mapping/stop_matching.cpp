@@ -50,11 +50,6 @@ constexpr std::size_t kStopsOfQuery = 3;
 constexpr double kBetweenStops_m = 1.5;
 constexpr double kQueryLength_m = 5.0;
 
-bool any_accepted(std::span<const StopMatch> matches) {
-  return std::any_of(matches.begin(), matches.end(),
-                     [](const StopMatch& match) { return match.accepted(); });
-}
-
 }  // namespace
 
 StopMatching::StopMatching(const LocalizerConfig& config, MatchPool& pool)
@@ -110,6 +105,20 @@ std::vector<MatchCandidate> StopMatching::recent_candidates(const PoseGraph& gra
   return choice.best(config_.recent_matches);
 }
 
+// By what they would show if odometry were right.
+std::vector<MatchCandidate> StopMatching::unsearchable_candidates(
+    const RelativePoses& relative) const {
+  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
+  CandidateChoice choice(config_.smallest_expected_overlap);
+  for (std::uint32_t i = first_recent(stop); i + 1 < stop; ++i) {
+    const UncertainPose& T_stop_earlier = relative.at(i);
+    if (searchable(config_, T_stop_earlier)) return {};
+    choice.consider(i, stops_[stop].view->profile, stops_[i].view->outline,
+                    {T_stop_earlier.T_a_b, Eigen::Matrix3d::Zero()});
+  }
+  return choice.best(config_.recent_matches);
+}
+
 std::vector<MatchCandidate> StopMatching::revisited_candidates(
     const PoseGraph& graph, std::uint32_t stop, std::span<const std::uint32_t> candidates,
     const RelativePoses& relative) const {
@@ -121,15 +130,20 @@ std::vector<MatchCandidate> StopMatching::revisited_candidates(
   return choice.best_apart(config_.revisit_matches);
 }
 
-std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
+RelativePoses StopMatching::relative_to_last(const PoseGraph& graph) const {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   std::vector<std::uint32_t> recent(stop - first_recent(stop));
   std::iota(recent.begin(), recent.end(), first_recent(stop));
-  const RelativePoses relative = graph.relative_to(stop, recent);
+  return graph.relative_to(stop, recent);
+}
+
+std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
+  const RelativePoses relative = relative_to_last(graph);
+  const std::vector<MatchCandidate> candidates = recent_candidates(graph, relative);
   std::map<std::uint32_t, std::vector<MatchSolution>> solutions;
   const auto matches_within = [&](double widening) {
     std::vector<StopMatch> found =
-        run(recent_tasks(graph, relative, widening), EdgeKind::kSequential);
+        run(recent_tasks(graph, relative, candidates, widening), EdgeKind::kSequential);
     for (const StopMatch& match : found) solutions[match.edge.from] = match.solutions;
     return found;
   };
@@ -142,6 +156,15 @@ std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
     }
   }
   last_solutions_ = std::move(solutions);
+  calibrate(matches);
+  return matches;
+}
+
+std::vector<StopMatch> StopMatching::match_unsearchable(const PoseGraph& graph) {
+  const RelativePoses relative = relative_to_last(graph);
+  std::vector<StopMatch> matches = run(
+      recent_tasks(graph, relative, unsearchable_candidates(relative), 1.0), EdgeKind::kSequential);
+  for (StopMatch& match : matches) match.widened = true;
   calibrate(matches);
   return matches;
 }
@@ -165,7 +188,9 @@ void StopMatching::calibrate(std::span<const StopMatch> matches) {
 }
 
 std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
-                                                  const RelativePoses& relative, double widening) {
+                                                  const RelativePoses& relative,
+                                                  std::span<const MatchCandidate> candidates,
+                                                  double widening) {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   // By scan tracking; where no scan point is to count, by odometry.
   const Pose2 T_previous_robot =
@@ -173,7 +198,7 @@ std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
           ? stops_[stop].map->T_previous_robot
           : geometry::between(graph.poses()[stop - 1], graph.poses()[stop]);
   std::vector<MatchTask> tasks;
-  for (const MatchCandidate& candidate : recent_candidates(graph, relative)) {
+  for (const MatchCandidate& candidate : candidates) {
     UncertainPose prior = relative.at(candidate.id);
     prior.covariance *= widening * widening;
     MatchTask task = requests_.make(stop, candidate.id, prior);

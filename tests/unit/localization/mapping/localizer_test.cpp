@@ -104,6 +104,33 @@ TEST(LocalizerTest, ALookAlikeFarFromGoodOdometryDoesNotCount) {
   }
 }
 
+// A robot turns where the drive began, then drives on while nobody maps: where it stands, the stop
+// before shows little, the first ones much.
+TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByStopsBefore) {
+  const world::World room = test::world("room");
+  for (double last_rad = -2.0; last_rad >= -3.05; last_rad -= 0.15) {
+    std::vector<Pose2> truth;
+    for (double theta_rad = 0.0; theta_rad > last_rad; theta_rad -= 0.35) {
+      truth.emplace_back(1.0, 1.0, theta_rad);
+    }
+    truth.emplace_back(1.0, 1.0, last_rad);
+    truth.emplace_back(4.0, 1.0, 0.12);
+    InProcessPool pool;
+    Localizer localizer({}, pool);
+    for (std::uint32_t id = 0; id < truth.size(); ++id) {
+      auto map = std::make_shared<topomap::LocalMap>(test::map_at(room, truth[id], id));
+      if (id > 0) map->T_previous_robot = geometry::between(truth[id - 1], truth[id]);
+      if (id + 1 == truth.size()) map->T_odom_robot = map->T_odom_robot * Pose2{0.1, -0.1, 0.1};
+      localizer.add(std::move(map));
+    }
+    EXPECT_EQ(localizer.status().state, LocalizationState::kTracking) << last_rad;
+    const Pose2 T_map_robot = localizer.trajectory().stops.back().T_map_robot;
+    EXPECT_LT(geometry::difference(T_map_robot, geometry::between(truth[0], truth.back())).norm(),
+              0.3)
+        << last_rad;
+  }
+}
+
 TEST(LocalizerTest, ClosesTheLoopOfTheSimulatedFloor) {
   const DrivenMaps& driven = round_trip();
   ASSERT_GT(driven.maps.size(), 80U);

@@ -99,8 +99,8 @@ class Localizer : public Slam {
   void restore(MapPointer map, const topomap::StopPose& pose);
   std::vector<StepMatch> place_last();
   std::vector<StepMatch> match_recent();
+  std::vector<StopMatch> match_further(std::vector<StopMatch>& matches);
   std::vector<StepMatch> match_revisited(std::span<const std::uint32_t> stops);
-  void refuse_look_alikes(std::vector<StopMatch>& matches) const;
   void judge_state(std::vector<StepMatch> evidence);
 
   bool apply(const std::optional<OptimizationSchedule::Finished>& finished);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "topogeo/localization/mapping/loop_decision.hpp"
@@ -49,5 +50,7 @@ struct StopMatch {
   /// What the probability that it is right follows from.
   [[nodiscard]] LoopEvidence loop_evidence() const;
 };
+
+[[nodiscard]] bool any_accepted(std::span<const StopMatch> matches);
 
 }  // namespace topogeo::localization
