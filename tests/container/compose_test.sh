@@ -50,7 +50,8 @@ one_is_unhealthy() {
   eventually 90 all_healthy "$@" || { compose ps; fail "not all containers are healthy"; }
   signal STOP "$1"
   eventually 90 is_health "$1" unhealthy || { compose ps; fail "a container whose service hangs is $(health "$1")"; }
-  all_healthy "${@:2}" || { compose ps; fail "a service that hangs makes the containers of others unhealthy"; }
+  # A check that a busy machine held up is no sign of it.
+  eventually 90 all_healthy "${@:2}" || { compose ps; fail "a service that hangs makes the containers of others unhealthy"; }
   signal CONT "$1"
   # One that its peers have forgotten meanwhile ends, and is started again.
   eventually 90 all_healthy "$@" || { compose ps; fail "a container does not get well when its service goes on"; }
