@@ -111,10 +111,10 @@ TEST(LocalizerTest, AfterALongStepThatNobodyMappedThePlaceIsKnownByStopsBefore) 
   for (double last_rad = -2.0; last_rad >= -3.05; last_rad -= 0.15) {
     std::vector<Pose2> truth;
     for (double theta_rad = 0.0; theta_rad > last_rad; theta_rad -= 0.35) {
-      truth.emplace_back(1.0, 1.0, theta_rad);
+      truth.push_back({1.0, 1.0, theta_rad});
     }
-    truth.emplace_back(1.0, 1.0, last_rad);
-    truth.emplace_back(4.0, 1.0, 0.12);
+    truth.push_back({1.0, 1.0, last_rad});
+    truth.push_back({4.0, 1.0, 0.12});
     InProcessPool pool;
     Localizer localizer({}, pool);
     for (std::uint32_t id = 0; id < truth.size(); ++id) {
