@@ -301,7 +301,11 @@ TEST_F(SharedMapServices, ARefusalIsHeededByALocalizerThatStartsAgain) {
   std::size_t stops = 0;
   while (stops < b_.stops.size() && proposals().find("\"state\": \"open\"") == std::string::npos) {
     send(stops += 2);
-    ASSERT_TRUE(eventually([&] { return stored("b", std::min(stops, b_.stops.size())); }));
+    // The localizer, too: what is stored may wait for it.
+    ASSERT_TRUE(eventually([&] {
+      return stored("b", std::min(stops, b_.stops.size())) &&
+             stops_in_map() >= std::min(stops, a_.stops.size());
+    }));
   }
   ASSERT_LT(stops + 4, b_.stops.size());
   EXPECT_THAT(merge_command({"refuse", "1"}), HasSubstr("the maps stay apart"));
