@@ -14,6 +14,8 @@
 #include "topogeo/localization/matching/match_gate.hpp"
 #include "topogeo/localization/matching/refinement.hpp"
 
+#include "window_match.hpp"
+
 namespace topogeo::localization {
 
 using geometry::Pose2;
@@ -139,9 +141,10 @@ RelativePoses StopMatching::relative_to_last(const PoseGraph& graph) const {
 
 std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
   const RelativePoses relative = relative_to_last(graph);
-  const std::vector<MatchCandidate> candidates = recent_candidates(graph, relative);
   std::map<std::uint32_t, std::vector<MatchSolution>> solutions;
   const auto matches_within = [&](double widening) {
+    // Anew each time: what was just compared without success is not worth it again.
+    const std::vector<MatchCandidate> candidates = recent_candidates(graph, relative);
     std::vector<StopMatch> found =
         run(recent_tasks(graph, relative, candidates, widening), EdgeKind::kSequential);
     for (const StopMatch& match : found) solutions[match.edge.from] = match.solutions;
@@ -298,7 +301,9 @@ std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
                                                     misfits_ < kMisfits ? kWellKnown_m : 0.0)) {
     if (place.value < kLeastPlaceValue || places == kPlacesCompared) break;
     bool any = false;
-    if (!place.aligned.covariance.isZero(0.0)) windows_.push_back(window_match(graph, stop, place));
+    if (!place.aligned.covariance.isZero(0.0)) {
+      windows_.push_back(window_match(graph, stop, place, calibration_));
+    }
     for (const std::uint32_t query : later) {
       CandidateChoice choice(config_.smallest_expected_overlap);
       const Pose2 T_query_anchor =
@@ -331,30 +336,6 @@ std::vector<StopMatching::Comparison> StopMatching::comparisons_with_places(
     if (any) ++places;
   }
   return found;
-}
-
-StopMatch StopMatching::window_match(const PoseGraph& graph, std::uint32_t stop,
-                                     const PlaceProposal& place) const {
-  // All that was seen lies there, and the stop with it as well as it is known relative to the first
-  // stop that was searched with.
-  const UncertainPose T_first_stop = graph.along_path(place.first_of_query, stop);
-  const Eigen::Matrix3d within =
-      compose({place.aligned.T_a_b * geometry::inverse(T_first_stop.T_a_b)}, T_first_stop)
-          .covariance;
-  const Eigen::Matrix3d covariance = place.aligned.covariance + within;
-  StopMatch match;
-  match.edge = {place.anchor,       stop,
-                EdgeKind::kRevisit, place.aligned.T_a_b,
-                covariance,         calibration_.of_match(place.aligned.covariance) + within};
-  match.T_later_earlier = inverse({place.aligned.T_a_b, covariance});
-  match.predicted = place.predicted;
-  match.source = ProposalSource::kWindow;
-  match.first_of_window = place.first_of_query;
-  match.reason = Reason::kDoubtful;
-  match.fitness = place.value;
-  match.overlap = place.seen;
-  match.weakest_sigma_m = localization::weakest_sigma_m(covariance);
-  return match;
 }
 
 std::vector<StopMatch> StopMatching::run(std::span<const MatchTask> tasks, EdgeKind kind) {

@@ -97,8 +97,6 @@ class StopMatching {
   [[nodiscard]] bool wants_places(std::uint32_t stop) const;
   std::vector<Comparison> comparisons_with_places(const PoseGraph& graph, std::uint32_t stop,
                                                   std::span<const UncertainPose> relative);
-  [[nodiscard]] StopMatch window_match(const PoseGraph& graph, std::uint32_t stop,
-                                       const PlaceProposal& place) const;
   [[nodiscard]] StopMatch judged(const MatchTask& task, const MatchResult& result,
                                  EdgeKind kind) const;
 
