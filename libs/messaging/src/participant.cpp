@@ -26,6 +26,7 @@
 #include "fast_dds/fragments.hpp"
 #include "fast_dds/host_sending.hpp"
 #include "fast_dds/packet_shield.hpp"
+#include "fast_dds/timer_waits.hpp"
 #include "participant_core.hpp"
 
 namespace topogeo::messaging {
@@ -146,6 +147,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   keep_filter_info_out();
   send_to_each_host_apart();
   shield_packets();
+  let_timers_end_alone();
   load_profiles(options.profiles_file);
   std::string profile = options.profile;
   if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");
