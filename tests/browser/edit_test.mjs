@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { assert_accessible, kPictures, kSizes, launch, open_page } from "./page.mjs";
+import { assert_accessible, close, kPictures, kSizes, launch, open_page } from "./page.mjs";
 import { eventually } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
@@ -17,7 +17,7 @@ before(async () => {
   browser = await launch();
 });
 
-after(() => browser?.close());
+after(() => close(browser));
 
 /** The view Draw of a page with a service of its own. */
 async function open(options = {}, prepare = () => {}) {

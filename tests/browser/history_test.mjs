@@ -8,15 +8,13 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drive_log } from "./drive_log.mjs";
+import { close, kPictures, launch } from "./page.mjs";
 import { eventually, Robot } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
-const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_WORK: work, TOPOGEO_CHROMIUM: chromium } = process.env;
+const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_WORK: work } = process.env;
 const packages = createRequire(join(build, "tests/browser/"));
-const playwright = packages("playwright-core");
 const axe = packages.resolve("axe-core/axe.min.js");
-const pictures = join(build, "tests/browser/screenshots");
-mkdirSync(pictures, { recursive: true });
 
 const robot = new Robot(join(build, "bin"), source, work);
 const file = (name) => join(work, name);
@@ -42,15 +40,12 @@ before(async () => {
     topogeo("map", "--log", file(`${name}.clf`), "--out", file(name));
   }
   await robot.start_store("--map", file("round/map.pb"));
-  browser = await playwright.chromium.launch({
-    executablePath: chromium,
-    args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
-  });
+  browser = await launch();
   page = await open();
 });
 
 after(async () => {
-  await browser?.close();
+  await close(browser);
   await robot.stop();
 });
 
@@ -84,7 +79,7 @@ async function get(path) {
 
 /** A screenshot, and nothing serious found by axe-core. */
 async function picture(name, on = page) {
-  await on.screenshot({ path: join(pictures, `${name}.png`) });
+  await on.screenshot({ path: join(kPictures, `${name}.png`) });
   await on.addScriptTag({ path: axe });
   const { violations } = await on.evaluate(() => window.axe.run());
   const serious = violations.filter((finding) => ["serious", "critical"].includes(finding.impact));
@@ -342,7 +337,7 @@ test("the search shows while it runs, and why a loop was rejected", async () => 
   const done = { ...match, done: true, accepted: true, fitness: 0.83, hypotheses };
   service.show("search", { stamp_s: 1, tasks: 1, running: false, whole_map: false, matches: [done], hypotheses: [] });
   await text(".search-state", /1 match, 1 accepted/, 20, own);
-  await own.screenshot({ path: join(pictures, "understand-search.png") });
+  await own.screenshot({ path: join(kPictures, "understand-search.png") });
   service.show("search", { stamp_s: 2, tasks: 72, running: false, whole_map: true, matches: [], hypotheses });
   await text(".search-state", /2 places fit best/, 20, own);
 

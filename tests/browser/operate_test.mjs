@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { assert_accessible, kPictures, kSizes, launch, open_page, text } from "./page.mjs";
+import { assert_accessible, close, kPictures, kSizes, launch, open_page, text } from "./page.mjs";
 import { eventually } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
@@ -25,7 +25,7 @@ before(async () => {
   browser = await launch();
 });
 
-after(() => browser?.close());
+after(() => close(browser));
 
 /** A robot whose localizer answers when the test lets it. */
 class SlowLocalizer extends StandIn {

@@ -1,9 +1,10 @@
 // The operator's page in a browser, for tests: pages of a robot, and what they show.
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
-import { eventually, in_map } from "./robot.mjs";
+import { eventually, in_map, within } from "./robot.mjs";
 import { watch } from "./watcher.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_CHROMIUM: chromium } = process.env;
@@ -28,6 +29,16 @@ export function launch() {
   });
 }
 
+/** Ends a browser, if there is one; by force when it hangs at its end, which is nothing of ours. */
+export async function close(browser) {
+  if (!browser) return;
+  const closed = browser.close();
+  if (await within(30, closed)) return;
+  console.log("the browser does not end: killed");
+  spawnSync("pkill", ["-KILL", "-P", String(process.pid), "chrom"]);
+  await closed;
+}
+
 /** A browser beside a simulated robot, which both run from start() to stop(). */
 export class WatchedRobot {
   constructor(robot) {
@@ -44,7 +55,7 @@ export class WatchedRobot {
   }
 
   async stop() {
-    await this.browser?.close();
+    await close(this.browser);
     await this.robot.stop();
   }
 

@@ -1,5 +1,5 @@
 // A simulated robot in one room with all its services and the web service, for tests in a browser.
-import { spawn } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, openSync, readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
 import { join } from "node:path";
@@ -13,6 +13,24 @@ export async function eventually(what, check, seconds = 60) {
     if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}`);
     await new Promise((resolve) => setTimeout(resolve, 100));
   }
+}
+
+/** Whether a promise is fulfilled within some seconds. */
+export function within(seconds, promise) {
+  let timer;
+  const late = new Promise((resolve) => {
+    timer = setTimeout(() => resolve(false), 1000 * seconds * Number(process.env.TOPOGEO_TIME_FACTOR ?? 1));
+  });
+  return Promise.race([promise.then(() => true), late]).finally(() => clearTimeout(timer));
+}
+
+/** Ends a process by a signal; one that does not end is killed, and fails with where its threads wait. */
+async function end_process(name, { process: running, ended }, signal) {
+  running.kill(signal);
+  if (await within(60, ended)) return;
+  const { stdout } = spawnSync("eu-stack", ["-p", String(running.pid)], { encoding: "utf8" });
+  running.kill("SIGKILL");
+  throw new Error(`${name} does not end by ${signal}\n${stdout ?? "eu-stack is not there to say where it waits"}`);
 }
 
 function free_port() {
@@ -133,16 +151,17 @@ export class Robot extends Orders {
 
   /** Ends a service by a signal. */
   async end(name, signal = "SIGTERM") {
-    const { process: running, ended } = this.processes.get(name) ?? {};
+    const running = this.processes.get(name);
     if (!running) return;
     this.processes.delete(name);
-    running.kill(signal);
-    await ended;
+    await end_process(name, running, signal);
   }
 
   async stop() {
     const names = [...this.processes.keys()].reverse();
-    await Promise.all(names.map((name) => this.end(name)));
+    const ends = await Promise.allSettled(names.map((name) => this.end(name)));
+    const failed = ends.find(({ status }) => status === "rejected");
+    if (failed) throw failed.reason;
   }
 
   /** Whether a service has said so since the test began. */
@@ -185,8 +204,7 @@ export class SimulatedRun extends Orders {
   }
 
   async stop() {
-    this.process?.kill("SIGTERM");
-    await this.ended;
+    if (this.process) await end_process("topogeo run", this, "SIGTERM");
   }
 }
 
