@@ -110,8 +110,7 @@ std::int64_t WatchedPool::stamp_of(const MatchTask& task) const {
 
 std::vector<MatchResult> WatchedPool::match(std::span<const MatchTask> tasks) {
   if (tasks.empty() || writer_.matched() == 0) return pool_.match(tasks);
-  const bool goes_on = in_whole_map_ && tasks.front().places;
-  if (!goes_on && Clock::now() < next_) return pool_.match(tasks);
+  if (Clock::now() < next_) return pool_.match(tasks);
   const std::int64_t stamp_ns = stamp_of(tasks.front());
   msg::Search search = searched(tasks, stops_);
   // Others hear of a search that takes long while it runs; what came of it belongs to it and is
@@ -120,8 +119,6 @@ std::vector<MatchResult> WatchedPool::match(std::span<const MatchTask> tasks) {
   std::vector<MatchResult> results = pool_.match(tasks);
   add_results(tasks, results, stops_, search);
   send(search, stamp_ns);
-  // The search of a whole map comes in two steps, and the second has the places.
-  in_whole_map_ = search.whole_map() && search.hypotheses().empty();
   next_ = Clock::now() + kSearchPeriod;
   return results;
 }

@@ -49,7 +49,6 @@ class WatchedPool : public localization::MatchPool {
   StopsOfTasks stops_;
   std::map<std::uint32_t, std::int64_t> stamps_ns_;
   Clock::time_point next_;
-  bool in_whole_map_ = false;  // the search that was sent last has its places still to come
   std::uint64_t sent_ = 0;
 };
 

@@ -4,11 +4,12 @@
 //
 // A floor is mapped in one drive and driven again with other noise; the robot is lost at N stops of
 // the second drive, evenly spread, and adds K stops from each of them while it searches, without a
-// pose to begin with. "By CPU": CPU time of the localizer, and that of the workers shared evenly
-// among them, together; that is what a search takes on idle cores, where the localizer waits
-// meanwhile, and other programs do not change it. Everything is real: the localizer's end of the
-// pool, DDS, workers in processes of one slot. The poses of all stops must be the same bytes with
-// any number of workers.
+// pose to begin with. "Whole map": from the question to all answers of a search of the whole map;
+// "stop": all that is done for a stop of a lost robot, its matches too. "By CPU": CPU time of the
+// localizer, and that of the workers shared evenly among them, together; that is what a search
+// takes on idle cores, where the localizer waits meanwhile, and other programs do not change it.
+// Everything is real: the localizer's end of the pool, DDS, workers in processes of one slot. The
+// poses of all stops must be the same bytes with any number of workers.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -19,9 +20,13 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "topogeo/command_line/command_line.hpp"
 #include "topogeo/localization/matching/identical.hpp"
@@ -101,10 +106,36 @@ std::vector<std::vector<MapPointer>> drives_of(const LostOptions& options,
   return drives;
 }
 
+/// A pool, and how long whole maps were searched in it.
+class TimedPool : public localization::MatchPool {
+ public:
+  explicit TimedPool(localization::MatchPool& pool) : pool_(pool) {}
+  void add_map(MapPointer map) override { pool_.add_map(std::move(map)); }
+  void add_field(std::shared_ptr<const localization::PlaceField> field) override {
+    pool_.add_field(std::move(field));
+  }
+  std::vector<localization::MatchResult> match(
+      std::span<const localization::MatchTask> tasks) override {
+    const bench::Clock::time_point start = bench::Clock::now();
+    std::vector<localization::MatchResult> results = pool_.match(tasks);
+    if (!tasks.empty() && tasks.front().places) {
+      whole_map_ms_.push_back(1e3 * bench::seconds_since(start));
+    }
+    return results;
+  }
+  /// Since it was asked last.
+  std::vector<double> take_whole_map_ms() { return std::exchange(whole_map_ms_, {}); }
+
+ private:
+  localization::MatchPool& pool_;
+  std::vector<double> whole_map_ms_;
+};
+
 struct Result {
-  std::vector<double> wall_ms;  // of each stop that was searched for
-  double cpu_s = 0.0;           // of this process, meanwhile
-  double workers_s = 0.0;       // of all workers, meanwhile
+  std::vector<double> whole_map_ms;  // of each search of the whole map
+  std::vector<double> wall_ms;       // of each stop that was searched for
+  double cpu_s = 0.0;                // of this process, meanwhile
+  double workers_s = 0.0;            // of all workers, meanwhile
   std::size_t found = 0;
   std::vector<localization::LocalizedStop> stops;
 };
@@ -171,23 +202,27 @@ class Team {
     if (client_.pool().wait_for_workers(workers, bench::kPatience) < workers) {
       throw std::runtime_error("the workers did not come; " + client_.fault());
     }
-    localizer_.emplace(config.localizer, std::move(map), client_.pool());
+    localizer_.emplace(config.localizer, std::move(map), pool_);
   }
 
   /// Throws std::runtime_error when the pool reported a fault.
   Result search(const LostOptions& options, const std::vector<std::vector<MapPointer>>& drives) {
+    static_cast<void>(pool_.take_whole_map_ms());
     Result result = search_lost(options, *localizer_, drives, client_, workers_);
+    result.whole_map_ms = pool_.take_whole_map_ms();
     if (!client_.fault().empty()) throw std::runtime_error(client_.fault());
     return result;
   }
 
  private:
   bench::PoolClient client_;
+  TimedPool pool_{client_.pool()};
   bench::Workers workers_;
   std::optional<localization::MapLocalizer> localizer_;
 };
 
 void append(Result& all, const Result& one) {
+  all.whole_map_ms.insert(all.whole_map_ms.end(), one.whole_map_ms.begin(), one.whole_map_ms.end());
   all.wall_ms.insert(all.wall_ms.end(), one.wall_ms.begin(), one.wall_ms.end());
   all.cpu_s += one.cpu_s;
   all.workers_s += one.workers_s;
@@ -207,25 +242,34 @@ double cpu_ms(const Result& result, std::size_t workers) {
 
 void print(const std::vector<Result>& results, std::size_t least_workers, std::size_t starts) {
   std::printf(
-      "| workers | found | stops searched | ms a stop, median | mean | most | CPU of the "
-      "localizer, ms a stop | of the workers | times as fast as one, median | mean | by CPU |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| workers | found | stops searched | whole map, ms, median | times as fast as one | stop, "
+      "ms, "
+      "median | mean | most | times as fast as one, median | mean | by CPU | CPU of the localizer, "
+      "ms "
+      "a stop | of the workers |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Result& result = results[i];
     const std::size_t workers = least_workers + i;
     const auto count = static_cast<double>(result.wall_ms.size());
-    std::printf("| %zu | %zu of %zu | %zu | %.1f | %.1f | %.1f | %.1f | %.1f |", workers,
-                result.found, starts, result.wall_ms.size(), median(result.wall_ms),
-                mean(result.wall_ms),
-                *std::max_element(result.wall_ms.begin(), result.wall_ms.end()),
-                1e3 * result.cpu_s / count, 1e3 * result.workers_s / count);
-    if (workers == 0 || least_workers > 1) {
-      std::printf(" - | - | - |\n");
-      continue;
-    }
-    const Result& one = results[1 - least_workers];
-    std::printf(" %.2f | %.2f | %.2f |\n", median(one.wall_ms) / median(result.wall_ms),
-                mean(one.wall_ms) / mean(result.wall_ms), cpu_ms(one, 1) / cpu_ms(result, workers));
+    // Without a team of one worker there is nothing to compare with.
+    const Result* one = workers == 0 || least_workers > 1 ? nullptr : &results[1 - least_workers];
+    const auto faster = [one](auto figure) {
+      return one == nullptr ? std::string("-") : fmt::format("{:.2f}", figure(*one));
+    };
+    std::printf(
+        "| %zu | %zu of %zu | %zu | %.1f | %s | %.1f | %.1f | %.1f | %s | %s | %s | %.1f | %.1f "
+        "|\n",
+        workers, result.found, starts, result.wall_ms.size(), median(result.whole_map_ms),
+        faster([&](const Result& r) {
+          return median(r.whole_map_ms) / median(result.whole_map_ms);
+        }).c_str(),
+        median(result.wall_ms), mean(result.wall_ms),
+        *std::max_element(result.wall_ms.begin(), result.wall_ms.end()),
+        faster([&](const Result& r) { return median(r.wall_ms) / median(result.wall_ms); }).c_str(),
+        faster([&](const Result& r) { return mean(r.wall_ms) / mean(result.wall_ms); }).c_str(),
+        faster([&](const Result& r) { return cpu_ms(r, 1) / cpu_ms(result, workers); }).c_str(),
+        1e3 * result.cpu_s / count, 1e3 * result.workers_s / count);
   }
 }
 

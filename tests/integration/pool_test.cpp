@@ -48,8 +48,8 @@ class PlacesInPoolTest : public PoolTest {
     ASSERT_EQ(results.size(), tasks_.size());
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       EXPECT_EQ(results[i].task_id, tasks_[i].task_id);
-      EXPECT_FALSE(results[i].seeds.empty());
-      EXPECT_EQ(results[i].seeds, field_->answer(*tasks_[i].places));
+      EXPECT_FALSE(results[i].solutions.empty());
+      EXPECT_EQ(results[i].solutions, field_->answer(*tasks_[i].places));
     }
   }
 
@@ -70,11 +70,11 @@ TEST_F(PlacesInPoolTest, WorkersSearchPartsOfTheWholeMap) {
   EXPECT_THAT(faults_, IsEmpty());
 }
 
-TEST_F(PlacesInPoolTest, AWorkerWithAWrongScoreIsExcluded) {
+TEST_F(PlacesInPoolTest, AWorkerWithAWrongValueIsExcluded) {
   FakeWorker wrong(partition_, loop_, "wrong", [&](FakeWorker& self, const msg::MatchTask& task) {
     localization::MatchResult result;
-    result.seeds = field_->answer(*service::from_msg(task).places);
-    ++result.seeds.back().score;
+    result.solutions = field_->answer(*service::from_msg(task).places);
+    result.solutions.back().fitness += 1e-9;
     self.answer(task, result);
   });
   ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);
@@ -83,12 +83,12 @@ TEST_F(PlacesInPoolTest, AWorkerWithAWrongScoreIsExcluded) {
   EXPECT_THAT(faults_, Contains("wrong match result"));
 }
 
-// All scores are right, so only the search of the same part here shows it.
-TEST_F(PlacesInPoolTest, AWorkerThatLeavesOutTheBestSeedsIsExcluded) {
+// All values are right, so only the search of the same part here shows it.
+TEST_F(PlacesInPoolTest, AWorkerThatLeavesOutTheBestPlaceIsExcluded) {
   FakeWorker lazy(partition_, loop_, "lazy", [&](FakeWorker& self, const msg::MatchTask& task) {
     localization::MatchResult result;
-    result.seeds = field_->answer(*service::from_msg(task).places);
-    result.seeds.erase(result.seeds.begin());
+    result.solutions = field_->answer(*service::from_msg(task).places);
+    result.solutions.erase(result.solutions.begin());
     self.answer(task, result);
   });
   ASSERT_EQ(pool_->wait_for_workers(1, kPatience), 1U);

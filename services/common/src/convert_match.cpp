@@ -217,13 +217,6 @@ msg::MatchResult to_msg(const localization::MatchResult& result) {
   out.seed(result.seed);
   out.verdict(static_cast<msg::MatchVerdict>(result.verdict));
   out.reason(static_cast<msg::MatchReason>(result.reason));
-  check_bound("seeds", result.seeds.size(), msg::kMaxPlaceSeeds);
-  for (const localization::PlaceSeed& seed : result.seeds) {
-    msg::PlaceSeed& to = out.seeds().emplace_back();
-    to.score(seed.score);
-    to.heading(seed.heading);
-    to.cell(seed.cell);
-  }
   return out;
 }
 
@@ -251,9 +244,6 @@ localization::MatchResult from_msg(const msg::MatchResult& message) {
   out.seed = message.seed();
   out.verdict = static_cast<localization::Verdict>(message.verdict());
   out.reason = static_cast<localization::Reason>(message.reason());
-  for (const msg::PlaceSeed& seed : message.seeds()) {
-    out.seeds.push_back({seed.score(), seed.heading(), seed.cell()});
-  }
   return out;
 }
 

@@ -70,13 +70,13 @@ TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
   // A worker that takes the name of the map store; its certificate has that of the worker.
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  note_denial({prefix_of_peer(), "topogeo/v15/map", true, false});
-  note_denial({prefix_of_peer(), "topogeo/v15/scan", false, true});
+  note_denial({prefix_of_peer(), "topogeo/v16/map", true, false});
+  note_denial({prefix_of_peer(), "topogeo/v16/scan", false, true});
   const std::string who =
       "'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) + ") ";
   EXPECT_THAT(listener_.take(),
-              ElementsAre(who + "is denied to write topogeo/v15/map",
-                          who + "is denied to read topogeo/v15/scan: its governance is another "
+              ElementsAre(who + "is denied to write topogeo/v16/map",
+                          who + "is denied to read topogeo/v16/scan: its governance is another "
                                 "one"));
   EXPECT_THAT(listener_.take(), IsEmpty()) << "each once";
 }
@@ -84,11 +84,11 @@ TEST_F(Refusals, NameThePeerThatIsDeniedATopic) {
 TEST_F(Refusals, NameAPeerThatHasLeft) {
   peer("robot/map_store", "CN=ga_worker.pc1,O=topogeo");
   authenticate(rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
-  note_denial({prefix_of_peer(), "topogeo/v15/map", true, false});
+  note_denial({prefix_of_peer(), "topogeo/v16/map", true, false});
   peer("", "", Info::REMOVED_PARTICIPANT);
   EXPECT_THAT(listener_.take(),
               ElementsAre("'robot/map_store' (CN=ga_worker.pc1,O=topogeo; " + std::string(kGuid) +
-                          ") is denied to write topogeo/v15/map"));
+                          ") is denied to write topogeo/v16/map"));
 }
 
 TEST_F(Refusals, AreOneShortLineEach) {
@@ -100,12 +100,12 @@ TEST_F(Refusals, AreOneShortLineEach) {
 
 TEST_F(Refusals, AreBounded) {
   for (int i = 0; i < 1'000; ++i) {
-    note_denial({prefix_of_peer(), "topogeo/v15/topic" + std::to_string(i), true, false});
+    note_denial({prefix_of_peer(), "topogeo/v16/topic" + std::to_string(i), true, false});
   }
   const std::vector<std::string> lines = listener_.take();
   ASSERT_EQ(lines.size(), 256U);
   EXPECT_EQ(lines.back(),
-            "'unnamed' (" + std::string(kGuid) + ") is denied to write topogeo/v15/topic999");
+            "'unnamed' (" + std::string(kGuid) + ") is denied to write topogeo/v16/topic999");
 }
 
 }  // namespace

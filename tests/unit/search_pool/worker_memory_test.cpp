@@ -124,7 +124,7 @@ TEST_F(SlotMatchersTest, KeepsOneWholeMapOfEachClient) {
   SlotMatchers matchers(std::size_t{64} << 20U);
   const auto answer = [&](const localization::PlaceField& field, const std::string& client) {
     ReadyJob job{place_job(field, 1, client), {}, {}, field.pieces()};
-    return matchers.solve(job).seeds;
+    return matchers.solve(job).solutions;
   };
   const auto one = place_field(2.0);
   const auto other = place_field(3.0);

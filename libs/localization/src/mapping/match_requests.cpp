@@ -42,32 +42,16 @@ MatchTask MatchRequests::place_task(const std::shared_ptr<const PlaceQuestion>& 
   return task;
 }
 
-std::vector<std::vector<PlaceSeed>> MatchRequests::ask(
+std::vector<MatchSolution> MatchRequests::ask(
     std::span<const std::shared_ptr<const PlaceQuestion>> questions, std::uint32_t query_id) {
   if (questions.empty()) return {};
   std::vector<MatchTask> tasks;
   for (const auto& question : questions) tasks.push_back(place_task(question, query_id));
-  std::vector<std::vector<PlaceSeed>> answers;
-  for (MatchResult& result : pool_.match(tasks)) answers.push_back(std::move(result.seeds));
-  return answers;
-}
-
-std::vector<MatchSolution> MatchRequests::climb(
-    const std::shared_ptr<const PlaceQuestion>& question, std::span<const geometry::Pose2> poses,
-    std::uint32_t query_id) {
-  std::vector<MatchTask> tasks;
-  while (!poses.empty()) {
-    const auto some = poses.first(std::min(poses.size(), PlaceField::kTaskPoses));
-    poses = poses.subspan(some.size());
-    tasks.push_back(place_task(question, query_id));
-    tasks.back().initial_individuals.assign(some.begin(), some.end());
-  }
-  if (tasks.empty()) return {};
-  std::vector<MatchSolution> climbed;
+  std::vector<MatchSolution> places;
   for (const MatchResult& result : pool_.match(tasks)) {
-    climbed.insert(climbed.end(), result.solutions.begin(), result.solutions.end());
+    places.insert(places.end(), result.solutions.begin(), result.solutions.end());
   }
-  return climbed;
+  return places;
 }
 
 std::vector<MatchResult> MatchRequests::run(std::span<const MatchTask> tasks) {

@@ -36,7 +36,7 @@ bool identical(const MatchResult& a, const MatchResult& b) {
          identical(a.scan_fitness, b.scan_fitness) &&
          identical(a.topological_fitness, b.topological_fitness) &&
          identical(a.fitness, b.fitness) && identical_solutions(a.second, b.second) &&
-         a.seed == b.seed && a.verdict == b.verdict && a.reason == b.reason && a.seeds == b.seeds;
+         a.seed == b.seed && a.verdict == b.verdict && a.reason == b.reason;
 }
 
 }  // namespace topogeo::localization

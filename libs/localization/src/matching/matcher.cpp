@@ -147,17 +147,7 @@ MatchResult Matcher::solve(const MatchTask& task) {
     MatchResult result;
     result.task_id = task.task_id;
     result.status = MatchStatus::kSolved;
-    const PlaceField& whole_map = field(*task.places);
-    if (task.initial_individuals.size() > PlaceField::kTaskPoses) {
-      throw std::invalid_argument(
-          "place question: " + std::to_string(task.initial_individuals.size()) +
-          " poses, at most " + std::to_string(PlaceField::kTaskPoses));
-    }
-    if (task.places->headings == 0) {
-      result.solutions = whole_map.climb_from(*task.places, task.initial_individuals);
-    } else {
-      result.seeds = whole_map.answer(*task.places);
-    }
+    result.solutions = field(*task.places).answer(*task.places);
     return result;
   }
   check(task);

@@ -35,7 +35,6 @@ std::string nth(std::size_t i) {
 // What can be wrong with a result before anything is computed from its poses.
 std::string faults_of_form(const MatchTask& task, const MatchResult& result) {
   if (result.task_id != task.task_id) return "the task_id is that of another task";
-  if (!result.seeds.empty()) return "there are seeds, which the task does not ask for";
   if (result.seed != task.seed) return "the seed is not that of the task";
   if (result.solutions.empty()) return "there is no solution";
   if (result.solutions.size() > task.solutions_wanted) {
@@ -124,12 +123,7 @@ std::string faults_of_choice(const MatchResult& right) {
 }  // namespace
 
 std::string Matcher::verify(const MatchTask& task, const MatchResult& result) {
-  if (task.places) {
-    const PlaceField& whole_map = field(*task.places);
-    return task.places->headings == 0
-               ? whole_map.verify(*task.places, task.initial_individuals, result.solutions)
-               : whole_map.verify(*task.places, result.seeds);
-  }
+  if (task.places) return field(*task.places).verify(*task.places, result.solutions);
   check(task);
   const MatchFeatures& query = features(task.query_map_id, task.query_hash, task.evidence);
   const Reference& against = reference(task);

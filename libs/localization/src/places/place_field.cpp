@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -28,20 +29,15 @@ constexpr double kSeedWidth_m = 0.60;  // of the kernel: spans the 5 degrees bet
 constexpr double kFineCell_m = 0.05;   // as the cells of the global map
 constexpr double kFineWidth_m = PlaceField::kFineWidth_m;
 constexpr double kFineMargin_m = 1.0;
-constexpr std::uint32_t kQuarter = PlaceField::kHeadings / 4;
 constexpr std::size_t kPiecePoints = 2048;  // as many as a local map has on the wire
 // Of each task. The last ones are small, so that workers end together.
-constexpr std::array<std::uint32_t, 14> kTaskHeadings{6, 6, 6, 6, 6, 6, 6, 6, 6, 6, 3, 3, 3, 3};
-
-constexpr bool tasks_stay_in_quarters() {
-  std::uint32_t first = 0;
-  for (const std::uint32_t headings : kTaskHeadings) {
-    if (headings > kQuarter - first % kQuarter) return false;
-    first += headings;
-  }
-  return first == PlaceField::kHeadings;
-}
-static_assert(tasks_stay_in_quarters());
+constexpr std::array<std::uint32_t, 12> kTaskHeadings{9, 9, 9, 9, 9, 9, 6, 4, 3, 2, 2, 1};
+constexpr std::uint32_t kMostHeadings = 9;
+static_assert(std::accumulate(kTaskHeadings.begin(), kTaskHeadings.end(), 0U) ==
+              PlaceField::kHeadings);
+// What the steps of a climb come to at most.
+constexpr double kClimbed_m = 2.0;
+constexpr double kClimbed_rad = 0.6;
 
 std::vector<Eigen::Vector2d> in_metres(const std::vector<topomap::ScanPoint>& points) {
   std::vector<Eigen::Vector2d> out;
@@ -52,17 +48,6 @@ std::vector<Eigen::Vector2d> in_metres(const std::vector<topomap::ScanPoint>& po
 
 double heading_rad(std::uint32_t heading) {
   return 2.0 * std::numbers::pi / PlaceField::kHeadings * heading;
-}
-
-bool comes_before(const PlaceSeed& a, const PlaceSeed& b) {
-  return std::tie(b.score, a.cell, a.heading) < std::tie(a.score, b.cell, b.heading);
-}
-
-void keep_best(std::vector<PlaceSeed>& seeds, std::size_t count) {
-  const auto end = seeds.begin() + std::ssize(seeds);
-  const auto kept = seeds.begin() + static_cast<std::ptrdiff_t>(std::min(count, seeds.size()));
-  std::partial_sort(seeds.begin(), kept, end, comes_before);
-  seeds.erase(kept, end);
 }
 
 std::vector<topomap::ScanPoint> points_of_pieces(
@@ -180,7 +165,9 @@ std::size_t PlaceField::bytes() const {
          runs_.size() * sizeof(Run);
 }
 
-PlaceQuestion PlaceField::question_about(std::span<const Eigen::Vector2d> points_m) const {
+std::vector<std::shared_ptr<const PlaceQuestion>> PlaceField::questions(
+    std::span<const Eigen::Vector2d> points_m) const {
+  if (points_m.empty()) return {};
   PlaceQuestion all;
   all.field_hash = hash_;
   all.margin_m = margin_m_;
@@ -191,13 +178,6 @@ PlaceQuestion PlaceField::question_about(std::span<const Eigen::Vector2d> points
   for (const Eigen::Vector2d& p : points_m) {
     all.points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y())});
   }
-  return all;
-}
-
-std::vector<std::shared_ptr<const PlaceQuestion>> PlaceField::questions(
-    std::span<const Eigen::Vector2d> points_m) const {
-  if (points_m.empty()) return {};
-  PlaceQuestion all = question_about(points_m);
   std::vector<std::shared_ptr<const PlaceQuestion>> out;
   for (const std::uint32_t headings : kTaskHeadings) {
     all.headings = headings;
@@ -207,29 +187,21 @@ std::vector<std::shared_ptr<const PlaceQuestion>> PlaceField::questions(
   return out;
 }
 
-std::shared_ptr<const PlaceQuestion> PlaceField::climbing_question(
-    std::span<const Eigen::Vector2d> points_m) const {
-  return std::make_shared<const PlaceQuestion>(question_about(points_m));
-}
-
-void PlaceField::check_points(const PlaceQuestion& question, std::size_t most) const {
+void PlaceField::check(const PlaceQuestion& question) const {
   if (question.field_hash != hash_) {
     throw std::invalid_argument("place question: it is about another field");
   }
-  if (question.points.empty() || question.points.size() > most) {
+  if (question.points.empty() || question.points.size() > kPoints) {
     throw std::invalid_argument("place question: " + std::to_string(question.points.size()) +
-                                " points, expected 1 to " + std::to_string(most));
+                                " points, expected 1 to " + std::to_string(kPoints));
   }
-}
-
-void PlaceField::check(const PlaceQuestion& question) const {
-  check_points(question, kSearchedPoints);
-  if (question.headings == 0 || question.first_heading >= kHeadings ||
-      question.headings > kQuarter - question.first_heading % kQuarter) {
+  if (question.headings == 0 || question.headings > kMostHeadings ||
+      question.first_heading >= kHeadings ||
+      question.headings > kHeadings - question.first_heading) {
     throw std::invalid_argument(
         "place question: headings " + std::to_string(question.first_heading) + " and " +
-        std::to_string(question.headings) + " from there, expected some of one quarter of " +
-        std::to_string(kHeadings));
+        std::to_string(question.headings) + " from there, expected at most " +
+        std::to_string(kMostHeadings) + " of " + std::to_string(kHeadings));
   }
 }
 
@@ -240,7 +212,7 @@ const PlaceField::Run& PlaceField::run_of(std::uint32_t cell) const {
       1);
 }
 
-Pose2 PlaceField::pose_of(const PlaceSeed& seed) const {
+Pose2 PlaceField::pose_of(const Seed& seed) const {
   const Run& run = run_of(seed.cell);
   const Eigen::Vector2d p =
       grid_.centre_m(run.first_column + static_cast<int>(seed.cell - run.first_seed), run.row);
@@ -250,11 +222,12 @@ Pose2 PlaceField::pose_of(const PlaceSeed& seed) const {
 std::vector<PlaceField::Offset> PlaceField::offsets(const PlaceQuestion& question,
                                                     std::uint32_t heading) const {
   const geometry::SinCos r = geometry::sincos(heading_rad(heading));
+  const std::size_t step = question.points.size() > kPoints / 2 ? 2 : 1;
   std::vector<Offset> out;
   out.reserve(question.points.size());
-  for (const topomap::ScanPoint& p : question.points) {
-    const double x = p.x_m;
-    const double y = p.y_m;
+  for (std::size_t i = 0; i < question.points.size(); i += step) {
+    const double x = question.points[i].x_m;
+    const double y = question.points[i].y_m;
     out.push_back({static_cast<int>(std::floor((r.cos * x - r.sin * y) / grid_.cell_m() + 0.5)),
                    static_cast<int>(std::floor((r.sin * x + r.cos * y) / grid_.cell_m() + 0.5))});
   }
@@ -267,9 +240,8 @@ bool PlaceField::inside(const Run& run, const Offset& offset) const {
   return row >= 0 && row < grid_.rows() && column >= 0 && column + run.cells <= grid_.columns();
 }
 
-std::vector<PlaceSeed> PlaceField::answer(const PlaceQuestion& question) const {
-  check(question);
-  std::vector<PlaceSeed> seeds(cells_);
+std::vector<PlaceField::Seed> PlaceField::scored(const PlaceQuestion& question) const {
+  std::vector<Seed> seeds(cells_);
   std::vector<std::uint16_t> sums;
   for (std::uint32_t i = 0; i < question.headings; ++i) {
     const std::uint32_t heading = question.first_heading + i;
@@ -284,7 +256,7 @@ std::vector<PlaceSeed> PlaceField::answer(const PlaceQuestion& question) const {
         std::uint16_t* to = sums.data();
         for (std::size_t k = 0; k < cells; ++k) to[k] = static_cast<std::uint16_t>(to[k] + from[k]);
       }
-      PlaceSeed* const best = seeds.data() + run.first_seed;
+      Seed* const best = seeds.data() + run.first_seed;
       for (std::size_t k = 0; k < cells; ++k) {
         if (sums[k] <= best[k].score) continue;
         best[k] = {sums[k], static_cast<std::uint16_t>(heading),
@@ -292,102 +264,86 @@ std::vector<PlaceSeed> PlaceField::answer(const PlaceQuestion& question) const {
       }
     }
   }
-  std::erase_if(seeds, [](const PlaceSeed& seed) { return seed.score == 0; });
-  keep_best(seeds, kSeeds);
+  std::erase_if(seeds, [](const Seed& seed) { return seed.score == 0; });
   return seeds;
 }
 
-std::string PlaceField::verify(const PlaceQuestion& question,
-                               std::span<const PlaceSeed> seeds) const {
-  check(question);
-  if (seeds.size() > kSeeds) {
-    return std::to_string(seeds.size()) + " seeds, at most " + std::to_string(kSeeds) +
-           " are asked for";
-  }
-  std::vector<std::vector<Offset>> moved;
-  for (std::uint32_t i = 0; i < question.headings; ++i) {
-    moved.push_back(offsets(question, question.first_heading + i));
-  }
-  std::vector<std::uint32_t> cells;
-  for (std::size_t i = 0; i < seeds.size(); ++i) {
-    const PlaceSeed& seed = seeds[i];
-    const auto name = [i] { return "seed " + std::to_string(i + 1); };
-    if (seed.heading < question.first_heading ||
-        seed.heading >= question.first_heading + question.headings || seed.cell >= cells_) {
-      return name() + " is outside of the search";
-    }
-    if (i > 0 && !comes_before(seeds[i - 1], seed)) return name() + " is not in its order";
-    cells.push_back(seed.cell);
+bool PlaceField::comes_before(const Seed& a, const Seed& b) {
+  return std::tie(b.score, a.cell, a.heading) < std::tie(a.score, b.cell, b.heading);
+}
+
+std::vector<Pose2> PlaceField::starts(const PlaceQuestion& question) const {
+  const std::size_t wanted = kTaskPoses * question.headings / kMostHeadings;
+  // Each that is taken excludes the eight around it at most.
+  constexpr std::size_t kTouching = 9;
+  std::vector<Seed> seeds = scored(question);
+  const auto best =
+      seeds.begin() + static_cast<std::ptrdiff_t>(std::min(kTouching * wanted, seeds.size()));
+  std::partial_sort(seeds.begin(), best, seeds.end(), comes_before);
+  seeds.erase(best, seeds.end());
+  std::set<std::pair<int, int>> excluded;  // row and column
+  std::vector<Pose2> poses;
+  for (const Seed& seed : seeds) {
+    if (poses.size() == wanted) break;
     const Run& run = run_of(seed.cell);
     const int column = run.first_column + static_cast<int>(seed.cell - run.first_seed);
-    unsigned score = 0;
-    for (const Offset& offset : moved[seed.heading - question.first_heading]) {
-      if (!inside(run, offset)) continue;
-      score += grid_.row_data(run.row + offset.row)[column + offset.column];
+    if (excluded.contains({run.row, column})) continue;
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) excluded.emplace(run.row + y, column + x);
     }
-    if (score != seed.score) {
-      return "the score of " + name() + " is stated as " + std::to_string(seed.score) + " and is " +
-             std::to_string(score);
-    }
+    poses.push_back(pose_of(seed));
   }
-  std::sort(cells.begin(), cells.end());
-  if (std::adjacent_find(cells.begin(), cells.end()) != cells.end()) {
-    return "two seeds are in one cell";
-  }
-  return {};
+  return poses;
 }
 
-std::vector<MatchSolution> PlaceField::climb_from(const PlaceQuestion& question,
-                                                  std::span<const Pose2> poses) const {
-  check_points(question, kClimbingPoints);
+std::vector<MatchSolution> PlaceField::answer(const PlaceQuestion& question) const {
+  check(question);
   const std::vector<Eigen::Vector2d> points_m = in_metres(question.points);
-  std::vector<MatchSolution> climbed;
-  climbed.reserve(poses.size());
-  for (const Pose2& pose : poses) {
-    const Climbed place = climb(fine_, points_m, pose);
-    climbed.push_back({place.T_map_robot, place.value});
+  std::vector<MatchSolution> places;
+  for (const Pose2& start : starts(question)) {
+    const Climbed place = climb(fine_, points_m, start);
+    places.push_back({place.T_map_robot, place.value});
   }
-  return climbed;
+  return places;
 }
 
-std::string PlaceField::verify(const PlaceQuestion& question, std::span<const Pose2> poses,
-                               std::span<const MatchSolution> climbed) const {
-  check_points(question, kClimbingPoints);
-  if (climbed.size() != poses.size()) {
-    return std::to_string(climbed.size()) + " of " + std::to_string(poses.size()) +
-           " poses climbed";
+bool PlaceField::near_free_cell(const Eigen::Vector2d& p_m) const {
+  const int reach = static_cast<int>(kClimbed_m / kSeedCell_m) + 1;
+  const int row = grid_.row(p_m.y());
+  const int column = grid_.column(p_m.x());
+  const auto first = std::ranges::lower_bound(runs_, row - reach, std::ranges::less{}, &Run::row);
+  const auto last = std::ranges::upper_bound(runs_, row + reach, std::ranges::less{}, &Run::row);
+  return std::any_of(first, last, [&](const Run& run) {
+    return column >= run.first_column - reach && column < run.first_column + run.cells + reach;
+  });
+}
+
+std::string PlaceField::verify(const PlaceQuestion& question,
+                               std::span<const MatchSolution> places) const {
+  check(question);
+  if (places.size() > kTaskPoses) {
+    return std::to_string(places.size()) + " places, at most " + std::to_string(kTaskPoses) +
+           " are asked for";
   }
-  constexpr double kClimbed_m = 2.0;  // more than the steps of a climb together
   const std::vector<Eigen::Vector2d> points_m = in_metres(question.points);
-  for (std::size_t i = 0; i < climbed.size(); ++i) {
-    const Pose2& T = climbed[i].T_reference_query;
-    const std::string name = "pose " + std::to_string(i + 1);
-    if (!((T.position_m() - poses[i].position_m()).norm() <= kClimbed_m) ||
-        !(std::fabs(T.theta_rad) <= std::numbers::pi)) {
-      return name + " is not near where it began";
+  const double middle_rad =
+      heading_rad(question.first_heading) + 0.5 * heading_rad(question.headings - 1);
+  const double most_rad = 0.5 * heading_rad(question.headings - 1) + kClimbed_rad;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Pose2& T = places[i].T_reference_query;
+    const std::string name = "place " + std::to_string(i + 1);
+    if (!(std::fabs(T.theta_rad) <= std::numbers::pi) ||
+        !(std::fabs(geometry::wrap_angle(T.theta_rad - middle_rad)) <= most_rad) ||
+        !near_free_cell(T.position_m())) {
+      return name + " is outside of the search";
     }
     const double value = mean_kernel(fine_, points_m, T);
-    if (!identical(value, climbed[i].fitness)) {
-      return "the value of " + name + " is stated as " + std::to_string(climbed[i].fitness) +
+    if (!identical(value, places[i].fitness)) {
+      return "the value of " + name + " is stated as " + std::to_string(places[i].fitness) +
              " and is " + std::to_string(value);
     }
   }
   return {};
-}
-
-std::vector<PlaceSeed> best_of(std::span<const std::vector<PlaceSeed>> answers) {
-  std::vector<PlaceSeed> seeds;
-  for (const std::vector<PlaceSeed>& answer : answers) {
-    seeds.insert(seeds.end(), answer.begin(), answer.end());
-  }
-  std::sort(seeds.begin(), seeds.end(), comes_before);
-  std::vector<PlaceSeed> best;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> known;  // cell and quarter
-  for (const PlaceSeed& seed : seeds) {
-    if (best.size() == PlaceField::kSeeds) break;
-    if (known.emplace(seed.cell, seed.heading / kQuarter).second) best.push_back(seed);
-  }
-  return best;
 }
 
 }  // namespace topogeo::localization

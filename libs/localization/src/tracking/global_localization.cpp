@@ -197,34 +197,23 @@ std::vector<std::uint8_t> GlobalLocalizer::free_cells(const PlaceField& field) c
 
 std::vector<std::shared_ptr<const PlaceQuestion>> GlobalLocalizer::questions(
     const std::vector<SurfacePoint>& seen) const {
-  return field_->questions(positions_of(spread(seen, PlaceField::kSearchedPoints)));
+  return field_->questions(positions_of(spread(seen, PlaceField::kPoints)));
 }
 
-std::shared_ptr<const PlaceQuestion> GlobalLocalizer::climbing_question(
-    const std::vector<SurfacePoint>& seen) const {
-  return field_->climbing_question(positions_of(spread(seen, PlaceField::kClimbingPoints)));
-}
-
-std::vector<Pose2> GlobalLocalizer::starts(std::span<const std::vector<PlaceSeed>> answers) const {
-  std::vector<Pose2> poses;
-  for (const PlaceSeed& seed : best_of(answers)) poses.push_back(field_->pose_of(seed));
-  return poses;
-}
-
-std::vector<Climbed> GlobalLocalizer::distinct(std::vector<MatchSolution> climbed,
+std::vector<Climbed> GlobalLocalizer::distinct(std::vector<MatchSolution> places,
                                                std::size_t count) {
   std::stable_sort(
-      climbed.begin(), climbed.end(),
+      places.begin(), places.end(),
       [](const MatchSolution& a, const MatchSolution& b) { return a.fitness > b.fitness; });
-  std::vector<Climbed> places;
-  for (const MatchSolution& place : climbed) {
-    if (places.size() == count) break;
-    const bool known = std::any_of(places.begin(), places.end(), [&](const Climbed& other) {
+  std::vector<Climbed> best;
+  for (const MatchSolution& place : places) {
+    if (best.size() == count) break;
+    const bool known = std::any_of(best.begin(), best.end(), [&](const Climbed& other) {
       return same_global_place(other.T_map_robot, place.T_reference_query);
     });
-    if (!known) places.push_back({place.T_reference_query, place.fitness});
+    if (!known) best.push_back({place.T_reference_query, place.fitness});
   }
-  return places;
+  return best;
 }
 
 // Nearer stops come first: of equal ones the nearest is meant, and it mostly leaves the others
@@ -327,11 +316,15 @@ GlobalAnswer GlobalLocalizer::find(std::span<const topomap::ScanPoint> points,
   GlobalAnswer answer;
   const MatchFeatures query = extract_scan_features(points, T_robot_laser);
   if (query.coarse.size() < kFewestQueryPoints) return answer;
-  std::vector<std::vector<PlaceSeed>> answers;
-  for (const auto& question : questions(query.coarse)) answers.push_back(field_->answer(*question));
+  std::vector<MatchSolution> places;
+  for (const auto& question : questions(query.coarse)) {
+    const std::vector<MatchSolution> some = field_->answer(*question);
+    places.insert(places.end(), some.begin(), some.end());
+  }
   std::vector<GlobalPose> found;
-  const auto climbed = field_->climb_from(*climbing_question(query.coarse), starts(answers));
-  for (const Climbed& place : distinct(climbed, kAligned)) found.push_back(aligned(query, place));
+  for (const Climbed& place : distinct(std::move(places), kAligned)) {
+    found.push_back(aligned(query, place));
+  }
   const auto value = [](const GlobalPose& p) {
     return p.fitness * std::max(0.1, 1.0 - p.violations);
   };

@@ -72,11 +72,8 @@ MatchTask StoredMapMatching::task(const DriveStop& stop, std::size_t stored,
 }
 
 std::vector<Climbed> StoredMapMatching::search(const DriveStop& stop, std::size_t count) {
-  const std::vector<SurfacePoint>& seen = query_.whole.surface;
-  const auto answers = requests_.ask(places_.questions(seen), stop.map->id);
   return GlobalLocalizer::distinct(
-      requests_.climb(places_.climbing_question(seen), places_.starts(answers), stop.map->id),
-      count);
+      requests_.ask(places_.questions(query_.whole.surface), stop.map->id), count);
 }
 
 UncertainPose StoredMapMatching::measured(std::size_t stored, const MatchResult& result) const {

@@ -27,10 +27,7 @@ class RequestedPool : public MatchPool {
       result.reason = task.task_id == 0 ? Reason::kNone : Reason::kDoubtful;
       if (!task.places) continue;
       place_tasks.push_back(task);
-      result.seeds = {{static_cast<std::uint16_t>(task.task_id), 0, 0}};
-      for (const geometry::Pose2& pose : task.initial_individuals) {
-        result.solutions.push_back({pose, 0.5});
-      }
+      result.solutions = {{{static_cast<double>(task.task_id), 0.0, 0.0}, 0.5}};
     }
     return results;
   }
@@ -82,28 +79,16 @@ TEST(MatchRequests, PartsOfASearchAreNumberedOnAndChangeNoSeed) {
   const MatchTask before = requests.make(8, 3, kPredicted);
   const auto question = std::make_shared<const PlaceQuestion>();
   const std::vector<std::shared_ptr<const PlaceQuestion>> questions(3, question);
-  const auto answers = requests.ask(questions, 3);
-  ASSERT_EQ(answers.size(), 3U);
-  EXPECT_EQ(answers[2].front().score, 3U) << "by the number of its task";
-  std::vector<geometry::Pose2> poses(90);
-  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].x_m = static_cast<double>(i);
-  const std::vector<MatchSolution> climbed = requests.climb(question, poses, 3);
-  ASSERT_EQ(climbed.size(), poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_EQ(climbed[i].T_reference_query, poses[i]);
-  }
-  EXPECT_EQ(pool.place_tasks.size(), 6U);
-  for (const MatchTask& task : pool.place_tasks) {
-    EXPECT_EQ(task.query_map_id, 3U);
-    EXPECT_LE(task.initial_individuals.size(), 38U);
-  }
-  EXPECT_EQ(pool.batches, 2);
+  const std::vector<MatchSolution> places = requests.ask(questions, 3);
+  ASSERT_EQ(places.size(), 3U);
+  EXPECT_EQ(places[2].T_reference_query.x_m, 3.0) << "by the number of its task";
+  EXPECT_EQ(pool.place_tasks.size(), 3U);
+  for (const MatchTask& task : pool.place_tasks) EXPECT_EQ(task.query_map_id, 3U);
   EXPECT_TRUE(requests.ask({}, 3).empty());
-  EXPECT_TRUE(requests.climb(question, {}, 3).empty());
-  EXPECT_EQ(pool.batches, 2);
+  EXPECT_EQ(pool.batches, 1);
   EXPECT_EQ(requests.counts().tasks, 0U);
   const MatchTask after = requests.make(8, 3, kPredicted);
-  EXPECT_EQ(after.task_id, before.task_id + 7);
+  EXPECT_EQ(after.task_id, before.task_id + 4);
   EXPECT_EQ(after.seed, support::derive_seed(17, "one", {8, 3, 1}));
 }
 

@@ -43,7 +43,7 @@ struct Mismatch {
 /// All pairs that do not fit, one for each topic, pair of participants and policy.
 std::vector<Mismatch> find_mismatches(std::span<const RemoteEndpoint> endpoints);
 
-/// The version of the wire contract in a topic's name: 15 for "topogeo/v15/scan"; 0 for topics of
+/// The version of the wire contract in a topic's name: 16 for "topogeo/v16/scan"; 0 for topics of
 /// others.
 std::uint32_t wire_version(const std::string& topic);
 

@@ -34,14 +34,10 @@ class MatchRequests {
   MatchTask make(std::uint32_t reference_id, std::uint32_t query_id,
                  const UncertainPose& T_reference_query);
 
-  /// The answers to parts of a search of the whole map by a stop that has been added; they do not
-  /// count as matches. Throws like MatchPool::match and make().
-  std::vector<std::vector<PlaceSeed>> ask(
-      std::span<const std::shared_ptr<const PlaceQuestion>> questions, std::uint32_t query_id);
-
-  /// Where poses climb to, in their order. Throws like ask().
-  std::vector<MatchSolution> climb(const std::shared_ptr<const PlaceQuestion>& question,
-                                   std::span<const geometry::Pose2> poses, std::uint32_t query_id);
+  /// The answers to all parts of a search of the whole map by a stop that has been added, in the
+  /// order of the parts; they do not count as matches. Throws like MatchPool::match and make().
+  std::vector<MatchSolution> ask(std::span<const std::shared_ptr<const PlaceQuestion>> questions,
+                                 std::uint32_t query_id);
 
   /// The results in the order of the tasks; none asks nothing of the pool. Throws like
   /// MatchPool::match.

@@ -33,15 +33,7 @@ struct PlaceQuestion {
   double margin_m = 0.0;                   ///< around the walls
   std::vector<topomap::ScanPoint> points;  ///< in the robot frame
   std::uint32_t first_heading = 0;         ///< from which on the part searches ...
-  std::uint32_t headings = 0;              ///< ... so many; 0: poses are to climb instead
-};
-
-/// A cell of the map, and how well the points fit with the robot there.
-struct PlaceSeed {
-  std::uint16_t score = 0;
-  std::uint16_t heading = 0;
-  std::uint32_t cell = 0;  ///< counted through the free cells of the map
-  friend bool operator==(const PlaceSeed&, const PlaceSeed&) = default;
+  std::uint32_t headings = 0;              ///< ... so many
 };
 
 struct MatchTask {
@@ -71,6 +63,7 @@ struct MatchTask {
 struct MatchSolution {
   geometry::Pose2 T_reference_query;
   double fitness = 0.0;  ///< in [0, 1]
+  friend bool operator==(const MatchSolution&, const MatchSolution&) = default;
 };
 
 enum class MatchStatus : std::uint8_t {
@@ -103,7 +96,8 @@ inline constexpr std::size_t kReasons = 7;
 struct MatchResult {
   std::uint64_t task_id = 0;
   MatchStatus status = MatchStatus::kNothingInCommon;
-  std::vector<MatchSolution> solutions;  ///< best first, distinct, before refinement
+  /// Best first, distinct, before refinement; the answer to MatchTask::places, and all of it.
+  std::vector<MatchSolution> solutions;
   geometry::Pose2
       T_reference_query;  ///< best solution after refinement by MatchTask::evidence with the prior
   Eigen::Matrix3d covariance =
@@ -124,9 +118,6 @@ struct MatchResult {
   std::uint64_t seed = 0;  ///< of the task
   Verdict verdict = Verdict::kRejected;
   Reason reason = Reason::kNothingInCommon;
-  /// Best first: the answer to MatchTask::places, and all of it; but `solutions` when poses were to
-  /// climb, in their order.
-  std::vector<PlaceSeed> seeds;
 };
 
 class PlaceField;

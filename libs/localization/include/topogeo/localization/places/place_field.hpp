@@ -2,11 +2,10 @@
 // the cells that a scan may come from (docs/algorithms.md, "Localization in a finished map (own)").
 //
 // A search tries every cell in 72 headings. Headings are independent of each other, so a search is
-// cut into tasks of a few of them; the best seeds climb in a finer grid, a few in each task. Any
-// machine can work on these that has the field: it travels as
-// pieces in the form of local maps, which workers ask for, check and keep by their content like all
-// others. The cut does not depend on the number of workers, and the seeds of the tasks together are
-// those of one search of all headings.
+// cut into tasks of a few of them; from the best cells of each task poses climb in a finer grid.
+// Any machine can work on these that has the field: it travels as pieces in the form of local maps,
+// which workers ask for, check and keep by their content like all others. The cut does not depend
+// on the number of workers.
 #pragma once
 
 #include <cstddef>
@@ -27,13 +26,11 @@ namespace topogeo::localization {
 
 class PlaceField {
  public:
-  static constexpr std::uint32_t kHeadings = 72;             ///< 5 degrees apart
-  static constexpr std::size_t kSeeds = 300;                 ///< of a search, and of a task at most
-  static constexpr std::size_t kSearchedPoints = 64;         ///< at most
-  static constexpr std::size_t kClimbingPoints = 120;        ///< at most
-  static constexpr std::size_t kTaskPoses = 38;              ///< that climb in one task, at most
-  static constexpr double kFineWidth_m = 0.30;               ///< of fine(): spans a cell of grid()
-  static constexpr std::size_t kMostPieces = 1024;           ///< a larger field is not sent
+  static constexpr std::uint32_t kHeadings = 72;    ///< 5 degrees apart
+  static constexpr std::size_t kPoints = 128;       ///< of a question, at most; half of them search
+  static constexpr std::size_t kTaskPoses = 38;     ///< that climb in one task, at most
+  static constexpr double kFineWidth_m = 0.30;      ///< of fine(): spans a cell of grid()
+  static constexpr std::size_t kMostPieces = 1024;  ///< a larger field is not sent
   static constexpr std::uint32_t kFirstPiece = 0x80000000U;  ///< id of one; no stop has it
 
   /// `walls`: points in the map frame, 5 cm apart. Scans come from at most `margin_m` beyond.
@@ -57,30 +54,20 @@ class PlaceField {
   /// In which poses climb: of cells of 5 cm.
   [[nodiscard]] const KernelGrid& fine() const { return fine_; }
 
-  /// The questions that together search all headings for points in the robot frame, kSearchedPoints
-  /// of them at most.
+  /// The questions that together search all headings for points in the robot frame, kPoints of them
+  /// at most.
   [[nodiscard]] std::vector<std::shared_ptr<const PlaceQuestion>> questions(
       std::span<const Eigen::Vector2d> points_m) const;
-  /// The best seeds of a question, best first; of each cell the best heading. Throws
+  /// Where poses climb to from the best cells of a question, no two of which touch, each in its
+  /// best heading: the best cell first, with the mean kernel value where it ends. Throws
   /// std::invalid_argument for a question of another field or about headings that do not exist.
-  [[nodiscard]] std::vector<PlaceSeed> answer(const PlaceQuestion& question) const;
-  /// The question where poses climb to, with kClimbingPoints at most.
-  [[nodiscard]] std::shared_ptr<const PlaceQuestion> climbing_question(
-      std::span<const Eigen::Vector2d> points_m) const;
-  /// Where poses climb to, in their order, with the mean kernel value there. Throws like answer().
-  [[nodiscard]] std::vector<MatchSolution> climb_from(const PlaceQuestion& question,
-                                                      std::span<const geometry::Pose2> poses) const;
+  [[nodiscard]] std::vector<MatchSolution> answer(const PlaceQuestion& question) const;
 
-  /// What is wrong with an answer, for people; empty when its scores are right to the last bit.
-  /// That there is no better seed only a second answer shows.
+  /// What is wrong with an answer, for people; empty when its poses may be ones that climbed and
+  /// their values are right to the last bit. That there is no better place only a second answer
+  /// shows.
   [[nodiscard]] std::string verify(const PlaceQuestion& question,
-                                   std::span<const PlaceSeed> seeds) const;
-  [[nodiscard]] std::string verify(const PlaceQuestion& question,
-                                   std::span<const geometry::Pose2> poses,
-                                   std::span<const MatchSolution> climbed) const;
-
-  /// T_map_robot.
-  [[nodiscard]] geometry::Pose2 pose_of(const PlaceSeed& seed) const;
+                                   std::span<const MatchSolution> places) const;
 
  private:
   /// Cells beside each other in one row.
@@ -97,10 +84,23 @@ class PlaceField {
 
   void add_run(int row, int first_column, int cells);
   void make_pieces();
-  [[nodiscard]] PlaceQuestion question_about(std::span<const Eigen::Vector2d> points_m) const;
+  /// A free cell, and how well the points fit with the robot there.
+  struct Seed {
+    std::uint16_t score = 0;
+    std::uint16_t heading = 0;
+    std::uint32_t cell = 0;  ///< counted through the runs
+    friend bool operator==(const Seed&, const Seed&) = default;
+  };
+  [[nodiscard]] static bool comes_before(const Seed& a, const Seed& b);
+
   void check(const PlaceQuestion& question) const;
-  void check_points(const PlaceQuestion& question, std::size_t most) const;
   [[nodiscard]] const Run& run_of(std::uint32_t cell) const;
+  [[nodiscard]] geometry::Pose2 pose_of(const Seed& seed) const;
+  /// The best heading of each cell, in no order.
+  [[nodiscard]] std::vector<Seed> scored(const PlaceQuestion& question) const;
+  /// Where poses climb from.
+  [[nodiscard]] std::vector<geometry::Pose2> starts(const PlaceQuestion& question) const;
+  [[nodiscard]] bool near_free_cell(const Eigen::Vector2d& p_m) const;
   [[nodiscard]] std::vector<Offset> offsets(const PlaceQuestion& question,
                                             std::uint32_t heading) const;
   [[nodiscard]] bool inside(const Run& run, const Offset& offset) const;
@@ -115,8 +115,5 @@ class PlaceField {
   std::vector<std::uint64_t> piece_hashes_;
   std::uint64_t hash_ = 0;
 };
-
-/// The best seeds of all: of each cell the best heading in each quarter turn.
-std::vector<PlaceSeed> best_of(std::span<const std::vector<PlaceSeed>> answers);
 
 }  // namespace topogeo::localization

@@ -71,16 +71,11 @@ class GlobalLocalizer {
 
   /// What find() does before it compares places closely, for those who have others do the work: the
   /// questions to field() about what was seen, points in the robot frame, of one scan or of
-  /// several metres of path; ...
+  /// several metres of path, ...
   [[nodiscard]] std::vector<std::shared_ptr<const PlaceQuestion>> questions(
       const std::vector<SurfacePoint>& seen) const;
-  /// ... where to climb from by their answers, and what is asked then; ...
-  [[nodiscard]] std::vector<geometry::Pose2> starts(
-      std::span<const std::vector<PlaceSeed>> answers) const;
-  [[nodiscard]] std::shared_ptr<const PlaceQuestion> climbing_question(
-      const std::vector<SurfacePoint>& seen) const;
-  /// ... and the `count` best distinct ones of the places that were climbed to.
-  [[nodiscard]] static std::vector<Climbed> distinct(std::vector<MatchSolution> climbed,
+  /// ... and the `count` best distinct ones of the places in their answers.
+  [[nodiscard]] static std::vector<Climbed> distinct(std::vector<MatchSolution> places,
                                                      std::size_t count);
   [[nodiscard]] const std::shared_ptr<const PlaceField>& field() const { return field_; }
 
