@@ -269,13 +269,17 @@ TEST_F(WebOnRobot, GoesToARoomByNameAndStopsWhenTheHandLetsGo) {
       return std::fabs(std::remainder(page_.values["truth"]["theta_rad"].get<double>() - before_rad,
                                       2.0 * std::numbers::pi)) > 0.3;
     };
+    // The hand is told of while its orders come in time, which a busy machine may miss once.
+    bool held = false;
     const auto end = steady_clock::now() + kPagePatience;
-    while (!turned() && steady_clock::now() < end) {
+    while (!(turned() && held) && steady_clock::now() < end) {
       hand.send({{"op", "drive"}, {"linear_mps", 0.0}, {"angular_radps", 0.5}});
       wait_for([] { return false; }, milliseconds(50));
+      const json& drive = page_.values["drive"];
+      held = held || (!drive.is_null() && drive["held"] == true);
     }
     ASSERT_TRUE(turned());
-    EXPECT_EQ(page_.values["drive"]["held"], true);
+    EXPECT_TRUE(held);
   }
   ASSERT_TRUE(wait_for([&] { return page_.values["drive"].is_null(); }));
   const double stood_rad = page_.values["truth"]["theta_rad"];

@@ -114,7 +114,8 @@ void HandSender::release(std::uint64_t viewer) {
 void HandSender::tick() {
   const std::int64_t now_ns = steady_ns();
   const std::int64_t stamp_ns = clock_.now_ns(now_ns);
-  if (drive_.held(now_ns)) keep_off_drawn();
+  const bool held = drive_.held(now_ns);
+  if (held) keep_off_drawn();
   const auto verdict = drive_.step(guard_, now_ns, stamp_ns);
   if (!verdict) {
     if (commanding_) board_.set(Channel::kDrive, "null");
@@ -123,7 +124,7 @@ void HandSender::tick() {
   }
   commanding_ = true;
   command(verdict->allowed, stamp_ns);
-  show(*verdict);
+  show(*verdict, held);
 }
 
 void HandSender::command(const geometry::Velocity& velocity, std::int64_t stamp_ns) {
@@ -159,9 +160,9 @@ bool HandSender::order(msg::BaseCommandKind kind) {
   return orders_.matched() > 0;
 }
 
-void HandSender::show(const navigation::GuardVerdict& verdict) {
+void HandSender::show(const navigation::GuardVerdict& verdict, bool held) {
   board_.set(Channel::kDrive,
-             text_of(Json{{"held", drive_.held(steady_ns())},
+             text_of(Json{{"held", held},
                           {"linear_mps", rounded(verdict.allowed.linear_m_per_s)},
                           {"angular_radps", rounded(verdict.allowed.angular_rad_per_s)},
                           {"free_ahead_m", rounded(verdict.free_m)},

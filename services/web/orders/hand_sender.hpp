@@ -57,7 +57,7 @@ class HandSender {
   void keep_off_drawn();
   void command(const geometry::Velocity& velocity, std::int64_t stamp_ns);
   bool order(msg::BaseCommandKind kind);
-  void show(const navigation::GuardVerdict& verdict);
+  void show(const navigation::GuardVerdict& verdict, bool held);
 
   service::Service& service_;
   Board& board_;
