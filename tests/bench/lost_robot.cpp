@@ -242,11 +242,9 @@ double cpu_ms(const Result& result, std::size_t workers) {
 
 void print(const std::vector<Result>& results, std::size_t least_workers, std::size_t starts) {
   std::printf(
-      "| workers | found | stops searched | whole map, ms, median | times as fast as one | stop, "
-      "ms, "
-      "median | mean | most | times as fast as one, median | mean | by CPU | CPU of the localizer, "
-      "ms "
-      "a stop | of the workers |\n"
+      "| workers | found | stops searched | whole map, ms, median | times as fast as one | "
+      "stop, ms, median | mean | most | times as fast as one, median | mean | by CPU | "
+      "CPU of the localizer, ms a stop | of the workers |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Result& result = results[i];

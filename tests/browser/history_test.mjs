@@ -4,17 +4,14 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { drive_log } from "./drive_log.mjs";
-import { close, kPictures, launch } from "./page.mjs";
+import { assert_accessible, close, kPictures, launch } from "./page.mjs";
 import { eventually, Robot } from "./robot.mjs";
 import { kAddress, StandIn } from "./stand_in.mjs";
 
 const { TOPOGEO_BUILD: build, TOPOGEO_SOURCE: source, TOPOGEO_WORK: work } = process.env;
-const packages = createRequire(join(build, "tests/browser/"));
-const axe = packages.resolve("axe-core/axe.min.js");
 
 const robot = new Robot(join(build, "bin"), source, work);
 const file = (name) => join(work, name);
@@ -80,14 +77,7 @@ async function get(path) {
 /** A screenshot, and nothing serious found by axe-core. */
 async function picture(name, on = page) {
   await on.screenshot({ path: join(kPictures, `${name}.png`) });
-  await on.addScriptTag({ path: axe });
-  const { violations } = await on.evaluate(() => window.axe.run());
-  const serious = violations.filter((finding) => ["serious", "critical"].includes(finding.impact));
-  assert.deepEqual(
-    serious.map((finding) => `${finding.id}: ${finding.nodes.map((node) => node.target).join(", ")}`),
-    [],
-    name,
-  );
+  await assert_accessible(on, name);
 }
 
 test("a loop of a stored map shows both local maps laid on each other", async () => {

@@ -4,9 +4,14 @@ import { existsSync, mkdirSync, openSync, readFileSync, writeFileSync } from "no
 import { createServer } from "node:net";
 import { join } from "node:path";
 
+/** Milliseconds that a test has patience for, longer where all is slower. */
+function patience_ms(seconds) {
+  return 1000 * seconds * Number(process.env.TOPOGEO_TIME_FACTOR ?? 1);
+}
+
 /** Waits until `check` gives something true, which is returned; fails with `what` after some seconds. */
 export async function eventually(what, check, seconds = 60) {
-  const end = Date.now() + 1000 * seconds * Number(process.env.TOPOGEO_TIME_FACTOR ?? 1);
+  const end = Date.now() + patience_ms(seconds);
   for (;;) {
     const found = await check();
     if (found) return found;
@@ -19,7 +24,7 @@ export async function eventually(what, check, seconds = 60) {
 export function within(seconds, promise) {
   let timer;
   const late = new Promise((resolve) => {
-    timer = setTimeout(() => resolve(false), 1000 * seconds * Number(process.env.TOPOGEO_TIME_FACTOR ?? 1));
+    timer = setTimeout(() => resolve(false), patience_ms(seconds));
   });
   return Promise.race([promise.then(() => true), late]).finally(() => clearTimeout(timer));
 }

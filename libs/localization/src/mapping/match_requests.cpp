@@ -1,10 +1,8 @@
 #include "topogeo/localization/mapping/match_requests.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "topogeo/localization/mapping/search_space.hpp"
-#include "topogeo/localization/places/place_field.hpp"
 #include "topogeo/support/seed.hpp"
 
 namespace topogeo::localization {

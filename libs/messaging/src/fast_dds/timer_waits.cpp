@@ -1,8 +1,8 @@
-// In Fast DDS 2.9.1 (and later ones: its issue 6502) whoever takes a timer away waits until all
-// timers of the participant that are due have done their work (ResourceEvent::unregister_timer). A
-// writer that has gone is removed with the lock of discovery held. When one of its timers is at
-// work then, it is taken away and waited for; when the timer of liveliness is due after it, that
-// waits for the lock. Both wait for ever, and with them all that is received and sent.
+// In Fast DDS 2.9.1, and in later versions, whoever takes a timer away waits until all timers of
+// the participant that are due have done their work (ResourceEvent::unregister_timer). A writer
+// that has gone is removed with the lock of discovery held. When one of its timers is at work then,
+// it is taken away and waited for; when the timer of liveliness is due after it, that waits for the
+// lock. Both wait for ever, and with them all that is received and sent.
 //
 // Here a timer's end waits for that timer only. While one is at work the lists of timers may be
 // changed; the library looks at them anew afterwards, as it does for a timer that removes another.

@@ -82,17 +82,16 @@ class PlaceField {
     int row = 0;
   };
 
-  void add_run(int row, int first_column, int cells);
-  void make_pieces();
   /// A free cell, and how well the points fit with the robot there.
   struct Seed {
     std::uint16_t score = 0;
     std::uint16_t heading = 0;
     std::uint32_t cell = 0;  ///< counted through the runs
-    friend bool operator==(const Seed&, const Seed&) = default;
   };
   [[nodiscard]] static bool comes_before(const Seed& a, const Seed& b);
 
+  void add_run(int row, int first_column, int cells);
+  void make_pieces();
   void check(const PlaceQuestion& question) const;
   [[nodiscard]] const Run& run_of(std::uint32_t cell) const;
   [[nodiscard]] geometry::Pose2 pose_of(const Seed& seed) const;
