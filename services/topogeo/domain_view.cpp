@@ -13,20 +13,21 @@ namespace {
 // Services publish every half second; discovery takes the rest.
 constexpr std::chrono::milliseconds kCollect{1200};
 // On a busy machine some are discovered later: it goes on until no new one has come for longer than
-// a period, for kLongest at most.
+// a period, for as long as the view says at most.
 constexpr std::chrono::milliseconds kSettled{800};
-constexpr std::chrono::milliseconds kLongest{3200};
 constexpr std::chrono::milliseconds kSlice{100};
 // Between two tables of --watch: a service that dies is found out after a second and is to be shown
 // within two.
 constexpr std::chrono::milliseconds kAgain{500};
 
 /// False when the loop was stopped.
-bool collect(messaging::EventLoop& loop, const std::function<std::size_t()>& count) {
+bool collect(const DomainView& view, messaging::EventLoop& loop,
+             const std::function<std::size_t()>& count) {
+  const std::chrono::duration<double> longest(view.wait_s);
   std::chrono::milliseconds waited{0};
   std::chrono::milliseconds settled{0};
   std::size_t before = 0;
-  while (waited < kLongest && (waited < kCollect || settled < kSettled || before == 0)) {
+  while (waited < longest && (waited < kCollect || settled < kSettled || before == 0)) {
     if (loop.run_for(kSlice)) return false;
     const std::size_t now = count();
     waited += kSlice;
@@ -49,6 +50,10 @@ void add_domain_options(command_line::Command& app, DomainView& view) {
 void add_view_options(command_line::Command& app, DomainView& view) {
   add_domain_options(app, view);
   app.add_flag("--watch", view.watch, "again twice a second until Ctrl-C");
+  app.add_option("--wait-seconds", view.wait_s,
+                 "how long to wait while none is found, and for those that are found late")
+      ->check(command_line::range(0.1, kLongestWait_s))
+      ->capture_default_str();
 }
 
 messaging::Participant join(const DomainView& view, const std::string& name,
@@ -67,7 +72,7 @@ bool collect_and_show(const DomainView& view, messaging::EventLoop& loop,
                       const std::function<std::size_t()>& count,
                       const std::function<void()>& show) {
   const messaging::SignalStop signals([&](int) { loop.stop(); });
-  if (!collect(loop, count)) return count() > 0;
+  if (!collect(view, loop, count)) return count() > 0;
   do {
     if (count() > 0 || view.watch) show();
     std::cout << std::flush;

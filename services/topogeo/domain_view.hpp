@@ -13,17 +13,21 @@
 
 namespace topogeo::cli {
 
+/// That a --wait-seconds may ask for.
+constexpr double kLongestWait_s = 3600.0;
+
 struct DomainView {
   std::uint32_t domain = 0;
   std::string partition = messaging::kAnyPartition;
   std::filesystem::path profiles_file;
   bool watch = false;
+  double wait_s = 3.2;  ///< for the first that is found
 };
 
 /// Adds --domain, --partition and --profiles; `view` must outlive the app.
 void add_domain_options(command_line::Command& app, DomainView& view);
 
-/// The same and --watch.
+/// The same, --watch and --wait-seconds.
 void add_view_options(command_line::Command& app, DomainView& view);
 
 /// Joins the domain under a name that DDS tools show. `identity`, `observe`: see

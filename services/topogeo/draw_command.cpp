@@ -105,7 +105,6 @@ void add_draw_command(command_line::Command& app, int& exit_code) {
   command->add_option("--robot,--robot-id", options->robot_id, "whose live map")
       ->capture_default_str();
   add_domain_options(*command, options->view);
-  constexpr double kLongestWait_s = 3600.0;
   command->add_option("--wait-seconds", options->wait_s, "how long to wait for the map store")
       ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();

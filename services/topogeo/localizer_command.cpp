@@ -40,7 +40,6 @@ int send_localizer_command(const LocalizerRequest& request,
 void add_request_options(command_line::Command& app, LocalizerRequest& request) {
   app.add_option("--robot,--robot-id", request.robot_id, "whose localizer")->capture_default_str();
   add_domain_options(app, request.view);
-  constexpr double kLongestWait_s = 3600.0;
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the answer")
       ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();

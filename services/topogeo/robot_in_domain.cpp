@@ -13,7 +13,6 @@ namespace topogeo::cli {
 void add_robot_options(command_line::Command& app, RobotInDomain& robot) {
   app.add_option("--robot,--robot-id", robot.robot_id, "which robot")->capture_default_str();
   add_domain_options(app, robot.view);
-  constexpr double kLongestWait_s = 3600.0;
   app.add_option("--wait-seconds", robot.wait_s, "how long to wait for planner and navigator")
       ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();

@@ -143,9 +143,10 @@ start_stranger() {  # flood, absurd or topics
   esac
 }
 
-# Whether the navigator, beside the guard, has counted what a stranger sent: without it nothing came to the robot.
+# Whether the navigator, beside the guard, has counted what a stranger sent: without it nothing came to the robot. Who
+# comes when strangers are many is not known at once.
 counted() {  # REASON
-  on robot "$bin/topogeo" status navigator --json 2> /dev/null | python3 -c 'import json, sys
+  on robot "$bin/topogeo" status navigator --json --wait-seconds 20 2> /dev/null | python3 -c 'import json, sys
 services = json.load(sys.stdin)
 sys.exit(not any(sys.argv[1] in {**s["faults"], **s["drops"]} for s in services))' "$1"
 }

@@ -134,6 +134,16 @@ TEST_F(HealthTest, AServiceThatDiedBeforeIsMissingWhereItIsExpected) {
   EXPECT_THAT(out, AllOf(HasSubstr("local_mapper  waiting"), HasSubstr("planner       missing")));
 }
 
+TEST_F(HealthTest, StatusWaitsForAServiceThatComesLater) {
+  Program status(scratch_, "topogeo",
+                 {"status", "planner", "--wait-seconds", "60", "--domain", domain_});
+  std::this_thread::sleep_for(
+      std::chrono::seconds(4));  // where it would give up without the option
+  const auto planner = start("planner");
+  EXPECT_EQ(status.wait(), 0) << status.err();
+  EXPECT_THAT(status.out(), HasSubstr("planner"));
+}
+
 TEST_F(HealthTest, ServicesSayWhatTheyWaitForAndWhatConfigurationTheyHave) {
   const auto mapper = start("local_mapper");
   const auto planner = start("planner");

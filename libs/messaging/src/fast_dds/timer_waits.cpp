@@ -21,6 +21,7 @@
 #include <fastdds/rtps/resources/TimedEvent.h>
 
 #include "library_function.hpp"
+#include "timer_order.hpp"
 
 namespace {
 
@@ -146,6 +147,7 @@ extern "C" void topogeo_do_timer_actions(rtps::ResourceEvent* service) {
   static const auto original =
       topogeo::messaging::library_function<void (*)(rtps::ResourceEvent*)>(kWork);
   t_service = service;
+  topogeo::messaging::begin_timer_round();
   original(service);
 }
 
@@ -159,6 +161,7 @@ extern "C" void topogeo_trigger_timer(void* timer, TimePoint now, TimePoint canc
   const bool begun = timers().begin(timer);  // first: then it cannot go
   set_lists_open(*t_service, true);
   if (begun) {
+    topogeo::messaging::note_timer_worked(timer);
     original(timer, now, cancelled);
   } else {
     timers().wait_until_left(timer);
