@@ -143,8 +143,8 @@ std::vector<StepMatch> Localizer::match_recent() {
   return evidence;
 }
 
-// Where odometry says too little of recent stops. What a widened search found instead does not
-// count beside them.
+// Where odometry says too little of recent stops, also with earlier ones. What a widened search
+// found instead does not count beside them.
 std::vector<StopMatch> Localizer::match_further(std::vector<StopMatch>& matches) {
   if (std::any_of(matches.begin(), matches.end(),
                   [](const StopMatch& match) { return match.accepted() && !match.widened; })) {

@@ -107,18 +107,16 @@ std::vector<MatchCandidate> StopMatching::recent_candidates(const PoseGraph& gra
   return choice.best(config_.recent_matches);
 }
 
-// By what they would show if odometry were right.
-std::vector<MatchCandidate> StopMatching::unsearchable_candidates(
-    const RelativePoses& relative) const {
-  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
+CandidateChoice StopMatching::shown_if_right(std::span<const std::uint32_t> candidates,
+                                             const RelativePoses& relative) const {
   CandidateChoice choice(config_.smallest_expected_overlap);
-  for (std::uint32_t i = first_recent(stop); i + 1 < stop; ++i) {
-    const UncertainPose& T_stop_earlier = relative.at(i);
-    if (searchable(config_, T_stop_earlier)) return {};
-    choice.consider(i, stops_[stop].view->profile, stops_[i].view->outline,
-                    {T_stop_earlier.T_a_b, Eigen::Matrix3d::Zero()});
+  for (const std::uint32_t earlier : candidates) {
+    const UncertainPose* T_stop_earlier = relative.find(earlier);
+    if (T_stop_earlier == nullptr) continue;
+    choice.consider(earlier, stops_.back().view->profile, stops_[earlier].view->outline,
+                    {T_stop_earlier->T_a_b, Eigen::Matrix3d::Zero()});
   }
-  return choice.best(config_.recent_matches);
+  return choice;
 }
 
 std::vector<MatchCandidate> StopMatching::revisited_candidates(
@@ -132,15 +130,16 @@ std::vector<MatchCandidate> StopMatching::revisited_candidates(
   return choice.best_apart(config_.revisit_matches);
 }
 
-RelativePoses StopMatching::relative_to_last(const PoseGraph& graph) const {
+std::vector<std::uint32_t> StopMatching::recent_stops() const {
   const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
   std::vector<std::uint32_t> recent(stop - first_recent(stop));
   std::iota(recent.begin(), recent.end(), first_recent(stop));
-  return graph.relative_to(stop, recent);
+  return recent;
 }
 
 std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
-  const RelativePoses relative = relative_to_last(graph);
+  const RelativePoses relative =
+      graph.relative_to(static_cast<std::uint32_t>(stops_.size() - 1), recent_stops());
   std::map<std::uint32_t, std::vector<MatchSolution>> solutions;
   const auto matches_within = [&](double widening) {
     // Anew each time: what was just compared without success is not worth it again.
@@ -164,9 +163,27 @@ std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
 }
 
 std::vector<StopMatch> StopMatching::match_unsearchable(const PoseGraph& graph) {
-  const RelativePoses relative = relative_to_last(graph);
-  std::vector<StopMatch> matches = run(
-      recent_tasks(graph, relative, unsearchable_candidates(relative), 1.0), EdgeKind::kSequential);
+  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
+  std::vector<std::uint32_t> near = recent_stops();
+  if (near.empty()) near.push_back(stop - 1);
+  RelativePoses relative = graph.relative_to(stop, near);
+  near.pop_back();  // the stop before is compared in any case
+  if (std::any_of(near.begin(), near.end(), [&](std::uint32_t earlier) {
+        return searchable(config_, relative.at(earlier));
+      })) {
+    return {};
+  }
+  std::vector<MatchCandidate> candidates =
+      shown_if_right(near, relative).best(config_.recent_matches);
+  if (candidates.empty() && !searchable(config_, relative.at(stop - 1))) {
+    // Perhaps the robot comes back to where it was before.
+    near = graph.stops_near(graph.poses()[stop].position_m(), kFarthestCompared_m, kMostConsidered,
+                            first_recent(stop));
+    relative = graph.predict_from(stop, near, PoseGraph::kUnlimited, PoseGraph::kMostVisited);
+    candidates = shown_if_right(near, relative).best_apart(config_.recent_matches);
+  }
+  std::vector<StopMatch> matches =
+      run(recent_tasks(graph, relative, candidates, 1.0), EdgeKind::kSequential);
   for (StopMatch& match : matches) match.widened = true;
   calibrate(matches);
   return matches;

@@ -46,9 +46,10 @@ class StopMatching {
   /// because odometry may be worse than configured. The pose of the last stop in the graph is the
   /// predicted one.
   std::vector<StopMatch> match_recent(const PoseGraph& graph);
-  /// Matches of the last stop with recent ones, where odometry knows too little of all but the stop
-  /// just before for match_recent(): after a long step that nobody mapped that one may show
-  /// nothing, and others much. Each is widened, as no search is as wide as odometry is uncertain.
+  /// Matches of the last stop where odometry knows too little of all recent ones but the stop just
+  /// before for match_recent(): after a long step that nobody mapped that one may show nothing, and
+  /// others much. Recent ones, or those of an earlier visit where no recent one would show much.
+  /// Each is widened, as no search is as wide as odometry is uncertain.
   std::vector<StopMatch> match_unsearchable(const PoseGraph& graph);
   /// Matches of stops with such that are not recent to them. The tasks of all make one round.
   std::vector<StopMatch> match_revisited(const PoseGraph& graph,
@@ -82,14 +83,16 @@ class StopMatching {
   [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
   [[nodiscard]] std::vector<MatchCandidate> recent_candidates(const PoseGraph& graph,
                                                               const RelativePoses& relative) const;
-  [[nodiscard]] std::vector<MatchCandidate> unsearchable_candidates(
-      const RelativePoses& relative) const;
+  /// For the last stop, by what they would show if odometry were right.
+  [[nodiscard]] CandidateChoice shown_if_right(std::span<const std::uint32_t> candidates,
+                                               const RelativePoses& relative) const;
   [[nodiscard]] std::vector<MatchCandidate> revisited_candidates(
       const PoseGraph& graph, std::uint32_t stop, std::span<const std::uint32_t> candidates,
       const RelativePoses& relative) const;
   void consider(CandidateChoice& choice, const PoseGraph& graph, std::uint32_t earlier,
                 std::uint32_t stop, const UncertainPose& T_stop_earlier, bool common) const;
-  [[nodiscard]] RelativePoses relative_to_last(const PoseGraph& graph) const;
+  /// Those before the last one, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> recent_stops() const;
   std::vector<MatchTask> recent_tasks(const PoseGraph& graph, const RelativePoses& relative,
                                       std::span<const MatchCandidate> candidates, double widening);
   std::vector<StopMatch> run(std::span<const MatchTask> tasks, EdgeKind kind);
