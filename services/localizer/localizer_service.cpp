@@ -189,8 +189,8 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
     service_.status().set_state(msg::kServiceRunning);
   }
   (*slam_)->add(odometry_.add(map));
+  if (queue_.taken() < known_stops_) return;  // no pose is said of the robot until the last one
   live_.set_stop(map);
-  if (queue_.taken() < known_stops_) return;
   publish(false);
   send_pose();  // a correction shows at once, also when no odometry comes any more
   count();

@@ -203,6 +203,38 @@ TEST_F(LateLocalizer, GetsTheFirstStopsOfALogFromTheMapStore) {
   EXPECT_EQ(last_status_->fault_count(), 0U);
 }
 
+// While it adds the stops of the robot's drive again, it hears where odometry has the robot now.
+TEST_F(LateLocalizer, SaysNoPoseBeforeItHasAddedTheStopsAgain) {
+  const auto store = start("map_store", {"--out", scratch_ / "out"});
+  for (const auto& map : maps_) publish(*map);
+  ASSERT_TRUE(wait_until([&] { return stored_ && stored_->session_stops() == maps_.size(); }));
+  localization::InProcessPool pool;
+  localization::Localizer expected({}, pool);
+  for (const auto& map : maps_) expected.add(map);
+  const geometry::Pose2 T_map_robot = expected.last_stop()->T_map_robot;
+  double furthest_m = 0.0;
+  bool any = false;
+  messaging::Reader<msg::LivePose> poses(participant_);
+  loop_.add<msg::LivePose>(poses, [&](const msg::LivePose& message, const auto&) {
+    const geometry::Pose2 pose = service::from_msg(message).T_map_robot;
+    furthest_m = std::max(furthest_m, (pose.position_m() - T_map_robot.position_m()).norm());
+    any = true;
+  });
+  const auto worker = start("ga_worker");  // while it answers, odometry is heard
+  const Program localizer(scratch_, "localizer",
+                          {"--wait-workers", "1", "--wait-seconds", "60", "--domain", own_domain(),
+                           "--partition", partition_});
+  std::uint64_t sequence = maps_.back()->sequence;
+  ASSERT_TRUE(wait_until([&] {
+    msg::Odometry odometry;
+    messaging::set_header(odometry, "robot", maps_.back()->stamp_ns + 1, ++sequence);
+    odometry.T_odom_robot(service::to_msg(maps_.back()->T_odom_robot));
+    EXPECT_TRUE(odometry_writer_.write(odometry));
+    return any && last_status_ && counter("stops") == static_cast<double>(maps_.size());
+  })) << localizer.err();
+  EXPECT_LT(furthest_m, 0.1);
+}
+
 TEST_F(LateLocalizer, GoesOnWithoutThemWhereNothingIsStored) {
   const auto store = start("map_store", {"--map", map_file_});
   for (const auto& map : maps_) publish(*map);
