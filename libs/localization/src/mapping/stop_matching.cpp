@@ -96,7 +96,7 @@ void StopMatching::consider(CandidateChoice& choice, const PoseGraph& graph, std
 
 std::vector<MatchCandidate> StopMatching::recent_candidates(const PoseGraph& graph,
                                                             const RelativePoses& relative) const {
-  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
+  const std::uint32_t stop = last_stop();
   const std::uint32_t first = first_recent(stop);
   CandidateChoice choice(config_.smallest_expected_overlap);
   for (std::uint32_t i = first; i + 1 < stop; ++i) {
@@ -131,15 +131,13 @@ std::vector<MatchCandidate> StopMatching::revisited_candidates(
 }
 
 std::vector<std::uint32_t> StopMatching::recent_stops() const {
-  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
-  std::vector<std::uint32_t> recent(stop - first_recent(stop));
-  std::iota(recent.begin(), recent.end(), first_recent(stop));
+  std::vector<std::uint32_t> recent(last_stop() - first_recent(last_stop()));
+  std::iota(recent.begin(), recent.end(), first_recent(last_stop()));
   return recent;
 }
 
 std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
-  const RelativePoses relative =
-      graph.relative_to(static_cast<std::uint32_t>(stops_.size() - 1), recent_stops());
+  const RelativePoses relative = graph.relative_to(last_stop(), recent_stops());
   std::map<std::uint32_t, std::vector<MatchSolution>> solutions;
   const auto matches_within = [&](double widening) {
     // Anew each time: what was just compared without success is not worth it again.
@@ -163,16 +161,15 @@ std::vector<StopMatch> StopMatching::match_recent(const PoseGraph& graph) {
 }
 
 std::vector<StopMatch> StopMatching::match_unsearchable(const PoseGraph& graph) {
-  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
+  const std::uint32_t stop = last_stop();
   std::vector<std::uint32_t> near = recent_stops();
   if (near.empty()) near.push_back(stop - 1);
   RelativePoses relative = graph.relative_to(stop, near);
   near.pop_back();  // the stop before is compared in any case
-  if (std::any_of(near.begin(), near.end(), [&](std::uint32_t earlier) {
-        return searchable(config_, relative.at(earlier));
-      })) {
-    return {};
-  }
+  const auto found_by_odometry = [&](std::uint32_t earlier) {
+    return searchable(config_, relative.at(earlier));
+  };
+  if (std::ranges::any_of(near, found_by_odometry)) return {};
   std::vector<MatchCandidate> candidates =
       shown_if_right(near, relative).best(config_.recent_matches);
   if (candidates.empty() && !searchable(config_, relative.at(stop - 1))) {
@@ -191,7 +188,7 @@ std::vector<StopMatch> StopMatching::match_unsearchable(const PoseGraph& graph) 
 
 // By the triangles of the last stop with two recent ones that were matched with each other.
 void StopMatching::calibrate(std::span<const StopMatch> matches) {
-  const auto last = static_cast<std::uint32_t>(stops_.size() - 1);
+  const std::uint32_t last = last_stop();
   for (const StopMatch& match : matches) {
     if (match.accepted()) recent_[{match.edge.from, last}] = match.T_later_earlier;
   }
@@ -211,7 +208,7 @@ std::vector<MatchTask> StopMatching::recent_tasks(const PoseGraph& graph,
                                                   const RelativePoses& relative,
                                                   std::span<const MatchCandidate> candidates,
                                                   double widening) {
-  const auto stop = static_cast<std::uint32_t>(stops_.size() - 1);
+  const std::uint32_t stop = last_stop();
   // By scan tracking; where no scan point is to count, by odometry.
   const Pose2 T_previous_robot =
       config_.evidence == MatchEvidence::kScan

@@ -80,6 +80,9 @@ class StopMatching {
     ProposalSource source = ProposalSource::kPrediction;
   };
 
+  [[nodiscard]] std::uint32_t last_stop() const {
+    return static_cast<std::uint32_t>(stops_.size() - 1);
+  }
   [[nodiscard]] std::uint32_t first_recent(std::uint32_t stop) const;
   [[nodiscard]] std::vector<MatchCandidate> recent_candidates(const PoseGraph& graph,
                                                               const RelativePoses& relative) const;
