@@ -44,6 +44,8 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
       end_reader_, [this](const msg::StreamEnd& end, const messaging::SampleInfo&) {
         if (end.stage() != msg::kStageMapStore || end.robot_id() != options_.job.robot_id.c_str())
           return;
+        // What services do with their inputs when they are stopped is no end of the run.
+        if (over_) return;
         result_.finished = true;
         run_.loop().stop();
       });
@@ -79,6 +81,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
 
 RunResult RunSupervisor::run() {
   run_.run();
+  over_ = true;
   result_.signal_number = result_.finished ? 0 : run_.signal_number();
   if (tour_) {
     result_.truth = tour_->truth().poses();
