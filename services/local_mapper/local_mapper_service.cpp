@@ -1,6 +1,7 @@
 #include "local_mapper_service.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,12 @@
 #include "topogeo/support/random.hpp"
 
 namespace topogeo::local_mapper {
+namespace {
+
+/// Of a log that has ended all scans have been delivered; a busy mapper has them in its queue.
+constexpr std::chrono::seconds kLastScans{1};
+
+}  // namespace
 
 LocalMapperService::LocalMapperService(service::Service& service, bool replay, bool standalone)
     : service_(service),
@@ -72,6 +79,7 @@ void LocalMapperService::on_last_stop(const service::StoreClient::Answer& answer
 
 void LocalMapperService::begin() {
   begun_ = true;
+  if (replay_) missing_.emplace(service_);
   service_.subscribe<msg::Scan>(
       [this](const msg::Scan& scan) { on_scan(scan); },
       {.role = replay_ ? std::string(messaging::kReplayRole) : std::string(), .main_input = true});
@@ -121,6 +129,8 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
   // A log that is read again brings the scans up to the last stop once more.
   if (replay_ && !odometry_epoch_ && resumed_ && resumed_->first == message.odometry_epoch()) {
     next_sequence_ = resumed_->second + 1;
+    scans_used_ = next_sequence_;
+    maps_ = std::uint64_t{mapper_.last_stop().number} + 1;
   }
   // A gateway with devices may be running already; a log begins with its first scan.
   const bool joins = !odometry_epoch_ && !replay_;
@@ -136,9 +146,11 @@ std::optional<scan::Scan> LocalMapperService::accept(const msg::Scan& message) {
     return std::nullopt;
   }
   if (sequence > next_sequence_) {
+    if (missing_ && missing_->want(message.odometry_epoch(), next_sequence_)) return std::nullopt;
     status.fault("scans missing", name + ", expected " + std::to_string(next_sequence_));
   }
   next_sequence_ = sequence + 1;
+  if (missing_) missing_->found();
   try {
     scan::Scan scan = service::from_msg(message);
     const Geometry geometry{scan.angle_min_rad, scan.angle_step_rad, scan.ranges_m.size()};
@@ -193,6 +205,19 @@ void LocalMapperService::on_stream_end(const msg::StreamEnd& message) {
   if (message.stage() != msg::kStageGateway) return;
   scans_in_stream_ = message.count();
   finish_if_complete();
+  if (missing_) look_for_rest(next_sequence_);
+}
+
+void LocalMapperService::look_for_rest(std::uint64_t next_before) {
+  service_.loop().call_after(kLastScans, [this, next_before] {
+    if (finished_) return;
+    if (next_sequence_ == next_before) {
+      const bool continues = !odometry_epoch_ && resumed_;
+      const std::uint64_t epoch = continues ? resumed_->first : odometry_epoch_.value_or(0);
+      missing_->want(epoch, continues ? resumed_->second + 1 : next_sequence_);
+    }
+    look_for_rest(next_sequence_);
+  });
 }
 
 void LocalMapperService::finish_if_complete() {

@@ -14,6 +14,7 @@
 #include "topogeo/service/service.hpp"
 #include "topogeo/service/store_client.hpp"
 
+#include "missing_scans.hpp"
 #include "sent_maps.hpp"
 
 namespace topogeo::local_mapper {
@@ -41,9 +42,13 @@ class LocalMapperService {
   /// Nothing is read before it is known with which session to go on.
   void begin();
   void on_scan(const msg::Scan& message);
-  /// The scan, if it continues those before; else a fault.
+  /// The scan, if it continues those before; else a fault, or scans of the log are missing that
+  /// come once more.
   std::optional<scan::Scan> accept(const msg::Scan& message);
   void on_stream_end(const msg::StreamEnd& message);
+  /// The log has ended. If then no more scans come though some are missing, they were sent while
+  /// this service was away. `next_before`: next_sequence_ at the last look.
+  void look_for_rest(std::uint64_t next_before);
   void publish(const topomap::LocalMap& map);
   /// Where the last scan is against the last stop.
   void publish_tracked();
@@ -71,6 +76,7 @@ class LocalMapperService {
   std::uint64_t tracked_ = 0;
   std::uint64_t matched_ = 0;
   std::optional<std::uint64_t> scans_in_stream_;
+  std::optional<MissingScans> missing_;  // of a log
   bool finished_ = false;
 };
 

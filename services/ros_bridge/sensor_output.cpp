@@ -16,7 +16,8 @@ SensorOutput::SensorOutput(RosSide& ros, bool replay)
       odometry_(ros.advertise<ros::Odometry>(ros.settings().topics.odometry, ros::Qos::kReliable)),
       transforms_(ros.advertise<ros::TFMessage>(ros.settings().topics.tf, ros::Qos::kTransforms)),
       static_transforms_(
-          ros.advertise<ros::TFMessage>(ros.settings().topics.tf_static, ros::Qos::kLatched)) {
+          ros.advertise<ros::TFMessage>(ros.settings().topics.tf_static, ros::Qos::kLatched)),
+      replay_(replay) {
   if (ros.settings().directions.clock) {
     clock_ = ros.advertise<ros::Clock>(ros.settings().topics.clock, ros::Qos::kReliable);
   }
@@ -47,7 +48,15 @@ void SensorOutput::publish_mounting(std::int64_t stamp_ns) {
   ros_.send(static_transforms_, message);
 }
 
+bool SensorOutput::is_repeated(std::uint64_t odometry_epoch, std::int64_t stamp_ns,
+                               Last& last) const {
+  if (replay_ && last.odometry_epoch == odometry_epoch && last.stamp_ns >= stamp_ns) return true;
+  last = {odometry_epoch, stamp_ns};
+  return false;
+}
+
 void SensorOutput::on_scan(const msg::Scan& scan) {
+  if (is_repeated(scan.odometry_epoch(), scan.stamp_ns(), last_scan_)) return;
   if (ros_.service().status().state() != msg::kServiceRunning) {
     ros_.service().status().set_state(msg::kServiceRunning);
   }
@@ -58,6 +67,7 @@ void SensorOutput::on_scan(const msg::Scan& scan) {
 }
 
 void SensorOutput::on_odometry(const msg::Odometry& odometry) {
+  if (is_repeated(odometry.odometry_epoch(), odometry.stamp_ns(), last_odometry_)) return;
   publish_time(odometry.stamp_ns());
   const std::string& odom = ros_.settings().frames.odom;
   ros_.send(odometry_, to_ros(odometry, odom, robot_frame_));

@@ -19,6 +19,14 @@ class SensorOutput {
   SensorOutput(RosSide& ros, bool replay);
 
  private:
+  /// What came last of a topic.
+  struct Last {
+    std::uint64_t odometry_epoch = 0;
+    std::optional<std::int64_t> stamp_ns;
+  };
+  /// Whether a log that is read again brings it once more; if not, it is the last from now on.
+  [[nodiscard]] bool is_repeated(std::uint64_t odometry_epoch, std::int64_t stamp_ns,
+                                 Last& last) const;
   void on_scan(const msg::Scan& scan);
   void on_odometry(const msg::Odometry& odometry);
   void publish_mounting(std::int64_t stamp_ns);
@@ -32,6 +40,9 @@ class SensorOutput {
   messaging::Writer<ros::TFMessage> static_transforms_;
   std::optional<messaging::Writer<ros::Clock>> clock_;
   bool mounting_sent_ = false;
+  bool replay_;
+  Last last_scan_;
+  Last last_odometry_;
 };
 
 }  // namespace topogeo::ros_bridge

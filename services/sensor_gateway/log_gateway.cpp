@@ -1,6 +1,8 @@
 #include "log_gateway.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -20,6 +22,11 @@ constexpr int kBatch = 16;
 constexpr milliseconds kReplayPoll{20};
 /// Falling further behind than this moves the schedule instead of rushing after it.
 constexpr std::chrono::seconds kLargestDelay{1};
+
+std::chrono::steady_clock::duration duration_of(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds));
+}
 
 /// Odometry at a scan, its speed from the one before.
 msg::Odometry odometry_of(const scan::Scan& scan, const std::string& robot_id,
@@ -53,6 +60,7 @@ LogGateway::LogGateway(service::Service& service, const GatewayOptions& options,
   service_.status().set_counter("scans_sent", 0.0);
   service_.status().set_counter("scans_total", static_cast<double>(scans_total));
   service_.status().wait_for(std::to_string(readers_) + " readers of scans");
+  service_.subscribe<msg::ScanRequest>([this](const msg::ScanRequest& r) { on_request(r); });
   wait_for_readers();
 }
 
@@ -66,20 +74,61 @@ void LogGateway::wait_for_readers() {
   replay();
 }
 
+void LogGateway::on_request(const msg::ScanRequest& request) {
+  if (sent_ == 0) return;
+  const bool of_this_log = request.odometry_epoch() == last_odometry_.odometry_epoch();
+  const std::uint64_t wanted = of_this_log ? request.first_scan() : 0;
+  if (wanted >= sent_ && !all_read_) return;  // it comes anyway
+  try {
+    go_back_to(std::min(wanted, sent_ - 1));
+  } catch (const std::runtime_error& error) {
+    service_.status().fault("log cannot be read again", error.what());
+  }
+}
+
+void LogGateway::go_back_to(std::uint64_t number) {
+  recording::LogReader reader(options_.log, service_.setup().config.config.log, options_.topics);
+  ReplayPace pace(options_.rate);
+  msg::Odometry last;
+  double after_s = 0.0;
+  for (std::uint64_t i = 0; i < number; ++i) {
+    const std::optional<scan::Scan> scan = reader.next();
+    if (!scan) throw std::runtime_error(options_.log.string() + " has become shorter");
+    after_s = pace.next(scan->stamp_ns).after_s;
+    last = odometry_of(*scan, service_.robot_id(), last);
+  }
+  spdlog::info("sends the scans from number {} on once more", number);
+  reader_ = std::move(reader);
+  pace_ = pace;
+  last_odometry_ = last;
+  start_ = Clock::now() - duration_of(after_s);
+  pending_scan_.reset();
+  pending_odometry_.reset();
+  sent_ = number;
+  all_read_ = end_sent_ = false;
+  service_.status().set_state(msg::kServiceRunning);
+  if (std::exchange(done_, false)) replay();
+}
+
+void LogGateway::go_on_after(Clock::duration delay) {
+  service_.loop().call_after(delay, [this] { all_read_ ? finish() : replay(); });
+}
+
 void LogGateway::replay() {
   for (int i = 0; i < kBatch; ++i) {
     if (!pending_scan_ && !pending_odometry_ && !read_next()) {
+      all_read_ = true;
       finish();
       return;
     }
     const auto now = Clock::now();
     if (now < due_) {
-      service_.loop().call_after(due_ - now, [this] { replay(); });
+      go_on_after(due_ - now);
       return;
     }
     if (!send_pending()) break;  // a reader is slow
   }
-  service_.loop().call_after(milliseconds(0), [this] { replay(); });
+  go_on_after({});
 }
 
 bool LogGateway::read_next() {
@@ -91,8 +140,7 @@ bool LogGateway::read_next() {
     spdlog::info("scan {}: a gap of {:.0f} s in the log is replayed as {:.0f} s", scan->sequence,
                  due.shortened_gap_s, ReplayPace::kShortened_s);
   }
-  due_ = start_ +
-         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(due.after_s));
+  due_ = start_ + duration_of(due.after_s);
   if (options_.rate && Clock::now() - due_ > kLargestDelay) {
     service_.status().add_to_counter("delayed_s");
     start_ += kLargestDelay;
@@ -130,24 +178,26 @@ void LogGateway::count() {
 void LogGateway::finish() {
   if (!scans_.wait_for_acknowledgments(kReplayPoll) ||
       (end_sent_ && !stream_end_.wait_for_acknowledgments(kReplayPoll))) {
-    service_.loop().call_after(milliseconds(0), [this] { finish(); });
+    go_on_after({});
     return;
   }
   if (!end_sent_) {
     msg::StreamEnd end;
-    messaging::set_header(end, service_.robot_id(), last_odometry_.stamp_ns(), 0);
+    messaging::set_header(end, service_.robot_id(), last_odometry_.stamp_ns(), ends_sent_);
     end.stage(msg::kStageGateway);
     end.count(sent_);
     end.last_id(sent_ == 0 ? 0 : sent_ - 1);
     if (!service_.send(stream_end_, end, "stream end")) return;
     end_sent_ = true;
-    service_.loop().call_after(milliseconds(0), [this] { finish(); });
+    ++ends_sent_;
+    go_on_after({});
     return;
   }
   const scan::CarmenLogStatistics& log = reader_.statistics();
   for (const std::string& message : log.messages) spdlog::warn("skipped {}", message);
   spdlog::info("{}", log.summary());
   service_.status().set_state(msg::kServiceFinished, log.summary());
+  done_ = true;
   if (options_.exit_at_end) service_.loop().stop();
 }
 

@@ -26,7 +26,8 @@ struct GatewayOptions {
 };
 
 /// Lives in the loop of its service. Every rate uses the replay QoS, so a slow reader slows the
-/// replay and no scan is lost.
+/// replay and no scan is lost. A local mapper that was away has the log read again from the scan on
+/// that it lacks; other readers get those scans twice.
 class LogGateway {
  public:
   /// `scans_total` is for people watching.
@@ -37,6 +38,13 @@ class LogGateway {
   using Clock = std::chrono::steady_clock;
 
   void wait_for_readers();
+  /// Reads the log again where that brings scans that are wanted.
+  void on_request(const msg::ScanRequest& request);
+  /// Makes the scan of that number the next one to be sent, and goes on from it at the pace of the
+  /// log. Throws std::runtime_error when the log has not so many any more.
+  void go_back_to(std::uint64_t number);
+  /// Comes back after `delay` for what is to be done then: scans, or the end.
+  void go_on_after(Clock::duration delay);
   /// Sends what is due now and comes back when the next is.
   void replay();
   /// Makes the next scan of the log the one to send; false at the end.
@@ -59,8 +67,11 @@ class LogGateway {
   std::optional<msg::Scan> pending_scan_;
   std::optional<msg::Odometry> pending_odometry_;
   msg::Odometry last_odometry_;
-  std::uint64_t sent_ = 0;
+  std::uint64_t sent_ = 0;  // scans of the log, the number of the next one
+  bool all_read_ = false;
   bool end_sent_ = false;
+  std::uint64_t ends_sent_ = 0;
+  bool done_ = false;  // all has been sent and received
 };
 
 }  // namespace topogeo::sensor_gateway

@@ -147,10 +147,13 @@ void Recorder::take(const msg::Scan& message) {
   last_news_ = Clock::now();
   const std::uint64_t number = message.sequence_number();
   if (recorded_ > 0 && number < next_) {
+    // A log that is read again: its gateway was away, or who maps it was.
+    if (message.odometry_epoch() == odometry_epoch_ && message.stamp_ns() <= last_stamp_ns_) return;
     throw std::runtime_error("scan " + std::to_string(number) + " came after scan " +
                              std::to_string(next_ - 1) +
                              ": another source has begun, or there are two of them");
   }
+  odometry_epoch_ = message.odometry_epoch();
   if (recorded_ == 0) first_ = number;
   if (recorded_ > 0) missing_ += number - next_;
   scan::Scan scan = service::from_msg(message);

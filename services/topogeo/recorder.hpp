@@ -76,6 +76,7 @@ class Recorder {
     bool has_pose = false;
   };
   std::map<std::uint64_t, RecentScan> recent_;  // by number
+  std::uint64_t odometry_epoch_ = 0;            // of the last scan
   std::uint64_t first_ = 0;                     // number of the first scan recorded
   std::uint64_t next_ = 0;                      // number of the scan that is expected
   std::uint64_t next_pose_ = 0;                 // after the last scan of which a pose came

@@ -100,10 +100,9 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
   const bool page_of_log = options.web && !options.job.log.empty();
   const int readers = (maps ? 1 : 0) + (options.record.empty() || !maps ? 0 : 1) +
                       (options.ros ? 1 : 0) + (page_of_log ? 1 : 0);
-  // A log cannot be taken up in its middle.
-  processes.start(
-      kGateway, kGateway, common + source + Arguments{"--readers", std::to_string(readers)},
-      Importance::kNeeded, options.devices.empty() ? Restart::kNever : Restart::kWhenItDies);
+  processes.start(kGateway, kGateway,
+                  common + source + Arguments{"--readers", std::to_string(readers)},
+                  Importance::kNeeded, Restart::kWhenItDies);
 }
 
 /// Beside the source of the scans, whose scans it gives to ROS.
@@ -174,10 +173,6 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   const auto start = [&processes](const std::string& service, const Arguments& arguments) {
     processes.start(service, service, arguments, Importance::kNeeded, Restart::kWhenItDies);
   };
-  // While it is away a log that is read would go on without it.
-  const auto start_once = [&processes](const std::string& service, const Arguments& arguments) {
-    processes.start(service, service, arguments);
-  };
   start("map_store", common + store_arguments(options));
   processes.leave_out_at_restart("map_store", "--new");
   if (options.web) {
@@ -199,7 +194,7 @@ void start_services(ProcessGroup& processes, const RunOptions& options,
   const Arguments source = replay ? Arguments{"--replay"} : Arguments{};
   start("localizer", common + source + Arguments{"--wait-workers", std::to_string(wait_workers)} +
                          map_arguments(options));
-  replay ? start_once("local_mapper", common + source) : start("local_mapper", common + source);
+  start("local_mapper", common + source);
   for (std::uint32_t i = 1; i <= options.workers; ++i) {
     const std::string name = std::string(kWorker) + "_" + std::to_string(i);
     processes.start(name, std::string(kWorker), common + Arguments{"--name", name, "--slots", "1"},

@@ -106,7 +106,8 @@ TEST_P(EqualityByRestartTest, KilledHalfWay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Services, EqualityByRestartTest,
-                         testing::Values("localizer", "map_store", "planner"),
+                         testing::Values("sensor_gateway", "local_mapper", "localizer", "map_store",
+                                         "planner"),
                          [](const auto& service) { return std::string(service.param); });
 
 TEST_F(EqualityTest, AllWorkersKilledHalfWay) {

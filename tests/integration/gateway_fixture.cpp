@@ -10,17 +10,17 @@ namespace {
 
 constexpr const char* kPartition = "gateway-test";
 
-messaging::Participant join(const std::string& domain) {
+}  // namespace
+
+messaging::Participant join(const std::string& domain, const std::string& partition) {
   messaging::ParticipantOptions options;
   options.domain = static_cast<std::uint32_t>(std::stoul(domain));
-  options.partition = kPartition;
+  options.partition = partition;
   return messaging::Participant(options);
 }
 
-}  // namespace
-
 GatewayOnDevices::GatewayOnDevices()
-    : participant_(join(domain_)),
+    : participant_(join(domain_, kPartition)),
       scans_reader_(participant_, {std::string(messaging::kReplayRole), {}}),
       odometry_reader_(participant_),
       base_reader_(participant_),

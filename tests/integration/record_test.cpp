@@ -72,6 +72,25 @@ TEST_F(Record, MapOfARunIsTheMapOfItsRecord) {
   EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(scratch_ / "run.clf.gz", "map"));
 }
 
+// Who reads or maps a log is killed, and the log read again: nothing is recorded twice.
+TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
+  use_udp_only();
+  const fs::path log = scratch_ / "log.clf";
+  write_log("floor", log);
+  Program run(scratch_, "topogeo",
+              {"run", "--log", log.string(), "--out", (scratch_ / "run").string(), "--record",
+               (scratch_ / "run.clf").string(), "--workers", "0", "--domain", own_domain()});
+  for (const char* service : {"local_mapper", "sensor_gateway"}) {
+    run.wait_for_progress(30);
+    for (const pid_t pid : run.services(service)) ::kill(pid, SIGKILL);
+    run.wait_for_error_text(std::string(service) + " is at work again");
+  }
+  ASSERT_EQ(run.wait(), 0) << run.err();
+  EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(log, "map"));
+  record(log, scratch_ / "undisturbed.clf");
+  EXPECT_TRUE(read_file(scratch_ / "run.clf") == read_file(scratch_ / "undisturbed.clf"));
+}
+
 /// Messages by topic, and the time of the last one of each.
 std::map<std::string, std::pair<int, std::int64_t>> topics_of(const fs::path& file) {
   std::map<std::string, std::pair<int, std::int64_t>> topics;

@@ -91,6 +91,11 @@ void fill(msg::SimulatorCommand& command) {
   set_client_id(command, "tester");
 }
 
+void fill(msg::ScanRequest& request) {
+  request.odometry_epoch(7);
+  request.first_scan(321);
+}
+
 void fill(msg::StreamEnd& end) {
   end.stage(msg::kStageLocalMapper);
   end.count(17);

@@ -1,0 +1,60 @@
+#include "missing_scans.hpp"
+
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/support/format.hpp"
+#include "topogeo/support/log.hpp"
+
+namespace topogeo::local_mapper {
+namespace {
+
+constexpr std::chrono::milliseconds kAskPeriod{100};
+/// The scans that were under way come first; on a busy machine they take a while.
+constexpr std::chrono::seconds kSilence{2};
+/// A gateway whose scans come is soon known as a reader, too. A bridge to ROS is no such reader.
+constexpr std::chrono::seconds kPatience{10};
+
+}  // namespace
+
+MissingScans::MissingScans(service::Service& service)
+    : service_(service), requests_(service.advertise<msg::ScanRequest>()) {
+  timer_ = service.loop().add_timer(kAskPeriod, [this] { tick(); });
+}
+
+MissingScans::~MissingScans() {
+  service_.loop().cancel_timer(timer_);
+}
+
+bool MissingScans::want(std::uint64_t odometry_epoch, std::uint64_t first) {
+  if (!wanted_ || wanted_->odometry_epoch() != odometry_epoch || wanted_->first_scan() != first) {
+    wanted_.emplace();
+    wanted_->odometry_epoch(odometry_epoch);
+    wanted_->first_scan(first);
+    since_ = Clock::now();
+    service_.status().set_waits_for(fmt::format("scan {} of the log once more", first));
+    spdlog::info("asks for the scans of the log from number {} on", first);
+    ask();
+  }
+  if (requests_.matched() > 0) since_ = Clock::now();
+  return Clock::now() - since_ < kPatience;
+}
+
+void MissingScans::found() {
+  if (!wanted_) return;
+  wanted_.reset();
+  service_.status().set_waits_for({});
+}
+
+void MissingScans::ask() {
+  messaging::set_header(*wanted_, service_.robot_id(), 0, sent_++);
+  asked_ = Clock::now();
+  heard_by_nobody_ = requests_.matched() == 0;
+  static_cast<void>(requests_.write(*wanted_));  // else the timer sends it again
+}
+
+void MissingScans::tick() {
+  if (!wanted_) return;
+  const bool first_reader = heard_by_nobody_ && requests_.matched() > 0;
+  if (first_reader || Clock::now() - asked_ >= kSilence) ask();
+}
+
+}  // namespace topogeo::local_mapper

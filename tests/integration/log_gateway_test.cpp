@@ -1,0 +1,193 @@
+// A log that is read again for a local mapper that was away: what the gateway sends then, and what
+// the local mapper does where the source of the scans cannot go back.
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "topogeo/messaging/event_loop.hpp"
+#include "topogeo/messaging/message.hpp"
+#include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
+#include "topogeo/messaging/topics.hpp"
+#include "topogeo/messaging/writer.hpp"
+#include "topogeo/msg/sensor.h"
+#include "topogeo/msg/status.h"
+#include "topogeo/msg/stream.h"
+
+#include "gateway_fixture.hpp"
+#include "program.hpp"
+
+namespace topogeo::test {
+namespace {
+
+constexpr const char* kLogPartition = "log-gateway-test";
+constexpr std::chrono::seconds kPatience{60 * kTimeFactor};
+
+template <class Condition>
+bool wait_for(messaging::EventLoop& loop, const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    loop.run_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+/// The test in place of the local mapper.
+class LogReadAgain : public testing::Test {
+ protected:
+  LogReadAgain() {
+    use_udp_only();
+    write_log("room", scratch_ / "log.clf");
+    loop_.add<msg::Scan>(
+        scans_reader_,
+        [this](const msg::Scan& scan, const messaging::SampleInfo&) { scans_.push_back(scan); });
+    loop_.add<msg::Odometry>(odometry_reader_,
+                             [this](const msg::Odometry& odometry, const messaging::SampleInfo&) {
+                               odometry_.push_back(odometry);
+                             });
+    loop_.add<msg::StreamEnd>(
+        ends_reader_,
+        [this](const msg::StreamEnd& end, const messaging::SampleInfo&) { ends_.push_back(end); });
+  }
+
+  /// Starts the gateway and waits for the whole log.
+  void read_all() {
+    gateway_ = std::make_unique<Program>(
+        scratch_, "sensor_gateway",
+        std::vector<std::string>{"--domain", domain_, "--partition", kLogPartition, "--log",
+                                 (scratch_ / "log.clf").string()});
+    ASSERT_TRUE(wait_for(loop_, [&] {
+      return ends_.size() == 1 && scans_.size() == ends_[0].count() &&
+             odometry_.size() == scans_.size() && requests_.matched() > 0;
+    })) << gateway_->err();
+    ASSERT_GT(scans_.size(), 20U);
+  }
+
+  /// What comes after that request, up to the next end of the stream.
+  std::vector<msg::Scan> ask(std::uint64_t odometry_epoch, std::uint64_t first) {
+    scans_.clear();
+    odometry_.clear();
+    const std::size_t ends = ends_.size();
+    msg::ScanRequest request;
+    messaging::set_header(request, "robot", 0, ends);
+    request.odometry_epoch(odometry_epoch);
+    request.first_scan(first);
+    EXPECT_TRUE(requests_.write(request));
+    EXPECT_TRUE(wait_for(loop_, [&] {
+      return ends_.size() > ends && !scans_.empty() &&
+             scans_.back().sequence_number() + 1 == ends_.back().count() &&
+             odometry_.size() == scans_.size();
+    })) << gateway_->err();
+    return scans_;
+  }
+
+  Scratch scratch_;
+  std::string domain_ = own_domain();
+  messaging::Participant participant_ = join(domain_, kLogPartition);
+  messaging::Reader<msg::Scan> scans_reader_{participant_,
+                                             {std::string(messaging::kReplayRole), {}}};
+  messaging::Reader<msg::Odometry> odometry_reader_{participant_,
+                                                    {std::string(messaging::kReplayRole), {}}};
+  messaging::Reader<msg::StreamEnd> ends_reader_{participant_};
+  messaging::Writer<msg::ScanRequest> requests_{participant_};
+  messaging::EventLoop loop_;
+  std::vector<msg::Scan> scans_;
+  std::vector<msg::Odometry> odometry_;
+  std::vector<msg::StreamEnd> ends_;
+  std::unique_ptr<Program> gateway_;
+};
+
+TEST_F(LogReadAgain, FromTheScanThatIsWanted) {
+  read_all();
+  const std::vector<msg::Scan> all = scans_;
+  const std::vector<msg::Odometry> all_odometry = odometry_;
+  const std::vector<msg::Scan> again = ask(all[0].odometry_epoch(), 12);
+  ASSERT_EQ(again.size(), all.size() - 12);
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    EXPECT_EQ(again[i], all[i + 12]) << i;
+    EXPECT_EQ(odometry_[i], all_odometry[i + 12]) << i << ": the speed, too";
+  }
+  EXPECT_EQ(ends_.back().count(), all.size());
+  EXPECT_EQ(ends_.back().sequence_number(), 1U);
+}
+
+TEST_F(LogReadAgain, AllOfItForWhoHasBegunAnotherLog) {
+  read_all();
+  const std::vector<msg::Scan> all = scans_;
+  EXPECT_EQ(ask(all[0].odometry_epoch() + 1, 12), all);
+  EXPECT_EQ(ask(0, 0), all);
+}
+
+TEST_F(LogReadAgain, TheLastScanForWhoHadAll) {
+  read_all();
+  const std::vector<msg::Scan> all = scans_;
+  EXPECT_EQ(ask(all[0].odometry_epoch(), all.size()), std::vector{all.back()});
+}
+
+// A log file that is gone: there is nothing to go back to, and the gateway lives.
+TEST_F(LogReadAgain, SaysWhyItCannotBeRead) {
+  read_all();
+  messaging::Reader<msg::ServiceStatus> status_reader(participant_);
+  bool said = false;
+  loop_.add<msg::ServiceStatus>(
+      status_reader, [&](const msg::ServiceStatus& status, const messaging::SampleInfo&) {
+        for (const msg::FaultCount& fault : status.faults()) {
+          said = said || fault.reason().to_string() == "log cannot be read again";
+        }
+      });
+  std::filesystem::remove(scratch_ / "log.clf");
+  msg::ScanRequest request;
+  messaging::set_header(request, "robot", 0, 0);
+  ASSERT_TRUE(requests_.write(request));
+  EXPECT_TRUE(wait_for(loop_, [&] { return said; })) << gateway_->err();
+}
+
+// As behind a source that knows nothing of such requests.
+TEST(LocalMapperOfALog, GoesOnWithoutTheScansThatNobodySendsAgain) {
+  use_udp_only();
+  const Scratch scratch;
+  const std::string domain = own_domain();
+  const messaging::Participant participant = join(domain, kLogPartition);
+  messaging::Writer<msg::Scan> scans(participant, messaging::kReplayRole);
+  const messaging::Reader<msg::ServiceStatus> status_reader(participant);
+  messaging::EventLoop loop;
+  std::string waits_for;
+  std::vector<std::string> faults;
+  double used = 0.0;
+  loop.add<msg::ServiceStatus>(status_reader,
+                               [&](const msg::ServiceStatus& status, const messaging::SampleInfo&) {
+                                 if (!status.waits_for().to_string().empty())
+                                   waits_for = status.waits_for().to_string();
+                                 faults.clear();
+                                 for (const auto& fault : status.faults())
+                                   faults.push_back(fault.reason().to_string());
+                                 for (const auto& counter : status.counters()) {
+                                   if (counter.name() == "scans") used = counter.value();
+                                 }
+                               });
+  const Program mapper(
+      scratch, "local_mapper",
+      {"--domain", domain, "--partition", kLogPartition, "--replay", "--standalone"});
+  ASSERT_TRUE(wait_for(loop, [&] { return scans.matched() > 0; })) << mapper.err();
+  msg::Scan scan;
+  scan.angle_min_rad(-1.5);
+  scan.angle_step_rad(0.01);
+  scan.ranges_m().assign(300, 2.0F);
+  std::uint64_t sent = 5;  // the first five are missing
+  loop.add_timer(std::chrono::milliseconds(50), [&] {
+    messaging::set_header(scan, "robot", static_cast<std::int64_t>(sent) * 100'000'000, sent);
+    if (scans.write(scan)) ++sent;
+  });
+  EXPECT_TRUE(wait_for(loop, [&] { return used > 0.0; })) << mapper.err();
+  EXPECT_THAT(waits_for, testing::HasSubstr("scan 0 of the log once more"));
+  EXPECT_TRUE(wait_for(loop, [&] { return !faults.empty(); }));
+  EXPECT_THAT(faults, testing::Each("scans missing"));
+}
+
+}  // namespace
+}  // namespace topogeo::test
