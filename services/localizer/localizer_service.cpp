@@ -21,6 +21,9 @@ namespace topogeo::localizer {
 
 namespace {
 
+/// Of a robot that follows a finished map so many stops are shown at least, an hour or so; who
+/// reads a log or wants a table gets all.
+constexpr std::size_t kShownStops = 2048;
 /// Twice for each status, so that none shows figures older than that.
 constexpr std::chrono::milliseconds kCountPeriod{250};
 
@@ -191,6 +194,9 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
   (*slam_)->add(odometry_.add(map));
   if (queue_.taken() < known_stops_) return;  // no pose is said of the robot until the last one
   live_.set_stop(map);
+  if (slam_->follower() != nullptr && !options_.replay && !options_.csv) {
+    slam_->follower()->forget_stops(kShownStops);
+  }
   publish(false);
   send_pose();  // a correction shows at once, also when no odometry comes any more
   count();

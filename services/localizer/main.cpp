@@ -45,7 +45,9 @@ int main(int argc, char** argv) {
         app.add_flag("--replay", options.replay,
                      "the stops come from a log: after a restart add all of them again, so that "
                      "the map is the same");
-        app.add_option("--csv", options.csv, "write pose and state of each stop there at the end")
+        app.add_option("--csv", options.csv,
+                       "write pose and state of each stop there at the end; all of them are kept "
+                       "until then")
             ->needs(map)
             ->type_name("FILE");
       },

@@ -1,6 +1,5 @@
 #include "run_summary.hpp"
 
-#include <array>
 #include <chrono>
 
 #include "topogeo/messaging/message.hpp"
@@ -22,10 +21,7 @@ void add_matches(msg::RunSummary& summary, const localization::SlamCounts& count
 }
 
 void add_localization(msg::RunSummary& summary, const localization::MapLocalizer& localizer) {
-  std::array<std::uint64_t, localization::kLocalizationStates> stops{};
-  for (const localization::LocalizedStop& stop : localizer.stops()) {
-    ++stops.at(static_cast<std::size_t>(stop.status.state));
-  }
+  const auto& stops = localizer.stops_by_state();
   for (std::size_t i = 0; i < stops.size(); ++i) {
     msg::StateCount count;
     count.state(static_cast<msg::LocalizationState>(i));

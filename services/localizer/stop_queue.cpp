@@ -5,6 +5,13 @@
 
 namespace topogeo::localizer {
 
+namespace {
+
+/// More than a local mapper keeps for late readers (SentMapsLimits): older ones do not come again.
+constexpr std::size_t kMostHashes = 8192;
+
+}  // namespace
+
 StopQueue::Arrival StopQueue::arrival(const topomap::StopId& stop,
                                       std::uint64_t content_hash) const {
   const auto taken = hashes_.find(stop);
@@ -43,6 +50,7 @@ StopQueue::MapPointer StopQueue::take(const topomap::StopId& stop) {
   waiting_.erase(found);
   if (last_ && last_->session != stop.session) end_session(last_->session);
   hashes_[stop] = topomap::content_hash(*map);
+  if (hashes_.size() > kMostHashes) hashes_.erase(hashes_.begin());
   ++taken_;
   last_ = stop;
   return map;

@@ -23,6 +23,7 @@ class StopQueue {
     kRepeated,  ///< has been taken already: a reader gets a map again when its writer comes back
     kOtherRun,  ///< another map of a stop that has been taken
   };
+  /// One that was taken very long ago is kRepeated whatever its content.
   [[nodiscard]] Arrival arrival(const topomap::StopId& stop, std::uint64_t content_hash) const;
 
   /// Goes on after that stop of a map that is there already. Before the first is taken.
@@ -57,10 +58,11 @@ class StopQueue {
   void end_session(std::uint64_t session);
 
   std::map<topomap::StopId, MapPointer> waiting_;
-  std::vector<std::uint64_t> sessions_;              // in the order in which they came
-  std::map<std::uint64_t, std::uint32_t> first_;     // numbers, by session; others begin with 0
-  std::map<topomap::StopId, std::uint64_t> hashes_;  // of those taken of the session that is on
-  std::set<std::uint64_t> over_;                     // sessions
+  std::vector<std::uint64_t> sessions_;           // in the order in which they came
+  std::map<std::uint64_t, std::uint32_t> first_;  // numbers, by session; others begin with 0
+  std::map<topomap::StopId, std::uint64_t>
+      hashes_;                    // of those taken last of the session that is on
+  std::set<std::uint64_t> over_;  // sessions
   std::size_t taken_ = 0;
   std::optional<topomap::StopId> last_;  // taken, or there before
   std::optional<std::uint64_t> maps_in_session_;

@@ -6,13 +6,14 @@
 // the services follow R times faster: sensor gateway, local mapper, localizer, map store,
 // planner, navigator and N workers, as processes. Sampled while they work: resident memory, open
 // files and threads of each, shared memory, and the disk that the results take. The first half is
-// warm-up (another share with --warm-up): caches and histories fill, the last of them the 1,024
-// stops of a drive that the localizer keeps. Where the machine is too slow for the rate, this
-// program, a reader of the scans like the services, holds the log up until the localizer has caught
-// up: what waits in its queue is no growth. After it the memory of each service must stay within 5
-// % of what it was at the end of the warm-up, with 1 MB for what one sample differs from the next;
-// open files and shared memory must not grow at all; and when all have ended, nothing of them must
-// be left in shared memory. Exits with 1 when something grew.
+// warm-up (another share with --warm-up): caches and histories fill, the last of them the stops of
+// a drive that the localizer keeps, 1,024 with their maps and up to 4,096 with their poses. Where
+// the machine is too slow for the rate, this program, a reader of the scans like the services,
+// holds the log up until the localizer has caught up: what waits in its queue is no growth. After
+// it the memory of each service must stay within 5 % of what it was at the end of the warm-up, with
+// 1 MB for what one sample differs from the next; open files and shared memory must not grow at
+// all; and when all have ended, nothing of them must be left in shared memory. Exits with 1 when
+// something grew.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -187,6 +188,7 @@ class Pace {
         if (service == "local_mapper" && name == "local_maps") made_ = counter.value();
         if (service == "localizer" && name == "stops") localized_ = counter.value();
       }
+      finished_ |= service == "localizer" && status.state() == msg::kServiceFinished;
     });
   }
 
@@ -200,6 +202,9 @@ class Pace {
     }
   }
 
+  /// The localizer has done all of the log.
+  [[nodiscard]] bool finished() const { return finished_; }
+
  private:
   messaging::Participant participant_{own_domain()};
   messaging::Reader<msg::ServiceStatus> statuses_{participant_};
@@ -207,6 +212,7 @@ class Pace {
   messaging::EventLoop loop_;
   double made_ = 0.0;
   double localized_ = 0.0;
+  bool finished_ = false;
 };
 
 /// The services of a robot that follows a finished map, the source of its scans last.
@@ -224,15 +230,15 @@ std::vector<supervision::ChildProcess> start(const SoakOptions& options, const P
   add("planner", {});
   add("navigator", {});
   for (std::size_t i = 0; i < options.workers; ++i) add("ga_worker", {"--slots", "1"});
-  add("localizer", {"--replay", "--map", work / "map.pb", "--csv", work / "end.csv",
-                    "--wait-workers", std::to_string(options.workers)});
+  // As on a robot: who reads a log keeps all of its stops.
+  add("localizer", {"--map", work / "map.pb", "--wait-workers", std::to_string(options.workers)});
   add("local_mapper", {"--replay"});
   // Local mapper, navigator and this program.
   add("sensor_gateway", {"--log", work / "laps.clf", "--rate", options.rate, "--readers", "3"});
   return services;
 }
 
-/// Until the localizer has written what it does at the end of the log.
+/// Until the localizer has done all of the log.
 Soaked run(const SoakOptions& options, const Path& work) {
   Pace pace;
   std::vector<supervision::ChildProcess> services = start(options, work);
@@ -240,7 +246,7 @@ Soaked run(const SoakOptions& options, const Path& work) {
   std::set<Path> shared;
   const Clock::time_point begin = Clock::now();
   constexpr std::chrono::milliseconds kPeriod{100};
-  while (!std::filesystem::exists(work / "end.csv")) {
+  while (!pace.finished()) {
     pace.keep(kPeriod);
     Footprint& sample = soaked.samples.emplace_back();
     sample.at_s = std::chrono::duration<double>(Clock::now() - begin).count();

@@ -1,6 +1,5 @@
 #include "topogeo/pipeline/localization_run.hpp"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -160,10 +159,7 @@ std::string localization_csv(std::span<const localization::LocalizedStop> stops)
 }
 
 storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer) {
-  std::array<std::uint64_t, localization::kLocalizationStates> stops{};
-  for (const localization::LocalizedStop& stop : localizer.stops()) {
-    ++stops.at(static_cast<std::size_t>(stop.status.state));
-  }
+  const auto& stops = localizer.stops_by_state();
   storage::ReasonCounts counts;
   for (std::size_t i = 0; i < stops.size(); ++i) {
     counts.emplace_back(localization::to_string(static_cast<localization::LocalizationState>(i)),

@@ -70,6 +70,7 @@ bool MapLocalizer::add(std::shared_ptr<const topomap::LocalMap> map) {
     accepted = decide();
   }
   stops_.push_back({map->stop, map->stamp_ns, pose_.T_a_b, pose_.covariance, status_, accepted});
+  ++stops_by_state_.at(static_cast<std::size_t>(status_.state));
   return false;
 }
 
@@ -294,6 +295,8 @@ void MapLocalizer::set_pose(const Pose2& T_map_robot, const Eigen::Matrix3d& cov
   status_ = {LocalizationState::kAmbiguous,
              kGivenPoseRight * covariance_confidence(pose_.covariance)};
   if (!stops_.empty()) {
+    --stops_by_state_.at(static_cast<std::size_t>(stops_.back().status.state));
+    ++stops_by_state_.at(static_cast<std::size_t>(status_.state));
     stops_.back().T_map_robot = pose_.T_a_b;
     stops_.back().covariance = pose_.covariance;
     stops_.back().status = status_;
@@ -312,6 +315,7 @@ void MapLocalizer::start_after(const topomap::LocalMap& map, const Pose2& T_map_
 void MapLocalizer::forget_stops(std::size_t most) {
   if (stops_.size() < 2 * most) return;  // not at every stop
   stops_.erase(stops_.begin(), stops_.end() - static_cast<std::ptrdiff_t>(most));
+  numbered_since_ = added_;
 }
 
 // --- state
@@ -319,6 +323,7 @@ void MapLocalizer::forget_stops(std::size_t most) {
 topomap::Trajectory MapLocalizer::trajectory() const {
   topomap::Trajectory trajectory;
   trajectory.version = added_;
+  trajectory.numbered_since = numbered_since_;
   for (const LocalizedStop& stop : stops_) {
     trajectory.stops.push_back(pose_of(stop, trajectory.stops.size()));
   }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "topogeo/localization/matching/matcher.hpp"
@@ -42,12 +45,17 @@ class MapLocalizerTest : public ::testing::Test {
     drive_ = nullptr;
   }
 
+  static std::uint32_t stops_so_far(const MapLocalizer& localizer) {
+    const auto& stops = localizer.stops_by_state();
+    return static_cast<std::uint32_t>(std::accumulate(stops.begin(), stops.end(), std::uint64_t{}));
+  }
+
   MapLocalizer make() { return MapLocalizer({}, stored_, pool_); }
 
   /// The drive's stop, said to be the `id`th; odometry says that it is `T_step` from the last one.
   void add(MapLocalizer& localizer, std::size_t stop, const Pose2& T_step) {
     topomap::LocalMap map = *drive_->maps[stop];
-    map.id = static_cast<std::uint32_t>(localizer.stops().size());
+    map.id = stops_so_far(localizer);
     map.stop = {2, map.id};
     T_odom_ = T_odom_ * T_step;
     map.T_odom_robot = T_odom_;
@@ -154,7 +162,7 @@ TEST_F(MapLocalizerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
   for (int i = 0; i < 3; ++i) {
     topomap::LocalMap blind;
     blind.robot_id = "robot";
-    blind.id = static_cast<std::uint32_t>(localizer.stops().size());
+    blind.id = stops_so_far(localizer);
     blind.stop = {2, blind.id};
     T_odom_ = T_odom_ * Pose2{0.1, 0.0, 0.0};
     blind.T_odom_robot = T_odom_;
@@ -196,6 +204,29 @@ TEST_F(MapLocalizerTest, SearchesOnDemandAndTakesAPoseAtAnyTime) {
   follow(localizer, 6, 7);
   EXPECT_EQ(localizer.status().state, LocalizationState::kTracking);
   EXPECT_TRUE(right(localizer, 6));
+}
+
+// A service follows for weeks: what it keeps has to end somewhere, what it counts has not.
+TEST_F(MapLocalizerTest, ForgetsOldStopsAndNumbersTheOthersAnew) {
+  MapLocalizer localizer = make();
+  localizer.set_pose(drive_->T_world_robot[0], kKnown);
+  follow(localizer, 0, 19);
+  localizer.forget_stops(10);
+  EXPECT_EQ(localizer.stops().size(), 19U) << "not at every stop";
+  EXPECT_EQ(localizer.trajectory().numbered_since, 0U);
+  follow(localizer, 19, 20);
+  localizer.forget_stops(10);
+  const topomap::Trajectory trajectory = localizer.trajectory();
+  ASSERT_EQ(trajectory.stops.size(), 10U);
+  EXPECT_EQ(trajectory.stops.front().stop.number, 10U);
+  EXPECT_EQ(trajectory.stops.front().local_map_id, 0U);
+  EXPECT_EQ(trajectory.numbered_since, trajectory.version);
+  follow(localizer, 20, 21);
+  EXPECT_LT(localizer.trajectory().numbered_since, localizer.trajectory().version);
+  EXPECT_THAT(localizer.stops_by_state(), testing::ElementsAre(21, 0, 0, 0));
+  localizer.set_pose(drive_->T_world_robot[20], kKnown);
+  EXPECT_THAT(localizer.stops_by_state(), testing::ElementsAre(20, 1, 0, 0))
+      << "the last one is ambiguous now";
 }
 
 TEST_F(MapLocalizerTest, AMapOutOfTurnIsAnError) {

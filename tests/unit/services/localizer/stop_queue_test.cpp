@@ -45,6 +45,19 @@ TEST(StopQueue, DistinguishesARepeatedMapFromThatOfAnotherRun) {
   EXPECT_EQ(queue.arrival({kSession, 1}, hash), Arrival::kNew);
 }
 
+TEST(StopQueue, RemembersTheLastOfALongDriveOnly) {
+  constexpr std::uint32_t kMany = 8200;
+  StopQueue queue;
+  for (std::uint32_t i = 0; i < kMany; ++i) {
+    queue.add(queued_map(i));
+    ASSERT_NE(queue.take(), nullptr);
+  }
+  const std::uint64_t other = topomap::content_hash(*queued_map(kMany));
+  EXPECT_EQ(queue.arrival({kSession, kMany - 1}, other), Arrival::kOtherRun);
+  EXPECT_EQ(queue.arrival({kSession, 0}, other), Arrival::kRepeated);
+  EXPECT_EQ(queue.arrival({kSession, kMany}, other), Arrival::kNew);
+}
+
 TEST(StopQueue, NamesTheStopThatItWaitsForInVain) {
   StopQueue queue;
   EXPECT_FALSE(queue.missing());

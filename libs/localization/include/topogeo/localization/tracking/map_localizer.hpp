@@ -8,6 +8,7 @@
 // through the pool, and the result does not depend on who answered or when.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -81,7 +82,8 @@ class MapLocalizer : public Slam {
   /// Forgets the pose and searches the whole map from the next stop on.
   void search();
 
-  /// Forgets all stops but the last ones, at least `most` of them.
+  /// Forgets all stops but the last ones, at least `most` of them. Those that are left have other
+  /// numbers in the trajectory then.
   void forget_stops(std::size_t most);
 
   /// All stops so far that were not forgotten.
@@ -95,6 +97,10 @@ class MapLocalizer : public Slam {
   [[nodiscard]] const std::vector<LoopDecision>& loop_decisions() const override;
   [[nodiscard]] LocalizationStatus status() const override { return status_; }
   [[nodiscard]] SlamCounts counts() const override;
+  /// Of all stops so far, those that were forgotten too, by state.
+  [[nodiscard]] const std::array<std::uint64_t, kLocalizationStates>& stops_by_state() const {
+    return stops_by_state_;
+  }
   /// Of the last stop; nothing when that was searched for.
   [[nodiscard]] const std::optional<TrackedStep>& last_step() const { return last_step_; }
   [[nodiscard]] std::size_t searches() const { return searches_; }
@@ -128,7 +134,9 @@ class MapLocalizer : public Slam {
   bool monitored_ = false;                      // the last stop was, by what its pose is judged
   std::optional<geometry::Pose2> T_odom_last_;  // nothing before the first stop
   std::vector<LocalizedStop> stops_;
-  std::uint32_t added_ = 0;  // stops that came
+  std::uint32_t added_ = 0;           // stops that came
+  std::uint64_t numbered_since_ = 0;  // of them, when some were forgotten last
+  std::array<std::uint64_t, kLocalizationStates> stops_by_state_{};
   std::optional<TrackedStep> last_step_;
   LocalizationStatus status_;
   std::size_t searches_ = 0;
