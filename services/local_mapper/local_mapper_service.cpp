@@ -205,24 +205,34 @@ void LocalMapperService::on_stream_end(const msg::StreamEnd& message) {
   if (message.stage() != msg::kStageGateway) return;
   scans_in_stream_ = message.count();
   finish_if_complete();
-  if (missing_) look_for_rest(next_sequence_);
+  if (missing_ && !finished_) look_for_rest(next_sequence_);
 }
 
 void LocalMapperService::look_for_rest(std::uint64_t next_before) {
-  service_.loop().call_after(kLastScans, [this, next_before] {
-    if (finished_) return;
-    if (next_sequence_ == next_before) {
-      const bool continues = !odometry_epoch_ && resumed_;
-      const std::uint64_t epoch = continues ? resumed_->first : odometry_epoch_.value_or(0);
-      missing_->want(epoch, continues ? resumed_->second + 1 : next_sequence_);
+  service_.loop().cancel_timer(rest_timer_);
+  rest_timer_ = service_.loop().call_after(kLastScans, [this, next_before] {
+    if (!finished_ && (next_sequence_ != next_before || want_rest())) {
+      look_for_rest(next_sequence_);
     }
-    look_for_rest(next_sequence_);
   });
+}
+
+bool LocalMapperService::want_rest() {
+  const bool continues = !odometry_epoch_ && resumed_;
+  const std::uint64_t epoch = continues ? resumed_->first : odometry_epoch_.value_or(0);
+  const std::uint64_t first = continues ? resumed_->second + 1 : next_sequence_;
+  if (missing_->want(epoch, first)) return true;
+  service_.status().fault("scans missing",
+                          "the last ones of the log, from " + std::to_string(first) + " on");
+  next_sequence_ = *scans_in_stream_;
+  finish_if_complete();
+  return false;
 }
 
 void LocalMapperService::finish_if_complete() {
   if (finished_ || !scans_in_stream_ || next_sequence_ < *scans_in_stream_) return;
   finished_ = true;
+  if (missing_) missing_->found();
   if (const std::optional<topomap::LocalMap> map = mapper_.finish()) publish(*map);
   msg::StreamEnd end;
   messaging::set_header(end, service_.robot_id(), last_stamp_ns_, 0);

@@ -49,6 +49,8 @@ class LocalMapperService {
   /// The log has ended. If then no more scans come though some are missing, they were sent while
   /// this service was away. `next_before`: next_sequence_ at the last look.
   void look_for_rest(std::uint64_t next_before);
+  /// False when they do not come any more: it has ended without them.
+  bool want_rest();
   void publish(const topomap::LocalMap& map);
   /// Where the last scan is against the last stop.
   void publish_tracked();
@@ -77,6 +79,7 @@ class LocalMapperService {
   std::uint64_t matched_ = 0;
   std::optional<std::uint64_t> scans_in_stream_;
   std::optional<MissingScans> missing_;  // of a log
+  std::uint64_t rest_timer_ = 0;
   bool finished_ = false;
 };
 

@@ -12,6 +12,8 @@ constexpr std::chrono::milliseconds kAskPeriod{100};
 constexpr std::chrono::seconds kSilence{2};
 /// A gateway whose scans come is soon known as a reader, too. A bridge to ROS is no such reader.
 constexpr std::chrono::seconds kPatience{10};
+/// A log of hours is read up to the scan in a second. One that is gone never is.
+constexpr std::chrono::seconds kLongestAnswer{60};
 
 }  // namespace
 
@@ -29,13 +31,14 @@ bool MissingScans::want(std::uint64_t odometry_epoch, std::uint64_t first) {
     wanted_.emplace();
     wanted_->odometry_epoch(odometry_epoch);
     wanted_->first_scan(first);
-    since_ = Clock::now();
+    since_ = matched_ = Clock::now();
     service_.status().set_waits_for(fmt::format("scan {} of the log once more", first));
     spdlog::info("asks for the scans of the log from number {} on", first);
     ask();
   }
-  if (requests_.matched() > 0) since_ = Clock::now();
-  return Clock::now() - since_ < kPatience;
+  const Clock::time_point now = Clock::now();
+  if (requests_.matched() > 0) matched_ = now;
+  return now - matched_ < kPatience && now - since_ < kLongestAnswer;
 }
 
 void MissingScans::found() {

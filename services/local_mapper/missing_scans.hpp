@@ -20,9 +20,9 @@ class MissingScans {
   MissingScans& operator=(const MissingScans&) = delete;
 
   /// Wants the scans of the log of that odometry epoch from number `first` on; asks again and again
-  /// until found(). False when nobody takes such requests: the source of the scans cannot go back.
+  /// until found(). False when that is in vain: nobody takes such requests, or nobody answers.
   bool want(std::uint64_t odometry_epoch, std::uint64_t first);
-  /// They come.
+  /// They come, or are wanted no more.
   void found();
 
  private:
@@ -37,7 +37,8 @@ class MissingScans {
   std::uint64_t sent_ = 0;
   bool heard_by_nobody_ = false;  // the gateway was not known when the request was sent
   Clock::time_point asked_;
-  Clock::time_point since_;  // nobody takes requests, or of the first one
+  Clock::time_point since_;    // of the first request for these
+  Clock::time_point matched_;  // when somebody took requests last
   std::uint64_t timer_ = 0;
 };
 

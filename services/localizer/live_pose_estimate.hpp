@@ -29,6 +29,10 @@ class LivePoseEstimate {
   /// The newest reading of the odometry, with its epoch as in scan::Scan.
   void set_odometry(std::int64_t stamp_ns, std::uint64_t sequence,
                     const geometry::Pose2& T_odom_robot, std::uint64_t epoch);
+  /// A reading of that epoch has come that is newer.
+  [[nodiscard]] bool has_newer(std::int64_t stamp_ns, std::uint64_t epoch) const {
+    return epoch == epoch_ && stamp_ns < stamp_ns_;
+  }
   /// The newest scan after that stop; counts while it is the last one.
   void set_tracked(const topomap::StopId& stop, const topomap::TrackedScan& scan);
   /// The robot has made a stop. Its odometry counts unless a newer one has come.

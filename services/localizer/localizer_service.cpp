@@ -9,7 +9,6 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/pipeline/localization_run.hpp"
 #include "topogeo/service/conversions.hpp"
-#include "topogeo/support/atomic_file.hpp"
 #include "topogeo/support/log.hpp"
 
 #include "pool_options.hpp"
@@ -21,8 +20,8 @@ namespace topogeo::localizer {
 
 namespace {
 
-/// Of a robot that follows a finished map so many stops are shown at least, an hour or so; who
-/// reads a log or wants a table gets all.
+/// Of a robot that follows a finished map so many stops are shown at least, an hour or so, unless
+/// it follows a log or a map store stores them.
 constexpr std::size_t kShownStops = 2048;
 /// Twice for each status, so that none shows figures older than that.
 constexpr std::chrono::milliseconds kCountPeriod{250};
@@ -80,6 +79,12 @@ LocalizerService::LocalizerService(service::Service& service, const LocalizerOpt
     });
   }
   slam_.emplace(make_slam(service, options, watched_, optimizer_));
+  if (options.map) {
+    service.subscribe<msg::StoredMap>([this](const msg::StoredMap& stored) {
+      stops_are_stored_ = stored.session() != msg::kNothingIsStored;
+    });
+    if (options.csv) table_.emplace(*options.csv);
+  }
   count();
   if (options.standalone || options.map || options.continued) {
     resume({});
@@ -123,6 +128,8 @@ void LocalizerService::on_stream_end(const msg::StreamEnd& message) {
 }
 
 void LocalizerService::on_odometry(const msg::Odometry& message) {
+  // A log that is read again; the stamps of a robot may go back with its clock.
+  if (options_.replay && live_.has_newer(message.stamp_ns(), message.odometry_epoch())) return;
   live_.set_odometry(message.stamp_ns(), message.sequence_number(),
                      service::from_msg(message.T_odom_robot()), message.odometry_epoch());
   send_pose();
@@ -194,8 +201,9 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
   (*slam_)->add(odometry_.add(map));
   if (queue_.taken() < known_stops_) return;  // no pose is said of the robot until the last one
   live_.set_stop(map);
-  if (slam_->follower() != nullptr && !options_.replay && !options_.csv) {
-    slam_->follower()->forget_stops(kShownStops);
+  if (localization::MapLocalizer* follower = slam_->follower()) {
+    if (table_) table_->add({follower->stops(), follower->added_stops()});
+    if (!options_.replay && !stops_are_stored_) follower->forget_stops(kShownStops);
   }
   publish(false);
   send_pose();  // a correction shows at once, also when no odometry comes any more
@@ -203,8 +211,8 @@ void LocalizerService::step(const StopQueue::MapPointer& map) {
 }
 
 std::size_t LocalizerService::stops_in_map() const {
-  return slam_->mapping_session() != nullptr ? slam_->mapping_session()->maps().size()
-                                             : queue_.taken();
+  if (slam_->mapping_session() != nullptr) return slam_->mapping_session()->maps().size();
+  return slam_->follower() != nullptr ? slam_->follower()->stops().size() : queue_.taken();
 }
 
 void LocalizerService::finish() {
@@ -212,10 +220,7 @@ void LocalizerService::finish() {
                                                         ? "matching revisited places"
                                                         : "localizing");
   (*slam_)->finish();
-  if (options_.csv && slam_->mapping_session() == nullptr) {
-    support::write_file_atomically(*options_.csv,
-                                   pipeline::localization_csv(slam_->follower()->stops()));
-  }
+  if (table_) table_->finish({slam_->follower()->stops(), slam_->follower()->added_stops()});
   finished_ = true;
   publish(true);
   send_pose();

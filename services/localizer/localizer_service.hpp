@@ -23,6 +23,7 @@
 #include "remote_pool.hpp"
 #include "resume.hpp"
 #include "stop_queue.hpp"
+#include "stop_table.hpp"
 #include "trajectory_publisher.hpp"
 #include "watched_pool.hpp"
 
@@ -82,7 +83,9 @@ class LocalizerService {
   OdometryChain odometry_;
   std::size_t known_stops_ = 0;  // to be added again: others have their poses already
   LivePoseEstimate live_;
-  bool ready_ = false;  // it is known where to go on
+  std::optional<StopTable> table_;
+  bool stops_are_stored_ = false;  // by a map store
+  bool ready_ = false;             // it is known where to go on
   bool scheduled_ = false;
   bool waited_ = false;
   bool finished_ = false;

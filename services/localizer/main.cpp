@@ -46,8 +46,7 @@ int main(int argc, char** argv) {
                      "the stops come from a log: after a restart add all of them again, so that "
                      "the map is the same");
         app.add_option("--csv", options.csv,
-                       "write pose and state of each stop there at the end; all of them are kept "
-                       "until then")
+                       "pose and state of each stop; it has that name at the end")
             ->needs(map)
             ->type_name("FILE");
       },

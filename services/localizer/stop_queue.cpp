@@ -7,7 +7,7 @@ namespace topogeo::localizer {
 
 namespace {
 
-/// More than a local mapper keeps for late readers (SentMapsLimits): older ones do not come again.
+/// More than a local mapper keeps for late readers (SentMapsLimits).
 constexpr std::size_t kMostHashes = 8192;
 
 }  // namespace

@@ -107,11 +107,12 @@ void LogGateway::go_back_to(std::uint64_t number) {
   sent_ = number;
   all_read_ = end_sent_ = false;
   service_.status().set_state(msg::kServiceRunning);
-  if (std::exchange(done_, false)) replay();
+  service_.loop().cancel_timer(timer_);  // it may be that of a scan after a long gap
+  go_on_after({});
 }
 
 void LogGateway::go_on_after(Clock::duration delay) {
-  service_.loop().call_after(delay, [this] { all_read_ ? finish() : replay(); });
+  timer_ = service_.loop().call_after(delay, [this] { all_read_ ? finish() : replay(); });
 }
 
 void LogGateway::replay() {
@@ -197,7 +198,6 @@ void LogGateway::finish() {
   for (const std::string& message : log.messages) spdlog::warn("skipped {}", message);
   spdlog::info("{}", log.summary());
   service_.status().set_state(msg::kServiceFinished, log.summary());
-  done_ = true;
   if (options_.exit_at_end) service_.loop().stop();
 }
 

@@ -71,7 +71,7 @@ class LogGateway {
   bool all_read_ = false;
   bool end_sent_ = false;
   std::uint64_t ends_sent_ = 0;
-  bool done_ = false;  // all has been sent and received
+  std::uint64_t timer_ = 0;  // of go_on_after
 };
 
 }  // namespace topogeo::sensor_gateway

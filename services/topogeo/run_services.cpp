@@ -94,15 +94,16 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
       source.insert(source.end(), {"--memory", memory.string()});
     }
   }
-  // All of them have the first scan. The page shows the scans of a log; were it not counted, it
-  // could be taken for the mapper, which would miss what is read before it is there.
+  // All of them have the first scan. Were the page of a log not counted, it could be taken for the
+  // mapper and show less than all.
   const bool maps = !options.simulation || !options.simulation->no_laser;
   const bool page_of_log = options.web && !options.job.log.empty();
   const int readers = (maps ? 1 : 0) + (options.record.empty() || !maps ? 0 : 1) +
                       (options.ros ? 1 : 0) + (page_of_log ? 1 : 0);
-  processes.start(kGateway, kGateway,
-                  common + source + Arguments{"--readers", std::to_string(readers)},
-                  Importance::kNeeded, Restart::kWhenItDies);
+  const std::string wait = "--readers=" + std::to_string(readers);
+  processes.start(kGateway, kGateway, common + source + Arguments{wait}, Importance::kNeeded,
+                  Restart::kWhenItDies);
+  processes.leave_out_at_restart(kGateway, wait);  // some of them may have what they want
 }
 
 /// Beside the source of the scans, whose scans it gives to ROS.

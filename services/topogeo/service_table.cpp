@@ -36,10 +36,12 @@ std::vector<const msg::ServiceStatus*> ServiceTable::rows() const {
 }
 
 const msg::ServiceStatus* ServiceTable::find(std::string_view service) const {
+  const msg::ServiceStatus* newest = nullptr;
   for (const msg::ServiceStatus* row : rows()) {
-    if (service == row->service().c_str()) return row;
+    if (service != row->service().c_str()) continue;
+    if (newest == nullptr || row->started_ns() > newest->started_ns()) newest = row;
   }
-  return nullptr;
+  return newest;
 }
 
 std::string ServiceTable::progress_mark() const {

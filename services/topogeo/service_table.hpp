@@ -22,7 +22,7 @@ class ServiceTable {
   /// Ordered by service, then instance.
   [[nodiscard]] std::vector<const msg::ServiceStatus*> rows() const;
 
-  /// The status of a service, or nullptr; the first one if there are several.
+  /// The status of a service, or nullptr; of several that which started last.
   [[nodiscard]] const msg::ServiceStatus* find(std::string_view service) const;
 
   /// Counters of all services but search workers, which may serve other runs too, and but those

@@ -1,6 +1,7 @@
 // A log that is read again for a local mapper that was away: what the gateway sends then, and what
 // the local mapper does where the source of the scans cannot go back.
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
@@ -145,6 +146,51 @@ TEST_F(LogReadAgain, SaysWhyItCannotBeRead) {
   messaging::set_header(request, "robot", 0, 0);
   ASSERT_TRUE(requests_.write(request));
   EXPECT_TRUE(wait_for(loop_, [&] { return said; })) << gateway_->err();
+}
+
+// All programs of a log, whose map is finished. What is killed then has nothing to do any more.
+TEST(LocalMapperOfALog, AsksOnceWhenAllIsMapped) {
+  use_udp_only();
+  const Scratch scratch;
+  const std::string domain = own_domain();
+  write_log("room", scratch / "log.clf");
+  const messaging::Participant participant = join(domain, kLogPartition);
+  const messaging::Reader<msg::StreamEnd> ends_reader(participant);
+  const messaging::Reader<msg::ServiceStatus> status_reader(participant);
+  messaging::EventLoop loop;
+  bool mapped = false;
+  std::uint64_t gateway_ends = 0;
+  std::uint32_t finished = 0;  // process of the mapper that has
+  loop.add<msg::StreamEnd>(ends_reader,
+                           [&](const msg::StreamEnd& end, const messaging::SampleInfo&) {
+                             mapped = mapped || end.stage() == msg::kStageMapStore;
+                             if (end.stage() == msg::kStageGateway) ++gateway_ends;
+                           });
+  loop.add<msg::ServiceStatus>(
+      status_reader, [&](const msg::ServiceStatus& status, const messaging::SampleInfo&) {
+        if (status.service() == "local_mapper" && status.state() == msg::kServiceFinished) {
+          finished = status.process_id();
+        }
+      });
+  const auto start = [&](const std::string& service, std::vector<std::string> words) {
+    words.insert(words.end(), {"--domain", domain, "--partition", kLogPartition});
+    return std::make_unique<Program>(scratch, service, words);
+  };
+  const auto store = start("map_store", {"--out", (scratch / "out").string()});
+  const auto localizer = start("localizer", {"--replay"});
+  auto mapper = start("local_mapper", {"--replay"});
+  const auto gateway = start("sensor_gateway", {"--log", (scratch / "log.clf").string()});
+  ASSERT_TRUE(wait_for(loop, [&] { return mapped; })) << store->err() << mapper->err();
+  mapper->send_signal(SIGKILL);
+  mapper->wait(30);
+  mapper = start("local_mapper", {"--replay"});
+  const auto process = static_cast<std::uint32_t>(mapper->pid());
+  ASSERT_TRUE(wait_for(loop, [&] { return finished == process; })) << mapper->err();
+  EXPECT_TRUE(wait_for(loop, [&] { return gateway_ends == 2; }))
+      << "the log was read again up to its last scan";
+  // It would ask again after two seconds.
+  loop.run_for(std::chrono::milliseconds(2500));
+  EXPECT_EQ(gateway_ends, 2U);
 }
 
 // As behind a source that knows nothing of such requests.

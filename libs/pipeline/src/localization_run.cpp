@@ -143,10 +143,13 @@ std::string continuation_message(const localization::MappingSession& session) {
                      grew ? "" : ", the map is as it was");
 }
 
-std::string localization_csv(std::span<const localization::LocalizedStop> stops) {
-  std::string text =
-      "stop,stamp_s,x_m,y_m,theta_rad,state,confidence,sigma_x_m,sigma_y_m,sigma_theta_rad,"
-      "accepted_matches\n";
+std::string localization_csv_header() {
+  return "stop,stamp_s,x_m,y_m,theta_rad,state,confidence,sigma_x_m,sigma_y_m,sigma_theta_rad,"
+         "accepted_matches\n";
+}
+
+std::string localization_csv_rows(std::span<const localization::LocalizedStop> stops) {
+  std::string text;
   for (const localization::LocalizedStop& s : stops) {
     const Eigen::Matrix3d& c = s.covariance;
     text += fmt::format(
@@ -156,6 +159,10 @@ std::string localization_csv(std::span<const localization::LocalizedStop> stops)
         std::sqrt(c(0, 0)), std::sqrt(c(1, 1)), std::sqrt(c(2, 2)), s.accepted_matches);
   }
   return text;
+}
+
+std::string localization_csv(std::span<const localization::LocalizedStop> stops) {
+  return localization_csv_header() + localization_csv_rows(stops);
 }
 
 storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer) {

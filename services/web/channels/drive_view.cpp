@@ -50,7 +50,10 @@ Json decision_json(const msg::LoopDecision& decision) {
 DriveView::DriveView(service::Service& service, Board& board, EventLog& events)
     : board_(board), events_(events) {
   service.subscribe<msg::TrajectorySegment>(
-      [this](const msg::TrajectorySegment& segment) { on_segment(segment); }, {.of_map = true});
+      [this](const msg::TrajectorySegment& segment, const messaging::SampleInfo& info) {
+        on_segment(segment, info);
+      },
+      {.of_map = true});
   service.subscribe<msg::LoopDecisions>(
       [this](const msg::LoopDecisions& decisions) { on_decisions(decisions); }, {.of_map = true});
   service.subscribe<msg::LocalMap>([this](const msg::LocalMap& map) { on_local_map(map); });
@@ -69,7 +72,10 @@ DriveView::DriveView(service::Service& service, Board& board, EventLog& events)
   });
 }
 
-void DriveView::on_segment(const msg::TrajectorySegment& message) {
+void DriveView::on_segment(const msg::TrajectorySegment& message,
+                           const messaging::SampleInfo& info) {
+  // A localizer that has started again in a finished map counts its stops from 0.
+  if (info.writer != std::exchange(localizer_, info.writer)) trajectory_ = {};
   if (trajectory_.add(message)) trail_changed_ = true;
 }
 

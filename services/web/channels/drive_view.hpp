@@ -46,7 +46,7 @@ class DriveView {
   [[nodiscard]] std::uint64_t trajectory_version() const { return trajectory_.version(); }
 
  private:
-  void on_segment(const msg::TrajectorySegment& message);
+  void on_segment(const msg::TrajectorySegment& message, const messaging::SampleInfo& info);
   void on_decisions(const msg::LoopDecisions& message);
   void on_local_map(const msg::LocalMap& message);
   void on_proposal(const msg::MergeProposal& message);
@@ -56,6 +56,7 @@ class DriveView {
 
   Board& board_;
   EventLog& events_;
+  messaging::Handle localizer_{};  // whose trajectory it is
   service::TrajectoryAssembly trajectory_;
   bool trail_changed_ = false;
   std::map<topomap::StopId, geometry::Pose2> located_;  // T_map_robot of the stops of the map

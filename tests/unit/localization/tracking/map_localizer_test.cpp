@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -45,17 +44,12 @@ class MapLocalizerTest : public ::testing::Test {
     drive_ = nullptr;
   }
 
-  static std::uint32_t stops_so_far(const MapLocalizer& localizer) {
-    const auto& stops = localizer.stops_by_state();
-    return static_cast<std::uint32_t>(std::accumulate(stops.begin(), stops.end(), std::uint64_t{}));
-  }
-
   MapLocalizer make() { return MapLocalizer({}, stored_, pool_); }
 
   /// The drive's stop, said to be the `id`th; odometry says that it is `T_step` from the last one.
   void add(MapLocalizer& localizer, std::size_t stop, const Pose2& T_step) {
     topomap::LocalMap map = *drive_->maps[stop];
-    map.id = stops_so_far(localizer);
+    map.id = localizer.added_stops();
     map.stop = {2, map.id};
     T_odom_ = T_odom_ * T_step;
     map.T_odom_robot = T_odom_;
@@ -162,7 +156,7 @@ TEST_F(MapLocalizerTest, ABlindedRobotIsLostAndFindsItselfWhenItSeesAgain) {
   for (int i = 0; i < 3; ++i) {
     topomap::LocalMap blind;
     blind.robot_id = "robot";
-    blind.id = stops_so_far(localizer);
+    blind.id = localizer.added_stops();
     blind.stop = {2, blind.id};
     T_odom_ = T_odom_ * Pose2{0.1, 0.0, 0.0};
     blind.T_odom_robot = T_odom_;

@@ -51,6 +51,15 @@ TEST_F(LivePose, IsUnknownBeforeTheFirstStop) {
   EXPECT_EQ(live_.T_stop_robot(), Pose2{});
 }
 
+// A log that is read again brings readings once more.
+TEST_F(LivePose, KnowsWhichReadingsAreOld) {
+  EXPECT_FALSE(live_.has_newer(0, kEpoch));
+  live_.set_odometry(kSecond_ns, 1, {1.0, 0.0, 0.0}, kEpoch);
+  EXPECT_TRUE(live_.has_newer(kSecond_ns - 1, kEpoch));
+  EXPECT_FALSE(live_.has_newer(kSecond_ns, kEpoch));
+  EXPECT_FALSE(live_.has_newer(kSecond_ns - 1, kEpoch + 1)) << "another log";
+}
+
 TEST_F(LivePose, IsThatOfTheStopAndTheOdometrySince) {
   live_.set_stop(stop_at_10_m(0));
   live_.correct(corrected());

@@ -47,6 +47,9 @@ std::string continuation_message(const localization::MappingSession& session);
 /// The text of localization.csv: a line for each stop with pose, state, confidence and standard
 /// deviations; the same bytes for the same stops.
 std::string localization_csv(std::span<const localization::LocalizedStop> stops);
+/// The parts of it, for those who do not have all stops at once.
+std::string localization_csv_header();
+std::string localization_csv_rows(std::span<const localization::LocalizedStop> stops);
 
 /// Stops by state, and searches, as they stand in reports.
 storage::ReasonCounts localization_counts(const localization::MapLocalizer& localizer);

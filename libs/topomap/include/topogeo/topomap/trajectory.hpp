@@ -33,8 +33,8 @@ struct StopPose {
 struct Trajectory {
   std::uint64_t version = 0;    ///< grows with every change
   std::vector<StopPose> stops;  ///< index = local map id
-  /// Version in which stops left the map last, so that those after them have other ids since; 0:
-  /// none ever did.
+  /// Version in which stops left the map, or were forgotten, last, so that those after them have
+  /// other ids since; 0: none ever did.
   std::uint64_t numbered_since = 0;
 };
 

@@ -86,6 +86,8 @@ class MapLocalizer : public Slam {
   /// numbers in the trajectory then.
   void forget_stops(std::size_t most);
 
+  /// How many stops came, those that were forgotten too.
+  [[nodiscard]] std::uint32_t added_stops() const { return added_; }
   /// All stops so far that were not forgotten.
   [[nodiscard]] const std::vector<LocalizedStop>& stops() const { return stops_; }
   /// The same as a trajectory in the frame of the map.
