@@ -58,9 +58,12 @@ class PoolFaultsTest : public testing::Test {
                        const std::function<bool(const std::string& worker)>& found_out) {
     SCOPED_TRACE(fault);
     const std::unique_ptr<Program> worker = start_faulty(run, fault);
-    EXPECT_TRUE(run.wait_for_workers(2)) << worker->err();
-    EXPECT_TRUE(run.go_on_until_stop(run.stops() + kFewStops));
     const std::string id = fault + "#" + std::to_string(worker->pid());
+    // By the log: it may be found out before a status has counted it.
+    EXPECT_TRUE(run.wait_until([&] {
+      return run.log().find("worker " + id + " joined") != std::string::npos;
+    })) << worker->err();
+    EXPECT_TRUE(run.go_on_until_stop(run.stops() + kFewStops));
     EXPECT_TRUE(run.wait_until([&] { return found_out("worker " + id); })) << run.log();
     EXPECT_FALSE(run.has_ended());
     worker->send_signal(SIGTERM);
