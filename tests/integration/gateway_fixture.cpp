@@ -5,19 +5,14 @@
 #include "topogeo/messaging/message.hpp"
 #include "topogeo/messaging/topics.hpp"
 
+#include "join.hpp"
+
 namespace topogeo::test {
 namespace {
 
 constexpr const char* kPartition = "gateway-test";
 
 }  // namespace
-
-messaging::Participant join(const std::string& domain, const std::string& partition) {
-  messaging::ParticipantOptions options;
-  options.domain = static_cast<std::uint32_t>(std::stoul(domain));
-  options.partition = partition;
-  return messaging::Participant(options);
-}
 
 GatewayOnDevices::GatewayOnDevices()
     : participant_(join(domain_, kPartition)),

@@ -26,8 +26,6 @@
 
 namespace topogeo::test {
 
-messaging::Participant join(const std::string& domain, const std::string& partition);
-
 class GatewayOnDevices : public testing::Test {
  protected:
   static constexpr std::chrono::seconds kPatience{60 * kTimeFactor};

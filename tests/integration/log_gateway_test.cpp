@@ -19,7 +19,7 @@
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
 
-#include "gateway_fixture.hpp"
+#include "join.hpp"
 #include "program.hpp"
 
 namespace topogeo::test {

@@ -12,6 +12,8 @@
 #include "topogeo/service/navigation_conversions.hpp"
 #include "topogeo/support/version.hpp"
 
+#include "join.hpp"
+
 namespace topogeo::test {
 namespace {
 
@@ -43,13 +45,6 @@ planning::HybridMap make_map() {
   const planning::FreeSpace space(planning::grid_of(pipeline::drawing_of(room())),
                                   {.min_pocket_m2 = planning::kPocket_m2});
   return {space, planning::zones_by_width(space), {}};
-}
-
-messaging::Participant join(const std::string& domain, const std::string& partition) {
-  messaging::ParticipantOptions options;
-  options.domain = static_cast<std::uint32_t>(std::stoul(domain));
-  options.partition = partition;
-  return messaging::Participant(options);
 }
 
 }  // namespace
