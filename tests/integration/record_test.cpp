@@ -83,7 +83,7 @@ TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
   for (const char* service : {"local_mapper", "sensor_gateway"}) {
     run.wait_for_progress(30);
     for (const pid_t pid : run.services(service)) ::kill(pid, SIGKILL);
-    run.wait_for_error_text(std::string(service) + " is at work again");
+    run.wait_for_error_text(std::string(service) + " was killed by signal 9");
   }
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(log, "map"));
