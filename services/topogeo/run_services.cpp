@@ -100,10 +100,10 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
   const bool page_of_log = options.web && !options.job.log.empty();
   const int readers = (maps ? 1 : 0) + (options.record.empty() || !maps ? 0 : 1) +
                       (options.ros ? 1 : 0) + (page_of_log ? 1 : 0);
-  const std::string wait = "--readers=" + std::to_string(readers);
-  processes.start(kGateway, kGateway, common + source + Arguments{wait}, Importance::kNeeded,
-                  Restart::kWhenItDies);
-  processes.leave_out_at_restart(kGateway, wait);  // some of them may have what they want
+  // Started again it waits for the same ones: a recorder that came later would miss scans.
+  processes.start(kGateway, kGateway,
+                  common + source + Arguments{"--readers", std::to_string(readers)},
+                  Importance::kNeeded, Restart::kWhenItDies);
 }
 
 /// Beside the source of the scans, whose scans it gives to ROS.

@@ -308,10 +308,14 @@ TEST_F(WorkerTest, AnswersLeaveWhenTheyAreAsManyAsTheTasksStillInHand) {
   const auto peer = client();
   const std::string worker = peer->find(name_);
   peer->address.version = "0.0.1";
+  // Until the worker knows the reader of the answers they wait, and leave together.
+  peer->send(worker, task(*zero_, *one_, 16));
+  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 1; }));
+  peer->together.clear();
   std::vector<MatchTask> tasks;
   for (std::uint64_t id = 0; id < 16; ++id) tasks.push_back(task(*zero_, *one_, id));
   peer->send_together(worker, tasks);
-  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 16; }));
+  ASSERT_TRUE(peer->wait_until([&] { return peer->results.size() == 17; }));
   EXPECT_THAT(peer->together, ::testing::ElementsAre(8, 4, 2, 1, 1));
 }
 
