@@ -19,12 +19,14 @@ class StopTable {
   };
 
   /// What comes before the end is in FILE.part. Throws std::runtime_error when it cannot be
-  /// written, as all functions here.
+  /// written.
   explicit StopTable(std::filesystem::path file);
 
-  /// Writes the stops since the last call, but not the last one, whose pose may still be set.
+  /// Writes the stops since the last call, but not the last one, whose pose may still be set. That
+  /// this fails is said at the end: no robot is to be left alone for a table.
   void add(Stops stops);
-  /// The last one too; the file has its name from now on.
+  /// The last one too; the file has its name from now on. Throws std::runtime_error when not all
+  /// could be written.
   void finish(Stops stops);
 
  private:
