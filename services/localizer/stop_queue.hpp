@@ -58,11 +58,10 @@ class StopQueue {
   void end_session(std::uint64_t session);
 
   std::map<topomap::StopId, MapPointer> waiting_;
-  std::vector<std::uint64_t> sessions_;           // in the order in which they came
-  std::map<std::uint64_t, std::uint32_t> first_;  // numbers, by session; others begin with 0
-  std::map<topomap::StopId, std::uint64_t>
-      hashes_;                    // of those taken last of the session that is on
-  std::set<std::uint64_t> over_;  // sessions
+  std::vector<std::uint64_t> sessions_;              // in the order in which they came
+  std::map<std::uint64_t, std::uint32_t> first_;     // numbers, by session; others begin with 0
+  std::map<topomap::StopId, std::uint64_t> hashes_;  // of the last taken of the session that is on
+  std::set<std::uint64_t> over_;                     // sessions
   std::size_t taken_ = 0;
   std::optional<topomap::StopId> last_;  // taken, or there before
   std::optional<std::uint64_t> maps_in_session_;

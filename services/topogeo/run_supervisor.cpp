@@ -45,7 +45,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
         if (end.stage() != msg::kStageMapStore || end.robot_id() != options_.job.robot_id.c_str())
           return;
         // What services do with their inputs when they are stopped is no end of the run.
-        if (over_) return;
+        if (run_.ended()) return;
         result_.finished = true;
         run_.loop().stop();
       });
@@ -81,7 +81,6 @@ RunSupervisor::RunSupervisor(const RunOptions& options, std::uint64_t laser_line
 
 RunResult RunSupervisor::run() {
   run_.run();
-  over_ = true;
   result_.signal_number = result_.finished ? 0 : run_.signal_number();
   if (tour_) {
     result_.truth = tour_->truth().poses();

@@ -81,7 +81,6 @@ class RunSupervisor {
   std::optional<TourDriver> tour_;  // while exploring it stands still and keeps the truth
   std::optional<ExploreSession> exploration_;
   bool stream_ended_ = false;  // the gateway was asked to end
-  bool over_ = false;          // how the run ends has been decided
 };
 
 }  // namespace topogeo::cli

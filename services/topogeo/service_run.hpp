@@ -51,6 +51,8 @@ class ServiceRun {
   /// Runs the loop until it is stopped: by the caller, by fail(), by a service that ended although
   /// it is needed, or by a signal. No hook is called afterwards.
   void run();
+  /// run() has returned: how the run ends has been decided.
+  [[nodiscard]] bool ended() const { return ended_; }
 
   /// Ends all services but the page and starts them with other options; at once when they have
   /// ended. One that does not end in time is killed.
