@@ -27,6 +27,7 @@
 #include "fast_dds/host_sending.hpp"
 #include "fast_dds/packet_shield.hpp"
 #include "fast_dds/timer_waits.hpp"
+#include "fast_dds/writer_end.hpp"
 #include "participant_core.hpp"
 
 namespace topogeo::messaging {
@@ -148,6 +149,7 @@ ParticipantCore::ParticipantCore(const ParticipantOptions& options) {
   send_to_each_host_apart();
   shield_packets();
   let_timers_end_alone();
+  let_writers_end_undisturbed();
   load_profiles(options.profiles_file);
   std::string profile = options.profile;
   if (profile.empty()) profile = environment("TOPOGEO_DDS_PARTICIPANT");
