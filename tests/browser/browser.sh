@@ -41,7 +41,13 @@ need_node_packages() {
 run_browser_test() {
   local chromium
   chromium=$(command -v chromium) || true
-  [ -z "$chromium" ] || step "tests in $(chromium --version --no-sandbox)"
+  if [ -n "$chromium" ]; then
+    step "tests in $(chromium --version --no-sandbox)"
+    # It draws without a graphics card, on the cores of the robot: whoever looks on must not be in its way.
+    printf '#!/bin/sh\nexec nice -n 10 %s "$@"\n' "$chromium" > "$work/chromium"
+    chmod +x "$work/chromium"
+    chromium=$work/chromium
+  fi
   TOPOGEO_BUILD=$build TOPOGEO_SOURCE=$source_dir TOPOGEO_WORK=$work TOPOGEO_CHROMIUM=$chromium \
     node --test "$source_dir/tests/browser/$1_test.mjs" || { tail -n 5 "$work"/*.log; fail "$1"; }
 }
