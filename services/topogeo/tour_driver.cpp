@@ -15,6 +15,8 @@ namespace {
 /// As the navigator: 20 commands in a second, each valid until ten later ones are lost.
 constexpr double kCommandPeriod_s = 0.05;
 constexpr double kValid_s = 0.5;
+/// Without a scan for so long the robot stands: a gateway or a laser begins anew.
+constexpr double kBlind_s = 1.0;
 /// From a command until the base has obeyed it, about: the network, the line, and the time to reach
 /// the speed. The commands are for where the robot will be by then.
 constexpr double kDelay_s = 0.2;
@@ -36,9 +38,13 @@ TourDriver::TourDriver(const messaging::Participant& participant, messaging::Eve
       tour_m_(follower_.rest_m()),
       limit_s_(10.0 + 20.0 * tour_m_ / options.speed_m_per_s),
       commands_(participant),
+      scans_(participant),
       truth_(participant, loop, robot_id_,
              [this](const msg::GroundTruth& truth, double step_s) { on_truth(truth, step_s); }) {
   loop.add(commands_);
+  loop.add<msg::Scan>(scans_, [this](const msg::Scan& scan, const messaging::SampleInfo&) {
+    if (scan.robot_id() == robot_id_.c_str()) scan_came_s_ = truth_.last().time_s();
+  });
 }
 
 double TourDriver::share() const {
@@ -54,10 +60,14 @@ void TourDriver::on_truth(const msg::GroundTruth& truth, double step_s) {
     const bool still =
         std::fabs(truth.linear_mps()) < kStill && std::fabs(truth.angular_radps()) < kStill;
     standing_s_ = still ? standing_s_ + step_s : 0.0;
-    arrived_ = standing_s_ > kEnough_s;
+    arrived_ = standing_s_ > kEnough_s && truth.time_s() - scan_came_s_ < standing_s_;
   }
   if (truth.time_s() < command_due_s_) return;
   command_due_s_ = truth.time_s() + kCommandPeriod_s - 1e-3;
+  if (truth.time_s() - scan_came_s_ > kBlind_s) {
+    command(simulation::Velocity{});
+    return;
+  }
   const double free_m = truth.free_ahead_m() - std::max(truth.linear_mps(), 0.0) * kDelay_s;
   const std::optional<simulation::Velocity> velocity =
       at_end_ ? std::nullopt : follower_.next(ahead_of(truth), kCommandPeriod_s, free_m);

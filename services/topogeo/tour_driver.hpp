@@ -1,6 +1,6 @@
 // Drives a simulated robot along the tour of its world by motion commands, which go through gateway
-// and base like those of a navigator, for which it stands in; the simulator reports where the robot
-// really is.
+// and base like those of a navigator, for which it stands in: without scans the robot stands. The
+// simulator reports where the robot really is.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,10 @@
 
 #include "topogeo/messaging/event_loop.hpp"
 #include "topogeo/messaging/participant.hpp"
+#include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
 #include "topogeo/msg/motion.h"
+#include "topogeo/msg/sensor.h"
 #include "topogeo/simulation/tour_follower.hpp"
 
 #include "ground_truth_log.hpp"
@@ -26,7 +28,7 @@ class TourDriver {
 
   /// Until this is called the robot stands still.
   void set_out() { started_ = true; }
-  /// The robot stands at the end of the tour.
+  /// The robot stands at the end of the tour, and a scan has come from there.
   [[nodiscard]] bool arrived() const { return arrived_; }
   /// Of the tour, [0, 1].
   [[nodiscard]] double share() const;
@@ -45,9 +47,11 @@ class TourDriver {
   double tour_m_;
   double limit_s_;
   messaging::Writer<msg::MotionCommand> commands_;
+  messaging::Reader<msg::Scan> scans_;
   bool started_ = false;
   bool arrived_ = false;
   bool at_end_ = false;
+  double scan_came_s_ = 0.0;    // in the world
   double command_due_s_ = 0.0;  // in the world
   double driven_s_ = 0.0;
   double standing_s_ = 0.0;  // at the end
