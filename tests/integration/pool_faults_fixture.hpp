@@ -16,7 +16,6 @@
 #include "topogeo/messaging/participant.hpp"
 #include "topogeo/messaging/reader.hpp"
 #include "topogeo/messaging/writer.hpp"
-#include "topogeo/msg/local_map.h"
 #include "topogeo/msg/sensor.h"
 #include "topogeo/msg/status.h"
 #include "topogeo/msg/stream.h"
@@ -42,11 +41,14 @@ class Drive {
   [[nodiscard]] std::string expected(const std::string& file) const;
   /// Matches that one process has tried.
   [[nodiscard]] double expected_tasks() const;
+  /// Stops that one process makes of so many scans.
+  [[nodiscard]] std::size_t stops_of(std::size_t scans) const;
 
  private:
   std::string log_;
   std::filesystem::path out_;
   std::vector<scan::Scan> scans_;
+  std::vector<std::uint64_t> stop_scans_;  // numbers of the scans that were taken at a stop
 };
 
 /// map_store, local_mapper and localizer on a partition of their own.
@@ -111,7 +113,6 @@ class ServiceRun {
   messaging::Participant participant_;
   messaging::Writer<msg::Scan> scan_writer_;
   messaging::Writer<msg::StreamEnd> end_writer_;
-  messaging::Reader<msg::LocalMap> maps_in_;
   messaging::Reader<msg::TrajectorySegment> segments_in_;
   messaging::Reader<msg::StreamEnd> ends_in_;
   messaging::Reader<msg::ServiceStatus> statuses_in_;
@@ -121,7 +122,6 @@ class ServiceRun {
   std::vector<std::unique_ptr<Program>> own_workers_;
   Program* localizer_ = nullptr;
   std::size_t next_scan_ = 0;
-  std::size_t maps_ = 0;
   std::size_t stops_ = 0;
   bool ended_ = false;
   msg::ServiceStatus status_;
