@@ -19,6 +19,7 @@ MissingStops::MissingStops(service::Service& service, StopQueue& queue, bool ask
 void MissingStops::check() {
   if (asking_) return;
   const std::optional<topomap::StopId> before = std::exchange(missing_, queue_.missing());
+  if (!missing_ && ask_) missing_ = queue_.missing_at_end();
   // Twice the same: what has come meanwhile is in the queue.
   if (!missing_ || missing_ != before) return;
   if (!ask_) {

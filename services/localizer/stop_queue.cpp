@@ -79,6 +79,13 @@ std::optional<topomap::StopId> StopQueue::missing() const {
   return gap == wanted.end() ? std::nullopt : std::optional(*gap);
 }
 
+std::optional<topomap::StopId> StopQueue::missing_at_end() const {
+  if (!last_ || !maps_in_session_ || finished() || waiting_.contains(last_->next())) {
+    return std::nullopt;
+  }
+  return last_->next();
+}
+
 topomap::StopId StopQueue::begin_late(std::uint64_t session) {
   const auto here = waiting_.lower_bound({session, 0});
   if (here == waiting_.end() || here->first.session != session) return first_of(session);

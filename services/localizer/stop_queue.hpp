@@ -37,6 +37,9 @@ class StopQueue {
   /// The stop that take() waits for although later ones of its session are here: its sender sends
   /// them in order, so that it does not come any more.
   [[nodiscard]] std::optional<topomap::StopId> missing() const;
+  /// The stop that take() waits for although the stream has ended: it may be under way, or whoever
+  /// sent it has ended before it came.
+  [[nodiscard]] std::optional<topomap::StopId> missing_at_end() const;
   /// A session that has not begun begins with the first of its stops that is here, which is
   /// returned.
   topomap::StopId begin_late(std::uint64_t session);

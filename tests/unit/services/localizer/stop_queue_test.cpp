@@ -74,6 +74,22 @@ TEST(StopQueue, NamesTheStopThatItWaitsForInVain) {
   EXPECT_FALSE(queue.missing()) << "another session can begin";
 }
 
+TEST(StopQueue, NamesTheStopThatAnEndedStreamStillOwes) {
+  StopQueue queue;
+  queue.end_at(3);
+  EXPECT_FALSE(queue.missing_at_end()) << "nothing has come: not known of which session";
+  queue.add(queued_map(0));
+  queue.add(queued_map(1));
+  queue.take();
+  EXPECT_FALSE(queue.missing_at_end()) << "it has something to do";
+  queue.take();
+  EXPECT_EQ(queue.missing_at_end(), (topomap::StopId{kSession, 2}));
+  EXPECT_FALSE(queue.missing()) << "no later one is here";
+  queue.add(queued_map(2));
+  queue.take();
+  EXPECT_FALSE(queue.missing_at_end());
+}
+
 TEST(StopQueue, BeginsASessionLateWhenItIsTo) {
   StopQueue queue;
   EXPECT_EQ(queue.begin_late(kSession), (topomap::StopId{kSession, 0})) << "nothing is here";
