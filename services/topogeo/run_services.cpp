@@ -94,13 +94,8 @@ void start_source(ProcessGroup& processes, const RunOptions& options, const std:
       source.insert(source.end(), {"--memory", memory.string()});
     }
   }
-  // All of them have the first scan. Were the page of a log not counted, it could be taken for the
-  // mapper and show less than all.
-  const bool maps = !options.simulation || !options.simulation->no_laser;
-  const bool page_of_log = options.web && !options.job.log.empty();
-  const int readers = (maps ? 1 : 0) + (options.record.empty() || !maps ? 0 : 1) +
-                      (options.ros ? 1 : 0) + (page_of_log ? 1 : 0);
-  // Started again it waits for the same ones: a recorder that came later would miss scans.
+  // All of them have the first scan.
+  const int readers = readers_of_scans(options, !options.record.empty());
   processes.start(kGateway, kGateway,
                   common + source + Arguments{"--readers", std::to_string(readers)},
                   Importance::kNeeded, Restart::kWhenItDies);
@@ -136,6 +131,14 @@ void start_recorder(ProcessGroup& processes, const RunOptions& options,
 
 bool from_ros(const RunOptions& options) {
   return options.ros && options.job.log.empty() && options.devices.empty();
+}
+
+// Were the page of a log not counted, it could be taken for the mapper and show less than all.
+int readers_of_scans(const RunOptions& options, bool recorder) {
+  const bool maps = !options.simulation || !options.simulation->no_laser;
+  const bool page_of_log = options.web && !options.job.log.empty();
+  return (maps ? 1 : 0) + (recorder && maps ? 1 : 0) + (options.ros ? 1 : 0) +
+         (page_of_log ? 1 : 0);
 }
 
 std::string scan_source(const RunOptions& options) {

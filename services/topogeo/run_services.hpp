@@ -29,6 +29,9 @@ std::filesystem::path odometry_memory(const std::string& partition);
 /// Whether the scans are those of a robot that speaks ROS.
 bool from_ros(const RunOptions& options);
 
+/// How many readers of scans the gateway of a run waits for, with a recorder or without.
+int readers_of_scans(const RunOptions& options, bool recorder);
+
 /// The one that scans come from: to be asked to end before all others.
 std::string scan_source(const RunOptions& options);
 

@@ -66,6 +66,12 @@ void ServiceRun::start(const RunOptions& options, Hooks hooks) {
   signals_.emplace([this](int number) { on_signal(number); });
   loop_.add_timer(kRunTick, [this] { tick(); });
   if (options.web) web_log_ = options.job.out / "logs" / "web.log";
+  start_all(options);
+}
+
+void ServiceRun::start_all(const RunOptions& options) {
+  recorder_there_ = !options.record.empty();
+  other_readers_ = readers_of_scans(options, false);
   start_services(processes_, options, partition_);
 }
 
@@ -89,8 +95,9 @@ void ServiceRun::tick() {
   if (ended_) return;
   if (next_ && processes_.retired(support::monotonic_s() > retire_until_s_)) {
     forget_odometry();  // the base of another simulator was switched off
-    start_services(processes_, *std::exchange(next_, std::nullopt), partition_);
+    start_all(*std::exchange(next_, std::nullopt));
   }
+  if (recorder_there_ && processes_.has_ended(kRecorder)) forget_recorder();
   while (const auto end = processes_.next_unexpected_end()) {
     if (end->can_restart && signal_.load() == 0) {
       restart(end->name, end->description);
@@ -145,6 +152,13 @@ void ServiceRun::restart(const std::string& name, const std::string& description
   loop_.call_after(delay, [this, name] {
     if (!ended_ && !next_) processes_.restart(name);
   });
+}
+
+void ServiceRun::forget_recorder() {
+  recorder_there_ = false;
+  processes_.set_at_restart(source_, "--readers", std::to_string(other_readers_));
+  // One that was started again before waits for the recorder, too.
+  if (away_since_s_.contains(source_)) processes_.kill(source_);
 }
 
 void ServiceRun::note_state(const msg::ServiceStatus& status) {

@@ -88,12 +88,17 @@ class ServiceRun {
   void tick();
   /// Passes the links of the page on when the web service has printed them.
   void look_for_links();
+  void start_all(const RunOptions& options);
   void restart(const std::string& name, const std::string& description);
+  /// The recorder has ended: a gateway that is started again is not to wait for it.
+  void forget_recorder();
   void forget_odometry() const;
 
   const std::string partition_;
   const std::string source_;  // of the scans
   bool ended_ = false;
+  bool recorder_there_ = false;
+  int other_readers_ = 0;          // of scans than the recorder
   std::filesystem::path web_log_;  // where the links are to come; empty: nowhere
   std::string failure_;
   Hooks hooks_;

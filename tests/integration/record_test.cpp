@@ -80,11 +80,23 @@ TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
   Program run(scratch_, "topogeo",
               {"run", "--log", log.string(), "--out", (scratch_ / "run").string(), "--record",
                (scratch_ / "run.clf").string(), "--workers", "0", "--domain", own_domain()});
-  for (const char* service : {"local_mapper", "sensor_gateway"}) {
-    run.wait_for_progress(30);
-    for (const pid_t pid : run.services(service)) ::kill(pid, SIGKILL);
-    run.wait_for_error_text(std::string(service) + " was killed by signal 9");
+  const auto send = [&run](const char* service, int signal_number) {
+    for (const pid_t pid : run.services(service)) ::kill(pid, signal_number);
+  };
+  run.wait_for_progress(30);
+  send("sensor_gateway", SIGKILL);
+  run.wait_for_error_text("sensor_gateway was killed by signal 9");
+  // The map is not made yet when all scans are recorded and the recorder has ended.
+  send("localizer", SIGSTOP);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60 * kTimeFactor);
+  while (!run.services("topogeo").empty() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  ASSERT_TRUE(run.services("topogeo").empty()) << run.err();
+  send("local_mapper", SIGKILL);
+  send("sensor_gateway", SIGKILL);
+  run.wait_for_error_text("local_mapper was killed by signal 9");
+  send("localizer", SIGCONT);
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(log, "map"));
   record(log, scratch_ / "undisturbed.clf");

@@ -60,6 +60,15 @@ void ProcessGroup::leave_out_at_restart(const std::string& name, const std::stri
   }
 }
 
+void ProcessGroup::set_at_restart(const std::string& name, const std::string& option,
+                                  const std::string& value) {
+  for (Member& member : members_) {
+    if (member.process->name() != name) continue;
+    const auto found = std::ranges::find(member.arguments, option);
+    if (found != member.arguments.end() && found + 1 != member.arguments.end()) found[1] = value;
+  }
+}
+
 void ProcessGroup::restart(const std::string& name) {
   for (Member& member : members_) {
     if (member.process->name() != name) continue;

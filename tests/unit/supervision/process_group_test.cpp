@@ -73,6 +73,21 @@ TEST_F(ProcessGroupTest, OneThatDiedIsStartedAgainWithoutWhatWasForItsFirstStart
   EXPECT_EQ(log_of("store-2"), "life /bin/sh\n");
 }
 
+TEST_F(ProcessGroupTest, OneThatIsKilledIsStartedAgainWithAnotherValueOfAnOption) {
+  group_.start("gateway", "sh", {"-c", "echo $0 $1 $2; exec sleep 60", "log", "--readers", "2"},
+               Importance::kNeeded, Restart::kWhenItDies);
+  group_.set_at_restart("gateway", "--readers", "1");
+  group_.set_at_restart("gateway", "--rate", "3");  // it has none
+  group_.kill("gateway");
+  group_.wait();
+  EXPECT_TRUE(group_.next_unexpected_end()->can_restart);
+  group_.restart("gateway");
+  while (log_of("gateway-2").empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(log_of("gateway-2"), "log --readers 1\n");
+  group_.kill("gateway");
+  group_.wait();
+}
+
 TEST_F(ProcessGroupTest, OneThatSaysItCannotWorkIsNotStartedAgain) {
   group_.start("store", "sh", {"-c", "exit 3"}, Importance::kNeeded, Restart::kWhenItDies);
   group_.wait();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -51,6 +52,8 @@ class ProcessGroup {
              Restart restart = Restart::kNever);
   /// What is left out of the arguments when the process of that name is started again.
   void leave_out_at_restart(const std::string& name, const std::string& argument);
+  /// The value of an option among its arguments when the process of that name is started again.
+  void set_at_restart(const std::string& name, const std::string& option, const std::string& value);
   /// Starts one again that has ended, with a log of its own, <name>-2.log and so on. Throws like
   /// ChildProcess.
   void restart(const std::string& name);
@@ -69,6 +72,9 @@ class ProcessGroup {
 
   /// Asks the process of that name to finish (SIGTERM), which is in order from then on.
   void finish(const std::string& name);
+
+  /// Kills the process of that name, if it runs: it may be started again like one that has died.
+  void kill(const std::string& name) { send_signal(SIGKILL, name); }
 
   /// Asks all processes to end (SIGTERM), which is in order, but the one of that name, which goes
   /// on.
