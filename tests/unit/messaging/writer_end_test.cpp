@@ -1,10 +1,10 @@
 // Writers of the middleware that end with messages which their readers have not confirmed.
 #include "fast_dds/writer_end.hpp"
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
