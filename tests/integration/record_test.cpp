@@ -3,10 +3,12 @@
 #include <csignal>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -82,22 +84,36 @@ TEST_F(Record, ALogThatIsReadAgainIsRecordedOnce) {
   Program run(scratch_, "topogeo",
               {"run", "--log", log.string(), "--out", (scratch_ / "run").string(), "--record",
                (scratch_ / "run.clf").string(), "--workers", "0", "--domain", own_domain()});
-  const auto send = [&run](const char* service, int signal_number) {
+  const auto send = [&run](const std::string& service, int signal_number) {
     for (const pid_t pid : run.services(service)) ::kill(pid, signal_number);
   };
+  const auto wait_until = [&run](const std::function<bool()>& is_so) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60 * kTimeFactor);
+    while (!is_so() && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    ASSERT_TRUE(is_so()) << run.err();
+  };
+  // Between its end and its next start there is nothing to kill.
+  const auto is_there = [&run](const std::string& service) {
+    return !run.services(service).empty();
+  };
+  const std::vector<std::string> mapper_and_gateway = {"local_mapper", "sensor_gateway"};
   run.wait_for_progress(30);
-  send("sensor_gateway", SIGKILL);
-  run.wait_for_error_text("sensor_gateway was killed by signal 9");
+  for (const std::string& service : mapper_and_gateway) {
+    send(service, SIGKILL);
+    run.wait_for_error_text(service + " was killed by signal 9");
+    wait_until([&] { return is_there(service); });
+  }
   // The map is not made yet when all scans are recorded and the recorder has ended.
   send("localizer", SIGSTOP);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60 * kTimeFactor);
-  while (!run.services("topogeo").empty() && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  wait_until([&] { return !is_there("topogeo"); });
+  // The gateway may have been killed by the run then.
+  for (const std::string& service : mapper_and_gateway) {
+    wait_until([&] { return is_there(service); });
+    send(service, SIGKILL);
   }
-  ASSERT_TRUE(run.services("topogeo").empty()) << run.err();
-  send("local_mapper", SIGKILL);
-  send("sensor_gateway", SIGKILL);
-  run.wait_for_error_text("local_mapper was killed by signal 9");
+  run.wait_for_error_text("started again (2)");
   send("localizer", SIGCONT);
   ASSERT_EQ(run.wait(), 0) << run.err();
   EXPECT_TRUE(read_file(scratch_ / "run" / "map.pb") == map_of(log, "map"));
