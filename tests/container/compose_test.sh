@@ -35,7 +35,17 @@ export PARTICIPANT=udp_only LOG=$work/log.clf OUT=$work/demo
 # Health checks more often than each 30 s.
 { echo "services:"; printf '  %s: {healthcheck: {interval: 4s}}\n' \
   sensor_gateway navigator local_mapper localizer map_store planner worker; } > "$work/often.yaml"
-compose() { docker-compose -p "topogeo-$$" -f "$source_dir/deploy/compose.yaml" -f "$work/often.yaml" --profile "$profile" "$@"; }
+files=(-f "$source_dir/deploy/compose.yaml" -f "$work/often.yaml")
+if [ ${#sanitized[@]} -gt 0 ]; then  # as common.sh does with `docker run`; and more memory
+  echo "services:" > "$work/sanitized.yaml"
+  sed -nE '/^services:/,$ s/^  ([a-z_0-9]+):$/\1/p' "$source_dir/deploy/compose.yaml" | while read -r service; do
+    printf '  %s:\n    mem_limit: 2g\n    cap_add: [SYS_PTRACE]\n    volumes: ["%s", "%s"]\n    environment:\n' "$service" \
+      "$build/reports:$build/reports" "$source_dir/tests/sanitizers:$source_dir/tests/sanitizers:ro"
+    printf '      %s:\n' ASAN_OPTIONS LSAN_OPTIONS UBSAN_OPTIONS TSAN_OPTIONS
+  done >> "$work/sanitized.yaml"
+  files+=(-f "$work/sanitized.yaml")
+fi
+compose() { docker-compose -p "topogeo-$$" "${files[@]}" --profile "$profile" "$@"; }
 profile=robot
 cleanups+=("compose down -t 5")
 up() { compose up -d "$@" > "$work/up.log" 2>&1 || { tail -n 5 "$work/up.log"; fail "compose up, profile $profile"; }; }

@@ -25,6 +25,20 @@ is_up() { here systemctl is-system-running 2> /dev/null | grep -qE 'running|degr
     --cgroupns host -v /sys/fs/cgroup:/sys/fs/cgroup && eventually 30 is_up; } ||
   skip "systemd does not start in a container here: $(tail -n 1 "$work/boot.log")"
 
+# Units have neither the environment of the container nor a place for reports, and too little memory for a sanitizer.
+if [ ${#sanitized[@]} -gt 0 ]; then
+  {
+    printf '[Service]\nPrivateTmp=no\nReadWritePaths=%s\nMemoryMax=infinity\n' "$build/reports"
+    printf 'AmbientCapabilities=CAP_SYS_PTRACE\n'
+    env | sed -nE 's/^((A|L|UB|T)SAN_OPTIONS=.*)/Environment="\1"/p'
+  } > "$work/sanitized.conf"
+  for unit in $(here ls /usr/lib/systemd/system | grep '^topogeo.*service$'); do
+    here mkdir -p "/etc/systemd/system/$unit.d"
+    docker cp "$work/sanitized.conf" "$machine:/etc/systemd/system/$unit.d/" > /dev/null
+  done
+  here systemctl daemon-reload
+fi
+
 state() { here systemctl show -P "$2" "$1"; }
 is_state() { [ "$(state "$1" "$2")" = "$3" ]; }
 
