@@ -118,7 +118,7 @@ need_image() {
       "$source_dir/deploy/base-image.sh" "$base" > "$work/base.log" 2>&1 ||
       { tail -n 5 "$work/base.log"; skip "no base image can be pulled or made"; }
     step "making the image"
-    "$source_dir/deploy/image" $image --label key="$key" > "$work/image.log" 2>&1 ||
+    BUILD=$build "$source_dir/deploy/image" $image --label key="$key" > "$work/image.log" 2>&1 ||
       { tail -n 30 "$work/image.log"; fail "the image cannot be made"; }
     step "made the image"
   fi
