@@ -39,6 +39,7 @@ if [ ${#sanitized[@]} -gt 0 ]; then
   here systemctl daemon-reload
 fi
 
+as_topogeo() { here sudo -u topogeo --preserve-env=TOPOGEO_DOMAIN,ASAN_OPTIONS,LSAN_OPTIONS,UBSAN_OPTIONS,TSAN_OPTIONS "$@"; }
 state() { here systemctl show -P "$2" "$1"; }
 is_state() { [ "$(state "$1" "$2")" = "$3" ]; }
 
@@ -65,7 +66,7 @@ here systemctl restart topogeo.target
 # All seven, as root and as the user of the services.
 all_run() { here topogeo status > "$work/status" 2>&1 && [ "$(grep -c ' running ' "$work/status")" = 7 ]; }
 eventually 90 all_run || { cat "$work/status"; fail "not all services are well"; }
-all_run_for_their_user() { here sudo -u topogeo --preserve-env=TOPOGEO_DOMAIN topogeo status > /dev/null; }
+all_run_for_their_user() { as_topogeo topogeo status > /dev/null; }
 eventually 30 all_run_for_their_user || fail "not all services are well for their user"
 eventually 30 here test -e /var/lib/topogeo/map/map.sqlite || fail "no map"
 
@@ -145,9 +146,9 @@ is_state busy-worker@8 ActiveState active || fail "the workers were not busy"
 here systemctl stop 'busy-worker@*'
 
 step "a backup, and the end"
-here sudo -u topogeo topogeo store snapshot /var/lib/topogeo/map before-the-fair > /dev/null
+as_topogeo topogeo store snapshot /var/lib/topogeo/map before-the-fair > /dev/null
 here systemctl stop topogeo-map-store
-here sudo -u topogeo topogeo store restore /var/lib/topogeo/map before-the-fair > /dev/null
+as_topogeo topogeo store restore /var/lib/topogeo/map before-the-fair > /dev/null
 here systemctl start topogeo-map-store
 eventually 60 all_run || { cat "$work/status"; fail "not all services are well after the map was restored"; }
 here systemctl stop topogeo.target topogeo-worker@1
