@@ -129,7 +129,7 @@ topogeo_describe_package(topogeo-workers WORKERS science ""
   "Help the robots of a network with the genetic search that matches their
 local maps. Needs no settings.")
 topogeo_describe_package(topogeo-dev DEV libdevel
-  "libfastrtps-dev, libfastcdr-dev, libeigen3-dev, libfmt-dev, libspdlog-dev, libyaml-cpp-dev, libsystemd-dev"
+  "libfastrtps-dev, libfastcdr-dev, libeigen3-dev, libfmt-dev, libspdlog-dev, libyaml-cpp-dev, libssl-dev, libsystemd-dev"
   "topogeo for programs that join its services"
   "The types of all topics as IDL and as C++, and the library that reads and
 writes them.")

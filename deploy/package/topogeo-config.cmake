@@ -1,6 +1,7 @@
 # find_package(topogeo): topogeo::messaging (topics, writers, readers, event loop) and topogeo::idl (types).
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(OpenSSL)
 find_dependency(fmt)
 find_dependency(spdlog)
 find_dependency(yaml-cpp)

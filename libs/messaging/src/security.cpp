@@ -15,6 +15,8 @@
 
 #include "topogeo/support/log.hpp"
 
+#include "fast_dds/handshake_certificates.hpp"
+
 namespace topogeo::messaging {
 
 namespace dds = eprosima::fastdds::dds;
@@ -134,6 +136,7 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
                              "and name the hosts in TOPOGEO_PEERS where there is no multicast");
   }
   keep_security_races_away();
+  keep_one_certificate_of_a_peer();
   note_denials();
   forward_log();
   auto& properties = qos.properties().properties();
