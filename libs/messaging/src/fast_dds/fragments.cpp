@@ -77,8 +77,8 @@ Gap bounded(const rtps::SequenceNumber_t& begin, const rtps::SequenceNumberSet_t
 }
 
 /// What makes fragments and gaps of a reader come one after the other. The reader's own lock must
-/// not be held around the library's function: that takes the lock of liveliness, and the thread of
-/// liveliness takes the two in the other order.
+/// not be held around the library's functions: they take that of liveliness, and give the reader's
+/// away to take that of discovery. Other threads take these in the other order.
 std::recursive_mutex& turn_of(const rtps::StatefulReader* reader) {
   static std::array<std::recursive_mutex, 16> turns;
   return turns[std::hash<const rtps::StatefulReader*>{}(reader) / alignof(std::max_align_t) %
@@ -140,19 +140,22 @@ extern "C" bool topogeo_take_gap(rtps::StatefulReader* reader, const rtps::GUID_
   static const auto original = topogeo::messaging::library_function<Function>(kTakeGap);
   if (topogeo::messaging::refuse_unprotected(*reader)) return false;
   const std::lock_guard turn(turn_of(reader));
-  const std::lock_guard lock(reader->getMutex());
-  const Gap gap = bounded(begin, more, topogeo::messaging::complete_up_to(*reader, writer));
-  if (gap.begin == gap.more.base()) return false;
-  rtps::ReaderHistory& history = *reader->getHistory();
-  std::vector<rtps::CacheChange_t*> parts;
-  for (auto change = history.changesBegin(); change != history.changesEnd(); ++change) {
-    const rtps::SequenceNumber_t& number = (*change)->sequenceNumber;
-    if ((*change)->is_fully_assembled() || (*change)->writerGUID != writer) continue;
-    if ((gap.begin <= number && number < gap.more.base()) || gap.more.is_set(number)) {
-      parts.push_back(*change);
+  Gap gap;
+  {
+    const std::lock_guard lock(reader->getMutex());
+    gap = bounded(begin, more, topogeo::messaging::complete_up_to(*reader, writer));
+    if (gap.begin == gap.more.base()) return false;
+    rtps::ReaderHistory& history = *reader->getHistory();
+    std::vector<rtps::CacheChange_t*> parts;
+    for (auto change = history.changesBegin(); change != history.changesEnd(); ++change) {
+      const rtps::SequenceNumber_t& number = (*change)->sequenceNumber;
+      if ((*change)->is_fully_assembled() || (*change)->writerGUID != writer) continue;
+      if ((gap.begin <= number && number < gap.more.base()) || gap.more.is_set(number)) {
+        parts.push_back(*change);
+      }
     }
+    for (rtps::CacheChange_t* part : parts) history.remove_change(part);
   }
-  for (rtps::CacheChange_t* part : parts) history.remove_change(part);
   return original(reader, writer, gap.begin, gap.more);
 }
 
