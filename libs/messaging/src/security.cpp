@@ -16,6 +16,7 @@
 #include "topogeo/support/log.hpp"
 
 #include "fast_dds/handshake_certificates.hpp"
+#include "fast_dds/security_keys.hpp"
 
 namespace topogeo::messaging {
 
@@ -137,6 +138,7 @@ void add_security(dds::DomainParticipantQos& qos, const std::filesystem::path& f
   }
   keep_security_races_away();
   keep_one_certificate_of_a_peer();
+  keep_security_keys();
   note_denials();
   forward_log();
   auto& properties = qos.properties().properties();
