@@ -1,0 +1,12 @@
+// Readers of the middleware that end while a writer is found for them.
+#pragma once
+
+namespace topogeo::messaging {
+
+/// Lets a reader whose listener was taken away have one that does nothing. Otherwise a process that
+/// ended while a peer's writer was matched to its reader crashed now and then.
+///
+/// Whoever calls it gets what reader_end.cpp puts right linked in; it does nothing else.
+void let_readers_end_beside_matches();
+
+}  // namespace topogeo::messaging
