@@ -91,6 +91,16 @@ drive_to() {  # X,Y
     END { printf "       %d commands, every %.1f ms, at most %d ms apart\n", n, (n > 1 ? sum / (n - 1) : 0), most }'
 }
 
+# What moved since MS, each half second, and what the services said.
+show_drive() {
+  local file
+  for file in motion commands; do
+    echo "$file:"
+    here cat /root/$file | awk -v from="$1" '$1 > from - 1000 && $1 > next_ms { print $1 - from, $2, $3; next_ms = $1 + 500 }'
+  done
+  here journalctl -u 'topogeo-*' --no-pager -o short-unix | tail -n 40
+}
+
 # On the way to X,Y the navigator freezes: the gateway stops the robot before systemd starts another navigator.
 freeze_on_the_way_to() {  # X,Y
   local navigator from until drive
@@ -107,7 +117,7 @@ freeze_on_the_way_to() {  # X,Y
       if ($2 > 0.005 || $3 > 0.005) { last = $1; still = 0 } else { ++still }
     }
     END { printf "       stands after %d ms\n", (last ? last - from : 0); exit still < 10 }' ||
-    fail "the robot drives on without its navigator"
+    { show_drive "$from"; fail "the robot drives on without its navigator"; }
   eventually 60 all_run || { cat "$work/status"; fail "not all services are well after the navigator hung"; }
   wait $drive || true  # with the new navigator, if it came soon enough for who gave the goal
 }
